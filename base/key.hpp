@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace abut {
+
+/// The numbers a configuration key may hold; every number must be finite as well.
+struct Rule {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool above_low = false;   // low itself is excluded
+  bool below_high = false;  // high itself is excluded
+
+  bool holds(double value) const;
+  /// For messages, to follow "must be": "positive", "at least 1", "between 0 and 1".
+  std::string words() const;
+  /// For remedies, to follow "a number": "greater than 0", "of at least 1"; empty when all numbers fit.
+  std::string range() const;
+};
+
+inline constexpr Rule any{};
+inline constexpr Rule positive{.low = 0.0, .above_low = true};
+inline constexpr Rule non_negative{.low = 0.0};
+constexpr Rule at_least(double low) { return Rule{.low = low}; }
+constexpr Rule at_most(double high) { return Rule{.high = high}; }
+/// Both ends included.
+constexpr Rule between(double low, double high) { return Rule{.low = low, .high = high}; }
+
+enum class Presence { required, optional };
+
+/// What every key states about itself. Unit "" means a pure number or text; `help` is a noun phrase.
+struct Key {
+  std::string_view name, unit, help;
+  Presence presence = Presence::required;
+};
+
+/// Where one value lives.
+using Slot = std::variant<double*, int*, std::int64_t*, bool*, std::string*, std::optional<double>*,
+                          std::vector<double>*, std::vector<std::string>*,
+                          std::array<std::string, 2>*>;
+
+}  // namespace abut
