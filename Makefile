@@ -1,0 +1,41 @@
+# The front door. Every target checks what it needs first, skips what is done, and may be run again.
+.DEFAULT_GOAL := help
+.PHONY: help demo build test bench clean dependencies-build dependencies-test dependencies-bench
+
+PRESET ?= release
+export PRESET
+BIN := build/$(PRESET)/bin
+
+help:
+	@echo "make demo    two bars collide, one process each; result table and a page of plots"
+	@echo "make build   the two programs, in $(BIN)"
+	@echo "make test    every test"
+	@echo "make bench   the measured figures"
+	@echo "make clean   removes build/ (runs/ is yours and stays)"
+	@echo "Missing Debian packages are installed first, with sudo when you are not root."
+
+dependencies-build:
+	@sh scripts/install_dependencies.sh build
+dependencies-test:
+	@sh scripts/install_dependencies.sh build test
+dependencies-bench:
+	@sh scripts/install_dependencies.sh build bench
+
+build: dependencies-build
+	@sh scripts/build.sh programs
+
+demo: build
+	$(BIN)/abut run configs/two_bars.yaml --out runs/two_bars --force
+	$(BIN)/abut report runs/two_bars
+	@echo "plots: file://$(CURDIR)/runs/two_bars/report.html"
+
+test: dependencies-test
+	@sh scripts/build.sh tests
+	ctest --preset $(PRESET) --parallel 2
+
+bench: dependencies-bench
+	@sh scripts/build.sh bench
+	@sh bench/run.sh $(BIN)
+
+clean:
+	rm -rf build

@@ -1,0 +1,44 @@
+#!/bin/sh
+# Configures a preset when needed and builds some of it.
+#   usage: scripts/build.sh programs|tests|bench      environment: PRESET (release), JOBS (all cores)
+# The build directory starts with the programs alone, so that a demo needs neither GoogleTest nor
+# Google Benchmark; asking for tests or bench adds them for good.
+set -eu
+cd "$(dirname "$0")/.."
+
+preset=${PRESET:-release}
+directory=build/$preset
+jobs=${JOBS:-$(nproc)}
+
+has() {  # is this option already on in the build directory
+  grep -q "^$1:BOOL=ON\$" "$directory/CMakeCache.txt" 2>/dev/null
+}
+
+configure() {
+  log=$(mktemp)
+  if ! cmake --preset "$preset" "$@" >"$log" 2>&1; then
+    cat "$log" >&2
+    rm -f "$log"
+    exit 1
+  fi
+  rm -f "$log"
+}
+
+# build.ninja is written last: its absence means that the directory was never configured to the end.
+[ -f "$directory/build.ninja" ] || configure -DABUT_TESTS=OFF -DABUT_BENCH=OFF
+
+case "${1:-}" in
+  programs) target=programs ;;
+  tests)
+    has ABUT_TESTS || configure -DABUT_TESTS=ON
+    target=all ;;
+  bench)
+    has ABUT_BENCH || configure -DABUT_BENCH=ON
+    target="programs benchmarks" ;;
+  *)
+    echo "usage: $0 programs|tests|bench" >&2
+    exit 2 ;;
+esac
+
+# shellcheck disable=SC2086  # more than one target
+exec cmake --build "$directory" --parallel "$jobs" --target $target
