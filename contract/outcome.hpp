@@ -1,0 +1,71 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "contract/waveform.hpp"
+
+namespace abut {
+
+/// Energies of one body [J], in the form that its integrator conserves.
+struct Energy {
+  double kinetic = 0.0;
+  double stored = 0.0;
+  double dissipated = 0.0;     // by contact capture and material, counted positive
+  double external_work = 0.0;  // done on the body by body forces and prescribed motion
+
+  double total() const { return kinetic + stored; }
+};
+
+/// State of a body at one time, as a number or two.
+struct BodyRecord {
+  double time = 0.0;              // [s]
+  Energy energy;                  // [J]
+  std::vector<double> momentum;   // [kg m/s] (dim)
+};
+
+/// What a body with kicks at a massive contact node knows about its rebound (docs/METHOD.md): the
+/// coordinator forms the release impulse of a pair from the data of both sides. All along the outward normal.
+struct Rebound {
+  double node_velocity = 0.0;    // [m/s] force-free half-step velocity of the contact node, w0*
+  double inner_velocity = 0.0;   // [m/s] the same of its neighbour, w1*
+  double node_mobility = 0.0;    // [1/kg] G0: velocity of the contact node per unit impulse on it
+  double inner_mobility = 0.0;   // [1/kg] G1: velocity of its neighbour per unit impulse on the contact node
+  double captured = 0.0;         // [J] work that contact has taken from the body since the port closed, W
+};
+
+/// One port's reply to a window.
+struct PortResponse {
+  Waveform trace;                  // at the substeps, or at the records only (Sampling)
+  std::vector<double> lower;       // [m] (dim) smallest and largest displacement over all substeps
+  std::vector<double> upper;       // [m] (dim)
+  double approach_bound = 0.0;     // [m/s] largest outward normal velocity expected of the port when free
+  double approach_acceleration = 0.0;  // [m/s^2] by which body forces may raise that bound
+  std::optional<Rebound> rebound;  // only bodies with contact kicks
+};
+
+/// A body's reply to a window. Reused between windows: buffers keep their memory.
+struct Response {
+  std::vector<PortResponse> ports;  // in the order of Description::ports
+  std::vector<BodyRecord> records;
+  int steps = 0;                    // substeps taken
+  double compute_seconds = 0.0;     // wall time inside the solver; never decides anything
+};
+
+struct Advanced {};
+
+/// The numbers' kind of error: a value, never an exception.
+struct Failed {
+  enum class Cause { no_convergence, inverted_element, step_too_small, non_finite };
+  Cause cause = Cause::non_finite;
+  double time = 0.0;  // [s]
+  std::string detail;
+};
+
+using Outcome = std::variant<Advanced, Failed>;
+
+const char* to_string(Failed::Cause cause);
+
+}  // namespace abut

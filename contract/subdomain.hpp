@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "contract/boundary_data.hpp"
+#include "contract/outcome.hpp"
+#include "contract/port.hpp"
+#include "contract/time_window.hpp"
+
+namespace abut {
+
+/// What a body can do; checked against the scene before the first window.
+struct Capabilities {
+  bool motion = false;    // accepts BoundaryData::motion
+  bool force = false;     // accepts BoundaryData::force
+  bool obstacle = false;  // accepts BoundaryData::obstacle: may be the kinematic side
+  bool impulse = false;   // accepts BoundaryData::impulse
+  bool kernel = false;    // answers kernel()
+  bool complete = false;  // reactions hold the inertia of the contact row: unilateral interfaces
+};
+
+struct Description {
+  std::string name;
+  std::string model;            // one line for people: "fe bar, 200 elements, central difference"
+  int dim = 1;
+  std::int64_t dofs = 0;
+  double mass = 0.0;            // [kg]; infinity: immovable
+  double step = 0.0;            // [s] nominal substep; 0: any window is one step
+  double stable_step = 0.0;     // [s] limit of the nominal step; infinity: none
+  std::vector<Port> ports;
+  Capabilities can;
+};
+
+/// Which traces a response holds.
+enum class Sampling {
+  substeps,  // window begin and every substep: needed where an interface may close
+  records,   // window begin and the records: free flight
+};
+
+/// One request: advance through a window with given data on the ports.
+struct Advance {
+  TimeWindow window;
+  int records = 1;                     // BodyRecords wanted, at the ends of equal parts of the window
+  Sampling sampling = Sampling::substeps;
+  std::vector<BoundaryData> boundary;  // in the order of Description::ports
+};
+
+/// A body: something that can be advanced through a window with given data on its ports, and rewound.
+///
+/// Call sequence of one window:  save  (start finish  restore)*  start finish, then the next save accepts.
+/// Substeps divide the window; the last one lands on its end exactly and the adjusted step is not kept.
+/// A window of no length advances nothing and reports the state.
+/// restore() is exact, bit for bit. start() returns at once so that bodies in other processes run
+/// concurrently; finish() waits and fills the response. Between start() and finish() nothing else is called.
+class Subdomain {
+ public:
+  virtual ~Subdomain() = default;
+  virtual const Description& describe() const = 0;
+  virtual void save() = 0;     // the one state that restore() returns to
+  virtual void restore() = 0;
+  virtual void start(const Advance& request) = 0;  // the request must live until finish() returns
+  [[nodiscard]] virtual Outcome finish(Response& response) = 0;
+  /// Impulse response of a port over `count` substeps of length `step`; the state is left untouched.
+  virtual PortKernel kernel(int port, double step, int count) = 0;
+  virtual std::vector<std::byte> checkpoint() = 0;          // durable form of the state
+  virtual void resume(std::span<const std::byte> bytes) = 0;
+  virtual std::uint64_t state_hash() = 0;                   // equal states, equal hashes
+
+  [[nodiscard]] Outcome advance(const Advance& request, Response& response) {
+    start(request);
+    return finish(response);
+  }
+};
+
+}  // namespace abut

@@ -1,0 +1,85 @@
+#include "contract/waveform.hpp"
+
+#include <algorithm>
+
+#include "base/assert.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Index of the last stored time that is not after `at`, limited so that a successor exists.
+std::size_t interval_of(const std::vector<double>& time, double at) {
+  const auto after = std::upper_bound(time.begin(), time.end(), at);
+  const std::size_t index = static_cast<std::size_t>(after - time.begin());
+  return std::clamp<std::size_t>(index, 1, time.size() - 1) - 1;
+}
+
+}  // namespace
+
+void Waveform::clear() {
+  time.clear();
+  u.clear();
+  v.clear();
+  a.clear();
+  f.clear();
+}
+
+void Waveform::interpolate(const std::vector<double>& field, double at, std::span<double> out) const {
+  ABUT_ASSERT(!time.empty() && field.size() == time.size() * static_cast<std::size_t>(width));
+  const std::size_t w = static_cast<std::size_t>(width);
+  if (time.size() == 1 || at <= time.front()) {
+    std::copy_n(field.begin(), w, out.begin());
+    return;
+  }
+  if (at >= time.back()) {
+    std::copy_n(field.end() - width, w, out.begin());
+    return;
+  }
+  const std::size_t i = interval_of(time, at);
+  const double s = (at - time[i]) / (time[i + 1] - time[i]);
+  for (std::size_t c = 0; c < w; ++c) {
+    const double before = field[i * w + c];
+    out[c] = before + s * (field[(i + 1) * w + c] - before);
+  }
+}
+
+void Waveform::force_at(double at, std::span<double> out) const {
+  if (support == ForceSupport::nodal) {
+    interpolate(f, at, out);
+    return;
+  }
+  // The force of a substep belongs to the half-open interval that ends at its stored time.
+  const auto not_before = std::lower_bound(time.begin(), time.end(), at);
+  const std::size_t last = time.size() - 1;
+  const std::size_t first = std::min<std::size_t>(1, last);
+  const std::size_t i =
+      std::clamp(static_cast<std::size_t>(not_before - time.begin()), first, last);
+  std::copy_n(f.begin() + static_cast<std::ptrdiff_t>(i) * width, width, out.begin());
+}
+
+void Waveform::impulse(double from, double to, std::span<double> out) const {
+  const std::size_t w = static_cast<std::size_t>(width);
+  std::fill_n(out.begin(), w, 0.0);
+  const std::size_t last = time.size() - 1;
+  if (time.empty() || last == 0) return;
+  const bool nodal = support == ForceSupport::nodal;
+  // Cell i is [begin_of(i), begin_of(i + 1)]: dual cells of all nodes, or the substeps 1..last.
+  auto begin_of = [this, nodal, last](std::size_t i) {
+    if (!nodal) return time[i - 1];
+    if (i == 0) return time.front();
+    return i > last ? time.back() : 0.5 * (time[i - 1] + time[i]);
+  };
+  for (std::size_t i = interval_of(time, from) + (nodal ? 0 : 1); i <= last; ++i) {
+    const double cell_begin = begin_of(i);
+    if (cell_begin >= to) break;
+    const double cell_end = nodal ? begin_of(i + 1) : time[i];
+    const double overlap = std::min(cell_end, to) - std::max(cell_begin, from);
+    if (overlap <= 0.0) continue;
+    for (std::size_t c = 0; c < w; ++c) out[c] += overlap * f[i * w + c];
+  }
+}
+
+bool same_times(const Waveform& a, const Waveform& b) { return a.time == b.time; }
+
+}  // namespace abut

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/fields.hpp"
+
+namespace abut {
+
+// ---- meta -------------------------------------------------------------------------------------------------
+
+/// One statement about the run's result; exactly one of equals, at_most, at_least is given.
+struct Expectation {
+  std::string measure;
+  std::optional<double> equals, at_most, at_least;
+  std::optional<double> relative, absolute;  // tolerance of equals: exactly one
+  std::string because;
+  void fields(Fields& f);
+};
+
+/// Closed form of two free uniform bars that hit head-on, or of one bar on a rigid wall.
+struct BarImpactForm {
+  static constexpr std::string_view name = "bar_impact";
+  std::string interface;
+  void fields(Fields& f);
+};
+
+struct Meta {
+  std::string title;
+  std::optional<std::variant<BarImpactForm>> closed_form;
+  std::vector<Expectation> expect;
+  void fields(Fields& f);
+};
+
+// ---- time, bodies, interfaces ------------------------------------------------------------------------------
+
+struct TimeSpec {
+  double begin = 0.0, end = 0.0, window = 0.0;  // [s]
+  void fields(Fields& f);
+};
+
+struct SpawnLaunch {  // the coordinator starts the process
+  static constexpr std::string_view name = "spawn";
+  std::string program;  // empty: abut-solver beside abut
+  void fields(Fields& f);
+};
+struct ConnectLaunch {  // the coordinator waits for a process that somebody else starts
+  static constexpr std::string_view name = "connect";
+  double patience = 60.0;  // [s]
+  void fields(Fields& f);
+};
+
+/// What the coordinator reads of a body entry; all other keys are the body's own specification.
+struct BodyEntry {
+  std::string name;
+  std::variant<SpawnLaunch, ConnectLaunch> launch;
+  void fields(Fields& f);
+};
+
+struct ContactSpec {  // frictionless
+  void fields(Fields& f);
+};
+
+/// The kinematic side solves a one-body unilateral problem against the partner's moving surface (default).
+struct UnilateralTransmission {
+  static constexpr std::string_view name = "unilateral";
+  std::string kinematic = "auto";  // body.port, or auto: by probe
+  void fields(Fields& f);
+};
+/// The published form: motion overwritten on one side, internal force handed to the other.
+struct DirichletNeumannTransmission {
+  static constexpr std::string_view name = "dirichlet_neumann";
+  std::string dirichlet;         // body.port
+  bool swap_every_window = true;  // as published
+  void fields(Fields& f);
+};
+
+struct InterfaceSpec {
+  std::string name;
+  std::array<std::string, 2> sides;  // body.port
+  std::optional<ContactSpec> contact;
+  std::variant<UnilateralTransmission, DirichletNeumannTransmission> transmission;
+  void fields(Fields& f);
+};
+
+// ---- Schwarz ----------------------------------------------------------------------------------------------
+
+struct NoAcceleration {
+  static constexpr std::string_view name = "none";
+  void fields(Fields& f);
+};
+struct FixedRelaxation {
+  static constexpr std::string_view name = "relaxation";
+  double factor = 0.5;
+  void fields(Fields& f);
+};
+struct AitkenAcceleration {
+  static constexpr std::string_view name = "aitken";
+  double initial = 0.5;
+  void fields(Fields& f);
+};
+struct AndersonAcceleration {  // IQN-ILS
+  static constexpr std::string_view name = "anderson";
+  double initial = 0.5;
+  int reuse = 5;           // windows whose secants are kept
+  double filter = 1.0e-7;  // relative size below which a secant is dropped
+  void fields(Fields& f);
+};
+struct KernelAcceleration {  // port kernels as interface Jacobian, plus secants
+  static constexpr std::string_view name = "kernel";
+  int reuse = 5;
+  double filter = 1.0e-7;
+  void fields(Fields& f);
+};
+
+struct SchwarzSpec {
+  bool parallel = false;     // "form: alternating | parallel"
+  double tolerance = 1.0e-6;  // scaled by reference velocity x step
+  bool whole_body_norm = false;  // "norm: interface | positions" (published criterion)
+  int max_iterations = 20;
+  std::variant<KernelAcceleration, NoAcceleration, FixedRelaxation, AitkenAcceleration, AndersonAcceleration>
+      accelerator;
+  std::string on_nonconvergence = "stop";  // stop | halve | accept
+  void fields(Fields& f);
+};
+
+struct OutputSpec {
+  int records_per_window = 1;  // rows of history.csv per controller window
+  void fields(Fields& f);
+};
+
+struct NetworkSpec {
+  std::string endpoint = "tcp://127.0.0.1:5555";  // where bodies with launch: connect find the coordinator
+  double request_deadline = 60.0;                 // [s] without reply or sign of progress
+  double startup_deadline = 10.0;                 // [s] for spawned bodies
+  void fields(Fields& f);
+};
+
+struct Scene {
+  Meta meta;
+  TimeSpec time;
+  std::vector<std::pair<std::string, BodyEntry>> bodies;
+  std::vector<std::pair<std::string, InterfaceSpec>> interfaces;
+  SchwarzSpec schwarz;
+  OutputSpec output;
+  NetworkSpec network;
+  void fields(Fields& f);
+};
+
+}  // namespace abut
