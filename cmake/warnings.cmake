@@ -1,8 +1,8 @@
 # Strict warnings as an interface target: link abut_warnings privately.
 add_library(abut_warnings INTERFACE)
 target_compile_options(abut_warnings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast
-  -Woverloaded-virtual)
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
+  -Wold-style-cast -Woverloaded-virtual)
 option(ABUT_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
 if(ABUT_WARNINGS_AS_ERRORS)
   target_compile_options(abut_warnings INTERFACE -Werror)

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Configures a preset when needed and builds some of it.
-#   usage: scripts/build.sh programs|tests|bench      environment: PRESET (release), JOBS (all cores)
+#   usage: scripts/build.sh programs|tests|bench
+#   environment: PRESET (release), JOBS (all cores)
 # The build directory starts with the programs alone, so that a demo needs neither GoogleTest nor
 # Google Benchmark; asking for tests or bench adds them for good.
 set -eu

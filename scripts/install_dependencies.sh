@@ -1,7 +1,8 @@
 #!/bin/sh
 # Installs the Debian packages of the named groups of packages.txt that are missing, and only those.
 #   usage: scripts/install_dependencies.sh GROUP...     groups: build, test, bench, runtime
-# DEPENDENCIES=installed skips the check: for systems without apt where the list was installed by hand.
+# DEPENDENCIES=installed skips the check: for systems without apt, once the list was installed by
+# hand.
 set -eu
 
 list="$(dirname "$0")/packages.txt"

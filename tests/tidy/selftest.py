@@ -1,0 +1,137 @@
+"""Goal: the checkers can fail. Each is shown a small tree with one fault, and the same without."""
+
+import tempfile
+import unittest
+from pathlib import Path
+from typing import Callable
+
+import docs
+import glossary
+import headers
+import layers
+import lengths
+import words
+from findings import Finding
+
+
+def findings(check: Callable[[Path], list[Finding]], **files: str) -> list[Finding]:
+    """Findings of one check in a tree of files; `__` in a name stands for `/`, `_dot_` for `.`."""
+    with tempfile.TemporaryDirectory() as folder:
+        for key, text in files.items():
+            path = Path(folder) / key.replace("__", "/").replace("_dot_", ".")
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        return check(Path(folder))
+
+
+def body(count: int) -> str:
+    return "".join(f"  f({number});\n" for number in range(count))
+
+
+class Layers(unittest.TestCase):
+    def check(self, expected: int, **files: str) -> None:
+        self.assertEqual(len(findings(layers.check, **files)), expected)
+
+    def test_contract_must_not_see_files_or_eigen(self) -> None:
+        text = '#include <vector>\n#include <fstream>\n#include <Eigen/Dense>\n'
+        self.check(2, contract__port_dot_hpp=text)
+
+    def test_contract_sees_assert_but_not_the_log(self) -> None:
+        text = '#include "base/assert.hpp"\n#include "base/log.hpp"\n'
+        self.check(1, contract__port_dot_hpp=text)
+
+    def test_coupling_must_not_see_solver_nor_messages(self) -> None:
+        text = '#include "subdomain_solver/body.hpp"\n#include "abut/v1/subdomain.pb.h"\n'
+        self.check(2, coordinator__coupling__schwarz_dot_cpp=text)
+
+    def test_only_launch_sees_messaging(self) -> None:
+        text = '#include "messaging/remote_subdomain.hpp"\n'
+        self.check(0, coordinator__launch_dot_cpp=text)
+        self.check(1, coordinator__controller_dot_cpp=text)
+
+    def test_only_launch_local_sees_the_solver(self) -> None:
+        text = '#include "subdomain_solver/body.hpp"\n'
+        self.check(0, coordinator__launch_local_dot_cpp=text)
+        self.check(1, coordinator__launch_dot_cpp=text)
+
+    def test_programs_see_everything(self) -> None:
+        self.check(0, coordinator__main_dot_cpp='#include <CLI/CLI.hpp>\n#include "base/log.hpp"\n')
+
+    def test_unknown_header_and_unknown_folder_are_reported(self) -> None:
+        self.check(1, base__log_dot_cpp='#include <boost/any.hpp>\n')
+        self.check(1, elsewhere__x_dot_cpp='')
+
+
+class Lengths(unittest.TestCase):
+    def check(self, expected: list[int], **files: str) -> None:
+        self.assertEqual([found.line for found in findings(lengths.check, **files)], expected)
+
+    def test_function_of_71_lines_is_too_long_wherever_it_stands(self) -> None:
+        short = "void a() {\n" + body(68) + "}\n"
+        long = "void b(\n    int x) {\n" + body(68) + "}\n"
+        inside = "namespace n {\nclass C : public D {\n  template <class T>\n" + long + "};\n}\n"
+        self.check([], a_dot_cpp=short)
+        self.check([72], a_dot_cpp=short + "\n" + long)
+        self.check([3], a_dot_cpp=inside)
+
+    def test_braces_in_comments_and_strings_do_not_count(self) -> None:
+        text = 'void a() {  // {\n  f("{", \'{\', 1\'000);\n}\nvoid b() {\n' + body(68) + "}\n"
+        self.check([], a_dot_cpp=text)
+
+    def test_tables_and_classes_are_not_functions(self) -> None:
+        self.check([], a_dot_cpp="const int t[] = {\n" + "  1,\n" * 90 + "};\n")
+        self.check([], a_dot_cpp="struct S {\n" + "  int f() { return 1; }\n" * 90 + "};\n")
+
+    def test_long_python_function_file_header_and_line(self) -> None:
+        self.check([1], a_dot_py="def f():\n" + "    pass\n" * 70)
+        self.check([501], a_dot_cpp="\n" * 501)
+        self.check([201], a_dot_hpp="\n" * 201)
+        self.check([1], a_dot_cpp="x" * 101)
+        self.check([], a_dot_cpp="x" * 100)
+
+
+class Words(unittest.TestCase):
+    def test_glossary_reads_identifiers_and_comments(self) -> None:
+        text = "int masterNode;\nint slave_side;  // a micro-step\nremastered, penetrate\n"
+        found = findings(glossary.check, base__a_dot_cpp=text)
+        self.assertEqual([finding.line for finding in found], [1, 2, 2])
+
+    def test_glossary_itself_may_name_them(self) -> None:
+        self.assertEqual(findings(glossary.check, docs__GLOSSARY_dot_md="not master/slave"), [])
+
+    def test_unfinished_business_and_machine_paths(self) -> None:
+        bad = "// TODO later\nopen(\"/home/ann/x\")\nhttp://127.0.0.1:80/\n"
+        self.assertEqual(len(findings(words.check, base__a_dot_cpp=bad)), 3)
+        good = "tcp://127.0.0.1:5555\nruns/work/x\n/tmp/x\n"
+        self.assertEqual(findings(words.check, base__a_dot_cpp=good), [])
+
+
+class HeadersAndDocs(unittest.TestCase):
+    def test_header_without_pragma_once_or_with_using_namespace(self) -> None:
+        self.assertEqual(len(findings(headers.check, base__a_dot_hpp="int x;\n")), 1)
+        self.assertEqual(findings(headers.check, base__a_dot_hpp="// Why.\n#pragma once\n"), [])
+        text = "#pragma once\nusing namespace std;\n"
+        self.assertEqual(len(findings(headers.check, base__a_dot_hpp=text)), 1)
+
+    def test_source_includes_its_own_header_first(self) -> None:
+        header = "#pragma once\n"
+        text = '#include <vector>\n#include "base/a.hpp"\n'
+        found = findings(headers.check, base__a_dot_hpp=header, base__a_dot_cpp=text)
+        self.assertEqual([finding.line for finding in found], [1])
+
+    def test_header_that_needs_another_does_not_compile_alone(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            (root / "bad.hpp").write_text("#pragma once\ninline std::size_t n = 0;\n")
+            (root / "good.hpp").write_text("#pragma once\ninline int n = 0;\n")
+            found = headers.compile_alone(root, ["bad.hpp", "good.hpp"], "c++")
+        self.assertEqual([finding.path for finding in found], ["bad.hpp"])
+
+    def test_dead_links_and_headings(self) -> None:
+        text = "# A b\n[x](gone.md) [y](#a-b) [z](#c) [w](https://example.org)\n`[v](gone.md)`\n"
+        found = findings(docs.check, README_dot_md=text)
+        self.assertEqual([finding.line for finding in found], [2, 2])
+
+
+if __name__ == "__main__":
+    unittest.main()
