@@ -1,0 +1,20 @@
+# One image with both programs; which one runs is the service's command (docker-compose.yml).
+FROM debian:bookworm-slim AS build
+WORKDIR /abut
+# The list alone first: it changes seldom, and the installed packages stay in the layer cache.
+COPY scripts scripts
+RUN scripts/install_dependencies.sh build
+COPY . .
+RUN make build
+
+FROM debian:bookworm-slim
+COPY scripts /tmp/scripts
+RUN /tmp/scripts/install_dependencies.sh runtime && rm -rf /tmp/scripts /var/lib/apt/lists/*
+COPY --from=build /abut/build/release/bin/abut /abut/build/release/bin/abut-solver /usr/local/bin/
+COPY --from=build /abut/configs /abut/configs
+# Not root; /abut/runs is where a run may write.
+RUN useradd --system --uid 10001 --no-create-home abut && install -d -o abut -g abut /abut/runs
+USER abut
+WORKDIR /abut
+ENTRYPOINT ["abut"]
+CMD ["--help"]
