@@ -12,8 +12,9 @@ namespace abut {
 /// One visitor over a class's changing members: writes them to bytes or reads them back.
 ///
 /// A class names each member that changes during a step once, in `void state(Archive&)`; rewind,
-/// checkpoint, hash and replay all read that list. In named form every field carries name, type and count,
-/// so that a stale checkpoint says which field changed; the bare form holds the numbers alone (rewind, hash).
+/// checkpoint, hash and replay all read that list. In named form every field carries name, type and
+/// count, so that a stale checkpoint says which field changed; the bare form holds the numbers and
+/// the lengths of lists alone (rewind, hash). Bytes are in the machine's own order.
 class Archive {
  public:
   enum class Mode { write, read };
@@ -34,8 +35,8 @@ class Archive {
 
  private:
   Archive(Mode mode, Form form) : mode_(mode), form_(form) {}
-  void bytes(std::string_view name, char type, void* data, std::size_t count, std::size_t size);
-  std::size_t count(std::string_view name, char type, std::size_t have);
+  void scalar(std::string_view name, char type, void* data, std::size_t size);
+  void label(std::string_view name, char type);
   void raw(void* data, std::size_t size);
   [[noreturn]] void fail(std::string_view name, const std::string& why) const;
 

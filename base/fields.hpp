@@ -19,11 +19,14 @@ class Fields;
 
 /// A plain struct that lists its configuration keys.
 template <class S>
-concept HasFields = requires(S& value, Fields& f) { value.fields(f); };
+concept HasFields = requires(S& value, Fields& f) {
+  value.fields(f);
+};
 
 /// Visitor over the configuration keys of a struct. Each struct lists its keys once, in
-/// `void fields(Fields& f)`; the same list reads and validates, echoes the values in use and documents the
-/// keys. Absent optional keys keep the value that the member has. Implementations: base/yaml_fields.cpp.
+/// `void fields(Fields& f)`; the same list reads and validates, echoes the values in use and
+/// documents the keys. Absent optional keys keep the value that the member has. Implementations:
+/// base/yaml_fields.cpp.
 class Fields {
  public:
   enum class Purpose { read, write, document };
@@ -93,7 +96,8 @@ class Fields {
     leave();
   }
 
-  /// A map from names that the user chooses to maps, in the file's order. A string member `name` of S is set.
+  /// A map from names that the user chooses to maps, in the file's order. A string member `name` of
+  /// S is set.
   template <HasFields S>
   void map(std::string_view key, std::vector<std::pair<std::string, S>>& values,
            std::string_view help, Presence presence = Presence::required) {
@@ -115,8 +119,8 @@ class Fields {
     leave();
   }
 
-  /// A one-key map `{name: {keys}}`, or the name alone when all its keys have defaults. Each alternative has
-  /// `static constexpr std::string_view name` and `fields`.
+  /// A one-key map `{name: {keys}}`, or the name alone when all its keys have defaults. Each
+  /// alternative has `static constexpr std::string_view name` and `fields`.
   template <HasFields... A>
   void choice(std::string_view key, std::variant<A...>& value, std::string_view help,
               Presence presence = Presence::required) {
@@ -127,13 +131,14 @@ class Fields {
               std::string_view help) {
     std::optional<std::variant<A...>> sample = value;
     if (purpose_ == Purpose::read) sample.emplace();
-    const bool present = choose<A...>({key, "", help, Presence::optional},
-                                      sample.has_value() ? &*sample : nullptr);
+    const bool present =
+        choose<A...>({key, "", help, Presence::optional}, sample.has_value() ? &*sample : nullptr);
     if (purpose_ == Purpose::read) value = present ? std::move(sample) : std::nullopt;
   }
 
-  /// A rule across keys of this map; `key` is the one to blame. `what` follows the key path ("is before
-  /// begin"), `remedy` is a sentence. Only a reader looks at it, and only when no key is missing.
+  /// A rule across keys of this map; `key` is the one to blame. `what` follows the key path ("is
+  /// before begin"), `remedy` is a sentence. Only a reader looks at it, and only when no key is
+  /// missing.
   void check(bool ok, std::string_view key, const std::string& what, const std::string& remedy) {
     if (purpose_ == Purpose::read && !ok) broken(key, what, remedy);
   }
@@ -148,7 +153,8 @@ class Fields {
   virtual void leaf(const Key& key, Slot slot, const Rule& rule) = 0;
   virtual void word_leaf(const Key& key, std::string& value,
                          std::span<const std::string_view> words) = 0;
-  /// Every enter that succeeds, and every descend, is closed by leave(). `present` matters to a writer.
+  /// Every enter that succeeds, and every descend, is closed by leave(). `present` matters to a
+  /// writer.
   virtual bool enter(const Key& key, bool present) = 0;
   virtual std::size_t enter_list(const Key& key, std::size_t count) = 0;
   virtual void enter_map(const Key& key, std::vector<std::string>& names) = 0;
@@ -157,8 +163,7 @@ class Fields {
                                    std::string_view current) = 0;
   virtual void descend(std::string_view name) = 0;
   virtual void leave() = 0;
-  virtual void broken(std::string_view key, const std::string& what,
-                      const std::string& remedy) = 0;
+  virtual void broken(std::string_view key, const std::string& what, const std::string& remedy) = 0;
 
  private:
   template <class S>

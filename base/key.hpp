@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -21,29 +23,42 @@ struct Rule {
   bool holds(double value) const;
   /// For messages, to follow "must be": "positive", "at least 1", "between 0 and 1".
   std::string words() const;
-  /// For remedies, to follow "a number": "greater than 0", "of at least 1"; empty when all numbers fit.
+  /// For remedies: "greater than 0", "at least 1"; empty when all numbers fit.
   std::string range() const;
 };
 
 inline constexpr Rule any{};
 inline constexpr Rule positive{.low = 0.0, .above_low = true};
 inline constexpr Rule non_negative{.low = 0.0};
-constexpr Rule at_least(double low) { return Rule{.low = low}; }
-constexpr Rule at_most(double high) { return Rule{.high = high}; }
+constexpr Rule at_least(double low) {
+  return Rule{.low = low};
+}
+constexpr Rule at_most(double high) {
+  return Rule{.high = high};
+}
 /// Both ends included.
-constexpr Rule between(double low, double high) { return Rule{.low = low, .high = high}; }
+constexpr Rule between(double low, double high) {
+  return Rule{.low = low, .high = high};
+}
 
 enum class Presence { required, optional };
 
-/// What every key states about itself. Unit "" means a pure number or text; `help` is a noun phrase.
+/// What every key states about itself. Unit "" means a pure number or text; `help` is a noun phrase
+/// that can follow "the".
 struct Key {
   std::string_view name, unit, help;
   Presence presence = Presence::required;
 };
 
 /// Where one value lives.
-using Slot = std::variant<double*, int*, std::int64_t*, bool*, std::string*, std::optional<double>*,
-                          std::vector<double>*, std::vector<std::string>*,
-                          std::array<std::string, 2>*>;
+using Slot =
+    std::variant<double*, int*, std::int64_t*, bool*, std::string*, std::optional<double>*,
+                 std::vector<double>*, std::vector<std::string>*, std::array<std::string, 2>*>;
+
+/// Single-character insertions, deletions and replacements that turn one word into the other.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The candidate a user may have meant; empty when none is near.
+std::string nearest(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace abut

@@ -1,0 +1,129 @@
+#include "base/archive.hpp"
+
+#include <xxhash.h>
+
+#include <cstring>
+
+#include "base/error.hpp"
+
+namespace abut {
+namespace {
+
+const char* type_name(char type) {
+  switch (type) {
+    case 'd':
+      return "number";
+    case 'i':
+      return "integer";
+    case 'b':
+      return "truth value";
+    case 'v':
+      return "list of numbers";
+    default:
+      return "unknown type";
+  }
+}
+
+}  // namespace
+
+Archive Archive::writer(std::vector<std::byte>& out, Form form) {
+  Archive archive(Mode::write, form);
+  archive.out_ = &out;
+  return archive;
+}
+
+Archive Archive::reader(std::span<const std::byte> in, Form form) {
+  Archive archive(Mode::read, form);
+  archive.in_ = in;
+  return archive;
+}
+
+void Archive::field(std::string_view name, double& value) {
+  scalar(name, 'd', &value, sizeof value);
+}
+
+void Archive::field(std::string_view name, std::int64_t& value) {
+  scalar(name, 'i', &value, sizeof value);
+}
+
+void Archive::field(std::string_view name, bool& value) {
+  std::uint8_t byte = value ? 1 : 0;
+  scalar(name, 'b', &byte, sizeof byte);
+  if (byte > 1) fail(name, "holds neither true nor false");
+  value = byte == 1;
+}
+
+void Archive::field(std::string_view name, std::vector<double>& values) {
+  label(name, 'v');
+  std::uint64_t count = values.size();
+  raw(&count, sizeof count);
+  if (mode_ == Mode::read) {
+    if (count > (in_.size() - at_) / sizeof(double)) fail(name, "is longer than the archive");
+    values.resize(count);
+  }
+  raw(values.data(), count * sizeof(double));
+}
+
+void Archive::finish() const {
+  if (mode_ == Mode::read && at_ != in_.size())
+    throw RunError("has " + std::to_string(in_.size() - at_) + " bytes after the last field",
+                   "saved state", "It belongs to another version of this body; start afresh.");
+}
+
+void Archive::scalar(std::string_view name, char type, void* data, std::size_t size) {
+  label(name, type);
+  if (mode_ == Mode::read && in_.size() - at_ < size) fail(name, "is cut off");
+  raw(data, size);
+}
+
+/// In named form writes the field's name and type, or reads and compares them.
+void Archive::label(std::string_view name, char type) {
+  if (form_ == Form::bare) return;
+  std::uint16_t length = static_cast<std::uint16_t>(name.size());
+  if (mode_ == Mode::write) {
+    std::string copy(name);
+    raw(&length, sizeof length);
+    raw(copy.data(), length);
+    raw(&type, sizeof type);
+    return;
+  }
+  if (at_ == in_.size()) fail(name, "is missing");
+  raw(&length, sizeof length);
+  if (length > in_.size() - at_) fail(name, "is cut off");
+  std::string found(length, '\0');
+  raw(found.data(), length);
+  if (found != name) fail(name, "is expected, but the archive holds " + found);
+  char found_type = 0;
+  raw(&found_type, sizeof found_type);
+  if (found_type != type)
+    fail(name, std::string("is a ") + type_name(type) + ", but the archive holds a " +
+                   type_name(found_type));
+}
+
+void Archive::raw(void* data, std::size_t size) {
+  if (size == 0) return;
+  if (mode_ == Mode::write) {
+    const std::size_t end = out_->size();
+    out_->resize(end + size);
+    std::memcpy(out_->data() + end, data, size);
+    return;
+  }
+  if (size > in_.size() - at_) fail("field", "is cut off");
+  std::memcpy(data, in_.data() + at_, size);
+  at_ += size;
+}
+
+void Archive::fail(std::string_view name, const std::string& why) const {
+  throw RunError(std::string(name) + ' ' + why, "saved state",
+                 "It belongs to another version of this body; start afresh.");
+}
+
+std::uint64_t hash_bytes(std::span<const std::byte> bytes) {
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+std::uint64_t hash_combine(std::uint64_t seed, std::uint64_t value) {
+  return XXH3_64bits_withSeed(&value, sizeof value, seed);
+}
+
+}  // namespace abut

@@ -1,0 +1,63 @@
+#include "base/key.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace abut {
+
+bool Rule::holds(double value) const {
+  const bool low_holds = above_low ? value > low : value >= low;
+  const bool high_holds = below_high ? value < high : value <= high;
+  return low_holds && high_holds;
+}
+
+std::string Rule::words() const {
+  const bool bounded_below = std::isfinite(low);
+  const bool bounded_above = std::isfinite(high);
+  if (bounded_below && bounded_above) return fmt::format("between {} and {}", low, high);
+  if (bounded_below && low == 0.0) return above_low ? "positive" : "zero or positive";
+  if (bounded_below) return fmt::format("{} {}", above_low ? "greater than" : "at least", low);
+  if (bounded_above) return fmt::format("{} {}", below_high ? "less than" : "at most", high);
+  return "a number";
+}
+
+std::string Rule::range() const {
+  const bool bounded_below = std::isfinite(low);
+  const bool bounded_above = std::isfinite(high);
+  if (bounded_below && bounded_above) return fmt::format("between {} and {}", low, high);
+  if (bounded_below) return fmt::format("{} {}", above_low ? "greater than" : "at least", low);
+  if (bounded_above) return fmt::format("{} {}", below_high ? "less than" : "at most", high);
+  return "";
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+std::string nearest(std::string_view word, std::span<const std::string> candidates) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace abut

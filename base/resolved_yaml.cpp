@@ -1,0 +1,191 @@
+#include "base/resolved_yaml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+#include "base/assert.hpp"
+#include "base/yaml_document.hpp"
+
+namespace abut {
+
+/// One value: a scalar or flow list ready to print, or a map or list of further nodes.
+struct ResolvedYaml::Node {
+  enum class Kind { map, list, text };
+  Kind kind = Kind::map;
+  std::string text, unit;
+  std::vector<std::pair<std::string, std::unique_ptr<Node>>> children;
+
+  Node& child(std::string_view name) {
+    for (auto& [key, node] : children)
+      if (key == name) return *node;
+    children.emplace_back(std::string(name), std::make_unique<Node>());
+    return *children.back().second;
+  }
+};
+
+namespace {
+
+using Node = ResolvedYaml::Node;
+
+/// Shortest form that reads back to the same double, and looks like a number with a fraction.
+std::string written(double value) {
+  std::string text = fmt::format("{}", value);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+/// Plain when no reader of YAML can take it for anything but text, else quoted.
+std::string written(const std::string& text) {
+  const auto plain_letter = [](unsigned char c) {
+    return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '/';
+  };
+  static constexpr std::array<std::string_view, 10> taken{"true", "false", "null", "yes", "no",
+                                                          "on",   "off",   "y",    "n",   "nan"};
+  std::string lower = text;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool plain = !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) &&
+                     std::all_of(text.begin(), text.end(), plain_letter) &&
+                     std::find(taken.begin(), taken.end(), lower) == taken.end();
+  if (plain) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) {
+    const unsigned char code = static_cast<unsigned char>(letter);
+    if (letter == '"' || letter == '\\') {
+      quoted += '\\';
+      quoted += letter;
+    } else if (code < 0x20 || code == 0x7f) {
+      quoted += fmt::format("\\x{:02x}", code);
+    } else {
+      quoted += letter;
+    }
+  }
+  return quoted + '"';
+}
+
+std::string written(bool value) {
+  return value ? "true" : "false";
+}
+std::string written(int value) {
+  return fmt::format("{}", value);
+}
+std::string written(std::int64_t value) {
+  return fmt::format("{}", value);
+}
+
+template <class Values>
+std::string written_list(const Values& values) {
+  std::vector<std::string> items;
+  for (const auto& value : values) items.push_back(written(value));
+  return fmt::format("[{}]", fmt::join(items, ", "));
+}
+std::string written(const std::vector<double>& values) {
+  return written_list(values);
+}
+std::string written(const std::vector<std::string>& values) {
+  return written_list(values);
+}
+std::string written(const std::array<std::string, 2>& values) {
+  return written_list(values);
+}
+
+class Writer final : public Fields {
+ public:
+  explicit Writer(Node& at) : Fields(Purpose::write), stack_{&at} {}
+
+  void ignore(std::string_view) override {}
+  void ignore_rest() override {}
+  void leave() override {
+    ABUT_ASSERT(stack_.size() > 1);
+    stack_.pop_back();
+  }
+
+ protected:
+  void leaf(const Key& key, Slot slot, const Rule&) override {
+    std::visit([this, &key](const auto* value) { put(key, *value); }, slot);
+  }
+  void word_leaf(const Key& key, std::string& value, std::span<const std::string_view>) override {
+    put(key, value);
+  }
+  bool enter(const Key& key, bool present) override {
+    if (present) descend(key.name);
+    return present;
+  }
+  std::size_t enter_list(const Key& key, std::size_t count) override {
+    descend(key.name);
+    stack_.back()->kind = Node::Kind::list;
+    return count;
+  }
+  void enter_map(const Key& key, std::vector<std::string>&) override { descend(key.name); }
+  std::string enter_choice(const Key& key, std::span<const std::string_view>,
+                           std::string_view current) override {
+    if (!current.empty()) descend(key.name);
+    return std::string(current);
+  }
+  void descend(std::string_view name) override {
+    Node& child = stack_.back()->child(name);
+    stack_.push_back(&child);
+  }
+  void broken(std::string_view, const std::string&, const std::string&) override {}
+
+ private:
+  template <class T>
+  void put(const Key& key, const T& value) {
+    Node& node = stack_.back()->child(key.name);
+    node.kind = Node::Kind::text;
+    node.text = written(value);
+    node.unit = key.unit;
+  }
+  void put(const Key& key, const std::optional<double>& value) {
+    if (value) put(key, *value);
+  }
+
+  std::vector<Node*> stack_;
+};
+
+void print(const Node& node, std::size_t indent, bool first_inline, std::string& out) {
+  bool inline_next = first_inline;
+  for (const auto& [name, child] : node.children) {
+    if (!inline_next) out.append(indent, ' ');
+    inline_next = false;
+    if (node.kind == Node::Kind::list) {
+      out += "- ";
+      print(*child, indent + 2, true, out);
+      continue;
+    }
+    out += name + ':';
+    if (child->kind == Node::Kind::text) {
+      out += ' ' + child->text;
+      if (!child->unit.empty()) out += "  # [" + child->unit + ']';
+      out += '\n';
+    } else if (child->children.empty()) {
+      out += child->kind == Node::Kind::list ? " []\n" : " {}\n";
+    } else {
+      out += '\n';
+      print(*child, indent + 2, false, out);
+    }
+  }
+  if (first_inline && node.children.empty()) out += "{}\n";
+}
+
+}  // namespace
+
+ResolvedYaml::ResolvedYaml() : root_(std::make_unique<Node>()) {}
+ResolvedYaml::~ResolvedYaml() = default;
+
+std::unique_ptr<Fields> ResolvedYaml::writer_at(std::string_view path) {
+  Node* at = root_.get();
+  for (const std::string& step : split_path(path)) at = &at->child(step);
+  return std::make_unique<Writer>(*at);
+}
+
+std::string ResolvedYaml::text() const {
+  std::string out;
+  print(*root_, 0, false, out);
+  return out;
+}
+
+}  // namespace abut

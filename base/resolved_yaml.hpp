@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/fields.hpp"
+
+namespace abut {
+
+/// The values in use, defaults included, as YAML that reads back to the same values: doubles in the
+/// shortest form that round-trips, units beside them. Structs that share a map are merged in it.
+class ResolvedYaml {
+ public:
+  ResolvedYaml();
+  ResolvedYaml(const ResolvedYaml&) = delete;
+  ResolvedYaml& operator=(const ResolvedYaml&) = delete;
+  ~ResolvedYaml();
+
+  /// `path` is where the struct's keys live; "" is the whole document.
+  template <HasFields S>
+  void add(std::string_view path, S value) {
+    const std::unique_ptr<Fields> writer = writer_at(path);
+    value.fields(*writer);
+  }
+  std::string text() const;
+
+  struct Node;
+
+ private:
+  std::unique_ptr<Fields> writer_at(std::string_view path);
+  std::unique_ptr<Node> root_;
+};
+
+template <HasFields S>
+std::string to_yaml(S value) {
+  ResolvedYaml resolved;
+  resolved.add("", std::move(value));
+  return resolved.text();
+}
+
+}  // namespace abut

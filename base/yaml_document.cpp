@@ -1,0 +1,248 @@
+#include "base/yaml_document.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <charconv>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace abut {
+namespace {
+
+// An anchor that is repeated in itself grows without bound; no honest scene comes near these.
+constexpr int max_depth = 64;
+constexpr int max_nodes = 200'000;
+constexpr std::size_t max_bytes = 16'000'000;
+
+std::string at_line(const std::string& name, const YAML::Mark& mark) {
+  return mark.line < 0 ? name : fmt::format("{}:{}", name, mark.line + 1);
+}
+
+/// Position in a list from "[3]"; nothing when the step is a key.
+std::optional<std::size_t> list_index(std::string_view step) {
+  if (step.size() < 3 || step.front() != '[' || step.back() != ']') return std::nullopt;
+  std::size_t index = 0;
+  const char* end = step.data() + step.size() - 1;
+  const std::from_chars_result result = std::from_chars(step.data() + 1, end, index);
+  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  return index;
+}
+
+struct Found {
+  YAML::Node node;
+  int line = 0;  // counted from 1; 0: not from a file
+};
+
+std::optional<Found> child(const YAML::Node& node, std::string_view step) {
+  const std::optional<std::size_t> index = list_index(step);
+  if (index) {
+    if (!node.IsSequence() || *index >= node.size()) return std::nullopt;
+    const YAML::Node item = node[*index];
+    return Found{item, item.Mark().line + 1};
+  }
+  if (!node.IsMap()) return std::nullopt;
+  for (const auto& pair : node)
+    if (pair.first.Scalar() == step) return Found{pair.second, pair.first.Mark().line + 1};
+  return std::nullopt;
+}
+
+/// Looks for what YAML allows and a scene does not: duplicate keys, keys that are no plain words.
+class FormCheck {
+ public:
+  explicit FormCheck(const std::string& name) : name_(name) {}
+
+  void visit(const YAML::Node& node, const std::string& path, int depth) {
+    if (depth > max_depth || ++nodes_ > max_nodes)
+      throw InputError("holds too many values", name_, "Remove anchors that repeat themselves.");
+    if (node.IsSequence()) {
+      for (std::size_t i = 0; i < node.size(); ++i)
+        visit(node[i], fmt::format("{}[{}]", path, i), depth + 1);
+    }
+    if (node.IsMap()) visit_map(node, path, depth);
+  }
+
+ private:
+  void visit_map(const YAML::Node& node, const std::string& path, int depth) {
+    std::set<std::string> seen;
+    for (const auto& pair : node) {
+      const std::string where = at_line(name_, pair.first.Mark());
+      if (!pair.first.IsScalar())
+        throw InputError("has a key that is not a word", where, "Write keys as plain words.");
+      const std::string key_path = join_path(path, pair.first.Scalar());
+      if (!seen.insert(pair.first.Scalar()).second)
+        throw InputError("is given twice", where + ": " + key_path, "Remove one of the two.");
+      visit(pair.second, key_path, depth + 1);
+    }
+  }
+
+  const std::string& name_;
+  int nodes_ = 0;
+};
+
+YAML::Node shallow_copy(const YAML::Node& node) {
+  YAML::Node copy(node.Type());
+  if (node.IsMap())
+    for (const auto& pair : node) copy.force_insert(pair.first, pair.second);
+  if (node.IsSequence())
+    for (const YAML::Node& item : node) copy.push_back(item);
+  return copy;
+}
+
+/// A map with one more entry, or with the entry replaced. Copies, because a YAML alias shares its
+/// map with the anchor and only one of the two is meant.
+YAML::Node with_value(const YAML::Node& node, const std::vector<std::string>& steps, std::size_t at,
+                      const YAML::Node& value, const std::string& where) {
+  if (at == steps.size()) return value;
+  const std::optional<std::size_t> index = list_index(steps[at]);
+  const std::optional<Found> found = child(node, steps[at]);
+  if (index ? !found : !node.IsMap())
+    throw InputError("has no place in the scene", where,
+                     index ? "Name an item that the list has, counted from 0."
+                           : "Name a key of a map; all but the last key must lead to maps.");
+  const YAML::Node next = found ? found->node : YAML::Node(YAML::NodeType::Map);
+  YAML::Node copy = shallow_copy(node);
+  const YAML::Node placed = with_value(next, steps, at + 1, value, where);
+  if (index)
+    copy[*index] = placed;
+  else
+    copy[steps[at]] = placed;
+  return copy;
+}
+
+std::string override_path(const std::string& text) {
+  return text.substr(0, text.find('='));
+}
+
+bool is_at_or_below(const std::string& path, const std::string& ancestor) {
+  const std::vector<std::string> a = split_path(path), b = split_path(ancestor);
+  return b.size() <= a.size() && std::equal(b.begin(), b.end(), a.begin());
+}
+
+std::string syntax_words(const YAML::Exception& error) {
+  return "is not readable as YAML: " + error.msg;
+}
+
+}  // namespace
+
+std::vector<std::string> split_path(std::string_view path) {
+  std::vector<std::string> steps;
+  std::string step;
+  const auto flush = [&steps, &step]() {
+    if (!step.empty()) steps.push_back(std::exchange(step, {}));
+  };
+  for (const char letter : path) {
+    if (letter == '.' || letter == '[') flush();
+    if (letter != '.') step += letter;
+  }
+  flush();
+  return steps;
+}
+
+std::string join_path(std::string_view parent, std::string_view child) {
+  if (parent.empty()) return std::string(child);
+  return fmt::format("{}{}{}", parent, child.starts_with('[') ? "" : ".", child);
+}
+
+Document Document::load(const std::string& path, std::vector<std::string> overrides) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (file) text << file.rdbuf();
+  if (!file || !text) throw InputError("cannot be read", path, "Give the path of a scene file.");
+  return Document(path, text.str(), std::move(overrides));
+}
+
+Document Document::from_text(std::string name, std::string text,
+                             std::vector<std::string> overrides) {
+  return Document(std::move(name), std::move(text), std::move(overrides));
+}
+
+Document::Document(Document&& other) noexcept = default;
+Document& Document::operator=(Document&& other) noexcept = default;
+Document::~Document() = default;
+
+Document::Document(std::string name, std::string text, std::vector<std::string> overrides)
+    : name_(std::move(name)), text_(std::move(text)), overrides_(std::move(overrides)) {
+  if (text_.size() > max_bytes)
+    throw InputError(fmt::format("is larger than {} MB", max_bytes / 1'000'000), name_,
+                     "Give the path of a scene file.");
+  std::vector<YAML::Node> documents;
+  try {
+    documents = YAML::LoadAll(text_);
+  } catch (const YAML::Exception& error) {
+    throw InputError(syntax_words(error), at_line(name_, error.mark),
+                     "Correct the line; most often it is an indentation, a bracket or a colon.");
+  }
+  if (documents.size() > 1)
+    throw InputError("holds a second document", at_line(name_, documents[1].Mark()),
+                     "Write one scene per file, without --- lines between its parts.");
+  if (documents.empty() || !documents[0].IsMap())
+    throw InputError("is not a map of keys", at_line(name_, YAML::Mark()),
+                     "Write a scene as key: value lines, beginning with meta:, time:, bodies:.");
+  FormCheck(name_).visit(documents[0], "", 0);
+  root_ = std::make_unique<YAML::Node>(documents[0]);
+  for (const std::string& text_of_override : overrides_) put(text_of_override);
+}
+
+void Document::put(const std::string& override_text) {
+  const std::string where = "--set " + override_text;
+  const std::vector<std::string> steps = split_path(override_path(override_text));
+  if (override_text.find('=') == std::string::npos || steps.empty())
+    throw InputError("is not of the form key.path=value", where,
+                     "Write for example --set time.window=1e-6.");
+  YAML::Node value;
+  try {
+    value.reset(YAML::Load(override_text.substr(override_text.find('=') + 1)));
+  } catch (const YAML::Exception& error) {
+    throw InputError(syntax_words(error), where, "Give the value as in a scene file.");
+  }
+  FormCheck(where).visit(value, override_path(override_text), 0);
+  root_ = std::make_unique<YAML::Node>(with_value(*root_, steps, 0, value, where));
+}
+
+bool Document::has(std::string_view path) const {
+  YAML::Node node(*root_);
+  for (const std::string& step : split_path(path)) {
+    const std::optional<Found> found = child(node, step);
+    if (!found) return false;
+    node.reset(found->node);
+  }
+  return true;
+}
+
+std::vector<std::string> Document::keys(std::string_view path) const {
+  YAML::Node node(*root_);
+  for (const std::string& step : split_path(path)) {
+    const std::optional<Found> found = child(node, step);
+    if (!found) return {};
+    node.reset(found->node);
+  }
+  std::vector<std::string> names;
+  if (node.IsMap())
+    for (const auto& pair : node) names.push_back(pair.first.Scalar());
+  return names;
+}
+
+std::string Document::where(std::string_view path) const {
+  const std::string text(path);
+  for (auto it = overrides_.rbegin(); it != overrides_.rend(); ++it)
+    if (is_at_or_below(text, override_path(*it)))
+      return fmt::format("{}, from --set {}: {}", name_, *it, path);
+  YAML::Node node(*root_);
+  int line = 0;
+  for (const std::string& step : split_path(path)) {
+    const std::optional<Found> found = child(node, step);
+    if (!found) break;
+    if (found->line > 0) line = found->line;
+    node.reset(found->node);
+  }
+  const std::string file = line > 0 ? fmt::format("{}:{}", name_, line) : name_;
+  return path.empty() ? file : fmt::format("{}: {}", file, path);
+}
+
+}  // namespace abut

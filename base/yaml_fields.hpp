@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+#include "base/fields.hpp"
+#include "base/yaml_document.hpp"
+
+namespace abut {
+
+/// Lets `visit` read the map at a path ("" is the whole document). Throws InputError for the first
+/// key that is unknown, missing, of the wrong type or out of range.
+void read_fields(const Document& document, std::string_view path,
+                 const std::function<void(Fields&)>& visit);
+
+template <HasFields S>
+S read(const Document& document, std::string_view path = {}) {
+  S value{};
+  read_fields(document, path, [&value](Fields& f) { value.fields(f); });
+  return value;
+}
+
+}  // namespace abut
