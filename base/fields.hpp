@@ -15,14 +15,6 @@
 
 namespace abut {
 
-class Fields;
-
-/// A plain struct that lists its configuration keys.
-template <class S>
-concept HasFields = requires(S& value, Fields& f) {
-  value.fields(f);
-};
-
 /// Visitor over the configuration keys of a struct. Each struct lists its keys once, in
 /// `void fields(Fields& f)`; the same list reads and validates, echoes the values in use and
 /// documents the keys. Absent optional keys keep the value that the member has. Implementations:
@@ -66,7 +58,7 @@ class Fields {
   void section(std::string_view key, S& value, std::string_view help) {
     nested({key, "", help, Presence::required}, value);
   }
-  /// The same; when absent, the nested struct's defaults hold.
+  /// When absent, the nested struct's defaults hold.
   template <HasFields S>
   void defaulted(std::string_view key, S& value, std::string_view help) {
     nested({key, "", help, Presence::optional}, value);
@@ -74,10 +66,9 @@ class Fields {
   /// The same; when absent, the feature is absent.
   template <HasFields S>
   void optional_section(std::string_view key, std::optional<S>& value, std::string_view help) {
-    const Key declared{key, "", help, Presence::optional};
     std::optional<S> sample = value;
     if (purpose_ != Purpose::write) sample.emplace();
-    if (!enter(declared, sample.has_value())) return value.reset();
+    if (!enter({key, "", help, Presence::optional}, sample.has_value())) return value.reset();
     sample->fields(*this);
     leave();
     if (purpose_ == Purpose::read) value = std::move(sample);
@@ -178,29 +169,29 @@ class Fields {
     value.fields(*this);
     leave();
   }
+  template <class S>
+  void document(S sample) {
+    item(S::name, sample);
+  }
   template <class... A>
-  bool choose(const Key& key, std::variant<A...>* value);
-
-  Purpose purpose_;
-};
-
-template <class... A>
-bool Fields::choose(const Key& key, std::variant<A...>* value) {
-  constexpr std::array<std::string_view, sizeof...(A)> names{A::name...};
-  const std::string_view current = value != nullptr ? names[value->index()] : std::string_view();
-  const std::string name = enter_choice(key, names, current);
-  if (purpose_ == Purpose::document) {
-    const auto document = [this](auto sample) { item(sample.name, sample); };
-    (document(A{}), ...);
+  bool choose(const Key& key, std::variant<A...>* value) {
+    constexpr std::array<std::string_view, sizeof...(A)> names{A::name...};
+    const std::string_view current = value != nullptr ? names[value->index()] : std::string_view();
+    const std::string name = enter_choice(key, names, current);
+    if (purpose_ == Purpose::document) {
+      (document(A{}), ...);
+      leave();
+      return true;
+    }
+    if (name.empty()) return false;
+    if (purpose_ == Purpose::read)
+      ((A::name == name ? void(value->template emplace<A>()) : void()), ...);
+    std::visit([this, &name](auto& alternative) { item(name, alternative); }, *value);
     leave();
     return true;
   }
-  if (name.empty()) return false;
-  if (purpose_ == Purpose::read)
-    ((A::name == name ? void(value->template emplace<A>()) : void()), ...);
-  std::visit([this, &name](auto& alternative) { item(name, alternative); }, *value);
-  leave();
-  return true;
-}
+
+  Purpose purpose_;
+};
 
 }  // namespace abut

@@ -55,6 +55,14 @@ using Slot =
     std::variant<double*, int*, std::int64_t*, bool*, std::string*, std::optional<double>*,
                  std::vector<double>*, std::vector<std::string>*, std::array<std::string, 2>*>;
 
+class Fields;
+
+/// A plain struct that lists its configuration keys.
+template <class S>
+concept HasFields = requires(S& value, Fields& f) {
+  value.fields(f);
+};
+
 /// Single-character insertions, deletions and replacements that turn one word into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 

@@ -1,4 +1,4 @@
-#include "base/resolved_yaml.hpp"
+#include "base/yaml_resolved.hpp"
 
 #include <fmt/format.h>
 

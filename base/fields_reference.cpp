@@ -1,4 +1,4 @@
-#include "base/reference.hpp"
+#include "base/fields_reference.hpp"
 
 #include <fmt/format.h>
 
