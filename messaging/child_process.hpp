@@ -1,0 +1,42 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+#include "messaging/channel.hpp"
+
+namespace abut {
+
+/// A process that this one has started and that does not outlive it: the kernel kills it when the thread
+/// that started it ends. It has a process group of its own, so that Ctrl-C reaches the parent alone.
+class ChildProcess {
+ public:
+  /// Throws RunError when the program cannot be started.
+  ChildProcess(const std::string& program, const std::vector<std::string>& arguments);
+  /// Kills what is still running and waits for it.
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  pid_t pid() const { return pid_; }
+  /// Waits at most so long for the process to end; true when it has ended.
+  bool ended(Milliseconds wait);
+  void send_signal(int signal);
+  /// How it ended: "exited with code 3", "was killed by signal 9 (Killed)".
+  std::string ending() const;
+  /// True when it ended by itself with code 0.
+  bool succeeded() const;
+
+ private:
+  bool reap();
+
+  pid_t pid_ = -1;
+  int descriptor_ = -1;  // pidfd; -1 where the kernel has none
+  bool ended_ = false;
+  int code_ = 0;    // as waitid tells: CLD_EXITED, CLD_KILLED, CLD_DUMPED
+  int status_ = 0;  // exit code or signal
+};
+
+}  // namespace abut

@@ -1,0 +1,316 @@
+#include "messaging/codec.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "base/assert.hpp"
+#include "messaging/codec_parts.hpp"
+
+namespace abut {
+
+namespace {
+
+constexpr int most_ports = 4096;
+
+constexpr std::array<std::pair<Failed::Cause, v1::FailureCause>, 4> causes{{
+    {Failed::Cause::no_convergence, v1::FAILURE_CAUSE_NO_CONVERGENCE},
+    {Failed::Cause::inverted_element, v1::FAILURE_CAUSE_INVERTED_ELEMENT},
+    {Failed::Cause::step_too_small, v1::FAILURE_CAUSE_STEP_TOO_SMALL},
+    {Failed::Cause::non_finite, v1::FAILURE_CAUSE_NON_FINITE},
+}};
+
+int dimension(int dim, const FieldPath& path) {
+  if (dim < 1 || dim > 3) path.fail(fmt::format("is {}, not 1, 2 or 3", dim));
+  return dim;
+}
+
+/// Sizes a repeated message and keeps the memory of the entries.
+template <class T>
+void resize(google::protobuf::RepeatedPtrField<T>& field, std::size_t count) {
+  while (field.size() > static_cast<int>(count)) field.RemoveLast();
+  while (field.size() < static_cast<int>(count)) field.Add();
+}
+
+void encode(const BoundaryData& from, v1::BoundaryData& to) {
+  if (from.motion.empty()) {
+    to.clear_motion();
+  } else {
+    abut::encode(from.motion, *to.mutable_motion());
+  }
+  if (from.force.empty()) {
+    to.clear_force();
+  } else {
+    abut::encode(from.force, *to.mutable_force());
+  }
+  if (from.obstacle.empty()) {
+    to.clear_obstacle();
+  } else {
+    abut::encode(from.obstacle.motion, *to.mutable_obstacle()->mutable_motion());
+    copy(from.obstacle.offset, *to.mutable_obstacle()->mutable_offset());
+  }
+  copy(from.impulse, *to.mutable_impulse());
+}
+
+/// An absent waveform is an empty one; a present one must hold something.
+void decode_optional(bool present, const v1::Waveform& from, const FieldPath& path, Waveform& to) {
+  if (!present) {
+    to.clear();
+    return;
+  }
+  abut::decode(from, path, to);
+  if (to.empty()) path.fail("is present but empty");
+}
+
+void decode(const v1::BoundaryData& from, const FieldPath& path, BoundaryData& to) {
+  decode_optional(from.has_motion(), from.motion(), FieldPath{&path, "motion"}, to.motion);
+  decode_optional(from.has_force(), from.force(), FieldPath{&path, "force"}, to.force);
+  const FieldPath obstacle{&path, "obstacle"};
+  decode_optional(from.has_obstacle(), from.obstacle().motion(), FieldPath{&obstacle, "motion"},
+                  to.obstacle.motion);
+  take(from.obstacle().offset(), FieldPath{&obstacle, "offset"}, to.obstacle.offset);
+  if (from.has_obstacle() &&
+      to.obstacle.offset.size() != static_cast<std::size_t>(to.obstacle.motion.width)) {
+    obstacle.fail(fmt::format("has {} offsets for a width of {}", to.obstacle.offset.size(),
+                              to.obstacle.motion.width));
+  }
+  take(from.impulse(), FieldPath{&path, "impulse"}, to.impulse);
+}
+
+void decode(const v1::PortResponse& from, const Port& port, const FieldPath& path,
+            PortResponse& to) {
+  decode_optional(from.has_trace(), from.trace(), FieldPath{&path, "trace"}, to.trace);
+  const std::size_t dim = static_cast<std::size_t>(port.geometry.dim);
+  const int width = port.geometry.count() * port.geometry.dim;
+  if (from.has_trace() && to.trace.width != width) {
+    FieldPath{&path, "trace"}.fail(
+        fmt::format("has width {} where port '{}' has {}", to.trace.width, port.name, width));
+  }
+  take(from.lower(), dim, true, FieldPath{&path, "lower"}, to.lower);
+  take(from.upper(), dim, true, FieldPath{&path, "upper"}, to.upper);
+  to.approach_bound =
+      number(from.approach_bound(), FieldPath{&path, "approach_bound"}, Allow::infinite);
+  to.rebound.reset();
+  if (!from.has_rebound()) return;
+  const v1::Rebound& rebound = from.rebound();
+  const FieldPath at{&path, "rebound"};
+  to.rebound = Rebound{number(rebound.node_velocity(), at), number(rebound.inner_velocity(), at),
+                       number(rebound.node_mobility(), at), number(rebound.inner_mobility(), at),
+                       number(rebound.captured(), at)};
+}
+
+void decode(const v1::BodyRecord& from, std::size_t dim, const FieldPath& path, BodyRecord& to) {
+  to.time = number(from.time(), FieldPath{&path, "time"});
+  to.energy = Energy{number(from.kinetic(), FieldPath{&path, "kinetic"}),
+                     number(from.stored(), FieldPath{&path, "stored"}),
+                     number(from.dissipated(), FieldPath{&path, "dissipated"}),
+                     number(from.external_work(), FieldPath{&path, "external_work"})};
+  take(from.momentum(), dim, true, FieldPath{&path, "momentum"}, to.momentum);
+}
+
+void decode(const v1::Port& from, const FieldPath& path, Port& to) {
+  to.name = from.name();
+  PortGeometry& geometry = to.geometry;
+  geometry.dim = dimension(from.dim(), FieldPath{&path, "dim"});
+  take(from.points(), FieldPath{&path, "points"}, geometry.points);
+  if (geometry.points.size() % static_cast<std::size_t>(geometry.dim) != 0) {
+    FieldPath{&path, "points"}.fail("is no whole number of points");
+  }
+  take(from.normals(), geometry.points.size(), false, FieldPath{&path, "normals"},
+       geometry.normals);
+  geometry.facets.assign(from.facets().begin(), from.facets().end());
+  geometry.offsets.assign(from.offsets().begin(), from.offsets().end());
+  for (const std::int32_t point : geometry.facets) {
+    if (point >= 0 && point < geometry.count()) continue;
+    FieldPath{&path, "facets"}.fail(fmt::format("names point {}", point));
+  }
+  geometry.spacing = number(from.spacing(), FieldPath{&path, "spacing"});
+}
+
+}  // namespace
+
+void encode(const Advance& from, v1::Advance& to) {
+  v1::TimeWindow& window = *to.mutable_window();
+  window.set_index(from.window.index);
+  window.set_begin(from.window.begin);
+  window.set_end(from.window.end);
+  to.set_records(from.records);
+  to.set_sampling(from.sampling == Sampling::substeps ? v1::SAMPLING_SUBSTEPS
+                                                      : v1::SAMPLING_RECORDS);
+  resize(*to.mutable_boundary(), from.boundary.size());
+  for (std::size_t i = 0; i < from.boundary.size(); ++i) {
+    encode(from.boundary[i], *to.mutable_boundary(static_cast<int>(i)));
+  }
+}
+
+void decode(const v1::Advance& from, std::size_t ports, Advance& to) {
+  const FieldPath path{nullptr, "advance"};
+  const FieldPath window{&path, "window"};
+  if (!from.has_window()) window.fail("is missing");
+  to.window.index = from.window().index();
+  to.window.begin = number(from.window().begin(), window);
+  to.window.end = number(from.window().end(), window);
+  if (to.window.end <= to.window.begin) window.fail("does not end after its begin");
+  if (from.records() < 1 || from.records() > most_records) {
+    FieldPath{&path, "records"}.fail(fmt::format("is {}, not 1 to {}", from.records(), most_records));
+  }
+  to.records = from.records();
+  if (from.sampling() != v1::SAMPLING_SUBSTEPS && from.sampling() != v1::SAMPLING_RECORDS) {
+    FieldPath{&path, "sampling"}.fail("has an unknown value");
+  }
+  to.sampling =
+      from.sampling() == v1::SAMPLING_SUBSTEPS ? Sampling::substeps : Sampling::records;
+  if (static_cast<std::size_t>(from.boundary_size()) != ports) {
+    FieldPath{&path, "boundary"}.fail(
+        fmt::format("has {} entries for {} ports", from.boundary_size(), ports));
+  }
+  to.boundary.resize(ports);
+  for (std::size_t i = 0; i < ports; ++i) {
+    const int index = static_cast<int>(i);
+    decode(from.boundary(index), FieldPath{&path, "boundary", index}, to.boundary[i]);
+  }
+}
+
+void encode(const Response& from, v1::Advanced& to) {
+  resize(*to.mutable_ports(), from.ports.size());
+  for (std::size_t i = 0; i < from.ports.size(); ++i) {
+    const PortResponse& port = from.ports[i];
+    v1::PortResponse& wire = *to.mutable_ports(static_cast<int>(i));
+    if (port.trace.empty()) {
+      wire.clear_trace();
+    } else {
+      encode(port.trace, *wire.mutable_trace());
+    }
+    copy(port.lower, *wire.mutable_lower());
+    copy(port.upper, *wire.mutable_upper());
+    wire.set_approach_bound(port.approach_bound);
+    wire.clear_rebound();
+    if (!port.rebound) continue;
+    wire.mutable_rebound()->set_node_velocity(port.rebound->node_velocity);
+    wire.mutable_rebound()->set_inner_velocity(port.rebound->inner_velocity);
+    wire.mutable_rebound()->set_node_mobility(port.rebound->node_mobility);
+    wire.mutable_rebound()->set_inner_mobility(port.rebound->inner_mobility);
+    wire.mutable_rebound()->set_captured(port.rebound->captured);
+  }
+  resize(*to.mutable_records(), from.records.size());
+  for (std::size_t i = 0; i < from.records.size(); ++i) {
+    const BodyRecord& record = from.records[i];
+    v1::BodyRecord& wire = *to.mutable_records(static_cast<int>(i));
+    wire.set_time(record.time);
+    wire.set_kinetic(record.energy.kinetic);
+    wire.set_stored(record.energy.stored);
+    wire.set_dissipated(record.energy.dissipated);
+    wire.set_external_work(record.energy.external_work);
+    copy(record.momentum, *wire.mutable_momentum());
+  }
+  to.set_steps(from.steps);
+  to.set_compute_seconds(from.compute_seconds);
+}
+
+void decode(const v1::Advanced& from, const Description& body, Response& to) {
+  const FieldPath path{nullptr, "advanced"};
+  if (!from.has_steps()) FieldPath{&path, "steps"}.fail("is missing");
+  if (from.steps() < 0) FieldPath{&path, "steps"}.fail("is negative");
+  if (static_cast<std::size_t>(from.ports_size()) != body.ports.size()) {
+    FieldPath{&path, "ports"}.fail(
+        fmt::format("has {} entries for {} ports", from.ports_size(), body.ports.size()));
+  }
+  to.ports.resize(body.ports.size());
+  for (std::size_t i = 0; i < to.ports.size(); ++i) {
+    const int index = static_cast<int>(i);
+    decode(from.ports(index), body.ports[i], FieldPath{&path, "ports", index}, to.ports[i]);
+  }
+  if (from.records_size() > most_records) FieldPath{&path, "records"}.fail("has too many entries");
+  to.records.resize(static_cast<std::size_t>(from.records_size()));
+  for (int i = 0; i < from.records_size(); ++i) {
+    decode(from.records(i), static_cast<std::size_t>(body.dim), FieldPath{&path, "records", i},
+           to.records[static_cast<std::size_t>(i)]);
+  }
+  to.steps = from.steps();
+  to.compute_seconds = number(from.compute_seconds(), FieldPath{&path, "compute_seconds"});
+}
+
+void encode(const Failed& from, v1::Failed& to) {
+  to.Clear();
+  for (const auto& [ours, wire] : causes) {
+    if (ours == from.cause) to.set_cause(wire);
+  }
+  to.set_time(from.time);
+  to.set_detail(from.detail);
+}
+
+void decode(const v1::Failed& from, Failed& to) {
+  bool known = false;
+  for (const auto& [ours, wire] : causes) {
+    if (wire != from.cause()) continue;
+    to.cause = ours;
+    known = true;
+  }
+  const FieldPath path{nullptr, "failed"};
+  if (!known) FieldPath{&path, "cause"}.fail("has an unknown value");
+  to.time = from.time();  // may be anything: it is the report of a failure
+  to.detail = from.detail();
+}
+
+void encode(const PortKernel& from, v1::KernelReply& to) {
+  to.Clear();
+  to.set_step(from.step);
+  to.set_support(encode(from.support));
+  copy(from.displacement, *to.mutable_displacement());
+}
+
+void decode(const v1::KernelReply& from, PortKernel& to) {
+  const FieldPath path{nullptr, "kernel"};
+  to.step = number(from.step(), FieldPath{&path, "step"});
+  to.support = decode(from.support(), FieldPath{&path, "support"});
+  take(from.displacement(), FieldPath{&path, "displacement"}, to.displacement);
+}
+
+void encode(const Description& from, v1::Description& to) {
+  to.Clear();
+  to.set_name(from.name);
+  to.set_model(from.model);
+  to.set_dim(from.dim);
+  to.set_dofs(from.dofs);
+  to.set_mass(from.mass);
+  to.set_step(from.step);
+  to.set_stable_step(from.stable_step);
+  for (const Port& port : from.ports) {
+    v1::Port& wire = *to.add_ports();
+    wire.set_name(port.name);
+    wire.set_dim(port.geometry.dim);
+    copy(port.geometry.points, *wire.mutable_points());
+    copy(port.geometry.normals, *wire.mutable_normals());
+    wire.mutable_facets()->Add(port.geometry.facets.begin(), port.geometry.facets.end());
+    wire.mutable_offsets()->Add(port.geometry.offsets.begin(), port.geometry.offsets.end());
+    wire.set_spacing(port.geometry.spacing);
+  }
+  v1::Capabilities& can = *to.mutable_can();
+  can.set_motion(from.can.motion);
+  can.set_force(from.can.force);
+  can.set_obstacle(from.can.obstacle);
+  can.set_impulse(from.can.impulse);
+  can.set_kernel(from.can.kernel);
+}
+
+void decode(const v1::Description& from, Description& to) {
+  const FieldPath path{nullptr, "description"};
+  to.name = from.name();
+  to.model = from.model();
+  to.dim = dimension(from.dim(), FieldPath{&path, "dim"});
+  to.dofs = from.dofs();
+  to.mass = number(from.mass(), FieldPath{&path, "mass"}, Allow::infinite);
+  to.step = number(from.step(), FieldPath{&path, "step"});
+  to.stable_step = number(from.stable_step(), FieldPath{&path, "stable_step"}, Allow::infinite);
+  if (from.ports_size() > most_ports) FieldPath{&path, "ports"}.fail("has too many entries");
+  to.ports.resize(static_cast<std::size_t>(from.ports_size()));
+  for (int i = 0; i < from.ports_size(); ++i) {
+    decode(from.ports(i), FieldPath{&path, "ports", i}, to.ports[static_cast<std::size_t>(i)]);
+  }
+  if (!from.has_can()) FieldPath{&path, "can"}.fail("is missing");
+  const v1::Capabilities& can = from.can();
+  to.can = Capabilities{can.motion(), can.force(), can.obstacle(), can.impulse(), can.kernel()};
+}
+
+}  // namespace abut

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <stdexcept>
+
+#include "abut/v1/subdomain.pb.h"
+#include "contract/subdomain.hpp"
+#include "messaging/channel.hpp"
+
+namespace abut {
+
+/// A message that is well-formed protobuf but not a sound contract value: which field, and why.
+class CodecError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Parses into a message that is used again and again: the arrays of an Advance or Advanced that it holds
+/// keep their memory. False when the bytes are no such message.
+bool parse_into(v1::Request& message, Bytes payload);
+bool parse_into(v1::Reply& message, Bytes payload);
+
+// Contract to wire. The target may hold an earlier message: every field is overwritten, memory is kept.
+void encode(const Advance& from, v1::Advance& to);
+void encode(const Response& from, v1::Advanced& to);
+void encode(const Failed& from, v1::Failed& to);
+void encode(const PortKernel& from, v1::KernelReply& to);
+void encode(const Description& from, v1::Description& to);
+
+// Wire to contract. Shapes, counts, enums and finite numbers are checked; throws CodecError.
+void decode(const v1::Advance& from, std::size_t ports, Advance& to);
+/// `body` tells how many ports of which dimension there must be.
+void decode(const v1::Advanced& from, const Description& body, Response& to);
+void decode(const v1::Failed& from, Failed& to);
+void decode(const v1::KernelReply& from, PortKernel& to);
+void decode(const v1::Description& from, Description& to);
+
+/// Largest counts that a request may ask of a body.
+inline constexpr int most_records = 1'000'000;
+inline constexpr int most_kernel_steps = 1'000'000;
+
+}  // namespace abut

@@ -1,0 +1,46 @@
+#include "messaging/liveness.hpp"
+
+#include <fmt/format.h>
+
+namespace abut {
+
+namespace {
+// A broken connection heals by reconnecting; one that breaks at every repeat of a request does not.
+constexpr int most_disconnects = 3;
+// A process that ends closes its socket a moment before it can be waited for.
+constexpr Milliseconds time_to_exit{1'000};
+}  // namespace
+
+BodyLiveness::BodyLiveness(ZmqHub& hub, int peer, ChildProcess* child, const Limits& limits,
+                           const Deadlines& deadlines)
+    : hub_(hub), peer_(peer), child_(child), limits_(limits), deadlines_(deadlines) {}
+
+std::string BodyLiveness::loss(TimePoint since) {
+  if (child_ != nullptr && child_->ended(Milliseconds(0))) return child_->ending();
+  if (hub_.disconnects(peer_, since) >= most_disconnects) {
+    return fmt::format(
+        "lost its connection {} times (a frame far above the limit of {} bytes ends a connection)",
+        most_disconnects, limits_.frame_bytes);
+  }
+  const std::optional<TimePoint> gone = hub_.gone_since(peer_);
+  const Milliseconds grace = child_ != nullptr ? time_to_exit : deadlines_.reconnect;
+  if (gone && std::chrono::steady_clock::now() - *gone > grace) {
+    return fmt::format("closed its connection and did not come back within {} s",
+                       static_cast<double>(grace.count()) / 1000.0);
+  }
+  return {};
+}
+
+CoordinatorLiveness::CoordinatorLiveness(ZmqDealer& dealer, const std::string& endpoint,
+                                         const Deadlines& deadlines)
+    : dealer_(dealer),
+      // On one machine a closed socket is a dead coordinator; a network may come back.
+      grace_(endpoint.starts_with("ipc:") ? Milliseconds(0) : deadlines.reconnect) {}
+
+std::string CoordinatorLiveness::loss(TimePoint) {
+  const std::optional<TimePoint> gone = dealer_.gone_since();
+  if (!gone || std::chrono::steady_clock::now() - *gone < grace_) return {};
+  return "is gone";
+}
+
+}  // namespace abut

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+
+#include "messaging/channel.hpp"
+#include "messaging/child_process.hpp"
+#include "messaging/protocol.hpp"
+#include "messaging/zmq_channel.hpp"
+
+namespace abut {
+
+/// Tells why a peer can no longer answer. Asked only when a wait has timed out, so it costs nothing while
+/// messages flow. A long solve is no reason: the peer's I/O thread answers heartbeats meanwhile.
+class Liveness {
+ public:
+  virtual ~Liveness() = default;
+  /// Empty while the peer may still answer; else a predicate: "was killed by signal 9 (Killed)".
+  /// `since` is when the wait began.
+  virtual std::string loss(TimePoint since) = 0;
+};
+
+/// For peers that share this process.
+class AlwaysAlive : public Liveness {
+ public:
+  std::string loss(TimePoint) override { return {}; }
+};
+
+/// The coordinator's view of one body: its process, if the coordinator started it, and its connection.
+class BodyLiveness : public Liveness {
+ public:
+  /// `child` may be null: somebody else started the solver.
+  BodyLiveness(ZmqHub& hub, int peer, ChildProcess* child, const Limits& limits,
+               const Deadlines& deadlines);
+  std::string loss(TimePoint since) override;
+
+ private:
+  ZmqHub& hub_;
+  int peer_;
+  ChildProcess* child_;
+  Limits limits_;
+  Deadlines deadlines_;
+};
+
+/// The solver's view of its coordinator.
+class CoordinatorLiveness : public Liveness {
+ public:
+  CoordinatorLiveness(ZmqDealer& dealer, const std::string& endpoint, const Deadlines& deadlines);
+  std::string loss(TimePoint since) override;
+
+ private:
+  ZmqDealer& dealer_;
+  Milliseconds grace_;
+};
+
+}  // namespace abut

@@ -1,0 +1,261 @@
+#include "messaging/zmq_channel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+
+namespace abut {
+
+namespace {
+
+constexpr std::size_t most_strangers = 64;     // frames kept for a refusal; more are forgotten
+constexpr std::size_t most_disconnects = 256;  // times remembered per peer
+
+/// Everything that libzmq would otherwise choose for us.
+void configure(zmq::socket_t& socket, const Limits& limits) {
+  socket.set(zmq::sockopt::linger, 500);  // [ms] a refusal or a last reply may still leave
+  socket.set(zmq::sockopt::sndhwm, 64);   // frames; one request is under way per body
+  socket.set(zmq::sockopt::rcvhwm, 64);
+  socket.set(zmq::sockopt::sndtimeo, 0);  // never blocks: requests are repeated by whoever waits
+  // Frames above the limit are refused by size and name; far above it the connection ends before memory does.
+  socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(2 * limits.frame_bytes));
+  socket.set(zmq::sockopt::handshake_ivl, 5'000);        // [ms]
+  socket.set(zmq::sockopt::heartbeat_ivl, 2'000);        // [ms] answered by the peer's I/O thread,
+  socket.set(zmq::sockopt::heartbeat_timeout, 10'000);   // [ms] also while its body is solving
+  socket.set(zmq::sockopt::heartbeat_ttl, 10'000);       // [ms]
+  socket.set(zmq::sockopt::tcp_keepalive, 1);
+  socket.set(zmq::sockopt::ipv6, 0);
+}
+
+void set_receive_timeout(zmq::socket_t& socket, Milliseconds wait, int& current) {
+  const int wanted = static_cast<int>(std::clamp<Milliseconds::rep>(wait.count(), 0, 60'000));
+  if (wanted == current) return;
+  socket.set(zmq::sockopt::rcvtimeo, wanted);
+  current = wanted;
+}
+
+/// False when nothing came in time or a signal interrupted the wait: the caller looks around.
+bool receive_part(zmq::socket_t& socket, zmq::message_t& part) {
+  if (zmq_msg_recv(part.handle(), socket.handle(), 0) >= 0) return true;
+  if (zmq_errno() == EAGAIN || zmq_errno() == EINTR) return false;
+  throw RunError(fmt::format("a socket failed: {}", zmq_strerror(zmq_errno())), "messaging",
+                 "look at the limits of open files and memory of this machine");
+}
+
+/// False when the transport cannot take the part now (no such peer, full queue, signal).
+bool send_part(zmq::socket_t& socket, const void* data, std::size_t size, int flags) {
+  return zmq_send(socket.handle(), data, size, flags | ZMQ_DONTWAIT) >= 0;
+}
+
+Bytes bytes_of(const zmq::message_t& message) {
+  return Bytes(static_cast<const std::byte*>(message.data()), message.size());
+}
+
+}  // namespace
+
+// ---- hub --------------------------------------------------------------------------------------------
+
+struct ZmqHub::Peer : Channel {
+  Peer(ZmqHub& owner, int number, std::string routing_id)
+      : hub(owner), index(number), name(std::move(routing_id)) {}
+
+  bool send(Bytes frame) override { return hub.send_to(name, frame); }
+  std::optional<Bytes> receive(Milliseconds wait) override {
+    if (!waiting.empty()) {
+      current = std::move(waiting.front());
+      waiting.pop_front();
+      return bytes_of(current);
+    }
+    if (!hub.receive_for(index, wait)) return std::nullopt;
+    return bytes_of(current);
+  }
+
+  ZmqHub& hub;
+  int index;
+  std::string name;
+  zmq::message_t current;
+  std::deque<zmq::message_t> waiting;
+  int descriptor = -1;  // of the connection, once a frame has come through it
+  std::optional<TimePoint> gone;
+  std::vector<TimePoint> disconnects;
+};
+
+ZmqHub::ZmqHub(const Limits& limits) : context_(1), socket_(context_, zmq::socket_type::router) {
+  configure(socket_, limits);
+  socket_.set(zmq::sockopt::router_mandatory, true);  // an unknown peer is an error, not silence
+  socket_.set(zmq::sockopt::router_handover, true);   // a reconnecting solver takes its name back
+  socket_.set(zmq::sockopt::backlog, 128);
+  monitor_ = std::make_unique<ZmqMonitor>(context_, socket_);
+}
+
+ZmqHub::~ZmqHub() = default;
+
+std::string ZmqHub::bind(const std::string& endpoint) {
+  try {
+    socket_.bind(endpoint);
+  } catch (const zmq::error_t& error) {
+    throw InputError(fmt::format("cannot listen at {}: {}", endpoint, error.what()),
+                     "network.endpoint",
+                     "name an address of this machine and a free port, for example "
+                     "tcp://127.0.0.1:5555 or tcp://*:5555");
+  }
+  return socket_.get(zmq::sockopt::last_endpoint);
+}
+
+int ZmqHub::add_peer(const std::string& name) {
+  const int index = static_cast<int>(peers_.size());
+  peers_.push_back(std::make_unique<Peer>(*this, index, name));
+  return index;
+}
+
+Channel& ZmqHub::channel(int peer) { return *peers_.at(static_cast<std::size_t>(peer)); }
+
+bool ZmqHub::send_to(const std::string& routing_id, Bytes frame) {
+  return send_part(socket_, routing_id.data(), routing_id.size(), ZMQ_SNDMORE) &&
+         send_part(socket_, frame.data(), frame.size(), 0);
+}
+
+bool ZmqHub::receive_message(Milliseconds wait) {
+  set_receive_timeout(socket_, wait, receive_timeout_);
+  if (!receive_part(socket_, sender_)) return false;
+  // Parts of one message arrive together, so the second one never waits.
+  bool whole = sender_.more() && receive_part(socket_, incoming_);
+  while (whole && incoming_.more()) {  // not ours: one part is a frame; the last one fails the checksum
+    whole = receive_part(socket_, incoming_);
+  }
+  if (!whole) incoming_.rebuild();
+  return true;
+}
+
+int ZmqHub::find_sender() const {
+  const std::string_view id(static_cast<const char*>(sender_.data()), sender_.size());
+  for (const std::unique_ptr<Peer>& peer : peers_) {
+    if (peer->name == id) return peer->index;
+  }
+  return -1;
+}
+
+void ZmqHub::keep_stranger() {
+  if (strangers_.size() >= most_strangers) return;
+  const Bytes frame = bytes_of(incoming_);
+  strangers_.emplace_back(std::string(static_cast<const char*>(sender_.data()), sender_.size()),
+                          std::vector<std::byte>(frame.begin(), frame.end()));
+}
+
+bool ZmqHub::receive_for(int wanted, Milliseconds wait) {
+  const TimePoint until = std::chrono::steady_clock::now() + wait;
+  while (receive_message(wait)) {
+    const int from = find_sender();
+    if (from < 0) {
+      keep_stranger();
+    } else {
+      Peer& peer = *peers_[static_cast<std::size_t>(from)];
+      if (peer.descriptor < 0 && incoming_.size() > 0) {
+        peer.descriptor = zmq_msg_get(incoming_.handle(), ZMQ_SRCFD);
+      }
+      peer.gone.reset();
+      if (from == wanted) {
+        peer.current = std::move(incoming_);
+        return true;
+      }
+      peer.waiting.push_back(std::move(incoming_));
+      if (wanted < 0) return true;
+    }
+    wait = std::max(Milliseconds(0), std::chrono::ceil<Milliseconds>(
+                                         until - std::chrono::steady_clock::now()));
+  }
+  return false;
+}
+
+bool ZmqHub::pump(Milliseconds wait) { return receive_for(-1, wait); }
+
+std::optional<std::pair<std::string, std::vector<std::byte>>> ZmqHub::take_stranger() {
+  if (strangers_.empty()) return std::nullopt;
+  std::pair<std::string, std::vector<std::byte>> first = std::move(strangers_.front());
+  strangers_.pop_front();
+  return first;
+}
+
+void ZmqHub::read_monitor() {
+  while (const std::optional<ZmqMonitor::Event> event = monitor_->next()) {
+    if (event->connected) continue;  // who it is, the first frame tells
+    for (const std::unique_ptr<Peer>& peer : peers_) {
+      if (peer->descriptor != event->descriptor) continue;
+      peer->descriptor = -1;
+      peer->gone = std::chrono::steady_clock::now();
+      if (peer->disconnects.size() < most_disconnects) peer->disconnects.push_back(*peer->gone);
+    }
+  }
+}
+
+int ZmqHub::disconnects(int peer, TimePoint since) {
+  read_monitor();
+  const std::vector<TimePoint>& times = peers_.at(static_cast<std::size_t>(peer))->disconnects;
+  return static_cast<int>(std::count_if(
+      times.begin(), times.end(), [since](const TimePoint& time) { return time >= since; }));
+}
+
+std::optional<TimePoint> ZmqHub::gone_since(int peer) {
+  read_monitor();
+  return peers_.at(static_cast<std::size_t>(peer))->gone;
+}
+
+// ---- dealer -----------------------------------------------------------------------------------------
+
+ZmqDealer::ZmqDealer(const std::string& endpoint, const std::string& body, const Limits& limits)
+    : context_(1), socket_(context_, zmq::socket_type::dealer) {
+  configure(socket_, limits);
+  socket_.set(zmq::sockopt::connect_timeout, 2'000);   // [ms]
+  socket_.set(zmq::sockopt::reconnect_ivl, 20);        // [ms] start order does not matter,
+  socket_.set(zmq::sockopt::reconnect_ivl_max, 500);   // [ms] and costs little
+  try {
+    socket_.set(zmq::sockopt::routing_id, body);
+    monitor_ = std::make_unique<ZmqMonitor>(context_, socket_);
+    socket_.connect(endpoint);
+  } catch (const zmq::error_t& error) {
+    throw InputError(
+        fmt::format("cannot connect body '{}' to '{}': {}", body, endpoint, error.what()),
+        "--connect", "give the coordinator's endpoint, for example tcp://127.0.0.1:5555");
+  }
+}
+
+ZmqDealer::~ZmqDealer() = default;
+
+bool ZmqDealer::send(Bytes frame) { return send_part(socket_, frame.data(), frame.size(), 0); }
+
+std::optional<Bytes> ZmqDealer::receive(Milliseconds wait) {
+  set_receive_timeout(socket_, wait, receive_timeout_);
+  if (!receive_part(socket_, current_)) return std::nullopt;
+  while (current_.more() && receive_part(socket_, current_)) {
+  }
+  return bytes_of(current_);
+}
+
+void ZmqDealer::read_monitor() {
+  while (const std::optional<ZmqMonitor::Event> event = monitor_->next()) {
+    connected_ = event->connected;
+    if (connected_) {
+      gone_since_.reset();
+    } else {
+      gone_since_ = std::chrono::steady_clock::now();
+    }
+  }
+}
+
+bool ZmqDealer::connected() {
+  read_monitor();
+  return connected_;
+}
+
+std::optional<TimePoint> ZmqDealer::gone_since() {
+  read_monitor();
+  return gone_since_;
+}
+
+}  // namespace abut
