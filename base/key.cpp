@@ -14,22 +14,22 @@ bool Rule::holds(double value) const {
 }
 
 std::string Rule::words() const {
-  const bool bounded_below = std::isfinite(low);
   const bool bounded_above = std::isfinite(high);
-  if (bounded_below && bounded_above) return fmt::format("between {} and {}", low, high);
-  if (bounded_below && low == 0.0) return above_low ? "positive" : "zero or positive";
-  if (bounded_below) return fmt::format("{} {}", above_low ? "greater than" : "at least", low);
-  if (bounded_above) return fmt::format("{} {}", below_high ? "less than" : "at most", high);
-  return "a number";
+  if (low == 0.0 && !bounded_above) return above_low ? "positive" : "zero or positive";
+  const std::string text = range();
+  return text.empty() ? "a number" : text;
 }
 
 std::string Rule::range() const {
   const bool bounded_below = std::isfinite(low);
   const bool bounded_above = std::isfinite(high);
-  if (bounded_below && bounded_above) return fmt::format("between {} and {}", low, high);
-  if (bounded_below) return fmt::format("{} {}", above_low ? "greater than" : "at least", low);
-  if (bounded_above) return fmt::format("{} {}", below_high ? "less than" : "at most", high);
-  return "";
+  if (bounded_below && bounded_above && !above_low && !below_high)
+    return fmt::format("between {} and {}", low, high);
+  const std::string lower = fmt::format("{} {}", above_low ? "greater than" : "at least", low);
+  const std::string upper = fmt::format("{} {}", below_high ? "less than" : "at most", high);
+  if (bounded_below && bounded_above) return lower + " and " + upper;
+  if (bounded_below) return lower;
+  return bounded_above ? upper : "";
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {

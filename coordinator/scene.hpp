@@ -3,16 +3,18 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "base/fields.hpp"
+#include "base/yaml_document.hpp"
+#include "contract/subdomain.hpp"
 
 namespace abut {
-
-// ---- meta -------------------------------------------------------------------------------------------------
 
 /// One statement about the run's result; exactly one of equals, at_most, at_least is given.
 struct Expectation {
@@ -36,8 +38,6 @@ struct Meta {
   std::vector<Expectation> expect;
   void fields(Fields& f);
 };
-
-// ---- time, bodies, interfaces ------------------------------------------------------------------------------
 
 struct TimeSpec {
   double begin = 0.0, end = 0.0, window = 0.0;  // [s]
@@ -66,7 +66,8 @@ struct ContactSpec {  // frictionless
   void fields(Fields& f);
 };
 
-/// The kinematic side solves a one-body unilateral problem against the partner's moving surface (default).
+/// The kinematic side solves a one-body unilateral problem against the partner's moving surface
+/// (default).
 struct UnilateralTransmission {
   static constexpr std::string_view name = "unilateral";
   std::string kinematic = "auto";  // body.port, or auto: by probe
@@ -75,7 +76,7 @@ struct UnilateralTransmission {
 /// The published form: motion overwritten on one side, internal force handed to the other.
 struct DirichletNeumannTransmission {
   static constexpr std::string_view name = "dirichlet_neumann";
-  std::string dirichlet;         // body.port
+  std::string dirichlet;          // body.port
   bool swap_every_window = true;  // as published
   void fields(Fields& f);
 };
@@ -87,8 +88,6 @@ struct InterfaceSpec {
   std::variant<UnilateralTransmission, DirichletNeumannTransmission> transmission;
   void fields(Fields& f);
 };
-
-// ---- Schwarz ----------------------------------------------------------------------------------------------
 
 struct NoAcceleration {
   static constexpr std::string_view name = "none";
@@ -119,11 +118,12 @@ struct KernelAcceleration {  // port kernels as interface Jacobian, plus secants
 };
 
 struct SchwarzSpec {
-  bool parallel = false;     // "form: alternating | parallel"
-  double tolerance = 1.0e-6;  // scaled by reference velocity x step
+  bool parallel = false;         // "form: alternating | parallel"
+  double tolerance = 1.0e-6;     // scaled by reference velocity x step
   bool whole_body_norm = false;  // "norm: interface | positions" (published criterion)
   int max_iterations = 20;
-  std::variant<KernelAcceleration, NoAcceleration, FixedRelaxation, AitkenAcceleration, AndersonAcceleration>
+  std::variant<KernelAcceleration, NoAcceleration, FixedRelaxation, AitkenAcceleration,
+               AndersonAcceleration>
       accelerator;
   std::string on_nonconvergence = "stop";  // stop | halve | accept
   void fields(Fields& f);
@@ -135,9 +135,10 @@ struct OutputSpec {
 };
 
 struct NetworkSpec {
-  std::string endpoint = "tcp://127.0.0.1:5555";  // where bodies with launch: connect find the coordinator
-  double request_deadline = 60.0;                 // [s] without reply or sign of progress
-  double startup_deadline = 10.0;                 // [s] for spawned bodies
+  // Where bodies with launch: connect find the coordinator.
+  std::string endpoint = "tcp://127.0.0.1:5555";
+  double request_deadline = 60.0;  // [s] without reply or sign of progress
+  double startup_deadline = 10.0;  // [s] for spawned bodies
   void fields(Fields& f);
 };
 
@@ -151,5 +152,22 @@ struct Scene {
   NetworkSpec network;
   void fields(Fields& f);
 };
+
+/// A port as scenes name it: "body.port".
+struct PortName {
+  std::string body, port;
+};
+PortName split_port(std::string_view text);
+
+/// Reads the whole scene and validates it. Throws InputError.
+Scene read_scene(const Document& document);
+
+/// Rules across the keys of different maps, such as that a side's body exists. Throws InputError.
+void validate(const Scene& scene, const Document& document);
+
+/// Rules that need the bodies: ports that exist, one dimension per interface, windows that hold a
+/// whole number of every body's steps. `bodies` are in the scene's order. Throws InputError.
+void validate_bodies(const Scene& scene, std::span<const Description* const> bodies,
+                     const Document& document);
 
 }  // namespace abut

@@ -1,0 +1,329 @@
+#include "coordinator/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "base/yaml_fields.hpp"
+
+namespace abut {
+
+void Expectation::fields(Fields& f) {
+  f.required("measure", measure, "", "name of the measure in summary.json");
+  f.optional("equals", equals, "", "expected value");
+  f.optional("at_most", at_most, "", "upper bound");
+  f.optional("at_least", at_least, "", "lower bound");
+  f.optional("relative", relative, "", "tolerance of equals as a fraction of it", non_negative);
+  f.optional("absolute", absolute, "", "tolerance of equals in the measure's unit", non_negative);
+  f.required("because", because, "", "reason for the value and the tolerance");
+  const int bounds = int(equals.has_value()) + int(at_most.has_value()) + int(at_least.has_value());
+  const int tolerances = int(relative.has_value()) + int(absolute.has_value());
+  f.check(bounds == 1, "measure", fmt::format("has {} expected values", bounds),
+          "Give exactly one of equals, at_most, at_least beside it.");
+  f.check(tolerances == (equals ? 1 : 0), "measure", fmt::format("has {} tolerances", tolerances),
+          "Give exactly one of relative, absolute beside equals, and none beside a bound.");
+}
+
+void BarImpactForm::fields(Fields& f) {
+  f.required("interface", interface, "", "name of the interface at which the bars meet");
+}
+
+void Meta::fields(Fields& f) {
+  f.required("title", title, "", "sentence that says what the scene shows");
+  f.choice("closed_form", closed_form, "exact solution to compare with");
+  f.list("expect", expect, "statements about the result, evaluated after the run");
+}
+
+void TimeSpec::fields(Fields& f) {
+  f.required("begin", begin, "s", "time at which the run begins");
+  f.required("end", end, "s", "time at which the run ends");
+  f.required("window", window, "s", "length of the controller step, over which bodies are coupled",
+             positive);
+  f.check(end > begin, "end",
+          fmt::format("must be after begin, {:.6g} s, but is {:.6g} s", begin, end),
+          "Give an end after the begin.");
+}
+
+void SpawnLaunch::fields(Fields& f) {
+  f.optional("program", program, "", "path of the solver program; empty: abut-solver beside abut");
+}
+
+void ConnectLaunch::fields(Fields& f) {
+  f.optional("patience", patience, "s", "time to wait for the body to connect", positive);
+}
+
+void BodyEntry::fields(Fields& f) {
+  f.choice("launch", launch, "way in which the body's process comes to life", Presence::optional);
+  f.ignore_rest();
+}
+
+void ContactSpec::fields(Fields&) {}
+
+void UnilateralTransmission::fields(Fields& f) {
+  f.optional("kinematic", kinematic, "",
+             "side that solves the one-body contact problem, as body.port; auto: the softer side");
+}
+
+void DirichletNeumannTransmission::fields(Fields& f) {
+  f.required("dirichlet", dirichlet, "", "side on which motion is imposed first, as body.port");
+  f.optional("swap_every_window", swap_every_window, "",
+             "exchange of the roles in every window, as published");
+}
+
+void InterfaceSpec::fields(Fields& f) {
+  f.required("sides", sides, "", "two ports that meet, as body.port");
+  f.optional_section("contact", contact, "frictionless contact between the sides");
+  f.choice("transmission", transmission, "rule that couples the sides while they touch",
+           Presence::optional);
+  f.check(contact.has_value(), "contact", "is missing",
+          "Write contact: {}; interfaces without contact are not known.");
+}
+
+void NoAcceleration::fields(Fields&) {}
+
+void FixedRelaxation::fields(Fields& f) {
+  f.optional("factor", factor, "", "part of the correction that is taken",
+             Rule{.low = 0.0, .high = 2.0, .above_low = true, .below_high = true});
+}
+
+void AitkenAcceleration::fields(Fields& f) {
+  f.optional("initial", initial, "", "relaxation factor of a window's first correction",
+             Rule{.low = 0.0, .high = 1.0, .above_low = true});
+}
+
+void AndersonAcceleration::fields(Fields& f) {
+  f.optional("initial", initial, "", "relaxation factor while there is no secant",
+             Rule{.low = 0.0, .high = 1.0, .above_low = true});
+  f.optional("reuse", reuse, "", "number of earlier windows whose secants are kept",
+             between(0, 100));
+  f.optional("filter", filter, "", "relative size below which a secant is dropped",
+             Rule{.low = 0.0, .high = 1.0, .below_high = true});
+}
+
+void KernelAcceleration::fields(Fields& f) {
+  f.optional("reuse", reuse, "", "number of earlier windows whose secants are kept",
+             between(0, 100));
+  f.optional("filter", filter, "", "relative size below which a secant is dropped",
+             Rule{.low = 0.0, .high = 1.0, .below_high = true});
+}
+
+void SchwarzSpec::fields(Fields& f) {
+  f.word("form", parallel, {"alternating", "parallel"},
+         "order of the bodies in an iteration: one after the other, or both at once");
+  f.optional("tolerance", tolerance, "",
+             "largest residual of an exchanged field, relative to reference velocity x step",
+             positive);
+  f.word("norm", whole_body_norm, {"interface", "positions"},
+         "measure of convergence: exchanged fields, or positions as published");
+  f.optional("max_iterations", max_iterations, "",
+             "number of iterations after which a window fails", between(1, 10000));
+  f.choice("accelerator", accelerator, "choice of the next iterate", Presence::optional);
+  f.word("on_nonconvergence", on_nonconvergence, {"stop", "halve", "accept"},
+         "answer to a window that does not converge: end the run, halve the window, or go on");
+}
+
+void OutputSpec::fields(Fields& f) {
+  f.optional("records_per_window", records_per_window, "",
+             "number of rows of history.csv per controller window", between(1, 1000));
+}
+
+void NetworkSpec::fields(Fields& f) {
+  f.optional("endpoint", endpoint, "",
+             "address at which bodies with launch: connect find the coordinator");
+  f.optional("request_deadline", request_deadline, "s",
+             "time without a reply or a sign of progress after which a body is lost", positive);
+  f.optional("startup_deadline", startup_deadline, "s",
+             "time within which a started process must report", positive);
+  f.check(endpoint.starts_with("tcp://") || endpoint.starts_with("ipc://"), "endpoint",
+          fmt::format("must begin with tcp:// or ipc://, but is {}", endpoint),
+          "Give for example tcp://127.0.0.1:5555.");
+}
+
+void Scene::fields(Fields& f) {
+  f.section("meta", meta, "what the scene is and what it must produce");
+  f.section("time", time, "interval of the run and its windows");
+  f.map("bodies", bodies, "bodies, in the order of every table");
+  f.map("interfaces", interfaces, "pairs of ports that may meet", Presence::optional);
+  f.defaulted("schwarz", schwarz, "iteration inside a window in contact");
+  f.defaulted("output", output, "what the run writes");
+  f.defaulted("network", network, "addresses and deadlines");
+}
+
+PortName split_port(std::string_view text) {
+  const std::size_t dot = text.find('.');
+  if (dot == std::string_view::npos) return {std::string(text), {}};
+  return {std::string(text.substr(0, dot)), std::string(text.substr(dot + 1))};
+}
+
+namespace {
+
+template <class Named>
+std::string names_of(const Named& entries) {
+  std::vector<std::string> names;
+  for (const auto& [name, entry] : entries) names.push_back(name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+template <class Named>
+bool has_name(const Named& entries, const std::string& name) {
+  return std::any_of(entries.begin(), entries.end(),
+                     [&name](const auto& entry) { return entry.first == name; });
+}
+
+void require_side(const InterfaceSpec& interface, const std::string& side, const std::string& path,
+                  const Document& document) {
+  if (side != interface.sides[0] && side != interface.sides[1])
+    throw InputError(fmt::format("is {}, which is not a side of the interface", side),
+                     document.where(path),
+                     fmt::format("Choose {} or {}.", interface.sides[0], interface.sides[1]));
+}
+
+void validate_interface(const Scene& scene, const InterfaceSpec& interface,
+                        const Document& document) {
+  const std::string path = "interfaces." + interface.name;
+  for (std::size_t i = 0; i < interface.sides.size(); ++i) {
+    const std::string& side = interface.sides[i];
+    const std::string where = document.where(fmt::format("{}.sides[{}]", path, i));
+    const PortName name = split_port(side);
+    if (name.body.empty() || name.port.empty() || name.port.find('.') != std::string::npos)
+      throw InputError(fmt::format("is {}, which is not of the form body.port", side), where,
+                       "Name a body and one of its ports, for example left.tip.");
+    if (!has_name(scene.bodies, name.body))
+      throw InputError(fmt::format("is {}, but there is no body {}", side, name.body), where,
+                       fmt::format("Choose one of the bodies: {}.", names_of(scene.bodies)));
+  }
+  if (split_port(interface.sides[0]).body == split_port(interface.sides[1]).body)
+    throw InputError("must be ports of two different bodies", document.where(path + ".sides"),
+                     "Name one port of each of the two bodies that meet.");
+  if (const auto* u = std::get_if<UnilateralTransmission>(&interface.transmission))
+    if (u->kinematic != "auto")
+      require_side(interface, u->kinematic, path + ".transmission.unilateral.kinematic", document);
+  if (const auto* d = std::get_if<DirichletNeumannTransmission>(&interface.transmission))
+    require_side(interface, d->dirichlet, path + ".transmission.dirichlet_neumann.dirichlet",
+                 document);
+}
+
+void validate_ports_used_once(const Scene& scene, const Document& document) {
+  std::map<std::string, std::string> used;  // side to interface
+  for (const auto& [name, interface] : scene.interfaces) {
+    for (std::size_t i = 0; i < interface.sides.size(); ++i) {
+      const auto [entry, fresh] = used.emplace(interface.sides[i], name);
+      if (!fresh)
+        throw InputError(fmt::format("is {}, which the interface {} uses already",
+                                     interface.sides[i], entry->second),
+                         document.where(fmt::format("interfaces.{}.sides[{}]", name, i)),
+                         "Give every interface ports of its own; a body may have several ports.");
+    }
+  }
+}
+
+/// Whether `whole` holds a whole number of `part`s, up to the round-off of decimal input.
+bool divides(double part, double whole) {
+  const double count = whole / part;
+  const double nearest = std::round(count);
+  return nearest >= 1.0 && std::abs(count - nearest) <= 1.0e-9 * nearest;
+}
+
+/// "9e-06 s or 1.2e-05 s": the two multiples of `part` around `whole`, the lower only if there is
+/// one.
+std::string multiples(double part, double whole) {
+  const double below = std::floor(whole / part);
+  const std::string above = fmt::format("{:.9g} s", (below + 1.0) * part);
+  return below < 1.0 ? above : fmt::format("{:.9g} s or {}", below * part, above);
+}
+
+/// The two parts of `whole` around `part`, the longer only if there is one.
+std::string parts(double part, double whole) {
+  const double below = std::floor(whole / part);
+  const std::string shorter = fmt::format("{:.9g} s", whole / (below + 1.0));
+  return below < 1.0 ? shorter : fmt::format("{} or {:.9g} s", shorter, whole / below);
+}
+
+const Description& description_of(const Scene& scene, std::span<const Description* const> bodies,
+                                  const std::string& name) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (scene.bodies[i].first == name) return *bodies[i];
+  ABUT_ASSERT(!"validate() has checked that the body exists");
+  return *bodies[0];
+}
+
+const Port& require_port(const Description& body, const std::string& side,
+                         const std::string& where) {
+  const std::string port = split_port(side).port;
+  std::vector<std::string> names;
+  for (const Port& candidate : body.ports) {
+    if (candidate.name == port) return candidate;
+    names.push_back(candidate.name);
+  }
+  const std::string remedy =
+      names.empty() ? "Give the body a port under its key ports."
+                    : fmt::format("Choose one of its ports: {}.", fmt::join(names, ", "));
+  throw InputError(fmt::format("is {}, but {} has no port {}", side, split_port(side).body, port),
+                   where, remedy);
+}
+
+}  // namespace
+
+Scene read_scene(const Document& document) {
+  const Scene scene = read<Scene>(document);
+  validate(scene, document);
+  return scene;
+}
+
+void validate(const Scene& scene, const Document& document) {
+  const TimeSpec& time = scene.time;
+  if (!divides(time.window, time.end - time.begin))
+    throw InputError(
+        fmt::format("must divide the run of {:.9g} s, but {:.9g} s does not", time.end - time.begin,
+                    time.window),
+        document.where("time.window"),
+        fmt::format("Give a window of {}.", parts(time.window, time.end - time.begin)));
+  if (scene.bodies.empty())
+    throw InputError("has no body", document.where("bodies"), "Give at least one body.");
+  for (const auto& [name, interface] : scene.interfaces)
+    validate_interface(scene, interface, document);
+  validate_ports_used_once(scene, document);
+  if (scene.meta.closed_form) {
+    const BarImpactForm& form = std::get<BarImpactForm>(*scene.meta.closed_form);
+    if (!has_name(scene.interfaces, form.interface))
+      throw InputError(fmt::format("is {}, but there is no such interface", form.interface),
+                       document.where("meta.closed_form.bar_impact.interface"),
+                       fmt::format("Choose one of: {}.", names_of(scene.interfaces)));
+  }
+}
+
+void validate_bodies(const Scene& scene, std::span<const Description* const> bodies,
+                     const Document& document) {
+  ABUT_ASSERT(bodies.size() == scene.bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const double step = bodies[i]->step;
+    const double window = scene.time.window;
+    if (step > 0.0 && !divides(step, window))
+      throw InputError(
+          fmt::format("must hold a whole number of steps of body {}, but {:.9g} s is {:.6g} steps "
+                      "of {:.9g} s",
+                      scene.bodies[i].first, window, window / step, step),
+          document.where("time.window"),
+          fmt::format("Give a window of {}, or the body a step of {}.", multiples(step, window),
+                      parts(step, window)));
+  }
+  for (const auto& [name, interface] : scene.interfaces) {
+    std::array<int, 2> dims{};
+    for (std::size_t i = 0; i < interface.sides.size(); ++i) {
+      const std::string& side = interface.sides[i];
+      const Description& body = description_of(scene, bodies, split_port(side).body);
+      const std::string where = document.where(fmt::format("interfaces.{}.sides[{}]", name, i));
+      dims[i] = require_port(body, side, where).geometry.dim;
+    }
+    if (dims[0] != dims[1])
+      throw InputError(fmt::format("joins a port in {}D and one in {}D", dims[0], dims[1]),
+                       document.where(fmt::format("interfaces.{}.sides", name)),
+                       "Give both bodies the same dimension.");
+  }
+}
+
+}  // namespace abut
