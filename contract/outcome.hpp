@@ -27,13 +27,16 @@ struct BodyRecord {
 };
 
 /// What a body with kicks at a massive contact node knows about its rebound (docs/METHOD.md): the
-/// coordinator forms the release impulse of a pair from the data of both sides. All along the outward normal.
+/// coordinator forms the release impulse of a pair from the data of both sides. All along the
+/// outward normal.
 struct Rebound {
   double node_velocity = 0.0;    // [m/s] force-free half-step velocity of the contact node, w0*
   double inner_velocity = 0.0;   // [m/s] the same of its neighbour, w1*
   double node_mobility = 0.0;    // [1/kg] G0: velocity of the contact node per unit impulse on it
-  double inner_mobility = 0.0;   // [1/kg] G1: velocity of its neighbour per unit impulse on the contact node
-  double captured = 0.0;         // [J] work that contact has taken from the body since the port closed, W
+  // [1/kg] G1: velocity of its neighbour per unit impulse on the contact node
+  double inner_mobility = 0.0;
+  // [J] work that contact has taken from the body since the port closed, W
+  double captured = 0.0;
 };
 
 /// One port's reply to a window.
@@ -41,7 +44,8 @@ struct PortResponse {
   Waveform trace;                  // at the substeps, or at the records only (Sampling)
   std::vector<double> lower;       // [m] (dim) smallest and largest displacement over all substeps
   std::vector<double> upper;       // [m] (dim)
-  double approach_bound = 0.0;     // [m/s] largest outward normal velocity expected of the port when free
+  // [m/s] largest outward normal velocity expected of the port when free
+  double approach_bound = 0.0;
   double approach_acceleration = 0.0;  // [m/s^2] by which body forces may raise that bound
   std::optional<Rebound> rebound;  // only bodies with contact kicks
 };

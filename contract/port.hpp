@@ -15,7 +15,8 @@ struct PortGeometry {
   std::vector<double> normals;         // (n, dim), unit, out of the body
   std::vector<std::int32_t> facets;    // facet connectivity; empty in 1D
   std::vector<std::int32_t> offsets;   // of the facets; empty in 1D
-  double spacing = 0.0;                // [m] typical distance of mesh nodes behind the port; 0: rigid
+  // [m] typical distance of mesh nodes behind the port; 0: rigid
+  double spacing = 0.0;
 
   int count() const { return dim > 0 ? static_cast<int>(points.size()) / dim : 0; }
 };
@@ -25,14 +26,16 @@ struct Port {
   PortGeometry geometry;
 };
 
-/// Response of a port to a unit force along its outward normal, from rest and with all other loads absent:
-/// the building block of the interface Jacobian (docs/METHOD.md, port kernel).
+/// Response of a port to a unit force along its outward normal, from rest and with all other loads
+/// absent: the building block of the interface Jacobian (docs/METHOD.md, port kernel).
 struct PortKernel {
   double step = 0.0;                 // [s] the substep it was computed for
   ForceSupport support = ForceSupport::nodal;
-  double compliance = 0.0;           // [m/N] quasi-static part: follows the force of the same instant
+  // [m/N] quasi-static part: follows the force of the same instant
+  double compliance = 0.0;
   std::vector<double> displacement;  // [m/N] (n) at the ends of substeps 1..n, force in substep 1
-  std::vector<double> begin;         // [m/N] (n) the same, force at the window's begin only (nodal support)
+  // [m/N] (n) the same, force at the window's begin only (nodal support)
+  std::vector<double> begin;
 };
 
 }  // namespace abut

@@ -44,18 +44,22 @@ enum class Sampling {
 /// One request: advance through a window with given data on the ports.
 struct Advance {
   TimeWindow window;
-  int records = 1;                     // BodyRecords wanted, at the ends of equal parts of the window
+  // BodyRecords wanted, at the ends of equal parts of the window
+  int records = 1;
   Sampling sampling = Sampling::substeps;
   std::vector<BoundaryData> boundary;  // in the order of Description::ports
 };
 
-/// A body: something that can be advanced through a window with given data on its ports, and rewound.
+/// A body: something that can be advanced through a window with given data on its ports, and
+/// rewound.
 ///
-/// Call sequence of one window:  save  (start finish  restore)*  start finish, then the next save accepts.
-/// Substeps divide the window; the last one lands on its end exactly and the adjusted step is not kept.
+/// Call sequence of one window:  save  (start finish  restore)*  start finish, then the next save
+/// accepts. Substeps divide the window; the last one lands on its end exactly and the adjusted step
+/// is not kept.
 /// A window of no length advances nothing and reports the state.
 /// restore() is exact, bit for bit. start() returns at once so that bodies in other processes run
-/// concurrently; finish() waits and fills the response. Between start() and finish() nothing else is called.
+/// concurrently; finish() waits and fills the response. Between start() and finish() nothing else
+/// is called.
 class Subdomain {
  public:
   virtual ~Subdomain() = default;
@@ -64,7 +68,8 @@ class Subdomain {
   virtual void restore() = 0;
   virtual void start(const Advance& request) = 0;  // the request must live until finish() returns
   [[nodiscard]] virtual Outcome finish(Response& response) = 0;
-  /// Impulse response of a port over `count` substeps of length `step`; the state is left untouched.
+  /// Impulse response of a port over `count` substeps of length `step`; the state is left
+  /// untouched.
   virtual PortKernel kernel(int port, double step, int count) = 0;
   virtual std::vector<std::byte> checkpoint() = 0;          // durable form of the state
   virtual void resume(std::span<const std::byte> bytes) = 0;

@@ -25,7 +25,8 @@ void Waveform::clear() {
   f.clear();
 }
 
-void Waveform::interpolate(const std::vector<double>& field, double at, std::span<double> out) const {
+void Waveform::interpolate(const std::vector<double>& field, double at,
+                           std::span<double> out) const {
   ABUT_ASSERT(!time.empty() && field.size() == time.size() * static_cast<std::size_t>(width));
   const std::size_t w = static_cast<std::size_t>(width);
   if (time.size() == 1 || at <= time.front()) {

@@ -8,7 +8,8 @@ namespace abut {
 
 /// How a force that is known once per substep is spread over time.
 enum class ForceSupport {
-  nodal,  // f(t_i) acts over the dual cell around t_i (trapezoid rule): massless layers, implicit bodies
+  // f(t_i) acts over the dual cell around t_i (trapezoid rule): massless layers, implicit bodies
+  nodal,
   step,   // f_i is constant over the substep that ends at t_i: contact kicks
 };
 
@@ -16,9 +17,9 @@ enum class ForceSupport {
 ///
 /// Structure of arrays, so that a window costs no allocation once its buffers have grown: times are
 /// strictly increasing, the first is the window's begin and the last its end. `width` is points x
-/// dimension; u [m], v [m/s], a [m/s^2] and f [N] are (times, width), row-major, and each may be empty.
-/// u is the displacement from the reference configuration: positions would lose small motions to
-/// round-off. f is the force that acts on this body through the port.
+/// dimension; u [m], v [m/s], a [m/s^2] and f [N] are (times, width), row-major, and each may be
+/// empty. u is the displacement from the reference configuration: positions would lose small
+/// motions to round-off. f is the force that acts on this body through the port.
 class Waveform {
  public:
   Waveform() = default;
@@ -34,15 +35,16 @@ class Waveform {
   /// Forgets the values and keeps the memory.
   void clear();
 
-  /// Values of one field at a time inside the window, linear between the stored times and exact at them;
-  /// writes `width` numbers. Precondition: the waveform is not empty and the field is (times, width).
+  /// Values of one field at a time inside the window, linear between the stored times and exact at
+  /// them; writes `width` numbers. Precondition: the waveform is not empty and the field is (times,
+  /// width).
   void interpolate(const std::vector<double>& field, double at, std::span<double> out) const;
 
   /// Force that acts at a time: linear between stored times (nodal) or that of the substep (step).
   void force_at(double at, std::span<double> out) const;
 
-  /// Impulse [N s] of f over [from, to], clipped to the window: exact for the waveform's support, so the
-  /// impulses of adjoining intervals add up to that of their union. Writes `width` numbers.
+  /// Impulse [N s] of f over [from, to], clipped to the window: exact for the waveform's support,
+  /// so the impulses of adjoining intervals add up to that of their union. Writes `width` numbers.
   void impulse(double from, double to, std::span<double> out) const;
 };
 
