@@ -13,23 +13,23 @@ namespace abut {
 /// What observers need to know of an interface that does not change during a run.
 struct InterfaceInfo {
   std::string name;
-  int body[2] = {0, 0};       // index into RunStart::bodies
-  int port[2] = {0, 0};       // index into Description::ports
-  double initial_gap = 0.0;   // [m] 1D: normal distance of the reference positions
+  int body[2] = {0, 0};      // index into RunStart::bodies
+  int port[2] = {0, 0};      // index into Description::ports
+  double initial_gap = 0.0;  // [m] 1D: normal distance of the reference positions
 };
 
 struct RunStart {
-  double begin = 0.0, end = 0.0;               // [s]
-  std::vector<const Description*> bodies;      // in the scene's order
-  std::vector<InterfaceInfo> interfaces;       // in the scene's order
+  double begin = 0.0, end = 0.0;           // [s]
+  std::vector<const Description*> bodies;  // in the scene's order
+  std::vector<InterfaceInfo> interfaces;   // in the scene's order
 };
 
 /// One interface in one accepted window.
 struct InterfaceReport {
-  bool closed = false;         // closed during this window
-  int kinematic = 0;           // which side (0 or 1) is kinematic; meaningful when closed
-  int iterations = 0;          // Schwarz iterations of its island; 0: advanced free
-  double residual = 0.0;       // largest scaled residual over the exchanged fields when accepted
+  bool closed = false;    // closed during this window
+  int kinematic = 0;      // which side (0 or 1) is kinematic; meaningful when closed
+  int iterations = 0;     // Schwarz iterations of its island; 0: advanced free
+  double residual = 0.0;  // largest scaled residual over the exchanged fields when accepted
 };
 
 /// An accepted stretch of time: one window, or several windows of free flight in one request.
@@ -53,15 +53,15 @@ struct RunEvent {
 const char* to_string(RunEvent::Kind kind);
 
 struct RunEnd {
-  std::string status;                     // completed | failed | interrupted
-  double time = 0.0;                      // [s] how far the run came
-  std::uint64_t state_hash = 0;           // over all bodies and the coordinator, equal in every placement
-  std::int64_t windows = 0;               // accepted
-  std::int64_t contact_windows = 0;       // accepted with a closed interface
-  std::int64_t exchanges = 0;             // requests answered by bodies, kernels included
-  double wall_seconds = 0.0;              // first window to last
-  std::vector<double> compute_seconds;    // by body
-  double overhead_median_seconds = 0.0;   // per exchange: wall minus compute
+  std::string status;                    // completed | failed | interrupted
+  double time = 0.0;                     // [s] how far the run came
+  std::uint64_t state_hash = 0;          // over bodies and coordinator, equal in every placement
+  std::int64_t windows = 0;              // accepted
+  std::int64_t contact_windows = 0;      // accepted with a closed interface
+  std::int64_t exchanges = 0;            // requests answered by bodies, kernels included
+  double wall_seconds = 0.0;             // first window to last
+  std::vector<double> compute_seconds;   // by body
+  double overhead_median_seconds = 0.0;  // per exchange: wall minus compute
 };
 
 /// A customer of a run: log, table, summary, monitor. Never changes what the run computes.

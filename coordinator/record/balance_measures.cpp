@@ -1,0 +1,108 @@
+#include "coordinator/record/balance_measures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "coordinator/record/port_reader.hpp"
+
+namespace abut {
+namespace {
+
+double own_energy(const BodyRecord& record) {
+  return record.energy.total() - record.energy.external_work;
+}
+
+}  // namespace
+
+BalanceMeasures::BalanceMeasures(const RunStart& start, const BarImpact* exact,
+                                 std::array<int, 2> exact_body)
+    : start_(start), exact_(exact), bodies_(start.bodies.size()) {
+  for (const Description* body : start.bodies) immovable_ = immovable_ || std::isinf(body->mass);
+  if (exact == nullptr) return;
+  for (const int side : {0, 1}) {
+    if (exact->is_wall(side)) continue;
+    Body& body = bodies_[exact_body[side]];
+    body.exact_side = side;
+    // The larger of before and after: a bar may be at rest at one of them, never at both.
+    body.reference =
+        std::max(exact->total(side, exact->run_begin()), exact->total(side, exact->end()));
+  }
+}
+
+void BalanceMeasures::begin(const WindowReport& report) {
+  begun_ = true;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const BodyRecord& record = report.responses[b].records.front();
+    bodies_[b].first = own_energy(record);
+    total_first_ += bodies_[b].first;
+    for (std::size_t k = 0; k < record.momentum.size(); ++k)
+      momentum_first_[k] += record.momentum[k];
+  }
+  for (Body& body : bodies_) {
+    if (body.exact_side >= 0) continue;
+    body.reference = body.first != 0.0 ? std::abs(body.first) : std::abs(total_first_);
+  }
+}
+
+void BalanceMeasures::on_window(const WindowReport& report) {
+  if (report.responses.empty() || report.responses.front().records.empty()) return;
+  if (!begun_) begin(report);
+  for (std::size_t r = 0; r < report.responses.front().records.size(); ++r) add(report, r);
+}
+
+void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
+  double total = 0.0;
+  Vector sum{};
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    Body& body = bodies_[b];
+    const BodyRecord& now = report.responses[b].records[record];
+    const double energy = own_energy(now);
+    total += energy;
+    const double expected =
+        body.exact_side >= 0 ? exact_->total(body.exact_side, now.time) : body.first;
+    const double held = body.exact_side >= 0 ? now.energy.total() : energy;
+    body.error = body.reference > 0.0 ? (held - expected) / body.reference : held - expected;
+    body.error_max = std::max(body.error_max, std::abs(body.error));
+    double square = 0.0;
+    for (std::size_t k = 0; k < now.momentum.size(); ++k) {
+      body.momentum[k] = now.momentum[k];
+      sum[k] += now.momentum[k];
+      square += now.momentum[k] * now.momentum[k];
+    }
+    body.momentum_max = std::max(body.momentum_max, std::sqrt(square));
+  }
+  drift_ = total_first_ != 0.0 ? (total - total_first_) / total_first_ : total;
+  drift_max_ = std::max(drift_max_, std::abs(drift_));
+  double square = 0.0;
+  for (std::size_t k = 0; k < sum.size(); ++k)
+    square += (sum[k] - momentum_first_[k]) * (sum[k] - momentum_first_[k]);
+  momentum_change_ = std::max(momentum_change_, std::sqrt(square));
+}
+
+void BalanceMeasures::write(Measures& out) const {
+  double scale = 0.0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Description& description = *start_.bodies[b];
+    const Body& body = bodies_[b];
+    out.set(fmt::format("energy.{}.relative_error_max", description.name), body.error_max);
+    out.set(fmt::format("energy.{}.relative_error_end", description.name), body.error);
+    for (int axis = 0; axis < out.scope.dim; ++axis) {
+      const char* ending = axis_ending(out.scope.dim, axis);
+      out.set(fmt::format("momentum.{}.end{}", description.name, ending), body.momentum[axis]);
+      out.set(fmt::format("mean_velocity.{}.end{}", description.name, ending),
+              body.momentum[axis] / description.mass);
+    }
+    scale += body.momentum_max;
+  }
+  out.set("energy.total.relative_drift_max", drift_max_);
+  out.set("energy.total.relative_drift_end", drift_);
+  if (immovable_) {
+    out.none("momentum.total", "an immovable body takes momentum and does not keep it");
+  } else {
+    out.set("momentum.total", scale > 0.0 ? momentum_change_ / scale : 0.0);
+  }
+}
+
+}  // namespace abut

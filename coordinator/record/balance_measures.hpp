@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coordinator/closed_form.hpp"
+#include "coordinator/record/measure_names.hpp"
+#include "coordinator/record/observer.hpp"
+
+namespace abut {
+
+/// Energy and momentum of the bodies at every record. What a body holds at first is taken from the
+/// first record, since no body is asked before it has advanced.
+class BalanceMeasures {
+ public:
+  /// `exact` may be null and describes the bodies `exact_body[0]` and `exact_body[1]`.
+  BalanceMeasures(const RunStart& start, const BarImpact* exact, std::array<int, 2> exact_body);
+
+  void on_window(const WindowReport& report);
+  void write(Measures& out) const;
+
+ private:
+  using Vector = std::array<double, 3>;
+  struct Body {
+    double first = 0.0;      // [J] energy minus external work
+    double reference = 0.0;  // [J] that the error is relative to
+    double error = 0.0, error_max = 0.0;
+    Vector momentum{};  // [kg m/s]
+    double momentum_max = 0.0;
+    int exact_side = -1;  // of the closed form; -1: not described by it
+  };
+
+  void begin(const WindowReport& report);
+  void add(const WindowReport& report, std::size_t record);
+
+  const RunStart& start_;
+  const BarImpact* exact_;
+  std::vector<Body> bodies_;
+  bool begun_ = false;
+  bool immovable_ = false;
+  double total_first_ = 0.0;  // [J]
+  double drift_ = 0.0, drift_max_ = 0.0;
+  Vector momentum_first_{};
+  double momentum_change_ = 0.0;
+};
+
+}  // namespace abut

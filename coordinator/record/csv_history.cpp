@@ -1,0 +1,165 @@
+#include "coordinator/record/csv_history.hpp"
+
+#include <cmath>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include "base/assert.hpp"
+
+namespace abut {
+namespace {
+
+void add_port_names(std::string& header, const Description& body, const Port& port) {
+  const std::pair<std::string_view, std::string_view> fields[] = {
+      {"u", "m"}, {"v", "m/s"}, {"force", "N"}};
+  for (const auto& [name, unit] : fields)
+    for (int axis = 0; axis < port.geometry.dim; ++axis)
+      header += fmt::format(",{}.{}.{}{} [{}]", body.name, port.name, name,
+                            axis_ending(port.geometry.dim, axis), unit);
+}
+
+void add_body_names(std::string& header, const Description& body) {
+  for (const std::string_view name : {"kinetic", "stored", "total"})
+    header += fmt::format(",{}.{} [J]", body.name, name);
+  for (int axis = 0; axis < body.dim; ++axis)
+    header += fmt::format(",{}.momentum{} [kg m/s]", body.name, axis_ending(body.dim, axis));
+  for (int axis = 0; axis < body.dim; ++axis)
+    header += fmt::format(",{}.mean_velocity{} [m/s]", body.name, axis_ending(body.dim, axis));
+}
+
+}  // namespace
+
+CsvHistory::CsvHistory(const std::filesystem::path& directory, const ClosedForm* form)
+    : directory_(directory), form_(form) {}
+
+void CsvHistory::on_start(const RunStart& start) {
+  start_ = start;
+  std::vector<std::vector<int>> index(start.bodies.size());
+  for (std::size_t b = 0; b < start.bodies.size(); ++b) {
+    const std::vector<Port>& ports = start.bodies[b]->ports;
+    for (std::size_t p = 0; p < ports.size(); ++p) {
+      index[b].push_back(static_cast<int>(ports_.size()));
+      ports_.push_back({static_cast<int>(b), static_cast<int>(p), PortReader(ports[p]), {}});
+    }
+  }
+  for (std::size_t i = 0; i < start.interfaces.size(); ++i) {
+    const InterfaceInfo& info = start.interfaces[i];
+    const Port& port = start.bodies[info.body[0]]->ports[info.port[0]];
+    interfaces_.push_back({info,
+                           {index[info.body[0]][info.port[0]], index[info.body[1]][info.port[1]]},
+                           port.geometry.dim == 1});
+    if (form_ != nullptr && form_->interface == info.name) form_interface_ = static_cast<int>(i);
+  }
+  history_.emplace(directory_ / "history.csv");
+  history_->append(header());
+  if (form_interface_ < 0) return;
+  exact_.emplace(directory_ / "closed_form.csv");
+  exact_->append(exact_header());
+}
+
+std::string CsvHistory::header() const {
+  std::string text = "time [s]";
+  for (std::size_t b = 0; b < start_.bodies.size(); ++b) {
+    const Description& body = *start_.bodies[b];
+    for (const Port& port : body.ports) add_port_names(text, body, port);
+    add_body_names(text, body);
+  }
+  for (const InterfaceColumn& interface : interfaces_) {
+    if (interface.has_gap) text += fmt::format(",{}.gap [m]", interface.info.name);
+    text += fmt::format(",{0}.closed,{0}.iterations", interface.info.name);
+  }
+  return text + "\n";
+}
+
+std::string CsvHistory::exact_header() const {
+  std::string text = "time [s]";
+  const InterfaceInfo& info = interfaces_[form_interface_].info;
+  for (const int side : {0, 1}) {
+    const Description& body = *start_.bodies[info.body[side]];
+    add_port_names(text, body, body.ports[info.port[side]]);
+    add_body_names(text, body);
+  }
+  return text + fmt::format(",{0}.gap [m],{0}.closed\n", info.name);
+}
+
+void CsvHistory::on_window(const WindowReport& report) {
+  if (report.responses.empty()) return;
+  const std::vector<BodyRecord>& records = report.responses.front().records;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    write_row(report, r);
+    if (exact_) write_exact_row(records[r].time);
+  }
+}
+
+void CsvHistory::number(double value) {
+  row_.push_back(',');
+  if (std::isfinite(value)) fmt::format_to(std::back_inserter(row_), "{}", value);
+}
+
+void CsvHistory::end_row(TextFile& file) {
+  row_.push_back('\n');
+  file.append({row_.data(), row_.size()});
+}
+
+void CsvHistory::write_row(const WindowReport& report, std::size_t record) {
+  const double time = report.responses.front().records[record].time;
+  row_.clear();
+  fmt::format_to(std::back_inserter(row_), "{}", time);
+  std::size_t next = 0;
+  for (std::size_t b = 0; b < start_.bodies.size(); ++b) {
+    const Response& response = report.responses[b];
+    for (; next < ports_.size() && ports_[next].body == static_cast<int>(b); ++next) {
+      PortColumn& column = ports_[next];
+      const Waveform& trace = response.ports[column.port].trace;
+      column.values = trace.empty() ? PortValues{} : column.reader.at(trace, time);
+      const int dim = column.reader.port().geometry.dim;
+      for (int axis = 0; axis < dim; ++axis) number(column.values.u[axis]);
+      for (int axis = 0; axis < dim; ++axis) number(column.values.v[axis]);
+      for (int axis = 0; axis < dim; ++axis) number(column.values.f[axis]);
+    }
+    const BodyRecord& now = response.records[record];
+    number(now.energy.kinetic);
+    number(now.energy.stored);
+    number(now.energy.total());
+    const Description& body = *start_.bodies[b];
+    ABUT_ASSERT(now.momentum.size() == static_cast<std::size_t>(body.dim));
+    for (const double value : now.momentum) number(value);
+    for (const double value : now.momentum) number(value / body.mass);
+  }
+  for (std::size_t i = 0; i < interfaces_.size(); ++i) {
+    const InterfaceColumn& column = interfaces_[i];
+    if (column.has_gap)
+      number(gap_of(column.info, start_, ports_[column.port[0]].values.u[0],
+                    ports_[column.port[1]].values.u[0]));
+    fmt::format_to(std::back_inserter(row_), ",{:d},{}", report.interfaces[i].closed,
+                   report.interfaces[i].iterations);
+  }
+  end_row(*history_);
+}
+
+void CsvHistory::write_exact_row(double time) {
+  const BarImpact& exact = form_->impact;
+  row_.clear();
+  fmt::format_to(std::back_inserter(row_), "{}", time);
+  for (const int side : {0, 1}) {
+    number(exact.displacement(side, time));
+    number(exact.velocity(side, time));
+    number(exact.port_force(side, time));
+    number(exact.kinetic(side, time));
+    number(exact.stored(side, time));
+    number(exact.total(side, time));
+    number(exact.momentum(side, time));
+    number(exact.mean_velocity(side, time));
+  }
+  number(exact.gap(time));
+  fmt::format_to(std::back_inserter(row_), ",{:d}", exact.closed(time));
+  end_row(*exact_);
+}
+
+void CsvHistory::on_end(const RunEnd&) {
+  if (history_) history_->close();
+  if (exact_) exact_->close();
+}
+
+}  // namespace abut

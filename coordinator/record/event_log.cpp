@@ -1,0 +1,24 @@
+#include "coordinator/record/event_log.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace abut {
+
+EventLog::EventLog(const std::filesystem::path& directory) : file_(directory / "events.jsonl") {}
+
+void EventLog::on_event(const RunEvent& event) {
+  nlohmann::ordered_json line;
+  line["time"] = event.time;  // a number that is not finite becomes null
+  line["kind"] = to_string(event.kind);
+  line["subject"] = event.subject;
+  line["text"] = event.text;
+  line["values"] = nlohmann::ordered_json::object();
+  for (const auto& [name, value] : event.values) line["values"][name] = value;
+  // Names and texts may come from elsewhere: bytes that are not UTF-8 are replaced, never thrown
+  // upon.
+  file_.append(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  file_.append("\n");
+  file_.flush();
+}
+
+}  // namespace abut

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+
+#include "coordinator/record/observer.hpp"
+#include "coordinator/record/text_file.hpp"
+
+namespace abut {
+
+/// events.jsonl: one JSON object per event and line, in the file as soon as it has happened.
+class EventLog : public Observer {
+ public:
+  explicit EventLog(const std::filesystem::path& directory);
+
+  void on_event(const RunEvent& event) override;
+
+ private:
+  TextFile file_;
+};
+
+}  // namespace abut

@@ -1,0 +1,102 @@
+#include "coordinator/record/measure_names.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "base/key.hpp"
+#include "coordinator/record/port_reader.hpp"
+
+namespace abut {
+namespace {
+
+bool contains(const std::vector<std::string>& sorted, const std::string& name) {
+  return std::binary_search(sorted.begin(), sorted.end(), name);
+}
+
+bool needs_closed_form(const std::string& measure, MeasureScope scope) {
+  for (const std::string& interface : scope.interfaces) {
+    scope.closed_form = interface;
+    if (contains(known_measures(scope), measure)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+MeasureScope measure_scope(const RunStart& start, const std::string& closed_form) {
+  MeasureScope scope;
+  scope.closed_form = closed_form;
+  for (const Description* body : start.bodies) {
+    scope.dim = std::max(scope.dim, body->dim);
+    scope.bodies.push_back(body->name);
+  }
+  for (const InterfaceInfo& interface : start.interfaces) {
+    scope.interfaces.push_back(interface.name);
+    for (const int side : {0, 1}) {
+      const Description& body = *start.bodies[interface.body[side]];
+      scope.ports.push_back(body.name + "." + body.ports[interface.port[side]].name);
+    }
+  }
+  return scope;
+}
+
+std::vector<std::string> known_measures(const MeasureScope& scope) {
+  std::vector<std::string> names = {"energy.total.relative_drift_max",
+                                    "energy.total.relative_drift_end",
+                                    "momentum.total",
+                                    "schwarz.iterations_mean",
+                                    "schwarz.iterations_max",
+                                    "exchanges",
+                                    "windows",
+                                    "contact_windows"};
+  for (const std::string& interface : scope.interfaces) {
+    for (const char* what : {"begin", "end", "duration", "count", "impulse", "force_mean",
+                             "force_peak", "velocity_rms", "gap_min"})
+      names.push_back(fmt::format("contact.{}.{}", interface, what));
+    if (interface != scope.closed_form) continue;
+    for (const char* what : {"begin_error", "release_error", "release_error_half_force",
+                             "force_rms_error", "force_rms_error_tail", "velocity_rms_error"})
+      names.push_back(fmt::format("contact.{}.{}", interface, what));
+  }
+  for (const std::string& body : scope.bodies) {
+    names.push_back(fmt::format("energy.{}.relative_error_max", body));
+    names.push_back(fmt::format("energy.{}.relative_error_end", body));
+    for (int axis = 0; axis < scope.dim; ++axis) {
+      names.push_back(fmt::format("momentum.{}.end{}", body, axis_ending(scope.dim, axis)));
+      names.push_back(fmt::format("mean_velocity.{}.end{}", body, axis_ending(scope.dim, axis)));
+    }
+  }
+  for (const std::string& port : scope.ports)
+    for (int axis = 0; axis < scope.dim; ++axis)
+      names.push_back(fmt::format("position.{}.max{}", port, axis_ending(scope.dim, axis)));
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+void require_measure(const std::string& measure, const MeasureScope& scope) {
+  const std::vector<std::string> known = known_measures(scope);
+  if (contains(known, measure)) return;
+  if (needs_closed_form(measure, scope))
+    throw InputError(
+        fmt::format("measure '{}' compares with a closed form, which is not named", measure),
+        "meta.expect", "Name meta.closed_form for this interface, or leave the expectation out.");
+  std::vector<std::string> near = known;
+  std::stable_sort(near.begin(), near.end(),
+                   [&measure](const std::string& a, const std::string& b) {
+                     return edit_distance(measure, a) < edit_distance(measure, b);
+                   });
+  near.resize(std::min<std::size_t>(near.size(), 3));
+  throw InputError(fmt::format("there is no measure '{}'", measure), "meta.expect",
+                   fmt::format("The nearest are: {}.", fmt::join(near, ", ")));
+}
+
+void Measures::none(const std::string& name, const std::string& why) {
+  values[name] = std::numeric_limits<double>::quiet_NaN();
+  notes[name] = why;
+}
+
+}  // namespace abut

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coordinator/record/observer.hpp"
+
+namespace abut {
+
+/// The parts of a scene that give measures their names; known before a run as well as after it.
+struct MeasureScope {
+  int dim = 1;
+  std::vector<std::string> bodies;
+  std::vector<std::string> ports;  // "body.port" of those that interfaces join
+  std::vector<std::string> interfaces;
+  std::string closed_form;  // the interface it describes; empty: none
+};
+
+/// The scope of a run; `closed_form` is the interface that a closed form describes, or empty.
+MeasureScope measure_scope(const RunStart& start, const std::string& closed_form);
+
+/// Every measure that a run of this scope reports, sorted.
+std::vector<std::string> known_measures(const MeasureScope& scope);
+
+/// Throws InputError naming the nearest known measures when there is none of this name.
+void require_measure(const std::string& measure, const MeasureScope& scope);
+
+/// Numbers that say what a run has done, by name. A measure without a value is NaN here and has a
+/// note.
+struct Measures {
+  MeasureScope scope;
+  std::map<std::string, double> values;
+  std::map<std::string, std::string> notes;  // by measure: why there is no value
+
+  void set(const std::string& name, double value) { values[name] = value; }
+  void none(const std::string& name, const std::string& why);
+};
+
+}  // namespace abut

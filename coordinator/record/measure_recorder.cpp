@@ -1,0 +1,123 @@
+#include "coordinator/record/measure_recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "coordinator/record/port_reader.hpp"
+
+namespace abut {
+
+void MeasureRecorder::on_start(const RunStart& start) {
+  start_ = start;
+  last_time_ = start.begin;
+  const std::string& described = form_ != nullptr ? form_->interface : std::string();
+  measures_.scope = measure_scope(start_, described);
+  const BarImpact* balance_form = nullptr;
+  std::array<int, 2> balance_bodies{};
+  for (std::size_t i = 0; i < start_.interfaces.size(); ++i) {
+    const InterfaceInfo& info = start_.interfaces[i];
+    const bool exact = form_ != nullptr && form_->interface == info.name;
+    contacts_.emplace_back(start_, static_cast<int>(i), exact ? &form_->impact : nullptr);
+    if (exact) {
+      balance_form = &form_->impact;
+      balance_bodies = {info.body[0], info.body[1]};
+    }
+    for (const int side : {0, 1}) {
+      const int dim = start_.bodies[info.body[side]]->ports[info.port[side]].geometry.dim;
+      positions_.push_back({info.body[side], info.port[side],
+                            std::vector<double>(static_cast<std::size_t>(dim),
+                                                -std::numeric_limits<double>::infinity())});
+    }
+  }
+  balance_.emplace(start_, balance_form, balance_bodies);
+}
+
+void MeasureRecorder::on_window(const WindowReport& report) {
+  last_time_ = report.window.end;
+  check_finite(report);
+  count_iterations(report);
+  follow_positions(report);
+  balance_->on_window(report);
+  for (ContactMeasures& contact : contacts_) contact.on_window(report);
+}
+
+void MeasureRecorder::on_event(const RunEvent& event) {
+  for (ContactMeasures& contact : contacts_) contact.on_event(event);
+}
+
+void MeasureRecorder::count_iterations(const WindowReport& report) {
+  int most = 0;
+  bool closed = false;
+  for (const InterfaceReport& interface : report.interfaces) {
+    if (!interface.closed) continue;
+    closed = true;
+    most = std::max(most, interface.iterations);
+  }
+  if (!closed) return;
+  ++contact_windows_;
+  iterations_ += most;
+  iterations_max_ = std::max(iterations_max_, most);
+}
+
+void MeasureRecorder::follow_positions(const WindowReport& report) {
+  for (PositionMax& position : positions_) {
+    const PortResponse& response = report.responses[position.body].ports[position.port];
+    for (std::size_t k = 0; k < std::min(position.most.size(), response.upper.size()); ++k)
+      position.most[k] = std::max(position.most[k], response.upper[k]);
+  }
+}
+
+void MeasureRecorder::check_finite(const WindowReport& report) {
+  if (!non_finite_.empty()) return;
+  for (std::size_t b = 0; b < report.responses.size(); ++b) {
+    for (const BodyRecord& record : report.responses[b].records) {
+      bool finite = std::isfinite(record.energy.total() + record.energy.external_work);
+      for (const double value : record.momentum) finite = finite && std::isfinite(value);
+      if (finite) continue;
+      non_finite_ = fmt::format("energy or momentum of {} is not a finite number at {} s",
+                                start_.bodies[b]->name, record.time);
+      return;
+    }
+  }
+}
+
+void MeasureRecorder::write_positions() {
+  for (const PositionMax& position : positions_) {
+    const Description& body = *start_.bodies[position.body];
+    const Port& port = body.ports[position.port];
+    const std::size_t dim = position.most.size();
+    for (std::size_t k = 0; k < dim; ++k) {
+      double reference = -std::numeric_limits<double>::infinity();
+      for (std::size_t i = k; i < port.geometry.points.size(); i += dim)
+        reference = std::max(reference, port.geometry.points[i]);
+      const std::string name = fmt::format("position.{}.{}.max{}", body.name, port.name,
+                                           axis_ending(static_cast<int>(dim), static_cast<int>(k)));
+      const double most = reference + position.most[k];
+      if (std::isfinite(most)) {
+        measures_.set(name, most);
+      } else {
+        measures_.none(name, "the body reports no displacements of this port");
+      }
+    }
+  }
+}
+
+void MeasureRecorder::on_end(const RunEnd& end) {
+  for (const ContactMeasures& contact : contacts_) contact.write(last_time_, measures_);
+  if (balance_) balance_->write(measures_);
+  write_positions();
+  const double windows = static_cast<double>(std::max<std::int64_t>(1, contact_windows_));
+  measures_.set("schwarz.iterations_mean", static_cast<double>(iterations_) / windows);
+  measures_.set("schwarz.iterations_max", iterations_max_);
+  measures_.set("exchanges", static_cast<double>(end.exchanges));
+  measures_.set("windows", static_cast<double>(end.windows));
+  measures_.set("contact_windows", static_cast<double>(contact_windows_));
+  for (auto& [name, value] : measures_.values)
+    if (!std::isfinite(value) && !measures_.notes.contains(name))
+      measures_.none(name, non_finite_.empty() ? "not a finite number" : non_finite_);
+}
+
+}  // namespace abut

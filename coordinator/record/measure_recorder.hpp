@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coordinator/closed_form.hpp"
+#include "coordinator/record/balance_measures.hpp"
+#include "coordinator/record/contact_measures.hpp"
+#include "coordinator/record/measure_names.hpp"
+#include "coordinator/record/observer.hpp"
+
+namespace abut {
+
+/// Turns a run into measures: docs/REFERENCE.md and measure_names.cpp list their names. Complete
+/// after on_end, so it is told of the end before those who read it.
+class MeasureRecorder : public Observer {
+ public:
+  /// `form` may be null; else it must outlive this. Its sides are those of the interface it names.
+  explicit MeasureRecorder(const ClosedForm* form) : form_(form) {}
+
+  void on_start(const RunStart& start) override;
+  void on_window(const WindowReport& report) override;
+  void on_event(const RunEvent& event) override;
+  void on_end(const RunEnd& end) override;
+
+  const Measures& measures() const { return measures_; }
+  /// The first number of the run that was not finite, as a sentence; empty: all were.
+  const std::string& non_finite() const { return non_finite_; }
+
+ private:
+  struct PositionMax {
+    int body, port;
+    std::vector<double> most;  // [m] (dim)
+  };
+
+  void count_iterations(const WindowReport& report);
+  void follow_positions(const WindowReport& report);
+  void check_finite(const WindowReport& report);
+  void write_positions();
+
+  const ClosedForm* form_;
+  RunStart start_;
+  std::vector<ContactMeasures> contacts_;
+  std::optional<BalanceMeasures> balance_;
+  std::vector<PositionMax> positions_;
+  std::int64_t contact_windows_ = 0, iterations_ = 0;
+  int iterations_max_ = 0;
+  double last_time_ = 0.0;
+  Measures measures_;
+  std::string non_finite_;
+};
+
+}  // namespace abut

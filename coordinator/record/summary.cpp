@@ -1,0 +1,131 @@
+#include "coordinator/record/summary.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "coordinator/record/expectations.hpp"
+#include "coordinator/record/text_file.hpp"
+
+namespace abut {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json measures_object(const Measures& measures, Json& notes) {
+  Json object = Json::object();
+  for (const auto& [name, value] : measures.values) object[name] = number(value);
+  for (const auto& [name, why] : measures.notes) notes.push_back(name + ": " + why);
+  return object;
+}
+
+Json expectations_array(const std::vector<Expectation>& expectations, const Measures& measures,
+                        Json& notes) {
+  Json array = Json::array();
+  for (const Expectation& expectation : expectations) {
+    // One by one: an unknown name is the caller's error to report and must not cost the summary.
+    try {
+      const ExpectationResult result = evaluate({expectation}, measures).front();
+      array.push_back({{"measure", result.measure},
+                       {"expected", result.expected},
+                       {"got", number(result.got)},
+                       {"pass", result.pass},
+                       {"because", result.because}});
+    } catch (const InputError& error) {
+      notes.push_back(error.what());
+    }
+  }
+  return array;
+}
+
+Json closed_form_object(const ClosedForm& form, const RunStart& start) {
+  const BarImpact& impact = form.impact;
+  Json object = {{"name", "bar_impact"},
+                 {"interface", form.interface},
+                 {"begin", impact.begin()},
+                 {"end", impact.end()},
+                 {"duration", impact.duration()},
+                 {"force", impact.force()},
+                 {"closing_speed", impact.closing_speed()}};
+  for (const InterfaceInfo& info : start.interfaces) {
+    if (info.name != form.interface) continue;
+    for (const int side : {0, 1}) {
+      Json& body = object["bodies"][start.bodies[info.body[side]]->name];
+      body["wall"] = impact.is_wall(side);
+      body["mean_velocity_end"] = number(impact.mean_velocity(side, impact.end()));
+      body["total_begin"] = number(impact.total(side, impact.run_begin()));
+      body["total_end"] = number(impact.total(side, impact.end()));
+    }
+  }
+  return object;
+}
+
+Json bodies_array(const RunStart& start) {
+  Json array = Json::array();
+  for (const Description* body : start.bodies) {
+    Json entry = {{"name", body->name},
+                  {"model", body->model},
+                  {"dofs", body->dofs},
+                  {"mass", number(body->mass)},
+                  {"step", number(body->step)}};
+    if (std::isinf(body->mass)) entry["immovable"] = true;
+    array.push_back(entry);
+  }
+  return array;
+}
+
+Json timing_object(const RunEnd& end, const RunStart& start) {
+  Json timing = {{"wall_s", number(end.wall_seconds)}, {"compute_s", Json::object()}};
+  for (std::size_t b = 0; b < std::min(start.bodies.size(), end.compute_seconds.size()); ++b)
+    timing["compute_s"][start.bodies[b]->name] = number(end.compute_seconds[b]);
+  timing["overhead_per_exchange_us_median"] = number(1e6 * end.overhead_median_seconds);
+  return timing;
+}
+
+}  // namespace
+
+Summary::Summary(std::filesystem::path directory, Heading heading, const MeasureRecorder& recorder,
+                 const ClosedForm* form)
+    : directory_(std::move(directory)),
+      heading_(std::move(heading)),
+      recorder_(recorder),
+      form_(form) {}
+
+void Summary::on_start(const RunStart& start) {
+  start_ = start;
+}
+
+std::string Summary::text(const RunEnd& end) const {
+  Json notes = Json::array();
+  if (!recorder_.non_finite().empty()) notes.push_back(recorder_.non_finite());
+  Json summary;
+  summary["status"] = status_;
+  summary["title"] = heading_.title;
+  summary["time"] = {{"begin", start_.begin}, {"end", start_.end}, {"reached", number(end.time)}};
+  summary["measures"] = measures_object(recorder_.measures(), notes);
+  summary["expectations"] = expectations_array(heading_.expectations, recorder_.measures(), notes);
+  if (form_ != nullptr) summary["closed_form"] = closed_form_object(*form_, start_);
+  summary["state_hash"] = fmt::format("{:016x}", end.state_hash);
+  summary["windows"] = end.windows;
+  summary["contact_windows"] = end.contact_windows;
+  summary["exchanges"] = end.exchanges;
+  summary["timing"] = timing_object(end, start_);
+  summary["bodies"] = bodies_array(start_);
+  summary["versions"] = heading_.versions;
+  summary["notes"] = notes;
+  return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void Summary::on_end(const RunEnd& end) {
+  status_ = recorder_.non_finite().empty() ? end.status : "failed";
+  write_whole(directory_ / "summary.json", text(end));
+}
+
+}  // namespace abut

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coordinator/closed_form.hpp"
+#include "coordinator/record/measure_recorder.hpp"
+#include "coordinator/record/observer.hpp"
+#include "coordinator/scene.hpp"
+
+namespace abut {
+
+/// summary.json: the run in one object, written whole at the end. A number that is not finite
+/// becomes null with a note; one in the bodies' energies or momenta makes the status "failed".
+class Summary : public Observer {
+ public:
+  /// What is known of a run besides what it does.
+  struct Heading {
+    std::string title;
+    std::map<std::string, std::string> versions;  // of abut and of what it is built with
+    std::vector<Expectation> expectations;
+  };
+
+  /// `form` may be null. The recorder is told of every event before this, and outlives it.
+  Summary(std::filesystem::path directory, Heading heading, const MeasureRecorder& recorder,
+          const ClosedForm* form);
+
+  void on_start(const RunStart& start) override;
+  void on_end(const RunEnd& end) override;
+
+  /// The status that was written: RunEnd's, or "failed".
+  const std::string& status() const { return status_; }
+
+ private:
+  std::string text(const RunEnd& end) const;
+
+  std::filesystem::path directory_;
+  Heading heading_;
+  const MeasureRecorder& recorder_;
+  const ClosedForm* form_;
+  RunStart start_;
+  std::string status_;
+};
+
+}  // namespace abut

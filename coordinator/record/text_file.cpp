@@ -1,0 +1,56 @@
+#include "coordinator/record/text_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+
+namespace abut {
+namespace {
+
+constexpr std::size_t piece = std::size_t{1} << 17;  // bytes: few system calls, little to lose
+
+}  // namespace
+
+TextFile::TextFile(std::filesystem::path path)
+    : path_(std::move(path)), file_(std::fopen(path_.c_str(), "wb")) {
+  if (!file_) fail("opened");
+  if (std::setvbuf(file_.get(), nullptr, _IOFBF, piece) != 0) fail("buffered");
+}
+
+void TextFile::append(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) fail("written");
+}
+
+void TextFile::flush() {
+  if (std::fflush(file_.get()) != 0) fail("written");
+}
+
+void TextFile::close() {
+  if (!file_) return;
+  if (std::fclose(file_.release()) != 0) fail("written");
+}
+
+void TextFile::fail(const char* doing) const {
+  throw RunError(fmt::format("cannot be {}: {}", doing, std::strerror(errno)), path_.string(),
+                 "Check that the folder exists, is writable and has space left.");
+}
+
+void write_whole(const std::filesystem::path& path, std::string_view text) {
+  std::filesystem::path temporary = path;
+  temporary += ".tmp";
+  TextFile file(temporary);
+  file.append(text);
+  file.close();
+  std::error_code error;
+  std::filesystem::rename(temporary, path, error);
+  if (error)
+    throw RunError(fmt::format("cannot be renamed to {}: {}", path.string(), error.message()),
+                   temporary.string(), "Check that nothing else uses the run's folder.");
+}
+
+}  // namespace abut

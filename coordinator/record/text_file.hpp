@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace abut {
+
+/// A file that grows during a run, written in large pieces. Every failure to write is a RunError.
+class TextFile {
+ public:
+  explicit TextFile(std::filesystem::path path);
+
+  void append(std::string_view text);  // reaches the file in pieces
+  void flush();                        // all of it is in the file now
+  void close();
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  [[noreturn]] void fail(const char* doing) const;
+
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, Closer> file_;
+};
+
+/// Writes a file whole: under a temporary name first, then renamed, so that no reader sees half of
+/// it.
+void write_whole(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace abut
