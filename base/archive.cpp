@@ -96,8 +96,8 @@ void Archive::label(std::string_view name, char type) {
   char found_type = 0;
   raw(&found_type, sizeof found_type);
   if (found_type != type)
-    fail(name, std::string("is a ") + type_name(type) + ", but the archive holds a " +
-                   type_name(found_type));
+    fail(name, std::string("is expected to be of type ") + type_name(type) +
+                   ", but the archive holds " + type_name(found_type));
 }
 
 void Archive::raw(void* data, std::size_t size) {

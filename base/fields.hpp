@@ -83,7 +83,7 @@ class Fields {
       S sample{};
       item("[]", sample);
     }
-    for (std::size_t i = 0; i < values.size(); ++i) item("[" + std::to_string(i) + "]", values[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) item(index_step(i), values[i]);
     leave();
   }
 

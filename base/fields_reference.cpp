@@ -10,52 +10,22 @@
 namespace abut {
 namespace {
 
-const char* type_of(const double*) {
-  return "number";
-}
-const char* type_of(const int*) {
-  return "whole number";
-}
-const char* type_of(const std::int64_t*) {
-  return "whole number";
-}
-const char* type_of(const bool*) {
-  return "true or false";
-}
-const char* type_of(const std::string*) {
-  return "text";
-}
-const char* type_of(const std::optional<double>*) {
-  return "number";
-}
-const char* type_of(const std::vector<double>*) {
-  return "list of numbers";
-}
-const char* type_of(const std::vector<std::string>*) {
-  return "list of words";
-}
-const char* type_of(const std::array<std::string, 2>*) {
-  return "list of two words";
-}
+const char* type_of(const double*) { return "number"; }
+const char* type_of(const int*) { return "whole number"; }
+const char* type_of(const std::int64_t*) { return "whole number"; }
+const char* type_of(const bool*) { return "true or false"; }
+const char* type_of(const std::string*) { return "text"; }
+const char* type_of(const std::optional<double>*) { return "number"; }
+const char* type_of(const std::vector<double>*) { return "list of numbers"; }
+const char* type_of(const std::vector<std::string>*) { return "list of words"; }
+const char* type_of(const std::array<std::string, 2>*) { return "list of two words"; }
 
-std::string shown(double value) {
-  return fmt::format("{}", value);
-}
-std::string shown(int value) {
-  return fmt::format("{}", value);
-}
-std::string shown(std::int64_t value) {
-  return fmt::format("{}", value);
-}
-std::string shown(bool value) {
-  return value ? "true" : "false";
-}
-std::string shown(const std::string& value) {
-  return value.empty() ? "\"\"" : value;
-}
-std::string shown(const std::optional<double>& value) {
-  return value ? shown(*value) : "absent";
-}
+std::string shown(double value) { return fmt::format("{}", value); }
+std::string shown(int value) { return fmt::format("{}", value); }
+std::string shown(std::int64_t value) { return fmt::format("{}", value); }
+std::string shown(bool value) { return value ? "true" : "false"; }
+std::string shown(const std::string& value) { return value.empty() ? "\"\"" : value; }
+std::string shown(const std::optional<double>& value) { return value ? shown(*value) : "absent"; }
 template <class Values>
 std::string shown(const Values& values) {
   std::vector<std::string> items;
@@ -128,9 +98,7 @@ class Documenter final : public Fields {
 
 }  // namespace
 
-void Reference::heading(std::string_view text) {
-  sections_.push_back({std::string(text), {}});
-}
+void Reference::heading(std::string_view text) { sections_.push_back({std::string(text), {}}); }
 
 std::unique_ptr<Fields> Reference::documenter_at(std::string_view path) {
   if (sections_.empty()) sections_.emplace_back();

@@ -32,6 +32,8 @@ std::string Rule::range() const {
   return bounded_above ? upper : "";
 }
 
+std::string index_step(std::size_t index) { return fmt::format("[{}]", index); }
+
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;

@@ -30,16 +30,10 @@ struct Rule {
 inline constexpr Rule any{};
 inline constexpr Rule positive{.low = 0.0, .above_low = true};
 inline constexpr Rule non_negative{.low = 0.0};
-constexpr Rule at_least(double low) {
-  return Rule{.low = low};
-}
-constexpr Rule at_most(double high) {
-  return Rule{.high = high};
-}
+constexpr Rule at_least(double low) { return Rule{.low = low}; }
+constexpr Rule at_most(double high) { return Rule{.high = high}; }
 /// Both ends included.
-constexpr Rule between(double low, double high) {
-  return Rule{.low = low, .high = high};
-}
+constexpr Rule between(double low, double high) { return Rule{.low = low, .high = high}; }
 
 enum class Presence { required, optional };
 
@@ -62,6 +56,9 @@ template <class S>
 concept HasFields = requires(S& value, Fields& f) {
   value.fields(f);
 };
+
+/// Step of a key path into a list: "[3]".
+std::string index_step(std::size_t index);
 
 /// Single-character insertions, deletions and replacements that turn one word into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b);

@@ -85,12 +85,19 @@ class FormCheck {
   int nodes_ = 0;
 };
 
-YAML::Node shallow_copy(const YAML::Node& node) {
+/// A map or list of the same entries, but for the one that is replaced or added.
+YAML::Node replaced(const YAML::Node& node, const std::string& step, const YAML::Node& value) {
   YAML::Node copy(node.Type());
-  if (node.IsMap())
-    for (const auto& pair : node) copy.force_insert(pair.first, pair.second);
-  if (node.IsSequence())
-    for (const YAML::Node& item : node) copy.push_back(item);
+  bool placed = false;
+  for (std::size_t i = 0; node.IsSequence() && i < node.size(); ++i)
+    copy.push_back(list_index(step) == i ? value : node[i]);
+  if (!node.IsMap()) return copy;
+  for (const auto& pair : node) {
+    const bool here = pair.first.Scalar() == step;
+    copy.force_insert(pair.first, here ? value : pair.second);
+    placed = placed || here;
+  }
+  if (!placed) copy.force_insert(step, value);
   return copy;
 }
 
@@ -106,18 +113,10 @@ YAML::Node with_value(const YAML::Node& node, const std::vector<std::string>& st
                      index ? "Name an item that the list has, counted from 0."
                            : "Name a key of a map; all but the last key must lead to maps.");
   const YAML::Node next = found ? found->node : YAML::Node(YAML::NodeType::Map);
-  YAML::Node copy = shallow_copy(node);
-  const YAML::Node placed = with_value(next, steps, at + 1, value, where);
-  if (index)
-    copy[*index] = placed;
-  else
-    copy[steps[at]] = placed;
-  return copy;
+  return replaced(node, steps[at], with_value(next, steps, at + 1, value, where));
 }
 
-std::string override_path(const std::string& text) {
-  return text.substr(0, text.find('='));
-}
+std::string override_path(const std::string& text) { return text.substr(0, text.find('=')); }
 
 bool is_at_or_below(const std::string& path, const std::string& ancestor) {
   const std::vector<std::string> a = split_path(path), b = split_path(ancestor);
@@ -182,7 +181,7 @@ Document::Document(std::string name, std::string text, std::vector<std::string> 
     throw InputError("holds a second document", at_line(name_, documents[1].Mark()),
                      "Write one scene per file, without --- lines between its parts.");
   if (documents.empty() || !documents[0].IsMap())
-    throw InputError("is not a map of keys", at_line(name_, YAML::Mark()),
+    throw InputError("is not a map of keys", name_,
                      "Write a scene as key: value lines, beginning with meta:, time:, bodies:.");
   FormCheck(name_).visit(documents[0], "", 0);
   root_ = std::make_unique<YAML::Node>(documents[0]);
@@ -239,6 +238,11 @@ std::string Document::where(std::string_view path) const {
     const std::optional<Found> found = child(node, step);
     if (!found) break;
     if (found->line > 0) line = found->line;
+    if (found->line == 0) {  // not from the file: an override made it on the way to its own key
+      for (const std::string& override_text : overrides_)
+        if (is_at_or_below(override_path(override_text), text))
+          return fmt::format("{}, from --set {}: {}", name_, override_text, path);
+    }
     node.reset(found->node);
   }
   const std::string file = line > 0 ? fmt::format("{}:{}", name_, line) : name_;

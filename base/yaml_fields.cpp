@@ -24,9 +24,7 @@ std::string describe(const YAML::Node& node) {
 }
 
 /// A scalar that is not quoted: quotes say that text is meant.
-bool is_plain(const YAML::Node& node) {
-  return node.IsScalar() && node.Tag() != "!";
-}
+bool is_plain(const YAML::Node& node) { return node.IsScalar() && node.Tag() != "!"; }
 
 template <class T>
 std::optional<T> parse(std::string_view text) {
@@ -157,33 +155,15 @@ class Reader final : public Fields {
   std::vector<Frame> frames_;
 };
 
-const char* form_of(const double*) {
-  return "";
-}
-const char* form_of(const int*) {
-  return "a whole number";
-}
-const char* form_of(const std::int64_t*) {
-  return "a whole number";
-}
-const char* form_of(const bool*) {
-  return "true or false";
-}
-const char* form_of(const std::string*) {
-  return "text";
-}
-const char* form_of(const std::optional<double>*) {
-  return "";
-}
-const char* form_of(const std::vector<double>*) {
-  return "a list of numbers";
-}
-const char* form_of(const std::vector<std::string>*) {
-  return "a list of words";
-}
-const char* form_of(const std::array<std::string, 2>*) {
-  return "a list of two words";
-}
+const char* form_of(const double*) { return ""; }
+const char* form_of(const int*) { return "a whole number"; }
+const char* form_of(const std::int64_t*) { return "a whole number"; }
+const char* form_of(const bool*) { return "true or false"; }
+const char* form_of(const std::string*) { return "text"; }
+const char* form_of(const std::optional<double>*) { return ""; }
+const char* form_of(const std::vector<double>*) { return "a list of numbers"; }
+const char* form_of(const std::vector<std::string>*) { return "a list of words"; }
+const char* form_of(const std::array<std::string, 2>*) { return "a list of two words"; }
 
 /// The value of a declared key. When it is absent and required, that is noted for leave().
 std::optional<YAML::Node> Reader::find(const Key& key, const std::string& form, const Rule& rule) {

@@ -66,15 +66,9 @@ std::string written(const std::string& text) {
   return quoted + '"';
 }
 
-std::string written(bool value) {
-  return value ? "true" : "false";
-}
-std::string written(int value) {
-  return fmt::format("{}", value);
-}
-std::string written(std::int64_t value) {
-  return fmt::format("{}", value);
-}
+std::string written(bool value) { return value ? "true" : "false"; }
+std::string written(int value) { return fmt::format("{}", value); }
+std::string written(std::int64_t value) { return fmt::format("{}", value); }
 
 template <class Values>
 std::string written_list(const Values& values) {
@@ -82,15 +76,9 @@ std::string written_list(const Values& values) {
   for (const auto& value : values) items.push_back(written(value));
   return fmt::format("[{}]", fmt::join(items, ", "));
 }
-std::string written(const std::vector<double>& values) {
-  return written_list(values);
-}
-std::string written(const std::vector<std::string>& values) {
-  return written_list(values);
-}
-std::string written(const std::array<std::string, 2>& values) {
-  return written_list(values);
-}
+std::string written(const std::vector<double>& values) { return written_list(values); }
+std::string written(const std::vector<std::string>& values) { return written_list(values); }
+std::string written(const std::array<std::string, 2>& values) { return written_list(values); }
 
 class Writer final : public Fields {
  public:
