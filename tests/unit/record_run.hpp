@@ -1,0 +1,127 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "coordinator/closed_form.hpp"
+#include "coordinator/record/observer.hpp"
+
+namespace abut {
+
+/// A hand-made run of two bars of length, impedance and wave speed 1 that meet at (+-)1 m/s: gap
+/// 0.2 m from time 0 on, contact from 0.1 to 2.1 s with force 1 N. Windows hold two equal substeps
+/// and one record.
+class HandMadeRun {
+ public:
+  using Field = std::function<double(int side, double time)>;
+
+  HandMadeRun() : form{"impact", make_form()}, responses(2), interfaces(1) {
+    for (const int side : {0, 1}) {
+      Description& body = bodies[side];
+      body.name = side == 0 ? "left" : "right";
+      body.mass = 1.0;
+      Port port;
+      port.name = "tip";
+      port.geometry.points = {side == 0 ? -0.1 : 0.1};
+      port.geometry.normals = {side == 0 ? 1.0 : -1.0};
+      body.ports.push_back(port);
+      responses[side].ports.resize(1);
+    }
+    start.begin = 0.0;
+    start.end = 3.0;
+    start.bodies = {&bodies[0], &bodies[1]};
+    start.interfaces = {{"impact", {0, 1}, {0, 0}, 0.2}};
+    u = [this](int side, double time) { return form.impact.displacement(side, time); };
+    v = [this](int side, double time) { return form.impact.velocity(side, time); };
+    f = [this](int side, double time) { return form.impact.port_force(side, time); };
+    kinetic = [this](int side, double time) { return form.impact.kinetic(side, time); };
+    stored = [this](int side, double time) { return form.impact.stored(side, time); };
+    momentum = [this](int side, double time) { return form.impact.momentum(side, time); };
+  }
+  HandMadeRun(const HandMadeRun&) = delete;
+  HandMadeRun& operator=(const HandMadeRun&) = delete;
+
+  static BarImpact make_form() {
+    BarData left;
+    left.name = "left";
+    left.youngs_modulus = left.density = left.area = left.length = left.velocity = 1.0;
+    BarData right = left;
+    right.name = "right";
+    right.normal = right.velocity = -1.0;
+    return BarImpact({left, right}, 0.2, 0.0);
+  }
+
+  void window(Observer& observer, double begin, double end, bool closed, int iterations = 0) {
+    for (const int side : {0, 1}) fill(side, begin, end);
+    interfaces[0] = {closed, 0, iterations, 0.0};
+    observer.on_window({{index++, begin, end}, responses, interfaces});
+  }
+
+  void event(Observer& observer, RunEvent::Kind kind, double time) {
+    observer.on_event({kind, time, "impact", "", {}});
+  }
+
+  /// The whole exact run in windows of 0.1 s: 1 free, 20 closed with 2 iterations each, 9 free.
+  void play(Observer& observer) {
+    observer.on_start(start);
+    for (int k = 0; k < 30; ++k) {
+      if (k == 1) event(observer, RunEvent::Kind::contact_closed, 0.1);
+      if (k == 21) event(observer, RunEvent::Kind::contact_opened, 2.1);
+      window(observer, 0.1 * k, 0.1 * (k + 1), k >= 1 && k < 21, k >= 1 && k < 21 ? 2 : 0);
+    }
+    observer.on_end(end());
+  }
+
+  RunEnd end() const {
+    RunEnd end;
+    end.status = "completed";
+    end.time = 3.0;
+    end.state_hash = 0xabcULL;
+    end.windows = index;
+    end.contact_windows = 20;
+    end.exchanges = 142;
+    end.wall_seconds = 0.5;
+    end.compute_seconds = {0.125, 0.25};
+    end.overhead_median_seconds = 2e-5;
+    return end;
+  }
+
+  ClosedForm form;
+  Description bodies[2];
+  RunStart start;
+  Field u, v, f, kinetic, stored, momentum;
+  ForceSupport support = ForceSupport::step;
+  std::vector<Response> responses;
+  std::vector<InterfaceReport> interfaces;
+  std::int64_t index = 0;
+
+ private:
+  void fill(int side, double begin, double end) {
+    PortResponse& reply = responses[side].ports[0];
+    Waveform& trace = reply.trace;
+    trace.clear();
+    trace.support = support;
+    double most = -std::numeric_limits<double>::infinity();
+    for (const double time : {begin, 0.5 * (begin + end), end}) {
+      trace.time.push_back(time);
+      trace.u.push_back(u(side, time));
+      trace.v.push_back(v(side, time));
+      // A force that is constant over a substep is that of the substep's middle.
+      const double shift = support == ForceSupport::step ? 0.25 * (end - begin) : 0.0;
+      trace.f.push_back(f(side, time - shift));
+      most = std::max(most, trace.u.back());
+    }
+    reply.upper = {most};
+    BodyRecord record;
+    record.time = end;
+    record.energy.kinetic = kinetic(side, end);
+    record.energy.stored = stored(side, end);
+    record.momentum = {momentum(side, end)};
+    responses[side].records = {record};
+  }
+};
+
+}  // namespace abut
