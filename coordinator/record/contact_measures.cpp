@@ -7,8 +7,7 @@
 
 namespace abut {
 
-// ---- SquareIntegral
-// --------------------------------------------------------------------------------
+// ---- SquareIntegral ----------------------------------------
 
 void SquareIntegral::add(double begin, double end, double at_begin, double at_end) {
   const double from = std::max(begin, from_);
@@ -23,7 +22,7 @@ void SquareIntegral::add(double begin, double end, double at_begin, double at_en
 
 double SquareIntegral::rms(double missing) const {
   const double length = to_ - from_;
-  // Thousands of stretches leave rounding between them, whose root would be far above all round-off.-----
+  // Thousands of stretches leave rounding between them, whose root would be far above round-off.
   const double rounding = 1e-11 * length;
   const double bare = length - covered_ > rounding ? length - covered_ : 0.0;
   return std::sqrt((sum_ + bare * missing * missing) / length);
@@ -33,8 +32,7 @@ double SquareIntegral::rms_of_covered() const {
   return covered_ > 0.0 ? std::sqrt(sum_ / covered_) : std::numeric_limits<double>::quiet_NaN();
 }
 
-// ---- ContactMeasures
-// -------------------------------------------------------------------------------
+// ---- ContactMeasures ----------------------------------------
 
 ContactMeasures::ContactMeasures(const RunStart& start, int interface, const BarImpact* exact)
     : start_(start),
