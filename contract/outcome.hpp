@@ -31,7 +31,8 @@ struct BodyRecord {
 /// outward normal.
 struct Rebound {
   double node_velocity = 0.0;    // [m/s] force-free half-step velocity of the contact node, w0*
-  double inner_velocity = 0.0;   // [m/s] the same of its neighbour, w1*
+  double nodal_velocity = 0.0;   // [m/s] its velocity at the present time, between the half steps
+  double inner_velocity = 0.0;   // [m/s] force-free half-step velocity of its neighbour, w1*
   double node_mobility = 0.0;    // [1/kg] G0: velocity of the contact node per unit impulse on it
   // [1/kg] G1: velocity of its neighbour per unit impulse on the contact node
   double inner_mobility = 0.0;

@@ -23,7 +23,7 @@ enum class ForceSupport {
 class Waveform {
  public:
   Waveform() = default;
-  explicit Waveform(int width) : width(width) {}
+  explicit Waveform(int values_per_time) : width(values_per_time) {}
 
   int width = 1;
   ForceSupport support = ForceSupport::nodal;

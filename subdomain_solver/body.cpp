@@ -1,0 +1,381 @@
+#include "subdomain_solver/body.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/assert.hpp"
+
+namespace abut {
+
+namespace {
+
+/// A remainder below this fraction of a step is round-off of the window's length, not a step.
+constexpr double remainder_tolerance = 1.0e-6;
+/// Element-steps between two signs of life: about 50 ms of work.
+constexpr double progress_work = 1.0e8;
+
+}  // namespace
+
+Body::Body(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
+           const std::vector<BodyPort>& ports)
+    : bar_(std::move(bar)), scheme_(std::move(scheme)), same_grid_(ports.size(), false) {
+  const std::size_t n = static_cast<std::size_t>(bar_->nodes());
+  state_.u.assign(n, 0.0);
+  state_.v.assign(n, bar_->data().velocity);
+  state_.a.assign(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (bar_->inverse_mass()[i] > 0.0) state_.a[i] = bar_->data().body_force;
+  }
+  for (int end : {0, 1}) {
+    if (bar_->data().fixed[static_cast<std::size_t>(end)]) {
+      state_.v[static_cast<std::size_t>(bar_->node_of(end))] = 0.0;
+    }
+  }
+  description_.name = std::move(name);
+  description_.model = fmt::format("bar, {} elements, {}", bar_->data().elements, scheme_.words);
+  description_.dim = 1;
+  description_.dofs = bar_->nodes();
+  description_.mass = bar_->data().mass_total();
+  description_.step = scheme_.step;
+  description_.stable_step =
+      scheme_.explicit_in_time ? bar_->stable_step() : std::numeric_limits<double>::infinity();
+  describe_ports(ports);
+}
+
+void Body::describe_ports(const std::vector<BodyPort>& ports) {
+  Capabilities& can = description_.can;
+  can.force = true;
+  can.kernel = can.complete = can.obstacle = can.impulse = !ports.empty();
+  for (const BodyPort& p : ports) {
+    const ContactLayer layer = bar_->data().layer[static_cast<std::size_t>(p.end)];
+    if (layer == ContactLayer::massive) {
+      can.motion = true;
+      can.kernel = can.complete = can.obstacle = false;
+    }
+    support_[p.end] = layer == ContactLayer::kick ? ForceSupport::step : ForceSupport::nodal;
+    end_of_port_.push_back(p.end);
+    Port port;
+    port.name = p.name;
+    port.geometry.dim = 1;
+    port.geometry.points = {bar_->data().position + (p.end == 0 ? 0.0 : bar_->data().length)};
+    port.geometry.normals = {Bar::outward(p.end)};
+    port.geometry.spacing = bar_->spacing();
+    description_.ports.push_back(std::move(port));
+  }
+}
+
+void Body::save() {
+  saved_.clear();
+  Archive archive = Archive::writer(saved_, Archive::Form::bare);
+  state(archive);
+}
+
+void Body::restore() {
+  ABUT_ASSERT(!saved_.empty());
+  Archive archive = Archive::reader(saved_, Archive::Form::bare);
+  state(archive);
+}
+
+std::vector<std::byte> Body::checkpoint() {
+  std::vector<std::byte> bytes;
+  Archive archive = Archive::writer(bytes, Archive::Form::named);
+  state(archive);
+  return bytes;
+}
+
+void Body::resume(std::span<const std::byte> bytes) {
+  Archive archive = Archive::reader(bytes, Archive::Form::named);
+  state(archive);
+  archive.finish();
+}
+
+std::uint64_t Body::state_hash() { return hash_state(state_); }
+
+Body::Substeps Body::divide(double begin, double end) const {
+  Substeps part{begin, end, scheme_.step, scheme_.step, 0};
+  const double length = end - begin;
+  if (length <= 0.0) return part;
+  const double exact = length / scheme_.step;
+  part.count = std::max(1, static_cast<int>(std::ceil(exact - remainder_tolerance)));
+  const double rest = length - (part.count - 1) * scheme_.step;
+  // A whole step stays the nominal one to the last bit: its factors and kernels are reused.
+  const bool whole = std::abs(rest - scheme_.step) < remainder_tolerance * scheme_.step;
+  part.last = whole ? scheme_.step : rest;
+  return part;
+}
+
+Outcome Body::finish(Response& response) {
+  ABUT_ASSERT(request_ != nullptr);
+  const Advance& request = *request_;
+  request_ = nullptr;
+  const auto began = std::chrono::steady_clock::now();
+  response.records.clear();
+  response.steps = 0;
+  begin_traces(request, response);
+  apply_impulses(request);
+  const int parts = std::max(1, request.records);
+  const double part_length = request.window.length() / parts;
+  for (int p = 0; p < parts; ++p) {
+    const double begin = request.window.begin + p * part_length;
+    const double end = p + 1 == parts ? request.window.end : request.window.begin + (p + 1) * part_length;
+    const Substeps part = divide(begin, end);
+    advance_part(request, part, response);
+    record(end, response);
+    if (request.sampling == Sampling::records && part.count > 0) push_traces(request, end, response);
+    if (std::optional<Failed> failed = check_finite(response.records.back())) return *failed;
+  }
+  finish_ports(response);
+  response.compute_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return Advanced{};
+}
+
+void Body::advance_part(const Advance& request, const Substeps& part, Response& response) {
+  if (part.count == 0) return;
+  BarIntegrator& integrator = *scheme_.integrator;
+  for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
+    const BoundaryData& data = request.boundary[p];
+    const std::vector<double>& time = data.force.time;
+    bool same = time.size() == static_cast<std::size_t>(part.count) + 1;
+    for (int i = 0; same && i <= part.count; ++i) same = time[static_cast<std::size_t>(i)] == part.time(i);
+    const int end = end_of_port_[p];
+    same_grid_[p] = same && data.force.support == support_[end];
+  }
+  integrator.open(state_, part.length(1), actions_at(request, part, 0));
+  for (int i = 1; i <= part.count; ++i) {
+    integrator.substep(state_, part.length(i), actions_at(request, part, i));
+    track_sweep();
+    if (request.sampling == Sampling::substeps && i < part.count) {
+      push_traces(request, part.time(i), response);
+    }
+    report_progress();
+  }
+  integrator.close(state_, part.length(part.count));
+  if (request.sampling == Sampling::substeps) push_traces(request, part.end, response);
+  response.steps += part.count;
+}
+
+EndActions Body::actions_at(const Advance& request, const Substeps& part, int i) {
+  EndActions actions;
+  const double time = i == 0 ? part.begin : part.time(i);
+  for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
+    const BoundaryData& data = request.boundary[p];
+    EndAction& action = actions[static_cast<std::size_t>(end_of_port_[p])];
+    if (!data.obstacle.empty()) {
+      double u = 0.0;
+      data.obstacle.motion.interpolate(data.obstacle.motion.u, time, {&u, 1});
+      action.kind = EndAction::Kind::obstacle;
+      action.target = Bar::outward(end_of_port_[p]) * (data.obstacle.offset[0] + u);
+      action.bilateral = data.obstacle.bilateral;
+    } else if (!data.motion.empty()) {
+      action.kind = EndAction::Kind::motion;
+      data.motion.interpolate(data.motion.u, time, {&action.u, 1});
+      data.motion.interpolate(data.motion.v, time, {&action.v, 1});
+      data.motion.interpolate(data.motion.a, time, {&action.a, 1});
+    } else if (!data.force.empty()) {
+      action.kind = EndAction::Kind::force;
+      fill_force(data, part, i, p, action);
+    }
+  }
+  return actions;
+}
+
+void Body::fill_force(const BoundaryData& data, const Substeps& part, int i, std::size_t port,
+                      EndAction& action) {
+  const int end = end_of_port_[port];
+  const double inward = -Bar::outward(end);
+  const ContactLayer layer = bar_->data().layer[static_cast<std::size_t>(end)];
+  double force = 0.0;
+  if (same_grid_[port]) {  // the common case, and exact: no averaging at all
+    force = data.force.f[static_cast<std::size_t>(i)];
+    action.force = action.dynamic = inward * force;
+    return;
+  }
+  const double now = i == 0 ? part.begin : part.time(i);
+  data.force.force_at(now, {&force, 1});
+  action.force = action.dynamic = inward * force;
+  if (layer == ContactLayer::massive) return;  // as published: the value at the substep's end
+  const double before = i == 0 ? part.begin : i == 1 ? part.begin : part.time(i - 1);
+  const double after = i == part.count ? part.end : part.time(i + 1);
+  const bool step_support = support_[end] == ForceSupport::step;
+  const double from = step_support ? before : 0.5 * (before + now);
+  const double to = step_support ? now : 0.5 * (now + after);
+  if (to <= from) return;
+  double impulse = 0.0;
+  data.force.impulse(from, to, {&impulse, 1});
+  action.dynamic = inward * impulse / (to - from);
+  if (step_support) action.force = action.dynamic;
+}
+
+void Body::apply_impulses(const Advance& request) {
+  for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
+    if (request.boundary[p].impulse.empty()) continue;
+    const int end = end_of_port_[p];
+    const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));
+    const std::size_t hit = bar_->inverse_mass()[node] > 0.0
+                                ? node
+                                : static_cast<std::size_t>(bar_->inner_of(end));
+    state_.v[hit] += bar_->inverse_mass()[hit] * request.boundary[p].impulse[0];
+  }
+}
+
+double Body::force_on_body(int end, const BoundaryData& data) const {
+  const ContactLayer layer = bar_->data().layer[static_cast<std::size_t>(end)];
+  if (layer == ContactLayer::massive) {
+    // As published: what is handed over is the internal force of the contact node, without its inertia.
+    return data.closed() ? scheme_.integrator->internal_force(state_, end) : 0.0;
+  }
+  return -Bar::outward(end) * state_.end[static_cast<std::size_t>(end)].force;
+}
+
+void Body::begin_traces(const Advance& request, Response& response) {
+  response.ports.resize(end_of_port_.size());
+  for (std::size_t p = 0; p < response.ports.size(); ++p) {
+    response.ports[p].trace.clear();
+    response.ports[p].trace.support = support_[end_of_port_[p]];
+    response.ports[p].rebound.reset();
+    EndState& e = state_.end[static_cast<std::size_t>(end_of_port_[p])];
+    e.swept_low = e.swept_high = scheme_.integrator->port_displacement(state_, end_of_port_[p]);
+  }
+  push_traces(request, request.window.begin, response);
+}
+
+void Body::push_traces(const Advance& request, double time, Response& response) {
+  for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
+    const int end = end_of_port_[p];
+    const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));
+    Waveform& trace = response.ports[p].trace;
+    trace.time.push_back(time);
+    trace.u.push_back(scheme_.integrator->port_displacement(state_, end));
+    trace.v.push_back(state_.v[node]);
+    trace.a.push_back(state_.a[node]);
+    trace.f.push_back(force_on_body(end, request.boundary[p]));
+  }
+}
+
+void Body::track_sweep() {
+  for (int end : end_of_port_) {
+    const double u = scheme_.integrator->port_displacement(state_, end);
+    EndState& e = state_.end[static_cast<std::size_t>(end)];
+    e.swept_low = std::min(e.swept_low, u);
+    e.swept_high = std::max(e.swept_high, u);
+  }
+}
+
+void Body::record(double time, Response& response) {
+  BodyRecord r;
+  r.time = time;
+  r.energy.kinetic = scheme_.integrator->kinetic(state_);
+  r.energy.stored = scheme_.integrator->stored(state_);
+  const double body_force = bar_->data().body_force;
+  if (body_force != 0.0) r.energy.external_work = body_force * bar_->momentum(state_.u);  // f . u
+  r.momentum = {bar_->momentum(state_.v)};
+  response.records.push_back(std::move(r));
+}
+
+void Body::finish_ports(Response& response) {
+  for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
+    const int end = end_of_port_[p];
+    const EndState& e = state_.end[static_cast<std::size_t>(end)];
+    PortResponse& port = response.ports[p];
+    port.lower = {e.swept_low};
+    port.upper = {e.swept_high};
+    if (!e.closed) approach(end, port);
+    if (support_[end] != ForceSupport::step) continue;
+    const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));
+    const std::size_t inner = static_cast<std::size_t>(bar_->inner_of(end));
+    const double half = 0.5 * scheme_.step;
+    const double n = Bar::outward(end);
+    port.rebound = Rebound{n * (state_.v[node] + half * state_.a[node]), n * state_.v[node],
+                           n * (state_.v[inner] + half * state_.a[inner]),
+                           bar_->inverse_mass()[node], 0.0, e.captured};
+  }
+}
+
+void Body::approach(int end, PortResponse& port) const {
+  // A free end moves with the characteristics v -+ c strain that arrive there; all of them are inside the bar
+  // now. A fixed far end turns signs around. Dispersion may overshoot: a tenth of the range is added, and the
+  // coordinator checks the swept range anyway.
+  const double c = bar_->data().wave_speed();
+  const double n = Bar::outward(end);
+  const bool turned = bar_->data().fixed[end == 0 ? 1 : 0];
+  double high = -std::numeric_limits<double>::infinity();
+  double low = std::numeric_limits<double>::infinity();
+  for (std::size_t e = 0; e + 1 < state_.u.size(); ++e) {
+    const double strain = std::abs(state_.u[e + 1] - state_.u[e]) / bar_->spacing();
+    const double v = 0.5 * n * (state_.v[e] + state_.v[e + 1]);
+    high = std::max(high, (turned ? std::abs(v) : v) + c * strain);
+    low = std::min(low, v - c * strain);
+  }
+  const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));
+  high = std::max(high, n * state_.v[node]);
+  port.approach_bound = high + 0.1 * std::max(0.0, high - low);
+  port.approach_acceleration = std::abs(bar_->data().body_force);
+}
+
+std::optional<Failed> Body::check_finite(const BodyRecord& record) const {
+  // A value that is not finite anywhere in the state reaches one of these sums.
+  const double sum = record.energy.kinetic + record.energy.stored + record.momentum[0];
+  if (std::isfinite(sum)) return std::nullopt;
+  return Failed{Failed::Cause::non_finite, record.time,
+                fmt::format("the state of body '{}' is no longer finite; its step of {:g} s may be unstable",
+                            description_.name, scheme_.step)};
+}
+
+void Body::report_progress() {
+  if (!progress_) return;
+  work_since_progress_ += bar_->data().elements;
+  if (work_since_progress_ < progress_work) return;
+  work_since_progress_ = 0.0;
+  progress_();
+}
+
+std::vector<double> Body::respond_from_rest(int end, double step, int count, double at_begin,
+                                            double in_first) {
+  // An outward pull is a negative contact force; the port stays grounded during the whole probe.
+  const std::size_t n = state_.u.size();
+  state_ = BarState{};
+  state_.u.assign(n, 0.0);
+  state_.v.assign(n, 0.0);
+  state_.a.assign(n, 0.0);
+  EndActions actions;
+  EndAction& action = actions[static_cast<std::size_t>(end)];
+  action.kind = EndAction::Kind::force;
+  action.force = action.dynamic = -at_begin;
+  scheme_.integrator->open(state_, step, actions);
+  std::vector<double> displacement;
+  for (int i = 1; i <= count; ++i) {
+    action.force = action.dynamic = i == 1 ? -in_first : 0.0;
+    scheme_.integrator->substep(state_, step, actions);
+    displacement.push_back(Bar::outward(end) * scheme_.integrator->port_displacement(state_, end));
+  }
+  return displacement;
+}
+
+PortKernel Body::kernel(int port, double step, int count) {
+  ABUT_ASSERT(port >= 0 && static_cast<std::size_t>(port) < end_of_port_.size() && step > 0.0);
+  const BarState kept = state_;
+  const int end = end_of_port_[static_cast<std::size_t>(port)];
+  PortKernel kernel;
+  kernel.step = step;
+  kernel.support = support_[end];
+  kernel.compliance = scheme_.integrator->static_compliance(end);
+  kernel.displacement = respond_from_rest(end, step, count, 0.0, 1.0);
+  const bool nodal = kernel.support == ForceSupport::nodal;
+  if (nodal) kernel.begin = respond_from_rest(end, step, count, 1.0, 0.0);
+  if (bar_->data().body_force != 0.0) {  // what the body force does alone is no response
+    const std::vector<double> alone = respond_from_rest(end, step, count, 0.0, 0.0);
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+      kernel.displacement[i] -= alone[i];
+      if (nodal) kernel.begin[i] -= alone[i];
+    }
+  }
+  state_ = kept;
+  return kernel;
+}
+
+}  // namespace abut

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "contract/subdomain.hpp"
+#include "subdomain_solver/time/bar_integrator.hpp"
+
+namespace abut {
+
+/// Our own subdomain: a bar, its integrator and its ports. Divides a window into substeps, tells the
+/// integrator what acts on the ends in each of them, and collects the traces.
+class Body final : public Subdomain {
+ public:
+  struct BodyPort {
+    std::string name;
+    int end = 0;  // 0 left, 1 right
+  };
+  struct Scheme {
+    std::unique_ptr<BarIntegrator> integrator;
+    double step = 0.0;           // [s]
+    bool explicit_in_time = true;
+    std::string words;           // for people
+  };
+
+  Body(std::string name, std::unique_ptr<Bar> bar, Scheme scheme, const std::vector<BodyPort>& ports);
+
+  const Description& describe() const override { return description_; }
+  void save() override;
+  void restore() override;
+  void start(const Advance& request) override { request_ = &request; }
+  [[nodiscard]] Outcome finish(Response& response) override;
+  PortKernel kernel(int port, double step, int count) override;
+  std::vector<std::byte> checkpoint() override;
+  void resume(std::span<const std::byte> bytes) override;
+  std::uint64_t state_hash() override;
+
+  /// Called now and then during a long advance, so that the caller can tell others that the body lives.
+  void set_progress(std::function<void()> hook) { progress_ = std::move(hook); }
+
+ private:
+  struct Substeps {  // how one window, or one equal part of it, is divided
+    double begin = 0.0, end = 0.0, step = 0.0, last = 0.0;
+    int count = 0;
+    double length(int i) const { return i == count ? last : step; }  // i = 1..count
+    double time(int i) const { return i == count ? end : begin + i * step; }
+  };
+
+  void state(Archive& archive) { state_.state(archive); }
+  void describe_ports(const std::vector<BodyPort>& ports);
+  Substeps divide(double begin, double end) const;
+  void advance_part(const Advance& request, const Substeps& part, Response& response);
+  EndActions actions_at(const Advance& request, const Substeps& part, int i);
+  void fill_force(const BoundaryData& data, const Substeps& part, int i, std::size_t port,
+                  EndAction& action);
+  void apply_impulses(const Advance& request);
+  void begin_traces(const Advance& request, Response& response);
+  void push_traces(const Advance& request, double time, Response& response);
+  void track_sweep();
+  void record(double time, Response& response);
+  void finish_ports(Response& response);
+  double force_on_body(int end, const BoundaryData& data) const;
+  void approach(int end, PortResponse& port) const;
+  std::optional<Failed> check_finite(const BodyRecord& record) const;
+  std::vector<double> respond_from_rest(int end, double step, int count, double at_begin,
+                                        double in_first);
+  void report_progress();
+
+  Description description_;
+  std::unique_ptr<Bar> bar_;
+  Scheme scheme_;
+  std::vector<int> end_of_port_;
+  ForceSupport support_[2] = {ForceSupport::nodal, ForceSupport::nodal};
+  BarState state_;
+  const Advance* request_ = nullptr;
+  std::vector<std::byte> saved_;
+  std::vector<bool> same_grid_;  // by port: the imposed waveform is sampled at our own substeps
+  std::function<void()> progress_;
+  double work_since_progress_ = 0.0;  // element-steps
+};
+
+}  // namespace abut

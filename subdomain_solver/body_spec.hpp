@@ -1,0 +1,119 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/fields.hpp"
+#include "base/yaml_document.hpp"
+#include "contract/subdomain.hpp"
+#include "subdomain_solver/fe/bar.hpp"
+
+namespace abut {
+
+// What a scene says of one body; each struct lists its keys once (docs/REFERENCE.md is made from them).
+
+struct BarMeshSpec {
+  static constexpr std::string_view name = "bar";
+  double length = 0.0, area = 0.0;  // [m] [m^2]
+  int elements = 0;
+  void fields(Fields& f);
+};
+struct FeModelSpec {
+  static constexpr std::string_view name = "fe";
+  int dimension = 1;
+  std::variant<BarMeshSpec> mesh;
+  void fields(Fields& f);
+};
+struct RigidWallSpec {
+  static constexpr std::string_view name = "rigid_wall";
+  void fields(Fields&) {}
+};
+
+struct LinearElasticSpec {
+  static constexpr std::string_view name = "linear_elastic";
+  double youngs_modulus = 0.0, density = 0.0;  // [Pa] [kg/m^3]
+  void fields(Fields& f);
+};
+
+struct CentralDifferenceSpec {
+  static constexpr std::string_view name = "central_difference";
+  double step = 0.0;  // [s]
+  int dispersion_terms = 1;
+  void fields(Fields& f);
+};
+struct NewmarkSpec {
+  static constexpr std::string_view name = "newmark";
+  double step = 0.0, beta = 0.25, gamma = 0.5;
+  MassForm mass = MassForm::averaged;
+  void fields(Fields& f);
+};
+struct HhtAlphaSpec {
+  static constexpr std::string_view name = "hht_alpha";
+  double step = 0.0, alpha = -0.05;
+  MassForm mass = MassForm::averaged;
+  void fields(Fields& f);
+};
+struct GeneralizedAlphaSpec {
+  static constexpr std::string_view name = "generalized_alpha";
+  double step = 0.0, spectral_radius = 0.9;
+  MassForm mass = MassForm::averaged;
+  void fields(Fields& f);
+};
+
+struct MasslessSpec {
+  static constexpr std::string_view name = "massless";
+  double stiffness_factor = 4.0 / 3.0;
+  void fields(Fields& f);
+};
+struct KickSpec {
+  static constexpr std::string_view name = "kick";
+  void fields(Fields&) {}
+};
+struct MassiveSpec {
+  static constexpr std::string_view name = "massive";
+  void fields(Fields&) {}
+};
+
+struct InitialSpec {
+  std::vector<double> position = {0.0}, velocity = {0.0};  // [m] [m/s] (dim)
+  void fields(Fields& f);
+};
+struct SupportsSpec {
+  bool left_fixed = false, right_fixed = false;
+  void fields(Fields& f);
+};
+struct PortSpec {
+  std::string side;
+  void fields(Fields& f);
+};
+
+struct BodySpec {
+  using Integrator =
+      std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec, GeneralizedAlphaSpec>;
+
+  std::variant<FeModelSpec, RigidWallSpec> model;
+  std::optional<std::variant<LinearElasticSpec>> material;
+  std::optional<Integrator> integrator;
+  std::variant<MasslessSpec, KickSpec, MassiveSpec> contact_layer;
+  InitialSpec initial;
+  SupportsSpec supports;
+  std::vector<double> body_force = {0.0};  // [m/s^2] (dim)
+  std::vector<std::pair<std::string, PortSpec>> ports;
+  void fields(Fields& f);
+};
+
+/// Properties of a bar body; empty for a wall. For closed forms and estimates.
+std::optional<BarProperties> bar_properties(const BodySpec& spec);
+
+/// Reads one body of a scene and builds it. `path` is the body's key path, e.g. "bodies.left"; its last part is
+/// the name. Throws InputError with file, line and key. `progress` is called now and then during long advances.
+std::unique_ptr<Subdomain> make_body(const Document& document, const std::string& path,
+                                     std::function<void()> progress = {});
+
+}  // namespace abut

@@ -1,0 +1,165 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "base/yaml_fields.hpp"
+#include "subdomain_solver/body.hpp"
+#include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/rigid_wall.hpp"
+#include "subdomain_solver/time/central_difference.hpp"
+#include "subdomain_solver/time/generalized_alpha.hpp"
+
+namespace abut {
+
+namespace {
+
+/// CFL 1 is exact and meant: a step may pass the limit by round-off.
+constexpr double limit_slack = 1.0e-12;
+
+struct Place {
+  const Document& document;
+  std::string path;
+
+  [[noreturn]] void refuse(const std::string& key, const std::string& what, const std::string& remedy) const {
+    throw InputError(what, document.where(path + "." + key), remedy);
+  }
+};
+
+int end_of(const std::string& side) { return side == "left" ? 0 : side == "right" ? 1 : -1; }
+
+std::vector<Body::BodyPort> ports_of(const BodySpec& spec, const Place& place) {
+  std::vector<Body::BodyPort> ports;
+  for (const auto& [name, port] : spec.ports) {
+    const int end = end_of(port.side);
+    const std::string key = "ports." + name + ".side";
+    if (end < 0) {
+      place.refuse(key, fmt::format("side '{}' does not exist", port.side),
+                   "Give left or right, the sides of this body.");
+    }
+    for (const Body::BodyPort& other : ports) {
+      if (other.end != end) continue;
+      place.refuse(key, fmt::format("side '{}' is the port '{}' already", port.side, other.name),
+                   "Let each side be one port.");
+    }
+    ports.push_back({name, end});
+  }
+  return ports;
+}
+
+ContactLayer layer_of(const BodySpec& spec) {
+  constexpr ContactLayer layers[] = {ContactLayer::massless, ContactLayer::kick, ContactLayer::massive};
+  return layers[spec.contact_layer.index()];
+}
+
+struct SchemeMaker {
+  const Bar& bar;
+  const Place& place;
+
+  Body::Scheme operator()(const CentralDifferenceSpec& s) const {
+    const double limit = bar.stable_step();
+    if (s.step > limit * (1.0 + limit_slack)) {
+      place.refuse("integrator.central_difference.step",
+                   fmt::format("{:g} s is above the stable limit of {:g} s", s.step, limit),
+                   "Give a step of at most the limit, or an implicit integrator such as newmark.");
+    }
+    if (s.dispersion_terms > 1 && bar.data().elements < 2 * s.dispersion_terms + 2) {
+      place.refuse("integrator.central_difference.dispersion_terms",
+                   fmt::format("{} terms do not fit into {} elements", s.dispersion_terms,
+                               bar.data().elements),
+                   fmt::format("Give at least {} elements or fewer terms.", 2 * s.dispersion_terms + 2));
+    }
+    std::string words = fmt::format("central difference, step {:g} s, CFL {:.3g}", s.step,
+                                    s.step / (bar.spacing() / bar.data().wave_speed()));
+    if (s.dispersion_terms > 1) words += fmt::format(", {} dispersion terms", s.dispersion_terms);
+    return {std::make_unique<CentralDifference>(bar, s.step, s.dispersion_terms), s.step, true, words};
+  }
+  Body::Scheme operator()(const NewmarkSpec& s) const {
+    return implicit(AlphaWeights::newmark(s.beta, s.gamma), s.step, "newmark");
+  }
+  Body::Scheme operator()(const HhtAlphaSpec& s) const {
+    return implicit(AlphaWeights::hht(s.alpha), s.step, "HHT-alpha");
+  }
+  Body::Scheme operator()(const GeneralizedAlphaSpec& s) const {
+    return implicit(AlphaWeights::spectral_radius(s.spectral_radius), s.step, "generalised alpha");
+  }
+  Body::Scheme implicit(const AlphaWeights& weights, double step, const char* words) const {
+    return {std::make_unique<GeneralizedAlpha>(bar, weights), step, false,
+            fmt::format("{}, step {:g} s", words, step)};
+  }
+};
+
+void check_layers(const BodySpec& spec, const BarProperties& bar, const Place& place) {
+  const bool explicit_scheme = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+  int massless = 0;
+  for (std::size_t e : {0u, 1u}) {
+    if (bar.layer[e] == ContactLayer::kick && !explicit_scheme) {
+      place.refuse("contact_layer", "kick is not offered by implicit integrators",
+                   "Use massless: an implicit step with a massive contact node and a complete reaction is "
+                   "unstable.");
+    }
+    if (bar.layer[e] != ContactLayer::none && bar.fixed[e]) {
+      place.refuse(std::string("supports.") + (e == 0 ? "left" : "right"), "is fixed, but the end is a port",
+                   "Leave the end free, or take its port away.");
+    }
+    if (bar.layer[e] == ContactLayer::massless) ++massless;
+  }
+  if (bar.elements <= massless - 1) {
+    place.refuse("model.fe.mesh.bar.elements", "one element cannot have a massless layer at both ends",
+                 "Give at least 2 elements.");
+  }
+}
+
+}  // namespace
+
+std::optional<BarProperties> bar_properties(const BodySpec& spec) {
+  const FeModelSpec* fe = std::get_if<FeModelSpec>(&spec.model);
+  if (fe == nullptr) return std::nullopt;
+  const BarMeshSpec& mesh = std::get<BarMeshSpec>(fe->mesh);
+  const LinearElasticSpec& material = std::get<LinearElasticSpec>(*spec.material);
+  BarProperties bar;
+  bar.length = mesh.length;
+  bar.area = mesh.area;
+  bar.elements = mesh.elements;
+  bar.youngs_modulus = material.youngs_modulus;
+  bar.density = material.density;
+  bar.position = spec.initial.position[0];
+  bar.velocity = spec.initial.velocity[0];
+  bar.body_force = spec.body_force[0];
+  bar.fixed = {spec.supports.left_fixed, spec.supports.right_fixed};
+  bar.mass = std::visit(
+      [](const auto& scheme) {
+        if constexpr (requires { scheme.mass; }) return scheme.mass;
+        return MassForm::lumped;
+      },
+      *spec.integrator);
+  if (const MasslessSpec* massless = std::get_if<MasslessSpec>(&spec.contact_layer)) {
+    bar.stiffness_factor = massless->stiffness_factor;
+  }
+  for (const auto& [name, port] : spec.ports) {
+    const int end = end_of(port.side);
+    if (end >= 0) bar.layer[static_cast<std::size_t>(end)] = layer_of(spec);
+  }
+  return bar;
+}
+
+std::unique_ptr<Subdomain> make_body(const Document& document, const std::string& path,
+                                     std::function<void()> progress) {
+  const BodySpec spec = read<BodySpec>(document, path);
+  const Place place{document, path};
+  const std::string name = path.substr(path.rfind('.') + 1);
+  std::vector<Body::BodyPort> ports = ports_of(spec, place);
+  const std::optional<BarProperties> properties = bar_properties(spec);
+  if (!properties) {
+    return std::make_unique<RigidWall>(name, spec.initial.position[0], ports[0].name,
+                                       Bar::outward(ports[0].end));
+  }
+  check_layers(spec, *properties, place);
+  std::unique_ptr<Bar> bar = std::make_unique<Bar>(*properties);
+  Body::Scheme scheme = std::visit(SchemeMaker{*bar, place}, *spec.integrator);
+  std::unique_ptr<Body> body = std::make_unique<Body>(name, std::move(bar), std::move(scheme), ports);
+  body->set_progress(std::move(progress));
+  return body;
+}
+
+}  // namespace abut

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "contract/subdomain.hpp"
+
+namespace abut {
+
+/// An immovable rigid surface: takes any force and never moves. Has no step of its own.
+class RigidWall final : public Subdomain {
+ public:
+  RigidWall(std::string name, double position, std::string port, double normal);
+
+  const Description& describe() const override { return description_; }
+  void save() override {}
+  void restore() override {}
+  void start(const Advance& request) override { request_ = &request; }
+  [[nodiscard]] Outcome finish(Response& response) override;
+  PortKernel kernel(int port, double step, int count) override;
+  std::vector<std::byte> checkpoint() override { return {}; }
+  void resume(std::span<const std::byte>) override {}
+  std::uint64_t state_hash() override { return 0; }
+
+ private:
+  Description description_;
+  const Advance* request_ = nullptr;
+};
+
+}  // namespace abut

@@ -1,0 +1,324 @@
+#include "subdomain_solver/time/central_difference.hpp"
+
+#include <algorithm>
+
+#include "subdomain_solver/time/bar_kernels.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Nodes whose rows differ from the interior ones: the outer two at both ends, each once.
+struct EndNodes {
+  std::size_t index[4] = {};
+  std::size_t count = 0;
+
+  explicit EndNodes(std::size_t nodes) {
+    for (std::size_t i : {std::size_t{0}, std::size_t{1}, nodes - 2, nodes - 1}) {
+      if (std::find(index, index + count, i) == index + count) index[count++] = i;
+    }
+  }
+};
+
+/// Row i of K x [N].
+double row_force(const Bar& bar, const std::vector<double>& x, std::size_t i) {
+  const std::vector<double>& k = bar.stiffness();
+  const double left = i > 0 ? k[i - 1] * (x[i] - x[i - 1]) : 0.0;
+  const double right = i + 1 < x.size() ? k[i] * (x[i + 1] - x[i]) : 0.0;
+  return left - right;
+}
+
+}  // namespace
+
+CentralDifference::CentralDifference(const Bar& bar, double step, int terms)
+    : BarIntegrator(bar), step_(step), terms_(terms) {
+  const double r = step_ / (bar_.spacing() / bar_.data().wave_speed());
+  for (int q = 2; q <= terms_; ++q) {
+    ratio_.push_back(((q - 1.0) * (q - 1.0) - r * r) / (2.0 * q * (2.0 * q - 1.0)));
+  }
+  const std::size_t n = static_cast<std::size_t>(bar_.nodes());
+  for (int end : {0, 1}) {
+    if (!is(end, ContactLayer::massless)) continue;
+    End& e = ends_[static_cast<std::size_t>(end)];
+    e.spring = end == 0 ? bar_.stiffness().front() : bar_.stiffness().back();
+    BarState unit;
+    unit.u.assign(n, 0.0);
+    unit.u[static_cast<std::size_t>(bar_.node_of(end))] = 1.0;
+    unit.end[0].closed = unit.end[1].closed = true;
+    smooth(unit, unit.u, e.response);
+    e.compliance =
+        1.0 / (e.spring * (1.0 - e.response[static_cast<std::size_t>(bar_.inner_of(end))]));
+    if (end == 1) std::reverse(e.response.begin(), e.response.end());
+    e.response.resize(std::min(n, static_cast<std::size_t>(terms_)));
+  }
+}
+
+void CentralDifference::smooth(const BarState& state, const std::vector<double>& u,
+                               std::vector<double>& s) const {
+  const std::size_t n = u.size();
+  const EndNodes outer(n);
+  const double cell = bar_.spacing() / bar_.data().wave_speed();
+  const std::vector<double>* t = &u;
+  work_a_.resize(n);
+  work_b_.resize(n);
+  for (std::size_t pass = ratio_.size(); pass-- > 0;) {
+    std::vector<double>& out = t == &work_a_ ? work_b_ : work_a_;
+    if (n > 4) smooth_nodes(u.data(), t->data(), out.data(), 2, n - 2, ratio_[pass]);
+    for (std::size_t c = 0; c < outer.count; ++c) {
+      const std::size_t i = outer.index[c];
+      const double d = cell * cell * bar_.inverse_mass()[i] * row_force(bar_, *t, i);
+      out[i] = u[i] + ratio_[pass] * d;
+    }
+    for (int end : {0, 1}) {  // an open massless port moves with its inner node
+      if (!is(end, ContactLayer::massless) || state.end[static_cast<std::size_t>(end)].closed) continue;
+      out[static_cast<std::size_t>(bar_.node_of(end))] = out[static_cast<std::size_t>(bar_.inner_of(end))];
+    }
+    t = &out;
+  }
+  s = *t;
+}
+
+void CentralDifference::kick_end_nodes(BarState& state, const std::vector<double>& s, double kick) {
+  const EndNodes outer(s.size());
+  for (std::size_t c = 0; c < outer.count; ++c) {
+    const std::size_t i = outer.index[c];
+    const double inverse = bar_.inverse_mass()[i];
+    if (inverse == 0.0) continue;
+    state.v[i] += kick * (bar_.data().body_force - inverse * row_force(bar_, s, i));
+  }
+  for (int end : {0, 1}) {
+    if (!is(end, ContactLayer::massive)) continue;
+    const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+    const double force = state.end[static_cast<std::size_t>(end)].dynamic;
+    state.v[node] -= kick * bar_.inverse_mass()[node] * Bar::outward(end) * force;
+  }
+}
+
+void CentralDifference::drift_end_nodes(BarState& state, double dt) {
+  const EndNodes outer(state.u.size());
+  for (std::size_t c = 0; c < outer.count; ++c) {
+    const std::size_t i = outer.index[c];
+    if (bar_.inverse_mass()[i] > 0.0) state.u[i] += dt * state.v[i];
+  }
+}
+
+void CentralDifference::kick_drift(BarState& state, double kick, double dt) {
+  const std::size_t n = state.u.size();
+  const double g = kick * bar_.element_stiffness() / bar_.element_mass();
+  const double shift = kick * bar_.data().body_force;
+  const std::vector<double>& s = simple() ? state.u : smoothed_;
+  kick_end_nodes(state, s, kick);
+  if (n > 4 && simple()) {
+    kick_drift_nodes(state.u.data(), state.v.data(), 2, n - 2, g, shift, dt);
+  } else if (n > 4) {
+    kick_nodes(s.data(), state.v.data(), 2, n - 2, g, shift);
+    drift_nodes(state.u.data(), state.v.data(), 2, n - 2, dt);
+  }
+  drift_end_nodes(state, dt);
+}
+
+void CentralDifference::drift(BarState& state, double dt) {
+  const std::size_t n = state.u.size();
+  if (n > 4) drift_nodes(state.u.data(), state.v.data(), 2, n - 2, dt);
+  drift_end_nodes(state, dt);
+}
+
+void CentralDifference::acceleration(BarState& state) {
+  const std::vector<double>& s = simple() ? state.u : smoothed_;
+  bar_.internal_force(s, force_);
+  const std::vector<double>& inverse = bar_.inverse_mass();
+  const double body_force = bar_.data().body_force;
+  for (std::size_t i = 0; i < force_.size(); ++i) {
+    state.a[i] = inverse[i] > 0.0 ? body_force - inverse[i] * force_[i] : 0.0;
+  }
+  for (int end : {0, 1}) {
+    const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+    const EndState& e = state.end[static_cast<std::size_t>(end)];
+    if (is(end, ContactLayer::massive)) state.a[node] -= inverse[node] * Bar::outward(end) * e.dynamic;
+    if (is(end, ContactLayer::massless)) state.a[node] = state.a[static_cast<std::size_t>(bar_.inner_of(end))];
+  }
+}
+
+double CentralDifference::reaction_of(const BarState& state, int end) const {
+  const std::vector<double>& s = simple() ? state.u : smoothed_;
+  const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+  const std::size_t inner = static_cast<std::size_t>(bar_.inner_of(end));
+  return ends_[static_cast<std::size_t>(end)].spring * Bar::outward(end) * (s[inner] - s[node]);
+}
+
+void CentralDifference::place_massless(BarState& state, int end, const EndAction& action, double dt) {
+  const End& line = ends_[static_cast<std::size_t>(end)];
+  EndState& e = state.end[static_cast<std::size_t>(end)];
+  const double n = Bar::outward(end);
+  const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+  const double before = n * state.u[node];
+  const double free_position = before + line.compliance * reaction_of(state, end);
+  if (action.kind == EndAction::Kind::obstacle) {
+    e.force = e.dynamic = end_reaction(free_position, line.compliance, action);
+  } else {
+    e.force = action.force;
+    e.dynamic = action.dynamic;
+  }
+  const double shift = n * ((free_position - line.compliance * e.dynamic) - before);
+  state.u[node] += shift;
+  if (!simple()) {
+    for (std::size_t i = 0; i < line.response.size(); ++i) {
+      const std::size_t at = end == 0 ? i : state.u.size() - 1 - i;
+      smoothed_[at] += shift * line.response[i];
+    }
+  }
+  if (dt > 0.0) state.v[node] += shift / dt;  // backward difference: nothing but output reads it
+}
+
+void CentralDifference::resolve_massless(BarState& state, const EndActions& actions, double dt) {
+  bool any = false;
+  for (int end : {0, 1}) {
+    if (!is(end, ContactLayer::massless)) continue;
+    any = true;
+    const EndAction& action = actions[static_cast<std::size_t>(end)];
+    const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+    const std::size_t inner = static_cast<std::size_t>(bar_.inner_of(end));
+    const double before = state.u[node];
+    if (action.kind == EndAction::Kind::open) {
+      state.u[node] = state.u[inner];
+    } else if (action.kind == EndAction::Kind::obstacle) {
+      state.u[node] = Bar::outward(end) * action.target;  // the usual answer; corrected below when it is not
+    }
+    if (dt > 0.0) state.v[node] = (state.u[node] - before) / dt;
+  }
+  if (!simple()) smooth(state, state.u, smoothed_);
+  if (!any) return;
+  for (int end : {0, 1}) {
+    const EndAction& action = actions[static_cast<std::size_t>(end)];
+    if (is(end, ContactLayer::massless) && action.kind != EndAction::Kind::open) {
+      place_massless(state, end, action, dt);
+    }
+  }
+}
+
+void CentralDifference::resolve_kick(BarState& state, int end, const EndAction& action, double dt) {
+  if (action.kind == EndAction::Kind::open) return;
+  EndState& e = state.end[static_cast<std::size_t>(end)];
+  const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+  const double n = Bar::outward(end);
+  const double inverse = bar_.inverse_mass()[node];
+  if (action.kind == EndAction::Kind::obstacle) {
+    e.force = end_reaction(n * state.u[node], dt * dt * inverse, action);
+  } else {
+    e.force = action.dynamic;
+  }
+  e.dynamic = e.force;
+  state.v[node] -= n * dt * inverse * e.force;
+  state.u[node] -= n * dt * dt * inverse * e.force;
+  const double before = ends_[static_cast<std::size_t>(end)].velocity_before;
+  e.captured += dt * e.force * 0.5 * (before + n * state.v[node]);
+}
+
+void CentralDifference::open(BarState& state, double dt, const EndActions& opening) {
+  bool refresh = update_closed(state, opening);
+  for (int end : {0, 1}) {
+    const EndAction& action = opening[static_cast<std::size_t>(end)];
+    const EndState& e = state.end[static_cast<std::size_t>(end)];
+    if (is(end, ContactLayer::massless) && action.kind == EndAction::Kind::force) {
+      refresh = refresh || action.dynamic != e.dynamic;
+    }
+  }
+  if (refresh) {
+    EndActions held = opening;
+    for (std::size_t e : {0u, 1u}) {  // an obstacle's reaction at this instant is the one already known
+      if (held[e].kind != EndAction::Kind::obstacle) continue;
+      held[e].kind = EndAction::Kind::force;
+      held[e].force = held[e].dynamic = state.end[e].dynamic;
+    }
+    resolve_massless(state, held, 0.0);
+    acceleration(state);
+  }
+  for (int end : {0, 1}) {
+    const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+    ends_[static_cast<std::size_t>(end)].velocity_before =
+        Bar::outward(end) * (state.v[node] - 0.5 * dt * state.a[node]);
+  }
+  kick_nodes_with(state, 0.5 * dt);
+  previous_dt_ = 0.0;
+}
+
+void CentralDifference::kick_nodes_with(BarState& state, double kick) const {
+  const std::vector<double>& inverse = bar_.inverse_mass();
+  for (std::size_t i = 0; i < state.v.size(); ++i) {
+    if (inverse[i] > 0.0) state.v[i] += kick * state.a[i];
+  }
+}
+
+void CentralDifference::substep(BarState& state, double dt, const EndActions& actions) {
+  if (previous_dt_ == 0.0) {
+    drift(state, dt);
+  } else {
+    for (int end : {0, 1}) {
+      const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+      ends_[static_cast<std::size_t>(end)].velocity_before = Bar::outward(end) * state.v[node];
+    }
+    kick_drift(state, 0.5 * (previous_dt_ + dt), dt);
+  }
+  previous_dt_ = dt;
+  resolve_massless(state, actions, dt);
+  for (int end : {0, 1}) {
+    const EndAction& action = actions[static_cast<std::size_t>(end)];
+    EndState& e = state.end[static_cast<std::size_t>(end)];
+    const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+    if (is(end, ContactLayer::kick)) resolve_kick(state, end, action, dt);
+    if (action.kind == EndAction::Kind::motion) state.u[node] = action.u;
+    if (is(end, ContactLayer::massive) && action.kind == EndAction::Kind::force) {
+      e.force = e.dynamic = action.force;
+    }
+    prescribed_[static_cast<std::size_t>(end)] = action;
+  }
+}
+
+void CentralDifference::close(BarState& state, double dt) {
+  acceleration(state);
+  kick_nodes_with(state, 0.5 * dt);
+  for (int end : {0, 1}) {
+    const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+    const EndAction& action = prescribed_[static_cast<std::size_t>(end)];
+    if (action.kind == EndAction::Kind::motion) {
+      state.v[node] = action.v;
+      state.a[node] = action.a;
+    } else if (is(end, ContactLayer::massless) && action.kind == EndAction::Kind::open) {
+      state.v[node] = state.v[static_cast<std::size_t>(bar_.inner_of(end))];
+    }
+  }
+}
+
+double CentralDifference::port_displacement(const BarState& state, int end) const {
+  const EndState& e = state.end[static_cast<std::size_t>(end)];
+  const double u = state.u[static_cast<std::size_t>(bar_.node_of(end))];
+  return u - Bar::outward(end) * static_compliance(end) * (e.force - e.dynamic);
+}
+
+double CentralDifference::static_compliance(int end) const {
+  return ends_[static_cast<std::size_t>(end)].compliance;
+}
+
+double CentralDifference::kinetic(const BarState& state) const {
+  const std::vector<double>& mass = bar_.row_mass();
+  const std::vector<double>& inverse = bar_.inverse_mass();
+  const double quarter = 0.25 * step_ * step_;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    if (inverse[i] > 0.0) sum += mass[i] * (state.v[i] * state.v[i] - quarter * state.a[i] * state.a[i]);
+  }
+  return 0.5 * sum;
+}
+
+double CentralDifference::stored(const BarState& state) const {
+  if (simple()) return bar_.stored(state.u);
+  std::vector<double> s;
+  smooth(state, state.u, s);
+  double sum = 0.0;
+  for (std::size_t e = 0; e + 1 < s.size(); ++e) {
+    sum += bar_.stiffness()[e] * (state.u[e + 1] - state.u[e]) * (s[e + 1] - s[e]);
+  }
+  return 0.5 * sum;
+}
+
+}  // namespace abut

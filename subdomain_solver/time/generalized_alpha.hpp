@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "subdomain_solver/solve/tridiagonal.hpp"
+#include "subdomain_solver/time/bar_integrator.hpp"
+
+namespace abut {
+
+/// Weights of the generalised-alpha family (Chung and Hulbert 1993):
+///   (1 - am) M a(n+1) + am M a(n) + (1 - af) (K u(n+1) - f(n+1)) + af (K u(n) - f(n)) = 0
+/// with Newmark's beta and gamma. am = af = 0 is Newmark, am = 0 is HHT-alpha.
+struct AlphaWeights {
+  double alpha_m = 0.0, alpha_f = 0.0, beta = 0.25, gamma = 0.5;
+
+  static AlphaWeights newmark(double beta, double gamma);
+  static AlphaWeights hht(double alpha);                     // alpha in [-1/3, 0]
+  static AlphaWeights spectral_radius(double rho_infinity);  // in [0, 1]
+};
+
+/// Implicit bar: one tridiagonal solve per substep, factored once per step length.
+/// Conserved by the trapezoidal rule (Newmark 1/4, 1/2): 1/2 v M v + 1/2 u K u.
+class GeneralizedAlpha final : public BarIntegrator {
+ public:
+  GeneralizedAlpha(const Bar& bar, const AlphaWeights& weights);
+
+  void open(BarState& state, double dt, const EndActions& opening) override;
+  void substep(BarState& state, double dt, const EndActions& actions) override;
+  void close(BarState& state, double dt) override;
+  double port_displacement(const BarState& state, int end) const override;
+  double static_compliance(int end) const override;
+  double kinetic(const BarState& state) const override { return bar_.kinetic(state.v); }
+  double stored(const BarState& state) const override { return bar_.stored(state.u); }
+
+ private:
+  void factor(double dt, const EndActions& actions);
+  void initial_acceleration(BarState& state) const;
+  void right_hand_side(const BarState& state, double dt, const EndActions& actions);
+  void apply_mass(const std::vector<double>& x, std::vector<double>& out) const;
+  void apply_reactions(const EndActions& actions, BarState& state);
+  void advance_rates(BarState& state, double dt, const EndActions& actions);
+  bool held(int end, const EndActions& actions) const;
+
+  AlphaWeights w_;
+  double factored_dt_ = 0.0;
+  std::array<bool, 2> factored_held_ = {false, false};
+  TriDiagonal matrix_, mass_matrix_;
+  std::array<std::vector<double>, 2> column_;       // A^-1 e_end (1 - af): displacement per unit end force
+  std::array<std::vector<double>, 2> mass_column_;  // acceleration per unit end force at one instant
+  std::vector<double> predicted_, rhs_, work_, trial_;
+};
+
+}  // namespace abut
