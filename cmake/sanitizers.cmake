@@ -1,5 +1,5 @@
-# ABUT_SANITIZE: empty, "address,undefined" or "thread". Undefined behaviour ends the program, so that a
-# test cannot pass with a report on its error output alone.
+# ABUT_SANITIZE: empty, "address,undefined" or "thread". Undefined behaviour ends the program, so
+# that a test cannot pass with a report on its error output alone.
 set(ABUT_SANITIZE "" CACHE STRING "Sanitizers to build with")
 if(ABUT_SANITIZE)
   add_compile_options(-fsanitize=${ABUT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
