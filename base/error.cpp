@@ -1,5 +1,6 @@
 #include "base/error.hpp"
 
+#include <cctype>
 #include <utility>
 
 namespace abut {
@@ -9,7 +10,12 @@ std::string paragraph(const std::string& what_is_wrong, const std::string& where
                       const std::string& remedy) {
   std::string text = where.empty() ? what_is_wrong : where + ": " + what_is_wrong;
   text += '.';
-  if (!remedy.empty()) text += ' ' + remedy;
+  if (remedy.empty()) return text;
+  text += ' ';
+  text += static_cast<char>(std::toupper(static_cast<unsigned char>(remedy[0])));
+  text += remedy.substr(1);
+  const char last = text.back();
+  if (last != '.' && last != '?' && last != '!') text += '.';
   return text;
 }
 

@@ -292,7 +292,9 @@ void validate(const Scene& scene, const Document& document) {
     if (!has_name(scene.interfaces, form.interface))
       throw InputError(fmt::format("is {}, but there is no such interface", form.interface),
                        document.where("meta.closed_form.bar_impact.interface"),
-                       fmt::format("Choose one of: {}.", names_of(scene.interfaces)));
+                       scene.interfaces.empty()
+                           ? "Declare it under interfaces."
+                           : fmt::format("Choose one of: {}.", names_of(scene.interfaces)));
   }
 }
 

@@ -1,0 +1,63 @@
+#include "coordinator/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <string_view>
+
+namespace abut {
+namespace {
+
+constexpr std::array<std::string_view, 3> own_verbs{"run", "check", "reference"};
+
+void add_scene(CLI::App& verb, std::string& scene, std::vector<std::string>& overrides) {
+  verb.add_option("scene", scene, "scene file")->required()->type_name("SCENE");
+  verb.add_option("--set", overrides, "use this value in place of the scene's; repeatable")
+      ->type_name("key.path=value")
+      ->allow_extra_args(false);
+}
+
+}  // namespace
+
+Command parse_command_line(int argc, const char* const* argv) {
+  const std::string_view verb = argc > 1 ? argv[1] : "";
+  const bool is_own = std::find(own_verbs.begin(), own_verbs.end(), verb) != own_verbs.end();
+  if (!verb.empty() && !verb.starts_with('-') && !is_own)
+    return ExternalCommand{std::string(verb), {argv + 2, argv + argc}};
+
+  CLI::App app("abut: collision of solids that are solved by separate programs", "abut");
+  app.set_version_flag("--version", "abut " ABUT_VERSION);
+  app.require_subcommand(1);
+  app.footer("Any other verb V runs the program abut-V, for example: abut report DIR");
+
+  RunCommand run;
+  CLI::App& run_verb = *app.add_subcommand("run", "run a scene and evaluate its expectations");
+  add_scene(run_verb, run.scene, run.overrides);
+  run_verb.add_option("--out", run.out, "run directory; default runs/<scene name>")
+      ->type_name("DIR");
+  run_verb.add_flag("--local", run.local, "all bodies in this process");
+  run_verb.add_flag("--quiet", run.quiet, "print errors and failed expectations only");
+  run_verb.add_flag("--force", run.force, "replace the run that DIR holds");
+
+  CheckCommand check;
+  CLI::App& check_verb = *app.add_subcommand("check", "say whether a scene is valid");
+  add_scene(check_verb, check.scene, check.overrides);
+
+  CLI::App& reference_verb =
+      *app.add_subcommand("reference", "print every key of a scene file, as Markdown");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out, err;
+    const int code = app.exit(error, out, err);
+    return code == 0 ? PrintCommand{out.str(), 0} : PrintCommand{"error: " + err.str(), 2};
+  }
+  if (run_verb.parsed()) return run;
+  if (check_verb.parsed()) return check;
+  if (reference_verb.parsed()) return ReferenceCommand{};
+  return PrintCommand{app.help(), 2};
+}
+
+}  // namespace abut

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace abut {
+
+struct RunCommand {
+  std::string scene;
+  std::string out;  // empty: runs/<scene name>
+  std::vector<std::string> overrides;
+  bool local = false;
+  bool quiet = false;
+  bool force = false;
+};
+struct CheckCommand {
+  std::string scene;
+  std::vector<std::string> overrides;
+};
+struct ReferenceCommand {};
+/// `abut V ...` where V is none of ours: the program abut-V.
+struct ExternalCommand {
+  std::string verb;
+  std::vector<std::string> arguments;
+};
+/// Help, version, or what is wrong with the command line.
+struct PrintCommand {
+  std::string text;
+  int exit_code = 0;  // other than 0: for standard error
+};
+
+using Command =
+    std::variant<RunCommand, CheckCommand, ReferenceCommand, ExternalCommand, PrintCommand>;
+
+/// Never throws: a command line that is wrong becomes a PrintCommand with exit code 2.
+Command parse_command_line(int argc, const char* const* argv);
+
+}  // namespace abut

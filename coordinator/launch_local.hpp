@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/fields_reference.hpp"
+#include "base/yaml_document.hpp"
+#include "base/yaml_resolved.hpp"
+#include "contract/subdomain.hpp"
+#include "coordinator/closed_form.hpp"
+#include "coordinator/scene.hpp"
+
+namespace abut {
+
+// The one place where the coordinator knows our own solver: bodies in this process, and what must
+// be known of body keys before any process is started.
+
+/// Every body of the scene, in its order, in this process. Throws InputError.
+std::vector<std::unique_ptr<Subdomain>> launch_local(const Scene& scene, const Document& document);
+
+/// Throws InputError when a body entry cannot be built.
+void validate_body_specs(const Scene& scene, const Document& document);
+
+/// The exact solution that the scene names, if any. Throws InputError when it does not describe
+/// these bodies.
+std::optional<ClosedForm> make_closed_form(const Scene& scene, const Document& document);
+
+/// Adds the keys of a body entry to the reference.
+void document_body_keys(Reference& reference);
+
+/// Adds every body's values in use to the resolved scene.
+void resolve_body_keys(const Scene& scene, const Document& document, ResolvedYaml& resolved);
+
+}  // namespace abut

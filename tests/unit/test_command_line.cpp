@@ -1,0 +1,74 @@
+// Goal: every way to call the program means what its help says. Oracle: the fields of the command.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "coordinator/command_line.hpp"
+
+namespace abut {
+namespace {
+
+Command parsed(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "abut");
+  return parse_command_line(static_cast<int>(arguments.size()), arguments.data());
+}
+
+TEST(CommandLine, RunTakesItsOptionsInAnyOrder) {
+  const RunCommand run = std::get<RunCommand>(
+      parsed({"run", "--set", "time.window=1e-6", "--local", "a.yaml", "--out", "d", "--quiet",
+              "--set", "bodies={a: [1, 2], b: -1}", "--force"}));
+  EXPECT_EQ(run.scene, "a.yaml");
+  EXPECT_EQ(run.out, "d");
+  EXPECT_EQ(run.overrides,
+            (std::vector<std::string>{"time.window=1e-6", "bodies={a: [1, 2], b: -1}"}));
+  EXPECT_TRUE(run.local && run.quiet && run.force);
+}
+
+TEST(CommandLine, RunWithoutOptionsHasNone) {
+  const RunCommand run = std::get<RunCommand>(parsed({"run", "a.yaml"}));
+  EXPECT_TRUE(run.out.empty() && run.overrides.empty());
+  EXPECT_FALSE(run.local || run.quiet || run.force);
+}
+
+TEST(CommandLine, CheckTakesASceneAndOverrides) {
+  const CheckCommand check = std::get<CheckCommand>(parsed({"check", "a.yaml", "--set", "a=1"}));
+  EXPECT_EQ(check.scene, "a.yaml");
+  EXPECT_EQ(check.overrides, std::vector<std::string>{"a=1"});
+}
+
+TEST(CommandLine, OtherVerbsKeepTheirArgumentsUntouched) {
+  const ExternalCommand report =
+      std::get<ExternalCommand>(parsed({"report", "dir", "--help", "--set"}));
+  EXPECT_EQ(report.verb, "report");
+  EXPECT_EQ(report.arguments, (std::vector<std::string>{"dir", "--help", "--set"}));
+}
+
+TEST(CommandLine, VersionAndHelpAreNoErrors) {
+  const PrintCommand version = std::get<PrintCommand>(parsed({"--version"}));
+  EXPECT_TRUE(version.text.starts_with("abut ")) << version.text;
+  EXPECT_EQ(version.exit_code, 0);
+  const PrintCommand help = std::get<PrintCommand>(parsed({"run", "--help"}));
+  EXPECT_NE(help.text.find("--force"), std::string::npos) << help.text;
+  EXPECT_EQ(help.exit_code, 0);
+}
+
+TEST(CommandLine, WhatIsWrongEndsWithCodeTwo) {
+  for (const std::vector<const char*>& arguments :
+       std::vector<std::vector<const char*>>{{},
+                                             {"run"},
+                                             {"run", "a", "b"},
+                                             {"run", "a", "--nonsense"},
+                                             {"check", "a", "--out", "d"},
+                                             {"run", "a", "--set"},
+                                             {"--nonsense"},
+                                             {"reference", "a"}}) {
+    const Command command = parsed(arguments);
+    ASSERT_TRUE(std::holds_alternative<PrintCommand>(command));
+    EXPECT_EQ(std::get<PrintCommand>(command).exit_code, 2);
+    EXPECT_TRUE(std::get<PrintCommand>(command).text.starts_with("error: "));
+  }
+}
+
+}  // namespace
+}  // namespace abut
