@@ -266,6 +266,30 @@ const Port& require_port(const Description& body, const std::string& side,
                    where, remedy);
 }
 
+/// The two ports exist, have one dimension, and in one dimension face each other across a gap.
+void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
+                       std::span<const Description* const> bodies, const Document& document) {
+  const std::string path = fmt::format("interfaces.{}.sides", interface.name);
+  std::array<const PortGeometry*, 2> ports{};
+  for (std::size_t i = 0; i < ports.size(); ++i) {
+    const std::string& side = interface.sides[i];
+    const Description& body = description_of(scene, bodies, split_port(side).body);
+    ports[i] = &require_port(body, side, document.where(fmt::format("{}[{}]", path, i))).geometry;
+  }
+  if (ports[0]->dim != ports[1]->dim)
+    throw InputError(fmt::format("join a port in {}D and one in {}D", ports[0]->dim, ports[1]->dim),
+                     document.where(path), "Give both bodies the same dimension.");
+  if (ports[0]->dim != 1) return;
+  const double normal = ports[0]->normals.at(0);
+  if (normal + ports[1]->normals.at(0) != 0.0)
+    throw InputError("look the same way and cannot touch", document.where(path),
+                     "Join a right end with a left end.");
+  const double gap = normal * (ports[1]->points.at(0) - ports[0]->points.at(0));
+  if (gap < 0.0)
+    throw InputError(fmt::format("overlap by {:.6g} m at the start", -gap), document.where(path),
+                     "Move a body with initial.position until the gap is zero or more.");
+}
+
 }  // namespace
 
 Scene read_scene(const Document& document) {
@@ -313,19 +337,8 @@ void validate_bodies(const Scene& scene, std::span<const Description* const> bod
           fmt::format("Give a window of {}, or the body a step of {}.", multiples(step, window),
                       parts(step, window)));
   }
-  for (const auto& [name, interface] : scene.interfaces) {
-    std::array<int, 2> dims{};
-    for (std::size_t i = 0; i < interface.sides.size(); ++i) {
-      const std::string& side = interface.sides[i];
-      const Description& body = description_of(scene, bodies, split_port(side).body);
-      const std::string where = document.where(fmt::format("interfaces.{}.sides[{}]", name, i));
-      dims[i] = require_port(body, side, where).geometry.dim;
-    }
-    if (dims[0] != dims[1])
-      throw InputError(fmt::format("joins a port in {}D and one in {}D", dims[0], dims[1]),
-                       document.where(fmt::format("interfaces.{}.sides", name)),
-                       "Give both bodies the same dimension.");
-  }
+  for (const auto& [name, interface] : scene.interfaces)
+    validate_geometry(interface, scene, bodies, document);
 }
 
 }  // namespace abut

@@ -165,8 +165,9 @@ Scene read_scene(const Document& document);
 /// Rules across the keys of different maps, such as that a side's body exists. Throws InputError.
 void validate(const Scene& scene, const Document& document);
 
-/// Rules that need the bodies: ports that exist, one dimension per interface, windows that hold a
-/// whole number of every body's steps. `bodies` are in the scene's order. Throws InputError.
+/// Rules that need the bodies: ports that exist and face each other across a gap, one dimension per
+/// interface, windows that hold a whole number of every body's steps. `bodies` are in the scene's
+/// order. Throws InputError.
 void validate_bodies(const Scene& scene, std::span<const Description* const> bodies,
                      const Document& document);
 

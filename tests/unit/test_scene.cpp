@@ -159,8 +159,16 @@ class BodiesOfAScene : public testing::Test {
   BodiesOfAScene() {
     for (Description& body : bodies) {
       body.step = 1.0e-7;
-      body.ports = {Port{.name = "tip", .geometry = {}}, Port{.name = "tail", .geometry = {}}};
+      body.ports = {Port{.name = "tip", .geometry = at(0.0, 1.0)},
+                    Port{.name = "tail", .geometry = at(-1.0, -1.0)}};
     }
+    bodies[1].ports[0].geometry = at(0.25, -1.0);
+  }
+  static PortGeometry at(double point, double normal) {
+    PortGeometry geometry;
+    geometry.points = {point};
+    geometry.normals = {normal};
+    return geometry;
   }
   std::string refusal(std::vector<std::string> overrides = {}) {
     const Document text = document(std::move(overrides));
@@ -214,10 +222,25 @@ TEST_F(BodiesOfAScene, APortThatTheBodyLacksIsRefused) {
 
 TEST_F(BodiesOfAScene, SidesOfUnlikeDimensionAreRefused) {
   bodies[1].ports[0].geometry.dim = 2;
-  EXPECT_EQ(
-      refusal(),
-      "s.yaml:13: interfaces.impact.sides: joins a port in 1D and one in 2D. Give both bodies "
-      "the same dimension.");
+  EXPECT_EQ(refusal(),
+            "s.yaml:13: interfaces.impact.sides: join a port in 1D and one in 2D. Give both bodies "
+            "the same dimension.");
+}
+
+TEST_F(BodiesOfAScene, SidesThatLookTheSameWayAreRefused) {
+  bodies[1].ports[0].geometry.normals = {1.0};
+  EXPECT_EQ(refusal(),
+            "s.yaml:13: interfaces.impact.sides: look the same way and cannot touch. Join a right "
+            "end with a left end.");
+}
+
+TEST_F(BodiesOfAScene, SidesThatOverlapAtTheStartAreRefusedAndThoseThatTouchAreNot) {
+  bodies[1].ports[0].geometry.points = {0.0};
+  EXPECT_EQ(refusal(), "accepted");
+  bodies[1].ports[0].geometry.points = {-0.5};
+  EXPECT_EQ(refusal(),
+            "s.yaml:13: interfaces.impact.sides: overlap by 0.5 m at the start. Move a body with "
+            "initial.position until the gap is zero or more.");
 }
 
 }  // namespace
