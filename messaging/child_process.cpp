@@ -3,8 +3,8 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/pidfd.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -32,7 +32,7 @@ namespace {
     for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) std::signal(signal, SIG_DFL);
     const int null = open("/dev/null", O_RDONLY);
     if (null >= 0) dup2(null, STDIN_FILENO);
-    execv(program, arguments);
+    execvp(program, arguments);  // a name without a slash is looked up on PATH
   }
   const int error = errno;
   (void)!write(report, &error, sizeof error);
@@ -61,7 +61,7 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
   if (pid_ > 0 && read(report[0], &error, sizeof error) <= 0) error = 0;
   close(report[0]);
   if (error == 0) {
-    descriptor_ = pidfd_open(pid_, 0);
+    descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
     return;
   }
   if (pid_ > 0) waitpid(pid_, nullptr, 0);
@@ -112,6 +112,8 @@ std::string ChildProcess::ending() const {
   return fmt::format("was killed by signal {} ({})", status_, strsignal(status_));
 }
 
-bool ChildProcess::succeeded() const { return ended_ && code_ == CLD_EXITED && status_ == 0; }
+bool ChildProcess::exited_with(int code) const {
+  return ended_ && code_ == CLD_EXITED && status_ == code;
+}
 
 }  // namespace abut

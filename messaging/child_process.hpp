@@ -26,8 +26,8 @@ class ChildProcess {
   void send_signal(int signal);
   /// How it ended: "exited with code 3", "was killed by signal 9 (Killed)".
   std::string ending() const;
-  /// True when it ended by itself with code 0.
-  bool succeeded() const;
+  /// True when it ended by itself with this code.
+  bool exited_with(int code) const;
 
  private:
   bool reap();

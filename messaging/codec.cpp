@@ -14,6 +14,20 @@ namespace {
 
 constexpr int most_ports = 4096;
 
+// A member added to the contract and forgotten here would silently arrive as zero.
+static_assert(sizeof(TimeWindow) == 3 * sizeof(double));
+static_assert(sizeof(Energy) == 4 * sizeof(double));
+static_assert(sizeof(BodyRecord) == sizeof(Energy) + sizeof(double) + sizeof(std::vector<double>));
+static_assert(sizeof(Rebound) == 6 * sizeof(double));
+static_assert(sizeof(PortResponse) == sizeof(Waveform) + 2 * sizeof(std::vector<double>) +
+                                          2 * sizeof(double) + sizeof(std::optional<Rebound>));
+static_assert(sizeof(Capabilities) == 6 * sizeof(bool));
+static_assert(sizeof(PortKernel) == 3 * sizeof(double) + 2 * sizeof(std::vector<double>));
+static_assert(sizeof(Obstacle) == sizeof(Waveform) + sizeof(std::vector<double>) + sizeof(double));
+static_assert(sizeof(BoundaryData) ==
+              2 * sizeof(Waveform) + sizeof(Obstacle) + sizeof(std::vector<double>));
+static_assert(sizeof(PortGeometry) == 4 * sizeof(std::vector<double>) + 2 * sizeof(double));
+
 constexpr std::array<std::pair<Failed::Cause, v1::FailureCause>, 4> causes{{
     {Failed::Cause::no_convergence, v1::FAILURE_CAUSE_NO_CONVERGENCE},
     {Failed::Cause::inverted_element, v1::FAILURE_CAUSE_INVERTED_ELEMENT},
@@ -49,6 +63,7 @@ void encode(const BoundaryData& from, v1::BoundaryData& to) {
   } else {
     abut::encode(from.obstacle.motion, *to.mutable_obstacle()->mutable_motion());
     copy(from.obstacle.offset, *to.mutable_obstacle()->mutable_offset());
+    to.mutable_obstacle()->set_bilateral(from.obstacle.bilateral);
   }
   copy(from.impulse, *to.mutable_impulse());
 }
@@ -70,6 +85,7 @@ void decode(const v1::BoundaryData& from, const FieldPath& path, BoundaryData& t
   decode_optional(from.has_obstacle(), from.obstacle().motion(), FieldPath{&obstacle, "motion"},
                   to.obstacle.motion);
   take(from.obstacle().offset(), FieldPath{&obstacle, "offset"}, to.obstacle.offset);
+  to.obstacle.bilateral = from.obstacle().bilateral();
   if (from.has_obstacle() &&
       to.obstacle.offset.size() != static_cast<std::size_t>(to.obstacle.motion.width)) {
     obstacle.fail(fmt::format("has {} offsets for a width of {}", to.obstacle.offset.size(),
@@ -91,21 +107,26 @@ void decode(const v1::PortResponse& from, const Port& port, const FieldPath& pat
   take(from.upper(), dim, true, FieldPath{&path, "upper"}, to.upper);
   to.approach_bound =
       number(from.approach_bound(), FieldPath{&path, "approach_bound"}, Allow::infinite);
+  to.approach_acceleration = number(from.approach_acceleration(),
+                                    FieldPath{&path, "approach_acceleration"}, Allow::infinite);
   to.rebound.reset();
   if (!from.has_rebound()) return;
   const v1::Rebound& rebound = from.rebound();
   const FieldPath at{&path, "rebound"};
-  to.rebound = Rebound{number(rebound.node_velocity(), at), number(rebound.inner_velocity(), at),
-                       number(rebound.node_mobility(), at), number(rebound.inner_mobility(), at),
-                       number(rebound.captured(), at)};
+  to.rebound = Rebound{.node_velocity = number(rebound.node_velocity(), at),
+                       .nodal_velocity = number(rebound.nodal_velocity(), at),
+                       .inner_velocity = number(rebound.inner_velocity(), at),
+                       .node_mobility = number(rebound.node_mobility(), at),
+                       .inner_mobility = number(rebound.inner_mobility(), at),
+                       .captured = number(rebound.captured(), at)};
 }
 
 void decode(const v1::BodyRecord& from, std::size_t dim, const FieldPath& path, BodyRecord& to) {
   to.time = number(from.time(), FieldPath{&path, "time"});
-  to.energy = Energy{number(from.kinetic(), FieldPath{&path, "kinetic"}),
-                     number(from.stored(), FieldPath{&path, "stored"}),
-                     number(from.dissipated(), FieldPath{&path, "dissipated"}),
-                     number(from.external_work(), FieldPath{&path, "external_work"})};
+  to.energy = Energy{.kinetic = number(from.kinetic(), FieldPath{&path, "kinetic"}),
+                     .stored = number(from.stored(), FieldPath{&path, "stored"}),
+                     .dissipated = number(from.dissipated(), FieldPath{&path, "dissipated"}),
+                     .external_work = number(from.external_work(), FieldPath{&path, "external_work"})};
   take(from.momentum(), dim, true, FieldPath{&path, "momentum"}, to.momentum);
 }
 
@@ -185,9 +206,11 @@ void encode(const Response& from, v1::Advanced& to) {
     copy(port.lower, *wire.mutable_lower());
     copy(port.upper, *wire.mutable_upper());
     wire.set_approach_bound(port.approach_bound);
+    wire.set_approach_acceleration(port.approach_acceleration);
     wire.clear_rebound();
     if (!port.rebound) continue;
     wire.mutable_rebound()->set_node_velocity(port.rebound->node_velocity);
+    wire.mutable_rebound()->set_nodal_velocity(port.rebound->nodal_velocity);
     wire.mutable_rebound()->set_inner_velocity(port.rebound->inner_velocity);
     wire.mutable_rebound()->set_node_mobility(port.rebound->node_mobility);
     wire.mutable_rebound()->set_inner_mobility(port.rebound->inner_mobility);
@@ -257,14 +280,18 @@ void encode(const PortKernel& from, v1::KernelReply& to) {
   to.Clear();
   to.set_step(from.step);
   to.set_support(encode(from.support));
+  to.set_compliance(from.compliance);
   copy(from.displacement, *to.mutable_displacement());
+  copy(from.begin, *to.mutable_begin());
 }
 
 void decode(const v1::KernelReply& from, PortKernel& to) {
   const FieldPath path{nullptr, "kernel"};
   to.step = number(from.step(), FieldPath{&path, "step"});
   to.support = decode(from.support(), FieldPath{&path, "support"});
+  to.compliance = number(from.compliance(), FieldPath{&path, "compliance"});
   take(from.displacement(), FieldPath{&path, "displacement"}, to.displacement);
+  take(from.begin(), to.displacement.size(), true, FieldPath{&path, "begin"}, to.begin);
 }
 
 void encode(const Description& from, v1::Description& to) {
@@ -292,6 +319,7 @@ void encode(const Description& from, v1::Description& to) {
   can.set_obstacle(from.can.obstacle);
   can.set_impulse(from.can.impulse);
   can.set_kernel(from.can.kernel);
+  can.set_complete(from.can.complete);
 }
 
 void decode(const v1::Description& from, Description& to) {
@@ -310,7 +338,12 @@ void decode(const v1::Description& from, Description& to) {
   }
   if (!from.has_can()) FieldPath{&path, "can"}.fail("is missing");
   const v1::Capabilities& can = from.can();
-  to.can = Capabilities{can.motion(), can.force(), can.obstacle(), can.impulse(), can.kernel()};
+  to.can = Capabilities{.motion = can.motion(),
+                        .force = can.force(),
+                        .obstacle = can.obstacle(),
+                        .impulse = can.impulse(),
+                        .kernel = can.kernel(),
+                        .complete = can.complete()};
 }
 
 }  // namespace abut

@@ -38,7 +38,7 @@ void FaultyChannel::release_due() {
 bool FaultyChannel::send(Bytes frame) {
   release_due();
   ++counts_.sent;
-  if (happens(chances_.drop)) {
+  if (happens(chances_.drop) || counts_.sent == chances_.lose) {
     ++counts_.dropped;
     return true;
   }

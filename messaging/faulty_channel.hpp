@@ -18,6 +18,7 @@ class FaultyChannel : public Channel {
     double delay = 0.0;  // behind up to `longest_delay` later calls: frames overtake each other
     double duplicate = 0.0;
     double corrupt = 0.0;  // one bit is flipped, or the tail is cut off
+    int lose = 0;          // the frame of this number, counted from 1, is dropped; 0: none
   };
   struct Counts {
     int sent = 0, dropped = 0, delayed = 0, duplicated = 0, corrupted = 0;

@@ -16,11 +16,15 @@ BodyLiveness::BodyLiveness(ZmqHub& hub, int peer, ChildProcess* child, const Lim
     : hub_(hub), peer_(peer), child_(child), limits_(limits), deadlines_(deadlines) {}
 
 std::string BodyLiveness::loss(TimePoint since) {
-  if (child_ != nullptr && child_->ended(Milliseconds(0))) return child_->ending();
+  const std::string hint = fmt::format(
+      "(a frame far above the limit of {} bytes ends a connection)", limits_.frame_bytes);
+  if (child_ != nullptr && child_->ended(Milliseconds(0))) {
+    // Code 3 is a solver that believes its coordinator gone: it was this end that hung up.
+    return child_->exited_with(3) ? child_->ending() + ", its connection having ended " + hint
+                                  : child_->ending();
+  }
   if (hub_.disconnects(peer_, since) >= most_disconnects) {
-    return fmt::format(
-        "lost its connection {} times (a frame far above the limit of {} bytes ends a connection)",
-        most_disconnects, limits_.frame_bytes);
+    return fmt::format("lost its connection {} times ", most_disconnects) + hint;
   }
   const std::optional<TimePoint> gone = hub_.gone_since(peer_);
   const Milliseconds grace = child_ != nullptr ? time_to_exit : deadlines_.reconnect;

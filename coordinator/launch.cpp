@@ -1,0 +1,293 @@
+#include "coordinator/launch.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "messaging/codec.hpp"
+#include "messaging/liveness.hpp"
+#include "messaging/remote_subdomain.hpp"
+#include "messaging/zmq_channel.hpp"
+
+namespace abut {
+
+namespace {
+
+constexpr Milliseconds time_to_finish{2'000};     // from Finish to the end of the process
+constexpr Milliseconds time_to_die{500};          // from SIGTERM to SIGKILL
+constexpr std::size_t longest_socket_path = 100;  // the kernel allows 107 bytes
+
+Milliseconds milliseconds(double seconds) {
+  return Milliseconds(static_cast<Milliseconds::rep>(seconds * 1000.0));
+}
+
+std::string make_private_directory() {
+  std::error_code ignored;
+  std::string parent = std::filesystem::temp_directory_path(ignored).string();
+  if (ignored || parent.size() > longest_socket_path - 24) parent = "/tmp";
+  std::string name = parent + "/abut-XXXXXX";
+  if (mkdtemp(name.data()) == nullptr) {  // readable by this user alone
+    throw RunError(fmt::format("cannot make a directory in {}: {}", parent, std::strerror(errno)),
+                   "launch", "set TMPDIR to a directory that can be written");
+  }
+  return name;
+}
+
+std::string solver_beside_this_program() {
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? std::string("abut-solver") : (self.parent_path() / "abut-solver").string();
+}
+
+}  // namespace
+
+/// One body, its process if we started it, and the way to talk to it.
+struct Launch::Member {
+  std::string name;
+  bool spawned = true;
+  Milliseconds patience{0};
+  int peer = 0;
+  std::unique_ptr<ChildProcess> child;
+  std::unique_ptr<Liveness> liveness;
+  std::unique_ptr<Caller> caller;
+  std::unique_ptr<RemoteSubdomain> body;  // until it is handed out
+  bool welcome = false;
+};
+
+Launch::Launch(const Scene& scene, const Specification& scene_text, const LaunchOptions& options)
+    : options_(options) {
+  options_.deadlines.request = milliseconds(scene.network.request_deadline);
+  if (options_.solver.empty()) options_.solver = solver_beside_this_program();
+  hub_ = std::make_unique<ZmqHub>(options_.limits);
+  try {
+    add_members(scene);
+    listen(scene);
+    spawn_all(scene);
+    greet_all(scene_text);
+    for (const std::unique_ptr<Member>& member : members_) member->body->finish_configure();
+  } catch (...) {
+    end_processes();
+    remove_directory();
+    throw;
+  }
+  // Whoever was awaited is here; a socket file that is gone cannot be left behind.
+  remove_directory();
+}
+
+Launch::~Launch() { end_processes(); }
+
+void Launch::add_members(const Scene& scene) {
+  for (const auto& [name, entry] : scene.bodies) {
+    std::unique_ptr<Member> member = std::make_unique<Member>();
+    member->name = name;
+    const ConnectLaunch* connect = std::get_if<ConnectLaunch>(&entry.launch);
+    member->spawned = connect == nullptr;
+    member->patience =
+        milliseconds(connect != nullptr ? connect->patience : scene.network.startup_deadline);
+    member->peer = hub_->add_peer(name);
+    members_.push_back(std::move(member));
+  }
+}
+
+void Launch::listen(const Scene& scene) {
+  for (const std::unique_ptr<Member>& member : members_) {
+    if (member->spawned && ipc_endpoint_.empty()) {
+      directory_ = make_private_directory();
+      ipc_endpoint_ = hub_->bind("ipc://" + directory_ + "/hub");
+    }
+    if (!member->spawned && tcp_endpoint_.empty()) {
+      tcp_endpoint_ = hub_->bind(scene.network.endpoint);
+    }
+  }
+}
+
+void Launch::spawn_all(const Scene& scene) {
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    Member& member = *members_[i];
+    if (member.spawned) {
+      const SpawnLaunch* spawn = std::get_if<SpawnLaunch>(&scene.bodies[i].second.launch);
+      const bool named = spawn != nullptr && !spawn->program.empty();
+      member.child = std::make_unique<ChildProcess>(
+          named ? spawn->program : options_.solver,
+          std::vector<std::string>{"--connect", ipc_endpoint_, "--body", member.name});
+    }
+    member.liveness = std::make_unique<BodyLiveness>(*hub_, member.peer, member.child.get(),
+                                                     options_.limits, options_.deadlines);
+    member.caller = std::make_unique<Caller>(
+        member.name, CallContext{hub_->channel(member.peer), *member.liveness, options_.interrupted,
+                                 options_.limits, options_.deadlines});
+    member.body = std::make_unique<RemoteSubdomain>(*member.caller);
+  }
+}
+
+void Launch::greet_all(const Specification& scene_text) {
+  const TimePoint begin = std::chrono::steady_clock::now();
+  std::size_t missing = members_.size();
+  while (missing > 0) {
+    hub_->pump(options_.deadlines.slice);
+    refuse_strangers();
+    for (const std::unique_ptr<Member>& member : members_) {
+      if (member->welcome) continue;
+      const std::optional<Bytes> frame = hub_->channel(member->peer).receive(Milliseconds(0));
+      if (frame && greet(*member, *frame)) {
+        // It builds itself while the others are still on their way.
+        Specification specification = scene_text;
+        specification.path = "bodies." + member->name;
+        member->body->start_configure(specification);
+        --missing;
+      } else {
+        check_startup(*member, begin);
+      }
+    }
+  }
+}
+
+bool Launch::greet(Member& member, Bytes frame) {
+  v1::Reply reply;
+  const std::optional<Bytes> payload = open_frame(frame);
+  const bool sound =
+      frame.size() <= options_.limits.frame_bytes && payload && parse_into(reply, *payload);
+  if (!sound || !reply.has_hello()) {
+    throw RunError(
+        fmt::format("body '{}' did not say hello: its first frame, of {} bytes (limit {}), "
+                    "is {}",
+                    member.name, frame.size(), options_.limits.frame_bytes,
+                    sound ? "of another kind" : "corrupt or of another program"),
+        member.name, "connect an abut-solver of this version");
+  }
+  const v1::Hello& hello = reply.hello();
+  if (hello.protocol() != protocol_version) {
+    const std::string versions = fmt::format(
+        "the solver of body '{}' (build {}) speaks protocol {}, this coordinator (build {}) "
+        "speaks protocol {}",
+        member.name, hello.build(), hello.protocol(), build_version(), protocol_version);
+    refuse(member.name, versions);
+    throw RunError(versions, member.name, "install the same version at both ends");
+  }
+  if (hello.last_request() > 0) {
+    refuse(member.name, "it has taken part in another run");
+    return false;  // a fresh one may still come
+  }
+  v1::Request welcome;
+  welcome.mutable_welcome()->set_protocol(protocol_version);
+  welcome.mutable_welcome()->set_build(build_version());
+  welcome.mutable_welcome()->set_frame_limit(options_.limits.frame_bytes);
+  Frame out;
+  out.seal(welcome);
+  hub_->send_to(member.name, out.bytes());
+  member.caller->accept_session(hello.session());
+  member.welcome = true;
+  return true;
+}
+
+void Launch::refuse(const std::string& routing_id, const std::string& reason) {
+  v1::Request refusal;
+  refusal.mutable_refuse()->set_reason(reason);
+  Frame out;
+  out.seal(refusal);
+  hub_->send_to(routing_id, out.bytes());
+}
+
+void Launch::refuse_strangers() {
+  while (const auto stranger = hub_->take_stranger()) {
+    std::string names;
+    for (const std::unique_ptr<Member>& member : members_) {
+      names += (names.empty() ? "" : ", ") + member->name;
+    }
+    refuse(stranger->first, "the scene has no body of this name, only " + names);
+  }
+}
+
+void Launch::check_startup(Member& member, TimePoint begin) {
+  const std::string& endpoint = member.spawned ? ipc_endpoint_ : tcp_endpoint_;
+  if (options_.interrupted != nullptr && options_.interrupted->load()) {
+    throw RunError(fmt::format("interrupted before body '{}' had connected", member.name),
+                   member.name, "start the run again");
+  }
+  if (member.child && member.child->ended(Milliseconds(0))) {
+    throw RunError(fmt::format("the solver of body '{}' {} before it had connected", member.name,
+                               member.child->ending()),
+                   member.name, "look at the solver's own messages above");
+  }
+  if (std::chrono::steady_clock::now() - begin < member.patience) return;
+  const double seconds = static_cast<double>(member.patience.count()) / 1000.0;
+  const std::string what =
+      fmt::format("body '{}' did not connect to {} within {} s", member.name, endpoint, seconds);
+  if (member.spawned) {
+    throw RunError(what, member.name, "raise network.startup_deadline on a slow machine");
+  }
+  throw RunError(what, member.name,
+                 fmt::format("start `abut-solver --connect {} --body {}`", endpoint, member.name));
+}
+
+std::vector<std::unique_ptr<Subdomain>> Launch::take_bodies() {
+  std::vector<std::unique_ptr<Subdomain>> bodies;
+  for (const std::unique_ptr<Member>& member : members_) {
+    ABUT_ASSERT(member->body != nullptr);
+    bodies.push_back(std::move(member->body));
+  }
+  return bodies;
+}
+
+void Launch::finish() {
+  for (const std::unique_ptr<Member>& member : members_) {
+    ABUT_ASSERT(!member->caller->under_way());
+    member->caller->request().mutable_finish();
+    member->caller->post("finish");
+  }
+  const TimePoint until = std::chrono::steady_clock::now() + time_to_finish;
+  for (const std::unique_ptr<Member>& member : members_) {
+    const Milliseconds left = std::max(
+        Milliseconds(1), std::chrono::ceil<Milliseconds>(until - std::chrono::steady_clock::now()));
+    member->caller->await_at_most(left);
+    if (member->child) member->child->ended(left);
+  }
+  finished_ = true;
+  end_processes();
+}
+
+std::vector<std::int64_t> Launch::process_ids() const {
+  std::vector<std::int64_t> ids;
+  for (const std::unique_ptr<Member>& member : members_) {
+    if (member->child) ids.push_back(member->child->pid());
+  }
+  return ids;
+}
+
+void Launch::remove_directory() {
+  if (directory_.empty()) return;
+  std::error_code ignored;
+  std::filesystem::remove_all(directory_, ignored);
+  directory_.clear();
+}
+
+void Launch::end_processes() {
+  for (const std::unique_ptr<Member>& member : members_) {
+    // Somebody else's solver is told; ours is ended.
+    if (!finished_ && !member->child && member->welcome) {
+      refuse(member->name, "the run has ended early");
+    }
+    if (member->child && !member->child->ended(Milliseconds(0)))
+      member->child->send_signal(SIGTERM);
+  }
+  const TimePoint until = std::chrono::steady_clock::now() + time_to_die;
+  for (const std::unique_ptr<Member>& member : members_) {
+    if (!member->child) continue;
+    const Milliseconds left =
+        std::chrono::ceil<Milliseconds>(until - std::chrono::steady_clock::now());
+    member->child->ended(std::max(Milliseconds(0), left));
+    member->child.reset();  // kills what is still there
+  }
+}
+
+}  // namespace abut

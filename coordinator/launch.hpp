@@ -1,0 +1,68 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "contract/subdomain.hpp"
+#include "coordinator/scene.hpp"
+#include "messaging/protocol.hpp"
+
+namespace abut {
+
+class Caller;
+class ChildProcess;
+class Liveness;
+class RemoteSubdomain;
+class ZmqHub;
+
+struct LaunchOptions {
+  std::string solver;  // program of spawned bodies; empty: abut-solver beside this program
+  const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: every wait ends
+  Limits limits;
+  Deadlines deadlines;  // `request` is taken from the scene
+};
+
+/// Body entries to Subdomains in processes of their own: `spawn` starts one, `connect` waits for
+/// one. However this object ends, the processes that it has started end with it.
+class Launch {
+ public:
+  /// Starts and greets all bodies and hands each the scene (`scene_text.path` is filled in per
+  /// body). Throws InputError when a body refuses its keys, RunError when one does not come in
+  /// time.
+  Launch(const Scene& scene, const Specification& scene_text, const LaunchOptions& options);
+  ~Launch();
+  Launch(const Launch&) = delete;
+  Launch& operator=(const Launch&) = delete;
+
+  /// The bodies in the scene's order, once. They must not outlive this object.
+  std::vector<std::unique_ptr<Subdomain>> take_bodies();
+  /// The orderly end: every body is told to finish, and its process is waited for.
+  void finish();
+  /// Process ids of the spawned solvers, for tests and for the log.
+  std::vector<std::int64_t> process_ids() const;
+
+ private:
+  struct Member;
+  void add_members(const Scene& scene);
+  void listen(const Scene& scene);
+  void spawn_all(const Scene& scene);
+  void greet_all(const Specification& scene_text);
+  bool greet(Member& member, Bytes frame);
+  void refuse(const std::string& routing_id, const std::string& reason);
+  void refuse_strangers();
+  void check_startup(Member& member, TimePoint begin);
+  void remove_directory();
+  void end_processes();
+
+  LaunchOptions options_;
+  std::string directory_;  // private, of the ipc socket; empty when there is none
+  std::string ipc_endpoint_, tcp_endpoint_;
+  std::unique_ptr<ZmqHub> hub_;
+  std::vector<std::unique_ptr<Member>> members_;
+  bool finished_ = false;
+};
+
+}  // namespace abut

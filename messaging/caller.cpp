@@ -1,0 +1,169 @@
+#include "messaging/caller.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "messaging/codec.hpp"
+
+namespace abut {
+
+namespace {
+double seconds(Milliseconds time) { return static_cast<double>(time.count()) / 1000.0; }
+}  // namespace
+
+const char* build_version() { return ABUT_VERSION; }
+
+Caller::Caller(std::string body, const CallContext& context)
+    : body_(std::move(body)), context_(context) {}
+
+std::string Caller::under_way_text() const {
+  return fmt::format("{} (request {})", verb_, number_);
+}
+
+void Caller::post(const char* verb) {
+  ABUT_ASSERT(!under_way_);
+  verb_ = verb;
+  request_.set_number(++number_);
+  if (request_.ByteSizeLong() + frame_header_bytes > context_.limits.frame_bytes) {
+    throw RunError(fmt::format("{} for body '{}' would be a frame of {} bytes, above the limit of {}",
+                               under_way_text(), body_, request_.ByteSizeLong() + frame_header_bytes,
+                               context_.limits.frame_bytes),
+                   body_, "use shorter windows or fewer records per window");
+  }
+  frame_.seal(request_);
+  under_way_ = true;
+  corrupt_ = 0;
+  begun_ = context_.channel.now();
+  deadline_ = begun_ + context_.deadlines.request;
+  pause_ = context_.deadlines.repeat;
+  repeat_at_ = begun_ + pause_;
+  context_.channel.send(frame_.bytes());  // what the transport refuses now is repeated later
+}
+
+const v1::Reply& Caller::call(const char* verb) {
+  post(verb);
+  return await();
+}
+
+const v1::Reply& Caller::await() {
+  ABUT_ASSERT(under_way_);
+  // Whatever is thrown from here, the request is over.
+  struct Over {
+    bool& flag;
+    ~Over() { flag = false; }
+  } over{under_way_};
+  Milliseconds wait = std::min(context_.deadlines.slice, pause_);
+  for (;;) {
+    const std::optional<Bytes> frame = context_.channel.receive(wait);
+    if (frame && is_reply(*frame)) break;
+    look_around();
+    const TimePoint next = std::min(repeat_at_, deadline_);
+    wait = std::clamp(std::chrono::ceil<Milliseconds>(next - context_.channel.now()),
+                      Milliseconds(1), context_.deadlines.slice);
+  }
+  if (reply_.has_fault()) rethrow(reply_.fault());
+  return reply_;
+}
+
+bool Caller::await_at_most(Milliseconds time) {
+  deadline_ = context_.channel.now() + time;
+  try {
+    await();
+    return true;
+  } catch (const RunError&) {
+    return false;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+bool Caller::is_reply(Bytes frame) {
+  if (frame.size() > context_.limits.frame_bytes) {
+    throw RunError(fmt::format("body '{}' sent a frame of {} bytes while at {}; the limit is {} bytes",
+                               body_, frame.size(), under_way_text(), context_.limits.frame_bytes),
+                   body_, "use shorter windows or fewer records per window");
+  }
+  const std::optional<Bytes> payload = open_frame(frame);
+  if (!payload || !parse_into(reply_, *payload)) {
+    // Taken for lost. A peer that sends nothing else is given up.
+    corrupt_bytes_ = frame.size();
+    if (++corrupt_ < context_.limits.corrupt_frames) {
+      repeat();
+      return false;
+    }
+    throw RunError(fmt::format("body '{}' sent {} corrupt frames while at {}, the last one of {} bytes "
+                               "(limit {} bytes)",
+                               body_, corrupt_, under_way_text(), corrupt_bytes_,
+                               context_.limits.frame_bytes),
+                   body_, "make sure that an abut-solver of this version is at the other end");
+  }
+  if (reply_.has_hello()) {
+    greeted_again(reply_.hello());
+    return false;
+  }
+  if (reply_.number() != number_) return false;  // repeat of an earlier reply
+  if (reply_.has_progress()) {
+    deadline_ = context_.channel.now() + context_.deadlines.request;
+    return false;
+  }
+  if (reply_.body_case() == v1::Reply::BODY_NOT_SET) refuse_reply("is empty");
+  return true;
+}
+
+void Caller::greeted_again(const v1::Hello& hello) {
+  if (session_ && hello.session() != *session_) {
+    throw RunError(fmt::format("a second solver with the name of body '{}' has connected", body_),
+                   body_, "start one solver per body; after the loss of a solver start the run again");
+  }
+  repeat();  // the connection is new: what was on the old one is lost
+}
+
+void Caller::repeat() {
+  context_.channel.send(frame_.bytes());
+  repeat_at_ = context_.channel.now() + pause_;
+}
+
+void Caller::look_around() {
+  if (context_.interrupted != nullptr && context_.interrupted->load()) {
+    throw RunError(fmt::format("interrupted while body '{}' was at {}", body_, under_way_text()),
+                   body_, "start the run again");
+  }
+  const std::string loss = context_.liveness.loss(begun_);
+  if (!loss.empty()) {
+    throw RunError(fmt::format("body '{}' {} while at {}", body_, loss, under_way_text()), body_,
+                   "look at the solver's own messages above, then start the run again");
+  }
+  const TimePoint now = context_.channel.now();
+  if (now >= deadline_) {
+    const std::string noise =
+        corrupt_ > 0 ? fmt::format("; {} corrupt frames came, the last one of {} bytes", corrupt_,
+                                   corrupt_bytes_)
+                     : std::string();
+    throw RunError(fmt::format("body '{}' has not answered {} within {} s, nor shown progress{}",
+                               body_, under_way_text(), seconds(context_.deadlines.request), noise),
+                   body_, "raise network.request_deadline if one solve may take longer");
+  }
+  if (now >= repeat_at_) {
+    pause_ = std::min(2 * pause_, context_.deadlines.request / 10);
+    repeat();
+  }
+}
+
+void Caller::refuse_reply(const std::string& why) const {
+  throw RunError(fmt::format("body '{}' gave no sound answer to {}: {}", body_, under_way_text(), why),
+                 body_, "this is a fault of the solver, not of the scene");
+}
+
+void Caller::rethrow(const v1::Fault& fault) const {
+  if (fault.kind() == v1::FAULT_KIND_INPUT) {
+    throw InputError(fault.what(), fault.where(), fault.remedy());
+  }
+  throw RunError(fmt::format("body '{}' failed at {}: {}", body_, under_way_text(), fault.what()),
+                 fault.where(), fault.remedy());
+}
+
+}  // namespace abut

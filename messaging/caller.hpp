@@ -1,0 +1,75 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "abut/v1/subdomain.pb.h"
+#include "messaging/channel.hpp"
+#include "messaging/frame.hpp"
+#include "messaging/liveness.hpp"
+#include "messaging/protocol.hpp"
+
+namespace abut {
+
+/// What binds a caller to its surroundings; all must outlive it.
+struct CallContext {
+  Channel& channel;
+  Liveness& liveness;
+  const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: every wait ends
+  Limits limits;
+  Deadlines deadlines;
+};
+
+/// Numbered requests to one body, one at a time: repeats them when no reply comes, gives up in words when
+/// none will come. The body executes each number at most once, so that a repeat is harmless.
+class Caller {
+ public:
+  Caller(std::string body, const CallContext& context);
+
+  /// The message to fill; it still holds the last one, so that its memory is used again.
+  v1::Request& request() { return request_; }
+  /// Numbers, encodes and sends the request; `verb` names it in error messages and must be a literal.
+  void post(const char* verb);
+  /// Waits for the reply to the request under way. Throws RunError when it will not come, and the error
+  /// that the body reports, if it reports one.
+  const v1::Reply& await();
+  /// post and await.
+  const v1::Reply& call(const char* verb);
+  /// Like await, but gives up silently after `time`; false when no sound reply came.
+  bool await_at_most(Milliseconds time);
+  bool under_way() const { return under_way_; }
+
+  /// After a sound Hello: a later one of another session is another solver with this body's name.
+  void accept_session(std::uint64_t session) { session_ = session; }
+  const std::string& body() const { return body_; }
+  /// Throws: the reply to the request under way is no answer to it.
+  [[noreturn]] void refuse_reply(const std::string& why) const;
+
+ private:
+  bool is_reply(Bytes frame);
+  void greeted_again(const v1::Hello& hello);
+  void look_around();
+  void repeat();
+  [[noreturn]] void rethrow(const v1::Fault& fault) const;
+  std::string under_way_text() const;
+
+  std::string body_;
+  CallContext context_;
+  v1::Request request_;
+  v1::Reply reply_;
+  Frame frame_;
+  const char* verb_ = "";
+  std::uint64_t number_ = 0;
+  std::optional<std::uint64_t> session_;
+  bool under_way_ = false;
+  TimePoint begun_{};      // of the request
+  TimePoint deadline_{};   // moves with every sign of progress
+  TimePoint repeat_at_{};
+  Milliseconds pause_{};   // until the next repeat; doubles
+  int corrupt_ = 0;        // damaged frames during this request
+  std::size_t corrupt_bytes_ = 0;  // size of the last one
+};
+
+}  // namespace abut

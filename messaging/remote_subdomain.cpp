@@ -1,0 +1,111 @@
+#include "messaging/remote_subdomain.hpp"
+
+#include "messaging/codec.hpp"
+
+namespace abut {
+
+void RemoteSubdomain::start_configure(const Specification& specification) {
+  v1::Configure& configure = *caller_.request().mutable_configure();
+  configure.set_document(specification.document);
+  configure.set_text(specification.text);
+  configure.mutable_overrides()->Assign(specification.overrides.begin(),
+                                        specification.overrides.end());
+  configure.set_path(specification.path);
+  caller_.post("configure");
+}
+
+void RemoteSubdomain::finish_configure() {
+  const v1::Reply& reply = caller_.await();
+  if (!reply.has_configured()) caller_.refuse_reply("not a description");
+  try {
+    decode(reply.configured().description(), description_);
+  } catch (const CodecError& error) {
+    caller_.refuse_reply(error.what());
+  }
+}
+
+void RemoteSubdomain::ping() {
+  caller_.request().mutable_ping();
+  if (!caller_.call("ping").has_pong()) caller_.refuse_reply("not a pong");
+}
+
+void RemoteSubdomain::save() { save_first_ = true; }
+
+void RemoteSubdomain::restore() {
+  // What is about to be saved is the present state, so there is nothing to return from.
+  if (!save_first_) restore_first_ = true;
+}
+
+void RemoteSubdomain::carry_flags() {
+  caller_.request().set_restore_first(restore_first_);
+  caller_.request().set_save_first(save_first_);
+  restore_first_ = false;
+  save_first_ = false;
+}
+
+void RemoteSubdomain::start(const Advance& request) {
+  encode(request, *caller_.request().mutable_advance());
+  carry_flags();
+  caller_.post("advance");
+}
+
+Outcome RemoteSubdomain::finish(Response& response) {
+  const v1::Reply& reply = caller_.await();
+  try {
+    if (reply.has_advanced()) {
+      decode(reply.advanced(), description_, response);
+      return Advanced{};
+    }
+    if (reply.has_failed()) {
+      Failed failed;
+      decode(reply.failed(), failed);
+      return failed;
+    }
+  } catch (const CodecError& error) {
+    caller_.refuse_reply(error.what());
+  }
+  caller_.refuse_reply("not a response");
+}
+
+PortKernel RemoteSubdomain::kernel(int port, double step, int count) {
+  v1::Kernel& kernel = *caller_.request().mutable_kernel();
+  kernel.set_port(port);
+  kernel.set_step(step);
+  kernel.set_count(count);
+  carry_flags();
+  const v1::Reply& reply = caller_.call("kernel");
+  if (!reply.has_kernel()) caller_.refuse_reply("not a kernel");
+  PortKernel result;
+  try {
+    decode(reply.kernel(), result);
+  } catch (const CodecError& error) {
+    caller_.refuse_reply(error.what());
+  }
+  return result;
+}
+
+std::vector<std::byte> RemoteSubdomain::checkpoint() {
+  caller_.request().mutable_checkpoint();
+  carry_flags();
+  const v1::Reply& reply = caller_.call("checkpoint");
+  if (!reply.has_checkpoint()) caller_.refuse_reply("not a checkpoint");
+  const std::string& state = reply.checkpoint().state();
+  const std::byte* data = reinterpret_cast<const std::byte*>(state.data());
+  return std::vector<std::byte>(data, data + state.size());
+}
+
+void RemoteSubdomain::resume(std::span<const std::byte> bytes) {
+  caller_.request().mutable_resume()->set_state(bytes.data(), bytes.size());
+  carry_flags();
+  if (!caller_.call("resume").has_resumed()) caller_.refuse_reply("not a resumption");
+}
+
+std::uint64_t RemoteSubdomain::state_hash() {
+  caller_.request().mutable_hash();
+  carry_flags();
+  const v1::Reply& reply = caller_.call("hash");
+  if (!reply.has_hash()) caller_.refuse_reply("not a hash");
+  return reply.hash().hash();
+}
+
+}  // namespace abut

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "contract/subdomain.hpp"
+#include "messaging/caller.hpp"
+
+namespace abut {
+
+/// A Subdomain whose body is elsewhere. One request and one reply per advance; save and restore ride on the
+/// request that follows them and never cost a message.
+class RemoteSubdomain : public Subdomain {
+ public:
+  /// The caller must outlive this object.
+  explicit RemoteSubdomain(Caller& caller) : caller_(caller) {}
+
+  /// Sends the specification; several bodies can build themselves at the same time.
+  void start_configure(const Specification& specification);
+  /// Waits for the description. Throws the body's own InputError when the specification is wrong.
+  void finish_configure();
+  /// A round trip that does nothing.
+  void ping();
+
+  const Description& describe() const override { return description_; }
+  void save() override;
+  void restore() override;
+  void start(const Advance& request) override;
+  [[nodiscard]] Outcome finish(Response& response) override;
+  PortKernel kernel(int port, double step, int count) override;
+  std::vector<std::byte> checkpoint() override;
+  void resume(std::span<const std::byte> bytes) override;
+  std::uint64_t state_hash() override;
+
+ private:
+  void carry_flags();
+
+  Caller& caller_;
+  Description description_;
+  bool save_first_ = false;     // wanted, not yet sent
+  bool restore_first_ = false;  // before the save
+};
+
+}  // namespace abut

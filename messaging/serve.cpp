@@ -1,0 +1,256 @@
+#include "messaging/serve.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+#include "messaging/codec.hpp"
+
+namespace abut {
+
+namespace {
+
+std::uint64_t random_session() {
+  std::random_device device;  // tells processes apart; decides nothing that is computed
+  return (std::uint64_t{device()} << 32) | device();
+}
+
+void check_kernel(const v1::Kernel& kernel, const Description& body) {
+  if (kernel.port() < 0 || kernel.port() >= static_cast<int>(body.ports.size())) {
+    throw CodecError(fmt::format("kernel.port is {}, the body has {} ports", kernel.port(),
+                                 body.ports.size()));
+  }
+  if (kernel.count() < 1 || kernel.count() > most_kernel_steps || !(kernel.step() > 0.0)) {
+    throw CodecError(fmt::format("kernel of {} steps of {} s is out of range", kernel.count(),
+                                 kernel.step()));
+  }
+}
+
+}  // namespace
+
+Server::Server(std::string body, MakeBody make, Channel& channel, Liveness& coordinator,
+               const Limits& limits, const Deadlines& deadlines)
+    : name_(std::move(body)),
+      make_(std::move(make)),
+      channel_(channel),
+      coordinator_(coordinator),
+      limits_(limits),
+      deadlines_(deadlines),
+      session_(random_session()),
+      reply_limit_(limits.frame_bytes) {}
+
+void Server::say_hello() {
+  v1::Reply greeting;
+  v1::Hello& hello = *greeting.mutable_hello();
+  hello.set_protocol(protocol_version);
+  hello.set_build(build_version());
+  hello.set_body(name_);
+  hello.set_pid(getpid());
+  hello.set_session(session_);
+  hello.set_last_request(executed_);
+  Frame frame;
+  frame.seal(greeting);
+  channel_.send(frame.bytes());
+}
+
+void Server::greet(Milliseconds patience) {
+  const TimePoint begin = channel_.now();
+  TimePoint next = begin;
+  while (!welcome_) {
+    const TimePoint now = channel_.now();
+    if (now - begin >= patience) {
+      throw CoordinatorLost(
+          fmt::format("no coordinator has answered body '{}' within {} s", name_,
+                      static_cast<double>(patience.count()) / 1000.0),
+          "", "start `abut run` with the scene that has this body and this endpoint");
+    }
+    if (now >= next) {
+      say_hello();
+      next = now + deadlines_.hello;
+    }
+    if (const std::optional<Bytes> frame = channel_.receive(deadlines_.slice)) handle(*frame);
+  }
+}
+
+bool Server::step(Milliseconds wait) {
+  if (const std::optional<Bytes> frame = channel_.receive(wait)) return handle(*frame);
+  check_coordinator();
+  return !finished_;
+}
+
+void Server::check_coordinator() {
+  const std::string loss = coordinator_.loss(channel_.now());
+  if (loss.empty()) return;
+  throw CoordinatorLost(fmt::format("the coordinator of body '{}' {}", name_, loss), "",
+                        "look at the coordinator's own messages");
+}
+
+bool Server::handle(Bytes frame) {
+  if (frame.size() > limits_.frame_bytes) return true;  // as a damaged one: the coordinator repeats
+  const std::optional<Bytes> payload = open_frame(frame);
+  if (!payload || !parse_into(request_, *payload)) return true;
+  if (handle_greeting()) return true;
+  welcome_ = true;  // a request says as much as a Welcome that was lost
+  if (request_.number() < executed_ || request_.number() == 0) return true;  // late: long answered
+  if (request_.number() > executed_) execute();
+  channel_.send(reply_frame_.bytes());
+  return !finished_;
+}
+
+bool Server::handle_greeting() {
+  if (request_.has_refuse()) {
+    throw CoordinatorLost(
+        fmt::format("the coordinator refuses body '{}': {}", name_, request_.refuse().reason()), "",
+        "correct it and start this solver again");
+  }
+  if (!request_.has_welcome()) return false;
+  welcome_ = true;
+  if (request_.welcome().frame_limit() > 0) {
+    reply_limit_ = std::min<std::size_t>(limits_.frame_bytes, request_.welcome().frame_limit());
+  }
+  return true;
+}
+
+void Server::execute() {
+  const std::uint64_t number = request_.number();
+  try {
+    if (number != executed_ + 1) {
+      fault(v1::FAULT_KIND_RUN,
+            fmt::format("request {} follows request {}: this solver has not taken part from the begin",
+                        number, executed_),
+            name_, "start the run again");
+    } else {
+      dispatch();
+    }
+  } catch (const CoordinatorLost&) {
+    throw;  // nobody is left to answer
+  } catch (const InputError& error) {
+    fault(v1::FAULT_KIND_INPUT, error.what_is_wrong, error.where, error.remedy);
+  } catch (const RunError& error) {
+    fault(v1::FAULT_KIND_RUN, error.what_is_wrong, error.where, error.remedy);
+  } catch (const CodecError& error) {
+    fault(v1::FAULT_KIND_RUN, fmt::format("unsound request: {}", error.what()), name_,
+          "this is a fault of the coordinator, not of the scene");
+  } catch (const std::exception& error) {
+    fault(v1::FAULT_KIND_RUN, error.what(), name_, "this is a fault of the solver");
+  }
+  executed_ = number;
+  reply_.set_number(number);
+  seal_reply();
+}
+
+void Server::seal_reply() {
+  const std::size_t size = reply_.ByteSizeLong() + frame_header_bytes;
+  if (size > reply_limit_) {
+    fault(v1::FAULT_KIND_RUN,
+          fmt::format("the reply would be a frame of {} bytes, above the limit of {}", size,
+                      reply_limit_),
+          name_, "use shorter windows or fewer records per window");
+    reply_.set_number(executed_);
+  }
+  reply_frame_.seal(reply_);
+}
+
+void Server::fault(v1::FaultKind kind, const std::string& what, const std::string& where,
+                   const std::string& remedy) {
+  v1::Fault& fault = *reply_.mutable_fault();
+  fault.set_kind(kind);
+  fault.set_what(what);
+  fault.set_where(where);
+  fault.set_remedy(remedy);
+}
+
+void Server::dispatch() {
+  next_progress_ = channel_.now() + deadlines_.progress;
+  if (request_.has_finish()) {
+    reply_.mutable_finished();
+    finished_ = true;
+    return;
+  }
+  if (request_.has_ping()) {
+    reply_.mutable_pong();
+    return;
+  }
+  if (request_.has_configure()) {
+    configure(request_.configure());
+    return;
+  }
+  if (!body_) throw CodecError("the body is not configured");
+  if (request_.restore_first()) body_->restore();
+  if (request_.save_first()) body_->save();
+  switch (request_.body_case()) {
+    case v1::Request::kAdvance:
+      advance(request_.advance());
+      return;
+    case v1::Request::kKernel: {
+      const v1::Kernel& kernel = request_.kernel();
+      check_kernel(kernel, body_->describe());
+      encode(body_->kernel(kernel.port(), kernel.step(), kernel.count()), *reply_.mutable_kernel());
+      return;
+    }
+    case v1::Request::kCheckpoint: {
+      const std::vector<std::byte> state = body_->checkpoint();
+      reply_.mutable_checkpoint()->set_state(state.data(), state.size());
+      return;
+    }
+    case v1::Request::kResume:
+      body_->resume(std::as_bytes(std::span<const char>(request_.resume().state())));
+      reply_.mutable_resumed();
+      return;
+    case v1::Request::kHash:
+      reply_.mutable_hash()->set_hash(body_->state_hash());
+      return;
+    default:
+      throw CodecError("the request is empty or unknown");
+  }
+}
+
+void Server::configure(const v1::Configure& wire) {
+  Specification specification;
+  specification.document = wire.document();
+  specification.text = wire.text();
+  specification.overrides.assign(wire.overrides().begin(), wire.overrides().end());
+  specification.path = wire.path();
+  body_ = make_(specification, [this] { show_progress(); });
+  encode(body_->describe(), *reply_.mutable_configured()->mutable_description());
+}
+
+void Server::advance(const v1::Advance& request) {
+  decode(request, body_->describe().ports.size(), advance_);
+  const Outcome outcome = body_->advance(advance_, response_);
+  if (const Failed* failed = std::get_if<Failed>(&outcome)) {
+    encode(*failed, *reply_.mutable_failed());
+  } else {
+    encode(response_, *reply_.mutable_advanced());
+  }
+}
+
+void Server::show_progress() {
+  // Substeps may be much shorter than a look at the clock: look the more rarely the more often called.
+  if (++hook_calls_ < hook_stride_) return;
+  hook_calls_ = 0;
+  const TimePoint now = channel_.now();
+  const TimePoint::duration since = now - last_look_;
+  last_look_ = now;
+  if (since < deadlines_.progress / 1000 && hook_stride_ < 4096) hook_stride_ *= 2;
+  if (since > deadlines_.progress / 10) hook_stride_ = 1;
+  if (now < next_progress_) return;
+  next_progress_ = now + deadlines_.progress;
+  v1::Reply progress;
+  progress.set_number(request_.number());
+  progress.mutable_progress();
+  progress_frame_.seal(progress);
+  channel_.send(progress_frame_.bytes());
+  check_coordinator();
+}
+
+void serve(Server& server, Milliseconds patience) {
+  server.greet(patience);
+  while (server.step(Milliseconds(100))) {
+  }
+}
+
+}  // namespace abut

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "abut/v1/subdomain.pb.h"
+#include "base/error.hpp"
+#include "contract/subdomain.hpp"
+#include "messaging/channel.hpp"
+#include "messaging/frame.hpp"
+#include "messaging/liveness.hpp"
+#include "messaging/protocol.hpp"
+
+namespace abut {
+
+/// Cheap to call between any two substeps: says at most once a second that the solve is still going on.
+using ProgressHook = std::function<void()>;
+
+/// Makes the body when its specification has arrived. Throws InputError when the specification is wrong.
+using MakeBody =
+    std::function<std::unique_ptr<Subdomain>(const Specification&, const ProgressHook&)>;
+
+/// The coordinator will never ask again. Not an answer to any request: it passes through the body.
+class CoordinatorLost : public RunError {
+ public:
+  using RunError::RunError;
+};
+
+/// Answers the requests of one coordinator with any Subdomain. Every number is executed at most once; the
+/// last reply is kept, so that a repeated request gets the same answer and nothing runs twice.
+class Server {
+ public:
+  Server(std::string body, MakeBody make, Channel& channel, Liveness& coordinator,
+         const Limits& limits, const Deadlines& deadlines);
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// Says hello until the coordinator answers. Throws RunError after `patience`, or when refused.
+  void greet(Milliseconds patience);
+  /// Handles at most one frame; false after Finish. Throws CoordinatorLost when there is no coordinator
+  /// any more.
+  bool step(Milliseconds wait);
+
+ private:
+  void say_hello();
+  bool handle(Bytes frame);
+  bool handle_greeting();
+  void execute();
+  void dispatch();
+  void configure(const v1::Configure& specification);
+  void advance(const v1::Advance& request);
+  void fault(v1::FaultKind kind, const std::string& what, const std::string& where,
+             const std::string& remedy);
+  void seal_reply();
+  void show_progress();
+  void check_coordinator();
+
+  std::string name_;
+  MakeBody make_;
+  Channel& channel_;
+  Liveness& coordinator_;
+  Limits limits_;
+  Deadlines deadlines_;
+  std::unique_ptr<Subdomain> body_;
+  v1::Request request_;
+  v1::Reply reply_;
+  Frame reply_frame_, progress_frame_;
+  Advance advance_;
+  Response response_;
+  std::uint64_t session_;
+  std::uint64_t executed_ = 0;  // number of the last request executed
+  std::size_t reply_limit_;     // [bytes]
+  bool welcome_ = false;
+  bool finished_ = false;
+  TimePoint next_progress_{};
+  TimePoint last_look_{};
+  int hook_calls_ = 0;  // since the clock was looked at
+  int hook_stride_ = 1;
+};
+
+/// The whole of a solver's main after start-up: greets, then answers until Finish.
+void serve(Server& server, Milliseconds patience);
+
+}  // namespace abut

@@ -1,0 +1,158 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/archive.hpp"
+#include "contract/subdomain.hpp"
+
+namespace abut {
+
+/// The smallest Subdomain: a point mass on a line, pushed by a spring to the origin and by the force on its
+/// one port. Deterministic; rewinds exactly; counts what is asked of it.
+class FakeSubdomain : public Subdomain {
+ public:
+  struct Options {
+    std::string name = "fake";
+    double mass = 2.0;        // [kg]
+    double stiffness = 50.0;  // [N/m]
+    double position = 0.0;    // [m]
+    double velocity = 3.0;    // [m/s]
+    int substeps = 10;        // per window
+  };
+  struct Counts {
+    int advances = 0, saves = 0, restores = 0, kernels = 0;
+  };
+
+  FakeSubdomain() : FakeSubdomain(Options{}) {}
+  explicit FakeSubdomain(const Options& options)
+      : options_(options), u_(options.position), v_(options.velocity) {
+    description_.name = options.name;
+    description_.model = "point mass on a spring";
+    description_.dofs = 1;
+    description_.mass = options.mass;
+    description_.stable_step = std::numeric_limits<double>::infinity();
+    Port port;
+    port.name = "tip";
+    port.geometry.points = {0.25};
+    port.geometry.normals = {1.0};
+    description_.ports.push_back(port);
+    description_.can = Capabilities{false, true, false, true, true};
+    save();
+    counts = Counts{};
+  }
+
+  /// Called once per substep: a test may sleep, fail or report progress here.
+  std::function<void()> during_substep;
+  Counts counts;
+
+  const Description& describe() const override { return description_; }
+
+  void save() override {
+    ++counts.saves;
+    saved_.clear();
+    Archive archive = Archive::writer(saved_, Archive::Form::bare);
+    state(archive);
+  }
+  void restore() override {
+    ++counts.restores;
+    Archive archive = Archive::reader(saved_, Archive::Form::bare);
+    state(archive);
+  }
+
+  void start(const Advance& request) override { request_ = &request; }
+
+  [[nodiscard]] Outcome finish(Response& response) override {
+    ++counts.advances;
+    const TimeWindow& window = request_->window;
+    const BoundaryData& boundary = request_->boundary.at(0);
+    if (!boundary.impulse.empty()) v_ += boundary.impulse[0] / options_.mass;
+    response.ports.resize(1);
+    PortResponse& port = response.ports[0];
+    port.trace.clear();
+    port.trace.width = 1;
+    port.rebound.reset();
+    port.lower.assign(1, u_);
+    port.upper.assign(1, u_);
+    sample(window.begin, port.trace);
+    const double step = window.length() / options_.substeps;
+    for (int i = 1; i <= options_.substeps; ++i) {
+      if (during_substep) during_substep();
+      const double time = i == options_.substeps ? window.end : window.begin + i * step;
+      double force = 0.0;
+      if (!boundary.force.empty()) boundary.force.force_at(time, std::span<double>(&force, 1));
+      v_ += step * (force - options_.stiffness * u_) / options_.mass;
+      u_ += step * v_;
+      port.lower[0] = std::min(port.lower[0], u_);
+      port.upper[0] = std::max(port.upper[0], u_);
+      sample(time, port.trace);
+    }
+    port.approach_bound = std::abs(v_);
+    fill_records(window, response);
+    response.steps = options_.substeps;
+    if (!std::isfinite(u_)) return Failed{Failed::Cause::non_finite, window.end, "the mass is lost"};
+    return Advanced{};
+  }
+
+  PortKernel kernel(int, double step, int count) override {
+    ++counts.kernels;
+    PortKernel kernel;
+    kernel.step = step;
+    kernel.support = ForceSupport::step;
+    for (int i = 1; i <= count; ++i) kernel.displacement.push_back(step * step * i / options_.mass);
+    return kernel;
+  }
+
+  std::vector<std::byte> checkpoint() override {
+    std::vector<std::byte> bytes;
+    Archive archive = Archive::writer(bytes, Archive::Form::named);
+    state(archive);
+    return bytes;
+  }
+  void resume(std::span<const std::byte> bytes) override {
+    Archive archive = Archive::reader(bytes, Archive::Form::named);
+    state(archive);
+    archive.finish();
+  }
+  std::uint64_t state_hash() override { return hash_state(*this); }
+
+  void state(Archive& archive) {
+    archive.field("u", u_);
+    archive.field("v", v_);
+  }
+
+ private:
+  void sample(double time, Waveform& trace) const {
+    trace.time.push_back(time);
+    trace.u.push_back(u_);
+    trace.v.push_back(v_);
+    trace.a.push_back(-options_.stiffness * u_ / options_.mass);
+    trace.f.push_back(-options_.stiffness * u_);
+  }
+  void fill_records(const TimeWindow& window, Response& response) const {
+    response.records.resize(static_cast<std::size_t>(request_->records));
+    for (std::size_t i = 0; i < response.records.size(); ++i) {
+      BodyRecord& record = response.records[i];
+      const double part = static_cast<double>(i + 1) / static_cast<double>(request_->records);
+      record.time = window.begin + part * window.length();
+      record.energy.kinetic = 0.5 * options_.mass * v_ * v_;
+      record.energy.stored = 0.5 * options_.stiffness * u_ * u_;
+      record.momentum.assign(1, options_.mass * v_);
+    }
+  }
+
+  Options options_;
+  Description description_;
+  double u_, v_;  // [m] [m/s]
+  const Advance* request_ = nullptr;
+  std::vector<std::byte> saved_;
+};
+
+}  // namespace abut

@@ -1,0 +1,300 @@
+// Goal: what one end encodes, the other end decodes unchanged, and nothing unsound gets through.
+// Oracle: bit-equal values; for unsound messages the name of the field in the error.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "messaging/codec.hpp"
+#include "messaging/frame.hpp"
+#include "tests/support/fakes.hpp"
+
+namespace abut {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+Waveform wave(int width, double offset) {
+  Waveform w(width);
+  w.support = ForceSupport::step;
+  for (int i = 0; i < 3; ++i) {
+    w.time.push_back(0.1 * i + offset);
+    for (int k = 0; k < width; ++k) {
+      w.u.push_back(1.0 / 3.0 + i + k + offset);
+      w.v.push_back(-1.0 / 7.0 * i + k);
+      w.a.push_back(1.0e-300 * i + k);
+      w.f.push_back(1.0e300 + i - k);
+    }
+  }
+  return w;
+}
+
+void expect_equal(const Waveform& a, const Waveform& b) {
+  EXPECT_EQ(a.width, b.width);
+  EXPECT_EQ(a.support, b.support);
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.u, b.u);
+  EXPECT_EQ(a.v, b.v);
+  EXPECT_EQ(a.a, b.a);
+  EXPECT_EQ(a.f, b.f);
+}
+
+Advance full_advance() {
+  Advance advance;
+  advance.window = TimeWindow{41, -2.0e-4, 1.0 / 3.0};
+  advance.records = 7;
+  advance.sampling = Sampling::records;
+  advance.boundary.resize(2);
+  advance.boundary[0].motion = wave(1, 0.0);
+  advance.boundary[0].force = wave(1, 1.0);
+  advance.boundary[0].obstacle.motion = wave(1, 2.0);
+  advance.boundary[0].obstacle.offset = {0.04};
+  advance.boundary[0].obstacle.bilateral = true;
+  advance.boundary[0].impulse = {-0.5};
+  return advance;  // the second port has nothing imposed
+}
+
+Description two_ports() {
+  Description body = FakeSubdomain().describe();
+  body.ports.push_back(body.ports[0]);
+  body.ports[1].name = "tail";
+  return body;
+}
+
+Response full_response() {
+  Response response;
+  response.ports.resize(2);
+  response.ports[0].trace = wave(1, 0.0);
+  response.ports[0].lower = {-1.0};
+  response.ports[0].upper = {2.0};
+  response.ports[0].approach_bound = 3.5;
+  response.ports[0].approach_acceleration = 9.81;
+  response.ports[0].rebound = Rebound{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
+  response.ports[1].trace = wave(1, 0.5);
+  response.records.push_back(BodyRecord{0.25, Energy{1.0, 2.0, 3.0, 4.0}, {5.0}});
+  response.steps = 100;
+  response.compute_seconds = 0.125;
+  return response;
+}
+
+template <class From, class Wire>
+Wire through_bytes(const From& from, Wire wire = {}) {
+  encode(from, wire);
+  Wire copy;
+  EXPECT_TRUE(copy.ParseFromString(wire.SerializeAsString()));
+  return copy;
+}
+
+/// The error of a decoding that has to fail.
+template <class Decode>
+std::string refusal(const Decode& decode_it) {
+  try {
+    decode_it();
+  } catch (const CodecError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Codec, AdvanceKeepsEveryField) {
+  const Advance sent = full_advance();
+  Advance got;
+  decode(through_bytes<Advance, v1::Advance>(sent), 2, got);
+  EXPECT_EQ(got.window.index, 41);
+  EXPECT_EQ(got.window.begin, sent.window.begin);
+  EXPECT_EQ(got.window.end, sent.window.end);
+  EXPECT_EQ(got.records, 7);
+  EXPECT_EQ(got.sampling, Sampling::records);
+  expect_equal(got.boundary[0].motion, sent.boundary[0].motion);
+  expect_equal(got.boundary[0].force, sent.boundary[0].force);
+  expect_equal(got.boundary[0].obstacle.motion, sent.boundary[0].obstacle.motion);
+  EXPECT_EQ(got.boundary[0].obstacle.offset, sent.boundary[0].obstacle.offset);
+  EXPECT_TRUE(got.boundary[0].obstacle.bilateral);
+  EXPECT_EQ(got.boundary[0].impulse, sent.boundary[0].impulse);
+  EXPECT_FALSE(got.boundary[1].closed());
+  EXPECT_TRUE(got.boundary[1].impulse.empty());
+}
+
+TEST(Codec, AReusedMessageHoldsNothingOfTheLastOne) {
+  v1::Advance wire;
+  encode(full_advance(), wire);
+  Advance bare;
+  bare.window = TimeWindow{1, 0.0, 1.0};
+  bare.boundary.resize(2);
+  encode(bare, wire);
+  Advance got = full_advance();
+  decode(wire, 2, got);
+  EXPECT_FALSE(got.boundary[0].closed());
+  EXPECT_TRUE(got.boundary[0].impulse.empty());
+  EXPECT_EQ(got.sampling, Sampling::substeps);
+}
+
+TEST(Codec, ResponseKeepsEveryField) {
+  const Response sent = full_response();
+  Response got;
+  decode(through_bytes<Response, v1::Advanced>(sent), two_ports(), got);
+  ASSERT_EQ(got.ports.size(), 2U);
+  expect_equal(got.ports[0].trace, sent.ports[0].trace);
+  expect_equal(got.ports[1].trace, sent.ports[1].trace);
+  EXPECT_EQ(got.ports[0].lower, sent.ports[0].lower);
+  EXPECT_EQ(got.ports[0].upper, sent.ports[0].upper);
+  EXPECT_EQ(got.ports[0].approach_bound, 3.5);
+  EXPECT_EQ(got.ports[0].approach_acceleration, 9.81);
+  ASSERT_TRUE(got.ports[0].rebound.has_value());
+  const Rebound& rebound = *got.ports[0].rebound;
+  EXPECT_EQ(rebound.node_velocity, 1.0);
+  EXPECT_EQ(rebound.nodal_velocity, 2.0);
+  EXPECT_EQ(rebound.inner_velocity, 3.0);
+  EXPECT_EQ(rebound.node_mobility, 4.0);
+  EXPECT_EQ(rebound.inner_mobility, 5.0);
+  EXPECT_EQ(rebound.captured, 6.0);
+  EXPECT_FALSE(got.ports[1].rebound.has_value());
+  ASSERT_EQ(got.records.size(), 1U);
+  EXPECT_EQ(got.records[0].time, 0.25);
+  EXPECT_EQ(got.records[0].energy.kinetic, 1.0);
+  EXPECT_EQ(got.records[0].energy.stored, 2.0);
+  EXPECT_EQ(got.records[0].energy.dissipated, 3.0);
+  EXPECT_EQ(got.records[0].energy.external_work, 4.0);
+  EXPECT_EQ(got.records[0].momentum, sent.records[0].momentum);
+  EXPECT_EQ(got.steps, 100);
+  EXPECT_EQ(got.compute_seconds, 0.125);
+}
+
+TEST(Codec, ParsingIntoAUsedReplyEqualsParsingIntoAFreshOne) {
+  v1::Reply used;
+  v1::Reply wire;
+  wire.set_number(7);
+  encode(full_response(), *wire.mutable_advanced());
+  std::string bytes = wire.SerializeAsString();
+  ASSERT_TRUE(parse_into(used, std::as_bytes(std::span<const char>(bytes))));
+  Response small = full_response();
+  small.ports[0].rebound.reset();
+  small.ports[1].trace.clear();
+  small.records.clear();
+  encode(small, *wire.mutable_advanced());
+  wire.set_number(8);
+  bytes = wire.SerializeAsString();
+  ASSERT_TRUE(parse_into(used, std::as_bytes(std::span<const char>(bytes))));
+  EXPECT_EQ(used.SerializeAsString(), bytes);
+}
+
+TEST(Codec, DescriptionKeepsEveryFieldAndInfinity) {
+  Description sent = two_ports();
+  sent.mass = infinity;
+  sent.step = 1.0e-7;
+  sent.can.complete = true;
+  sent.ports[1].geometry.spacing = 0.00125;
+  Description got;
+  decode(through_bytes<Description, v1::Description>(sent), got);
+  EXPECT_EQ(got.name, sent.name);
+  EXPECT_EQ(got.model, sent.model);
+  EXPECT_EQ(got.dim, 1);
+  EXPECT_EQ(got.dofs, 1);
+  EXPECT_EQ(got.mass, infinity);
+  EXPECT_EQ(got.step, 1.0e-7);
+  EXPECT_EQ(got.stable_step, infinity);
+  ASSERT_EQ(got.ports.size(), 2U);
+  EXPECT_EQ(got.ports[1].name, "tail");
+  EXPECT_EQ(got.ports[1].geometry.points, sent.ports[1].geometry.points);
+  EXPECT_EQ(got.ports[1].geometry.normals, sent.ports[1].geometry.normals);
+  EXPECT_EQ(got.ports[1].geometry.spacing, 0.00125);
+  EXPECT_TRUE(got.can.force && got.can.impulse && got.can.kernel && got.can.complete);
+  EXPECT_FALSE(got.can.motion || got.can.obstacle);
+}
+
+TEST(Codec, EveryCauseOfFailureAndEveryKernelComesBack) {
+  for (const Failed::Cause cause : {Failed::Cause::no_convergence, Failed::Cause::inverted_element,
+                                    Failed::Cause::step_too_small, Failed::Cause::non_finite}) {
+    Failed got;
+    decode(through_bytes<Failed, v1::Failed>(Failed{cause, 0.5, "why"}), got);
+    EXPECT_EQ(got.cause, cause);
+    EXPECT_EQ(got.time, 0.5);
+    EXPECT_EQ(got.detail, "why");
+  }
+  PortKernel sent;
+  sent.step = 0.1;
+  sent.support = ForceSupport::step;
+  sent.compliance = 0.3;
+  sent.displacement = {1.0, 2.0};
+  sent.begin = {3.0, 4.0};
+  PortKernel kernel;
+  decode(through_bytes<PortKernel, v1::KernelReply>(sent), kernel);
+  EXPECT_EQ(kernel.step, 0.1);
+  EXPECT_EQ(kernel.support, ForceSupport::step);
+  EXPECT_EQ(kernel.compliance, 0.3);
+  EXPECT_EQ(kernel.displacement, sent.displacement);
+  EXPECT_EQ(kernel.begin, sent.begin);
+}
+
+TEST(Codec, UnsoundResponsesAreRefusedByFieldName) {
+  const Description body = two_ports();
+  const auto refused = [&body](const std::function<void(Response&)>& spoil) {
+    Response response = full_response();
+    spoil(response);
+    const v1::Advanced wire = through_bytes<Response, v1::Advanced>(response);
+    return refusal([&wire, &body] {
+      Response got;
+      decode(wire, body, got);
+    });
+  };
+  EXPECT_EQ(refused([](Response& r) { r.ports[1].trace.f[2] = nan_value; }),
+            "advanced.ports[1].trace.f is not finite: entry 2 is nan");
+  EXPECT_EQ(refused([](Response& r) { r.records[0].energy.stored = infinity; }),
+            "advanced.records[0].stored is not finite: inf");
+  EXPECT_EQ(refused([](Response& r) { r.ports[0].trace.u.pop_back(); }),
+            "advanced.ports[0].trace.u has 2 numbers where 3 belong");
+  EXPECT_EQ(refused([](Response& r) { r.ports[0].trace.time[1] = r.ports[0].trace.time[0]; }),
+            "advanced.ports[0].trace.time does not increase at entry 1");
+  EXPECT_EQ(refused([](Response& r) { r.ports[0].trace = wave(2, 0.0); }),
+            "advanced.ports[0].trace has width 2 where port 'tip' has 1");
+  EXPECT_EQ(refused([](Response& r) { r.ports.pop_back(); }),
+            "advanced.ports has 1 entries for 2 ports");
+}
+
+TEST(Codec, UnsoundRequestsAreRefusedByFieldName) {
+  const auto refused = [](const std::function<void(v1::Advance&)>& spoil) {
+    v1::Advance wire;
+    encode(full_advance(), wire);
+    spoil(wire);
+    return refusal([&wire] {
+      Advance got;
+      decode(wire, 2, got);
+    });
+  };
+  EXPECT_EQ(refused([](v1::Advance& a) { a.clear_window(); }), "advance.window is missing");
+  EXPECT_EQ(refused([](v1::Advance& a) { a.set_records(most_records + 1); }),
+            "advance.records is 1000001, not 1 to 1000000");
+  EXPECT_EQ(refused([](v1::Advance& a) { a.set_sampling(v1::SAMPLING_UNSPECIFIED); }),
+            "advance.sampling has an unknown value");
+  EXPECT_EQ(refused([](v1::Advance& a) {
+              a.mutable_boundary(0)->mutable_force()->set_support(v1::FORCE_SUPPORT_UNSPECIFIED);
+            }),
+            "advance.boundary[0].force.support has an unknown value 0");
+  EXPECT_EQ(refused([](v1::Advance& a) { a.mutable_boundary(0)->set_impulse(0, nan_value); }),
+            "advance.boundary[0].impulse is not finite: entry 0 is nan");
+  EXPECT_EQ(refused([](v1::Advance& a) { a.mutable_boundary()->RemoveLast(); }),
+            "advance.boundary has 1 entries for 2 ports");
+}
+
+TEST(Frame, EveryFlippedBitAndEveryCutIsRecognised) {
+  v1::Reply reply;
+  reply.set_number(3);
+  encode(full_response(), *reply.mutable_advanced());
+  Frame frame;
+  frame.seal(reply);
+  const std::vector<std::byte> sound(frame.bytes().begin(), frame.bytes().end());
+  ASSERT_TRUE(open_frame(sound).has_value());
+  for (std::size_t i = 0; i < sound.size(); ++i) {
+    for (int bit = 0; bit < 8; ++bit) {
+      std::vector<std::byte> damaged = sound;
+      damaged[i] ^= std::byte{1} << bit;
+      EXPECT_FALSE(open_frame(damaged).has_value()) << "byte " << i << " bit " << bit;
+    }
+    EXPECT_FALSE(open_frame(Bytes(sound.data(), i)).has_value()) << "cut at " << i;
+  }
+}
+
+}  // namespace
+}  // namespace abut

@@ -1,0 +1,114 @@
+// A solver process for the transport tests. The variable ABUT_FAKE_<body> chooses its manners; without it
+// the process serves a point mass as abut-solver serves a bar.
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "base/error.hpp"
+#include "messaging/serve.hpp"
+#include "messaging/zmq_channel.hpp"
+#include "tests/support/fakes.hpp"
+
+namespace {
+
+using namespace abut;
+
+/// Sends properly until the body is configured, then something else instead of every reply.
+class Spoiler : public Channel {
+ public:
+  Spoiler(Channel& inner, std::string manners) : inner_(inner), manners_(std::move(manners)) {}
+  bool send(Bytes frame) override {
+    if (!spoiling) return inner_.send(frame);
+    std::vector<std::byte> bytes(frame.begin(), frame.end());
+    if (manners_ == "corrupt") bytes.back() ^= std::byte{1};
+    if (manners_ == "oversized") bytes.resize(1'500'000);  // above the test's limit of 1,000,000 bytes
+    if (manners_ == "huge") bytes.resize(3'000'000);       // where libzmq ends the connection
+    return inner_.send(bytes);
+  }
+  std::optional<Bytes> receive(Milliseconds wait) override { return inner_.receive(wait); }
+  bool spoiling = false;
+
+ private:
+  Channel& inner_;
+  std::string manners_;
+};
+
+std::unique_ptr<Subdomain> make(const std::string& manners, const std::string& name,
+                                const Specification& specification, const ProgressHook& progress,
+                                bool& spoiling) {
+  if (specification.text.find("no such key") != std::string::npos) {
+    throw InputError("unknown key", specification.path, "remove it");
+  }
+  FakeSubdomain::Options options;
+  options.name = name;
+  std::unique_ptr<FakeSubdomain> body = std::make_unique<FakeSubdomain>(options);
+  body->during_substep = [manners, progress, &spoiling] {
+    progress();
+    if (manners == "crash") raise(SIGKILL);
+    if (manners == "mute") std::this_thread::sleep_for(std::chrono::hours(1));
+    if (manners == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(250));
+    if (manners == "corrupt" || manners == "oversized" || manners == "huge") spoiling = true;
+  };
+  return body;
+}
+
+int run(const std::string& endpoint, const std::string& name, const std::string& manners) {
+  Limits limits;
+  Deadlines deadlines;
+  deadlines.progress = Milliseconds(100);
+  ZmqDealer dealer(endpoint, name, limits);
+  if (manners == "old_version") {
+    v1::Reply greeting;
+    greeting.mutable_hello()->set_protocol(protocol_version + 1);
+    greeting.mutable_hello()->set_build("9.9.9");
+    Frame frame;
+    frame.seal(greeting);
+    dealer.send(frame.bytes());
+    pause();
+  }
+  if (manners == "babble") {
+    const std::vector<std::byte> noise(99, std::byte{7});
+    dealer.send(noise);
+    pause();
+  }
+  Spoiler channel(dealer, manners);
+  CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
+  Server server(
+      name,
+      [&](const Specification& specification, const ProgressHook& progress) {
+        return make(manners, name, specification, progress, channel.spoiling);
+      },
+      channel, coordinator, limits, deadlines);
+  serve(server, Milliseconds(10'000));
+  if (manners == "stubborn") {
+    std::signal(SIGTERM, SIG_IGN);
+    std::this_thread::sleep_for(std::chrono::hours(1));
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string endpoint, body;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    (std::string(argv[i]) == "--connect" ? endpoint : body) = argv[i + 1];
+  }
+  const char* chosen = std::getenv(("ABUT_FAKE_" + body).c_str());
+  const std::string manners = chosen != nullptr ? chosen : "";
+  if (manners == "exit") return 7;
+  if (manners == "never") pause();
+  try {
+    return run(endpoint, body, manners);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 3;
+  }
+}

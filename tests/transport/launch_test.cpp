@@ -1,0 +1,322 @@
+// Goal: bodies in processes of their own behave as bodies in this one; whatever goes wrong is named within
+// its deadline; no process is left behind.
+// Oracle: state hashes of local bodies, the words of the errors, and kill(pid, 0).
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "coordinator/launch.hpp"
+#include "messaging/child_process.hpp"
+#include "tests/transport/loop.hpp"
+
+namespace abut {
+namespace {
+
+class LaunchTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    scene_.network.startup_deadline = 5.0;
+    scene_.network.request_deadline = 5.0;
+    scene_.network.endpoint = "tcp://127.0.0.1:*";
+    options_.solver = ABUT_FAKE_SOLVER;
+    options_.limits.frame_bytes = 1'000'000;
+    options_.deadlines.repeat = Milliseconds(200);
+  }
+  void TearDown() override {
+    launch_.reset();
+    for (const std::string& name : variables_) unsetenv(name.c_str());
+    for (const std::int64_t id : ids_) {
+      EXPECT_NE(kill(static_cast<pid_t>(id), 0), 0) << "process " << id << " is left behind";
+    }
+  }
+
+  void add_body(const std::string& name, const std::string& manners = "") {
+    BodyEntry entry;
+    entry.name = name;
+    scene_.bodies.emplace_back(name, entry);
+    if (manners.empty()) return;
+    variables_.push_back("ABUT_FAKE_" + name);
+    setenv(variables_.back().c_str(), manners.c_str(), 1);
+  }
+  void start() {
+    launch_ = std::make_unique<Launch>(scene_, Specification{"scene.yaml", text_, {}, ""}, options_);
+    ids_ = launch_->process_ids();
+    bodies_ = launch_->take_bodies();
+  }
+  /// What is wrong, after at most `seconds`.
+  std::string error_within(double seconds, const std::function<void()>& act) {
+    const TimePoint begin = std::chrono::steady_clock::now();
+    std::string text = "no error";
+    try {
+      act();
+    } catch (const RunError& error) {
+      text = error.what_is_wrong + " | " + error.remedy;
+    }
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    EXPECT_LT(taken.count(), seconds);
+    return text;
+  }
+  void advance_first() {
+    Response response;
+    const Advance advance = request_for(0);
+    EXPECT_TRUE(std::holds_alternative<Advanced>(bodies_.at(0)->advance(advance, response)));
+  }
+  static bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
+
+  Scene scene_;
+  std::string text_ = "scene";
+  LaunchOptions options_;
+  std::unique_ptr<Launch> launch_;
+  std::vector<std::unique_ptr<Subdomain>> bodies_;
+  std::vector<std::int64_t> ids_;
+  std::vector<std::string> variables_;
+};
+
+/// Both bodies at once, one rewind per window; the hashes of both at the end.
+std::vector<std::uint64_t> play_both(Subdomain& a, Subdomain& b) {
+  Response of_a, of_b;
+  for (int window = 0; window < 20; ++window) {
+    const Advance advance = request_for(window);
+    for (int pass = 0; pass < 2; ++pass) {
+      for (Subdomain* body : {&a, &b}) pass == 0 ? body->save() : body->restore();
+      a.start(advance);
+      b.start(advance);
+      // Waiting for the second first: the reply of the other is kept meanwhile.
+      EXPECT_TRUE(std::holds_alternative<Advanced>(b.finish(of_b)));
+      EXPECT_TRUE(std::holds_alternative<Advanced>(a.finish(of_a)));
+    }
+  }
+  return {a.state_hash(), b.state_hash()};
+}
+
+TEST_F(LaunchTest, SpawnedBodiesReachTheStateOfLocalOnes) {
+  add_body("left");
+  add_body("right");
+  start();
+  FakeSubdomain left, right;
+  EXPECT_EQ(play_both(*bodies_[0], *bodies_[1]), play_both(left, right));
+  EXPECT_EQ(bodies_[0]->describe().name, "left");
+  EXPECT_EQ(bodies_[1]->describe().name, "right");
+  EXPECT_EQ(ids_.size(), 2U);
+  launch_->finish();
+}
+
+TEST_F(LaunchTest, AConnectedBodyReachesTheStateOfALocalOneAndEndsWithCodeZero) {
+  scene_.network.endpoint = "tcp://127.0.0.1:47613";
+  add_body("left");
+  add_body("right");
+  scene_.bodies[1].second.launch = ConnectLaunch{5.0};
+  // Started before anybody listens: the order does not matter.
+  ChildProcess solver(ABUT_FAKE_SOLVER, {"--connect", scene_.network.endpoint, "--body", "right"});
+  start();
+  FakeSubdomain left, right;
+  EXPECT_EQ(play_both(*bodies_[0], *bodies_[1]), play_both(left, right));
+  launch_->finish();
+  EXPECT_TRUE(solver.ended(Milliseconds(2'000)));
+  EXPECT_TRUE(solver.exited_with(0)) << solver.ending();
+}
+
+TEST_F(LaunchTest, AKilledSolverIsNamedWithSignalAndRequest) {
+  add_body("left");
+  start();
+  advance_first();
+  kill(static_cast<pid_t>(ids_[0]), SIGKILL);
+  const std::string error = error_within(2.0, [this] { advance_first(); });
+  EXPECT_TRUE(contains(error, "body 'left' was killed by signal 9 (Killed) while at advance (request 3)"))
+      << error;
+}
+
+TEST_F(LaunchTest, ASolverThatDiesInTheMiddleOfASolveIsNamed) {
+  add_body("left", "crash");
+  start();
+  const std::string error = error_within(2.0, [this] { advance_first(); });
+  EXPECT_TRUE(contains(error, "body 'left' was killed by signal 9 (Killed) while at advance (request 2)"))
+      << error;
+}
+
+TEST_F(LaunchTest, ASpawnedSolverThatNeverConnectsIsGivenUpAtTheStartupDeadline) {
+  scene_.network.startup_deadline = 0.3;
+  add_body("left", "never");
+  add_body("right");
+  const std::string error = error_within(2.0, [this] { start(); });
+  EXPECT_TRUE(contains(error, "body 'left' did not connect to ipc://")) << error;
+  EXPECT_TRUE(contains(error, "within 0.3 s | raise network.startup_deadline")) << error;
+}
+
+TEST_F(LaunchTest, ABodyThatNobodyStartsIsNamedWithTheCommandThatIsMissing) {
+  add_body("left");
+  scene_.network.endpoint = "tcp://127.0.0.1:47614";
+  scene_.bodies[0].second.launch = ConnectLaunch{0.3};
+  EXPECT_EQ(error_within(2.0, [this] { start(); }),
+            "body 'left' did not connect to tcp://127.0.0.1:47614 within 0.3 s | start `abut-solver "
+            "--connect tcp://127.0.0.1:47614 --body left`");
+}
+
+TEST_F(LaunchTest, ASolverThatExitsAtOnceIsNamedWithItsCode) {
+  add_body("left", "exit");
+  const std::string error = error_within(2.0, [this] { start(); });
+  EXPECT_TRUE(contains(error, "the solver of body 'left' exited with code 7 before it had connected"))
+      << error;
+}
+
+TEST_F(LaunchTest, AProgramThatDoesNotExistIsNamed) {
+  options_.solver = "/nowhere/abut-solver";
+  add_body("left");
+  const std::string error = error_within(2.0, [this] { start(); });
+  EXPECT_TRUE(contains(error, "cannot start /nowhere/abut-solver: No such file or directory")) << error;
+}
+
+TEST_F(LaunchTest, AnotherProtocolVersionIsRefusedWithBothVersions) {
+  add_body("left", "old_version");
+  const std::string error = error_within(2.0, [this] { start(); });
+  EXPECT_TRUE(contains(error, "the solver of body 'left' (build 9.9.9) speaks protocol 2")) << error;
+  EXPECT_TRUE(contains(error, "speaks protocol 1")) << error;
+}
+
+TEST_F(LaunchTest, AStrangeFirstFrameIsNamedWithItsSize) {
+  add_body("left", "babble");
+  const std::string error = error_within(2.0, [this] { start(); });
+  EXPECT_TRUE(contains(error, "body 'left' did not say hello: its first frame, of 99 bytes (limit "
+                              "1000000), is corrupt"))
+      << error;
+}
+
+TEST_F(LaunchTest, CorruptRepliesAreNamedWithSizeAndLimit) {
+  add_body("left", "corrupt");
+  start();
+  const std::string error = error_within(2.0, [this] { advance_first(); });
+  EXPECT_TRUE(contains(error, "body 'left' sent 16 corrupt frames while at advance (request 2)")) << error;
+  EXPECT_TRUE(contains(error, "(limit 1000000 bytes)")) << error;
+}
+
+TEST_F(LaunchTest, AnOversizedReplyIsNamedWithSizeAndLimit) {
+  add_body("left", "oversized");
+  start();
+  const std::string error = error_within(2.0, [this] { advance_first(); });
+  EXPECT_TRUE(contains(error, "body 'left' sent a frame of 1500000 bytes while at advance (request 2); "
+                              "the limit is 1000000 bytes"))
+      << error;
+}
+
+TEST_F(LaunchTest, AFrameThatEndsTheConnectionIsNamedWithTheLimit) {
+  add_body("left", "huge");
+  start();
+  const std::string error = error_within(6.0, [this] { advance_first(); });
+  EXPECT_TRUE(contains(error, "body 'left' ") && contains(error, "limit of 1000000 bytes") &&
+              contains(error, "while at advance (request 2)"))
+      << error;
+}
+
+TEST_F(LaunchTest, ASolverThatLivesButNeverAnswersIsGivenUpAtTheDeadline) {
+  scene_.network.request_deadline = 0.5;
+  add_body("left", "mute");
+  start();
+  const std::string error = error_within(2.0, [this] { advance_first(); });
+  EXPECT_TRUE(contains(error, "body 'left' has not answered advance (request 2) within 0.5 s")) << error;
+}
+
+TEST_F(LaunchTest, ALongSolveThatShowsProgressIsNoDeath) {
+  scene_.network.request_deadline = 0.8;  // ten substeps of 0.25 s take 2.5 s
+  add_body("left", "slow");
+  start();
+  EXPECT_EQ(error_within(5.0, [this] { advance_first(); }), "no error");
+  launch_->finish();
+}
+
+TEST_F(LaunchTest, AStubbornSolverIsEndedAllTheSame) {
+  add_body("left", "stubborn");
+  start();
+  advance_first();
+  EXPECT_EQ(error_within(5.0, [this] { launch_->finish(); }), "no error");
+}
+
+TEST_F(LaunchTest, TheBodysInputErrorComesThroughTheWire) {
+  text_ = "no such key";
+  add_body("left");
+  add_body("right");
+  try {
+    start();
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what_is_wrong, "unknown key");
+    EXPECT_EQ(error.where, "bodies.left");
+  }
+}
+
+TEST_F(LaunchTest, ASolverWithANameThatTheSceneDoesNotHaveIsRefused) {
+  scene_.network.endpoint = "tcp://127.0.0.1:47615";
+  add_body("left");
+  scene_.bodies[0].second.launch = ConnectLaunch{0.5};
+  ChildProcess stranger(ABUT_FAKE_SOLVER,
+                        {"--connect", scene_.network.endpoint, "--body", "middle"});
+  error_within(2.0, [this] { start(); });
+  EXPECT_TRUE(stranger.ended(Milliseconds(2'000)));
+  EXPECT_EQ(stranger.ending(), "exited with code 3");
+}
+
+TEST_F(LaunchTest, AnAddressThatIsTakenIsTheUsersError) {
+  scene_.network.endpoint = "tcp://192.0.2.1:5555";  // reserved for documentation: no machine's own
+  add_body("left");
+  scene_.bodies[0].second.launch = ConnectLaunch{0.5};
+  EXPECT_THROW(start(), InputError);
+}
+
+TEST_F(LaunchTest, AnInterruptEndsTheWaitAndTheProcesses) {
+  const std::atomic<bool> interrupted{true};
+  options_.interrupted = &interrupted;
+  add_body("left", "never");
+  const std::string error = error_within(2.0, [this] { start(); });
+  EXPECT_TRUE(contains(error, "interrupted before body 'left' had connected")) << error;
+}
+
+TEST(LaunchedProcess, DiesWithTheCoordinatorThatWasKilled) {
+  int report[2];
+  ASSERT_EQ(pipe(report), 0);
+  const pid_t coordinator = fork();
+  if (coordinator == 0) {
+    Scene scene;
+    BodyEntry entry;
+    entry.name = "left";
+    scene.bodies.emplace_back("left", entry);
+    LaunchOptions options;
+    options.solver = ABUT_FAKE_SOLVER;
+    Launch launch(scene, Specification{"scene.yaml", "scene", {}, ""}, options);
+    const pid_t solver = static_cast<pid_t>(launch.process_ids().at(0));
+    if (write(report[1], &solver, sizeof solver) != sizeof solver) _exit(1);
+    pause();
+  }
+  pid_t solver = 0;
+  ASSERT_EQ(read(report[0], &solver, sizeof solver), static_cast<ssize_t>(sizeof solver));
+  kill(coordinator, SIGKILL);
+  bool gone = false;
+  for (int i = 0; i < 200 && !gone; ++i) {
+    usleep(10'000);
+    // An orphan is reaped by init; where there is none it stays a zombie, which runs nothing.
+    gone = kill(solver, 0) != 0;
+    if (!gone) {
+      std::FILE* stat = std::fopen(("/proc/" + std::to_string(solver) + "/stat").c_str(), "r");
+      char state = 'Z';
+      if (stat != nullptr) {
+        if (std::fscanf(stat, "%*d %*s %c", &state) != 1) state = 'Z';
+        std::fclose(stat);
+      }
+      gone = state == 'Z';
+    }
+  }
+  EXPECT_TRUE(gone);
+  close(report[0]);
+  close(report[1]);
+}
+
+}  // namespace
+}  // namespace abut
