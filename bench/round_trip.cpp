@@ -1,0 +1,266 @@
+// What one exchange with a body in another process costs beyond the solve, against a bare ZeroMQ
+// ROUTER/DEALER round trip of the same frame sizes over the same kind of socket (ipc). Both are measured in
+// turns, block by block, so that a change of the machine's mood meets both; medians, one line per size.
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <zmq.hpp>
+
+#include "messaging/codec.hpp"
+#include "messaging/liveness.hpp"
+#include "messaging/remote_subdomain.hpp"
+#include "messaging/serve.hpp"
+#include "messaging/zmq_channel.hpp"
+
+namespace {
+
+using namespace abut;
+using Clock = std::chrono::steady_clock;
+
+constexpr int blocks = 30;
+constexpr int exchanges_per_block = 200;
+constexpr double accepted_ratio = 1.5;
+
+double microseconds(Clock::duration time) {
+  return std::chrono::duration<double, std::micro>(time).count();
+}
+
+double quantile(std::vector<double> values, double part) {
+  const std::size_t at = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+/// Fills a waveform with numbers that no codec could shorten.
+Waveform wave(int substeps) {
+  Waveform w(1);
+  for (int i = 0; i <= substeps; ++i) {
+    w.time.push_back(1.0e-7 * i);
+    for (std::vector<double>* field : {&w.u, &w.v, &w.a, &w.f}) field->push_back(1.0 / (3.0 + i));
+  }
+  return w;
+}
+
+/// Answers every window with the same response: all that is left of an exchange is its overhead.
+class InstantBody : public Subdomain {
+ public:
+  InstantBody() {
+    description_.ports.resize(1);
+    description_.ports[0].geometry.points = {0.0};
+    description_.ports[0].geometry.normals = {1.0};
+  }
+  const Description& describe() const override { return description_; }
+  void save() override {}
+  void restore() override {}
+  void start(const Advance& request) override { request_ = &request; }
+  Outcome finish(Response& response) override {
+    const Clock::time_point begin = Clock::now();
+    const int substeps = static_cast<int>(request_->boundary[0].force.size()) - 1;
+    if (response.steps != substeps) {
+      response.ports.resize(1);
+      response.ports[0].trace = wave(substeps);
+      response.ports[0].lower = response.ports[0].upper = {0.0};
+      response.records.resize(1);
+      response.records[0].momentum = {0.0};
+      response.steps = substeps;
+    }
+    response.compute_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    return Advanced{};
+  }
+  PortKernel kernel(int, double, int) override { return {}; }
+  std::vector<std::byte> checkpoint() override { return {}; }
+  void resume(std::span<const std::byte>) override {}
+  std::uint64_t state_hash() override { return 0; }
+
+ private:
+  Description description_;
+  const Advance* request_ = nullptr;
+};
+
+/// The solver's process: our own server, as abut-solver runs it.
+[[noreturn]] void solver_process(const std::string& endpoint) {
+  const Limits limits;
+  const Deadlines deadlines;
+  ZmqDealer dealer(endpoint, "body", limits);
+  CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
+  const MakeBody make = [](const Specification&, const ProgressHook&) {
+    return std::unique_ptr<Subdomain>(std::make_unique<InstantBody>());
+  };
+  Server server("body", make, dealer, coordinator, limits, deadlines);
+  serve(server, Milliseconds(10'000));
+  std::_Exit(0);
+}
+
+/// The other end of the bare round trip: answers with as many bytes as the first 8 of a frame say.
+[[noreturn]] void echo_process(const std::string& endpoint) {
+  zmq::context_t context(1);
+  zmq::socket_t socket(context, zmq::socket_type::dealer);
+  socket.set(zmq::sockopt::routing_id, "body");
+  socket.connect(endpoint);
+  std::vector<std::byte> reply(1 << 20);
+  socket.send(zmq::buffer(reply.data(), 8), zmq::send_flags::none);
+  zmq::message_t message;
+  for (;;) {
+    if (!socket.recv(message)) continue;
+    std::uint64_t size = 0;
+    std::memcpy(&size, message.data(), sizeof size);
+    socket.send(zmq::buffer(reply.data(), size), zmq::send_flags::none);
+  }
+}
+
+pid_t start_process(void (*run)(const std::string&), const std::string& endpoint) {
+  const pid_t id = fork();
+  if (id != 0) return id;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  run(endpoint);
+  std::_Exit(1);
+}
+
+/// Ours: start and finish of an advance through a RemoteSubdomain, minus the time inside the body.
+class OurExchange {
+ public:
+  explicit OurExchange(const std::string& endpoint)
+      : hub_(limits_),
+        peer_(hub_.add_peer("body")),
+        liveness_(hub_, peer_, nullptr, limits_, Deadlines{}),
+        caller_("body", CallContext{hub_.channel(peer_), liveness_, nullptr, limits_, Deadlines{}}),
+        body_(caller_) {
+    hub_.bind(endpoint);
+    while (!hub_.channel(peer_).receive(Milliseconds(100))) {
+    }
+    body_.start_configure(Specification{});
+    body_.finish_configure();
+  }
+  /// Sizes of the two frames.
+  std::pair<std::size_t, std::size_t> prepare(int substeps) {
+    advance_.window = TimeWindow{0, 0.0, 1.0e-7 * substeps};
+    advance_.boundary.resize(1);
+    advance_.boundary[0].force = wave(substeps);
+    advance_.boundary[0].force.u.clear();  // one field there, four back: as two bars do it
+    advance_.boundary[0].force.v.clear();
+    advance_.boundary[0].force.a.clear();
+    once();
+    v1::Request request;
+    request.set_number(1);
+    encode(advance_, *request.mutable_advance());
+    v1::Reply reply;
+    reply.set_number(1);
+    encode(response_, *reply.mutable_advanced());
+    return {request.ByteSizeLong() + frame_header_bytes, reply.ByteSizeLong() + frame_header_bytes};
+  }
+  double once() {
+    const Clock::time_point begin = Clock::now();
+    body_.save();
+    const Outcome outcome = body_.advance(advance_, response_);
+    const double wall = microseconds(Clock::now() - begin);
+    if (!std::holds_alternative<Advanced>(outcome)) std::abort();
+    return wall - 1.0e6 * response_.compute_seconds;
+  }
+
+ private:
+  Limits limits_;
+  ZmqHub hub_;
+  int peer_;
+  BodyLiveness liveness_;
+  Caller caller_;
+  RemoteSubdomain body_;
+  Advance advance_;
+  Response response_;
+};
+
+class BareExchange {
+ public:
+  explicit BareExchange(const std::string& endpoint)
+      : context_(1), socket_(context_, zmq::socket_type::router) {
+    socket_.bind(endpoint);
+    receive();
+  }
+  void prepare(std::pair<std::size_t, std::size_t> sizes) {
+    request_.assign(sizes.first, std::byte{1});
+    const std::uint64_t reply = sizes.second;
+    std::memcpy(request_.data(), &reply, sizeof reply);
+  }
+  double once() {
+    const Clock::time_point begin = Clock::now();
+    socket_.send(zmq::buffer("body", 4), zmq::send_flags::sndmore);
+    socket_.send(zmq::buffer(request_), zmq::send_flags::none);
+    receive();
+    return microseconds(Clock::now() - begin);
+  }
+
+ private:
+  void receive() {
+    if (!socket_.recv(sender_) || !socket_.recv(message_)) std::abort();
+  }
+  zmq::context_t context_;
+  zmq::socket_t socket_;
+  std::vector<std::byte> request_;
+  zmq::message_t sender_, message_;
+};
+
+/// Prints one line; true when the ratio is accepted.
+bool measure(OurExchange& ours, BareExchange& bare, int substeps) {
+  const std::pair<std::size_t, std::size_t> sizes = ours.prepare(substeps);
+  bare.prepare(sizes);
+  std::vector<double> of_ours, of_bare;
+  for (int block = 0; block <= blocks; ++block) {
+    for (int i = 0; i < exchanges_per_block; ++i) {
+      const double time = bare.once();
+      if (block > 0) of_bare.push_back(time);  // block 0 warms up
+    }
+    for (int i = 0; i < exchanges_per_block; ++i) {
+      const double time = ours.once();
+      if (block > 0) of_ours.push_back(time);
+    }
+  }
+  const double ratio = quantile(of_ours, 0.5) / quantile(of_bare, 0.5);
+  fmt::print("{:>8} {:>7} {:>7}   {:>6.1f} ({:.1f} to {:.1f})   {:>6.1f} ({:.1f} to {:.1f})   {:.2f}\n",
+             substeps, sizes.first, sizes.second, quantile(of_bare, 0.5), quantile(of_bare, 0.1),
+             quantile(of_bare, 0.9), quantile(of_ours, 0.5), quantile(of_ours, 0.1),
+             quantile(of_ours, 0.9), ratio);
+  return ratio <= accepted_ratio;
+}
+
+}  // namespace
+
+int main() {
+  std::string directory = "/tmp/abut-bench-XXXXXX";
+  if (mkdtemp(directory.data()) == nullptr) return 1;
+  const std::string ours_at = "ipc://" + directory + "/ours";
+  const std::string bare_at = "ipc://" + directory + "/bare";
+  const pid_t solver = start_process(solver_process, ours_at);
+  const pid_t echo = start_process(echo_process, bare_at);
+  bool accepted = true;
+  {
+    OurExchange ours(ours_at);
+    BareExchange bare(bare_at);
+    fmt::print("Exchange over ipc, {} of each, in microseconds: median (10 % to 90 %)\n",
+               blocks * exchanges_per_block);
+    fmt::print("substeps   bytes   bytes   bare ZeroMQ              exchange less solving    ratio\n");
+    fmt::print("           there    back\n");
+    for (const int substeps : {1, 10, 100, 1000}) accepted = measure(ours, bare, substeps) && accepted;
+  }
+  for (const pid_t id : {solver, echo}) {
+    kill(id, SIGKILL);
+    waitpid(id, nullptr, 0);
+  }
+  for (const char* name : {"/ours", "/bare", ""}) {
+    if (std::remove((directory + name).c_str()) != 0) continue;  // libzmq removes its own
+  }
+  fmt::print("limit {:.1f}: {}\n", accepted_ratio, accepted ? "kept" : "EXCEEDED");
+  return accepted ? 0 : 1;
+}
