@@ -15,9 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json measures_object(const Measures& measures, Json& notes) {
   Json object = Json::object();
@@ -81,6 +79,28 @@ Json bodies_array(const RunStart& start) {
   return array;
 }
 
+/// Where the ports of 1D bodies are: turns displacements and forces of the history into positions
+/// and compression.
+Json ports_object(const RunStart& start) {
+  Json object = Json::object();
+  for (const Description* body : start.bodies)
+    for (const Port& port : body->ports)
+      if (port.geometry.dim == 1 && port.geometry.count() == 1)
+        object[body->name + "." + port.name] = {{"position", number(port.geometry.points[0])},
+                                                {"normal", number(port.geometry.normals[0])}};
+  return object;
+}
+
+Json interfaces_object(const RunStart& start) {
+  Json object = Json::object();
+  for (const InterfaceInfo& info : start.interfaces)
+    for (const int side : {0, 1}) {
+      const Description& body = *start.bodies[info.body[side]];
+      object[info.name]["sides"].push_back(body.name + "." + body.ports[info.port[side]].name);
+    }
+  return object;
+}
+
 Json timing_object(const RunEnd& end, const RunStart& start) {
   Json timing = {{"wall_s", number(end.wall_seconds)}, {"compute_s", Json::object()}};
   for (std::size_t b = 0; b < std::min(start.bodies.size(), end.compute_seconds.size()); ++b)
@@ -98,9 +118,7 @@ Summary::Summary(std::filesystem::path directory, Heading heading, const Measure
       recorder_(recorder),
       form_(form) {}
 
-void Summary::on_start(const RunStart& start) {
-  start_ = start;
-}
+void Summary::on_start(const RunStart& start) { start_ = start; }
 
 std::string Summary::text(const RunEnd& end) const {
   Json notes = Json::array();
@@ -118,6 +136,8 @@ std::string Summary::text(const RunEnd& end) const {
   summary["exchanges"] = end.exchanges;
   summary["timing"] = timing_object(end, start_);
   summary["bodies"] = bodies_array(start_);
+  summary["ports"] = ports_object(start_);
+  summary["interfaces"] = interfaces_object(start_);
   summary["versions"] = heading_.versions;
   summary["notes"] = notes;
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -185,6 +185,8 @@ TEST_F(RecordFiles, SummaryHoldsMeasuresTimingHashAndClosedForm) {
   EXPECT_EQ(json["closed_form"]["force"], 1.0);
   EXPECT_EQ(json["versions"]["abut"], "1.2.3");
   EXPECT_EQ(json["exchanges"], 142);
+  EXPECT_EQ(json["ports"]["left.tip"]["position"], -0.1);
+  EXPECT_EQ(json["interfaces"]["impact"]["sides"][1], "right.tip");
   EXPECT_EQ(json["expectations"][0]["pass"], true);
   EXPECT_EQ(json["expectations"][0]["expected"], "at most 2");
   EXPECT_FALSE(std::filesystem::exists(directory_ / "summary.json.tmp"));

@@ -1,0 +1,274 @@
+"""Goal: a run's folder becomes one page that holds and draws everything. Oracle: a run made by
+hand, whose tables and curves are known; the page's own count of drawn figures in a browser.
+
+Usage: test_report.py PROGRAM            structure of pages and error messages
+       test_report.py PROGRAM --browser  opens a page in Chromium; ends with 77 where there is none
+"""
+
+import csv
+import html.parser
+import json
+import math
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SKIPPED = 77
+PROGRAM = ""
+CHROMIUM = ("chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
+            "--no-first-run", "--disable-background-networking", "--disable-component-update",
+            "--disable-sync", "--hide-scrollbars", "--allow-file-access-from-files")
+HEADER = ["time [s]", "impact.gap [m]", "impact.closed", "impact.iterations"]
+BODY = ["{0}.tip.u [m]", "{0}.tip.v [m/s]", "{0}.tip.force [N]", "{0}.kinetic [J]",
+        "{0}.stored [J]", "{0}.total [J]", "{0}.momentum [kg m/s]", "{0}.mean_velocity [m/s]"]
+
+
+def bar_row(side: int, t: float) -> list[float]:
+    """Two equal bars: contact from 0 to 5e-4 s, 100 N, 1.25 J each."""
+    sign = 1.0 if side == 0 else -1.0
+    part = min(1.0, max(0.0, t / 5e-4))
+    closed = 0.0 <= t < 5e-4
+    u = 0.02 + 100.0 * min(t, 0.0) - 100.0 * max(t - 5e-4, 0.0)
+    v = 100.0 if t < 0.0 else 0.0 if closed else -100.0
+    kinetic = 1.25 * abs(1.0 - 2.0 * part)
+    mean = 100.0 * (1.0 - 2.0 * part)
+    return [sign * u, sign * v, -sign * 100.0 * closed, kinetic, 1.25 - kinetic, 1.25,
+            sign * 2.5e-4 * mean, sign * mean]
+
+
+def make_run(folder: Path, rows: int = 100, title: str = "Two bars <collide>") -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    names = HEADER[:1] + [n.format(b) for b in ("left", "right") for n in BODY] + HEADER[1:]
+    with (folder / "history.csv").open("w", newline="") as history, \
+            (folder / "closed_form.csv").open("w", newline="") as exact:
+        writers = csv.writer(history), csv.writer(exact)
+        writers[0].writerow(names)
+        writers[1].writerow(names[:-1])
+        for k in range(1, rows + 1):
+            t = -2e-4 + 1e-3 * k / rows
+            closed = 0.0 <= t < 5e-4
+            gap = 200.0 * max(-t, t - 5e-4, 0.0)
+            row = [t] + bar_row(0, t) + bar_row(1, t) + [gap, int(closed), 2 * closed]
+            writers[1].writerow(row[:-1])
+            ripple = 1.0 + 0.002 * math.sin(40.0 * k)
+            row[3], row[11] = row[3] * ripple, row[11] * ripple
+            row[6] += 1e-5 * closed
+            writers[0].writerow(row)
+    (folder / "events.jsonl").write_text(
+        json.dumps({"time": 0.0, "kind": "contact_closed", "subject": "impact",
+                    "text": "touched at 200 m/s", "values": {}}) + "\n")
+    (folder / "summary.json").write_text(json.dumps(summary_of(title)))
+
+
+def summary_of(title: str) -> dict:
+    bodies = {name: {"wall": False, "mean_velocity_end": v, "total_begin": 1.25, "total_end": 1.25}
+              for name, v in (("left", -100.0), ("right", 100.0))}
+    return {
+        "status": "completed", "title": title,
+        "measures": {"contact.impact.begin": 0.0, "contact.impact.end": 5.0001e-4,
+                     "contact.impact.duration": 5.0001e-4, "contact.impact.force_mean": 99.9,
+                     "mean_velocity.left.end": -99.8, "momentum.total": None},
+        "expectations": [
+            {"measure": "contact.impact.duration", "expected": "0.0005 +- 0.05 %",
+             "got": 5.0001e-4, "pass": True, "because": "one wave transit & back"},
+            {"measure": "momentum.total", "expected": "at most 1e-12", "got": None, "pass": False,
+             "because": "impulses are equal and opposite"}],
+        "closed_form": {"name": "bar_impact", "interface": "impact", "begin": 0.0, "end": 5e-4,
+                        "duration": 5e-4, "force": 100.0, "closing_speed": 200.0,
+                        "bodies": bodies},
+        "ports": {"left.tip": {"position": -0.02, "normal": 1.0},
+                  "right.tip": {"position": 0.02, "normal": -1.0}},
+        "state_hash": "0123456789abcdef", "windows": 100, "contact_windows": 50, "exchanges": 210,
+        "timing": {"wall_s": 0.05, "compute_s": {"left": 0.01, "right": 0.012},
+                   "overhead_per_exchange_us_median": 31.5},
+        "bodies": [{"name": "left", "model": "fe bar, 200 elements"}],
+        "versions": {"abut": "0.1.0"}, "notes": ["momentum.total: made by hand"]}
+
+
+class PageReader(html.parser.HTMLParser):
+    """Collects canvases, outside addresses and the rows of tables."""
+
+    def __init__(self, text: str):
+        super().__init__()
+        self.canvases, self.addresses, self.rows, self.open_cell = [], [], [], False
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        if tag == "canvas":
+            self.canvases.append(attributes["id"])
+        for name in ("src", "href"):
+            if name in attributes:
+                self.addresses.append(attributes[name])
+        if tag == "tr":
+            self.rows.append([])
+        if tag in ("td", "th"):
+            self.rows[-1].append("")
+            self.open_cell = True
+
+    def handle_endtag(self, tag):
+        if tag in ("td", "th"):
+            self.open_cell = False
+
+    def handle_data(self, data):
+        if self.open_cell:
+            self.rows[-1][-1] += data
+
+
+def curves_of(page: str) -> dict[str, list[dict]]:
+    data = re.search(r"<script>const figures = (.*?);</script>", page, re.DOTALL)
+    return {figure["name"]: figure["curves"] for figure in json.loads(data[1])}
+
+
+def report(*arguments) -> subprocess.CompletedProcess:
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                          timeout=60, check=False)
+
+
+class Report(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp()) / "run"
+        self.addCleanup(shutil.rmtree, self.folder.parent)
+
+    def page(self, **options) -> str:
+        make_run(self.folder, **options)
+        result = report(self.folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return (self.folder / "report.html").read_text(encoding="utf-8")
+
+    def test_page_has_a_figure_for_every_quantity_and_needs_no_other_file(self):
+        reader = PageReader(self.page())
+        self.assertEqual(reader.canvases, [
+            "position", "velocity", "force", "mean_velocity", "energy_left", "energy_right",
+            "energy_error", "gap", "iterations"])
+        self.assertEqual(reader.addresses, ["data:,"])
+
+    def test_tables_hold_expectations_and_errors_against_the_closed_form(self):
+        rows = PageReader(self.page()).rows
+        self.assertIn(["contact.impact.duration", "0.0005 ± 0.05 %", "0.00050001", "ok",
+                       "one wave transit & back"], rows)
+        self.assertIn(["momentum.total", "at most 1e-12", "no value", "failed",
+                       "impulses are equal and opposite"], rows)
+        self.assertIn(["mean contact force [N]", "100", "99.9", "-0.1 %"], rows)
+        self.assertIn(["mean velocity of left at the end [m/s]", "-100", "-99.8", "0.1 %"], rows)
+        self.assertIn(["momentum.total", "no value"], rows)
+
+    def test_title_and_status_are_text_not_markup(self):
+        page = self.page()
+        self.assertIn("<title>Two bars &lt;collide&gt;</title>", page)
+        self.assertIn("completed, 1 expectation failed", page)
+
+    def test_curves_are_those_of_the_run_in_readable_units(self):
+        curves = curves_of(self.page())
+        left = next(c for c in curves["position"] if c["label"] == "left.tip")
+        self.assertAlmostEqual(left["x"][0], -190.0, places=6)       # microseconds
+        self.assertAlmostEqual(left["y"][0], -0.019 * 1e3, places=4)  # mm: starts at -20 mm
+        right = next(c for c in curves["force"] if c["label"] == "right.tip")
+        self.assertAlmostEqual(max(right["y"]), 100.2, delta=0.01)  # compression is positive
+        error = next(c for c in curves["energy_error"] if c["label"] == "left")
+        self.assertAlmostEqual(max(error["y"]), 100.0 * 1e-5 / 1.25, places=9)  # %
+
+    def test_exact_force_jumps_at_the_exact_times(self):
+        exact = next(c for c in curves_of(self.page())["force"] if c["exact"])
+        at_end = [y for x, y in zip(exact["x"], exact["y"]) if abs(x - 500.0) < 1e-6]
+        self.assertIn(100.0, at_end)
+        self.assertIn(0.0, at_end)
+
+    def test_long_run_stays_small_and_keeps_its_extremes(self):
+        make_run(self.folder, rows=100_000)
+        lines = (self.folder / "history.csv").read_text().splitlines()
+        cells = lines[54_321].split(",")
+        cells[3] = "-977"  # one spike of 977 N in a hundred thousand rows
+        lines[54_321] = ",".join(cells)
+        (self.folder / "history.csv").write_text("\n".join(lines) + "\n")
+        self.assertEqual(report(self.folder).returncode, 0)
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.assertLessEqual(len(page.encode()), 1_500_000)
+        left = next(c for c in curves_of(page)["force"] if c["label"] == "left.tip")
+        self.assertEqual(max(left["y"]), 977.0)
+        self.assertLessEqual(len(left["y"]), 2000)
+
+    def test_run_without_closed_form_or_summary_still_has_a_page(self):
+        make_run(self.folder)
+        (self.folder / "closed_form.csv").unlink()
+        (self.folder / "summary.json").unlink()
+        self.assertEqual(report(self.folder).returncode, 0)
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.assertIn("unfinished", page)
+        self.assertFalse([c for curves in curves_of(page).values() for c in curves if c["exact"]])
+
+    def test_row_that_a_killed_run_cut_short_is_left_out(self):
+        make_run(self.folder)
+        text = (self.folder / "history.csv").read_text()
+        (self.folder / "history.csv").write_text(text + "0.0009,1,2")
+        self.assertEqual(report(self.folder).returncode, 0)
+
+    def test_row_that_is_broken_inside_is_named(self):
+        make_run(self.folder)
+        lines = (self.folder / "history.csv").read_text().splitlines()
+        lines[7] = lines[7].replace(",", ",x", 1)
+        (self.folder / "history.csv").write_text("\n".join(lines) + "\n")
+        result = report(self.folder)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("history.csv:8:", result.stderr)
+
+    def test_folder_without_a_run_is_the_users_error(self):
+        self.folder.mkdir()
+        result = report(self.folder)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("holds no run", result.stderr)
+        self.assertIn("abut run SCENE --out", result.stderr)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_missing_chart_library_names_the_package(self):
+        make_run(self.folder)
+        result = report(self.folder, "--chart-library", self.folder / "none.js")
+        self.assertEqual(result.returncode, 3)
+        self.assertIn("libjs-chart.js", result.stderr)
+
+    def test_page_goes_where_it_is_asked_to_go(self):
+        make_run(self.folder)
+        out = self.folder.parent / "elsewhere.html"
+        result = report(self.folder, "--out", out)
+        self.assertEqual((result.returncode, result.stdout.strip()), (0, str(out)))
+        self.assertTrue(out.is_file())
+        self.assertFalse((self.folder / "report.html").exists())
+
+
+def browse() -> int:
+    """Every figure of a page is drawn, at desktop and phone width, and nothing is complained of."""
+    if shutil.which(CHROMIUM[0]) is None:
+        print("skipped: chromium is not installed")
+        return SKIPPED
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name) / "run"
+        make_run(folder)
+        assert report(folder).returncode == 0
+        for width in (1280, 390):
+            result = subprocess.run(
+                [*CHROMIUM, f"--user-data-dir={name}/profile", f"--window-size={width},900",
+                 "--enable-logging=stderr", "--virtual-time-budget=5000", "--dump-dom",
+                 (folder / "report.html").as_uri()],
+                capture_output=True, text=True, timeout=120, check=True)
+            drawn = {key: re.search(f'data-{key}="([^"]*)"', result.stdout)
+                     for key in ("figures", "drawn", "failures")}
+            found = {key: match[1] if match else None for key, match in drawn.items()}
+            if found != {"figures": "9", "drawn": "9", "failures": ""}:
+                print(f"width {width}: {found}")
+                return 1
+            complaints = [line for line in result.stderr.splitlines() if ":CONSOLE" in line]
+            if complaints:
+                print("\n".join(complaints))
+                return 1
+    return 0
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv[1]
+    if sys.argv[2:] == ["--browser"]:
+        sys.exit(browse())
+    unittest.main(argv=sys.argv[:1])

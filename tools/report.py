@@ -1,0 +1,455 @@
+#!/usr/bin/python3
+"""A run's folder as one self-contained page: tables and figures against the closed form.
+
+Reads summary.json, history.csv, closed_form.csv and events.jsonl; needs Python's standard library
+and Debian's packaged Chart.js, which goes into the page. The page itself is report.html beside this
+file. Ends with 2 when the user can help (no run in the folder), with 3 when the machine must (no
+chart library, page cannot be written).
+"""
+
+import argparse
+import csv
+import html
+import json
+import math
+import os
+import re
+import string
+import sys
+from pathlib import Path
+
+CHART_LIBRARY = Path("/usr/share/javascript/chart.js/chart.min.js")
+TEMPLATE = Path(__file__).resolve().with_suffix(".html")
+PAGE_LIMIT = 1_500_000  # bytes: opens at once on a phone
+CURVE_POINTS = 2000     # more than a screen has columns
+# Told apart by all eyes.
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d1f", "#5b5b5b")
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+PREFIXED_UNITS = ("s", "m", "N", "J")
+
+
+class ReportError(Exception):
+    """What is wrong and what to do, with the exit code that says whose turn it is."""
+
+    def __init__(self, message: str, code: int):
+        super().__init__(message)
+        self.code = code
+
+
+# ---- reading ------------------------------------------------------------
+
+
+class Table:
+    """Columns of numbers by name; an empty cell is None."""
+
+    def __init__(self, names: list[str], rows: list[list[float | None]]):
+        self.columns = {name: [row[i] for row in rows] for i, name in enumerate(names)}
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.columns
+
+    def __getitem__(self, name: str) -> list[float | None]:
+        return self.columns[name]
+
+    def matching(self, pattern: str) -> list[re.Match]:
+        found = (re.fullmatch(pattern, name) for name in self.columns)
+        return [match for match in found if match]
+
+
+def read_table(path: Path) -> Table:
+    """Units leave the header: all are SI. A last row that a killed run cut short is left out."""
+    with path.open(newline="", encoding="utf-8") as file:
+        lines = list(csv.reader(file))
+    if not lines:
+        raise ReportError(f"{path} is empty: run the scene again.", 2)
+    names = [re.sub(r" \[.*\]$", "", name) for name in lines[0]]
+    rows = []
+    for number, line in enumerate(lines[1:], start=2):
+        try:
+            if len(line) != len(names):
+                raise ValueError(f"{len(line)} cells, the header has {len(names)}")
+            rows.append([float(cell) if cell else None for cell in line])
+        except ValueError as error:
+            if number == len(lines):
+                break
+            raise ReportError(f"{path}:{number}: {error}: run the scene again.", 2) from error
+    return Table(names, rows)
+
+
+def read_json(path: Path) -> dict:
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ReportError(f"{path} is not JSON ({error}): run the scene again.", 2) from error
+
+
+class Run:
+    """What a folder holds. A run that was killed has no summary."""
+
+    def __init__(self, folder: Path):
+        summary, history = folder / "summary.json", folder / "history.csv"
+        if not summary.is_file() and not history.is_file():
+            raise ReportError(
+                f"{folder} holds no run: neither summary.json nor history.csv is there. "
+                f"Make one with: abut run SCENE --out {folder}", 2)
+        unfinished = {"status": "unfinished", "title": folder.name,
+                      "notes": ["there is no summary.json: the run was ended from outside"]}
+        self.summary = read_json(summary) if summary.is_file() else unfinished
+        self.history = read_table(history) if history.is_file() else Table(["time"], [])
+        exact = folder / "closed_form.csv"
+        self.exact = read_table(exact) if exact.is_file() else None
+        self.events = []
+        events = folder / "events.jsonl"
+        if events.is_file():
+            for line in events.read_text(encoding="utf-8").splitlines():
+                try:
+                    self.events.append(json.loads(line))
+                except ValueError:
+                    break  # the line that a killed run cut short
+
+    def bodies(self) -> list[str]:
+        return [match[1] for match in self.history.matching(r"(.+)\.kinetic")]
+
+    def ports(self) -> list[str]:
+        return [match[1] for match in self.history.matching(r"(.+\..+)\.u")]
+
+    def port(self, name: str) -> dict:
+        return self.summary.get("ports", {}).get(name, {})
+
+
+# ---- figures ------------------------------------------------------------
+
+
+class Figure:
+    """Curves over time with one unit."""
+
+    def __init__(self, name: str, title: str, quantity: str, unit: str, points: bool = False):
+        self.name, self.title, self.quantity, self.unit = name, title, quantity, unit
+        self.points = points  # values of windows: dots, not a line
+        self.curves = []
+
+    def add(self, label, colour, times, values, exact=False):
+        pairs = [(t, v) for t, v in zip(times, values) if t is not None and v is not None]
+        if pairs:
+            self.curves.append({"label": label, "colour": colour, "exact": exact,
+                                "x": [t for t, _ in pairs], "y": [v for _, v in pairs]})
+
+    def data(self, limit: int, time_scale: tuple[float, str]) -> dict:
+        largest = max((abs(y) for curve in self.curves for y in curve["y"]), default=0.0)
+        factor, unit = scaled_unit(largest, self.unit)
+        curves = []
+        for curve in self.curves:
+            x, y = thinned(curve["x"], curve["y"], limit)
+            curves.append({**curve, "x": [rounded(t * time_scale[0], 8) for t in x],
+                           "y": [rounded(v * factor, 7) for v in y]})
+        label = f"{self.quantity} [{unit}]" if unit else self.quantity
+        return {"name": self.name, "label": label, "unit": unit, "points": self.points,
+                "time": time_scale[1], "curves": curves}
+
+
+def scaled_unit(largest: float, unit: str) -> tuple[float, str]:
+    """Factor and unit with an SI prefix so that the largest value has one to three digits."""
+    if unit not in PREFIXED_UNITS or largest == 0.0 or not math.isfinite(largest):
+        return 1.0, unit
+    # A little more than the value: a thousand that rounding left short is one of the next prefix.
+    exponent = 3 * math.floor(math.log10(largest * 1.000001) / 3)
+    exponent = min(12, max(-12, exponent))
+    return 10.0 ** -exponent, PREFIXES[exponent] + unit
+
+
+def rounded(value: float, digits: int) -> float:
+    return float(f"{value:.{digits}g}")
+
+
+def thinned(x: list, y: list, limit: int) -> tuple[list, list]:
+    """At most about `limit` points; every stretch keeps its smallest and its largest value."""
+    if len(x) <= limit:
+        return x, y
+    stretches = max(1, limit // 2 - 1)
+    keep = {0, len(x) - 1}
+    for k in range(stretches):
+        stretch = range(k * len(x) // stretches, (k + 1) * len(x) // stretches)
+        keep.add(min(stretch, key=y.__getitem__))
+        keep.add(max(stretch, key=y.__getitem__))
+    order = sorted(keep)
+    return [x[i] for i in order], [y[i] for i in order]
+
+
+def with_jumps(times: list, values: list, jumps: list[float]) -> tuple[list, list]:
+    """A step function that is sampled now and then, made vertical where its jumps are known."""
+    out_t, out_v = [], []
+    for k, (time, value) in enumerate(zip(times, values)):
+        if k > 0 and values[k - 1] is not None and value is not None:
+            for jump in jumps:
+                if times[k - 1] < jump <= time:
+                    out_t += [jump, jump]
+                    out_v += [values[k - 1], value]
+        out_t.append(time)
+        out_v.append(value)
+    return out_t, out_v
+
+
+def plus(values: list, offset: float, factor: float = 1.0) -> list:
+    return [None if v is None else factor * v + offset for v in values]
+
+
+def sum_of(columns: list[list]) -> list:
+    return [None if None in row else sum(row) for row in zip(*columns)]
+
+
+def colour_of(names: list[str], name: str) -> str:
+    return COLOURS[names.index(name) % len(COLOURS)]
+
+
+def port_figures(run: Run) -> list[Figure]:
+    located = all("position" in run.port(name) for name in run.ports())
+    place = "Position" if located else "Displacement"
+    position = Figure("position", f"{place} of the contact points", place.lower(), "m")
+    velocity = Figure("velocity", "Velocity of the contact points", "velocity", "m/s")
+    force = Figure("force", "Contact force", "force, compression positive", "N")
+    form = run.summary.get("closed_form", {})
+    jumps = [form[key] for key in ("begin", "end") if key in form]
+    for table, word in ((run.history, ""), (run.exact, ", exact")):
+        if table is None:
+            continue
+        times, exact = table["time"], bool(word)
+        for name in run.ports():
+            if f"{name}.u" not in table:
+                continue
+            colour = colour_of(run.bodies(), name.split(".")[0])
+            offset = run.port(name).get("position", 0.0) if located else 0.0
+            sign = -run.port(name).get("normal", 1.0)
+            position.add(name + word, colour, times, plus(table[f"{name}.u"], offset), exact)
+            steps = [(velocity, name + word, table[f"{name}.v"])]
+            # The exact force is the same on both sides: one curve, named once.
+            if not any(curve["exact"] for curve in force.curves):
+                label = "exact" if exact else name
+                steps.append((force, label, plus(table[f"{name}.force"], 0.0, sign)))
+            for figure, label, values in steps:
+                t, v = with_jumps(times, values, jumps) if exact else (times, values)
+                figure.add(label, colour, t, v, exact)
+    return [position, velocity, force]
+
+
+def body_figures(run: Run) -> list[Figure]:
+    mean = Figure("mean_velocity", "Mean velocity of the bodies", "mean velocity", "m/s")
+    energies = []
+    for body in run.bodies():
+        energy = Figure(f"energy_{body}", f"Energy of {body}", "energy", "J")
+        for table, word in ((run.history, ""), (run.exact, ", exact")):
+            if table is None or f"{body}.kinetic" not in table:
+                continue
+            times, exact = table["time"], bool(word)
+            if f"{body}.mean_velocity" in table:
+                mean.add(body + word, colour_of(run.bodies(), body), times,
+                         table[f"{body}.mean_velocity"], exact)
+            for colour, kind in zip(COLOURS, ("kinetic", "stored", "total")):
+                energy.add(kind + word, colour, times, table[f"{body}.{kind}"], exact)
+        energies.append(energy)
+    return [mean] + energies
+
+
+def energy_error_figure(run: Run) -> Figure:
+    figure = Figure("energy_error", "Energy error", "error", "%")
+    times = run.history["time"]
+    totals = {body: run.history[f"{body}.total"] for body in run.bodies()}
+    for body, values in totals.items():
+        if run.exact is None or f"{body}.total" not in run.exact:
+            continue
+        exact = run.exact[f"{body}.total"]
+        largest = max((abs(v) for v in exact if v is not None), default=0.0)
+        if largest > 0.0:
+            error = [None if v is None or e is None else 100.0 * (v - e) / largest
+                     for v, e in zip(values, exact)]
+            figure.add(body, colour_of(run.bodies(), body), times, error)
+    together = sum_of(list(totals.values())) if totals else []
+    first = next((v for v in together if v is not None), 0.0)
+    if first:
+        error = [None if v is None else 100.0 * (v - first) / first for v in together]
+        figure.add("all bodies", COLOURS[2], times, error)
+    return figure
+
+
+def interface_figures(run: Run) -> list[Figure]:
+    gap = Figure("gap", "Gap", "gap", "m")
+    iterations = Figure("iterations", "Schwarz iterations per window", "iterations", "", True)
+    names = [match[1] for match in run.history.matching(r"(.+)\.iterations")]
+    for name in names:
+        colour = colour_of(names, name)
+        for table, word in ((run.history, ""), (run.exact, ", exact")):
+            if table is not None and f"{name}.gap" in table:
+                gap.add(name + word, colour, table["time"], table[f"{name}.gap"], bool(word))
+        iterations.add(name, colour, run.history["time"], run.history[f"{name}.iterations"])
+    return [gap, iterations]
+
+
+def figures_of(run: Run) -> list[Figure]:
+    figures = (port_figures(run) + body_figures(run) + [energy_error_figure(run)] +
+               interface_figures(run))
+    return [figure for figure in figures if figure.curves]
+
+
+# ---- tables ------------------------------------------------------------
+
+
+def shown(value) -> str:
+    if value is None:
+        return "no value"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.6g}" if isinstance(value, (int, float)) else str(value)
+
+
+def table_of(headings: list[str], rows: list[list[str]], classes: list[str] | None = None) -> str:
+    """Cells are text; only the class of a row may change how it looks."""
+    head = "".join(f"<th>{html.escape(text)}</th>" for text in headings)
+    body = ""
+    for k, row in enumerate(rows):
+        kind = f' class="{classes[k]}"' if classes and classes[k] else ""
+        body += f"<tr{kind}>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>\n"
+    return (f'<div class="scroll"><table><thead><tr>{head}</tr></thead>'
+            f"<tbody>{body}</tbody></table></div>")
+
+
+def section(title: str, content: str) -> str:
+    return f"<section><h2>{html.escape(title)}</h2>{content}</section>" if content else ""
+
+
+def expectations_table(run: Run) -> str:
+    results = run.summary.get("expectations", [])
+    rows = [[result["measure"], result["expected"].replace("+-", "±"), shown(result["got"]),
+             "ok" if result["pass"] else "failed", result.get("because", "")] for result in results]
+    kinds = ["ok" if result["pass"] else "failed" for result in results]
+    return table_of(["measure", "expected", "got", "", "because"], rows, kinds) if rows else ""
+
+
+def closed_form_table(run: Run) -> str:
+    form, measures = run.summary.get("closed_form"), run.summary.get("measures", {})
+    if not form:
+        return ""
+    contact, lasts = f"contact.{form['interface']}", form["duration"]
+    compared = [("begin of contact", "s", form["begin"], f"{contact}.begin", lasts),
+                ("end of contact", "s", form["end"], f"{contact}.end", lasts),
+                ("duration of contact", "s", lasts, f"{contact}.duration", lasts),
+                ("mean contact force", "N", form["force"], f"{contact}.force_mean", form["force"])]
+    for body, exact in form.get("bodies", {}).items():
+        if not exact["wall"]:
+            scale = form["closing_speed"]
+            compared.append((f"mean velocity of {body} at the end", "m/s",
+                             exact["mean_velocity_end"], f"mean_velocity.{body}.end", scale))
+    rows = []
+    for quantity, unit, exact, name, scale in compared:
+        got = measures.get(name)
+        error = "" if got is None else f"{100.0 * (got - exact) / scale:.3g} %"
+        rows.append([f"{quantity} [{unit}]", shown(exact), shown(got), error])
+    note = ("<p class='note'>Errors are relative: times to the exact duration of contact, "
+            "velocities to the closing speed.</p>")
+    return table_of(["quantity", "exact", "computed", "error"], rows) + note
+
+
+def details(run: Run) -> str:
+    summary = run.summary
+    timing = summary.get("timing", {})
+    rows = [["wall time [s]", shown(timing.get("wall_s"))]] if timing else []
+    rows += [[f"computing in {body} [s]", shown(seconds)]
+             for body, seconds in timing.get("compute_s", {}).items()]
+    if "overhead_per_exchange_us_median" in timing:
+        rows.append(["overhead per exchange, median [µs]",
+                     shown(timing["overhead_per_exchange_us_median"])])
+    for key in ("windows", "contact_windows", "exchanges", "state_hash"):
+        if key in summary:
+            rows.append([key.replace("_", " "), str(summary[key])])
+    rows += [[f"{body['name']}", body["model"]] for body in summary.get("bodies", [])]
+    rows += [[f"version of {name}", text] for name, text in summary.get("versions", {}).items()]
+    events = [[shown(event.get("time")), event.get("kind", ""), event.get("subject", ""),
+               event.get("text", "")] for event in run.events[:200]]
+    measures = [[name, shown(value)] for name, value in summary.get("measures", {}).items()]
+    parts = [("The run", table_of(["", ""], rows) if rows else ""),
+             ("Events", table_of(["time [s]", "event", "of", ""], events) if events else ""),
+             ("All measures", table_of(["measure", "value"], measures) if measures else "")]
+    return "".join(f"<details><summary>{title}</summary>{content}</details>"
+                   for title, content in parts if content)
+
+
+# ---- page ------------------------------------------------------------
+
+
+def status_of(run: Run) -> tuple[str, str]:
+    """Words for the badge and its kind."""
+    status = run.summary.get("status", "unfinished")
+    failed = sum(not result["pass"] for result in run.summary.get("expectations", []))
+    if status != "completed":
+        return status, "failed"
+    if failed:
+        return f"completed, {failed} expectation{'s' if failed > 1 else ''} failed", "failed"
+    return "completed", "ok"
+
+
+def canvas_of(figure: Figure) -> str:
+    title, name = html.escape(figure.title), html.escape(figure.name)
+    return (f'<figure><figcaption>{title}</figcaption><div class="plot">'
+            f'<canvas id="{name}" role="img" aria-label="{title}"></canvas></div></figure>\n')
+
+
+def page_of(run: Run, library: str, limit: int) -> str:
+    figures = figures_of(run)
+    times = [abs(t) for t in run.history["time"] if t is not None]
+    time_scale = scaled_unit(max(times, default=0.0), "s")
+    data = json.dumps([figure.data(limit, time_scale) for figure in figures],
+                      separators=(",", ":"), ensure_ascii=False)
+    title = run.summary.get("title") or "Run"
+    status, kind = status_of(run)
+    notes = "".join(f"<li>{html.escape(note)}</li>" for note in run.summary.get("notes", []))
+    plots = "".join(canvas_of(figure) for figure in figures)
+    dashes = ('<p class="note">Solid: computed. Dashed: closed form. Touch a curve for values; '
+              "touch a name to hide its curve.</p>")
+    template = string.Template(TEMPLATE.read_text(encoding="utf-8"))
+    return template.substitute(
+        title=html.escape(title), status=html.escape(status), kind=kind,
+        summary=section("Expectations", expectations_table(run)) +
+        section("Against the closed form", closed_form_table(run)),
+        figures=section("Figures", dashes + f'<div class="figures">{plots}</div>') if plots else "",
+        details=details(run), notes=section("Notes", f"<ul>{notes}</ul>") if notes else "",
+        library=library.replace("</script", "<\\/script"), data=data.replace("</", "<\\/"))
+
+
+def make_page(folder: Path, library_path: Path) -> str:
+    run = Run(folder)
+    if not library_path.is_file():
+        raise ReportError(f"the chart library {library_path} is not there. Install Debian's "
+                          "package libjs-chart.js, or name a copy with --chart-library.", 3)
+    library = library_path.read_text(encoding="utf-8")
+    limit = CURVE_POINTS
+    page = page_of(run, library, limit)
+    while len(page.encode()) > PAGE_LIMIT and limit > 50:
+        limit //= 2
+        page = page_of(run, library, limit)
+    return page
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="abut report", description="Makes a page of a run.")
+    parser.add_argument("directory", type=Path, metavar="DIR", help="the run's folder")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="default: DIR/report.html")
+    parser.add_argument("--chart-library", type=Path, metavar="FILE", default=CHART_LIBRARY,
+                        help="Chart.js 3 (default: that of Debian's package libjs-chart.js)")
+    options = parser.parse_args()
+    out = options.out or options.directory / "report.html"
+    try:
+        page = make_page(options.directory, options.chart_library)
+        temporary = out.with_name(out.name + ".tmp")
+        temporary.write_text(page, encoding="utf-8")
+        os.replace(temporary, out)
+    except ReportError as error:
+        print(f"abut report: {error}", file=sys.stderr)
+        return error.code
+    except OSError as error:
+        print(f"abut report: {error.filename}: {error.strerror}. Check that it can be read and "
+              "written.", file=sys.stderr)
+        return 3
+    print(out)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
