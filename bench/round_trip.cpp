@@ -1,6 +1,7 @@
 // What one exchange with a body in another process costs beyond the solve, against a bare ZeroMQ
-// ROUTER/DEALER round trip of the same frame sizes over the same kind of socket (ipc). Both are measured in
-// turns, block by block, so that a change of the machine's mood meets both; medians, one line per size.
+// ROUTER/DEALER round trip of the same frame sizes over the same kind of socket (ipc). Both are
+// measured in turns, block by block, so that a change of the machine's mood meets both; medians,
+// one line per size.
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -228,10 +229,11 @@ bool measure(OurExchange& ours, BareExchange& bare, int substeps) {
     }
   }
   const double ratio = quantile(of_ours, 0.5) / quantile(of_bare, 0.5);
-  fmt::print("{:>8} {:>7} {:>7}   {:>6.1f} ({:.1f} to {:.1f})   {:>6.1f} ({:.1f} to {:.1f})   {:.2f}\n",
-             substeps, sizes.first, sizes.second, quantile(of_bare, 0.5), quantile(of_bare, 0.1),
-             quantile(of_bare, 0.9), quantile(of_ours, 0.5), quantile(of_ours, 0.1),
-             quantile(of_ours, 0.9), ratio);
+  fmt::print(
+      "{:>8} {:>7} {:>7}   {:>6.1f} ({:.1f} to {:.1f})   {:>6.1f} ({:.1f} to {:.1f})   {:.2f}\n",
+      substeps, sizes.first, sizes.second, quantile(of_bare, 0.5), quantile(of_bare, 0.1),
+      quantile(of_bare, 0.9), quantile(of_ours, 0.5), quantile(of_ours, 0.1),
+      quantile(of_ours, 0.9), ratio);
   return ratio <= accepted_ratio;
 }
 
@@ -250,9 +252,11 @@ int main() {
     BareExchange bare(bare_at);
     fmt::print("Exchange over ipc, {} of each, in microseconds: median (10 % to 90 %)\n",
                blocks * exchanges_per_block);
-    fmt::print("substeps   bytes   bytes   bare ZeroMQ              exchange less solving    ratio\n");
+    fmt::print(
+        "substeps   bytes   bytes   bare ZeroMQ              exchange less solving    ratio\n");
     fmt::print("           there    back\n");
-    for (const int substeps : {1, 10, 100, 1000}) accepted = measure(ours, bare, substeps) && accepted;
+    for (const int substeps : {1, 10, 100, 1000})
+      accepted = measure(ours, bare, substeps) && accepted;
   }
   for (const pid_t id : {solver, echo}) {
     kill(id, SIGKILL);

@@ -29,10 +29,11 @@ void Caller::post(const char* verb) {
   verb_ = verb;
   request_.set_number(++number_);
   if (request_.ByteSizeLong() + frame_header_bytes > context_.limits.frame_bytes) {
-    throw RunError(fmt::format("{} for body '{}' would be a frame of {} bytes, above the limit of {}",
-                               under_way_text(), body_, request_.ByteSizeLong() + frame_header_bytes,
-                               context_.limits.frame_bytes),
-                   body_, "use shorter windows or fewer records per window");
+    throw RunError(
+        fmt::format("{} for body '{}' would be a frame of {} bytes, above the limit of {}",
+                    under_way_text(), body_, request_.ByteSizeLong() + frame_header_bytes,
+                    context_.limits.frame_bytes),
+        body_, "use shorter windows or fewer records per window");
   }
   frame_.seal(request_);
   under_way_ = true;
@@ -83,9 +84,10 @@ bool Caller::await_at_most(Milliseconds time) {
 
 bool Caller::is_reply(Bytes frame) {
   if (frame.size() > context_.limits.frame_bytes) {
-    throw RunError(fmt::format("body '{}' sent a frame of {} bytes while at {}; the limit is {} bytes",
-                               body_, frame.size(), under_way_text(), context_.limits.frame_bytes),
-                   body_, "use shorter windows or fewer records per window");
+    throw RunError(
+        fmt::format("body '{}' sent a frame of {} bytes while at {}; the limit is {} bytes", body_,
+                    frame.size(), under_way_text(), context_.limits.frame_bytes),
+        body_, "use shorter windows or fewer records per window");
   }
   const std::optional<Bytes> payload = open_frame(frame);
   if (!payload || !parse_into(reply_, *payload)) {
@@ -95,11 +97,11 @@ bool Caller::is_reply(Bytes frame) {
       repeat();
       return false;
     }
-    throw RunError(fmt::format("body '{}' sent {} corrupt frames while at {}, the last one of {} bytes "
-                               "(limit {} bytes)",
-                               body_, corrupt_, under_way_text(), corrupt_bytes_,
-                               context_.limits.frame_bytes),
-                   body_, "make sure that an abut-solver of this version is at the other end");
+    throw RunError(
+        fmt::format("body '{}' sent {} corrupt frames while at {}, the last one of {} bytes "
+                    "(limit {} bytes)",
+                    body_, corrupt_, under_way_text(), corrupt_bytes_, context_.limits.frame_bytes),
+        body_, "make sure that an abut-solver of this version is at the other end");
   }
   if (reply_.has_hello()) {
     greeted_again(reply_.hello());
@@ -117,7 +119,8 @@ bool Caller::is_reply(Bytes frame) {
 void Caller::greeted_again(const v1::Hello& hello) {
   if (session_ && hello.session() != *session_) {
     throw RunError(fmt::format("a second solver with the name of body '{}' has connected", body_),
-                   body_, "start one solver per body; after the loss of a solver start the run again");
+                   body_,
+                   "start one solver per body; after the loss of a solver start the run again");
   }
   repeat();  // the connection is new: what was on the old one is lost
 }
@@ -154,8 +157,9 @@ void Caller::look_around() {
 }
 
 void Caller::refuse_reply(const std::string& why) const {
-  throw RunError(fmt::format("body '{}' gave no sound answer to {}: {}", body_, under_way_text(), why),
-                 body_, "this is a fault of the solver, not of the scene");
+  throw RunError(
+      fmt::format("body '{}' gave no sound answer to {}: {}", body_, under_way_text(), why), body_,
+      "this is a fault of the solver, not of the scene");
 }
 
 void Caller::rethrow(const v1::Fault& fault) const {

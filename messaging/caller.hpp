@@ -22,18 +22,20 @@ struct CallContext {
   Deadlines deadlines;
 };
 
-/// Numbered requests to one body, one at a time: repeats them when no reply comes, gives up in words when
-/// none will come. The body executes each number at most once, so that a repeat is harmless.
+/// Numbered requests to one body, one at a time: repeats them when no reply comes, gives up in
+/// words when none will come. The body executes each number at most once, so that a repeat is
+/// harmless.
 class Caller {
  public:
   Caller(std::string body, const CallContext& context);
 
   /// The message to fill; it still holds the last one, so that its memory is used again.
   v1::Request& request() { return request_; }
-  /// Numbers, encodes and sends the request; `verb` names it in error messages and must be a literal.
+  /// Numbers, encodes and sends the request; `verb` names it in error messages and must be a
+  /// literal.
   void post(const char* verb);
-  /// Waits for the reply to the request under way. Throws RunError when it will not come, and the error
-  /// that the body reports, if it reports one.
+  /// Waits for the reply to the request under way. Throws RunError when it will not come, and the
+  /// error that the body reports, if it reports one.
   const v1::Reply& await();
   /// post and await.
   const v1::Reply& call(const char* verb);
@@ -64,11 +66,11 @@ class Caller {
   std::uint64_t number_ = 0;
   std::optional<std::uint64_t> session_;
   bool under_way_ = false;
-  TimePoint begun_{};      // of the request
-  TimePoint deadline_{};   // moves with every sign of progress
+  TimePoint begun_{};     // of the request
+  TimePoint deadline_{};  // moves with every sign of progress
   TimePoint repeat_at_{};
-  Milliseconds pause_{};   // until the next repeat; doubles
-  int corrupt_ = 0;        // damaged frames during this request
+  Milliseconds pause_{};           // until the next repeat; doubles
+  int corrupt_ = 0;                // damaged frames during this request
   std::size_t corrupt_bytes_ = 0;  // size of the last one
 };
 

@@ -65,7 +65,8 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
     return;
   }
   if (pid_ > 0) waitpid(pid_, nullptr, 0);
-  throw RunError(fmt::format("cannot start {}: {}", program, std::strerror(error)), program, remedy);
+  throw RunError(fmt::format("cannot start {}: {}", program, std::strerror(error)), program,
+                 remedy);
 }
 
 ChildProcess::~ChildProcess() {
@@ -78,7 +79,8 @@ ChildProcess::~ChildProcess() {
 
 bool ChildProcess::reap() {
   siginfo_t info{};
-  if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG) == 0 && info.si_pid == pid_) {
+  if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG) == 0 &&
+      info.si_pid == pid_) {
     ended_ = true;
     code_ = info.si_code;
     status_ = info.si_status;
@@ -90,7 +92,8 @@ bool ChildProcess::ended(Milliseconds wait) {
   if (ended_ || reap()) return true;
   const TimePoint until = std::chrono::steady_clock::now() + wait;
   for (;;) {
-    const Milliseconds left = std::chrono::ceil<Milliseconds>(until - std::chrono::steady_clock::now());
+    const Milliseconds left =
+        std::chrono::ceil<Milliseconds>(until - std::chrono::steady_clock::now());
     if (left.count() <= 0) return reap();
     if (descriptor_ >= 0) {
       pollfd watched{descriptor_, POLLIN, 0};

@@ -9,8 +9,9 @@
 
 namespace abut {
 
-/// A process that this one has started and that does not outlive it: the kernel kills it when the thread
-/// that started it ends. It has a process group of its own, so that Ctrl-C reaches the parent alone.
+/// A process that this one has started and that does not outlive it: the kernel kills it when the
+/// thread that started it ends. It has a process group of its own, so that Ctrl-C reaches the
+/// parent alone.
 class ChildProcess {
  public:
   /// Throws RunError when the program cannot be started.

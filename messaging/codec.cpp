@@ -123,10 +123,11 @@ void decode(const v1::PortResponse& from, const Port& port, const FieldPath& pat
 
 void decode(const v1::BodyRecord& from, std::size_t dim, const FieldPath& path, BodyRecord& to) {
   to.time = number(from.time(), FieldPath{&path, "time"});
-  to.energy = Energy{.kinetic = number(from.kinetic(), FieldPath{&path, "kinetic"}),
-                     .stored = number(from.stored(), FieldPath{&path, "stored"}),
-                     .dissipated = number(from.dissipated(), FieldPath{&path, "dissipated"}),
-                     .external_work = number(from.external_work(), FieldPath{&path, "external_work"})};
+  to.energy =
+      Energy{.kinetic = number(from.kinetic(), FieldPath{&path, "kinetic"}),
+             .stored = number(from.stored(), FieldPath{&path, "stored"}),
+             .dissipated = number(from.dissipated(), FieldPath{&path, "dissipated"}),
+             .external_work = number(from.external_work(), FieldPath{&path, "external_work"})};
   take(from.momentum(), dim, true, FieldPath{&path, "momentum"}, to.momentum);
 }
 
@@ -174,14 +175,14 @@ void decode(const v1::Advance& from, std::size_t ports, Advance& to) {
   to.window.end = number(from.window().end(), window);
   if (to.window.end <= to.window.begin) window.fail("does not end after its begin");
   if (from.records() < 1 || from.records() > most_records) {
-    FieldPath{&path, "records"}.fail(fmt::format("is {}, not 1 to {}", from.records(), most_records));
+    FieldPath{&path, "records"}.fail(
+        fmt::format("is {}, not 1 to {}", from.records(), most_records));
   }
   to.records = from.records();
   if (from.sampling() != v1::SAMPLING_SUBSTEPS && from.sampling() != v1::SAMPLING_RECORDS) {
     FieldPath{&path, "sampling"}.fail("has an unknown value");
   }
-  to.sampling =
-      from.sampling() == v1::SAMPLING_SUBSTEPS ? Sampling::substeps : Sampling::records;
+  to.sampling = from.sampling() == v1::SAMPLING_SUBSTEPS ? Sampling::substeps : Sampling::records;
   if (static_cast<std::size_t>(from.boundary_size()) != ports) {
     FieldPath{&path, "boundary"}.fail(
         fmt::format("has {} entries for {} ports", from.boundary_size(), ports));

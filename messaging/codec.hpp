@@ -14,12 +14,13 @@ class CodecError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Parses into a message that is used again and again: the arrays of an Advance or Advanced that it holds
-/// keep their memory. False when the bytes are no such message.
+/// Parses into a message that is used again and again: the arrays of an Advance or Advanced that it
+/// holds keep their memory. False when the bytes are no such message.
 bool parse_into(v1::Request& message, Bytes payload);
 bool parse_into(v1::Reply& message, Bytes payload);
 
-// Contract to wire. The target may hold an earlier message: every field is overwritten, memory is kept.
+// Contract to wire. The target may hold an earlier message: every field is overwritten, memory is
+// kept.
 void encode(const Advance& from, v1::Advance& to);
 void encode(const Response& from, v1::Advanced& to);
 void encode(const Failed& from, v1::Failed& to);

@@ -12,7 +12,8 @@ namespace {
 
 constexpr int most_width = 1 << 24;  // points x dimension of one port
 
-/// Looks at exponents, because comparing each number would keep the loop from running at full speed.
+/// Looks at exponents, because comparing each number would keep the loop from running at full
+/// speed.
 bool all_finite(const double* values, std::size_t count) {
   constexpr std::uint64_t exponent = 0x7ff0'0000'0000'0000;
   std::uint64_t bad = 0;
@@ -40,8 +41,9 @@ std::string FieldPath::text() const {
 
 void FieldPath::fail(const std::string& why) const { throw CodecError(text() + ' ' + why); }
 
-// Clear() of a oneof would free what it holds. When the case is likely to come again, only the inside is
-// cleared and the new message merged into it; required parts (steps, window) tell an empty message apart.
+// Clear() of a oneof would free what it holds. When the case is likely to come again, only the
+// inside is cleared and the new message merged into it; required parts (steps, window) tell an
+// empty message apart.
 bool parse_into(v1::Request& message, Bytes payload) {
   if (message.has_advance()) {
     message.mutable_advance()->Clear();

@@ -13,8 +13,8 @@ class MessageLite;
 
 namespace abut {
 
-/// A frame is a 4-byte magic, the 4-byte size of the payload, the 8-byte XXH3 checksum of the payload, and
-/// the payload: one protobuf message. Integers are little-endian.
+/// A frame is a 4-byte magic, the 4-byte size of the payload, the 8-byte XXH3 checksum of the
+/// payload, and the payload: one protobuf message. Integers are little-endian.
 inline constexpr std::size_t frame_header_bytes = 16;
 
 /// Buffer of an outgoing frame; keeps its memory from message to message.

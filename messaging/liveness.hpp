@@ -11,8 +11,9 @@
 
 namespace abut {
 
-/// Tells why a peer can no longer answer. Asked only when a wait has timed out, so it costs nothing while
-/// messages flow. A long solve is no reason: the peer's I/O thread answers heartbeats meanwhile.
+/// Tells why a peer can no longer answer. Asked only when a wait has timed out, so it costs nothing
+/// while messages flow. A long solve is no reason: the peer's I/O thread answers heartbeats
+/// meanwhile.
 class Liveness {
  public:
   virtual ~Liveness() = default;
@@ -27,7 +28,8 @@ class AlwaysAlive : public Liveness {
   std::string loss(TimePoint) override { return {}; }
 };
 
-/// The coordinator's view of one body: its process, if the coordinator started it, and its connection.
+/// The coordinator's view of one body: its process, if the coordinator started it, and its
+/// connection.
 class BodyLiveness : public Liveness {
  public:
   /// `child` may be null: somebody else started the solver.

@@ -10,8 +10,8 @@
 
 namespace abut {
 
-/// Two queues: the wire path inside one process. Each end may live in its own thread; with `on_idle` both
-/// ends run in one thread under a clock that moves only when nothing is left to do.
+/// Two queues: the wire path inside one process. Each end may live in its own thread; with
+/// `on_idle` both ends run in one thread under a clock that moves only when nothing is left to do.
 class MemoryLink {
  public:
   MemoryLink();

@@ -23,12 +23,12 @@ struct Limits {
 
 /// Bounds on how long anything is waited for.
 struct Deadlines {
-  Milliseconds request{60'000};   // without a reply or a sign of progress
-  Milliseconds repeat{2'000};     // a request is sent again after this long, then twice, ...
-  Milliseconds slice{100};        // between two looks at the peer's liveness
+  Milliseconds request{60'000};    // without a reply or a sign of progress
+  Milliseconds repeat{2'000};      // a request is sent again after this long, then twice, ...
+  Milliseconds slice{100};         // between two looks at the peer's liveness
   Milliseconds reconnect{10'000};  // a lost TCP connection may come back for this long
-  Milliseconds progress{1'000};   // least time between two signs of progress
-  Milliseconds hello{1'000};      // between two attempts to greet
+  Milliseconds progress{1'000};    // least time between two signs of progress
+  Milliseconds hello{1'000};       // between two attempts to greet
 };
 
 /// What a body is made from: the scene as text, and where in it the body's own keys are.

@@ -11,8 +11,8 @@
 
 namespace abut {
 
-/// A Subdomain whose body is elsewhere. One request and one reply per advance; save and restore ride on the
-/// request that follows them and never cost a message.
+/// A Subdomain whose body is elsewhere. One request and one reply per advance; save and restore
+/// ride on the request that follows them and never cost a message.
 class RemoteSubdomain : public Subdomain {
  public:
   /// The caller must outlive this object.

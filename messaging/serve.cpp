@@ -20,12 +20,12 @@ std::uint64_t random_session() {
 
 void check_kernel(const v1::Kernel& kernel, const Description& body) {
   if (kernel.port() < 0 || kernel.port() >= static_cast<int>(body.ports.size())) {
-    throw CodecError(fmt::format("kernel.port is {}, the body has {} ports", kernel.port(),
-                                 body.ports.size()));
+    throw CodecError(
+        fmt::format("kernel.port is {}, the body has {} ports", kernel.port(), body.ports.size()));
   }
   if (kernel.count() < 1 || kernel.count() > most_kernel_steps || !(kernel.step() > 0.0)) {
-    throw CodecError(fmt::format("kernel of {} steps of {} s is out of range", kernel.count(),
-                                 kernel.step()));
+    throw CodecError(
+        fmt::format("kernel of {} steps of {} s is out of range", kernel.count(), kernel.step()));
   }
 }
 
@@ -62,10 +62,10 @@ void Server::greet(Milliseconds patience) {
   while (!welcome_) {
     const TimePoint now = channel_.now();
     if (now - begin >= patience) {
-      throw CoordinatorLost(
-          fmt::format("no coordinator has answered body '{}' within {} s", name_,
-                      static_cast<double>(patience.count()) / 1000.0),
-          "", "start `abut run` with the scene that has this body and this endpoint");
+      throw CoordinatorLost(fmt::format("no coordinator has answered body '{}' within {} s", name_,
+                                        static_cast<double>(patience.count()) / 1000.0),
+                            "",
+                            "start `abut run` with the scene that has this body and this endpoint");
     }
     if (now >= next) {
       say_hello();
@@ -119,8 +119,9 @@ void Server::execute() {
   try {
     if (number != executed_ + 1) {
       fault(v1::FAULT_KIND_RUN,
-            fmt::format("request {} follows request {}: this solver has not taken part from the begin",
-                        number, executed_),
+            fmt::format(
+                "request {} follows request {}: this solver has not taken part from the begin",
+                number, executed_),
             name_, "start the run again");
     } else {
       dispatch();
@@ -229,7 +230,8 @@ void Server::advance(const v1::Advance& request) {
 }
 
 void Server::show_progress() {
-  // Substeps may be much shorter than a look at the clock: look the more rarely the more often called.
+  // Substeps may be much shorter than a look at the clock: look the more rarely the more often
+  // called.
   if (++hook_calls_ < hook_stride_) return;
   hook_calls_ = 0;
   const TimePoint now = channel_.now();

@@ -15,10 +15,12 @@
 
 namespace abut {
 
-/// Cheap to call between any two substeps: says at most once a second that the solve is still going on.
+/// Cheap to call between any two substeps: says at most once a second that the solve is still going
+/// on.
 using ProgressHook = std::function<void()>;
 
-/// Makes the body when its specification has arrived. Throws InputError when the specification is wrong.
+/// Makes the body when its specification has arrived. Throws InputError when the specification is
+/// wrong.
 using MakeBody =
     std::function<std::unique_ptr<Subdomain>(const Specification&, const ProgressHook&)>;
 
@@ -28,8 +30,9 @@ class CoordinatorLost : public RunError {
   using RunError::RunError;
 };
 
-/// Answers the requests of one coordinator with any Subdomain. Every number is executed at most once; the
-/// last reply is kept, so that a repeated request gets the same answer and nothing runs twice.
+/// Answers the requests of one coordinator with any Subdomain. Every number is executed at most
+/// once; the last reply is kept, so that a repeated request gets the same answer and nothing runs
+/// twice.
 class Server {
  public:
   Server(std::string body, MakeBody make, Channel& channel, Liveness& coordinator,
@@ -39,8 +42,8 @@ class Server {
 
   /// Says hello until the coordinator answers. Throws RunError after `patience`, or when refused.
   void greet(Milliseconds patience);
-  /// Handles at most one frame; false after Finish. Throws CoordinatorLost when there is no coordinator
-  /// any more.
+  /// Handles at most one frame; false after Finish. Throws CoordinatorLost when there is no
+  /// coordinator any more.
   bool step(Milliseconds wait);
 
  private:

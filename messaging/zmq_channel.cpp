@@ -23,12 +23,13 @@ void configure(zmq::socket_t& socket, const Limits& limits) {
   socket.set(zmq::sockopt::sndhwm, 64);   // frames; one request is under way per body
   socket.set(zmq::sockopt::rcvhwm, 64);
   socket.set(zmq::sockopt::sndtimeo, 0);  // never blocks: requests are repeated by whoever waits
-  // Frames above the limit are refused by size and name; far above it the connection ends before memory does.
+  // Frames above the limit are refused by size and name; far above it the connection ends before
+  // memory does.
   socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(2 * limits.frame_bytes));
-  socket.set(zmq::sockopt::handshake_ivl, 5'000);        // [ms]
-  socket.set(zmq::sockopt::heartbeat_ivl, 2'000);        // [ms] answered by the peer's I/O thread,
-  socket.set(zmq::sockopt::heartbeat_timeout, 10'000);   // [ms] also while its body is solving
-  socket.set(zmq::sockopt::heartbeat_ttl, 10'000);       // [ms]
+  socket.set(zmq::sockopt::handshake_ivl, 5'000);       // [ms]
+  socket.set(zmq::sockopt::heartbeat_ivl, 2'000);       // [ms] answered by the peer's I/O thread,
+  socket.set(zmq::sockopt::heartbeat_timeout, 10'000);  // [ms] also while its body is solving
+  socket.set(zmq::sockopt::heartbeat_ttl, 10'000);      // [ms]
   socket.set(zmq::sockopt::tcp_keepalive, 1);
   socket.set(zmq::sockopt::ipv6, 0);
 }
@@ -59,7 +60,8 @@ Bytes bytes_of(const zmq::message_t& message) {
 
 }  // namespace
 
-// ---- hub --------------------------------------------------------------------------------------------
+// ---- hub
+// --------------------------------------------------------------------------------------------
 
 struct ZmqHub::Peer : Channel {
   Peer(ZmqHub& owner, int number, std::string routing_id)
@@ -126,7 +128,8 @@ bool ZmqHub::receive_message(Milliseconds wait) {
   if (!receive_part(socket_, sender_)) return false;
   // Parts of one message arrive together, so the second one never waits.
   bool whole = sender_.more() && receive_part(socket_, incoming_);
-  while (whole && incoming_.more()) {  // not ours: one part is a frame; the last one fails the checksum
+  while (whole &&
+         incoming_.more()) {  // not ours: one part is a frame; the last one fails the checksum
     whole = receive_part(socket_, incoming_);
   }
   if (!whole) incoming_.rebuild();
@@ -167,8 +170,8 @@ bool ZmqHub::receive_for(int wanted, Milliseconds wait) {
       peer.waiting.push_back(std::move(incoming_));
       if (wanted < 0) return true;
     }
-    wait = std::max(Milliseconds(0), std::chrono::ceil<Milliseconds>(
-                                         until - std::chrono::steady_clock::now()));
+    wait = std::max(Milliseconds(0),
+                    std::chrono::ceil<Milliseconds>(until - std::chrono::steady_clock::now()));
   }
   return false;
 }
@@ -197,8 +200,8 @@ void ZmqHub::read_monitor() {
 int ZmqHub::disconnects(int peer, TimePoint since) {
   read_monitor();
   const std::vector<TimePoint>& times = peers_.at(static_cast<std::size_t>(peer))->disconnects;
-  return static_cast<int>(std::count_if(
-      times.begin(), times.end(), [since](const TimePoint& time) { return time >= since; }));
+  return static_cast<int>(std::count_if(times.begin(), times.end(),
+                                        [since](const TimePoint& time) { return time >= since; }));
 }
 
 std::optional<TimePoint> ZmqHub::gone_since(int peer) {
@@ -206,14 +209,15 @@ std::optional<TimePoint> ZmqHub::gone_since(int peer) {
   return peers_.at(static_cast<std::size_t>(peer))->gone;
 }
 
-// ---- dealer -----------------------------------------------------------------------------------------
+// ---- dealer
+// -----------------------------------------------------------------------------------------
 
 ZmqDealer::ZmqDealer(const std::string& endpoint, const std::string& body, const Limits& limits)
     : context_(1), socket_(context_, zmq::socket_type::dealer) {
   configure(socket_, limits);
-  socket_.set(zmq::sockopt::connect_timeout, 2'000);   // [ms]
-  socket_.set(zmq::sockopt::reconnect_ivl, 20);        // [ms] start order does not matter,
-  socket_.set(zmq::sockopt::reconnect_ivl_max, 500);   // [ms] and costs little
+  socket_.set(zmq::sockopt::connect_timeout, 2'000);  // [ms]
+  socket_.set(zmq::sockopt::reconnect_ivl, 20);       // [ms] start order does not matter,
+  socket_.set(zmq::sockopt::reconnect_ivl_max, 500);  // [ms] and costs little
   try {
     socket_.set(zmq::sockopt::routing_id, body);
     monitor_ = std::make_unique<ZmqMonitor>(context_, socket_);

@@ -15,8 +15,8 @@
 
 namespace abut {
 
-/// The coordinator's socket: one ROUTER that serves all bodies, each through a channel of its own. A frame
-/// that arrives for another body than the one waited for is kept for it.
+/// The coordinator's socket: one ROUTER that serves all bodies, each through a channel of its own.
+/// A frame that arrives for another body than the one waited for is kept for it.
 class ZmqHub {
  public:
   explicit ZmqHub(const Limits& limits);
@@ -24,10 +24,11 @@ class ZmqHub {
   ZmqHub(const ZmqHub&) = delete;
   ZmqHub& operator=(const ZmqHub&) = delete;
 
-  /// Listens at "ipc://path" or "tcp://interface:port"; answers the endpoint with its port filled in.
-  /// Throws InputError when the endpoint cannot be had.
+  /// Listens at "ipc://path" or "tcp://interface:port"; answers the endpoint with its port filled
+  /// in. Throws InputError when the endpoint cannot be had.
   std::string bind(const std::string& endpoint);
-  /// Adds the peer whose routing id is `name`; peers are numbered from 0 in the order of these calls.
+  /// Adds the peer whose routing id is `name`; peers are numbered from 0 in the order of these
+  /// calls.
   int add_peer(const std::string& name);
   Channel& channel(int peer);
 

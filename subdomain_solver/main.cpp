@@ -1,7 +1,8 @@
-// One body in a process of its own: connects, is told what it is, and serves until it is told to finish.
-// Exit codes: 0 after Finish, 2 for a command line that cannot be, 3 when the coordinator is gone.
-#include <CLI/CLI.hpp>
+// One body in a process of its own: connects, is told what it is, and serves until it is told to
+// finish. Exit codes: 0 after Finish, 2 for a command line that cannot be, 3 when the coordinator
+// is gone.
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <memory>
@@ -46,8 +47,8 @@ int main(int argc, char** argv) {
   app.add_option("--patience", patience, "how long to wait for a coordinator [s]")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 86'400.0));
-  app.set_version_flag("--version", fmt::format("abut-solver {}, protocol {}", abut::build_version(),
-                                                abut::protocol_version));
+  app.set_version_flag("--version", fmt::format("abut-solver {}, protocol {}",
+                                                abut::build_version(), abut::protocol_version));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -15,8 +15,8 @@
 
 namespace abut {
 
-/// The smallest Subdomain: a point mass on a line, pushed by a spring to the origin and by the force on its
-/// one port. Deterministic; rewinds exactly; counts what is asked of it.
+/// The smallest Subdomain: a point mass on a line, pushed by a spring to the origin and by the
+/// force on its one port. Deterministic; rewinds exactly; counts what is asked of it.
 class FakeSubdomain : public Subdomain {
  public:
   struct Options {
@@ -97,7 +97,8 @@ class FakeSubdomain : public Subdomain {
     port.approach_bound = std::abs(v_);
     fill_records(window, response);
     response.steps = options_.substeps;
-    if (!std::isfinite(u_)) return Failed{Failed::Cause::non_finite, window.end, "the mass is lost"};
+    if (!std::isfinite(u_))
+      return Failed{Failed::Cause::non_finite, window.end, "the mass is lost"};
     return Advanced{};
   }
 

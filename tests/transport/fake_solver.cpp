@@ -1,5 +1,5 @@
-// A solver process for the transport tests. The variable ABUT_FAKE_<body> chooses its manners; without it
-// the process serves a point mass as abut-solver serves a bar.
+// A solver process for the transport tests. The variable ABUT_FAKE_<body> chooses its manners;
+// without it the process serves a point mass as abut-solver serves a bar.
 #include <unistd.h>
 
 #include <chrono>
@@ -28,8 +28,9 @@ class Spoiler : public Channel {
     if (!spoiling) return inner_.send(frame);
     std::vector<std::byte> bytes(frame.begin(), frame.end());
     if (manners_ == "corrupt") bytes.back() ^= std::byte{1};
-    if (manners_ == "oversized") bytes.resize(1'500'000);  // above the test's limit of 1,000,000 bytes
-    if (manners_ == "huge") bytes.resize(3'000'000);       // where libzmq ends the connection
+    if (manners_ == "oversized")
+      bytes.resize(1'500'000);                        // above the test's limit of 1,000,000 bytes
+    if (manners_ == "huge") bytes.resize(3'000'000);  // where libzmq ends the connection
     return inner_.send(bytes);
   }
   std::optional<Bytes> receive(Milliseconds wait) override { return inner_.receive(wait); }

@@ -1,6 +1,6 @@
-// Goal: bodies in processes of their own behave as bodies in this one; whatever goes wrong is named within
-// its deadline; no process is left behind.
-// Oracle: state hashes of local bodies, the words of the errors, and kill(pid, 0).
+// Goal: bodies in processes of their own behave as bodies in this one; whatever goes wrong is named
+// within its deadline; no process is left behind. Oracle: state hashes of local bodies, the words
+// of the errors, and kill(pid, 0).
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -47,7 +47,8 @@ class LaunchTest : public testing::Test {
     setenv(variables_.back().c_str(), manners.c_str(), 1);
   }
   void start() {
-    launch_ = std::make_unique<Launch>(scene_, Specification{"scene.yaml", text_, {}, ""}, options_);
+    launch_ =
+        std::make_unique<Launch>(scene_, Specification{"scene.yaml", text_, {}, ""}, options_);
     ids_ = launch_->process_ids();
     bodies_ = launch_->take_bodies();
   }
@@ -132,7 +133,8 @@ TEST_F(LaunchTest, AKilledSolverIsNamedWithSignalAndRequest) {
   advance_first();
   kill(static_cast<pid_t>(ids_[0]), SIGKILL);
   const std::string error = error_within(2.0, [this] { advance_first(); });
-  EXPECT_TRUE(contains(error, "body 'left' was killed by signal 9 (Killed) while at advance (request 3)"))
+  EXPECT_TRUE(
+      contains(error, "body 'left' was killed by signal 9 (Killed) while at advance (request 3)"))
       << error;
 }
 
@@ -140,7 +142,8 @@ TEST_F(LaunchTest, ASolverThatDiesInTheMiddleOfASolveIsNamed) {
   add_body("left", "crash");
   start();
   const std::string error = error_within(2.0, [this] { advance_first(); });
-  EXPECT_TRUE(contains(error, "body 'left' was killed by signal 9 (Killed) while at advance (request 2)"))
+  EXPECT_TRUE(
+      contains(error, "body 'left' was killed by signal 9 (Killed) while at advance (request 2)"))
       << error;
 }
 
@@ -157,15 +160,17 @@ TEST_F(LaunchTest, ABodyThatNobodyStartsIsNamedWithTheCommandThatIsMissing) {
   add_body("left");
   scene_.network.endpoint = "tcp://127.0.0.1:47614";
   scene_.bodies[0].second.launch = ConnectLaunch{0.3};
-  EXPECT_EQ(error_within(2.0, [this] { start(); }),
-            "body 'left' did not connect to tcp://127.0.0.1:47614 within 0.3 s | start `abut-solver "
-            "--connect tcp://127.0.0.1:47614 --body left`");
+  EXPECT_EQ(
+      error_within(2.0, [this] { start(); }),
+      "body 'left' did not connect to tcp://127.0.0.1:47614 within 0.3 s | start `abut-solver "
+      "--connect tcp://127.0.0.1:47614 --body left`");
 }
 
 TEST_F(LaunchTest, ASolverThatExitsAtOnceIsNamedWithItsCode) {
   add_body("left", "exit");
   const std::string error = error_within(2.0, [this] { start(); });
-  EXPECT_TRUE(contains(error, "the solver of body 'left' exited with code 7 before it had connected"))
+  EXPECT_TRUE(
+      contains(error, "the solver of body 'left' exited with code 7 before it had connected"))
       << error;
 }
 
@@ -173,21 +178,24 @@ TEST_F(LaunchTest, AProgramThatDoesNotExistIsNamed) {
   options_.solver = "/nowhere/abut-solver";
   add_body("left");
   const std::string error = error_within(2.0, [this] { start(); });
-  EXPECT_TRUE(contains(error, "cannot start /nowhere/abut-solver: No such file or directory")) << error;
+  EXPECT_TRUE(contains(error, "cannot start /nowhere/abut-solver: No such file or directory"))
+      << error;
 }
 
 TEST_F(LaunchTest, AnotherProtocolVersionIsRefusedWithBothVersions) {
   add_body("left", "old_version");
   const std::string error = error_within(2.0, [this] { start(); });
-  EXPECT_TRUE(contains(error, "the solver of body 'left' (build 9.9.9) speaks protocol 2")) << error;
+  EXPECT_TRUE(contains(error, "the solver of body 'left' (build 9.9.9) speaks protocol 2"))
+      << error;
   EXPECT_TRUE(contains(error, "speaks protocol 1")) << error;
 }
 
 TEST_F(LaunchTest, AStrangeFirstFrameIsNamedWithItsSize) {
   add_body("left", "babble");
   const std::string error = error_within(2.0, [this] { start(); });
-  EXPECT_TRUE(contains(error, "body 'left' did not say hello: its first frame, of 99 bytes (limit "
-                              "1000000), is corrupt"))
+  EXPECT_TRUE(contains(error,
+                       "body 'left' did not say hello: its first frame, of 99 bytes (limit "
+                       "1000000), is corrupt"))
       << error;
 }
 
@@ -195,7 +203,8 @@ TEST_F(LaunchTest, CorruptRepliesAreNamedWithSizeAndLimit) {
   add_body("left", "corrupt");
   start();
   const std::string error = error_within(2.0, [this] { advance_first(); });
-  EXPECT_TRUE(contains(error, "body 'left' sent 16 corrupt frames while at advance (request 2)")) << error;
+  EXPECT_TRUE(contains(error, "body 'left' sent 16 corrupt frames while at advance (request 2)"))
+      << error;
   EXPECT_TRUE(contains(error, "(limit 1000000 bytes)")) << error;
 }
 
@@ -203,8 +212,9 @@ TEST_F(LaunchTest, AnOversizedReplyIsNamedWithSizeAndLimit) {
   add_body("left", "oversized");
   start();
   const std::string error = error_within(2.0, [this] { advance_first(); });
-  EXPECT_TRUE(contains(error, "body 'left' sent a frame of 1500000 bytes while at advance (request 2); "
-                              "the limit is 1000000 bytes"))
+  EXPECT_TRUE(contains(error,
+                       "body 'left' sent a frame of 1500000 bytes while at advance (request 2); "
+                       "the limit is 1000000 bytes"))
       << error;
 }
 
@@ -222,7 +232,8 @@ TEST_F(LaunchTest, ASolverThatLivesButNeverAnswersIsGivenUpAtTheDeadline) {
   add_body("left", "mute");
   start();
   const std::string error = error_within(2.0, [this] { advance_first(); });
-  EXPECT_TRUE(contains(error, "body 'left' has not answered advance (request 2) within 0.5 s")) << error;
+  EXPECT_TRUE(contains(error, "body 'left' has not answered advance (request 2) within 0.5 s"))
+      << error;
 }
 
 TEST_F(LaunchTest, ALongSolveThatShowsProgressIsNoDeath) {

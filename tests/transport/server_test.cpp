@@ -1,5 +1,6 @@
-// Goal: each way in which a peer can misbehave ends in one named error within the deadline, and only those.
-// Oracle: the kind of error, the words that name body and request, and the hand-run clock.
+// Goal: each way in which a peer can misbehave ends in one named error within the deadline, and
+// only those. Oracle: the kind of error, the words that name body and request, and the hand-run
+// clock.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -74,7 +75,8 @@ TEST(Serve, AGapInTheNumbersIsAFault) {
   v1::Reply reply;
   ASSERT_TRUE(got && parse_into(reply, *open_frame(*got)));
   EXPECT_EQ(reply.fault().kind(), v1::FAULT_KIND_RUN);
-  EXPECT_TRUE(contains(reply.fault().what(), "request 9 follows request 1")) << reply.fault().what();
+  EXPECT_TRUE(contains(reply.fault().what(), "request 9 follows request 1"))
+      << reply.fault().what();
 }
 
 TEST(Serve, AFailedSolveIsAValueAndTheBodyServesOn) {
@@ -123,7 +125,8 @@ TEST(Serve, AReplyAboveTheLimitIsNamedWithItsSize) {
   many.records = 1000;  // of some 40 bytes each
   Response response;
   const std::string error = run_error([&] { (void)loop.body.advance(many, response); });
-  EXPECT_TRUE(contains(error, "body 'fake'") && contains(error, "above the limit of 1000")) << error;
+  EXPECT_TRUE(contains(error, "body 'fake'") && contains(error, "above the limit of 1000"))
+      << error;
 }
 
 TEST(Caller, ARequestAboveTheLimitIsNamedWithItsSize) {
@@ -161,9 +164,10 @@ TEST(Caller, NaNInAReplyIsRefusedByName) {
   loop.deaf = true;
   loop.body.start(advance);
   loop.link.far().send(frame.bytes());
-  EXPECT_EQ(run_error([&] { (void)loop.body.finish(response); }),
-            "body 'fake' gave no sound answer to advance (request 2): advanced.ports[0].trace.v is not "
-            "finite: entry 4 is nan");
+  EXPECT_EQ(
+      run_error([&] { (void)loop.body.finish(response); }),
+      "body 'fake' gave no sound answer to advance (request 2): advanced.ports[0].trace.v is not "
+      "finite: entry 4 is nan");
 }
 
 TEST(Caller, APeerThatLivesButDoesNotAnswerIsGivenUpAtTheDeadline) {
@@ -234,9 +238,10 @@ TEST(Caller, APeerThatSendsOnlyCorruptFramesIsGivenUpWithSizeAndLimit) {
   loop.deaf = true;
   const std::vector<std::byte> noise(77, std::byte{0x5a});
   loop.link.on_idle([&] { loop.link.far().send(noise); });
-  EXPECT_EQ(run_error([&loop] { advance_once(loop); }),
-            "body 'fake' sent 16 corrupt frames while at advance (request 2), the last one of 77 bytes "
-            "(limit 268435456 bytes)");
+  EXPECT_EQ(
+      run_error([&loop] { advance_once(loop); }),
+      "body 'fake' sent 16 corrupt frames while at advance (request 2), the last one of 77 bytes "
+      "(limit 268435456 bytes)");
 }
 
 TEST(Caller, ASecondSolverOfTheSameNameIsAnError) {
@@ -258,7 +263,8 @@ TEST(Caller, AnInterruptEndsTheWaitAtOnce) {
   loop.configure();
   loop.deaf = true;
   const std::atomic<bool> interrupted{true};
-  Caller caller("fake", CallContext{loop.to_solver, loop.alive, &interrupted, Limits{}, Deadlines{}});
+  Caller caller("fake",
+                CallContext{loop.to_solver, loop.alive, &interrupted, Limits{}, Deadlines{}});
   caller.request().mutable_ping();
   const TimePoint begin = loop.link.near().now();
   EXPECT_EQ(run_error([&caller] { caller.call("ping"); }),
