@@ -1,0 +1,89 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coordinator/couple.hpp"
+#include "coordinator/record/observer.hpp"
+#include "coordinator/scene.hpp"
+
+namespace abut {
+
+/// The time loop: walks controller windows from the scene's begin to its end.
+///
+///   run           observe the start, then fly free or step until the end
+///   fly_free      nothing can touch before the horizon: several windows in one request per body, no iteration
+///   step_window   one window: closed interfaces by Schwarz, other bodies free; cut short at the first event
+///   advance       Schwarz for every island of closed interfaces, one advance for every other body
+class Controller {
+ public:
+  /// The bodies must outlive the controller. `interrupted` may be null.
+  Controller(const Scene& scene, std::vector<Subdomain*> bodies, std::vector<Observer*> observers,
+             const std::atomic<bool>* interrupted = nullptr);
+
+  /// Walks to the end and tells the observers. RunError of a lost peer passes through after they were told.
+  RunEnd run();
+
+ private:
+  struct Event {
+    int interface = 0;
+    bool closes = false;
+    double state = 0.0;     // [s] where the window is cut
+    double located = 0.0;   // [s] where gap or force cross zero
+    double speed = 0.0;     // [m/s] of closing
+  };
+  struct Attempt {                       // of one window
+    std::optional<Failed> failed;
+    std::vector<Island> islands;
+    std::vector<SchwarzReport> reports;  // by island
+    bool converged() const;
+  };
+
+  void observe_start();
+  bool fly_free();
+  void step_window();
+  Attempt advance(const TimeWindow& window);
+  bool handle_trouble(const Attempt& attempt, TimeWindow& window);
+  void accept(const TimeWindow& window, const Attempt& attempt);
+
+  TimeWindow next_window() const;
+  void advance_clock(double end, bool whole);
+  void apply_criteria_at_start(const TimeWindow& window);
+  std::vector<Event> first_events(const TimeWindow& window) const;
+  void apply(const Event& event);
+  void close(int interface, double time, double speed);
+  void prepare(const TimeWindow& window, int records, Sampling sampling);
+  void fill_reports(const Attempt& attempt);
+  double shortest_step() const;
+  bool running() const;
+  void fail(double time, const std::string& text);
+  void emit(RunEvent::Kind kind, double time, const std::string& subject, const std::string& text,
+            std::map<std::string, double> values = {});
+  std::uint64_t state_hash();
+  RunEnd finish(double wall_seconds);
+
+  const Scene& scene_;
+  Bodies bodies_;
+  std::vector<Observer*> observers_;
+  const std::atomic<bool>* interrupted_;
+  Coupling coupling_;
+  std::vector<Joint> joints_;
+  Schwarz schwarz_;
+
+  // The clock: windows are counted from an anchor, which is the begin or the last event.
+  double anchor_;           // [s]
+  std::int64_t since_ = 0;  // whole windows since the anchor
+  double time_;             // [s]
+  int events_here_ = 0;     // since the last whole window: a bound on chatter
+  int halvings_ = 0;
+  bool grounded_ = false;   // free flight came too near: step once
+  RunEnd end_;
+  std::vector<InterfaceReport> reports_;
+};
+
+}  // namespace abut

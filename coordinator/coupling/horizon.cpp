@@ -1,0 +1,46 @@
+#include "coordinator/coupling/horizon.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace abut {
+
+namespace {
+/// Share of the estimated time to contact that is flown at once; the rest is for what the bound does not know.
+constexpr double margin = 0.95;
+
+const PortResponse& port_of(const Bodies& bodies, const Side& side) {
+  return bodies.response(side.body).ports[static_cast<std::size_t>(side.port)];
+}
+}  // namespace
+
+double free_flight_horizon(std::span<const Interface> interfaces, const Bodies& bodies) {
+  double horizon = std::numeric_limits<double>::infinity();
+  for (const Interface& interface : interfaces) {
+    if (interface.closed) return 0.0;
+    const PortResponse& p0 = port_of(bodies, interface.sides[0]);
+    const PortResponse& p1 = port_of(bodies, interface.sides[1]);
+    const double gap = interface.gap(p0.trace.u.back(), p1.trace.u.back());
+    if (gap <= 0.0) return 0.0;
+    const double v = p0.approach_bound + p1.approach_bound;
+    const double a = p0.approach_acceleration + p1.approach_acceleration;
+    const double root = std::sqrt(std::max(0.0, v * v + 2.0 * a * gap));
+    if (v + root <= 0.0) continue;
+    horizon = std::min(horizon, margin * 2.0 * gap / (v + root));
+  }
+  return horizon;
+}
+
+bool stayed_apart(std::span<const Interface> interfaces, const Bodies& bodies) {
+  return std::all_of(interfaces.begin(), interfaces.end(), [&bodies](const Interface& interface) {
+    double outermost[2] = {0.0, 0.0};
+    for (std::size_t s : {0u, 1u}) {
+      const PortResponse& p = port_of(bodies, interface.sides[s]);
+      outermost[s] = interface.normal[s] > 0.0 ? p.upper[0] : p.lower[0];
+    }
+    return interface.gap(outermost[0], outermost[1]) > 0.0;
+  });
+}
+
+}  // namespace abut

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+
+#include "coordinator/coupling/bodies.hpp"
+#include "coordinator/coupling/interface.hpp"
+
+namespace abut {
+
+/// Time for which no open interface can close [s]: gap over the bound of the closing speed, with the accelerations of
+/// body forces, and a margin; infinity when the sides move apart. Reads the latest responses.
+double free_flight_horizon(std::span<const Interface> interfaces, const Bodies& bodies);
+
+/// True when the ranges that the ports swept since the window's begin stay apart: the bound has held.
+bool stayed_apart(std::span<const Interface> interfaces, const Bodies& bodies);
+
+}  // namespace abut

@@ -1,0 +1,42 @@
+#include "coordinator/coupling/interface.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+
+namespace abut {
+
+void Interface::state(Archive& archive) {
+  archive.field("closed", closed);
+  archive.field("closing_speed", closing_speed);
+  archive.field("force_scale", force_scale);
+  archive.field("rebound_impulse", rebound_impulse);
+  archive.field("release_impulse", release_impulse);
+}
+
+Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodies& bodies) {
+  Interface interface;
+  interface.name = std::move(name);
+  interface.sides = sides;
+  std::array<double, 2> place = {0.0, 0.0};
+  for (std::size_t s : {0u, 1u}) {
+    const Port& port = bodies.describe(sides[s].body).ports[static_cast<std::size_t>(sides[s].port)];
+    interface.normal[s] = port.geometry.normals[0];
+    place[s] = port.geometry.points[0];
+  }
+  const std::string where = "interfaces." + interface.name;
+  if (interface.normal[0] + interface.normal[1] != 0.0) {
+    throw InputError("its two ports look the same way and cannot touch", where,
+                     "Join a right end with a left end.");
+  }
+  interface.reference_gap = interface.normal[0] * (place[1] - place[0]);
+  if (interface.reference_gap < 0.0) {
+    throw InputError(fmt::format("its sides overlap by {:g} m at the start", -interface.reference_gap), where,
+                     "Move a body with initial.position until the gap is zero or more.");
+  }
+  return interface;
+}
+
+}  // namespace abut

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "base/archive.hpp"
+#include "contract/subdomain.hpp"
+#include "coordinator/coupling/bodies.hpp"
+
+namespace abut {
+
+/// One end of an interface.
+struct Side {
+  int body = 0, port = 0;
+};
+
+/// Two joined ports and the state of what joins them. One point on each side: the bodies are bars.
+struct Interface {
+  std::string name;
+  std::array<Side, 2> sides;
+  std::array<double, 2> normal = {0.0, 0.0};  // outward, +1 or -1
+  double reference_gap = 0.0;                 // [m] along the normal of side 0, reference positions
+  int kinematic = 0;                          // index of the kinematic (Dirichlet) side
+  // What contact carries from window to window:
+  bool closed = false;
+  double closing_speed = 0.0;   // [m/s] at the last first touch
+  double force_scale = 0.0;     // [N] largest contact force since it closed
+  double rebound_impulse = 0.0;  // [N s] that a release now would give back
+  double release_impulse = 0.0;  // [N s] to be applied at the next window's begin
+
+  void state(Archive& archive);
+
+  const Side& kinematic_side() const { return sides[static_cast<std::size_t>(kinematic)]; }
+  const Side& neumann_side() const { return sides[static_cast<std::size_t>(1 - kinematic)]; }
+  double normal_of(int side) const { return normal[static_cast<std::size_t>(side)]; }
+  /// Reference position of the partner minus that of this side [m].
+  double offset(int side) const { return reference_gap * normal_of(side); }
+  /// Gap [m] for displacements of side 0 and side 1; negative when overlapping.
+  double gap(double u0, double u1) const { return reference_gap + normal[0] * (u1 - u0); }
+};
+
+/// Builds an interface of two ports. Throws InputError when they do not face each other or overlap at the start.
+Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodies& bodies);
+
+/// Index of the stored time at which a window begins: the last one of the window before, or the first one of an
+/// attempt at the same window.
+inline std::size_t index_at_begin(const Waveform& trace, double begin) {
+  return trace.time.back() <= begin ? trace.size() - 1 : 0;
+}
+
+/// Trace of a side in the latest responses.
+inline const Waveform& trace_of(const Bodies& bodies, const Side& side) {
+  return bodies.response(side.body).ports[static_cast<std::size_t>(side.port)].trace;
+}
+
+}  // namespace abut

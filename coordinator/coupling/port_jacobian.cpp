@@ -1,0 +1,129 @@
+#include "coordinator/coupling/port_jacobian.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/assert.hpp"
+
+namespace abut {
+
+namespace {
+
+constexpr double remainder_tolerance = 1.0e-6;  // of a step: round-off of the window's length
+
+/// Boundaries of the intervals over which forces act; interval i is [bounds[i], bounds[i + 1]] and belongs to
+/// force `first + i`: dual cells of all nodes 0..n, or the substeps 1..n.
+std::vector<double> cells(const TimeGrid& grid, ForceSupport support) {
+  std::vector<double> bounds;
+  bounds.push_back(grid.begin);
+  if (support == ForceSupport::nodal) {
+    for (int i = 1; i <= grid.count; ++i) bounds.push_back(0.5 * (grid.time(i - 1) + grid.time(i)));
+    bounds.push_back(grid.end);
+  } else {
+    for (int i = 1; i <= grid.count; ++i) bounds.push_back(grid.time(i));
+  }
+  return bounds;
+}
+
+/// Mean over every cell of `to` of a function that is constant over the cells of `from` (to, from).
+Eigen::MatrixXd overlap_average(const std::vector<double>& to, const std::vector<double>& from) {
+  const std::ptrdiff_t rows = static_cast<std::ptrdiff_t>(to.size()) - 1;
+  const std::ptrdiff_t cols = static_cast<std::ptrdiff_t>(from.size()) - 1;
+  Eigen::MatrixXd average = Eigen::MatrixXd::Zero(rows, cols);
+  std::ptrdiff_t first = 0;
+  for (std::ptrdiff_t i = 0; i < rows; ++i) {
+    const double low = to[static_cast<std::size_t>(i)];
+    const double high = to[static_cast<std::size_t>(i) + 1];
+    while (first + 1 < cols && from[static_cast<std::size_t>(first) + 1] <= low) ++first;
+    for (std::ptrdiff_t j = first; j < cols && from[static_cast<std::size_t>(j)] < high; ++j) {
+      const double overlap = std::min(high, from[static_cast<std::size_t>(j) + 1]) -
+                             std::max(low, from[static_cast<std::size_t>(j)]);
+      if (overlap > 0.0) average(i, j) = overlap / (high - low);
+    }
+  }
+  return average;
+}
+
+/// Values at the ends of the substeps 1..n of `to` from nodal values 1..m of `from`, linear in time (n, m);
+/// the value at the window's begin is known and has no column.
+Eigen::MatrixXd interpolation(const TimeGrid& to, const TimeGrid& from) {
+  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(to.count, from.count);
+  int j = 1;
+  for (int i = 1; i <= to.count; ++i) {
+    const double t = to.time(i);
+    while (j < from.count && from.time(j) < t) ++j;
+    const double s = std::clamp((t - from.time(j - 1)) / (from.time(j) - from.time(j - 1)), 0.0, 1.0);
+    p(i - 1, j - 1) += s;
+    if (j > 1) p(i - 1, j - 2) += 1.0 - s;
+  }
+  return p;
+}
+
+Eigen::MatrixXd toeplitz(const std::vector<double>& c, int n) {
+  ABUT_ASSERT(static_cast<int>(c.size()) >= n);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j <= i; ++j) matrix(i, j) = c[static_cast<std::size_t>(i - j)];
+  }
+  return matrix;
+}
+
+}  // namespace
+
+TimeGrid::TimeGrid(double window_begin, double window_end, double body_step)
+    : begin(window_begin), end(window_end), step(body_step) {
+  const double length = end - begin;
+  if (step <= 0.0) step = length;
+  count = std::max(1, static_cast<int>(std::ceil(length / step - remainder_tolerance)));
+}
+
+Eigen::MatrixXd neumann_map(const PortKernel& kernel, const TimeGrid& here, const TimeGrid& source,
+                            ForceSupport source_support) {
+  const Eigen::MatrixXd response = toeplitz(kernel.displacement, here.count);
+  if (here.same_as(source) && kernel.support == source_support) return response;
+  const bool nodal = kernel.support == ForceSupport::nodal;
+  Eigen::MatrixXd mean = overlap_average(cells(here, kernel.support), cells(source, source_support));
+  // The source's force at the window's begin is known: its column goes.
+  if (source_support == ForceSupport::nodal) mean = mean.rightCols(source.count).eval();
+  if (!nodal) return response * mean;
+  const Eigen::MatrixXd dynamic = mean.bottomRows(here.count);
+  const Eigen::Map<const Eigen::VectorXd> begin(kernel.begin.data(), here.count);
+  Eigen::MatrixXd map = response * dynamic + begin * mean.row(0);
+  Eigen::MatrixXd instant;  // the force of the instant moves the massless port at once
+  if (source_support == ForceSupport::nodal) {
+    instant = interpolation(here, source);
+  } else {
+    instant = Eigen::MatrixXd::Zero(here.count, source.count);
+    int j = 1;
+    for (int i = 1; i <= here.count; ++i) {
+      while (j < source.count && source.time(j) < here.time(i)) ++j;
+      instant(i - 1, j - 1) = 1.0;
+    }
+  }
+  map += kernel.compliance * (instant - dynamic);
+  return map;
+}
+
+Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
+                                    const PortKernel& neumann, const TimeGrid& neumann_grid) {
+  const Eigen::MatrixXd pushed = neumann_map(neumann, neumann_grid, kinematic_grid, kinematic.support);
+  const Eigen::MatrixXd own = toeplitz(kinematic.displacement, kinematic_grid.count);
+  const Eigen::MatrixXd motion = kinematic_grid.same_as(neumann_grid)
+                                     ? Eigen::MatrixXd::Identity(neumann_grid.count, neumann_grid.count)
+                                     : interpolation(kinematic_grid, neumann_grid);
+  const Eigen::MatrixXd force = own.triangularView<Eigen::Lower>().solve(motion);
+  return Eigen::MatrixXd::Identity(neumann_grid.count, neumann_grid.count) + pushed * force;
+}
+
+Eigen::MatrixXd parallel_jacobian(const std::vector<const PortKernel*>& kernels,
+                                  const std::vector<TimeGrid>& grids, const TimeGrid& source,
+                                  ForceSupport source_support) {
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(source.count, source.count);
+  for (std::size_t s = 0; s < kernels.size(); ++s) {
+    const Eigen::MatrixXd map = neumann_map(*kernels[s], grids[s], source, source_support);
+    jacobian += grids[s].same_as(source) ? map : Eigen::MatrixXd(interpolation(source, grids[s]) * map);
+  }
+  return jacobian;
+}
+
+}  // namespace abut

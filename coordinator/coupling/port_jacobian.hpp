@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "contract/port.hpp"
+
+namespace abut {
+
+/// How a body divides a window into substeps, as the contract prescribes it.
+struct TimeGrid {
+  double begin = 0.0, end = 0.0, step = 0.0;
+  int count = 0;
+
+  TimeGrid() = default;
+  /// step 0: one substep. Whole steps, the last one shortened when the window is no multiple.
+  TimeGrid(double window_begin, double window_end, double body_step);
+  double time(int i) const { return i == count ? end : begin + i * step; }  // i = 0..count
+  bool same_as(const TimeGrid& other) const { return count == other.count && step == other.step; }
+};
+
+/// Neumann map of one side: displacement along the push at the ends of its substeps 1..n for the partner's
+/// contact forces 1..m of unit size, with forces spread in time exactly as the body does it (n, m).
+Eigen::MatrixXd neumann_map(const PortKernel& kernel, const TimeGrid& here, const TimeGrid& source,
+                            ForceSupport source_support);
+
+/// Interface Jacobian of the unilateral iteration, J = I + C_N R C_K^-1 P (n_N, n_N)  [M: port kernel]:
+/// change of the residual, with minus sign, for a change of the iterate (the Neumann side's motion).
+Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
+                                    const PortKernel& neumann, const TimeGrid& neumann_grid);
+
+/// Jacobian of the parallel iteration on the contact force at the source grid's substeps (n, n): overlap
+/// removed there per unit force.
+Eigen::MatrixXd parallel_jacobian(const std::vector<const PortKernel*>& kernels,
+                                  const std::vector<TimeGrid>& grids, const TimeGrid& source,
+                                  ForceSupport source_support);
+
+}  // namespace abut

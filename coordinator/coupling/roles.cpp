@@ -1,0 +1,40 @@
+#include "coordinator/coupling/roles.hpp"
+
+#include <numeric>
+
+#include "coordinator/coupling/port_jacobian.hpp"
+
+namespace abut {
+
+namespace {
+/// Compliances within this factor count as similar: the mesh decides.
+constexpr double similar = 3.0;
+}  // namespace
+
+int kinematic_side(const Interface& interface, Bodies& bodies, double length) {
+  double moved[2] = {0.0, 0.0};
+  double spacing[2] = {0.0, 0.0};
+  double step[2] = {0.0, 0.0};
+  for (std::size_t s : {0u, 1u}) {
+    const Side& side = interface.sides[s];
+    const Description& body = bodies.describe(side.body);
+    if (!body.can.obstacle) return 1 - static_cast<int>(s);
+    const TimeGrid grid(0.0, length, body.step);
+    const PortKernel& kernel = bodies.kernel(side.body, side.port, grid.count);
+    moved[s] = std::accumulate(kernel.displacement.begin(), kernel.displacement.begin() + grid.count, 0.0);
+    spacing[s] = body.ports[static_cast<std::size_t>(side.port)].geometry.spacing;
+    step[s] = body.step;
+  }
+  if (moved[0] > similar * moved[1]) return 0;
+  if (moved[1] > similar * moved[0]) return 1;
+  if (spacing[0] != spacing[1]) return spacing[0] < spacing[1] ? 0 : 1;
+  return step[1] < step[0] ? 1 : 0;
+}
+
+int coarser_side(const Interface& interface, const Bodies& bodies) {
+  const double step0 = bodies.describe(interface.sides[0].body).step;
+  const double step1 = bodies.describe(interface.sides[1].body).step;
+  return step1 > step0 ? 1 : 0;
+}
+
+}  // namespace abut

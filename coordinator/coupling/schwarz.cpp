@@ -1,0 +1,166 @@
+#include "coordinator/coupling/schwarz.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/archive.hpp"
+#include "base/assert.hpp"
+#include "base/error.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Bodies of an island by level: a body comes after the kinematic partners whose reactions it takes.
+std::vector<std::vector<int>> levels_of(const std::vector<int>& members, std::span<const Joint> joints,
+                                        const std::vector<int>& island) {
+  std::vector<int> waiting = members;
+  std::vector<int> done;
+  std::vector<std::vector<int>> levels;
+  auto is_done = [&done](int body) { return std::find(done.begin(), done.end(), body) != done.end(); };
+  while (!waiting.empty()) {
+    std::vector<int> level;
+    for (int body : waiting) {
+      const bool ready = std::all_of(island.begin(), island.end(), [&joints, body, &is_done](int j) {
+        const Joint& joint = joints[static_cast<std::size_t>(j)];
+        const bool takes_force = joint.interface->neumann_side().body == body;
+        return !takes_force || !joint.transmission->ordered() ||
+               is_done(joint.interface->kinematic_side().body);
+      });
+      if (ready) level.push_back(body);
+    }
+    if (level.empty()) {
+      throw InputError("the kinematic sides of its interfaces go round in a circle", "interfaces",
+                       "Fix fewer roles: leave `kinematic: auto` on at least one interface of the circle.");
+    }
+    for (int body : level) {
+      done.push_back(body);
+      waiting.erase(std::find(waiting.begin(), waiting.end(), body));
+    }
+    levels.push_back(std::move(level));
+  }
+  return levels;
+}
+
+std::uint64_t layout_key(const TimeWindow& window, const std::vector<Eigen::Index>& first) {
+  std::uint64_t bits = 0;
+  const double length = window.length();
+  std::memcpy(&bits, &length, sizeof bits);
+  for (Eigen::Index i : first) bits = hash_combine(bits, static_cast<std::uint64_t>(i));
+  return bits;
+}
+
+}  // namespace
+
+std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
+  std::vector<int> root(static_cast<std::size_t>(bodies));
+  for (int b = 0; b < bodies; ++b) root[static_cast<std::size_t>(b)] = b;
+  auto merge = [&root](int from, int to) {
+    for (int& r : root) {
+      if (r == from) r = to;
+    }
+  };
+  for (const Joint& joint : joints) {
+    if (!joint.interface->closed) continue;
+    const int a = root[static_cast<std::size_t>(joint.interface->sides[0].body)];
+    const int b = root[static_cast<std::size_t>(joint.interface->sides[1].body)];
+    merge(std::max(a, b), std::min(a, b));
+  }
+  std::vector<Island> islands;
+  for (int r = 0; r < bodies; ++r) {
+    Island island;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      const Interface& interface = *joints[j].interface;
+      if (interface.closed && root[static_cast<std::size_t>(interface.sides[0].body)] == r) {
+        island.joints.push_back(static_cast<int>(j));
+      }
+    }
+    if (island.joints.empty()) continue;
+    std::vector<int> members;
+    for (int b = 0; b < bodies; ++b) {
+      if (root[static_cast<std::size_t>(b)] == r) members.push_back(b);
+    }
+    island.levels = levels_of(members, joints, island.joints);
+    islands.push_back(std::move(island));
+  }
+  return islands;
+}
+
+Accelerator& Schwarz::accelerator_of(const Island& island, std::span<const Joint> joints) {
+  std::unique_ptr<Accelerator>& slot = accelerators_[island.joints];
+  if (slot == nullptr) {
+    slot = make_([this, joints](const Eigen::VectorXd& r) {
+      Eigen::VectorXd out(r.size());
+      for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
+        const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
+        const Transmission& t = *joints[static_cast<std::size_t>(layout_.joints[i])].transmission;
+        out.segment(layout_.first[i], count) = t.apply_inverse(r.segment(layout_.first[i], count));
+      }
+      return out;
+    });
+  }
+  return *slot;
+}
+
+std::optional<Failed> Schwarz::sweep(const Island& island, std::span<const Joint> joints,
+                                     const Layout& layout, const Eigen::VectorXd& x, Bodies& bodies) const {
+  for (const std::vector<int>& level : island.levels) {
+    for (std::size_t i = 0; i < layout.joints.size(); ++i) {
+      const Joint& joint = joints[static_cast<std::size_t>(layout.joints[i])];
+      for (int side : {0, 1}) {
+        const int body = joint.interface->sides[static_cast<std::size_t>(side)].body;
+        if (std::find(level.begin(), level.end(), body) == level.end()) continue;
+        const Eigen::Index count = layout.first[i + 1] - layout.first[i];
+        joint.transmission->impose(side, x.segment(layout.first[i], count), *joint.interface, bodies);
+      }
+    }
+    if (std::optional<Failed> failed = bodies.advance(level)) return failed;
+  }
+  return std::nullopt;
+}
+
+std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, const Island& island,
+                                                   std::span<const Joint> joints, Bodies& bodies) {
+  layout_.joints = island.joints;
+  layout_.first.assign(1, 0);
+  for (int j : island.joints) {
+    const Joint& joint = joints[static_cast<std::size_t>(j)];
+    joint.transmission->begin(window, *joint.interface, bodies);
+    layout_.first.push_back(layout_.first.back() + joint.transmission->values());
+  }
+  const Eigen::Index size = layout_.first.back();
+  Eigen::VectorXd x(size), g(size), s(size);
+  auto part = [this](Eigen::VectorXd& v, std::size_t i) {
+    return v.segment(layout_.first[i], layout_.first[i + 1] - layout_.first[i]);
+  };
+  auto joint_at = [&joints, &island](std::size_t i) -> const Joint& {
+    return joints[static_cast<std::size_t>(island.joints[i])];
+  };
+  for (std::size_t i = 0; i < island.joints.size(); ++i) joint_at(i).transmission->predict(part(x, i));
+  Accelerator& accelerator = accelerator_of(island, joints);
+  accelerator.reset(layout_key(window, layout_.first));
+
+  SchwarzReport report;
+  for (report.iterations = 1;; ++report.iterations) {
+    if (report.iterations > 1) {
+      for (const std::vector<int>& level : island.levels) {
+        for (int body : level) bodies[body].restore();
+      }
+    }
+    if (std::optional<Failed> failed = sweep(island, joints, layout_, x, bodies)) return *failed;
+    report.residual = {};
+    for (std::size_t i = 0; i < island.joints.size(); ++i) {
+      const Joint& joint = joint_at(i);
+      joint.transmission->image(part(x, i), *joint.interface, bodies, part(g, i));
+      report.residual.include(joint.transmission->measure(part(x, i), part(g, i)));
+      joint.transmission->scales(part(s, i));
+    }
+    report.converged = report.residual.largest() <= options_.tolerance;
+    if (report.converged || report.iterations >= options_.max_iterations) return report;
+    x = accelerator.next(x.cwiseProduct(s), g.cwiseProduct(s)).cwiseQuotient(s);
+  }
+}
+
+void Schwarz::accept(const Island& island) { accelerators_.at(island.joints)->accept(); }
+
+}  // namespace abut

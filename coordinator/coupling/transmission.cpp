@@ -1,0 +1,251 @@
+#include "coordinator/coupling/transmission.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace abut {
+
+namespace {
+
+/// Displacements are known to this many units of round-off of their own size.
+constexpr double roundoff_units = 64.0;
+/// Factored Jacobians kept per interface; windows cut short by events have lengths of their own.
+constexpr std::size_t kept_inverses = 32;
+
+TimeGrid grid_of(const Bodies& bodies, const Side& side, const TimeWindow& window) {
+  return TimeGrid(window.begin, window.end, bodies.describe(side.body).step);
+}
+
+const PortKernel& kernel_of(Bodies& bodies, const Side& side, int count) {
+  return bodies.kernel(side.body, side.port, count);
+}
+
+BoundaryData& boundary_of(Bodies& bodies, const Side& side) {
+  return bodies.request(side.body).boundary[static_cast<std::size_t>(side.port)];
+}
+
+/// The partner's reply, turned into the force on this side: equal and opposite.
+void hand_over(const Waveform& from, Waveform& to) {
+  to.support = from.support;
+  to.time = from.time;
+  to.f.resize(from.f.size());
+  std::transform(from.f.begin(), from.f.end(), to.f.begin(), [](double f) { return -f; });
+}
+
+double roundoff_of(double displacement, double travelled) {
+  return roundoff_units * std::numeric_limits<double>::epsilon() *
+         std::max(std::abs(displacement), std::abs(travelled));
+}
+
+/// Velocity against which mismatch is measured: of the first touch, or what the contact force moves in a step.
+double reference_velocity(const Interface& interface, double compliance, double step) {
+  return std::max(interface.closing_speed, interface.force_scale * compliance / step);
+}
+
+/// A window that was cut short starts from the iterate of the longer one.
+bool covers(const Waveform& guess, const TimeGrid& grid) {
+  return !guess.empty() && guess.time.front() == grid.begin && guess.time.back() >= grid.end;
+}
+
+}  // namespace
+
+const KernelInverse::Entry* KernelInverse::find(double length) const {
+  for (const std::unique_ptr<Entry>& entry : entries_) {
+    if (entry->length == length) return entry.get();
+  }
+  return nullptr;
+}
+
+const KernelInverse::Entry& KernelInverse::store(double length, const Eigen::MatrixXd& jacobian) {
+  if (entries_.size() >= kept_inverses) entries_.erase(entries_.begin() + 1);  // the first is the whole window's
+  entries_.push_back(std::make_unique<Entry>(Entry{length, jacobian.partialPivLu()}));
+  return *entries_.back();
+}
+
+// ---- unilateral, alternating ---------------------------------------------------------------------------------
+
+void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) {
+  const Side& k = interface.kinematic_side();
+  const Side& n = interface.neumann_side();
+  kinematic_grid_ = grid_of(bodies, k, window);
+  neumann_grid_ = grid_of(bodies, n, window);
+  const Waveform& trace = trace_of(bodies, n);
+  const std::size_t now = index_at_begin(trace, window.begin);
+  u_begin_ = trace.u[now];
+  v_begin_ = trace.v[now];
+  const PortKernel& kernel_k = kernel_of(bodies, k, kinematic_grid_.count);
+  const PortKernel& kernel_n = kernel_of(bodies, n, neumann_grid_.count);
+  kinematic_compliance_ = kernel_k.displacement.front();
+  neumann_compliance_ = kernel_n.displacement.front();
+  const double step = bodies.describe(n.body).step > 0.0 ? neumann_grid_.step : kinematic_grid_.step;
+  scale_.step = step;
+  scale_.velocity = reference_velocity(interface, kinematic_compliance_, step);
+  scale_.force = interface.force_scale;
+  inverse_ = nullptr;
+  if (std::max(kinematic_grid_.count, neumann_grid_.count) > KernelInverse::largest) return;
+  inverse_ = inverses_.find(window.length());
+  if (inverse_ != nullptr) return;
+  inverse_ = &inverses_.store(window.length(),
+                              unilateral_jacobian(kernel_k, kinematic_grid_, kernel_n, neumann_grid_));
+}
+
+void Unilateral::predict(Eigen::Ref<Eigen::VectorXd> x) const {
+  const bool known = covers(guess_, neumann_grid_);
+  for (int i = 1; i <= neumann_grid_.count; ++i) {
+    const double time = neumann_grid_.time(i);
+    double u = u_begin_ + v_begin_ * (time - neumann_grid_.begin);
+    if (known) guess_.interpolate(guess_.u, time, {&u, 1});
+    x[i - 1] = u;
+  }
+}
+
+void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
+                                    const Interface& interface, Bodies& bodies) {
+  const Side& here = interface.sides[static_cast<std::size_t>(side)];
+  BoundaryData& data = boundary_of(bodies, here);
+  if (side != interface.kinematic) {
+    hand_over(trace_of(bodies, interface.kinematic_side()), data.force);
+    return;
+  }
+  Waveform& motion = data.obstacle.motion;
+  motion.clear();
+  motion.time.push_back(neumann_grid_.begin);
+  motion.u.push_back(u_begin_);
+  for (int i = 1; i <= neumann_grid_.count; ++i) {
+    motion.time.push_back(neumann_grid_.time(i));
+    motion.u.push_back(x[i - 1]);
+  }
+  data.obstacle.offset.assign(1, interface.offset(side));
+  data.obstacle.bilateral = true;  // the coordinator locates the release and splits the window there
+  guess_.time = motion.time;
+  guess_.u = motion.u;
+}
+
+void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Interface& interface,
+                                   const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
+  const Waveform& trace = trace_of(bodies, interface.neumann_side());
+  const bool same = static_cast<int>(trace.size()) == neumann_grid_.count + 1;
+  for (int i = 1; i <= neumann_grid_.count; ++i) {
+    if (same) {
+      g[i - 1] = trace.u[static_cast<std::size_t>(i)];
+    } else {
+      trace.interpolate(trace.u, neumann_grid_.time(i), {&g[i - 1], 1});
+    }
+  }
+  scale_.force = std::max(interface.force_scale, 0.0);
+  for (double f : trace_of(bodies, interface.kinematic_side()).f) scale_.force = std::max(scale_.force, std::abs(f));
+  scale_.velocity = std::max(scale_.velocity, scale_.force * kinematic_compliance_ / scale_.step * 1.0e-3);
+  scale_.roundoff = roundoff_of(u_begin_, g[neumann_grid_.count - 1]);
+}
+
+FieldResiduals Unilateral::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                               const Eigen::Ref<const Eigen::VectorXd>& g) const {
+  const double mismatch = (g - x).lpNorm<Eigen::Infinity>();
+  FieldResiduals r;
+  r.displacement = scaled(mismatch, scale_.velocity * scale_.step, scale_.roundoff);
+  // The reaction changes by this much when the kinematic side is moved by the mismatch within a substep.
+  r.force = scaled(mismatch / kinematic_compliance_, scale_.force, scale_.roundoff / kinematic_compliance_);
+  return r;
+}
+
+void Unilateral::scales(Eigen::Ref<Eigen::VectorXd> s) const {
+  const double unit = scale_.velocity * scale_.step;
+  s.setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
+}
+
+Eigen::VectorXd Unilateral::apply_inverse(const Eigen::VectorXd& r) const {
+  if (inverse_ != nullptr) return inverse_->lu.solve(r);
+  return r / (1.0 + neumann_compliance_ / kinematic_compliance_);
+}
+
+// ---- parallel ------------------------------------------------------------------------------------------------
+
+void ParallelForce::begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) {
+  std::vector<TimeGrid> grids;
+  std::vector<const PortKernel*> kernels;
+  compliance_ = 0.0;
+  for (const Side& side : interface.sides) {
+    grids.push_back(grid_of(bodies, side, window));
+    kernels.push_back(&kernel_of(bodies, side, grids.back().count));
+    compliance_ += kernels.back()->displacement.front();
+  }
+  const std::size_t source = static_cast<std::size_t>(interface.kinematic);
+  force_grid_ = grids[source];
+  support_ = kernels[source]->support;
+  const Waveform& trace = trace_of(bodies, interface.kinematic_side());
+  force_begin_ = -interface.normal_of(interface.kinematic) * trace.f[index_at_begin(trace, window.begin)];
+  if (!interface.closed || support_ == ForceSupport::step) force_begin_ = 0.0;
+  scale_.step = force_grid_.step;
+  scale_.velocity = reference_velocity(interface, compliance_, scale_.step);
+  scale_.force = interface.force_scale;
+  inverse_ = nullptr;
+  if (std::max(grids[0].count, grids[1].count) > KernelInverse::largest) return;
+  inverse_ = inverses_.find(window.length());
+  if (inverse_ != nullptr) return;
+  inverse_ = &inverses_.store(window.length(),
+                              parallel_jacobian(kernels, grids, force_grid_, support_) / compliance_);
+}
+
+void ParallelForce::predict(Eigen::Ref<Eigen::VectorXd> x) const {
+  const bool known = covers(guess_, force_grid_);
+  for (int i = 1; i <= force_grid_.count; ++i) {
+    double force = force_begin_;
+    if (known) guess_.force_at(force_grid_.time(i), {&force, 1});
+    x[i - 1] = force;
+  }
+}
+
+void ParallelForce::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
+                                  const Interface& interface, Bodies& bodies) {
+  guess_.clear();
+  guess_.support = support_;
+  guess_.time.push_back(force_grid_.begin);
+  guess_.f.push_back(force_begin_);
+  for (int i = 1; i <= force_grid_.count; ++i) {
+    guess_.time.push_back(force_grid_.time(i));
+    guess_.f.push_back(x[i - 1]);
+  }
+  Waveform& force = boundary_of(bodies, interface.sides[static_cast<std::size_t>(side)]).force;
+  force.support = support_;
+  force.time = guess_.time;
+  force.f = guess_.f;
+  for (double& f : force.f) f *= -interface.normal_of(side);
+}
+
+void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+                                 const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
+  double travelled = 0.0;
+  for (int i = 1; i <= force_grid_.count; ++i) {
+    double u[2] = {0.0, 0.0};
+    for (std::size_t s : {0u, 1u}) {
+      const Waveform& trace = trace_of(bodies, interface.sides[s]);
+      trace.interpolate(trace.u, force_grid_.time(i), {&u[s], 1});
+      travelled = std::max(travelled, std::abs(u[s]));
+    }
+    g[i - 1] = x[i - 1] - interface.gap(u[0], u[1]) / compliance_;
+  }
+  scale_.force = std::max(interface.force_scale, x.lpNorm<Eigen::Infinity>());
+  scale_.velocity = std::max(scale_.velocity, scale_.force * compliance_ / scale_.step * 1.0e-3);
+  scale_.roundoff = roundoff_of(travelled, interface.reference_gap);
+}
+
+FieldResiduals ParallelForce::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                             const Eigen::Ref<const Eigen::VectorXd>& g) const {
+  const double mismatch = (g - x).lpNorm<Eigen::Infinity>();  // [N]
+  FieldResiduals r;
+  r.displacement = scaled(mismatch * compliance_, scale_.velocity * scale_.step, scale_.roundoff);
+  r.force = scaled(mismatch, scale_.force, scale_.roundoff / compliance_);
+  return r;
+}
+
+void ParallelForce::scales(Eigen::Ref<Eigen::VectorXd> s) const {
+  const double unit = scale_.velocity * scale_.step / compliance_;
+  s.setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
+}
+
+Eigen::VectorXd ParallelForce::apply_inverse(const Eigen::VectorXd& r) const {
+  return inverse_ != nullptr ? Eigen::VectorXd(inverse_->lu.solve(r)) : r;
+}
+
+}  // namespace abut

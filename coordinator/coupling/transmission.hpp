@@ -1,0 +1,139 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "contract/time_window.hpp"
+#include "coordinator/coupling/bodies.hpp"
+#include "coordinator/coupling/convergence.hpp"
+#include "coordinator/coupling/interface.hpp"
+#include "coordinator/coupling/port_jacobian.hpp"
+
+namespace abut {
+
+/// What the partner's response imposes on each side of a closed interface, and what is iterated. A window runs
+///   begin, predict, (impose side by side, image, measure)*
+/// x is the interface's part of the stacked iterate, in SI units.
+class Transmission {
+ public:
+  virtual ~Transmission() = default;
+
+  /// Lays out the iterate of a window; the latest responses hold the state at its begin.
+  virtual void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) = 0;
+  virtual int values() const = 0;
+  virtual void predict(Eigen::Ref<Eigen::VectorXd> x) const = 0;
+  /// Fills the request of one side's body.
+  virtual void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+                      Bodies& bodies) = 0;
+  /// G(x), out of the responses of this sweep.
+  virtual void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+                     const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) = 0;
+  virtual FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                 const Eigen::Ref<const Eigen::VectorXd>& g) const = 0;
+  /// Factors that make all entries of the iterate comparable: 1 / unit of each entry.
+  virtual void scales(Eigen::Ref<Eigen::VectorXd> s) const = 0;
+  /// Approximate J^-1 r, J = -d(G - x)/dx, from the port kernels.
+  virtual Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const = 0;
+  /// True when the sides must be advanced one after the other, the kinematic one first.
+  virtual bool ordered() const = 0;
+};
+
+/// Port kernels of an interface, and their factored Jacobians by window length.
+class KernelInverse {
+ public:
+  struct Entry {
+    double length = 0.0;
+    Eigen::PartialPivLU<Eigen::MatrixXd> lu;
+  };
+  /// Null when the window has more substeps than a dense Jacobian is good for.
+  const Entry* find(double length) const;
+  const Entry& store(double length, const Eigen::MatrixXd& jacobian);
+  static constexpr int largest = 1200;  // rows; (1200^2 doubles are 11 MiB, factored in 0.3 s once)
+
+ private:
+  std::vector<std::unique_ptr<Entry>> entries_;
+};
+
+/// The kinematic side meets the partner's moving surface as a one-body problem and returns the complete reaction; the
+/// other side takes that reaction as impulses. Iterated is the Neumann side's motion, never the force, so momentum is
+/// exact in every iterate  [M: unilateral].
+class Unilateral final : public Transmission {
+ public:
+  void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
+  int values() const override { return neumann_grid_.count; }
+  void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
+  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+              Bodies& bodies) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
+  FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
+                         const Eigen::Ref<const Eigen::VectorXd>& g) const override;
+  void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
+  Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override;
+  bool ordered() const override { return true; }
+
+ private:
+  TimeGrid kinematic_grid_, neumann_grid_;
+  double u_begin_ = 0.0, v_begin_ = 0.0;  // of the Neumann port
+  Waveform guess_;                        // last iterate: a window that is cut short starts from it
+  Waveform motion_;
+  ReferenceScales scale_;
+  double kinematic_compliance_ = 0.0, neumann_compliance_ = 0.0;  // [m/N] over one substep
+  KernelInverse inverses_;
+  const KernelInverse::Entry* inverse_ = nullptr;
+};
+
+/// Both sides take the same contact force and advance at once; iterated is the force at the coarser side's substeps
+/// until no overlap is left  [M: parallel form].
+class ParallelForce final : public Transmission {
+ public:
+  void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
+  int values() const override { return force_grid_.count; }
+  void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
+  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+              Bodies& bodies) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
+  FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
+                         const Eigen::Ref<const Eigen::VectorXd>& g) const override;
+  void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
+  Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override;
+  bool ordered() const override { return false; }
+
+ private:
+  TimeGrid force_grid_;
+  ForceSupport support_ = ForceSupport::nodal;
+  double force_begin_ = 0.0;  // [N] compressive, known at the window's begin
+  Waveform guess_;
+  ReferenceScales scale_;
+  double compliance_ = 0.0;  // [m/N] of both sides over one substep
+  KernelInverse inverses_;
+  const KernelInverse::Entry* inverse_ = nullptr;
+};
+
+/// The published form: motion (u, v, a) overwritten on the kinematic side, its internal force handed to the other side.
+/// Iterated is the Neumann side's u, v and a  [M: published form].
+class DirichletNeumann final : public Transmission {
+ public:
+  void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
+  int values() const override { return 3 * grid_.count; }
+  void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
+  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+              Bodies& bodies) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
+  FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
+                         const Eigen::Ref<const Eigen::VectorXd>& g) const override;
+  void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
+  Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override { return r; }
+  bool ordered() const override { return true; }
+
+ private:
+  TimeGrid grid_;
+  double u_begin_ = 0.0, v_begin_ = 0.0, a_begin_ = 0.0;
+  ReferenceScales scale_;
+};
+
+}  // namespace abut
