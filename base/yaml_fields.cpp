@@ -59,9 +59,12 @@ std::string one_of(const Strings& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+/// Of the help only the noun itself fits into a sentence.
+std::string_view noun(const Key& key) { return key.help.substr(0, key.help.find_first_of(",;:")); }
+
 /// The sentence that says what to write.
 std::string remedy(const Key& key, std::string_view form, const Rule& rule = any) {
-  std::string text = fmt::format("Give the {}", key.help);
+  std::string text = fmt::format("Give the {}", noun(key));
   if (!form.empty()) text += fmt::format(" as {}", form);
   if (!key.unit.empty()) text += fmt::format(" in {}", key.unit);
   const std::string range = rule.range();
@@ -189,14 +192,14 @@ void Reader::leaf(const Key& key, Slot slot, const Rule& rule) {
 
 void Reader::word_leaf(const Key& key, std::string& value,
                        std::span<const std::string_view> words) {
-  const std::string choices = one_of(words);
-  const std::optional<YAML::Node> node = find(key, "one of " + choices);
+  const std::optional<YAML::Node> node = find(key, "one of " + one_of(words));
   if (!node) return;
   const std::string path = path_of(key.name);
-  if (!node->IsScalar() || std::find(words.begin(), words.end(), node->Scalar()) == words.end()) {
+  if (!node->IsScalar()) wrong_type(path, "a word", *node, remedy(key, "one of " + one_of(words)));
+  if (std::find(words.begin(), words.end(), node->Scalar()) == words.end()) {
     const std::vector<std::string> known(words.begin(), words.end());
-    wrong_type(path, "one of " + choices, *node,
-               suggestion(node->IsScalar() ? node->Scalar() : "", known, "Choose one of"));
+    fail(path, fmt::format("is {}, which is not a known choice", node->Scalar()),
+         suggestion(node->Scalar(), known, "Choose one of"));
   }
   value = node->Scalar();
 }
@@ -249,7 +252,7 @@ std::string Reader::enter_choice(const Key& key, std::span<const std::string_vie
     const std::string is =
         node->IsMap() ? fmt::format("a map of {}", node->size()) : describe(*node);
     fail(path, fmt::format("must be a map with one key, the name of the choice, but is {}", is),
-         fmt::format("Give the {} as {{name: {{its keys}}}}, with one of {}.", key.help, choices));
+         fmt::format("Give the {} as {{name: {{its keys}}}}, with one of {}.", noun(key), choices));
   }
   const std::string name = bare ? node->Scalar() : node->begin()->first.Scalar();
   if (std::find(names.begin(), names.end(), name) == names.end()) {

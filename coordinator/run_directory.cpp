@@ -41,24 +41,23 @@ fs::path default_run_directory(const std::string& scene_path) {
   return fs::path("runs") / fs::path(scene_path).stem();
 }
 
-void check_run_directory(const fs::path& directory, bool force) {
+void make_run_directory(const fs::path& directory, bool force) {
   const fs::path there = existing_part(directory);
-  std::error_code ignored;
-  if (!fs::is_directory(there, ignored))
+  std::error_code error;
+  if (!fs::is_directory(there, error))
     refuse(directory, fmt::format("cannot be a run directory: {} is a file", there.string()));
   if (access(there.c_str(), W_OK | X_OK) != 0)
     refuse(directory, fmt::format("cannot be written: no permission in {}", there.string()));
   if (!force && (is_there(directory / run_files[0]) || is_there(directory / run_files[1])))
     throw InputError("holds a run already", directory.string(),
                      "Give another directory with --out, or --force to replace that run.");
-}
-
-void make_run_directory(const fs::path& directory, bool force) {
-  check_run_directory(directory, force);
-  std::error_code error;
   fs::create_directories(directory, error);
   if (error) refuse(directory, "cannot be made: " + error.message());
+}
+
+void clear_run_directory(const fs::path& directory) {
   for (const char* name : run_files) {
+    std::error_code error;
     fs::remove(directory / name, error);
     if (error) refuse(directory, fmt::format("cannot lose {}: {}", name, error.message()));
   }

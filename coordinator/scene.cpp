@@ -232,15 +232,15 @@ bool divides(double part, double whole) {
 /// one.
 std::string multiples(double part, double whole) {
   const double below = std::floor(whole / part);
-  const std::string above = fmt::format("{:.9g} s", (below + 1.0) * part);
-  return below < 1.0 ? above : fmt::format("{:.9g} s or {}", below * part, above);
+  const std::string above = fmt::format("{:.12g} s", (below + 1.0) * part);
+  return below < 1.0 ? above : fmt::format("{:.12g} s or {}", below * part, above);
 }
 
 /// The two parts of `whole` around `part`, the longer only if there is one.
 std::string parts(double part, double whole) {
   const double below = std::floor(whole / part);
-  const std::string shorter = fmt::format("{:.9g} s", whole / (below + 1.0));
-  return below < 1.0 ? shorter : fmt::format("{} or {:.9g} s", shorter, whole / below);
+  const std::string shorter = fmt::format("{:.12g} s", whole / (below + 1.0));
+  return below < 1.0 ? shorter : fmt::format("{} or {:.12g} s", shorter, whole / below);
 }
 
 const Description& description_of(const Scene& scene, std::span<const Description* const> bodies,

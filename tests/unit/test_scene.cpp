@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"WindowDoesNotDivideTheRun",
             {"time.window=3.0e-4"},
             "s.yaml, from --set time.window=3.0e-4: time.window: must divide the run of 0.001 s, "
-            "but 0.0003 s does not. Give a window of 0.00025 s or 0.000333333333 s."},
+            "but 0.0003 s does not. Give a window of 0.00025 s or 0.000333333333333 s."},
         Bad{"WindowLongerThanTheRun",
             {"time.window=1"},
             "s.yaml, from --set time.window=1: time.window: must divide the run of 0.001 s, but 1 "
@@ -196,7 +196,7 @@ TEST_F(BodiesOfAScene, AStepThatDoesNotDivideTheWindowIsRefused) {
       refusal(),
       "s.yaml:6: time.window: must hold a whole number of steps of body right, but 1e-05 s is "
       "3.33333 steps of 3e-06 s. Give a window of 9e-06 s or 1.2e-05 s, or the body a step of "
-      "2.5e-06 s or 3.33333333e-06 s.");
+      "2.5e-06 s or 3.33333333333e-06 s.");
 }
 
 TEST_F(BodiesOfAScene, AStepLongerThanTheWindowIsRefused) {

@@ -258,8 +258,9 @@ INSTANTIATE_TEST_SUITE_P(
             "of "
             "two words."},
         Bad{"UnknownWord", "length: 2\nmaterial: void\nmode: fats\n",
-            "s.yaml:3: mode: must be one of slow, fast, but is fats. Did you mean fast? Choose one "
-            "of slow, fast."},
+            "s.yaml:3: mode: is fats, which is not a known choice. Did you mean fast? Choose one "
+            "of "
+            "slow, fast."},
         Bad{"UnknownChoice", "length: 2\nmaterial: {stel: {density: 1}}\n",
             "s.yaml:2: material.stel: is not a known choice. Did you mean steel? Choose one of "
             "steel, void."},

@@ -1,0 +1,229 @@
+#include <atomic>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/yaml_fields.hpp"
+#include "coordinator/command_line.hpp"
+#include "coordinator/controller.hpp"
+#include "coordinator/external_verb.hpp"
+#include "coordinator/interrupt.hpp"
+#include "coordinator/launch.hpp"
+#include "coordinator/launch_local.hpp"
+#include "coordinator/record/csv_history.hpp"
+#include "coordinator/record/event_log.hpp"
+#include "coordinator/record/expectations.hpp"
+#include "coordinator/record/measure_recorder.hpp"
+#include "coordinator/record/progress_line.hpp"
+#include "coordinator/record/summary.hpp"
+#include "coordinator/run_directory.hpp"
+#include "coordinator/scene.hpp"
+
+namespace abut {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int exit_expectation = 1, exit_input = 2, exit_world = 3;
+
+/// The bodies of a run and, when they live in other processes, what keeps those alive.
+struct Placement {
+  std::unique_ptr<Launch> launch;  // null: this process
+  std::vector<std::unique_ptr<Subdomain>> bodies;
+
+  std::vector<const Description*> descriptions() const {
+    std::vector<const Description*> all;
+    for (const std::unique_ptr<Subdomain>& body : bodies) all.push_back(&body->describe());
+    return all;
+  }
+  std::vector<Subdomain*> pointers() const {
+    std::vector<Subdomain*> all;
+    for (const std::unique_ptr<Subdomain>& body : bodies) all.push_back(body.get());
+    return all;
+  }
+};
+
+std::map<std::string, std::string> versions() {
+  return {{"abut", build_version()},
+          {"protocol", fmt::format("{}", protocol_version)},
+          {"compiler", __VERSION__}};
+}
+
+Placement place(const Scene& scene, const Document& document, bool local,
+                const std::atomic<bool>& interrupted) {
+  Placement placement;
+  if (local) {
+    placement.bodies = launch_local(scene, document);
+    return placement;
+  }
+  LaunchOptions options;
+  options.interrupted = &interrupted;
+  const Specification text{document.name(), document.text(), document.overrides(), ""};
+  placement.launch = std::make_unique<Launch>(scene, text, options);
+  placement.bodies = placement.launch->take_bodies();
+  return placement;
+}
+
+/// Every expectation names a measure that a run of this scene reports.
+void validate_expectations(const Scene& scene, const Description& body, const Document& document) {
+  MeasureScope scope;
+  scope.dim = body.dim;
+  for (const auto& [name, entry] : scene.bodies) scope.bodies.push_back(name);
+  for (const auto& [name, interface] : scene.interfaces) {
+    scope.interfaces.push_back(name);
+    scope.ports.insert(scope.ports.end(), interface.sides.begin(), interface.sides.end());
+  }
+  if (scene.meta.closed_form)
+    scope.closed_form = std::get<BarImpactForm>(*scene.meta.closed_form).interface;
+  for (std::size_t i = 0; i < scene.meta.expect.size(); ++i) {
+    try {
+      require_measure(scene.meta.expect[i].measure, scope);
+    } catch (const InputError& error) {
+      throw InputError(error.what_is_wrong,
+                       document.where(fmt::format("meta.expect[{}].measure", i)), error.remedy);
+    }
+  }
+}
+
+/// Every interface can be joined as the scene says.
+void validate_coupling(const Scene& scene, const Placement& placement, const Document& document) {
+  try {
+    make_coupling(scene, Bodies(placement.pointers()));
+  } catch (const InputError& error) {
+    throw InputError(error.what_is_wrong, document.where(error.where), error.remedy);
+  }
+}
+
+/// All that can be said of a scene without another process.
+std::optional<ClosedForm> validate_all(const Scene& scene, const Document& document) {
+  const Placement here{nullptr, launch_local(scene, document)};
+  validate_bodies(scene, here.descriptions(), document);
+  validate_coupling(scene, here, document);
+  validate_expectations(scene, here.bodies.front()->describe(), document);
+  return make_closed_form(scene, document);
+}
+
+std::string resolved_text(const Scene& scene, const Document& document) {
+  std::string text = "# Every value that this run used.\n";
+  for (const auto& [what, version] : versions()) text += fmt::format("# {}: {}\n", what, version);
+  text += fmt::format("# scene: {}\n", document.name());
+  for (const std::string& override_text : document.overrides())
+    text += fmt::format("# --set {}\n", override_text);
+  ResolvedYaml resolved;
+  resolved.add("", scene);
+  resolve_body_keys(scene, document, resolved);
+  return text + resolved.text();
+}
+
+/// The result for people; 0, or 1 when an expectation or the run failed.
+int report(const Scene& scene, const Measures& measures, const RunEnd& end,
+           const std::string& status, const fs::path& directory, bool quiet) {
+  const std::vector<ExpectationResult> results = evaluate(scene.meta.expect, measures);
+  bool pass = status == "completed";
+  for (const ExpectationResult& result : results) pass = pass && result.pass;
+  if (!quiet || !pass) {
+    fmt::print("{}\n", scene.meta.title);
+    if (!results.empty()) fmt::print("{}", to_table(results));
+    fmt::print("{} after {:.3f} s: {} windows, {} of them in contact, {} exchanges\n", status,
+               end.wall_seconds, end.windows, end.contact_windows, end.exchanges);
+    fmt::print("state {:016x}, files in {}\n", end.state_hash, directory.string());
+  }
+  return pass ? 0 : exit_expectation;
+}
+
+int run_verb(const RunCommand& command) {
+  start_log("abut", command.quiet ? LogLevel::error : LogLevel::info);
+  const std::atomic<bool>& interrupted = watch_for_interrupts();
+  const Document document = Document::load(command.scene, command.overrides);
+  const Scene scene = read_scene(document);
+  const std::optional<ClosedForm> closed_form = validate_all(scene, document);
+  const fs::path directory =
+      command.out.empty() ? default_run_directory(command.scene) : fs::path(command.out);
+  make_run_directory(directory, command.force);
+
+  Placement placement = place(scene, document, command.local, interrupted);
+  validate_bodies(scene, placement.descriptions(), document);
+  for (const Description* body : placement.descriptions())
+    log_info(fmt::format("{}: {}", body->name, body->model));
+
+  clear_run_directory(directory);
+  write_whole(directory / "scene.resolved.yaml", resolved_text(scene, document));
+  const ClosedForm* form = closed_form ? &*closed_form : nullptr;
+  const SystemClock clock;
+  MeasureRecorder recorder(form);
+  CsvHistory history(directory, form);
+  EventLog events(directory);
+  Summary summary(directory, {scene.meta.title, versions(), scene.meta.expect}, recorder, form);
+  ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !command.quiet);
+  const std::vector<Observer*> observers{&recorder, &history, &events, &progress, &summary};
+
+  const RunEnd end = Controller(scene, placement.pointers(), observers, &interrupted).run();
+  if (placement.launch) placement.launch->finish();
+  const int code =
+      report(scene, recorder.measures(), end, summary.status(), directory, command.quiet);
+  return interrupt_exit_code() != 0 ? interrupt_exit_code() : code;
+}
+
+int check_verb(const CheckCommand& command) {
+  const Document document = Document::load(command.scene, command.overrides);
+  const Scene scene = read_scene(document);
+  validate_all(scene, document);
+  fmt::print("{}: valid\n", command.scene);
+  return 0;
+}
+
+int reference_verb() {
+  Reference reference;
+  reference.heading("The scene");
+  reference.add<Scene>("");
+  reference.heading("A body");
+  document_body_keys(reference);
+  fmt::print(
+      "# Keys of a scene file\n\nPrinted by `abut reference`. Units are SI. A choice is "
+      "written `{{name: {{its keys}}}}`, or as the\nname alone when all its keys have "
+      "defaults.\n\n{}",
+      reference.markdown());
+  return 0;
+}
+
+struct Verbs {
+  int operator()(const RunCommand& command) const { return run_verb(command); }
+  int operator()(const CheckCommand& command) const { return check_verb(command); }
+  int operator()(const ReferenceCommand&) const { return reference_verb(); }
+  int operator()(const ExternalCommand& command) const {
+    become_external_verb(command.verb, command.arguments);
+  }
+  int operator()(const PrintCommand& command) const {
+    std::fputs(command.text.c_str(), command.exit_code == 0 ? stdout : stderr);
+    return command.exit_code;
+  }
+};
+
+int fail(const std::exception& error, int code) {
+  fmt::print(stderr, "error: {}\n", error.what());
+  return interrupt_exit_code() != 0 ? interrupt_exit_code() : code;
+}
+
+}  // namespace
+}  // namespace abut
+
+int main(int argc, char** argv) {
+  try {
+    return std::visit(abut::Verbs{}, abut::parse_command_line(argc, argv));
+  } catch (const abut::InputError& error) {
+    return abut::fail(error, abut::exit_input);
+  } catch (const std::exception& error) {  // RunError, and what the library throws: memory, files
+    return abut::fail(error, abut::exit_world);
+  }
+}

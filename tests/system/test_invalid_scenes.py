@@ -1,0 +1,144 @@
+"""Goal: bad input ends with exit code 2 and one paragraph that says what to change; nothing is written.
+
+The oracle stands at the head of every configs/invalid/*.yaml: `# refused with: <message>`.
+usage: test_invalid_scenes.py ABUT ROOT
+"""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ABUT = Path(sys.argv[1]).resolve()
+ROOT = Path(sys.argv[2]).resolve()
+SECONDS = 20  # a refusal takes milliseconds; only a hang takes longer
+
+VALID = """\
+meta: {title: A bar that flies}
+time: {begin: 0.0, end: 1.0e-5, window: 1.0e-6}
+bodies:
+  bar:
+    model: {fe: {dimension: 1, mesh: {bar: {length: 0.25, elements: 20, area: 1.0e-6}}}}
+    material: {linear_elastic: {youngs_modulus: 1.0e9, density: 1000.0}}
+    integrator: {central_difference: {step: 1.0e-6}}
+"""
+
+
+def abut(*arguments: object) -> subprocess.CompletedProcess:
+    return subprocess.run([ABUT, *map(str, arguments)], cwd=ROOT, capture_output=True, text=True,
+                          timeout=SECONDS, check=False)
+
+
+def expected_message(scene: Path) -> str:
+    """The comment lines at the head of a scene, joined into the paragraph they quote."""
+    words = []
+    for line in scene.read_text(encoding="utf-8").splitlines():
+        if not line.startswith("# "):
+            break
+        words.append(line[2:])
+    text = " ".join(words)
+    mark = "refused with: "
+    assert text.startswith(mark), f"{scene} does not begin with '# {mark}'"
+    return text[len(mark):]
+
+
+def files_below(folder: Path) -> dict:
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+class InvalidScenes(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+
+    def assert_refused(self, result: subprocess.CompletedProcess, message: str):
+        self.assertEqual(result.stderr, f"error: {message}\n")
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(result.returncode, 2)
+
+    def test_every_scene_is_refused_with_its_message_and_writes_nothing(self):
+        scenes = sorted((ROOT / "configs" / "invalid").glob("*.yaml"))
+        self.assertGreater(len(scenes), 30, "the scenes are found")
+        kept = self.folder / "kept"
+        kept.mkdir()
+        (kept / "notes.txt").write_text("mine", encoding="utf-8")
+        (kept / "summary.json").write_text("{}", encoding="utf-8")
+        before = files_below(kept)
+        for scene in scenes:
+            with self.subTest(scene=scene.name):
+                name, message = scene.relative_to(ROOT), expected_message(scene)
+                self.assert_refused(abut("check", name), message)
+                fresh = self.folder / "fresh"
+                self.assert_refused(abut("run", name, "--out", fresh), message)
+                self.assertFalse(fresh.exists())
+                self.assert_refused(abut("run", name, "--local", "--force", "--out", kept), message)
+                self.assertEqual(files_below(kept), before)
+
+
+class RunDirectories(InvalidScenes):
+    test_every_scene_is_refused_with_its_message_and_writes_nothing = None
+
+    def setUp(self):
+        super().setUp()
+        self.scene = self.folder / "scene.yaml"
+        self.scene.write_text(VALID, encoding="utf-8")
+
+    def test_a_valid_scene_is_accepted(self):
+        result = abut("check", self.scene)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def test_a_directory_that_holds_a_run_is_refused_and_kept(self):
+        for name in ("summary.json", "scene.resolved.yaml"):
+            out = self.folder / f"run_{name}"
+            out.mkdir()
+            (out / name).write_text("mine", encoding="utf-8")
+            before = files_below(out)
+            self.assert_refused(
+                abut("run", self.scene, "--out", out),
+                f"{out}: holds a run already. Give another directory with --out, or --force to "
+                "replace that run.")
+            self.assertEqual(files_below(out), before)
+
+    def test_a_directory_that_cannot_be_written_is_refused(self):
+        (self.folder / "file").write_text("mine", encoding="utf-8")
+        out = self.folder / "file" / "run"
+        self.assert_refused(
+            abut("run", self.scene, "--out", out),
+            f"{out}: cannot be a run directory: {self.folder / 'file'} is a file. Give another "
+            "directory with --out.")
+        result = abut("run", self.scene, "--out", "/proc/abut")  # where not even root may write
+        self.assertEqual(result.returncode, 2)
+        self.assertTrue(result.stderr.startswith("error: /proc/abut: cannot be "), result.stderr)
+
+
+class CommandLines(InvalidScenes):
+    test_every_scene_is_refused_with_its_message_and_writes_nothing = None
+
+    def test_a_scene_that_is_not_there_is_refused(self):
+        self.assert_refused(abut("check", "no/such.yaml"),
+                            "no/such.yaml: cannot be read. Give the path of a scene file.")
+
+    def test_an_override_says_where_the_value_came_from(self):
+        scene = self.folder / "scene.yaml"
+        scene.write_text(VALID, encoding="utf-8")
+        self.assert_refused(
+            abut("check", scene, "--set", "time.window=-1"),
+            f"{scene}, from --set time.window=-1: time.window: must be positive, but is -1 s. Give "
+            "the length of the controller step in s, greater than 0.")
+
+    def test_an_unknown_verb_is_refused(self):
+        self.assert_refused(
+            abut("rum"),
+            "there is no verb rum, and no program abut-rum beside abut or on PATH. Use run, check, "
+            "reference or report; abut --help describes them.")
+
+    def test_an_unknown_option_is_refused(self):
+        result = abut("run", "scene.yaml", "--fast")
+        self.assertEqual((result.returncode, result.stdout), (2, ""))
+        self.assertIn("--fast", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
