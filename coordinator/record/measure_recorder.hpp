@@ -14,7 +14,7 @@
 
 namespace abut {
 
-/// Turns a run into measures: docs/REFERENCE.md and measure_names.cpp list their names. Complete
+/// Turns a run into measures: docs/RESULTS.md says what each one means. Complete
 /// after on_end, so it is told of the end before those who read it.
 class MeasureRecorder : public Observer {
  public:

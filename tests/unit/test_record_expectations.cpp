@@ -1,6 +1,8 @@
 // Goal: an expectation passes exactly when the measure is inside what it allows. Oracle: values on
 // both sides of the limits.
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -86,6 +88,18 @@ TEST(Expectations, UnknownMeasureNamesTheNearest) {
 TEST(Expectations, MeasureThatNeedsAClosedFormSaysSo) {
   EXPECT_NE(remedy("contact.impact.release_error").find("Name meta.closed_form"),
             std::string::npos);
+}
+
+TEST(Expectations, EveryMeasureIsExplainedInTheDocuments) {
+  std::ifstream file(std::string(ABUT_SOURCE_DIR) + "/docs/RESULTS.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  MeasureScope scope;
+  scope.bodies = {"BODY"};
+  scope.ports = {"BODY.PORT"};
+  scope.interfaces = {"INTERFACE"};
+  scope.closed_form = "INTERFACE";
+  for (const std::string& name : known_measures(scope))
+    EXPECT_NE(text.find("`" + name + "`"), std::string::npos) << name;
 }
 
 TEST(Expectations, TableShowsWhatFailedAndWhyItWasExpected) {
