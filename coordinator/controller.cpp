@@ -335,6 +335,7 @@ void Controller::apply(const Event& event) {
   if (event.closes) return close(event.interface, event.located, event.speed);
   Interface& interface = coupling_.interfaces[static_cast<std::size_t>(event.interface)];
   interface.closed = false;
+  interface.opened_at = event.state;
   interface.release_impulse = interface.rebound_impulse;
   interface.rebound_impulse = 0.0;
   emit(RunEvent::Kind::contact_opened, event.located, interface.name, "contact opens",

@@ -249,9 +249,14 @@ void Body::push_traces(const Advance& request, double time, Response& response) 
     const int end = end_of_port_[p];
     const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));
     Waveform& trace = response.ports[p].trace;
+    const double u = scheme_.integrator->port_displacement(state_, end);
+    double v = state_.v[node];
+    // Kicks make the nodal velocity jump within a substep; the mean over it is the contact point's velocity.
+    const bool kicked = support_[end] == ForceSupport::step && state_.end[static_cast<std::size_t>(end)].closed;
+    if (kicked && !trace.empty()) v = (u - trace.u.back()) / (time - trace.time.back());
     trace.time.push_back(time);
-    trace.u.push_back(scheme_.integrator->port_displacement(state_, end));
-    trace.v.push_back(state_.v[node]);
+    trace.u.push_back(u);
+    trace.v.push_back(v);
     trace.a.push_back(state_.a[node]);
     trace.f.push_back(force_on_body(end, request.boundary[p]));
   }

@@ -52,11 +52,14 @@ std::optional<Closing> overlap_criterion(const Interface& interface, const Bodie
   const Waveform& t0 = trace_of(bodies, interface.sides[0]);
   const Waveform& t1 = trace_of(bodies, interface.sides[1]);
   const Waveform& finer = t0.size() >= t1.size() ? t0 : t1;
+  const double coarse_step = std::max(bodies.describe(interface.sides[0].body).step,
+                                      bodies.describe(interface.sides[1].body).step);
+  const double earliest = interface.opened_at + coarse_step;
   double before = interface.gap(t0.u.front(), t1.u.front());
   for (std::size_t i = 1; i < finer.size(); ++i) {
     const double time = finer.time[i];
     const double gap = interface.gap(displacement_at(t0, time), displacement_at(t1, time));
-    if (gap <= 0.0 && gap < before) {  // a gap that grows is a release, however little it overlaps
+    if (gap <= 0.0 && gap < before && time > earliest) {  // a gap that grows is a release, however little it overlaps
       const double length = time - finer.time[i - 1];
       const double share = before <= 0.0 ? 0.0 : before / (before - gap);
       return Closing{finer.time[i - 1] + share * length, (before - gap) / length};

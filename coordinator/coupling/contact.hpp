@@ -15,7 +15,8 @@ struct Closing {
 };
 
 /// Overlap criterion: an open interface closes where its gap becomes zero or less. Looks at every substep of both
-/// bodies after the window's begin, with motion linear between substeps.
+/// bodies after the window's begin, with motion linear between substeps. Within one of the coarser side's substeps after
+/// a release it stays open: the release itself was judged no finer than that.
 std::optional<Closing> overlap_criterion(const Interface& interface, const Bodies& bodies);
 
 /// A release inside a window.

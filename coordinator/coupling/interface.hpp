@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 
 #include "base/archive.hpp"
@@ -23,6 +24,7 @@ struct Interface {
   int kinematic = 0;                          // index of the kinematic (Dirichlet) side
   // What contact carries from window to window:
   bool closed = false;
+  double opened_at = -std::numeric_limits<double>::infinity();  // [s] last release
   double closing_speed = 0.0;   // [m/s] at the last first touch
   double force_scale = 0.0;     // [N] largest contact force since it closed
   double rebound_impulse = 0.0;  // [N s] that a release now would give back

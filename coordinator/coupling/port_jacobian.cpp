@@ -115,6 +115,28 @@ Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const TimeGrid&
   return Eigen::MatrixXd::Identity(neumann_grid.count, neumann_grid.count) + pushed * force;
 }
 
+Eigen::VectorXd solve_toeplitz(const std::vector<double>& column, const Eigen::VectorXd& r) {
+  const Eigen::Index n = r.size();
+  ABUT_ASSERT(static_cast<Eigen::Index>(column.size()) >= n);
+  const Eigen::Map<const Eigen::VectorXd> c(column.data(), n);
+  Eigen::VectorXd x = r;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    x[i] /= c[0];
+    x.tail(n - i - 1) -= x[i] * c.segment(1, n - i - 1);
+  }
+  return x;
+}
+
+std::vector<double> unilateral_jacobian_column(const PortKernel& kinematic, const PortKernel& neumann,
+                                               int count) {
+  // Products and inverses of such matrices are such matrices again: C_N C_K^-1 has the column C_K^-1 c_N.
+  const Eigen::Map<const Eigen::VectorXd> pushed(neumann.displacement.data(), count);
+  const Eigen::VectorXd ratio = solve_toeplitz(kinematic.displacement, pushed);
+  std::vector<double> column(ratio.begin(), ratio.end());
+  column[0] += 1.0;
+  return column;
+}
+
 Eigen::MatrixXd parallel_jacobian(const std::vector<const PortKernel*>& kernels,
                                   const std::vector<TimeGrid>& grids, const TimeGrid& source,
                                   ForceSupport source_support) {

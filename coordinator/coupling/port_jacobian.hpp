@@ -30,6 +30,13 @@ Eigen::MatrixXd neumann_map(const PortKernel& kernel, const TimeGrid& here, cons
 Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
                                     const PortKernel& neumann, const TimeGrid& neumann_grid);
 
+/// The same when both bodies take the same substeps: J is a lower triangular Toeplitz matrix, given by its first
+/// column (n).
+std::vector<double> unilateral_jacobian_column(const PortKernel& kinematic, const PortKernel& neumann, int count);
+
+/// x with T x = r for the lower triangular Toeplitz matrix T of a first column.
+Eigen::VectorXd solve_toeplitz(const std::vector<double>& column, const Eigen::VectorXd& r);
+
 /// Jacobian of the parallel iteration on the contact force at the source grid's substeps (n, n): overlap
 /// removed there per unit force.
 Eigen::MatrixXd parallel_jacobian(const std::vector<const PortKernel*>& kernels,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace abut {
 
@@ -50,17 +51,30 @@ bool covers(const Waveform& guess, const TimeGrid& grid) {
 
 }  // namespace
 
+Eigen::VectorXd KernelInverse::Entry::solve(const Eigen::VectorXd& r) const {
+  return column.empty() ? Eigen::VectorXd(factors.solve(r)) : solve_toeplitz(column, r);
+}
+
 const KernelInverse::Entry* KernelInverse::find(double length) const {
   for (const std::unique_ptr<Entry>& entry : entries_) {
-    if (entry->length == length) return entry.get();
+    // Ends of windows are rounded: equal windows differ in their last bits.
+    if (std::abs(entry->length - length) <= 1.0e-9 * length) return entry.get();
   }
   return nullptr;
 }
 
-const KernelInverse::Entry& KernelInverse::store(double length, const Eigen::MatrixXd& jacobian) {
+const KernelInverse::Entry* KernelInverse::add(Entry entry) {
   if (entries_.size() >= kept_inverses) entries_.erase(entries_.begin() + 1);  // the first is the whole window's
-  entries_.push_back(std::make_unique<Entry>(Entry{length, jacobian.partialPivLu()}));
-  return *entries_.back();
+  entries_.push_back(std::make_unique<Entry>(std::move(entry)));
+  return entries_.back().get();
+}
+
+const KernelInverse::Entry* KernelInverse::store(double length, const Eigen::MatrixXd& jacobian) {
+  return add({length, {}, jacobian.partialPivLu()});
+}
+
+const KernelInverse::Entry* KernelInverse::store(double length, std::vector<double> column) {
+  return add({length, std::move(column), {}});
 }
 
 // ---- unilateral, alternating ---------------------------------------------------------------------------------
@@ -82,12 +96,15 @@ void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bod
   scale_.step = step;
   scale_.velocity = reference_velocity(interface, kinematic_compliance_, step);
   scale_.force = interface.force_scale;
-  inverse_ = nullptr;
-  if (std::max(kinematic_grid_.count, neumann_grid_.count) > KernelInverse::largest) return;
   inverse_ = inverses_.find(window.length());
   if (inverse_ != nullptr) return;
-  inverse_ = &inverses_.store(window.length(),
-                              unilateral_jacobian(kernel_k, kinematic_grid_, kernel_n, neumann_grid_));
+  if (kinematic_grid_.same_as(neumann_grid_) && kernel_k.support == kernel_n.support) {
+    inverse_ = inverses_.store(window.length(),
+                               unilateral_jacobian_column(kernel_k, kernel_n, neumann_grid_.count));
+  } else if (std::max(kinematic_grid_.count, neumann_grid_.count) <= KernelInverse::largest) {
+    inverse_ = inverses_.store(window.length(),
+                               unilateral_jacobian(kernel_k, kinematic_grid_, kernel_n, neumann_grid_));
+  }
 }
 
 void Unilateral::predict(Eigen::Ref<Eigen::VectorXd> x) const {
@@ -155,7 +172,7 @@ void Unilateral::scales(Eigen::Ref<Eigen::VectorXd> s) const {
 }
 
 Eigen::VectorXd Unilateral::apply_inverse(const Eigen::VectorXd& r) const {
-  if (inverse_ != nullptr) return inverse_->lu.solve(r);
+  if (inverse_ != nullptr) return inverse_->solve(r);
   return r / (1.0 + neumann_compliance_ / kinematic_compliance_);
 }
 
@@ -179,11 +196,10 @@ void ParallelForce::begin(const TimeWindow& window, const Interface& interface, 
   scale_.step = force_grid_.step;
   scale_.velocity = reference_velocity(interface, compliance_, scale_.step);
   scale_.force = interface.force_scale;
-  inverse_ = nullptr;
-  if (std::max(grids[0].count, grids[1].count) > KernelInverse::largest) return;
   inverse_ = inverses_.find(window.length());
   if (inverse_ != nullptr) return;
-  inverse_ = &inverses_.store(window.length(),
+  if (std::max(grids[0].count, grids[1].count) > KernelInverse::largest) return;
+  inverse_ = inverses_.store(window.length(),
                               parallel_jacobian(kernels, grids, force_grid_, support_) / compliance_);
 }
 
@@ -245,7 +261,7 @@ void ParallelForce::scales(Eigen::Ref<Eigen::VectorXd> s) const {
 }
 
 Eigen::VectorXd ParallelForce::apply_inverse(const Eigen::VectorXd& r) const {
-  return inverse_ != nullptr ? Eigen::VectorXd(inverse_->lu.solve(r)) : r;
+  return inverse_ != nullptr ? inverse_->solve(r) : r;
 }
 
 }  // namespace abut

@@ -40,19 +40,25 @@ class Transmission {
   virtual bool ordered() const = 0;
 };
 
-/// Port kernels of an interface, and their factored Jacobians by window length.
+/// Inverse interface Jacobians by window length: a Toeplitz column where both bodies take the same substeps, factors
+/// otherwise.
 class KernelInverse {
  public:
   struct Entry {
-    double length = 0.0;
-    Eigen::PartialPivLU<Eigen::MatrixXd> lu;
+    double length = 0.0;  // [s] of the window
+    std::vector<double> column;
+    Eigen::PartialPivLU<Eigen::MatrixXd> factors;
+
+    Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
   };
-  /// Null when the window has more substeps than a dense Jacobian is good for.
-  const Entry* find(double length) const;
-  const Entry& store(double length, const Eigen::MatrixXd& jacobian);
-  static constexpr int largest = 1200;  // rows; (1200^2 doubles are 11 MiB, factored in 0.3 s once)
+  const Entry* find(double length) const;  // null: not there yet
+  const Entry* store(double length, const Eigen::MatrixXd& jacobian);
+  const Entry* store(double length, std::vector<double> column);
+
+  static constexpr int largest = 1200;  // rows of a dense Jacobian: 11 MiB, factored once in 0.3 s
 
  private:
+  const Entry* add(Entry entry);
   std::vector<std::unique_ptr<Entry>> entries_;
 };
 

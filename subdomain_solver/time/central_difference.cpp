@@ -260,7 +260,6 @@ void CentralDifference::substep(BarState& state, double dt, const EndActions& ac
     kick_drift(state, 0.5 * (previous_dt_ + dt), dt);
   }
   previous_dt_ = dt;
-  resolve_massless(state, actions, dt);
   for (int end : {0, 1}) {
     const EndAction& action = actions[static_cast<std::size_t>(end)];
     EndState& e = state.end[static_cast<std::size_t>(end)];
@@ -272,6 +271,7 @@ void CentralDifference::substep(BarState& state, double dt, const EndActions& ac
     }
     prescribed_[static_cast<std::size_t>(end)] = action;
   }
+  resolve_massless(state, actions, dt);  // last: it forms the smoothed displacements of the final places
 }
 
 void CentralDifference::close(BarState& state, double dt) {
