@@ -226,8 +226,12 @@ void Launch::check_startup(Member& member, TimePoint begin) {
   if (member.spawned) {
     throw RunError(what, member.name, "raise network.startup_deadline on a slow machine");
   }
+  std::string reachable = endpoint;
+  const std::size_t wildcard = reachable.find("//0.0.0.0:");
+  if (wildcard != std::string::npos)
+    reachable.replace(wildcard + 2, 7, "HOST");  // a name of this machine
   throw RunError(what, member.name,
-                 fmt::format("start `abut-solver --connect {} --body {}`", endpoint, member.name));
+                 fmt::format("start `abut-solver --connect {} --body {}`", reachable, member.name));
 }
 
 std::vector<std::unique_ptr<Subdomain>> Launch::take_bodies() {

@@ -151,7 +151,8 @@ void Caller::look_around() {
                    body_, "raise network.request_deadline if one solve may take longer");
   }
   if (now >= repeat_at_) {
-    pause_ = std::min(2 * pause_, context_.deadlines.request / 10);
+    pause_ =
+        std::min({2 * pause_, context_.deadlines.request / 10, context_.deadlines.reconnect / 2});
     repeat();
   }
 }

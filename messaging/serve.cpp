@@ -104,7 +104,7 @@ bool Server::handle_greeting() {
   if (request_.has_refuse()) {
     throw CoordinatorLost(
         fmt::format("the coordinator refuses body '{}': {}", name_, request_.refuse().reason()), "",
-        "correct it and start this solver again");
+        "look at the coordinator's own messages, then start this solver again");
   }
   if (!request_.has_welcome()) return false;
   welcome_ = true;

@@ -67,7 +67,16 @@ struct ZmqHub::Peer : Channel {
   Peer(ZmqHub& owner, int number, std::string routing_id)
       : hub(owner), index(number), name(std::move(routing_id)) {}
 
-  bool send(Bytes frame) override { return hub.send_to(name, frame); }
+  bool send(Bytes frame) override {
+    // The ROUTER knows best who can be reached: this also sees a connection that has come back.
+    const bool sent = hub.send_to(name, frame);
+    if (sent) {
+      gone.reset();
+    } else if (zmq_errno() == EHOSTUNREACH && !gone) {
+      gone = now();
+    }
+    return sent;
+  }
   std::optional<Bytes> receive(Milliseconds wait) override {
     if (!waiting.empty()) {
       current = std::move(waiting.front());
@@ -189,7 +198,9 @@ void ZmqHub::read_monitor() {
   while (const std::optional<ZmqMonitor::Event> event = monitor_->next()) {
     if (event->connected) continue;  // who it is, the first frame tells
     for (const std::unique_ptr<Peer>& peer : peers_) {
-      if (peer->descriptor != event->descriptor) continue;
+      // A connection that ended before its first frame belongs to one who was trying to come back.
+      const bool nameless = peer->descriptor < 0 && !peer->disconnects.empty();
+      if (peer->descriptor != event->descriptor && !nameless) continue;
       peer->descriptor = -1;
       peer->gone = std::chrono::steady_clock::now();
       if (peer->disconnects.size() < most_disconnects) peer->disconnects.push_back(*peer->gone);

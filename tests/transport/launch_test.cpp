@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -15,6 +16,7 @@
 #include "base/error.hpp"
 #include "coordinator/launch.hpp"
 #include "messaging/child_process.hpp"
+#include "messaging/zmq_channel.hpp"
 #include "tests/transport/loop.hpp"
 
 namespace abut {
@@ -225,6 +227,73 @@ TEST_F(LaunchTest, AFrameThatEndsTheConnectionIsNamedWithTheLimit) {
   EXPECT_TRUE(contains(error, "body 'left' ") && contains(error, "limit of 1000000 bytes") &&
               contains(error, "while at advance (request 2)"))
       << error;
+}
+
+TEST_F(LaunchTest, AFrameThatEndsATcpConnectionAgainAndAgainIsNamedWithTheLimit) {
+  scene_.network.endpoint = "tcp://127.0.0.1:47616";
+  add_body("left", "huge");
+  scene_.bodies[0].second.launch = ConnectLaunch{5.0};
+  ChildProcess solver(ABUT_FAKE_SOLVER, {"--connect", scene_.network.endpoint, "--body", "left"});
+  start();
+  const std::string error = error_within(6.0, [this] { advance_first(); });
+  EXPECT_TRUE(contains(error,
+                       "body 'left' lost its connection 3 times (a frame far above the limit "
+                       "of 1000000 bytes ends a connection) while at advance (request 2)"))
+      << error;
+}
+
+TEST_F(LaunchTest, AConnectedSolverThatIsKilledIsGivenUpWhenItDoesNotComeBack) {
+  scene_.network.endpoint = "tcp://127.0.0.1:47617";
+  options_.deadlines.reconnect = Milliseconds(300);
+  add_body("left");
+  scene_.bodies[0].second.launch = ConnectLaunch{5.0};
+  ChildProcess solver(ABUT_FAKE_SOLVER, {"--connect", scene_.network.endpoint, "--body", "left"});
+  start();
+  advance_first();
+  solver.send_signal(SIGKILL);
+  const std::string error = error_within(3.0, [this] { advance_first(); });
+  EXPECT_TRUE(contains(error,
+                       "body 'left' closed its connection and did not come back within 0.3 s "
+                       "while at advance (request 3)"))
+      << error;
+}
+
+TEST_F(LaunchTest, ASolverLeavesWhenItsCoordinatorEndsEarly) {
+  scene_.network.endpoint = "tcp://127.0.0.1:47618";
+  add_body("left");
+  scene_.bodies[0].second.launch = ConnectLaunch{5.0};
+  ChildProcess solver(ABUT_FAKE_SOLVER, {"--connect", scene_.network.endpoint, "--body", "left"});
+  start();
+  advance_first();
+  bodies_.clear();
+  launch_.reset();
+  EXPECT_TRUE(solver.ended(Milliseconds(2'000)));
+  EXPECT_EQ(solver.ending(), "exited with code 3");
+}
+
+TEST_F(LaunchTest, ASolverLeavesWhenItsCoordinatorVanishesInTheMiddleOfASolve) {
+  // The socket of the hub alone goes away: no refusal, no signal, as when a machine dies.
+  const Limits limits;
+  std::unique_ptr<ZmqHub> hub = std::make_unique<ZmqHub>(limits);
+  const int peer = hub->add_peer("left");
+  add_body("left", "slow");
+  std::string directory = "/tmp/abut-test-XXXXXX";
+  ASSERT_NE(mkdtemp(directory.data()), nullptr);
+  const std::string endpoint = hub->bind("ipc://" + directory + "/hub");
+  ChildProcess solver(ABUT_FAKE_SOLVER, {"--connect", endpoint, "--body", "left"});
+  ASSERT_TRUE(hub->channel(peer).receive(Milliseconds(5'000)).has_value());
+  AlwaysAlive alive;
+  Caller caller("left", CallContext{hub->channel(peer), alive, nullptr, limits, Deadlines{}});
+  RemoteSubdomain body(caller);
+  body.start_configure(Specification{});
+  body.finish_configure();
+  const Advance advance = request_for(0);
+  body.start(advance);
+  hub.reset();
+  // The solve alone takes 2.5 s; the next sign of progress finds nobody.
+  EXPECT_TRUE(solver.ended(Milliseconds(1'500)));
+  EXPECT_EQ(solver.ending(), "exited with code 3");
+  std::filesystem::remove_all(directory);
 }
 
 TEST_F(LaunchTest, ASolverThatLivesButNeverAnswersIsGivenUpAtTheDeadline) {
