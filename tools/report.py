@@ -143,8 +143,11 @@ class Figure:
             curves.append({**curve, "x": [rounded(t * time_scale[0], 8) for t in x],
                            "y": [rounded(v * factor, 7) for v in y]})
         label = f"{self.quantity} [{unit}]" if unit else self.quantity
+        lowest = min((y for curve in self.curves for y in curve["y"]), default=0.0)
+        # Round-off below zero must not open half a figure of empty space.
+        floor = 0 if -0.005 * largest < lowest <= 0.0 else None
         return {"name": self.name, "label": label, "unit": unit, "points": self.points,
-                "time": time_scale[1], "curves": curves}
+                "time": time_scale[1], "floor": floor, "curves": curves}
 
 
 def scaled_unit(largest: float, unit: str) -> tuple[float, str]:
@@ -323,6 +326,11 @@ def expectations_table(run: Run) -> str:
     return table_of(["measure", "expected", "got", "", "because"], rows, kinds) if rows else ""
 
 
+def clean(value: float | None, scale: float) -> float | None:
+    """Round-off around zero is shown as zero."""
+    return 0.0 if value is not None and abs(value) < 1e-12 * scale else value
+
+
 def closed_form_table(run: Run) -> str:
     form, measures = run.summary.get("closed_form"), run.summary.get("measures", {})
     if not form:
@@ -340,6 +348,7 @@ def closed_form_table(run: Run) -> str:
     rows = []
     for quantity, unit, exact, name, scale in compared:
         got = measures.get(name)
+        exact, got = (clean(value, scale) for value in (exact, got))
         error = "" if got is None else f"{100.0 * (got - exact) / scale:.3g} %"
         rows.append([f"{quantity} [{unit}]", shown(exact), shown(got), error])
     note = ("<p class='note'>Errors are relative: times to the exact duration of contact, "

@@ -119,9 +119,13 @@ class PageReader(html.parser.HTMLParser):
             self.rows[-1][-1] += data
 
 
-def curves_of(page: str) -> dict[str, list[dict]]:
+def figures_of(page: str) -> dict[str, dict]:
     data = re.search(r"<script>const figures = (.*?);</script>", page, re.DOTALL)
-    return {figure["name"]: figure["curves"] for figure in json.loads(data[1])}
+    return {figure["name"]: figure for figure in json.loads(data[1])}
+
+
+def curves_of(page: str) -> dict[str, list[dict]]:
+    return {name: figure["curves"] for name, figure in figures_of(page).items()}
 
 
 def report(*arguments) -> subprocess.CompletedProcess:
@@ -171,6 +175,19 @@ class Report(unittest.TestCase):
         self.assertAlmostEqual(max(right["y"]), 100.2, delta=0.01)  # compression is positive
         error = next(c for c in curves["energy_error"] if c["label"] == "left")
         self.assertAlmostEqual(max(error["y"]), 100.0 * 1e-5 / 1.25, places=9)  # %
+
+    def test_round_off_below_zero_opens_no_space_below_the_axis(self):
+        make_run(self.folder)
+        path = self.folder / "history.csv"
+        lines = path.read_text().splitlines()
+        cells = lines[50].split(",")
+        cells[17] = "-1e-12"  # gap
+        lines[50] = ",".join(cells)
+        path.write_text("\n".join(lines) + "\n")
+        self.assertEqual(report(self.folder).returncode, 0)
+        figures = figures_of((self.folder / "report.html").read_text(encoding="utf-8"))
+        self.assertEqual(figures["gap"]["floor"], 0)
+        self.assertIsNone(figures["velocity"]["floor"])
 
     def test_exact_force_jumps_at_the_exact_times(self):
         exact = next(c for c in curves_of(self.page())["force"] if c["exact"])
