@@ -248,7 +248,8 @@ def body_figures(run: Run) -> list[Figure]:
                          table[f"{body}.mean_velocity"], exact)
             for colour, kind in zip(COLOURS, ("kinetic", "stored", "total")):
                 energy.add(kind + word, colour, times, table[f"{body}.{kind}"], exact)
-        energies.append(energy)
+        if any(y for curve in energy.curves for y in curve["y"]):  # a wall holds none
+            energies.append(energy)
     return [mean] + energies
 
 
