@@ -41,8 +41,12 @@ std::string ProgressLine::text(const WindowReport& report) const {
 void ProgressLine::on_event(const RunEvent& event) {
   erase();
   const std::string line = fmt::format("{:.6e} s: {}", event.time, event.text);
-  const bool bad = event.kind == RunEvent::Kind::failure || event.kind == RunEvent::Kind::warning;
-  bad ? log_warning(line) : log_info(line);
+  if (event.kind == RunEvent::Kind::failure)
+    log_error(line);
+  else if (event.kind == RunEvent::Kind::warning)
+    log_warning(line);
+  else
+    log_info(line);
 }
 
 void ProgressLine::on_end(const RunEnd&) { erase(); }
