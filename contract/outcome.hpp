@@ -43,9 +43,8 @@ struct Rebound {
 /// One port's reply to a window.
 struct PortResponse {
   Waveform trace;                  // at the substeps, or at the records only (Sampling)
-  std::vector<double> lower;       // [m] (dim) smallest and largest displacement over all substeps
-  std::vector<double> upper;       // [m] (dim)
-  // [m/s] largest outward normal velocity expected of the port when free
+  std::vector<double> lower;       // [m] (records, dim) smallest and largest displacement over the
+  std::vector<double> upper;       // substeps of each record's part of the window
   double approach_bound = 0.0;
   double approach_acceleration = 0.0;  // [m/s^2] by which body forces may raise that bound
   std::optional<Rebound> rebound;  // only bodies with contact kicks

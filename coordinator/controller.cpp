@@ -22,7 +22,6 @@ constexpr double event_tolerance = 1.0e-4;  // of a substep: an event so near to
 constexpr double force_floor = 1.0e-9;      // of the largest contact force: less is no compression
 constexpr int most_events = 8;              // per window; more is chatter
 constexpr int most_halvings = 20;
-constexpr int most_windows_at_once = 1000;  // of free flight: bounds the size of one reply
 
 }  // namespace
 
@@ -93,7 +92,7 @@ bool Controller::fly_free() {
   const double horizon = free_flight_horizon(coupling_.interfaces, bodies_);
   const double left = scene_.time.end - time_;
   const double whole = std::floor(std::min(horizon, left) / window + clock_tolerance);
-  const int windows = static_cast<int>(std::min<double>(whole, most_windows_at_once));
+  const int windows = static_cast<int>(std::min<double>(whole, flight_limit_));
   if (windows < 1) return false;
   TimeWindow flight = next_window();
   flight.end = anchor_ + static_cast<double>(since_ + windows) * window;
@@ -107,6 +106,7 @@ bool Controller::fly_free() {
   if (!stayed_apart(coupling_.interfaces, bodies_)) {
     bodies_.restore_all();
     grounded_ = true;
+    flight_limit_ = std::max(1, windows / 4);  // the bound was wrong: trust it less for a while
     return false;
   }
   fill_reports({});
@@ -115,6 +115,7 @@ bool Controller::fly_free() {
   since_ += windows;
   time_ = flight.end;
   events_here_ = 0;
+  flight_limit_ = std::min(most_windows_at_once, 2 * flight_limit_);
   return true;
 }
 

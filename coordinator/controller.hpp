@@ -81,7 +81,9 @@ class Controller {
   double time_;             // [s]
   int events_here_ = 0;     // since the last whole window: a bound on chatter
   int halvings_ = 0;
-  bool grounded_ = false;   // free flight came too near: step once
+  static constexpr int most_windows_at_once = 1000;  // of free flight: bounds the size of one reply
+  int flight_limit_ = most_windows_at_once;
+  bool grounded_ = false;  // free flight came too near: step once
   RunEnd end_;
   std::vector<InterfaceReport> reports_;
 };

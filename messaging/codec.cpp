@@ -94,8 +94,8 @@ void decode(const v1::BoundaryData& from, const FieldPath& path, BoundaryData& t
   take(from.impulse(), FieldPath{&path, "impulse"}, to.impulse);
 }
 
-void decode(const v1::PortResponse& from, const Port& port, const FieldPath& path,
-            PortResponse& to) {
+void decode(const v1::PortResponse& from, const Port& port, std::size_t records,
+            const FieldPath& path, PortResponse& to) {
   decode_optional(from.has_trace(), from.trace(), FieldPath{&path, "trace"}, to.trace);
   const std::size_t dim = static_cast<std::size_t>(port.geometry.dim);
   const int width = port.geometry.count() * port.geometry.dim;
@@ -103,8 +103,8 @@ void decode(const v1::PortResponse& from, const Port& port, const FieldPath& pat
     FieldPath{&path, "trace"}.fail(
         fmt::format("has width {} where port '{}' has {}", to.trace.width, port.name, width));
   }
-  take(from.lower(), dim, true, FieldPath{&path, "lower"}, to.lower);
-  take(from.upper(), dim, true, FieldPath{&path, "upper"}, to.upper);
+  take(from.lower(), records * dim, true, FieldPath{&path, "lower"}, to.lower);
+  take(from.upper(), records * dim, true, FieldPath{&path, "upper"}, to.upper);
   to.approach_bound =
       number(from.approach_bound(), FieldPath{&path, "approach_bound"}, Allow::infinite);
   to.approach_acceleration = number(from.approach_acceleration(),
@@ -243,7 +243,8 @@ void decode(const v1::Advanced& from, const Description& body, Response& to) {
   to.ports.resize(body.ports.size());
   for (std::size_t i = 0; i < to.ports.size(); ++i) {
     const int index = static_cast<int>(i);
-    decode(from.ports(index), body.ports[i], FieldPath{&path, "ports", index}, to.ports[i]);
+    decode(from.ports(index), body.ports[i], static_cast<std::size_t>(from.records_size()),
+           FieldPath{&path, "ports", index}, to.ports[i]);
   }
   if (from.records_size() > most_records) FieldPath{&path, "records"}.fail("has too many entries");
   to.records.resize(static_cast<std::size_t>(from.records_size()));

@@ -135,7 +135,8 @@ Outcome Body::finish(Response& response) {
 }
 
 void Body::advance_part(const Advance& request, const Substeps& part, Response& response) {
-  if (part.count == 0) return;
+  begin_sweep();
+  if (part.count == 0) return end_sweep(response);
   BarIntegrator& integrator = *scheme_.integrator;
   for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
     const BoundaryData& data = request.boundary[p];
@@ -156,6 +157,7 @@ void Body::advance_part(const Advance& request, const Substeps& part, Response& 
   }
   integrator.close(state_, part.length(part.count));
   if (request.sampling == Sampling::substeps) push_traces(request, part.end, response);
+  end_sweep(response);
   response.steps += part.count;
 }
 
@@ -238,8 +240,8 @@ void Body::begin_traces(const Advance& request, Response& response) {
     response.ports[p].trace.clear();
     response.ports[p].trace.support = support_[end_of_port_[p]];
     response.ports[p].rebound.reset();
-    EndState& e = state_.end[static_cast<std::size_t>(end_of_port_[p])];
-    e.swept_low = e.swept_high = scheme_.integrator->port_displacement(state_, end_of_port_[p]);
+    response.ports[p].lower.clear();
+    response.ports[p].upper.clear();
   }
   push_traces(request, request.window.begin, response);
 }
@@ -271,6 +273,21 @@ void Body::track_sweep() {
   }
 }
 
+void Body::begin_sweep() {
+  for (int end : end_of_port_) {
+    EndState& e = state_.end[static_cast<std::size_t>(end)];
+    e.swept_low = e.swept_high = scheme_.integrator->port_displacement(state_, end);
+  }
+}
+
+void Body::end_sweep(Response& response) const {
+  for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
+    const EndState& e = state_.end[static_cast<std::size_t>(end_of_port_[p])];
+    response.ports[p].lower.push_back(e.swept_low);
+    response.ports[p].upper.push_back(e.swept_high);
+  }
+}
+
 void Body::record(double time, Response& response) {
   BodyRecord r;
   r.time = time;
@@ -287,8 +304,6 @@ void Body::finish_ports(Response& response) {
     const int end = end_of_port_[p];
     const EndState& e = state_.end[static_cast<std::size_t>(end)];
     PortResponse& port = response.ports[p];
-    port.lower = {e.swept_low};
-    port.upper = {e.swept_high};
     if (!e.closed) approach(end, port);
     if (support_[end] != ForceSupport::step) continue;
     const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));

@@ -58,7 +58,9 @@ class Body final : public Subdomain {
   void apply_impulses(const Advance& request);
   void begin_traces(const Advance& request, Response& response);
   void push_traces(const Advance& request, double time, Response& response);
+  void begin_sweep();
   void track_sweep();
+  void end_sweep(Response& response) const;
   void record(double time, Response& response);
   void finish_ports(Response& response);
   double force_on_body(int end, const BoundaryData& data) const;

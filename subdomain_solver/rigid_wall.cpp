@@ -49,7 +49,8 @@ Outcome RigidWall::finish(Response& response) {
     record = BodyRecord{time, {}, {0.0}};
     if (time > trace.time.back()) push(time);
   }
-  port.lower = port.upper = {0.0};
+  port.lower.assign(static_cast<std::size_t>(parts), 0.0);
+  port.upper = port.lower;
   port.approach_bound = port.approach_acceleration = 0.0;
   port.rebound.reset();
   response.steps = request.window.length() > 0.0 ? 1 : 0;

@@ -34,12 +34,15 @@ double free_flight_horizon(std::span<const Interface> interfaces, const Bodies& 
 
 bool stayed_apart(std::span<const Interface> interfaces, const Bodies& bodies) {
   return std::all_of(interfaces.begin(), interfaces.end(), [&bodies](const Interface& interface) {
-    double outermost[2] = {0.0, 0.0};
-    for (std::size_t s : {0u, 1u}) {
-      const PortResponse& p = port_of(bodies, interface.sides[s]);
-      outermost[s] = interface.normal[s] > 0.0 ? p.upper[0] : p.lower[0];
+    const PortResponse& p0 = port_of(bodies, interface.sides[0]);
+    const PortResponse& p1 = port_of(bodies, interface.sides[1]);
+    const bool right = interface.normal[0] > 0.0;  // side 0 looks to the right
+    const std::vector<double>& outer0 = right ? p0.upper : p0.lower;
+    const std::vector<double>& outer1 = right ? p1.lower : p1.upper;
+    for (std::size_t part = 0; part < std::min(outer0.size(), outer1.size()); ++part) {
+      if (interface.gap(outer0[part], outer1[part]) <= 0.0) return false;
     }
-    return interface.gap(outermost[0], outermost[1]) > 0.0;
+    return true;
   });
 }
 

@@ -11,7 +11,7 @@ namespace abut {
 /// body forces, and a margin; infinity when the sides move apart. Reads the latest responses.
 double free_flight_horizon(std::span<const Interface> interfaces, const Bodies& bodies);
 
-/// True when the ranges that the ports swept since the window's begin stay apart: the bound has held.
+/// True when the ranges that the ports swept, window by window, stay apart: the bound has held.
 bool stayed_apart(std::span<const Interface> interfaces, const Bodies& bodies);
 
 }  // namespace abut

@@ -65,8 +65,10 @@ void MeasureRecorder::count_iterations(const WindowReport& report) {
 void MeasureRecorder::follow_positions(const WindowReport& report) {
   for (PositionMax& position : positions_) {
     const PortResponse& response = report.responses[position.body].ports[position.port];
-    for (std::size_t k = 0; k < std::min(position.most.size(), response.upper.size()); ++k)
-      position.most[k] = std::max(position.most[k], response.upper[k]);
+    for (std::size_t k = 0; k < response.upper.size(); ++k) {  // (records, dim)
+      double& most = position.most[k % position.most.size()];
+      most = std::max(most, response.upper[k]);
+    }
   }
 }
 

@@ -15,7 +15,7 @@ struct EndState {
   double force = 0.0;        // [N] contact force at the present time, as exchanged
   double dynamic = 0.0;      // [N] the force that moves the body: its mean over the dual cell
   double captured = 0.0;     // [J] work that contact has taken since the port closed (kick layer)
-  double swept_low = 0.0, swept_high = 0.0;  // [m] range of the port's displacement in this window
+  double swept_low = 0.0, swept_high = 0.0;  // [m] range of the port, reset for every part
 
   void state(Archive& archive);
 };

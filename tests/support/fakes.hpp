@@ -94,6 +94,9 @@ class FakeSubdomain : public Subdomain {
       port.upper[0] = std::max(port.upper[0], u_);
       sample(time, port.trace);
     }
+    const std::size_t records = static_cast<std::size_t>(std::max(1, request_->records));
+    port.lower.resize(records, port.lower[0]);  // the range of the whole window covers its parts
+    port.upper.resize(records, port.upper[0]);
     port.approach_bound = std::abs(v_);
     fill_records(window, response);
     response.steps = options_.substeps;
