@@ -24,9 +24,9 @@ std::string Rule::range() const {
   const bool bounded_below = std::isfinite(low);
   const bool bounded_above = std::isfinite(high);
   if (bounded_below && bounded_above && !above_low && !below_high)
-    return fmt::format("between {} and {}", low, high);
-  const std::string lower = fmt::format("{} {}", above_low ? "greater than" : "at least", low);
-  const std::string upper = fmt::format("{} {}", below_high ? "less than" : "at most", high);
+    return fmt::format("between {:.6g} and {:.6g}", low, high);
+  const std::string lower = fmt::format("{} {:.6g}", above_low ? "greater than" : "at least", low);
+  const std::string upper = fmt::format("{} {:.6g}", below_high ? "less than" : "at most", high);
   if (bounded_below && bounded_above) return lower + " and " + upper;
   if (bounded_below) return lower;
   return bounded_above ? upper : "";

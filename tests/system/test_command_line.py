@@ -85,7 +85,8 @@ class CommandLine(unittest.TestCase):
 
     def test_a_run_that_misses_an_expectation_ends_with_1(self):
         miss = "meta.expect[0]={measure: momentum.total, at_least: 1.0, because: it cannot}"
-        result = self.abut("run", self.scene, "--local", "--quiet", "--out", self.out, "--set", miss)
+        result = self.abut("run", self.scene, "--local", "--quiet", "--out", self.out,
+                           "--set", miss)
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("it cannot", result.stdout)
 

@@ -1,4 +1,5 @@
-"""Goal: bad input ends with exit code 2 and one paragraph that says what to change; nothing is written.
+"""Goal: bad input ends with exit code 2 and a paragraph that says what to change;
+files stay as they are.
 
 The oracle stands at the head of every configs/invalid/*.yaml: `# refused with: <message>`.
 usage: test_invalid_scenes.py ABUT ROOT
