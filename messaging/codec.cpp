@@ -173,7 +173,7 @@ void decode(const v1::Advance& from, std::size_t ports, Advance& to) {
   to.window.index = from.window().index();
   to.window.begin = number(from.window().begin(), window);
   to.window.end = number(from.window().end(), window);
-  if (to.window.end <= to.window.begin) window.fail("does not end after its begin");
+  if (to.window.end < to.window.begin) window.fail("ends before its begin");
   if (from.records() < 1 || from.records() > most_records) {
     FieldPath{&path, "records"}.fail(
         fmt::format("is {}, not 1 to {}", from.records(), most_records));
