@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "abut-solver: {}\n", error.what());
     return 2;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "abut-solver: {}\n", error.what());
+    fmt::print(stderr, "abut-solver at {}: {}\n", endpoint, error.what());
     return 3;
   }
 }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <thread>
 
 #include "base/error.hpp"
 #include "tests/transport/loop.hpp"
@@ -272,22 +273,70 @@ TEST(Caller, AnInterruptEndsTheWaitAtOnce) {
   EXPECT_LE(loop.link.near().now() - begin, Deadlines{}.slice);
 }
 
-TEST(Serve, ALostCoordinatorEndsTheSolveItself) {
-  struct Gone : Liveness {
-    std::string loss(TimePoint) override { return "is gone"; }
-  } gone;
+TEST(Serve, WorksInAThreadOfItsOwn) {
   MemoryLink link;
-  ProgressHook progress;
+  AlwaysAlive alive;
   Server server(
       "fake",
-      [&progress](const Specification&, const ProgressHook& hook) {
+      [](const Specification&, const ProgressHook&) {
+        return std::unique_ptr<Subdomain>(std::make_unique<FakeSubdomain>());
+      },
+      link.far(), alive, Limits{}, Deadlines{});
+  std::thread solver([&server] {
+    while (server.step(Milliseconds(100))) {
+    }
+  });
+  Caller caller("fake", CallContext{link.near(), alive, nullptr, Limits{}, Deadlines{}});
+  RemoteSubdomain body(caller);
+  body.start_configure(Specification{});
+  body.finish_configure();
+  FakeSubdomain local;
+  Response response;
+  for (int window = 0; window < 10; ++window) {
+    const Advance advance = request_for(window);
+    EXPECT_TRUE(std::holds_alternative<Advanced>(body.advance(advance, response)));
+    EXPECT_TRUE(std::holds_alternative<Advanced>(local.advance(advance, response)));
+  }
+  EXPECT_EQ(body.state_hash(), local.state_hash());
+  caller.request().mutable_finish();
+  EXPECT_TRUE(caller.call("finish").has_finished());
+  solver.join();
+}
+
+TEST(Serve, ALostCoordinatorEndsTheSolveItself) {
+  struct Fading : Liveness {
+    std::string loss(TimePoint) override { return gone ? "is gone" : ""; }
+    bool gone = false;
+  } coordinator;
+  MemoryLink link;
+  Deadlines deadlines;
+  deadlines.progress = Milliseconds(0);  // a sign of progress, and a look, at every substep
+  int substeps = 0;
+  Server server(
+      "fake",
+      [&substeps, &coordinator](const Specification&, const ProgressHook& hook) {
         std::unique_ptr<FakeSubdomain> body = std::make_unique<FakeSubdomain>();
-        progress = hook;
-        body->during_substep = [&progress] { progress(); };
+        body->during_substep = [&substeps, &coordinator, hook] {
+          coordinator.gone = ++substeps == 4;
+          hook();
+        };
         return std::unique_ptr<Subdomain>(std::move(body));
       },
-      link.far(), gone, Limits{}, Deadlines{});
-  EXPECT_THROW(server.step(Milliseconds(1)), CoordinatorLost);
+      link.far(), coordinator, Limits{}, deadlines);
+  v1::Request request;
+  Frame frame;
+  request.set_number(1);
+  request.mutable_configure();
+  frame.seal(request);
+  link.near().send(frame.bytes());
+  EXPECT_TRUE(server.step(Milliseconds(0)));
+  request.set_number(2);
+  const Advance advance = request_for(0);
+  encode(advance, *request.mutable_advance());
+  frame.seal(request);
+  link.near().send(frame.bytes());
+  EXPECT_THROW(server.step(Milliseconds(0)), CoordinatorLost);
+  EXPECT_EQ(substeps, 4);  // of ten
 }
 
 TEST(Serve, NoCoordinatorWithinPatienceIsNamed) {
