@@ -18,15 +18,16 @@ namespace abut {
 namespace {
 
 constexpr double clock_tolerance = 1.0e-9;  // of a window: the end is reached
-constexpr double event_tolerance = 1.0e-4;  // of a substep: an event so near to the window's begin is there
-constexpr double force_floor = 1.0e-9;      // of the largest contact force: less is no compression
-constexpr int most_events = 8;              // per window; more is chatter
+// of a substep: an event so near to the window's begin is there
+constexpr double event_tolerance = 1.0e-4;
+constexpr double force_floor = 1.0e-9;  // of the largest contact force: less is no compression
+constexpr int most_events = 8;          // per window; more is chatter
 constexpr int most_halvings = 20;
 
 }  // namespace
 
-Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies, std::vector<Observer*> observers,
-                       const std::atomic<bool>* interrupted)
+Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
+                       std::vector<Observer*> observers, const std::atomic<bool>* interrupted)
     : scene_(scene),
       bodies_(std::move(bodies)),
       observers_(std::move(observers)),
@@ -72,21 +73,26 @@ void Controller::observe_start() {
   RunStart start{scene_.time.begin, scene_.time.end, {}, {}};
   for (int b = 0; b < bodies_.count(); ++b) start.bodies.push_back(&bodies_.describe(b));
   for (const Interface& i : coupling_.interfaces) {
-    start.interfaces.push_back({i.name, {i.sides[0].body, i.sides[1].body},
-                                {i.sides[0].port, i.sides[1].port}, i.reference_gap});
+    start.interfaces.push_back({i.name,
+                                {i.sides[0].body, i.sides[1].body},
+                                {i.sides[0].port, i.sides[1].port},
+                                i.reference_gap});
   }
   for (Observer* observer : observers_) observer->on_start(start);
   const TimeWindow instant{0, time_, time_};
   bodies_.save_all();
   prepare(instant, 1, Sampling::substeps);
-  if (std::optional<Failed> failed = bodies_.advance_all()) return fail(failed->time, failed->detail);
+  if (std::optional<Failed> failed = bodies_.advance_all())
+    return fail(failed->time, failed->detail);
   fill_reports({});
-  for (Observer* observer : observers_) observer->on_window({instant, bodies_.responses(), reports_});
+  for (Observer* observer : observers_)
+    observer->on_window({instant, bodies_.responses(), reports_});
 }
 
 bool Controller::fly_free() {
-  const bool waits = std::any_of(coupling_.interfaces.begin(), coupling_.interfaces.end(),
-                                 [](const Interface& i) { return i.closed || i.release_impulse != 0.0; });
+  const bool waits =
+      std::any_of(coupling_.interfaces.begin(), coupling_.interfaces.end(),
+                  [](const Interface& i) { return i.closed || i.release_impulse != 0.0; });
   if (waits || std::exchange(grounded_, false)) return false;
   const double window = scene_.time.window;
   const double horizon = free_flight_horizon(coupling_.interfaces, bodies_);
@@ -96,7 +102,8 @@ bool Controller::fly_free() {
   if (windows < 1) return false;
   TimeWindow flight = next_window();
   flight.end = anchor_ + static_cast<double>(since_ + windows) * window;
-  if (std::abs(flight.end - scene_.time.end) < clock_tolerance * window) flight.end = scene_.time.end;
+  if (std::abs(flight.end - scene_.time.end) < clock_tolerance * window)
+    flight.end = scene_.time.end;
   bodies_.save_all();
   prepare(flight, windows, Sampling::records);
   if (std::optional<Failed> failed = bodies_.advance_all()) {
@@ -110,7 +117,8 @@ bool Controller::fly_free() {
     return false;
   }
   fill_reports({});
-  for (Observer* observer : observers_) observer->on_window({flight, bodies_.responses(), reports_});
+  for (Observer* observer : observers_)
+    observer->on_window({flight, bodies_.responses(), reports_});
   end_.windows += windows;
   since_ += windows;
   time_ = flight.end;
@@ -133,9 +141,11 @@ void Controller::step_window() {
     if (events.empty()) return accept(window, attempt);
     if (++events_here_ > most_events) {
       for (Interface& i : coupling_.interfaces) i.closed = false;
-      emit(RunEvent::Kind::warning, window.begin, coupling_.interfaces[static_cast<std::size_t>(events[0].interface)].name,
-           fmt::format("contact changed more than {} times within a window: one window is accepted as free",
-                       most_events));
+      emit(RunEvent::Kind::warning, window.begin,
+           coupling_.interfaces[static_cast<std::size_t>(events[0].interface)].name,
+           fmt::format(
+               "contact changed more than {} times within a window: one window is accepted as free",
+               most_events));
       bodies_.restore_all();
       const Attempt free = advance(window);
       if (free.failed) return fail(free.failed->time, free.failed->detail);
@@ -182,7 +192,8 @@ Controller::Attempt Controller::advance(const TimeWindow& window) {
 }
 
 bool Controller::Attempt::converged() const {
-  return std::all_of(reports.begin(), reports.end(), [](const SchwarzReport& r) { return r.converged; });
+  return std::all_of(reports.begin(), reports.end(),
+                     [](const SchwarzReport& r) { return r.converged; });
 }
 
 bool Controller::handle_trouble(const Attempt& attempt, TimeWindow& window) {
@@ -197,8 +208,9 @@ bool Controller::handle_trouble(const Attempt& attempt, TimeWindow& window) {
       residual = std::max(residual, r.residual.largest());
       iterations = r.iterations;
     }
-    text = fmt::format("Schwarz iteration not converged after {} iterations: residual {:.3g}, tolerance {:.3g}",
-                       iterations, residual, scene_.schwarz.tolerance);
+    text = fmt::format(
+        "Schwarz iteration not converged after {} iterations: residual {:.3g}, tolerance {:.3g}",
+        iterations, residual, scene_.schwarz.tolerance);
   }
   const std::string& policy = scene_.schwarz.on_nonconvergence;
   if (policy == "accept" && !attempt.failed) {
@@ -226,10 +238,12 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
     interface.force_scale = std::max(interface.force_scale, peak_force(interface, bodies_));
     interface.rebound_impulse = release_impulse(interface, bodies_);
   }
-  for (Observer* observer : observers_) observer->on_window({window, bodies_.responses(), reports_});
+  for (Observer* observer : observers_)
+    observer->on_window({window, bodies_.responses(), reports_});
   ++end_.windows;
   if (!attempt.islands.empty()) ++end_.contact_windows;
-  const bool whole = std::abs(window.length() - scene_.time.window) < clock_tolerance * scene_.time.window;
+  const bool whole =
+      std::abs(window.length() - scene_.time.window) < clock_tolerance * scene_.time.window;
   advance_clock(window.end, whole);
   if (whole) events_here_ = 0;
   halvings_ = 0;
@@ -239,12 +253,14 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
   }
 }
 
-// ---- clock ---------------------------------------------------------------------------------------------------
+// ---- clock --------------------------------------------------------------------------------------
 
 TimeWindow Controller::next_window() const {
-  TimeWindow window{end_.windows, time_, anchor_ + static_cast<double>(since_ + 1) * scene_.time.window};
+  TimeWindow window{end_.windows, time_,
+                    anchor_ + static_cast<double>(since_ + 1) * scene_.time.window};
   // A remainder too short to be a window of its own belongs to the last one.
-  if (window.end > scene_.time.end - clock_tolerance * scene_.time.window) window.end = scene_.time.end;
+  if (window.end > scene_.time.end - clock_tolerance * scene_.time.window)
+    window.end = scene_.time.end;
   return window;
 }
 
@@ -266,7 +282,7 @@ double Controller::shortest_step() const {
   return shortest;
 }
 
-// ---- contact -------------------------------------------------------------------------------------------------
+// ---- contact ------------------------------------------------------------------------------------
 
 void Controller::apply_criteria_at_start(const TimeWindow& window) {
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
@@ -300,7 +316,8 @@ std::vector<Controller::Event> Controller::first_events(const TimeWindow& window
       continue;
     }
     const double scale = std::max(interface.force_scale, peak_force(interface, bodies_));
-    if (const std::optional<Opening> o = compression_criterion(interface, bodies_, force_floor * scale)) {
+    if (const std::optional<Opening> o =
+            compression_criterion(interface, bodies_, force_floor * scale)) {
       events.push_back({static_cast<int>(i), false, o->state, o->crossing, 0.0});
     }
   }
@@ -308,7 +325,8 @@ std::vector<Controller::Event> Controller::first_events(const TimeWindow& window
     return a.state != b.state ? a.state < b.state : a.interface < b.interface;
   });
   const double together = event_tolerance * shortest_step();
-  while (!events.empty() && events.back().state > events.front().state + together) events.pop_back();
+  while (!events.empty() && events.back().state > events.front().state + together)
+    events.pop_back();
   if (!events.empty() && events.front().closes && window.end - events.front().state < together) {
     events.front().state = window.end;
   }
@@ -322,8 +340,9 @@ void Controller::close(int index, double time, double speed) {
   interface.force_scale = 0.0;
   Coupling::Rule& rule = coupling_.rules[static_cast<std::size_t>(index)];
   if (!rule.role_fixed) {
-    interface.kinematic = scene_.schwarz.parallel ? coarser_side(interface, bodies_)
-                                                  : kinematic_side(interface, bodies_, scene_.time.window);
+    interface.kinematic = scene_.schwarz.parallel
+                              ? coarser_side(interface, bodies_)
+                              : kinematic_side(interface, bodies_, scene_.time.window);
     rule.role_fixed = true;  // roles do not change during a run
   }
   emit(RunEvent::Kind::contact_closed, time, interface.name,
@@ -355,7 +374,7 @@ void Controller::prepare(const TimeWindow& window, int records, Sampling samplin
   }
 }
 
-// ---- what others are told ------------------------------------------------------------------------------------
+// ---- what others are told -----------------------------------------------------------------------
 
 void Controller::fill_reports(const Attempt& attempt) {
   for (std::size_t i = 0; i < reports_.size(); ++i) {
@@ -371,8 +390,8 @@ void Controller::fill_reports(const Attempt& attempt) {
   }
 }
 
-void Controller::emit(RunEvent::Kind kind, double time, const std::string& subject, const std::string& text,
-                      std::map<std::string, double> values) {
+void Controller::emit(RunEvent::Kind kind, double time, const std::string& subject,
+                      const std::string& text, std::map<std::string, double> values) {
   const RunEvent event{kind, time, subject, text, std::move(values)};
   for (Observer* observer : observers_) observer->on_event(event);
 }
@@ -385,7 +404,8 @@ void Controller::fail(double time, const std::string& text) {
 std::uint64_t Controller::state_hash() {
   std::uint64_t hash = 0;
   for (int b = 0; b < bodies_.count(); ++b) hash = hash_combine(hash, bodies_[b].state_hash());
-  for (Interface& interface : coupling_.interfaces) hash = hash_combine(hash, hash_state(interface));
+  for (Interface& interface : coupling_.interfaces)
+    hash = hash_combine(hash, hash_state(interface));
   return hash;
 }
 

@@ -17,27 +17,29 @@ namespace abut {
 /// The time loop: walks controller windows from the scene's begin to its end.
 ///
 ///   run           observe the start, then fly free or step until the end
-///   fly_free      nothing can touch before the horizon: several windows in one request per body, no iteration
-///   step_window   one window: closed interfaces by Schwarz, other bodies free; cut short at the first event
-///   advance       Schwarz for every island of closed interfaces, one advance for every other body
+///   fly_free      nothing can touch before the horizon: several windows in one request per body,
+///   no iteration step_window   one window: closed interfaces by Schwarz, other bodies free; cut
+///   short at the first event advance       Schwarz for every island of closed interfaces, one
+///   advance for every other body
 class Controller {
  public:
   /// The bodies must outlive the controller. `interrupted` may be null.
   Controller(const Scene& scene, std::vector<Subdomain*> bodies, std::vector<Observer*> observers,
              const std::atomic<bool>* interrupted = nullptr);
 
-  /// Walks to the end and tells the observers. RunError of a lost peer passes through after they were told.
+  /// Walks to the end and tells the observers. RunError of a lost peer passes through after they
+  /// were told.
   RunEnd run();
 
  private:
   struct Event {
     int interface = 0;
     bool closes = false;
-    double state = 0.0;     // [s] where the window is cut
-    double located = 0.0;   // [s] where gap or force cross zero
-    double speed = 0.0;     // [m/s] of closing
+    double state = 0.0;    // [s] where the window is cut
+    double located = 0.0;  // [s] where gap or force cross zero
+    double speed = 0.0;    // [m/s] of closing
   };
-  struct Attempt {                       // of one window
+  struct Attempt {  // of one window
     std::optional<Failed> failed;
     std::vector<Island> islands;
     std::vector<SchwarzReport> reports;  // by island

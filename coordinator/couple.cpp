@@ -58,7 +58,8 @@ void add_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
   }
   rule.role_fixed = how.kinematic != "auto";
   if (rule.role_fixed) {
-    interface.kinematic = index_of(spec, how.kinematic, where + ".transmission.unilateral.kinematic");
+    interface.kinematic =
+        index_of(spec, how.kinematic, where + ".transmission.unilateral.kinematic");
     const Description& body = bodies.describe(interface.kinematic_side().body);
     require(body.can.obstacle, body, where + ".transmission.unilateral.kinematic",
             "takes forces only and cannot be the kinematic side", "Name the other side, or auto.");
@@ -83,8 +84,9 @@ void add_published(const InterfaceSpec& spec, const DirichletNeumannTransmission
             "Give the body contact_layer: {massive: {}}.");
   }
   if (schwarz.parallel || std::holds_alternative<KernelAcceleration>(schwarz.accelerator)) {
-    throw InputError("the published form knows neither the parallel form nor port kernels", "schwarz",
-                     "Give form: alternating and an accelerator of none, relaxation, aitken or anderson.");
+    throw InputError(
+        "the published form knows neither the parallel form nor port kernels", "schwarz",
+        "Give form: alternating and an accelerator of none, relaxation, aitken or anderson.");
   }
   coupling.transmissions.push_back(std::make_unique<DirichletNeumann>());
   coupling.rules.push_back({true, how.swap_every_window, true});
@@ -94,7 +96,8 @@ void add_published(const InterfaceSpec& spec, const DirichletNeumannTransmission
 
 std::vector<Joint> Coupling::joints() {
   std::vector<Joint> joints;
-  for (std::size_t i = 0; i < interfaces.size(); ++i) joints.push_back({&interfaces[i], transmissions[i].get()});
+  for (std::size_t i = 0; i < interfaces.size(); ++i)
+    joints.push_back({&interfaces[i], transmissions[i].get()});
   return joints;
 }
 
@@ -130,7 +133,9 @@ Schwarz make_schwarz(const SchwarzSpec& spec) {
     }
     std::unique_ptr<Accelerator> operator()(const AndersonAcceleration& s) const {
       const double factor = s.initial;
-      QuasiNewton::Inverse relaxed = [factor](const Eigen::VectorXd& r) { return Eigen::VectorXd(factor * r); };
+      QuasiNewton::Inverse relaxed = [factor](const Eigen::VectorXd& r) {
+        return Eigen::VectorXd(factor * r);
+      };
       return std::make_unique<QuasiNewton>(relaxed, s.reuse, s.filter, 0);
     }
     std::unique_ptr<Accelerator> operator()(const KernelAcceleration& s) const {

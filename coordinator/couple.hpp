@@ -8,12 +8,13 @@
 
 namespace abut {
 
-/// The interfaces of a run with their ways of transmission: what the scene says, joined to the bodies.
+/// The interfaces of a run with their ways of transmission: what the scene says, joined to the
+/// bodies.
 struct Coupling {
-  struct Rule {                  // per interface, constant during a run
-    bool published = false;      // dirichlet_neumann: decided at window starts, no event location
-    bool swap = false;           // published form: roles swap after every window in contact
-    bool role_fixed = true;      // false: by probe at first touch
+  struct Rule {              // per interface, constant during a run
+    bool published = false;  // dirichlet_neumann: decided at window starts, no event location
+    bool swap = false;       // published form: roles swap after every window in contact
+    bool role_fixed = true;  // false: by probe at first touch
   };
 
   std::vector<Interface> interfaces;

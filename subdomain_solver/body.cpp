@@ -121,11 +121,13 @@ Outcome Body::finish(Response& response) {
   const double part_length = request.window.length() / parts;
   for (int p = 0; p < parts; ++p) {
     const double begin = request.window.begin + p * part_length;
-    const double end = p + 1 == parts ? request.window.end : request.window.begin + (p + 1) * part_length;
+    const double end =
+        p + 1 == parts ? request.window.end : request.window.begin + (p + 1) * part_length;
     const Substeps part = divide(begin, end);
     advance_part(request, part, response);
     record(end, response);
-    if (request.sampling == Sampling::records && part.count > 0) push_traces(request, end, response);
+    if (request.sampling == Sampling::records && part.count > 0)
+      push_traces(request, end, response);
     if (std::optional<Failed> failed = check_finite(response.records.back())) return *failed;
   }
   finish_ports(response);
@@ -142,7 +144,8 @@ void Body::advance_part(const Advance& request, const Substeps& part, Response& 
     const BoundaryData& data = request.boundary[p];
     const std::vector<double>& time = data.force.time;
     bool same = time.size() == static_cast<std::size_t>(part.count) + 1;
-    for (int i = 0; same && i <= part.count; ++i) same = time[static_cast<std::size_t>(i)] == part.time(i);
+    for (int i = 0; same && i <= part.count; ++i)
+      same = time[static_cast<std::size_t>(i)] == part.time(i);
     const int end = end_of_port_[p];
     same_grid_[p] = same && data.force.support == support_[end];
   }
@@ -218,9 +221,8 @@ void Body::apply_impulses(const Advance& request) {
     if (request.boundary[p].impulse.empty()) continue;
     const int end = end_of_port_[p];
     const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));
-    const std::size_t hit = bar_->inverse_mass()[node] > 0.0
-                                ? node
-                                : static_cast<std::size_t>(bar_->inner_of(end));
+    const std::size_t hit =
+        bar_->inverse_mass()[node] > 0.0 ? node : static_cast<std::size_t>(bar_->inner_of(end));
     state_.v[hit] += bar_->inverse_mass()[hit] * request.boundary[p].impulse[0];
   }
 }
@@ -228,7 +230,8 @@ void Body::apply_impulses(const Advance& request) {
 double Body::force_on_body(int end, const BoundaryData& data) const {
   const ContactLayer layer = bar_->data().layer[static_cast<std::size_t>(end)];
   if (layer == ContactLayer::massive) {
-    // As published: what is handed over is the internal force of the contact node, without its inertia.
+    // As published: what is handed over is the internal force of the contact node, without its
+    // inertia.
     return data.closed() ? scheme_.integrator->internal_force(state_, end) : 0.0;
   }
   return -Bar::outward(end) * state_.end[static_cast<std::size_t>(end)].force;
@@ -253,8 +256,10 @@ void Body::push_traces(const Advance& request, double time, Response& response) 
     Waveform& trace = response.ports[p].trace;
     const double u = scheme_.integrator->port_displacement(state_, end);
     double v = state_.v[node];
-    // Kicks make the nodal velocity jump within a substep; the mean over it is the contact point's velocity.
-    const bool kicked = support_[end] == ForceSupport::step && state_.end[static_cast<std::size_t>(end)].closed;
+    // Kicks make the nodal velocity jump within a substep; the mean over it is the contact point's
+    // velocity.
+    const bool kicked =
+        support_[end] == ForceSupport::step && state_.end[static_cast<std::size_t>(end)].closed;
     if (kicked && !trace.empty()) v = (u - trace.u.back()) / (time - trace.time.back());
     trace.time.push_back(time);
     trace.u.push_back(u);
@@ -310,16 +315,19 @@ void Body::finish_ports(Response& response) {
     const std::size_t inner = static_cast<std::size_t>(bar_->inner_of(end));
     const double half = 0.5 * scheme_.step;
     const double n = Bar::outward(end);
-    port.rebound = Rebound{n * (state_.v[node] + half * state_.a[node]), n * state_.v[node],
+    port.rebound = Rebound{n * (state_.v[node] + half * state_.a[node]),
+                           n * state_.v[node],
                            n * (state_.v[inner] + half * state_.a[inner]),
-                           bar_->inverse_mass()[node], 0.0, e.captured};
+                           bar_->inverse_mass()[node],
+                           0.0,
+                           e.captured};
   }
 }
 
 void Body::approach(int end, PortResponse& port) const {
-  // A free end moves with the characteristics v -+ c strain that arrive there; all of them are inside the bar
-  // now. A fixed far end turns signs around. Dispersion may overshoot: a tenth of the range is added, and the
-  // coordinator checks the swept range anyway.
+  // A free end moves with the characteristics v -+ c strain that arrive there; all of them are
+  // inside the bar now. A fixed far end turns signs around. Dispersion may overshoot: a tenth of
+  // the range is added, and the coordinator checks the swept range anyway.
   const double c = bar_->data().wave_speed();
   const double n = Bar::outward(end);
   const bool turned = bar_->data().fixed[end == 0 ? 1 : 0];
@@ -341,9 +349,10 @@ std::optional<Failed> Body::check_finite(const BodyRecord& record) const {
   // A value that is not finite anywhere in the state reaches one of these sums.
   const double sum = record.energy.kinetic + record.energy.stored + record.momentum[0];
   if (std::isfinite(sum)) return std::nullopt;
-  return Failed{Failed::Cause::non_finite, record.time,
-                fmt::format("the state of body '{}' is no longer finite; its step of {:g} s may be unstable",
-                            description_.name, scheme_.step)};
+  return Failed{
+      Failed::Cause::non_finite, record.time,
+      fmt::format("the state of body '{}' is no longer finite; its step of {:g} s may be unstable",
+                  description_.name, scheme_.step)};
 }
 
 void Body::report_progress() {

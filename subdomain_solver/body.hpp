@@ -10,8 +10,8 @@
 
 namespace abut {
 
-/// Our own subdomain: a bar, its integrator and its ports. Divides a window into substeps, tells the
-/// integrator what acts on the ends in each of them, and collects the traces.
+/// Our own subdomain: a bar, its integrator and its ports. Divides a window into substeps, tells
+/// the integrator what acts on the ends in each of them, and collects the traces.
 class Body final : public Subdomain {
  public:
   struct BodyPort {
@@ -20,12 +20,13 @@ class Body final : public Subdomain {
   };
   struct Scheme {
     std::unique_ptr<BarIntegrator> integrator;
-    double step = 0.0;           // [s]
+    double step = 0.0;  // [s]
     bool explicit_in_time = true;
-    std::string words;           // for people
+    std::string words;  // for people
   };
 
-  Body(std::string name, std::unique_ptr<Bar> bar, Scheme scheme, const std::vector<BodyPort>& ports);
+  Body(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
+       const std::vector<BodyPort>& ports);
 
   const Description& describe() const override { return description_; }
   void save() override;
@@ -37,7 +38,8 @@ class Body final : public Subdomain {
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override;
 
-  /// Called now and then during a long advance, so that the caller can tell others that the body lives.
+  /// Called now and then during a long advance, so that the caller can tell others that the body
+  /// lives.
   void set_progress(std::function<void()> hook) { progress_ = std::move(hook); }
 
  private:

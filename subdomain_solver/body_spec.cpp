@@ -11,8 +11,9 @@ namespace {
 constexpr std::string_view step_help = "body's own time step; several fit into a controller window";
 
 void mass_key(Fields& f, MassForm& mass) {
-  f.word("mass", mass, {"lumped", "averaged", "consistent"},
-         "mass matrix; averaged is the mean of the other two with a third of their dispersion error");
+  f.word(
+      "mass", mass, {"lumped", "averaged", "consistent"},
+      "mass matrix; averaged is the mean of the other two with a third of their dispersion error");
 }
 
 }  // namespace
@@ -35,24 +36,27 @@ void LinearElasticSpec::fields(Fields& f) {
 
 void CentralDifferenceSpec::fields(Fields& f) {
   f.required("step", step, "s", step_help, positive);
-  f.optional("dispersion_terms", dispersion_terms, "",
-             "number of terms that correct the dispersion of the lumped bar; 1 is the plain scheme, 2 "
-             "equals the averaged mass to leading order; each term costs one more internal force",
-             between(1, 30));
+  f.optional(
+      "dispersion_terms", dispersion_terms, "",
+      "number of terms that correct the dispersion of the lumped bar; 1 is the plain scheme, 2 "
+      "equals the averaged mass to leading order; each term costs one more internal force",
+      between(1, 30));
 }
 
 void NewmarkSpec::fields(Fields& f) {
   f.required("step", step, "s", step_help, positive);
   f.optional("beta", beta, "", "Newmark's beta", between(0.25, 1.0));
   f.optional("gamma", gamma, "", "Newmark's gamma", between(0.5, 1.0));
-  f.check(2.0 * beta >= gamma, "beta", fmt::format("is {:g}, below gamma/2 = {:g}", beta, 0.5 * gamma),
+  f.check(2.0 * beta >= gamma, "beta",
+          fmt::format("is {:g}, below gamma/2 = {:g}", beta, 0.5 * gamma),
           "Give beta at least gamma/2: below it the scheme is only conditionally stable.");
   mass_key(f, mass);
 }
 
 void HhtAlphaSpec::fields(Fields& f) {
   f.required("step", step, "s", step_help, positive);
-  f.optional("alpha", alpha, "", "HHT parameter; 0 is the trapezoidal rule", between(-1.0 / 3.0, 0.0));
+  f.optional("alpha", alpha, "", "HHT parameter; 0 is the trapezoidal rule",
+             between(-1.0 / 3.0, 0.0));
   mass_key(f, mass);
 }
 
@@ -65,15 +69,17 @@ void GeneralizedAlphaSpec::fields(Fields& f) {
 }
 
 void MasslessSpec::fields(Fields& f) {
-  f.optional("stiffness_factor", stiffness_factor, "",
-             "factor on the stiffness of the contact element; 4/3 is the distance to the centroid of the "
-             "mass moved inwards",
-             positive);
+  f.optional(
+      "stiffness_factor", stiffness_factor, "",
+      "factor on the stiffness of the contact element; 4/3 is the distance to the centroid of the "
+      "mass moved inwards",
+      positive);
 }
 
 void InitialSpec::fields(Fields& f) {
   f.optional("position", position, "m", "place of the body's own origin, one number per dimension");
-  f.optional("velocity", velocity, "m/s", "uniform velocity at the start, one number per dimension");
+  f.optional("velocity", velocity, "m/s",
+             "uniform velocity at the start, one number per dimension");
   f.check(position.size() == 1, "position", fmt::format("has {} numbers", position.size()),
           "Give one number: the body has one dimension.");
   f.check(velocity.size() == 1, "velocity", fmt::format("has {} numbers", velocity.size()),
@@ -86,7 +92,8 @@ void SupportsSpec::fields(Fields& f) {
 }
 
 void PortSpec::fields(Fields& f) {
-  f.required("side", side, "", "side of the body that the port is: left or right for a bar or a wall");
+  f.required("side", side, "",
+             "side of the body that the port is: left or right for a bar or a wall");
 }
 
 void BodySpec::fields(Fields& f) {
@@ -94,13 +101,15 @@ void BodySpec::fields(Fields& f) {
   f.choice("model", model, "model of the body");
   f.choice("material", material, "material of the body; a rigid wall has none");
   f.choice("integrator", integrator, "time integrator; a rigid wall has none");
-  f.choice("contact_layer", contact_layer, "treatment of the contact nodes' mass", Presence::optional);
+  f.choice("contact_layer", contact_layer, "treatment of the contact nodes' mass",
+           Presence::optional);
   f.defaulted("initial", initial, "initial state");
   f.defaulted("supports", supports, "supports of the ends");
   f.optional("body_force", body_force, "m/s^2", "force per mass, one number per dimension");
   f.check(body_force.size() == 1, "body_force", fmt::format("has {} numbers", body_force.size()),
           "Give one number: the body has one dimension.");
-  f.map("ports", ports, "named boundary sets through which motion and force pass", Presence::optional);
+  f.map("ports", ports, "named boundary sets through which motion and force pass",
+        Presence::optional);
   const bool fe = std::holds_alternative<FeModelSpec>(model);
   f.check(!fe || material.has_value(), "model", "fe needs a material",
           "Add material: {linear_elastic: {youngs_modulus: ..., density: ...}} to the body.");

@@ -16,7 +16,8 @@
 
 namespace abut {
 
-// What a scene says of one body; each struct lists its keys once (docs/REFERENCE.md is made from them).
+// What a scene says of one body; each struct lists its keys once (docs/REFERENCE.md is made from
+// them).
 
 struct BarMeshSpec {
   static constexpr std::string_view name = "bar";
@@ -111,8 +112,9 @@ struct BodySpec {
 /// Properties of a bar body; empty for a wall. For closed forms and estimates.
 std::optional<BarProperties> bar_properties(const BodySpec& spec);
 
-/// Reads one body of a scene and builds it. `path` is the body's key path, e.g. "bodies.left"; its last part is
-/// the name. Throws InputError with file, line and key. `progress` is called now and then during long advances.
+/// Reads one body of a scene and builds it. `path` is the body's key path, e.g. "bodies.left"; its
+/// last part is the name. Throws InputError with file, line and key. `progress` is called now and
+/// then during long advances.
 std::unique_ptr<Subdomain> make_body(const Document& document, const std::string& path,
                                      std::function<void()> progress = {});
 

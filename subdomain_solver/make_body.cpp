@@ -21,7 +21,8 @@ struct Place {
   const Document& document;
   std::string path;
 
-  [[noreturn]] void refuse(const std::string& key, const std::string& what, const std::string& remedy) const {
+  [[noreturn]] void refuse(const std::string& key, const std::string& what,
+                           const std::string& remedy) const {
     throw InputError(what, document.where(path + "." + key), remedy);
   }
 };
@@ -48,7 +49,8 @@ std::vector<Body::BodyPort> ports_of(const BodySpec& spec, const Place& place) {
 }
 
 ContactLayer layer_of(const BodySpec& spec) {
-  constexpr ContactLayer layers[] = {ContactLayer::massless, ContactLayer::kick, ContactLayer::massive};
+  constexpr ContactLayer layers[] = {ContactLayer::massless, ContactLayer::kick,
+                                     ContactLayer::massive};
   return layers[spec.contact_layer.index()];
 }
 
@@ -64,15 +66,17 @@ struct SchemeMaker {
                    "Give a step of at most the limit, or an implicit integrator such as newmark.");
     }
     if (s.dispersion_terms > 1 && bar.data().elements < 2 * s.dispersion_terms + 2) {
-      place.refuse("integrator.central_difference.dispersion_terms",
-                   fmt::format("{} terms do not fit into {} elements", s.dispersion_terms,
-                               bar.data().elements),
-                   fmt::format("Give at least {} elements or fewer terms.", 2 * s.dispersion_terms + 2));
+      place.refuse(
+          "integrator.central_difference.dispersion_terms",
+          fmt::format("{} terms do not fit into {} elements", s.dispersion_terms,
+                      bar.data().elements),
+          fmt::format("Give at least {} elements or fewer terms.", 2 * s.dispersion_terms + 2));
     }
     std::string words = fmt::format("central difference, step {:g} s, CFL {:.3g}", s.step,
                                     s.step / (bar.spacing() / bar.data().wave_speed()));
     if (s.dispersion_terms > 1) words += fmt::format(", {} dispersion terms", s.dispersion_terms);
-    return {std::make_unique<CentralDifference>(bar, s.step, s.dispersion_terms), s.step, true, words};
+    return {std::make_unique<CentralDifference>(bar, s.step, s.dispersion_terms), s.step, true,
+            words};
   }
   Body::Scheme operator()(const NewmarkSpec& s) const {
     return implicit(AlphaWeights::newmark(s.beta, s.gamma), s.step, "newmark");
@@ -94,18 +98,20 @@ void check_layers(const BodySpec& spec, const BarProperties& bar, const Place& p
   int massless = 0;
   for (std::size_t e : {0u, 1u}) {
     if (bar.layer[e] == ContactLayer::kick && !explicit_scheme) {
-      place.refuse("contact_layer", "kick is not offered by implicit integrators",
-                   "Use massless: an implicit step with a massive contact node and a complete reaction is "
-                   "unstable.");
+      place.refuse(
+          "contact_layer", "kick is not offered by implicit integrators",
+          "Use massless: an implicit step with a massive contact node and a complete reaction is "
+          "unstable.");
     }
     if (bar.layer[e] != ContactLayer::none && bar.fixed[e]) {
-      place.refuse(std::string("supports.") + (e == 0 ? "left" : "right"), "is fixed, but the end is a port",
-                   "Leave the end free, or take its port away.");
+      place.refuse(std::string("supports.") + (e == 0 ? "left" : "right"),
+                   "is fixed, but the end is a port", "Leave the end free, or take its port away.");
     }
     if (bar.layer[e] == ContactLayer::massless) ++massless;
   }
   if (bar.elements <= massless - 1) {
-    place.refuse("model.fe.mesh.bar.elements", "one element cannot have a massless layer at both ends",
+    place.refuse("model.fe.mesh.bar.elements",
+                 "one element cannot have a massless layer at both ends",
                  "Give at least 2 elements.");
   }
 }
@@ -157,7 +163,8 @@ std::unique_ptr<Subdomain> make_body(const Document& document, const std::string
   check_layers(spec, *properties, place);
   std::unique_ptr<Bar> bar = std::make_unique<Bar>(*properties);
   Body::Scheme scheme = std::visit(SchemeMaker{*bar, place}, *spec.integrator);
-  std::unique_ptr<Body> body = std::make_unique<Body>(name, std::move(bar), std::move(scheme), ports);
+  std::unique_ptr<Body> body =
+      std::make_unique<Body>(name, std::move(bar), std::move(scheme), ports);
   body->set_progress(std::move(progress));
   return body;
 }

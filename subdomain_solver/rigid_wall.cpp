@@ -12,8 +12,12 @@ RigidWall::RigidWall(std::string name, double position, std::string port, double
   description_.model = "rigid wall";
   description_.mass = std::numeric_limits<double>::infinity();
   description_.stable_step = std::numeric_limits<double>::infinity();
-  description_.can = {.motion = false, .force = true, .obstacle = false, .impulse = true,
-                      .kernel = true, .complete = true};
+  description_.can = {.motion = false,
+                      .force = true,
+                      .obstacle = false,
+                      .impulse = true,
+                      .kernel = true,
+                      .complete = true};
   Port p;
   p.name = std::move(port);
   p.geometry.points = {position};

@@ -7,7 +7,8 @@
 namespace abut {
 
 namespace {
-/// After this many updates in a window the reused secants are dropped: they may be what keeps it from converging.
+/// After this many updates in a window the reused secants are dropped: they may be what keeps it
+/// from converging.
 constexpr int stagnation = 6;
 }  // namespace
 
@@ -44,8 +45,8 @@ void QuasiNewton::reset(std::uint64_t key) {
 }
 
 QuasiNewton::Selection QuasiNewton::select() const {
-  // Modified Gram-Schmidt, newest first: a column that adds less than `filter` of itself is dropped, so that the
-  // least-squares problem stays well conditioned.
+  // Modified Gram-Schmidt, newest first: a column that adds less than `filter` of itself is
+  // dropped, so that the least-squares problem stays well conditioned.
   std::vector<const Secant*> kept;
   std::vector<Eigen::VectorXd> basis;
   auto offer = [this, &kept, &basis](const std::deque<Secant>& window) {

@@ -9,12 +9,13 @@
 
 namespace abut {
 
-/// Chooses the next iterate from the last one and its image. Sees one stacked vector for the whole window: every
-/// trace of every exchanged field, scaled so that all entries compare.
+/// Chooses the next iterate from the last one and its image. Sees one stacked vector for the whole
+/// window: every trace of every exchanged field, scaled so that all entries compare.
 class Accelerator {
  public:
   virtual ~Accelerator() = default;
-  /// Starts a window; `key` identifies the layout of its vectors: memory of another layout is not used.
+  /// Starts a window; `key` identifies the layout of its vectors: memory of another layout is not
+  /// used.
   virtual void reset(std::uint64_t key) = 0;
   /// x_k, G(x_k) -> x_{k+1}
   virtual Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) = 0;
@@ -46,16 +47,18 @@ class Aitken final : public Accelerator {
   Eigen::VectorXd previous_;  // residual
 };
 
-/// Quasi-Newton with secants of this and the last `reuse` windows and an approximate inverse of the Jacobian
-/// J = -d(G - x)/dx for what they leave open  [M: kernel plus secants]:
+/// Quasi-Newton with secants of this and the last `reuse` windows and an approximate inverse of the
+/// Jacobian J = -d(G - x)/dx for what they leave open  [M: kernel plus secants]:
 ///   a = argmin |r + V a|,   x += (W - V) a + J^-1 (r + V a)
-/// With J^-1 a number it is IQN-ILS (Anderson acceleration); with the port kernels' Jacobian it is the kernel method,
-/// where secants of earlier windows are used only once the Jacobian alone has proved not to be enough.
+/// With J^-1 a number it is IQN-ILS (Anderson acceleration); with the port kernels' Jacobian it is
+/// the kernel method, where secants of earlier windows are used only once the Jacobian alone has
+/// proved not to be enough.
 class QuasiNewton final : public Accelerator {
  public:
   using Inverse = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
 
-  /// `exact_enough`: number of iterations up to which the inverse alone is trusted; 0: secants always.
+  /// `exact_enough`: number of iterations up to which the inverse alone is trusted; 0: secants
+  /// always.
   QuasiNewton(Inverse inverse, int reuse, double filter, int exact_enough);
   void reset(std::uint64_t key) override;
   Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) override;
@@ -77,7 +80,7 @@ class QuasiNewton final : public Accelerator {
   bool needed_ = false;  // the last window was not finished by the inverse alone
   std::uint64_t key_ = 0;
   int updates_ = 0;
-  std::deque<Secant> current_;             // newest first
+  std::deque<Secant> current_;              // newest first
   std::deque<std::deque<Secant>> earlier_;  // newest window first
   Eigen::VectorXd previous_residual_, previous_image_;
 };

@@ -76,7 +76,8 @@ const PortKernel& Bodies::kernel(int body, int port, int count) {
   }
   if (static_cast<int>(found->kernel.displacement.size()) < count) {
     const double step = describe(body).step;
-    found->kernel = (*this)[body].kernel(port, step > 0.0 ? step : request(body).window.length(), count);
+    found->kernel =
+        (*this)[body].kernel(port, step > 0.0 ? step : request(body).window.length(), count);
     ++exchanges_;
   }
   return found->kernel;

@@ -10,8 +10,8 @@
 
 namespace abut {
 
-/// The bodies of a run with their requests and responses, by index. Every exchange passes through here, so this
-/// is where exchanges are counted and timed. Times never decide anything.
+/// The bodies of a run with their requests and responses, by index. Every exchange passes through
+/// here, so this is where exchanges are counted and timed. Times never decide anything.
 class Bodies {
  public:
   explicit Bodies(std::vector<Subdomain*> subdomains);
@@ -29,7 +29,8 @@ class Bodies {
   void restore_all();
   /// Clears what is imposed on all ports and sets the window of all requests.
   void prepare(const TimeWindow& window, int records, Sampling sampling);
-  /// Advances the listed bodies at once; replies are taken by index, so arrival order changes nothing.
+  /// Advances the listed bodies at once; replies are taken by index, so arrival order changes
+  /// nothing.
   [[nodiscard]] std::optional<Failed> advance(std::span<const int> bodies);
   [[nodiscard]] std::optional<Failed> advance_all();
 

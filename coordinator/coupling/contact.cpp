@@ -32,10 +32,12 @@ std::vector<ForceSample> coarse_forces(const Interface& interface, const Bodies&
     samples.push_back({grid.front(), inward * own.f.front(), grid.front()});
     for (std::size_t i = 1; i < grid.size(); ++i) {
       const double from = step_support ? grid[i - 1] : 0.5 * (grid[i - 1] + grid[i]);
-      const double to = step_support || i + 1 == grid.size() ? grid[i] : 0.5 * (grid[i] + grid[i + 1]);
+      const double to =
+          step_support || i + 1 == grid.size() ? grid[i] : 0.5 * (grid[i] + grid[i + 1]);
       double impulse = 0.0;
       own.impulse(from, to, {&impulse, 1});
-      samples.push_back({step_support ? grid[i - 1] : grid[i], inward * impulse / (to - from), grid[i]});
+      samples.push_back(
+          {step_support ? grid[i - 1] : grid[i], inward * impulse / (to - from), grid[i]});
     }
     return samples;
   }
@@ -59,7 +61,8 @@ std::optional<Closing> overlap_criterion(const Interface& interface, const Bodie
   for (std::size_t i = 1; i < finer.size(); ++i) {
     const double time = finer.time[i];
     const double gap = interface.gap(displacement_at(t0, time), displacement_at(t1, time));
-    if (gap <= 0.0 && gap < before && time > earliest) {  // a gap that grows is a release, however little it overlaps
+    // a gap that grows is a release, however little it overlaps
+    if (gap <= 0.0 && gap < before && time > earliest) {
       const double length = time - finer.time[i - 1];
       const double share = before <= 0.0 ? 0.0 : before / (before - gap);
       return Closing{finer.time[i - 1] + share * length, (before - gap) / length};
@@ -87,19 +90,21 @@ std::optional<Opening> compression_criterion(const Interface& interface, const B
 
 double peak_force(const Interface& interface, const Bodies& bodies) {
   double peak = 0.0;
-  for (double f : trace_of(bodies, interface.kinematic_side()).f) peak = std::max(peak, std::abs(f));
+  for (double f : trace_of(bodies, interface.kinematic_side()).f)
+    peak = std::max(peak, std::abs(f));
   return peak;
 }
 
 double release_impulse(const Interface& interface, const Bodies& bodies) {
-  double approach = 0.0;   // sum of w0* - w1*
-  double mobility = 0.0;   // sum of G0 - G1
+  double approach = 0.0;  // sum of w0* - w1*
+  double mobility = 0.0;  // sum of G0 - G1
   double node_mobility = 0.0;
   double mean_velocity = 0.0;
   double captured = 0.0;
   for (const Side& side : interface.sides) {
     if (std::isinf(bodies.describe(side.body).mass)) continue;
-    const PortResponse& port = bodies.response(side.body).ports[static_cast<std::size_t>(side.port)];
+    const PortResponse& port =
+        bodies.response(side.body).ports[static_cast<std::size_t>(side.port)];
     if (!port.rebound) return 0.0;
     const Rebound& r = *port.rebound;
     approach += r.node_velocity - r.inner_velocity;

@@ -1,13 +1,14 @@
 #pragma once
 
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 
 namespace abut {
 
-/// Largest mismatch of each exchanged field, scaled to a pure number: displacement by reference velocity x step,
-/// velocity by the reference velocity, acceleration by reference velocity / step, force by the largest contact
-/// force so far. Never by positions of the body: those hide any error (docs/METHOD.md).
+/// Largest mismatch of each exchanged field, scaled to a pure number: displacement by reference
+/// velocity x step, velocity by the reference velocity, acceleration by reference velocity / step,
+/// force by the largest contact force so far. Never by positions of the body: those hide any error
+/// (docs/METHOD.md).
 struct FieldResiduals {
   double displacement = 0.0, velocity = 0.0, acceleration = 0.0, force = 0.0;
 
@@ -22,10 +23,10 @@ struct FieldResiduals {
 
 /// Scales against which a window's mismatch is measured.
 struct ReferenceScales {
-  double velocity = 0.0;   // [m/s]
-  double step = 0.0;       // [s]
-  double force = 0.0;      // [N]
-  double roundoff = 0.0;   // [m] displacements below it are round-off
+  double velocity = 0.0;  // [m/s]
+  double step = 0.0;      // [s]
+  double force = 0.0;     // [N]
+  double roundoff = 0.0;  // [m] displacements below it are round-off
 };
 
 /// |mismatch| / scale, 0 when the mismatch does not rise above round-off.

@@ -6,8 +6,7 @@
 
 namespace abut {
 
-void DirichletNeumann::begin(const TimeWindow& window, const Interface& interface,
-                                         Bodies& bodies) {
+void DirichletNeumann::begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) {
   const Side& n = interface.neumann_side();
   grid_ = TimeGrid(window.begin, window.end, bodies.describe(n.body).step);
   const Waveform& trace = trace_of(bodies, n);
@@ -28,7 +27,7 @@ void DirichletNeumann::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 }
 
 void DirichletNeumann::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
-                                          const Interface& interface, Bodies& bodies) {
+                              const Interface& interface, Bodies& bodies) {
   const Side& here = interface.sides[static_cast<std::size_t>(side)];
   BoundaryData& data = bodies.request(here.body).boundary[static_cast<std::size_t>(here.port)];
   if (side != interface.kinematic) {
@@ -56,9 +55,8 @@ void DirichletNeumann::impose(int side, const Eigen::Ref<const Eigen::VectorXd>&
   }
 }
 
-void DirichletNeumann::image(const Eigen::Ref<const Eigen::VectorXd>&,
-                                         const Interface& interface, const Bodies& bodies,
-                                         Eigen::Ref<Eigen::VectorXd> g) {
+void DirichletNeumann::image(const Eigen::Ref<const Eigen::VectorXd>&, const Interface& interface,
+                             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
   const Waveform& trace = trace_of(bodies, interface.neumann_side());
   const int n = grid_.count;
   for (int i = 0; i < n; ++i) {
@@ -70,7 +68,7 @@ void DirichletNeumann::image(const Eigen::Ref<const Eigen::VectorXd>&,
 }
 
 FieldResiduals DirichletNeumann::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
-                                                     const Eigen::Ref<const Eigen::VectorXd>& g) const {
+                                         const Eigen::Ref<const Eigen::VectorXd>& g) const {
   const int n = grid_.count;
   auto mismatch = [&x, &g, n](int field) {
     return (g.segment(field * n, n) - x.segment(field * n, n)).lpNorm<Eigen::Infinity>();
@@ -78,8 +76,8 @@ FieldResiduals DirichletNeumann::measure(const Eigen::Ref<const Eigen::VectorXd>
   FieldResiduals r;
   r.displacement = scaled(mismatch(0), scale_.velocity * scale_.step, scale_.roundoff);
   r.velocity = scaled(mismatch(1), scale_.velocity, scale_.roundoff / scale_.step);
-  r.acceleration =
-      scaled(mismatch(2), scale_.velocity / scale_.step, scale_.roundoff / (scale_.step * scale_.step));
+  r.acceleration = scaled(mismatch(2), scale_.velocity / scale_.step,
+                          scale_.roundoff / (scale_.step * scale_.step));
   return r;
 }
 

@@ -7,7 +7,8 @@
 namespace abut {
 
 namespace {
-/// Share of the estimated time to contact that is flown at once; the rest is for what the bound does not know.
+/// Share of the estimated time to contact that is flown at once; the rest is for what the bound
+/// does not know.
 constexpr double margin = 0.95;
 
 const PortResponse& port_of(const Bodies& bodies, const Side& side) {

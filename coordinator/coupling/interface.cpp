@@ -23,7 +23,8 @@ Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodi
   interface.sides = sides;
   std::array<double, 2> place = {0.0, 0.0};
   for (std::size_t s : {0u, 1u}) {
-    const Port& port = bodies.describe(sides[s].body).ports[static_cast<std::size_t>(sides[s].port)];
+    const Port& port =
+        bodies.describe(sides[s].body).ports[static_cast<std::size_t>(sides[s].port)];
     interface.normal[s] = port.geometry.normals[0];
     place[s] = port.geometry.points[0];
   }
@@ -34,8 +35,9 @@ Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodi
   }
   interface.reference_gap = interface.normal[0] * (place[1] - place[0]);
   if (interface.reference_gap < 0.0) {
-    throw InputError(fmt::format("its sides overlap by {:g} m at the start", -interface.reference_gap), where,
-                     "Move a body with initial.position until the gap is zero or more.");
+    throw InputError(
+        fmt::format("its sides overlap by {:g} m at the start", -interface.reference_gap), where,
+        "Move a body with initial.position until the gap is zero or more.");
   }
   return interface;
 }

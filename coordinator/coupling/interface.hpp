@@ -25,8 +25,8 @@ struct Interface {
   // What contact carries from window to window:
   bool closed = false;
   double opened_at = -std::numeric_limits<double>::infinity();  // [s] last release
-  double closing_speed = 0.0;   // [m/s] at the last first touch
-  double force_scale = 0.0;     // [N] largest contact force since it closed
+  double closing_speed = 0.0;                                   // [m/s] at the last first touch
+  double force_scale = 0.0;      // [N] largest contact force since it closed
   double rebound_impulse = 0.0;  // [N s] that a release now would give back
   double release_impulse = 0.0;  // [N s] to be applied at the next window's begin
 
@@ -41,11 +41,12 @@ struct Interface {
   double gap(double u0, double u1) const { return reference_gap + normal[0] * (u1 - u0); }
 };
 
-/// Builds an interface of two ports. Throws InputError when they do not face each other or overlap at the start.
+/// Builds an interface of two ports. Throws InputError when they do not face each other or overlap
+/// at the start.
 Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodies& bodies);
 
-/// Index of the stored time at which a window begins: the last one of the window before, or the first one of an
-/// attempt at the same window.
+/// Index of the stored time at which a window begins: the last one of the window before, or the
+/// first one of an attempt at the same window.
 inline std::size_t index_at_begin(const Waveform& trace, double begin) {
   return trace.time.back() <= begin ? trace.size() - 1 : 0;
 }

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double remainder_tolerance = 1.0e-6;  // of a step: round-off of the window's length
 
-/// Boundaries of the intervals over which forces act; interval i is [bounds[i], bounds[i + 1]] and belongs to
-/// force `first + i`: dual cells of all nodes 0..n, or the substeps 1..n.
+/// Boundaries of the intervals over which forces act; interval i is [bounds[i], bounds[i + 1]] and
+/// belongs to force `first + i`: dual cells of all nodes 0..n, or the substeps 1..n.
 std::vector<double> cells(const TimeGrid& grid, ForceSupport support) {
   std::vector<double> bounds;
   bounds.push_back(grid.begin);
@@ -44,15 +44,16 @@ Eigen::MatrixXd overlap_average(const std::vector<double>& to, const std::vector
   return average;
 }
 
-/// Values at the ends of the substeps 1..n of `to` from nodal values 1..m of `from`, linear in time (n, m);
-/// the value at the window's begin is known and has no column.
+/// Values at the ends of the substeps 1..n of `to` from nodal values 1..m of `from`, linear in time
+/// (n, m); the value at the window's begin is known and has no column.
 Eigen::MatrixXd interpolation(const TimeGrid& to, const TimeGrid& from) {
   Eigen::MatrixXd p = Eigen::MatrixXd::Zero(to.count, from.count);
   int j = 1;
   for (int i = 1; i <= to.count; ++i) {
     const double t = to.time(i);
     while (j < from.count && from.time(j) < t) ++j;
-    const double s = std::clamp((t - from.time(j - 1)) / (from.time(j) - from.time(j - 1)), 0.0, 1.0);
+    const double s =
+        std::clamp((t - from.time(j - 1)) / (from.time(j) - from.time(j - 1)), 0.0, 1.0);
     p(i - 1, j - 1) += s;
     if (j > 1) p(i - 1, j - 2) += 1.0 - s;
   }
@@ -82,7 +83,8 @@ Eigen::MatrixXd neumann_map(const PortKernel& kernel, const TimeGrid& here, cons
   const Eigen::MatrixXd response = toeplitz(kernel.displacement, here.count);
   if (here.same_as(source) && kernel.support == source_support) return response;
   const bool nodal = kernel.support == ForceSupport::nodal;
-  Eigen::MatrixXd mean = overlap_average(cells(here, kernel.support), cells(source, source_support));
+  Eigen::MatrixXd mean =
+      overlap_average(cells(here, kernel.support), cells(source, source_support));
   // The source's force at the window's begin is known: its column goes.
   if (source_support == ForceSupport::nodal) mean = mean.rightCols(source.count).eval();
   if (!nodal) return response * mean;
@@ -106,11 +108,13 @@ Eigen::MatrixXd neumann_map(const PortKernel& kernel, const TimeGrid& here, cons
 
 Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
                                     const PortKernel& neumann, const TimeGrid& neumann_grid) {
-  const Eigen::MatrixXd pushed = neumann_map(neumann, neumann_grid, kinematic_grid, kinematic.support);
+  const Eigen::MatrixXd pushed =
+      neumann_map(neumann, neumann_grid, kinematic_grid, kinematic.support);
   const Eigen::MatrixXd own = toeplitz(kinematic.displacement, kinematic_grid.count);
-  const Eigen::MatrixXd motion = kinematic_grid.same_as(neumann_grid)
-                                     ? Eigen::MatrixXd::Identity(neumann_grid.count, neumann_grid.count)
-                                     : interpolation(kinematic_grid, neumann_grid);
+  const Eigen::MatrixXd motion =
+      kinematic_grid.same_as(neumann_grid)
+          ? Eigen::MatrixXd::Identity(neumann_grid.count, neumann_grid.count)
+          : interpolation(kinematic_grid, neumann_grid);
   const Eigen::MatrixXd force = own.triangularView<Eigen::Lower>().solve(motion);
   return Eigen::MatrixXd::Identity(neumann_grid.count, neumann_grid.count) + pushed * force;
 }
@@ -127,9 +131,10 @@ Eigen::VectorXd solve_toeplitz(const std::vector<double>& column, const Eigen::V
   return x;
 }
 
-std::vector<double> unilateral_jacobian_column(const PortKernel& kinematic, const PortKernel& neumann,
-                                               int count) {
-  // Products and inverses of such matrices are such matrices again: C_N C_K^-1 has the column C_K^-1 c_N.
+std::vector<double> unilateral_jacobian_column(const PortKernel& kinematic,
+                                               const PortKernel& neumann, int count) {
+  // Products and inverses of such matrices are such matrices again: C_N C_K^-1 has the column
+  // C_K^-1 c_N.
   const Eigen::Map<const Eigen::VectorXd> pushed(neumann.displacement.data(), count);
   const Eigen::VectorXd ratio = solve_toeplitz(kinematic.displacement, pushed);
   std::vector<double> column(ratio.begin(), ratio.end());
@@ -143,7 +148,8 @@ Eigen::MatrixXd parallel_jacobian(const std::vector<const PortKernel*>& kernels,
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(source.count, source.count);
   for (std::size_t s = 0; s < kernels.size(); ++s) {
     const Eigen::MatrixXd map = neumann_map(*kernels[s], grids[s], source, source_support);
-    jacobian += grids[s].same_as(source) ? map : Eigen::MatrixXd(interpolation(source, grids[s]) * map);
+    jacobian +=
+        grids[s].same_as(source) ? map : Eigen::MatrixXd(interpolation(source, grids[s]) * map);
   }
   return jacobian;
 }

@@ -20,25 +20,28 @@ struct TimeGrid {
   bool same_as(const TimeGrid& other) const { return count == other.count && step == other.step; }
 };
 
-/// Neumann map of one side: displacement along the push at the ends of its substeps 1..n for the partner's
-/// contact forces 1..m of unit size, with forces spread in time exactly as the body does it (n, m).
+/// Neumann map of one side: displacement along the push at the ends of its substeps 1..n for the
+/// partner's contact forces 1..m of unit size, with forces spread in time exactly as the body does
+/// it (n, m).
 Eigen::MatrixXd neumann_map(const PortKernel& kernel, const TimeGrid& here, const TimeGrid& source,
                             ForceSupport source_support);
 
-/// Interface Jacobian of the unilateral iteration, J = I + C_N R C_K^-1 P (n_N, n_N)  [M: port kernel]:
-/// change of the residual, with minus sign, for a change of the iterate (the Neumann side's motion).
+/// Interface Jacobian of the unilateral iteration, J = I + C_N R C_K^-1 P (n_N, n_N)  [M: port
+/// kernel]: change of the residual, with minus sign, for a change of the iterate (the Neumann
+/// side's motion).
 Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
                                     const PortKernel& neumann, const TimeGrid& neumann_grid);
 
-/// The same when both bodies take the same substeps: J is a lower triangular Toeplitz matrix, given by its first
-/// column (n).
-std::vector<double> unilateral_jacobian_column(const PortKernel& kinematic, const PortKernel& neumann, int count);
+/// The same when both bodies take the same substeps: J is a lower triangular Toeplitz matrix, given
+/// by its first column (n).
+std::vector<double> unilateral_jacobian_column(const PortKernel& kinematic,
+                                               const PortKernel& neumann, int count);
 
 /// x with T x = r for the lower triangular Toeplitz matrix T of a first column.
 Eigen::VectorXd solve_toeplitz(const std::vector<double>& column, const Eigen::VectorXd& r);
 
-/// Jacobian of the parallel iteration on the contact force at the source grid's substeps (n, n): overlap
-/// removed there per unit force.
+/// Jacobian of the parallel iteration on the contact force at the source grid's substeps (n, n):
+/// overlap removed there per unit force.
 Eigen::MatrixXd parallel_jacobian(const std::vector<const PortKernel*>& kernels,
                                   const std::vector<TimeGrid>& grids, const TimeGrid& source,
                                   ForceSupport source_support);

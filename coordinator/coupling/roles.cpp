@@ -21,7 +21,8 @@ int kinematic_side(const Interface& interface, Bodies& bodies, double length) {
     if (!body.can.obstacle) return 1 - static_cast<int>(s);
     const TimeGrid grid(0.0, length, body.step);
     const PortKernel& kernel = bodies.kernel(side.body, side.port, grid.count);
-    moved[s] = std::accumulate(kernel.displacement.begin(), kernel.displacement.begin() + grid.count, 0.0);
+    moved[s] =
+        std::accumulate(kernel.displacement.begin(), kernel.displacement.begin() + grid.count, 0.0);
     spacing[s] = body.ports[static_cast<std::size_t>(side.port)].geometry.spacing;
     step[s] = body.step;
   }

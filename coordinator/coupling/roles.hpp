@@ -5,12 +5,14 @@
 
 namespace abut {
 
-/// Index of the side that becomes kinematic: the softer or lighter one, told by what a constant unit force moves over
-/// a window (port kernels); within a factor of 3 the one with the finer mesh, then the finer step, then the
-/// first. An immovable or rigid side never is (docs/METHOD.md, roles). `length` [s]: a whole window.
+/// Index of the side that becomes kinematic: the softer or lighter one, told by what a constant
+/// unit force moves over a window (port kernels); within a factor of 3 the one with the finer mesh,
+/// then the finer step, then the first. An immovable or rigid side never is (docs/METHOD.md,
+/// roles). `length` [s]: a whole window.
 int kinematic_side(const Interface& interface, Bodies& bodies, double length);
 
-/// Index of the side whose substeps carry the force in the parallel form: the one with the longer steps.
+/// Index of the side whose substeps carry the force in the parallel form: the one with the longer
+/// steps.
 int coarser_side(const Interface& interface, const Bodies& bodies);
 
 }  // namespace abut

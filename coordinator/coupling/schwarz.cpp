@@ -11,27 +11,33 @@ namespace abut {
 
 namespace {
 
-/// Bodies of an island by level: a body comes after the kinematic partners whose reactions it takes.
-std::vector<std::vector<int>> levels_of(const std::vector<int>& members, std::span<const Joint> joints,
+/// Bodies of an island by level: a body comes after the kinematic partners whose reactions it
+/// takes.
+std::vector<std::vector<int>> levels_of(const std::vector<int>& members,
+                                        std::span<const Joint> joints,
                                         const std::vector<int>& island) {
   std::vector<int> waiting = members;
   std::vector<int> done;
   std::vector<std::vector<int>> levels;
-  auto is_done = [&done](int body) { return std::find(done.begin(), done.end(), body) != done.end(); };
+  auto is_done = [&done](int body) {
+    return std::find(done.begin(), done.end(), body) != done.end();
+  };
   while (!waiting.empty()) {
     std::vector<int> level;
     for (int body : waiting) {
-      const bool ready = std::all_of(island.begin(), island.end(), [&joints, body, &is_done](int j) {
-        const Joint& joint = joints[static_cast<std::size_t>(j)];
-        const bool takes_force = joint.interface->neumann_side().body == body;
-        return !takes_force || !joint.transmission->ordered() ||
-               is_done(joint.interface->kinematic_side().body);
-      });
+      const bool ready =
+          std::all_of(island.begin(), island.end(), [&joints, body, &is_done](int j) {
+            const Joint& joint = joints[static_cast<std::size_t>(j)];
+            const bool takes_force = joint.interface->neumann_side().body == body;
+            return !takes_force || !joint.transmission->ordered() ||
+                   is_done(joint.interface->kinematic_side().body);
+          });
       if (ready) level.push_back(body);
     }
     if (level.empty()) {
-      throw InputError("the kinematic sides of its interfaces go round in a circle", "interfaces",
-                       "Fix fewer roles: leave `kinematic: auto` on at least one interface of the circle.");
+      throw InputError(
+          "the kinematic sides of its interfaces go round in a circle", "interfaces",
+          "Fix fewer roles: leave `kinematic: auto` on at least one interface of the circle.");
     }
     for (int body : level) {
       done.push_back(body);
@@ -42,7 +48,8 @@ std::vector<std::vector<int>> levels_of(const std::vector<int>& members, std::sp
   return levels;
 }
 
-/// Tells window lengths and layouts apart; single precision, because ends of equal windows are rounded differently.
+/// Tells window lengths and layouts apart; single precision, because ends of equal windows are
+/// rounded differently.
 std::uint64_t layout_key(const TimeWindow& window, const std::vector<Eigen::Index>& first) {
   std::uint64_t key = std::bit_cast<std::uint32_t>(static_cast<float>(window.length()));
   for (Eigen::Index i : first) key = hash_combine(key, static_cast<std::uint64_t>(i));
@@ -102,7 +109,8 @@ Accelerator& Schwarz::accelerator_of(const Island& island, std::span<const Joint
 }
 
 std::optional<Failed> Schwarz::sweep(const Island& island, std::span<const Joint> joints,
-                                     const Layout& layout, const Eigen::VectorXd& x, Bodies& bodies) const {
+                                     const Layout& layout, const Eigen::VectorXd& x,
+                                     Bodies& bodies) const {
   for (const std::vector<int>& level : island.levels) {
     for (std::size_t i = 0; i < layout.joints.size(); ++i) {
       const Joint& joint = joints[static_cast<std::size_t>(layout.joints[i])];
@@ -110,7 +118,8 @@ std::optional<Failed> Schwarz::sweep(const Island& island, std::span<const Joint
         const int body = joint.interface->sides[static_cast<std::size_t>(side)].body;
         if (std::find(level.begin(), level.end(), body) == level.end()) continue;
         const Eigen::Index count = layout.first[i + 1] - layout.first[i];
-        joint.transmission->impose(side, x.segment(layout.first[i], count), *joint.interface, bodies);
+        joint.transmission->impose(side, x.segment(layout.first[i], count), *joint.interface,
+                                   bodies);
       }
     }
     if (std::optional<Failed> failed = bodies.advance(level)) return failed;
@@ -135,7 +144,8 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   auto joint_at = [&joints, &island](std::size_t i) -> const Joint& {
     return joints[static_cast<std::size_t>(island.joints[i])];
   };
-  for (std::size_t i = 0; i < island.joints.size(); ++i) joint_at(i).transmission->predict(part(x, i));
+  for (std::size_t i = 0; i < island.joints.size(); ++i)
+    joint_at(i).transmission->predict(part(x, i));
   Accelerator& accelerator = accelerator_of(island, joints);
   accelerator.reset(layout_key(window, layout_.first));
 

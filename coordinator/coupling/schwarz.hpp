@@ -2,8 +2,8 @@
 
 #include <functional>
 #include <map>
-#include <optional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -18,8 +18,8 @@ namespace abut {
 
 struct SchwarzReport {
   bool converged = false;
-  int iterations = 0;         // sweeps: every body of the island advanced once in each
-  FieldResiduals residual;    // of the last sweep
+  int iterations = 0;       // sweeps: every body of the island advanced once in each
+  FieldResiduals residual;  // of the last sweep
 };
 
 /// One closed interface with its way of transmission.
@@ -34,8 +34,8 @@ struct Island {
   std::vector<std::vector<int>> levels;  // bodies; those of one level advance at once
 };
 
-/// Finds the islands of the closed interfaces and the order of sweeps inside them: kinematic sides first. Throws
-/// InputError when the roles go round in a circle.
+/// Finds the islands of the closed interfaces and the order of sweeps inside them: kinematic sides
+/// first. Throws InputError when the roles go round in a circle.
 std::vector<Island> find_islands(std::span<const Joint> joints, int bodies);
 
 /// The alternating Schwarz iteration of one window.
@@ -47,13 +47,16 @@ class Schwarz {
   };
   using MakeAccelerator = std::function<std::unique_ptr<Accelerator>(QuasiNewton::Inverse)>;
 
-  Schwarz(const Options& options, MakeAccelerator make) : options_(options), make_(std::move(make)) {}
+  Schwarz(const Options& options, MakeAccelerator make)
+      : options_(options), make_(std::move(make)) {}
 
-  /// Iterates an island over a window until its sides agree. Before, its bodies are saved at the window's begin and
-  /// the requests are prepared; afterwards they stand at its end, all of the same sweep. Reaching the cap is a
-  /// report, never a success.
-  [[nodiscard]] std::variant<SchwarzReport, Failed> solve(const TimeWindow& window, const Island& island,
-                                                          std::span<const Joint> joints, Bodies& bodies);
+  /// Iterates an island over a window until its sides agree. Before, its bodies are saved at the
+  /// window's begin and the requests are prepared; afterwards they stand at its end, all of the
+  /// same sweep. Reaching the cap is a report, never a success.
+  [[nodiscard]] std::variant<SchwarzReport, Failed> solve(const TimeWindow& window,
+                                                          const Island& island,
+                                                          std::span<const Joint> joints,
+                                                          Bodies& bodies);
   /// The window was accepted.
   void accept(const Island& island);
 
@@ -62,8 +65,8 @@ class Schwarz {
     std::vector<int> joints;
     std::vector<Eigen::Index> first;  // of every joint's part in the stacked iterate, and the total
   };
-  std::optional<Failed> sweep(const Island& island, std::span<const Joint> joints, const Layout& layout,
-                              const Eigen::VectorXd& x, Bodies& bodies) const;
+  std::optional<Failed> sweep(const Island& island, std::span<const Joint> joints,
+                              const Layout& layout, const Eigen::VectorXd& x, Bodies& bodies) const;
   Accelerator& accelerator_of(const Island& island, std::span<const Joint> joints);
 
   Options options_;

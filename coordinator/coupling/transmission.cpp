@@ -39,7 +39,8 @@ double roundoff_of(double displacement, double travelled) {
          std::max(std::abs(displacement), std::abs(travelled));
 }
 
-/// Velocity against which mismatch is measured: of the first touch, or what the contact force moves in a step.
+/// Velocity against which mismatch is measured: of the first touch, or what the contact force moves
+/// in a step.
 double reference_velocity(const Interface& interface, double compliance, double step) {
   return std::max(interface.closing_speed, interface.force_scale * compliance / step);
 }
@@ -64,7 +65,8 @@ const KernelInverse::Entry* KernelInverse::find(double length) const {
 }
 
 const KernelInverse::Entry* KernelInverse::add(Entry entry) {
-  if (entries_.size() >= kept_inverses) entries_.erase(entries_.begin() + 1);  // the first is the whole window's
+  // the first is the whole window's
+  if (entries_.size() >= kept_inverses) entries_.erase(entries_.begin() + 1);
   entries_.push_back(std::make_unique<Entry>(std::move(entry)));
   return entries_.back().get();
 }
@@ -77,7 +79,7 @@ const KernelInverse::Entry* KernelInverse::store(double length, std::vector<doub
   return add({length, std::move(column), {}});
 }
 
-// ---- unilateral, alternating ---------------------------------------------------------------------------------
+// ---- unilateral, alternating --------------------------------------------------------------------
 
 void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) {
   const Side& k = interface.kinematic_side();
@@ -92,7 +94,8 @@ void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bod
   const PortKernel& kernel_n = kernel_of(bodies, n, neumann_grid_.count);
   kinematic_compliance_ = kernel_k.displacement.front();
   neumann_compliance_ = kernel_n.displacement.front();
-  const double step = bodies.describe(n.body).step > 0.0 ? neumann_grid_.step : kinematic_grid_.step;
+  const double step =
+      bodies.describe(n.body).step > 0.0 ? neumann_grid_.step : kinematic_grid_.step;
   scale_.step = step;
   scale_.velocity = reference_velocity(interface, kinematic_compliance_, step);
   scale_.force = interface.force_scale;
@@ -102,8 +105,8 @@ void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bod
     inverse_ = inverses_.store(window.length(),
                                unilateral_jacobian_column(kernel_k, kernel_n, neumann_grid_.count));
   } else if (std::max(kinematic_grid_.count, neumann_grid_.count) <= KernelInverse::largest) {
-    inverse_ = inverses_.store(window.length(),
-                               unilateral_jacobian(kernel_k, kinematic_grid_, kernel_n, neumann_grid_));
+    inverse_ = inverses_.store(
+        window.length(), unilateral_jacobian(kernel_k, kinematic_grid_, kernel_n, neumann_grid_));
   }
 }
 
@@ -118,7 +121,7 @@ void Unilateral::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 }
 
 void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
-                                    const Interface& interface, Bodies& bodies) {
+                        const Interface& interface, Bodies& bodies) {
   const Side& here = interface.sides[static_cast<std::size_t>(side)];
   BoundaryData& data = boundary_of(bodies, here);
   if (side != interface.kinematic) {
@@ -134,13 +137,14 @@ void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
     motion.u.push_back(x[i - 1]);
   }
   data.obstacle.offset.assign(1, interface.offset(side));
-  data.obstacle.bilateral = true;  // the coordinator locates the release and splits the window there
+  // the coordinator locates the release and splits the window there
+  data.obstacle.bilateral = true;
   guess_.time = motion.time;
   guess_.u = motion.u;
 }
 
 void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Interface& interface,
-                                   const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
+                       const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
   const Waveform& trace = trace_of(bodies, interface.neumann_side());
   const bool same = static_cast<int>(trace.size()) == neumann_grid_.count + 1;
   for (int i = 1; i <= neumann_grid_.count; ++i) {
@@ -151,18 +155,22 @@ void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Interface
     }
   }
   scale_.force = std::max(interface.force_scale, 0.0);
-  for (double f : trace_of(bodies, interface.kinematic_side()).f) scale_.force = std::max(scale_.force, std::abs(f));
-  scale_.velocity = std::max(scale_.velocity, scale_.force * kinematic_compliance_ / scale_.step * 1.0e-3);
+  for (double f : trace_of(bodies, interface.kinematic_side()).f)
+    scale_.force = std::max(scale_.force, std::abs(f));
+  scale_.velocity =
+      std::max(scale_.velocity, scale_.force * kinematic_compliance_ / scale_.step * 1.0e-3);
   scale_.roundoff = roundoff_of(u_begin_, g[neumann_grid_.count - 1]);
 }
 
 FieldResiduals Unilateral::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
-                                               const Eigen::Ref<const Eigen::VectorXd>& g) const {
+                                   const Eigen::Ref<const Eigen::VectorXd>& g) const {
   const double mismatch = (g - x).lpNorm<Eigen::Infinity>();
   FieldResiduals r;
   r.displacement = scaled(mismatch, scale_.velocity * scale_.step, scale_.roundoff);
-  // The reaction changes by this much when the kinematic side is moved by the mismatch within a substep.
-  r.force = scaled(mismatch / kinematic_compliance_, scale_.force, scale_.roundoff / kinematic_compliance_);
+  // The reaction changes by this much when the kinematic side is moved by the mismatch within a
+  // substep.
+  r.force = scaled(mismatch / kinematic_compliance_, scale_.force,
+                   scale_.roundoff / kinematic_compliance_);
   return r;
 }
 
@@ -176,7 +184,7 @@ Eigen::VectorXd Unilateral::apply_inverse(const Eigen::VectorXd& r) const {
   return r / (1.0 + neumann_compliance_ / kinematic_compliance_);
 }
 
-// ---- parallel ------------------------------------------------------------------------------------------------
+// ---- parallel -----------------------------------------------------------------------------------
 
 void ParallelForce::begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) {
   std::vector<TimeGrid> grids;
@@ -191,7 +199,8 @@ void ParallelForce::begin(const TimeWindow& window, const Interface& interface, 
   force_grid_ = grids[source];
   support_ = kernels[source]->support;
   const Waveform& trace = trace_of(bodies, interface.kinematic_side());
-  force_begin_ = -interface.normal_of(interface.kinematic) * trace.f[index_at_begin(trace, window.begin)];
+  force_begin_ =
+      -interface.normal_of(interface.kinematic) * trace.f[index_at_begin(trace, window.begin)];
   if (!interface.closed || support_ == ForceSupport::step) force_begin_ = 0.0;
   scale_.step = force_grid_.step;
   scale_.velocity = reference_velocity(interface, compliance_, scale_.step);
@@ -199,8 +208,8 @@ void ParallelForce::begin(const TimeWindow& window, const Interface& interface, 
   inverse_ = inverses_.find(window.length());
   if (inverse_ != nullptr) return;
   if (std::max(grids[0].count, grids[1].count) > KernelInverse::largest) return;
-  inverse_ = inverses_.store(window.length(),
-                              parallel_jacobian(kernels, grids, force_grid_, support_) / compliance_);
+  inverse_ = inverses_.store(
+      window.length(), parallel_jacobian(kernels, grids, force_grid_, support_) / compliance_);
 }
 
 void ParallelForce::predict(Eigen::Ref<Eigen::VectorXd> x) const {
@@ -213,7 +222,7 @@ void ParallelForce::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 }
 
 void ParallelForce::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
-                                  const Interface& interface, Bodies& bodies) {
+                           const Interface& interface, Bodies& bodies) {
   guess_.clear();
   guess_.support = support_;
   guess_.time.push_back(force_grid_.begin);
@@ -230,7 +239,7 @@ void ParallelForce::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
 }
 
 void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
-                                 const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
+                          const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
   double travelled = 0.0;
   for (int i = 1; i <= force_grid_.count; ++i) {
     double u[2] = {0.0, 0.0};
@@ -247,7 +256,7 @@ void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Inte
 }
 
 FieldResiduals ParallelForce::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
-                                             const Eigen::Ref<const Eigen::VectorXd>& g) const {
+                                      const Eigen::Ref<const Eigen::VectorXd>& g) const {
   const double mismatch = (g - x).lpNorm<Eigen::Infinity>();  // [N]
   FieldResiduals r;
   r.displacement = scaled(mismatch * compliance_, scale_.velocity * scale_.step, scale_.roundoff);

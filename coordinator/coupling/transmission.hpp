@@ -13,9 +13,9 @@
 
 namespace abut {
 
-/// What the partner's response imposes on each side of a closed interface, and what is iterated. A window runs
-///   begin, predict, (impose side by side, image, measure)*
-/// x is the interface's part of the stacked iterate, in SI units.
+/// What the partner's response imposes on each side of a closed interface, and what is iterated. A
+/// window runs begin, predict, (impose side by side, image, measure)* x is the interface's part of
+/// the stacked iterate, in SI units.
 class Transmission {
  public:
   virtual ~Transmission() = default;
@@ -25,8 +25,8 @@ class Transmission {
   virtual int values() const = 0;
   virtual void predict(Eigen::Ref<Eigen::VectorXd> x) const = 0;
   /// Fills the request of one side's body.
-  virtual void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
-                      Bodies& bodies) = 0;
+  virtual void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
+                      const Interface& interface, Bodies& bodies) = 0;
   /// G(x), out of the responses of this sweep.
   virtual void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
                      const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) = 0;
@@ -40,8 +40,8 @@ class Transmission {
   virtual bool ordered() const = 0;
 };
 
-/// Inverse interface Jacobians by window length: a Toeplitz column where both bodies take the same substeps, factors
-/// otherwise.
+/// Inverse interface Jacobians by window length: a Toeplitz column where both bodies take the same
+/// substeps, factors otherwise.
 class KernelInverse {
  public:
   struct Entry {
@@ -62,9 +62,9 @@ class KernelInverse {
   std::vector<std::unique_ptr<Entry>> entries_;
 };
 
-/// The kinematic side meets the partner's moving surface as a one-body problem and returns the complete reaction; the
-/// other side takes that reaction as impulses. Iterated is the Neumann side's motion, never the force, so momentum is
-/// exact in every iterate  [M: unilateral].
+/// The kinematic side meets the partner's moving surface as a one-body problem and returns the
+/// complete reaction; the other side takes that reaction as impulses. Iterated is the Neumann
+/// side's motion, never the force, so momentum is exact in every iterate  [M: unilateral].
 class Unilateral final : public Transmission {
  public:
   void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
@@ -72,8 +72,8 @@ class Unilateral final : public Transmission {
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
               Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface, const Bodies& bodies,
-             Eigen::Ref<Eigen::VectorXd> g) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) override;
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
@@ -91,8 +91,8 @@ class Unilateral final : public Transmission {
   const KernelInverse::Entry* inverse_ = nullptr;
 };
 
-/// Both sides take the same contact force and advance at once; iterated is the force at the coarser side's substeps
-/// until no overlap is left  [M: parallel form].
+/// Both sides take the same contact force and advance at once; iterated is the force at the coarser
+/// side's substeps until no overlap is left  [M: parallel form].
 class ParallelForce final : public Transmission {
  public:
   void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
@@ -100,8 +100,8 @@ class ParallelForce final : public Transmission {
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
               Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface, const Bodies& bodies,
-             Eigen::Ref<Eigen::VectorXd> g) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) override;
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
@@ -119,8 +119,8 @@ class ParallelForce final : public Transmission {
   const KernelInverse::Entry* inverse_ = nullptr;
 };
 
-/// The published form: motion (u, v, a) overwritten on the kinematic side, its internal force handed to the other side.
-/// Iterated is the Neumann side's u, v and a  [M: published form].
+/// The published form: motion (u, v, a) overwritten on the kinematic side, its internal force
+/// handed to the other side. Iterated is the Neumann side's u, v and a  [M: published form].
 class DirichletNeumann final : public Transmission {
  public:
   void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
@@ -128,8 +128,8 @@ class DirichletNeumann final : public Transmission {
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
               Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface, const Bodies& bodies,
-             Eigen::Ref<Eigen::VectorXd> g) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) override;
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;

@@ -24,7 +24,7 @@ Bar::Bar(const BarProperties& data)
 
 void Bar::build_mass() {
   const std::size_t n = static_cast<std::size_t>(nodes());
-  const double b = data_.mass == MassForm::averaged ? 1.0 / 12.0
+  const double b = data_.mass == MassForm::averaged     ? 1.0 / 12.0
                    : data_.mass == MassForm::consistent ? 1.0 / 6.0
                                                         : 0.0;
   mass_.assign(n, 0.0);

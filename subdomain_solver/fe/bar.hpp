@@ -18,14 +18,14 @@ enum class MassForm { lumped, averaged, consistent };  // b = 0, 1/12, 1/6
 
 /// What a uniform bar of two-node elements is made of.
 struct BarProperties {
-  double length = 0.0;           // [m]
-  double area = 0.0;             // [m^2]
+  double length = 0.0;  // [m]
+  double area = 0.0;    // [m^2]
   int elements = 0;
-  double youngs_modulus = 0.0;   // [Pa]
-  double density = 0.0;          // [kg/m^3]
-  double position = 0.0;         // [m] reference coordinate of the left end
-  double velocity = 0.0;         // [m/s] at the start
-  double body_force = 0.0;       // [m/s^2] force per mass
+  double youngs_modulus = 0.0;  // [Pa]
+  double density = 0.0;         // [kg/m^3]
+  double position = 0.0;        // [m] reference coordinate of the left end
+  double velocity = 0.0;        // [m/s] at the start
+  double body_force = 0.0;      // [m/s^2] force per mass
   MassForm mass = MassForm::lumped;
   double stiffness_factor = 1.0;  // of the contact element behind a massless port, kappa
   std::array<bool, 2> fixed = {false, false};  // left, right end
@@ -36,8 +36,8 @@ struct BarProperties {
   double mass_total() const;  // [kg]
 };
 
-/// A bar discretised: stiffness per element and mass rows, with the contact layers built in. All arrays are by
-/// node, left to right, or by element.
+/// A bar discretised: stiffness per element and mass rows, with the contact layers built in. All
+/// arrays are by node, left to right, or by element.
 class Bar {
  public:
   explicit Bar(const BarProperties& data);
@@ -48,11 +48,13 @@ class Bar {
   double element_stiffness() const { return element_stiffness_; }   // E A / h [N/m], interior
   double element_mass() const { return element_mass_; }             // rho A h [kg], interior
 
-  const std::vector<double>& stiffness() const { return stiffness_; }       // [N/m] (elements)
-  const std::vector<double>& mass() const { return mass_; }                 // [kg] (nodes) diagonal
-  const std::vector<double>& mass_beside() const { return mass_beside_; }   // [kg] (elements) off-diagonal
-  const std::vector<double>& row_mass() const { return row_mass_; }         // [kg] (nodes) row sums
-  const std::vector<double>& inverse_mass() const { return inverse_mass_; }  // [1/kg] of the row sums; 0: no motion
+  const std::vector<double>& stiffness() const { return stiffness_; }  // [N/m] (elements)
+  const std::vector<double>& mass() const { return mass_; }            // [kg] (nodes) diagonal
+  // [kg] (elements) off-diagonal
+  const std::vector<double>& mass_beside() const { return mass_beside_; }
+  const std::vector<double>& row_mass() const { return row_mass_; }  // [kg] (nodes) row sums
+  // [1/kg] of the row sums; 0: no motion
+  const std::vector<double>& inverse_mass() const { return inverse_mass_; }
 
   bool lumped() const { return data_.mass == MassForm::lumped; }
   int node_of(int end) const { return end == 0 ? 0 : nodes() - 1; }
@@ -66,9 +68,9 @@ class Bar {
   /// Internal force K x [N] (nodes).
   void internal_force(const std::vector<double>& x, std::vector<double>& out) const;
 
-  double kinetic(const std::vector<double>& v) const;                  // [J] 1/2 v M v
-  double stored(const std::vector<double>& x) const;                   // [J] 1/2 x K x
-  double momentum(const std::vector<double>& v) const;                 // [kg m/s]
+  double kinetic(const std::vector<double>& v) const;   // [J] 1/2 v M v
+  double stored(const std::vector<double>& x) const;    // [J] 1/2 x K x
+  double momentum(const std::vector<double>& v) const;  // [kg m/s]
 
  private:
   void build_mass();

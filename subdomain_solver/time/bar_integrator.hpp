@@ -11,10 +11,10 @@ namespace abut {
 
 /// What one end of a bar carries through time. Forces are compressive: they push the end inwards.
 struct EndState {
-  bool closed = false;       // an obstacle or a force acted in the last substep
-  double force = 0.0;        // [N] contact force at the present time, as exchanged
-  double dynamic = 0.0;      // [N] the force that moves the body: its mean over the dual cell
-  double captured = 0.0;     // [J] work that contact has taken since the port closed (kick layer)
+  bool closed = false;    // an obstacle or a force acted in the last substep
+  double force = 0.0;     // [N] contact force at the present time, as exchanged
+  double dynamic = 0.0;   // [N] the force that moves the body: its mean over the dual cell
+  double captured = 0.0;  // [J] work that contact has taken since the port closed (kick layer)
   double swept_low = 0.0, swept_high = 0.0;  // [m] range of the port, reset for every part
 
   void state(Archive& archive);
@@ -32,19 +32,20 @@ struct BarState {
 struct EndAction {
   enum class Kind { open, force, obstacle, motion };
   Kind kind = Kind::open;
-  double force = 0.0;     // [N] compressive, at the substep's end (force)
-  double dynamic = 0.0;   // [N] mean over the dual cell, or over the substep for kicks (force)
-  double target = 0.0;    // [m] outward displacement of the obstacle's surface (obstacle)
+  double force = 0.0;      // [N] compressive, at the substep's end (force)
+  double dynamic = 0.0;    // [N] mean over the dual cell, or over the substep for kicks (force)
+  double target = 0.0;     // [m] outward displacement of the obstacle's surface (obstacle)
   bool bilateral = false;  // keep contact in tension (obstacle)
   double u = 0.0, v = 0.0, a = 0.0;  // prescribed (motion)
 };
 using EndActions = std::array<EndAction, 2>;
 
-/// Advances a bar by substeps. Every scheme is affine in the contact force of the substep: the outward
-/// displacement of a closed end is x = x_free - C lambda (docs/METHOD.md, port line), so that the one-body
-/// unilateral problem is solved in closed form.
+/// Advances a bar by substeps. Every scheme is affine in the contact force of the substep: the
+/// outward displacement of a closed end is x = x_free - C lambda (docs/METHOD.md, port line), so
+/// that the one-body unilateral problem is solved in closed form.
 ///
-/// A run of substeps is  open (substep)* close;  u, v and a belong to one time before open and after close.
+/// A run of substeps is  open (substep)* close;  u, v and a belong to one time before open and
+/// after close.
 class BarIntegrator {
  public:
   explicit BarIntegrator(const Bar& bar) : bar_(bar) {}
@@ -78,7 +79,8 @@ class BarIntegrator {
   const Bar& bar_;
 };
 
-/// Compressive force that keeps x_free - C lambda at or inside the target: the unilateral problem of one end.
+/// Compressive force that keeps x_free - C lambda at or inside the target: the unilateral problem
+/// of one end.
 double end_reaction(double free_position, double compliance, const EndAction& action);
 
 }  // namespace abut

@@ -70,8 +70,10 @@ void CentralDifference::smooth(const BarState& state, const std::vector<double>&
       out[i] = u[i] + ratio_[pass] * d;
     }
     for (int end : {0, 1}) {  // an open massless port moves with its inner node
-      if (!is(end, ContactLayer::massless) || state.end[static_cast<std::size_t>(end)].closed) continue;
-      out[static_cast<std::size_t>(bar_.node_of(end))] = out[static_cast<std::size_t>(bar_.inner_of(end))];
+      if (!is(end, ContactLayer::massless) || state.end[static_cast<std::size_t>(end)].closed)
+        continue;
+      out[static_cast<std::size_t>(bar_.node_of(end))] =
+          out[static_cast<std::size_t>(bar_.inner_of(end))];
     }
     t = &out;
   }
@@ -134,8 +136,10 @@ void CentralDifference::acceleration(BarState& state) {
   for (int end : {0, 1}) {
     const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
     const EndState& e = state.end[static_cast<std::size_t>(end)];
-    if (is(end, ContactLayer::massive)) state.a[node] -= inverse[node] * Bar::outward(end) * e.dynamic;
-    if (is(end, ContactLayer::massless)) state.a[node] = state.a[static_cast<std::size_t>(bar_.inner_of(end))];
+    if (is(end, ContactLayer::massive))
+      state.a[node] -= inverse[node] * Bar::outward(end) * e.dynamic;
+    if (is(end, ContactLayer::massless))
+      state.a[node] = state.a[static_cast<std::size_t>(bar_.inner_of(end))];
   }
 }
 
@@ -146,7 +150,8 @@ double CentralDifference::reaction_of(const BarState& state, int end) const {
   return ends_[static_cast<std::size_t>(end)].spring * Bar::outward(end) * (s[inner] - s[node]);
 }
 
-void CentralDifference::place_massless(BarState& state, int end, const EndAction& action, double dt) {
+void CentralDifference::place_massless(BarState& state, int end, const EndAction& action,
+                                       double dt) {
   const End& line = ends_[static_cast<std::size_t>(end)];
   EndState& e = state.end[static_cast<std::size_t>(end)];
   const double n = Bar::outward(end);
@@ -182,7 +187,8 @@ void CentralDifference::resolve_massless(BarState& state, const EndActions& acti
     if (action.kind == EndAction::Kind::open) {
       state.u[node] = state.u[inner];
     } else if (action.kind == EndAction::Kind::obstacle) {
-      state.u[node] = Bar::outward(end) * action.target;  // the usual answer; corrected below when it is not
+      // the usual answer; corrected below when it is not
+      state.u[node] = Bar::outward(end) * action.target;
     }
     if (dt > 0.0) state.v[node] = (state.u[node] - before) / dt;
   }
@@ -225,7 +231,8 @@ void CentralDifference::open(BarState& state, double dt, const EndActions& openi
   }
   if (refresh) {
     EndActions held = opening;
-    for (std::size_t e : {0u, 1u}) {  // an obstacle's reaction at this instant is the one already known
+    // an obstacle's reaction at this instant is the one already known
+    for (std::size_t e : {0u, 1u}) {
       if (held[e].kind != EndAction::Kind::obstacle) continue;
       held[e].kind = EndAction::Kind::force;
       held[e].force = held[e].dynamic = state.end[e].dynamic;
@@ -271,7 +278,8 @@ void CentralDifference::substep(BarState& state, double dt, const EndActions& ac
     }
     prescribed_[static_cast<std::size_t>(end)] = action;
   }
-  resolve_massless(state, actions, dt);  // last: it forms the smoothed displacements of the final places
+  // last: it forms the smoothed displacements of the final places
+  resolve_massless(state, actions, dt);
 }
 
 void CentralDifference::close(BarState& state, double dt) {
@@ -305,7 +313,8 @@ double CentralDifference::kinetic(const BarState& state) const {
   const double quarter = 0.25 * step_ * step_;
   double sum = 0.0;
   for (std::size_t i = 0; i < mass.size(); ++i) {
-    if (inverse[i] > 0.0) sum += mass[i] * (state.v[i] * state.v[i] - quarter * state.a[i] * state.a[i]);
+    if (inverse[i] > 0.0)
+      sum += mass[i] * (state.v[i] * state.v[i] - quarter * state.a[i] * state.a[i]);
   }
   return 0.5 * sum;
 }

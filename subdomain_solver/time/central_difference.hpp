@@ -8,10 +8,11 @@ namespace abut {
 
 /// Explicit central difference with lumped mass, kick-drift form [M: central difference].
 ///
-/// With `terms` P > 1 the internal force is K u~, u~ = u + c2 D u + c3 D^2 u + ..., D = (h/c)^2 M^-1 K, which
-/// removes the dispersion of the lumped bar up to order 2P; P = 2 is the averaged mass to leading order.
-/// Conserved: 1/2 v M v + 1/2 u K u~ - dt^2/8 a M a at the nodal times, which is the staggered energy
-/// 1/2 v(-) M v(+) + 1/2 u K u~ between them.
+/// With `terms` P > 1 the internal force is K u~, u~ = u + c2 D u + c3 D^2 u + ..., D = (h/c)^2
+/// M^-1 K, which removes the dispersion of the lumped bar up to order 2P; P = 2 is the averaged
+/// mass to leading order.
+/// Conserved: 1/2 v M v + 1/2 u K u~ - dt^2/8 a M a at the nodal times, which is the staggered
+/// energy 1/2 v(-) M v(+) + 1/2 u K u~ between them.
 class CentralDifference final : public BarIntegrator {
  public:
   CentralDifference(const Bar& bar, double step, int terms);
@@ -26,10 +27,11 @@ class CentralDifference final : public BarIntegrator {
 
  private:
   struct End {
-    double compliance = 0.0;        // C of a grounded massless port [m/N]
-    double spring = 0.0;            // stiffness of the contact element [N/m]
-    std::vector<double> response;   // u~ for a unit displacement of the port, (nodes) from the port inwards
-    double velocity_before = 0.0;   // [m/s] outward, before the substep's kick
+    double compliance = 0.0;  // C of a grounded massless port [m/N]
+    double spring = 0.0;      // stiffness of the contact element [N/m]
+    // u~ for a unit displacement of the port, (nodes) from the port inwards
+    std::vector<double> response;
+    double velocity_before = 0.0;  // [m/s] outward, before the substep's kick
   };
 
   void kick_drift(BarState& state, double kick, double dt);
@@ -49,11 +51,11 @@ class CentralDifference final : public BarIntegrator {
   int terms_;
   double previous_dt_ = 0.0;  // 0: no substep yet in this run
   std::array<End, 2> ends_;
-  std::vector<double> ratio_;       // c_q / c_{q-1}, q = 2..P
-  std::vector<double> smoothed_;    // u~ at the present substep (scratch; equals u when P = 1)
+  std::vector<double> ratio_;     // c_q / c_{q-1}, q = 2..P
+  std::vector<double> smoothed_;  // u~ at the present substep (scratch; equals u when P = 1)
   mutable std::vector<double> work_a_, work_b_;
   std::vector<double> force_;
-  EndActions prescribed_;          // last actions of the run: close() overwrites prescribed motion
+  EndActions prescribed_;  // last actions of the run: close() overwrites prescribed motion
 };
 
 }  // namespace abut

@@ -33,7 +33,8 @@ GeneralizedAlpha::GeneralizedAlpha(const Bar& bar, const AlphaWeights& weights)
     if (!is(end, ContactLayer::massless)) continue;
     std::vector<double>& column = mass_column_[static_cast<std::size_t>(end)];
     column.assign(diagonal.size(), 0.0);
-    column[static_cast<std::size_t>(bar_.inner_of(end))] = 1.0;  // a massless end passes its force on
+    // a massless end passes its force on
+    column[static_cast<std::size_t>(bar_.inner_of(end))] = 1.0;
     mass_matrix_.solve(column);
   }
 }
@@ -90,7 +91,8 @@ void GeneralizedAlpha::initial_acceleration(BarState& state) const {
   for (std::size_t i = 0; i < state.a.size(); ++i) {
     state.a[i] = bar_.row_mass()[i] * bar_.data().body_force - state.a[i];
   }
-  for (int end : {0, 1}) {  // a closed massless end is in balance with its force: nothing is left over there
+  // a closed massless end is in balance with its force: nothing is left over there
+  for (int end : {0, 1}) {
     if (is(end, ContactLayer::massless)) state.a[static_cast<std::size_t>(bar_.node_of(end))] = 0.0;
   }
   for (std::size_t i = 0; i < state.a.size(); ++i) {
@@ -119,7 +121,8 @@ void GeneralizedAlpha::open(BarState& state, double, const EndActions& opening) 
   if (changed) initial_acceleration(state);
 }
 
-void GeneralizedAlpha::right_hand_side(const BarState& state, double dt, const EndActions& actions) {
+void GeneralizedAlpha::right_hand_side(const BarState& state, double dt,
+                                       const EndActions& actions) {
   const std::size_t n = state.u.size();
   predicted_.resize(n);
   trial_.resize(n);
@@ -141,7 +144,8 @@ void GeneralizedAlpha::right_hand_side(const BarState& state, double dt, const E
     const std::size_t e = static_cast<std::size_t>(end);
     const double known = actions[e].kind == EndAction::Kind::force ? actions[e].dynamic : 0.0;
     const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
-    rhs_[node] -= Bar::outward(end) * ((1.0 - w_.alpha_f) * known + w_.alpha_f * state.end[e].dynamic);
+    rhs_[node] -=
+        Bar::outward(end) * ((1.0 - w_.alpha_f) * known + w_.alpha_f * state.end[e].dynamic);
   }
   for (int end : {0, 1}) {
     if (!held(end, actions)) continue;
@@ -157,8 +161,8 @@ void GeneralizedAlpha::right_hand_side(const BarState& state, double dt, const E
 }
 
 void GeneralizedAlpha::apply_reactions(const EndActions& actions, BarState& state) {
-  // Both ends may be kinematic at once; their reactions are coupled through the body. Alternating between
-  // them contracts by the square of the (small) coupling, so a few rounds reach round-off.
+  // Both ends may be kinematic at once; their reactions are coupled through the body. Alternating
+  // between them contracts by the square of the (small) coupling, so a few rounds reach round-off.
   std::array<double, 2> reaction = {0.0, 0.0};
   std::array<bool, 2> unknown = {actions[0].kind == EndAction::Kind::obstacle,
                                  actions[1].kind == EndAction::Kind::obstacle};
@@ -224,7 +228,8 @@ void GeneralizedAlpha::substep(BarState& state, double dt, const EndActions& act
 
 void GeneralizedAlpha::close(BarState& state, double) {
   for (int end : {0, 1}) {  // output only: an open massless end moves with its inner node
-    if (!is(end, ContactLayer::massless) || state.end[static_cast<std::size_t>(end)].closed) continue;
+    if (!is(end, ContactLayer::massless) || state.end[static_cast<std::size_t>(end)].closed)
+      continue;
     const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
     state.v[node] = state.v[static_cast<std::size_t>(bar_.inner_of(end))];
   }

@@ -45,8 +45,10 @@ class GeneralizedAlpha final : public BarIntegrator {
   double factored_dt_ = 0.0;
   std::array<bool, 2> factored_held_ = {false, false};
   TriDiagonal matrix_, mass_matrix_;
-  std::array<std::vector<double>, 2> column_;       // A^-1 e_end (1 - af): displacement per unit end force
-  std::array<std::vector<double>, 2> mass_column_;  // acceleration per unit end force at one instant
+  // A^-1 e_end (1 - af): displacement per unit end force
+  std::array<std::vector<double>, 2> column_;
+  // acceleration per unit end force at one instant
+  std::array<std::vector<double>, 2> mass_column_;
   std::vector<double> predicted_, rhs_, work_, trial_;
 };
 
