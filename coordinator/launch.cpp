@@ -163,7 +163,7 @@ bool Launch::greet(Member& member, Bytes frame) {
                     "is {}",
                     member.name, frame.size(), options_.limits.frame_bytes,
                     sound ? "of another kind" : "corrupt or of another program"),
-        member.name, "connect an abut-solver of this version");
+        "", "connect an abut-solver of this version");
   }
   const v1::Hello& hello = reply.hello();
   if (hello.protocol() != protocol_version) {
@@ -172,7 +172,7 @@ bool Launch::greet(Member& member, Bytes frame) {
         "speaks protocol {}",
         member.name, hello.build(), hello.protocol(), build_version(), protocol_version);
     refuse(member.name, versions);
-    throw RunError(versions, member.name, "install the same version at both ends");
+    throw RunError(versions, "", "install the same version at both ends");
   }
   if (hello.last_request() > 0) {
     refuse(member.name, "it has taken part in another run");
@@ -211,26 +211,26 @@ void Launch::refuse_strangers() {
 void Launch::check_startup(Member& member, TimePoint begin) {
   const std::string& endpoint = member.spawned ? ipc_endpoint_ : tcp_endpoint_;
   if (options_.interrupted != nullptr && options_.interrupted->load()) {
-    throw RunError(fmt::format("interrupted before body '{}' had connected", member.name),
-                   member.name, "start the run again");
+    throw RunError(fmt::format("interrupted before body '{}' had connected", member.name), "",
+                   "start the run again");
   }
   if (member.child && member.child->ended(Milliseconds(0))) {
     throw RunError(fmt::format("the solver of body '{}' {} before it had connected", member.name,
                                member.child->ending()),
-                   member.name, "look at the solver's own messages above");
+                   "", "look at the solver's own messages above");
   }
   if (std::chrono::steady_clock::now() - begin < member.patience) return;
   const double seconds = static_cast<double>(member.patience.count()) / 1000.0;
   const std::string what =
       fmt::format("body '{}' did not connect to {} within {} s", member.name, endpoint, seconds);
   if (member.spawned) {
-    throw RunError(what, member.name, "raise network.startup_deadline on a slow machine");
+    throw RunError(what, "", "raise network.startup_deadline on a slow machine");
   }
   std::string reachable = endpoint;
   const std::size_t wildcard = reachable.find("//0.0.0.0:");
   if (wildcard != std::string::npos)
     reachable.replace(wildcard + 2, 7, "HOST");  // a name of this machine
-  throw RunError(what, member.name,
+  throw RunError(what, "",
                  fmt::format("start `abut-solver --connect {} --body {}`", reachable, member.name));
 }
 

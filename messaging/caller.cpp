@@ -33,7 +33,7 @@ void Caller::post(const char* verb) {
         fmt::format("{} for body '{}' would be a frame of {} bytes, above the limit of {}",
                     under_way_text(), body_, request_.ByteSizeLong() + frame_header_bytes,
                     context_.limits.frame_bytes),
-        body_, "use shorter windows or fewer records per window");
+        "", "use shorter windows or fewer records per window");
   }
   frame_.seal(request_);
   under_way_ = true;
@@ -87,7 +87,7 @@ bool Caller::is_reply(Bytes frame) {
     throw RunError(
         fmt::format("body '{}' sent a frame of {} bytes while at {}; the limit is {} bytes", body_,
                     frame.size(), under_way_text(), context_.limits.frame_bytes),
-        body_, "use shorter windows or fewer records per window");
+        "", "use shorter windows or fewer records per window");
   }
   const std::optional<Bytes> payload = open_frame(frame);
   if (!payload || !parse_into(reply_, *payload)) {
@@ -101,7 +101,7 @@ bool Caller::is_reply(Bytes frame) {
         fmt::format("body '{}' sent {} corrupt frames while at {}, the last one of {} bytes "
                     "(limit {} bytes)",
                     body_, corrupt_, under_way_text(), corrupt_bytes_, context_.limits.frame_bytes),
-        body_, "make sure that an abut-solver of this version is at the other end");
+        "", "make sure that an abut-solver of this version is at the other end");
   }
   if (reply_.has_hello()) {
     greeted_again(reply_.hello());
@@ -119,8 +119,7 @@ bool Caller::is_reply(Bytes frame) {
 void Caller::greeted_again(const v1::Hello& hello) {
   if (session_ && hello.session() != *session_) {
     throw RunError(fmt::format("a second solver with the name of body '{}' has connected", body_),
-                   body_,
-                   "start one solver per body; after the loss of a solver start the run again");
+                   "", "start one solver per body; after the loss of a solver start the run again");
   }
   repeat();  // the connection is new: what was on the old one is lost
 }
@@ -133,11 +132,11 @@ void Caller::repeat() {
 void Caller::look_around() {
   if (context_.interrupted != nullptr && context_.interrupted->load()) {
     throw RunError(fmt::format("interrupted while body '{}' was at {}", body_, under_way_text()),
-                   body_, "start the run again");
+                   "", "start the run again");
   }
   const std::string loss = context_.liveness.loss(begun_);
   if (!loss.empty()) {
-    throw RunError(fmt::format("body '{}' {} while at {}", body_, loss, under_way_text()), body_,
+    throw RunError(fmt::format("body '{}' {} while at {}", body_, loss, under_way_text()), "",
                    "look at the solver's own messages above, then start the run again");
   }
   const TimePoint now = context_.channel.now();
@@ -148,7 +147,7 @@ void Caller::look_around() {
                      : std::string();
     throw RunError(fmt::format("body '{}' has not answered {} within {} s, nor shown progress{}",
                                body_, under_way_text(), seconds(context_.deadlines.request), noise),
-                   body_, "raise network.request_deadline if one solve may take longer");
+                   "", "raise network.request_deadline if one solve may take longer");
   }
   if (now >= repeat_at_) {
     pause_ =
@@ -159,7 +158,7 @@ void Caller::look_around() {
 
 void Caller::refuse_reply(const std::string& why) const {
   throw RunError(
-      fmt::format("body '{}' gave no sound answer to {}: {}", body_, under_way_text(), why), body_,
+      fmt::format("body '{}' gave no sound answer to {}: {}", body_, under_way_text(), why), "",
       "this is a fault of the solver, not of the scene");
 }
 
