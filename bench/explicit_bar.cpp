@@ -1,5 +1,6 @@
-/// Cost of the explicit bar: whole substeps of a Body behind the contract, in 100-step windows, per element and step;
-/// beside it what the machine's memory allows for the same traffic, measured in the same run.
+/// Cost of the explicit bar: whole substeps of a Body behind the contract, in 100-step windows, per
+/// element and step; beside it what the machine's memory allows for the same traffic, measured in
+/// the same run.
 ///
 ///   abut_bench_explicit_bar [REPEATS]
 
@@ -61,8 +62,11 @@ double cost(int elements, int terms, bool closed, int repeats) {
         request.window = {w, time, time + 1.0e-4};
         if (closed) {
           Waveform& motion = request.boundary[0].obstacle.motion;
-          motion.time = {time, time + 1.0e-4};
-          motion.u = {0.0, 0.0};
+          motion.clear();
+          for (int i = 0; i <= steps; ++i) {
+            motion.time.push_back(i == steps ? request.window.end : time + i * 1.0e-6);
+            motion.u.push_back(0.0);
+          }
           request.boundary[0].obstacle.offset = {0.0};
           request.boundary[0].obstacle.bilateral = true;
         }
@@ -75,7 +79,8 @@ double cost(int elements, int terms, bool closed, int repeats) {
   return median(samples);
 }
 
-/// Nanoseconds per element for reading and writing two arrays of doubles, which is what a step must move at least.
+/// Nanoseconds per element for reading and writing two arrays of doubles, which is what a step must
+/// move at least.
 double streaming_limit(std::size_t elements, int repeats) {
   std::vector<double> u(elements, 1.0), v(elements, 2.0);
   std::vector<double> samples;
@@ -104,13 +109,14 @@ void run(int repeats) {
     }
   }
   for (const int elements : {200, 1000}) {
-    fmt::print("{:>10} {:>7} {:>9} {:>20.3f}\n", elements, 6, "free", cost(elements, 6, false, repeats));
+    fmt::print("{:>10} {:>7} {:>9} {:>20.3f}\n", elements, 6, "free",
+               cost(elements, 6, false, repeats));
   }
   const int beyond = 8'000'000;  // 128 MB of state: beyond the caches
   const double large = cost(beyond, 1, false, 3);
   const double limit = streaming_limit(static_cast<std::size_t>(beyond), 9);
-  fmt::print("{:>10} {:>7} {:>9} {:>20.3f}   streaming limit {:.3f}, ratio {:.2f}\n", beyond, 1, "free", large,
-             limit, large / limit);
+  fmt::print("{:>10} {:>7} {:>9} {:>20.3f}   streaming limit {:.3f}, ratio {:.2f}\n", beyond, 1,
+             "free", large, limit, large / limit);
 }
 
 }  // namespace

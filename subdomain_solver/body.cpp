@@ -108,6 +108,14 @@ Body::Substeps Body::divide(double begin, double end) const {
   return part;
 }
 
+bool Body::Substeps::matches(const std::vector<double>& times) const {
+  if (times.size() != static_cast<std::size_t>(count) + 1) return false;
+  for (int i = 0; i <= count; ++i) {
+    if (times[static_cast<std::size_t>(i)] != time(i)) return false;
+  }
+  return true;
+}
+
 Outcome Body::finish(Response& response) {
   ABUT_ASSERT(request_ != nullptr);
   const Advance& request = *request_;
@@ -142,16 +150,18 @@ void Body::advance_part(const Advance& request, const Substeps& part, Response& 
   BarIntegrator& integrator = *scheme_.integrator;
   for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
     const BoundaryData& data = request.boundary[p];
-    const std::vector<double>& time = data.force.time;
-    bool same = time.size() == static_cast<std::size_t>(part.count) + 1;
-    for (int i = 0; same && i <= part.count; ++i)
-      same = time[static_cast<std::size_t>(i)] == part.time(i);
-    const int end = end_of_port_[p];
-    same_grid_[p] = same && data.force.support == support_[end];
+    const bool pushed = !data.force.empty();
+    const Waveform& imposed = pushed ? data.force : data.obstacle.motion;
+    same_grid_[p] =
+        part.matches(imposed.time) && (!pushed || imposed.support == support_[end_of_port_[p]]);
   }
-  integrator.open(state_, part.length(1), actions_at(request, part, 0));
+  const bool driven = std::any_of(request.boundary.begin(), request.boundary.end(),
+                                  [](const BoundaryData& data) { return data.closed(); });
+  EndActions actions = actions_at(request, part, 0);
+  integrator.open(state_, part.length(1), actions);
   for (int i = 1; i <= part.count; ++i) {
-    integrator.substep(state_, part.length(i), actions_at(request, part, i));
+    if (driven) actions = actions_at(request, part, i);
+    integrator.substep(state_, part.length(i), actions);
     track_sweep();
     if (request.sampling == Sampling::substeps && i < part.count) {
       push_traces(request, part.time(i), response);
@@ -171,8 +181,13 @@ EndActions Body::actions_at(const Advance& request, const Substeps& part, int i)
     const BoundaryData& data = request.boundary[p];
     EndAction& action = actions[static_cast<std::size_t>(end_of_port_[p])];
     if (!data.obstacle.empty()) {
+      const Waveform& motion = data.obstacle.motion;
       double u = 0.0;
-      data.obstacle.motion.interpolate(data.obstacle.motion.u, time, {&u, 1});
+      if (same_grid_[p]) {
+        u = motion.u[static_cast<std::size_t>(i)];
+      } else {
+        motion.interpolate(motion.u, time, {&u, 1});
+      }
       action.kind = EndAction::Kind::obstacle;
       action.target = Bar::outward(end_of_port_[p]) * (data.obstacle.offset[0] + u);
       action.bilateral = data.obstacle.bilateral;

@@ -48,6 +48,7 @@ class Body final : public Subdomain {
     int count = 0;
     double length(int i) const { return i == count ? last : step; }  // i = 1..count
     double time(int i) const { return i == count ? end : begin + i * step; }
+    bool matches(const std::vector<double>& times) const;  // the same instants, i = 0..count
   };
 
   void state(Archive& archive) { state_.state(archive); }

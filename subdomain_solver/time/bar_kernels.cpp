@@ -1,10 +1,10 @@
 #include "subdomain_solver/time/bar_kernels.hpp"
 
-#include <algorithm>
+#include <cstring>
 
 // One binary for all machines: the loader picks the widest variant. Sanitizers do not support this.
 #if defined(__x86_64__) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#define ABUT_VECTORISED __attribute__((target_clones("avx512f", "avx2", "default")))
+#define ABUT_VECTORISED __attribute__((target_clones("avx2", "default")))
 #else
 #define ABUT_VECTORISED
 #endif
@@ -12,23 +12,48 @@
 namespace abut {
 
 namespace {
-/// Nodes per block: u and v of two blocks stay in the first-level cache.
-constexpr std::size_t block = 512;
+
+/// Four doubles that the compiler maps to whatever the variant's registers are.
+using Pack = double __attribute__((vector_size(32)));
+constexpr std::size_t pack = 4;
+
+inline __attribute__((always_inline)) void load(Pack& to, const double* from) {
+  std::memcpy(&to, from, sizeof to);
+}
+inline __attribute__((always_inline)) void store(double* to, const Pack& from) {
+  std::memcpy(to, &from, sizeof from);
+}
+
 }  // namespace
 
 ABUT_VECTORISED
 void kick_drift_nodes(double* __restrict u, double* __restrict v, std::size_t first,
                       std::size_t last, double g, double shift, double dt) {
-  std::size_t drifted = first;
-  for (std::size_t begin = first; begin < last; begin += block) {
-    const std::size_t end = std::min(begin + block, last);
-    for (std::size_t i = begin; i < end; ++i) {
-      v[i] += g * ((u[i + 1] - u[i]) - (u[i] - u[i - 1])) + shift;
+  // One sweep: a pack of displacements is stored only after the next pack has read its old left
+  // neighbour. Four loads and two stores per node instead of six and two.
+  std::size_t i = first;
+  double left = u[first - 1];  // old displacement left of the next node
+  if (i + pack <= last) {
+    Pack moved;
+    for (; i + pack <= last; i += pack) {
+      Pack before, here, after, velocity;
+      load(before, u + i - 1);
+      load(here, u + i);
+      load(after, u + i + 1);
+      load(velocity, v + i);
+      velocity += g * ((after - here) - (here - before)) + shift;
+      store(v + i, velocity);
+      if (i != first) store(u + i - pack, moved);
+      moved = here + dt * velocity;
     }
-    // A node may move once the velocity of its right neighbour no longer needs its old place.
-    const std::size_t movable = end == last ? last : end - 1;
-    for (std::size_t i = drifted; i < movable; ++i) u[i] += dt * v[i];
-    drifted = std::max(drifted, movable);
+    left = u[i - 1];
+    store(u + i - pack, moved);
+  }
+  for (; i < last; ++i) {
+    const double here = u[i];
+    v[i] += g * ((u[i + 1] - here) - (here - left)) + shift;
+    u[i] = here + dt * v[i];
+    left = here;
   }
 }
 

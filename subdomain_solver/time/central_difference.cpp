@@ -6,29 +6,12 @@
 
 namespace abut {
 
-namespace {
-
-/// Nodes whose rows differ from the interior ones: the outer two at both ends, each once.
-struct EndNodes {
-  std::size_t index[4] = {};
-  std::size_t count = 0;
-
-  explicit EndNodes(std::size_t nodes) {
-    for (std::size_t i : {std::size_t{0}, std::size_t{1}, nodes - 2, nodes - 1}) {
-      if (std::find(index, index + count, i) == index + count) index[count++] = i;
-    }
-  }
-};
-
-/// Row i of K x [N].
-double row_force(const Bar& bar, const std::vector<double>& x, std::size_t i) {
-  const std::vector<double>& k = bar.stiffness();
-  const double left = i > 0 ? k[i - 1] * (x[i] - x[i - 1]) : 0.0;
-  const double right = i + 1 < x.size() ? k[i] * (x[i + 1] - x[i]) : 0.0;
-  return left - right;
+double CentralDifference::Row::force(const std::vector<double>& x) const {
+  double force = 0.0;
+  if (left > 0.0) force += left * (x[node] - x[node - 1]);
+  if (right > 0.0) force -= right * (x[node + 1] - x[node]);
+  return force;
 }
-
-}  // namespace
 
 CentralDifference::CentralDifference(const Bar& bar, double step, int terms)
     : BarIntegrator(bar), step_(step), terms_(terms) {
@@ -37,6 +20,13 @@ CentralDifference::CentralDifference(const Bar& bar, double step, int terms)
     ratio_.push_back(((q - 1.0) * (q - 1.0) - r * r) / (2.0 * q * (2.0 * q - 1.0)));
   }
   const std::size_t n = static_cast<std::size_t>(bar_.nodes());
+  const std::vector<double>& k = bar_.stiffness();
+  for (std::size_t i : {std::size_t{0}, std::size_t{1}, n - 2, n - 1}) {
+    const bool listed =
+        std::any_of(outer_.begin(), outer_.end(), [i](const Row& row) { return row.node == i; });
+    if (listed) continue;
+    outer_.push_back({i, i > 0 ? k[i - 1] : 0.0, i + 1 < n ? k[i] : 0.0, bar_.inverse_mass()[i]});
+  }
   for (int end : {0, 1}) {
     if (!is(end, ContactLayer::massless)) continue;
     End& e = ends_[static_cast<std::size_t>(end)];
@@ -56,7 +46,6 @@ CentralDifference::CentralDifference(const Bar& bar, double step, int terms)
 void CentralDifference::smooth(const BarState& state, const std::vector<double>& u,
                                std::vector<double>& s) const {
   const std::size_t n = u.size();
-  const EndNodes outer(n);
   const double cell = bar_.spacing() / bar_.data().wave_speed();
   const std::vector<double>* t = &u;
   work_a_.resize(n);
@@ -64,10 +53,9 @@ void CentralDifference::smooth(const BarState& state, const std::vector<double>&
   for (std::size_t pass = ratio_.size(); pass-- > 0;) {
     std::vector<double>& out = t == &work_a_ ? work_b_ : work_a_;
     if (n > 4) smooth_nodes(u.data(), t->data(), out.data(), 2, n - 2, ratio_[pass]);
-    for (std::size_t c = 0; c < outer.count; ++c) {
-      const std::size_t i = outer.index[c];
-      const double d = cell * cell * bar_.inverse_mass()[i] * row_force(bar_, *t, i);
-      out[i] = u[i] + ratio_[pass] * d;
+    for (const Row& row : outer_) {
+      const double d = cell * cell * row.inverse_mass * row.force(*t);
+      out[row.node] = u[row.node] + ratio_[pass] * d;
     }
     for (int end : {0, 1}) {  // an open massless port moves with its inner node
       if (!is(end, ContactLayer::massless) || state.end[static_cast<std::size_t>(end)].closed)
@@ -81,12 +69,9 @@ void CentralDifference::smooth(const BarState& state, const std::vector<double>&
 }
 
 void CentralDifference::kick_end_nodes(BarState& state, const std::vector<double>& s, double kick) {
-  const EndNodes outer(s.size());
-  for (std::size_t c = 0; c < outer.count; ++c) {
-    const std::size_t i = outer.index[c];
-    const double inverse = bar_.inverse_mass()[i];
-    if (inverse == 0.0) continue;
-    state.v[i] += kick * (bar_.data().body_force - inverse * row_force(bar_, s, i));
+  for (const Row& row : outer_) {
+    if (row.inverse_mass == 0.0) continue;
+    state.v[row.node] += kick * (bar_.data().body_force - row.inverse_mass * row.force(s));
   }
   for (int end : {0, 1}) {
     if (!is(end, ContactLayer::massive)) continue;
@@ -97,10 +82,8 @@ void CentralDifference::kick_end_nodes(BarState& state, const std::vector<double
 }
 
 void CentralDifference::drift_end_nodes(BarState& state, double dt) {
-  const EndNodes outer(state.u.size());
-  for (std::size_t c = 0; c < outer.count; ++c) {
-    const std::size_t i = outer.index[c];
-    if (bar_.inverse_mass()[i] > 0.0) state.u[i] += dt * state.v[i];
+  for (const Row& row : outer_) {
+    if (row.inverse_mass > 0.0) state.u[row.node] += dt * state.v[row.node];
   }
 }
 

@@ -34,6 +34,15 @@ class CentralDifference final : public BarIntegrator {
     double velocity_before = 0.0;  // [m/s] outward, before the substep's kick
   };
 
+  /// A node near an end, whose row of K and M differs from the interior ones.
+  struct Row {
+    std::size_t node = 0;
+    double left = 0.0, right = 0.0;  // stiffness of the elements beside it [N/m]
+    double inverse_mass = 0.0;       // [1/kg]
+
+    double force(const std::vector<double>& x) const;  // of K x [N]
+  };
+
   void kick_drift(BarState& state, double kick, double dt);
   void drift(BarState& state, double dt);
   void kick_end_nodes(BarState& state, const std::vector<double>& s, double kick);
@@ -51,6 +60,7 @@ class CentralDifference final : public BarIntegrator {
   int terms_;
   double previous_dt_ = 0.0;  // 0: no substep yet in this run
   std::array<End, 2> ends_;
+  std::vector<Row> outer_;        // the outer two nodes at both ends, each once
   std::vector<double> ratio_;     // c_q / c_{q-1}, q = 2..P
   std::vector<double> smoothed_;  // u~ at the present substep (scratch; equals u when P = 1)
   mutable std::vector<double> work_a_, work_b_;
