@@ -144,6 +144,8 @@ int report(const Scene& scene, const Measures& measures, const RunEnd& end,
 }
 
 int run_verb(const RunCommand& command) {
+  const SystemClock clock;
+  const Clock::Time began = clock.now();
   start_log("abut", command.quiet ? LogLevel::error : LogLevel::info);
   const std::atomic<bool>& interrupted = watch_for_interrupts();
   const Document document = Document::load(command.scene, command.overrides);
@@ -161,11 +163,11 @@ int run_verb(const RunCommand& command) {
   clear_run_directory(directory);
   write_whole(directory / "scene.resolved.yaml", resolved_text(scene, document));
   const ClosedForm* form = closed_form ? &*closed_form : nullptr;
-  const SystemClock clock;
   MeasureRecorder recorder(form);
   CsvHistory history(directory, form);
   EventLog events(directory);
-  Summary summary(directory, {scene.meta.title, versions(), scene.meta.expect}, recorder, form);
+  Summary summary(directory, {scene.meta.title, versions(), scene.meta.expect, began}, recorder,
+                  form);
   ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !command.quiet);
   const std::vector<Observer*> observers{&recorder, &history, &events, &progress, &summary};
 

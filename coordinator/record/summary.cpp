@@ -1,5 +1,6 @@
 #include "coordinator/record/summary.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -118,7 +119,12 @@ Summary::Summary(std::filesystem::path directory, Heading heading, const Measure
       recorder_(recorder),
       form_(form) {}
 
-void Summary::on_start(const RunStart& start) { start_ = start; }
+void Summary::on_start(const RunStart& start) {
+  start_ = start;
+  if (!heading_.program_began) return;
+  const Clock::Duration startup = SystemClock().now() - *heading_.program_began;
+  startup_seconds_ = std::chrono::duration<double>(startup).count();
+}
 
 std::string Summary::text(const RunEnd& end) const {
   Json notes = Json::array();
@@ -135,6 +141,7 @@ std::string Summary::text(const RunEnd& end) const {
   summary["contact_windows"] = end.contact_windows;
   summary["exchanges"] = end.exchanges;
   summary["timing"] = timing_object(end, start_);
+  if (heading_.program_began) summary["timing"]["startup_s"] = number(startup_seconds_);
   summary["bodies"] = bodies_array(start_);
   summary["ports"] = ports_object(start_);
   summary["interfaces"] = interfaces_object(start_);

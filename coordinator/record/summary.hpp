@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/clock.hpp"
 #include "coordinator/closed_form.hpp"
 #include "coordinator/record/measure_recorder.hpp"
 #include "coordinator/record/observer.hpp"
@@ -21,6 +23,7 @@ class Summary : public Observer {
     std::string title;
     std::map<std::string, std::string> versions;  // of abut and of what it is built with
     std::vector<Expectation> expectations;
+    std::optional<Clock::Time> program_began = std::nullopt;  // for timing.startup_s
   };
 
   /// `form` may be null. The recorder is told of every event before this, and outlives it.
@@ -41,6 +44,7 @@ class Summary : public Observer {
   const MeasureRecorder& recorder_;
   const ClosedForm* form_;
   RunStart start_;
+  double startup_seconds_ = 0.0;  // from the program's begin to the first window
   std::string status_;
 };
 
