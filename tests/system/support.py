@@ -1,0 +1,158 @@
+"""What the system tests share: runs in a folder of their own, and a look at what they leave."""
+
+import csv
+import json
+import math
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import uuid
+from pathlib import Path
+
+ABUT = Path(sys.argv[1]).resolve()
+SOLVER = ABUT.with_name("abut-solver")
+ROOT = Path(sys.argv[2]).resolve()
+SECONDS = 120  # the longest run takes a few seconds; only a hang takes longer
+CONNECTED = "two_bars_processes"  # the scene whose solvers somebody else starts
+FILES = {"scene.resolved.yaml", "history.csv", "events.jsonl", "summary.json"}
+MARK = "ABUT_SYSTEM_TEST"  # in the environment of every process that a test starts
+
+
+def shipped() -> list:
+    """The scenes that `abut run` starts by itself."""
+    return [path for path in sorted((ROOT / "configs").glob("*.yaml")) if path.stem != CONNECTED]
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def marked(mark: str) -> list:
+    """Process ids below this one that carry the mark, those that have ended left out."""
+    found = []
+    wanted = f"{MARK}={mark}".encode()
+    for entry in Path("/proc").glob("[0-9]*"):
+        try:
+            # A process that has ended but is not waited for has no environment any more.
+            if wanted in (entry / "environ").read_bytes().split(b"\0"):
+                found.append(int(entry.name))
+        except OSError:  # it has ended since, or belongs to somebody else
+            continue
+    return found
+
+
+def is_solver(pid: int) -> bool:
+    try:
+        return b"--body" in Path(f"/proc/{pid}/cmdline").read_bytes()
+    except OSError:
+        return False
+
+
+def strict_json(text: str) -> object:
+    def refuse(word: str):
+        raise ValueError(f"{word} is no JSON")
+    return json.loads(text, parse_constant=refuse)
+
+
+class SystemTest(unittest.TestCase):
+    """Every test has a folder, a mark on its processes, and a TMPDIR that must end empty."""
+
+    def setUp(self):
+        # Short, because the sockets of a run live below it.
+        holder = tempfile.TemporaryDirectory(dir="/tmp")
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+        self.out = self.folder / "out"
+        self.temporary = self.folder / "t"
+        self.temporary.mkdir()
+        self.mark = uuid.uuid4().hex
+        self.environment = {**os.environ, MARK: self.mark, "TMPDIR": str(self.temporary)}
+        self.leaves_sockets = False  # only what SIGKILL ends may
+        self.addCleanup(self.end_what_is_left)
+
+    def end_what_is_left(self):
+        left = self.marked_after(3.0)
+        for pid in left:
+            os.kill(pid, signal.SIGKILL)
+        self.assertEqual(left, [], "processes are left behind")
+        if not self.leaves_sockets:
+            self.assertEqual(list(self.temporary.iterdir()), [], "temporary files are left behind")
+
+    def marked_after(self, patience: float) -> list:
+        """The processes that are still there when the patience is over."""
+        until = time.monotonic() + patience
+        while marked(self.mark) and time.monotonic() < until:
+            time.sleep(0.02)
+        return marked(self.mark)
+
+    def solvers(self, count: int) -> list:
+        """The solver processes of a run, as soon as there are so many."""
+        until = time.monotonic() + 10.0
+        while time.monotonic() < until:
+            found = [pid for pid in marked(self.mark) if is_solver(pid)]
+            if len(found) == count:
+                return found
+            time.sleep(0.01)
+        self.fail(f"there are not {count} solvers")
+
+    def start(self, *command: object, **options) -> subprocess.Popen:
+        return subprocess.Popen([*map(str, command)], cwd=self.folder, text=True,
+                                env=self.environment, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, **options)
+
+    def abut(self, *arguments: object, **options) -> subprocess.CompletedProcess:
+        return self.end(self.start(ABUT, *arguments, **options))
+
+    def end(self, process: subprocess.Popen, seconds: float = SECONDS):
+        """Waits for the end; a hang ends the test, not the suite."""
+        try:
+            output, errors = process.communicate(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            output, errors = process.communicate()
+            self.fail(f"not ended after {seconds} s: {output}{errors}")
+        return subprocess.CompletedProcess(process.args, process.returncode, output, errors)
+
+    def succeed(self, result: subprocess.CompletedProcess) -> subprocess.CompletedProcess:
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        return result
+
+    def summary(self, folder: Path = None) -> dict:
+        return strict_json(((folder or self.out) / "summary.json").read_text(encoding="utf-8"))
+
+    def events(self, folder: Path = None) -> list:
+        text = ((folder or self.out) / "events.jsonl").read_text(encoding="utf-8")
+        return [strict_json(line) for line in text.splitlines()]
+
+    def assert_whole(self, folder: Path):
+        """Every file that docs/RESULTS.md promises, readable, without a number that is none."""
+        names = {path.name for path in folder.iterdir()}
+        summary = self.summary(folder)
+        tables = ["history.csv"] + (["closed_form.csv"] if "closed_form" in summary else [])
+        self.assertEqual(names, FILES | set(tables))
+        self.events(folder)
+        columns = []
+        for name in tables:
+            with (folder / name).open(encoding="utf-8", newline="") as file:
+                header, *rows = list(csv.reader(file))
+            self.assertGreater(len(rows), 1, f"{name} has rows")
+            self.assertEqual({len(row) for row in rows}, {len(header)}, f"{name} is rectangular")
+            cells = [cell for row in rows for cell in row if cell]
+            self.assertTrue(all(math.isfinite(float(cell)) for cell in cells), name)
+            times = [float(row[0]) for row in rows]
+            self.assertEqual(times, sorted(times), f"{name} walks forward")
+            columns.append((times, header))
+        if len(columns) == 2:
+            self.assertEqual(columns[0][0], columns[1][0], "both tables have the same times")
+            self.assertLessEqual(set(columns[1][1]), set(columns[0][1]), "and the same names")
+
+
+def main():
+    unittest.main(argv=sys.argv[:1], verbosity=2)

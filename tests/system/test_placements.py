@@ -1,0 +1,141 @@
+"""Goal: a scene gives the same bits wherever its bodies live, however often and under any load.
+
+Oracles: the scene's own expectations, equality of state hashes and of files.
+usage: test_placements.py ABUT ROOT
+"""
+
+import os
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+from support import ABUT, CONNECTED, ROOT, SOLVER, SystemTest, free_port, main, shipped
+
+TWO_BARS = ROOT / "configs" / "two_bars.yaml"
+RESIDENT_LIMIT = 40 * 1024  # [KiB] the goal for a solver of 200 elements
+
+
+class Placements(SystemTest):
+    def run_in(self, name: str, scene: Path, *arguments: object) -> Path:
+        folder = self.folder / name
+        self.succeed(self.abut("run", scene, "--out", folder, *arguments))
+        self.assert_whole(folder)
+        self.assertEqual(self.summary(folder)["status"], "completed")
+        return folder
+
+    def bits(self, folder: Path) -> tuple:
+        """What must not depend on anything but the scene."""
+        summary = self.summary(folder)
+        return (summary["state_hash"], summary["measures"], summary["exchanges"],
+                (folder / "history.csv").read_bytes(), (folder / "events.jsonl").read_bytes())
+
+    def test_every_shipped_scene_meets_its_expectations_here_and_in_processes(self):
+        self.assertGreater(len(shipped()), 8, "the scenes are found")
+        for scene in shipped():
+            with self.subTest(scene=scene.name):
+                self.assertIn("valid", self.succeed(self.abut("check", scene)).stdout)
+                local = self.run_in(f"{scene.stem}_local", scene, "--local")
+                self.assertTrue(self.summary(local)["expectations"], "the scene expects something")
+                spawned = self.run_in(f"{scene.stem}_spawned", scene)
+                self.assertEqual(self.bits(spawned), self.bits(local))
+                again = self.run_in(f"{scene.stem}_again", local / "scene.resolved.yaml", "--local")
+                self.assertEqual(self.bits(again), self.bits(local))
+
+    def connected(self, name: str, start_order: list) -> Path:
+        """A run whose three processes start in the order given; all end with 0."""
+        endpoint = f"tcp://127.0.0.1:{free_port()}"
+        folder = self.folder / name
+        commands = {body: [SOLVER, "--connect", endpoint, "--body", body]
+                    for body in ("left", "right")}
+        commands["coordinator"] = [
+            ABUT, "run", ROOT / "configs" / f"{CONNECTED}.yaml", "--out", folder,
+            "--set", f"network.endpoint={endpoint}"]
+        processes = [self.start(*commands[who]) for who in start_order]
+        for process in processes:
+            self.succeed(self.end(process))
+        self.assert_whole(folder)
+        return folder
+
+    def test_connected_solvers_reach_the_same_bits_in_any_order_of_start(self):
+        local = self.bits(self.run_in("local", TWO_BARS, "--local"))
+        for order in (["coordinator", "left", "right"], ["coordinator", "right", "left"],
+                      ["right", "left", "coordinator"], ["left", "coordinator", "right"]):
+            with self.subTest(order=order):
+                self.assertEqual(self.bits(self.connected("_".join(order), order)), local)
+
+    def test_the_connected_scene_runs_in_one_process_as_well(self):
+        scene = ROOT / "configs" / f"{CONNECTED}.yaml"
+        self.succeed(self.abut("check", scene))
+        self.assertEqual(self.bits(self.run_in("a", scene, "--local")),
+                         self.bits(self.run_in("b", TWO_BARS, "--local")))
+
+    def test_load_priority_and_a_single_core_change_no_bit(self):
+        once = self.bits(self.run_in("once", TWO_BARS))
+        self.assertEqual(self.bits(self.run_in("twice", TWO_BARS)), once)
+        core = min(os.sched_getaffinity(0))
+        # Wrapped by a script: the solvers inherit core and priority.
+        crowded = self.start("taskset", "-c", core, "nice", "-n", "15", ABUT, "run", TWO_BARS,
+                             "--out", self.folder / "crowded")
+        busy = self.start("taskset", "-c", core, sys.executable, "-c", "while True: pass")
+        try:
+            self.succeed(self.end(crowded))
+        finally:
+            busy.kill()
+            busy.communicate()
+        self.assertEqual(self.bits(self.folder / "crowded"), once)
+
+    def test_a_solver_of_200_elements_is_small_and_the_run_says_how_long_it_took_to_start(self):
+        peak = self.folder / "peak"
+        wrapper = self.folder / "measured-solver"
+        # The peak of a process is known to its parent when it has ended.
+        wrapper.write_text(
+            "#!/usr/bin/python3\n"
+            "import resource, subprocess, sys\n"
+            f"code = subprocess.run(['{SOLVER}', *sys.argv[1:]]).returncode\n"
+            "usage = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
+            f"open('{peak}', 'w').write(str(usage.ru_maxrss))\n"
+            "sys.exit(code)\n", encoding="utf-8")
+        wrapper.chmod(0o755)
+        folder = self.run_in("measured", TWO_BARS, "--set",
+                             f"bodies.left.launch={{spawn: {{program: {wrapper}}}}}")
+        resident = int(peak.read_text(encoding="utf-8"))
+        print(f"peak of an abut-solver process: {resident / 1024:.1f} MiB")
+        self.assertGreater(resident, 1024, "it was measured")
+        self.assertLessEqual(resident, RESIDENT_LIMIT)
+        startup = self.summary(folder)["timing"]["startup_s"]
+        self.assertGreater(startup, 0.0)
+        self.assertLess(startup, 10.0)  # the figure is bench's; here it only must be sane
+
+
+class Expectations(SystemTest):
+    def test_a_missed_expectation_ends_with_1_and_a_table_that_says_which(self):
+        result = self.abut("run", TWO_BARS, "--local", "--out", self.out,
+                           "--set", "meta.expect[1].at_most=1.0e-9")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        missed = [line for line in result.stdout.splitlines() if line.endswith("FAILED")]
+        self.assertEqual([line.split()[0] for line in missed], ["energy.total.relative_drift_max"])
+        self.assertIn("at most 1e-09", missed[0])
+        self.assert_whole(self.out)
+        passed = [entry["pass"] for entry in self.summary()["expectations"]]
+        self.assertEqual(passed, [True, False] + [True] * (len(passed) - 2))
+
+    def test_an_unknown_measure_ends_with_2_and_the_nearest_name(self):
+        result = self.abut("run", TWO_BARS, "--local", "--out", self.out,
+                           "--set", "meta.expect[0].measure=contact.impact.releese_error")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("contact.impact.release_error", result.stderr)
+        self.assertFalse(self.out.exists())
+
+
+class Versions(unittest.TestCase):
+    def test_both_programs_say_their_version(self):
+        for program in (ABUT, SOLVER):
+            result = subprocess.run([program, "--version"], capture_output=True, text=True,
+                                    timeout=10, check=False)
+            self.assertEqual(result.returncode, 0)
+            self.assertRegex(result.stdout, rf"^{program.name} \d+\.\d+\.\d+")
+
+
+if __name__ == "__main__":
+    main()
