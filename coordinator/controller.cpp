@@ -105,7 +105,7 @@ bool Controller::fly_free() {
   if (std::abs(flight.end - scene_.time.end) < clock_tolerance * window)
     flight.end = scene_.time.end;
   bodies_.save_all();
-  prepare(flight, windows, Sampling::records);
+  prepare(flight, windows * scene_.output.records_per_window, Sampling::records);
   if (std::optional<Failed> failed = bodies_.advance_all()) {
     fail(failed->time, failed->detail);
     return true;
@@ -172,7 +172,7 @@ void Controller::step_window() {
 
 Controller::Attempt Controller::advance(const TimeWindow& window) {
   Attempt attempt;
-  prepare(window, 1, Sampling::substeps);
+  prepare(window, is_whole(window) ? scene_.output.records_per_window : 1, Sampling::substeps);
   attempt.islands = find_islands(joints_, bodies_.count());
   std::vector<int> free(static_cast<std::size_t>(bodies_.count()));
   std::iota(free.begin(), free.end(), 0);
@@ -242,8 +242,7 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
     observer->on_window({window, bodies_.responses(), reports_});
   ++end_.windows;
   if (!attempt.islands.empty()) ++end_.contact_windows;
-  const bool whole =
-      std::abs(window.length() - scene_.time.window) < clock_tolerance * scene_.time.window;
+  const bool whole = is_whole(window);
   advance_clock(window.end, whole);
   if (whole) events_here_ = 0;
   halvings_ = 0;
@@ -272,6 +271,10 @@ void Controller::advance_clock(double end, bool whole) {
     anchor_ = end;
     since_ = 0;
   }
+}
+
+bool Controller::is_whole(const TimeWindow& window) const {
+  return std::abs(window.length() - scene_.time.window) < clock_tolerance * scene_.time.window;
 }
 
 double Controller::shortest_step() const {

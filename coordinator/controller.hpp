@@ -61,6 +61,7 @@ class Controller {
   void close(int interface, double time, double speed);
   void prepare(const TimeWindow& window, int records, Sampling sampling);
   void fill_reports(const Attempt& attempt);
+  bool is_whole(const TimeWindow& window) const;
   double shortest_step() const;
   bool running() const;
   void fail(double time, const std::string& text);

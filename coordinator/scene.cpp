@@ -117,8 +117,6 @@ void SchwarzSpec::fields(Fields& f) {
   f.optional("tolerance", tolerance, "",
              "largest residual of an exchanged field, relative to reference velocity x step",
              positive);
-  f.word("norm", whole_body_norm, {"interface", "positions"},
-         "measure of convergence: exchanged fields, or positions as published");
   f.optional("max_iterations", max_iterations, "",
              "number of iterations after which a window fails", between(1, 10000));
   f.choice("accelerator", accelerator, "choice of the next iterate", Presence::optional);
@@ -336,6 +334,13 @@ void validate_bodies(const Scene& scene, std::span<const Description* const> bod
           document.where("time.window"),
           fmt::format("Give a window of {}, or the body a step of {}.", multiples(step, window),
                       parts(step, window)));
+    const int records = scene.output.records_per_window;
+    if (step > 0.0 && records > 1 && !divides(step, window / records))
+      throw InputError(
+          fmt::format("must cut a window into whole steps of body {}, but a window holds {:.0f}",
+                      scene.bodies[i].first, window / step),
+          document.where("output.records_per_window"),
+          "Give a divisor of every body's number of steps per window");
   }
   for (const auto& [name, interface] : scene.interfaces)
     validate_geometry(interface, scene, bodies, document);

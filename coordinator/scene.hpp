@@ -120,7 +120,6 @@ struct KernelAcceleration {  // port kernels as interface Jacobian, plus secants
 struct SchwarzSpec {
   bool parallel = false;         // "form: alternating | parallel"
   double tolerance = 1.0e-6;     // scaled by reference velocity x step
-  bool whole_body_norm = false;  // "norm: interface | positions" (published criterion)
   int max_iterations = 20;
   std::variant<KernelAcceleration, NoAcceleration, FixedRelaxation, AitkenAcceleration,
                AndersonAcceleration>
