@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/yaml_document.hpp"
+#include "contract/subdomain.hpp"
+#include "subdomain_solver/body_spec.hpp"
+
+namespace abut {
+
+inline std::string number(double x) { return fmt::format("{:.17e}", x); }
+
+// The schemes that tests go through, as scenes write them; the step is filled in.
+inline std::string explicit_scheme(double step, int terms = 1) {
+  return fmt::format("central_difference: {{step: {}, dispersion_terms: {}}}", number(step), terms);
+}
+inline std::string implicit_scheme(const std::string& name, double step) {
+  return fmt::format("{}: {{step: {}}}", name, number(step));
+}
+
+/// A bar as a scene file writes it. Defaults are the left bar of configs/two_bars.yaml. Ports are
+/// named after their sides.
+struct BarText {
+  std::string name = "left";
+  double length = 0.25, area = 1.0e-6;  // [m] [m^2]
+  int elements = 200;
+  double modulus = 1.0e9, density = 1000.0;  // [Pa] [kg/m^3]
+  std::string integrator = explicit_scheme(1.0e-7, 6);
+  std::string layer = "massless: {stiffness_factor: 1.4}";
+  double position = -0.27, velocity = 100.0, body_force = 0.0;  // [m] [m/s] [m/s^2]
+  std::vector<std::string> sides = {"right"};
+  std::string fixed;  // side held at rest, or empty
+
+  std::string text() const {
+    std::string ports;
+    for (const std::string& side : sides) ports += fmt::format("{0}: {{side: {0}}}, ", side);
+    std::string out = fmt::format("  {}:\n", name);
+    out += fmt::format(
+        "    model: {{fe: {{dimension: 1, mesh: {{bar: {{length: {}, elements: {}, area: "
+        "{}}}}}}}}}\n"
+        "    material: {{linear_elastic: {{youngs_modulus: {}, density: {}}}}}\n"
+        "    integrator: {{{}}}\n    contact_layer: {{{}}}\n",
+        number(length), elements, number(area), number(modulus), number(density), integrator,
+        layer);
+    out += fmt::format("    initial: {{position: [{}], velocity: [{}]}}\n", number(position),
+                       number(velocity));
+    if (body_force != 0.0) out += fmt::format("    body_force: [{}]\n", number(body_force));
+    if (!fixed.empty()) out += fmt::format("    supports: {{{}: fixed}}\n", fixed);
+    if (!sides.empty()) out += fmt::format("    ports: {{{}}}\n", ports);
+    return out;
+  }
+
+  double spacing() const { return length / elements; }
+  double wave_speed() const { return std::sqrt(modulus / density); }
+  double impedance() const { return density * wave_speed() * area; }
+  double mass() const { return density * area * length; }
+};
+
+/// The bar itself, in this process.
+inline std::unique_ptr<Subdomain> build(const BarText& bar) {
+  const Document document = Document::from_text("test", "bodies:\n" + bar.text());
+  return make_body(document, "bodies." + bar.name);
+}
+
+inline std::unique_ptr<Subdomain> build_wall(double position, const std::string& side) {
+  const std::string text = fmt::format(
+      "bodies:\n  wall: {{model: {{rigid_wall: {{}}}}, initial: {{position: [{}]}}, "
+      "ports: {{{1}: {{side: {1}}}}}}}\n",
+      number(position), side);
+  return make_body(Document::from_text("test", text), "bodies.wall");
+}
+
+/// A request for one window with nothing imposed.
+inline Advance free_request(const Subdomain& body, double begin, double end, int records = 1) {
+  Advance request;
+  request.window = {0, begin, end};
+  request.records = records;
+  request.boundary.resize(body.describe().ports.size());
+  return request;
+}
+
+}  // namespace abut
