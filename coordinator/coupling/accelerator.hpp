@@ -48,7 +48,7 @@ class Aitken final : public Accelerator {
 };
 
 /// Quasi-Newton with secants of this and the last `reuse` windows and an approximate inverse of the
-/// Jacobian J = -d(G - x)/dx for what they leave open  [M: kernel plus secants]:
+/// Jacobian J = -d(G - x)/dx for what they leave open  [M.11]:
 ///   a = argmin |r + V a|,   x += (W - V) a + J^-1 (r + V a)
 /// With J^-1 a number it is IQN-ILS (Anderson acceleration); with the port kernels' Jacobian it is
 /// the kernel method, where secants of earlier windows are used only once the Jacobian alone has

@@ -38,7 +38,7 @@ std::optional<Opening> compression_criterion(const Interface& interface, const B
 double peak_force(const Interface& interface, const Bodies& bodies);
 
 /// Release impulse [N s] after contact of massive contact nodes that take kicks: gives back what
-/// contact captured, as far as the nodes' neighbours can take it [M: release impulse]. 0 when a
+/// contact captured, as far as the nodes' neighbours can take it [M.13]. 0 when a
 /// side does not keep that account.
 double release_impulse(const Interface& interface, const Bodies& bodies);
 

@@ -64,7 +64,7 @@ class KernelInverse {
 
 /// The kinematic side meets the partner's moving surface as a one-body problem and returns the
 /// complete reaction; the other side takes that reaction as impulses. Iterated is the Neumann
-/// side's motion, never the force, so momentum is exact in every iterate  [M: unilateral].
+/// side's motion, never the force, so momentum is exact in every iterate  [M.9].
 class Unilateral final : public Transmission {
  public:
   void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
@@ -92,7 +92,7 @@ class Unilateral final : public Transmission {
 };
 
 /// Both sides take the same contact force and advance at once; iterated is the force at the coarser
-/// side's substeps until no overlap is left  [M: parallel form].
+/// side's substeps until no overlap is left  [M.12].
 class ParallelForce final : public Transmission {
  public:
   void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
@@ -120,7 +120,7 @@ class ParallelForce final : public Transmission {
 };
 
 /// The published form: motion (u, v, a) overwritten on the kinematic side, its internal force
-/// handed to the other side. Iterated is the Neumann side's u, v and a  [M: published form].
+/// handed to the other side. Iterated is the Neumann side's u, v and a  [M.14].
 class DirichletNeumann final : public Transmission {
  public:
   void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;

@@ -6,7 +6,7 @@
 
 namespace abut {
 
-/// Explicit central difference with lumped mass, kick-drift form [M: central difference].
+/// Explicit central difference with lumped mass, kick-drift form [M.2].
 ///
 /// With `terms` P > 1 the internal force is K u~, u~ = u + c2 D u + c3 D^2 u + ..., D = (h/c)^2
 /// M^-1 K, which removes the dispersion of the lumped bar up to order 2P; P = 2 is the averaged

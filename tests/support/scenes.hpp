@@ -69,7 +69,7 @@ inline std::unique_ptr<Subdomain> build(const BarText& bar) {
 
 inline std::unique_ptr<Subdomain> build_wall(double position, const std::string& side) {
   const std::string text = fmt::format(
-      "bodies:\n  wall: {{model: {{rigid_wall: {{}}}}, initial: {{position: [{}]}}, "
+      "bodies:\n  wall: {{model: {{rigid_wall: {{}}}}, initial: {{position: [{0}]}}, "
       "ports: {{{1}: {{side: {1}}}}}}}\n",
       number(position), side);
   return make_body(Document::from_text("test", text), "bodies.wall");
