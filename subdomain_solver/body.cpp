@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "base/assert.hpp"
+#include "base/error.hpp"
 
 namespace abut {
 
@@ -89,8 +91,17 @@ std::vector<std::byte> Body::checkpoint() {
 
 void Body::resume(std::span<const std::byte> bytes) {
   Archive archive = Archive::reader(bytes, Archive::Form::named);
-  state(archive);
+  BarState resumed;
+  resumed.state(archive);
   archive.finish();
+  const std::size_t n = state_.u.size();
+  if (resumed.u.size() != n || resumed.v.size() != n || resumed.a.size() != n) {
+    throw RunError(
+        fmt::format("the checkpoint holds {} nodes, but the body has {}", resumed.u.size(), n),
+        fmt::format("body '{}'", description_.name),
+        "Resume with the mesh that wrote the checkpoint.");
+  }
+  state_ = std::move(resumed);
 }
 
 std::uint64_t Body::state_hash() { return hash_state(state_); }
