@@ -119,7 +119,8 @@ def main():
     line("resident memory of a solver process, peak", peak_memory(abut), 40.0, "MiB")
 
     wall, _, summary = compare(abut, "two_bars.yaml", LONG_BARS, 5)
-    print(f"20,000 elements, CFL 0.8, 100-step windows: {summary['exchanges']} exchanges, medians of 5")
+    count = summary["exchanges"]
+    print(f"20,000 elements, CFL 0.8, 100-step windows: {count} exchanges, medians of 5")
     ratio = wall["processes"] / wall["local"]
     line(f"wall with processes over local ({wall['local']:.3f} s)", ratio, 1.2, "")
     sys.exit(0 if passed else 1)

@@ -51,17 +51,31 @@ RunEnd Controller::run() {
     while (running()) {
       if (!fly_free()) step_window();
     }
+    if (interrupted_ != nullptr && interrupted_->load()) end_.status = "interrupted";
+    return finish(wall());  // asks the bodies for their states: they may be lost there as well
   } catch (const RunError& error) {
-    fail(time_, fmt::format("{}: {}", error.where, error.what_is_wrong));
-    end_.compute_seconds = bodies_.compute_seconds();
-    end_.wall_seconds = wall();
-    end_.exchanges = bodies_.exchanges();
-    end_.time = time_;
-    for (Observer* observer : observers_) observer->on_end(end_);
-    throw;
+    const bool interrupted = interrupted_ != nullptr && interrupted_->load();
+    give_up(error, interrupted, wall());
+    if (!interrupted) throw;
+    return end_;
   }
-  if (interrupted_ != nullptr && interrupted_->load()) end_.status = "interrupted";
-  return finish(wall());
+}
+
+/// The bodies are in the middle of a solve, or gone: there is no state to hash.
+void Controller::give_up(const RunError& error, bool interrupted, double wall_seconds) {
+  end_.status = "interrupted";  // a wait that the user has ended is no failure
+  if (!interrupted)
+    fail(time_, (error.where.empty() ? "" : error.where + ": ") + error.what_is_wrong);
+  end_.compute_seconds = bodies_.compute_seconds();
+  end_.wall_seconds = wall_seconds;
+  end_.exchanges = bodies_.exchanges();
+  end_.time = time_;
+  for (Observer* observer : observers_) {
+    try {
+      observer->on_end(end_);
+    } catch (const RunError&) {  // a full disk again: the first error is the one to tell,
+    }                            // and the other observers still write what they can
+  }
 }
 
 bool Controller::running() const {

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/error.hpp"
 #include "coordinator/couple.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/scene.hpp"
@@ -47,6 +48,7 @@ class Controller {
   };
 
   void observe_start();
+  void give_up(const RunError& error, bool interrupted, double wall_seconds);
   bool fly_free();
   void step_window();
   Attempt advance(const TimeWindow& window);

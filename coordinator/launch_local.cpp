@@ -46,10 +46,15 @@ BarData bar_data(const PortName& name, double normal, const Document& document) 
 
 }  // namespace
 
-std::vector<std::unique_ptr<Subdomain>> launch_local(const Scene& scene, const Document& document) {
+std::vector<std::unique_ptr<Subdomain>> launch_local(const Scene& scene, const Document& document,
+                                                     const std::atomic<bool>* interrupted) {
   std::vector<std::unique_ptr<Subdomain>> bodies;
-  for (const auto& [name, entry] : scene.bodies)
-    bodies.push_back(make_body(document, path_of(name)));
+  for (const auto& [name, entry] : scene.bodies) {
+    bodies.push_back(make_body(document, path_of(name), [interrupted] {
+      if (interrupted != nullptr && interrupted->load())
+        throw RunError("interrupted while a body was advancing", "", "start the run again");
+    }));
+  }
   return bodies;
 }
 

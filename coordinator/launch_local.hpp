@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -16,8 +17,10 @@ namespace abut {
 // The one place where the coordinator knows our own solver: bodies in this process, and what must
 // be known of body keys before any process is started.
 
-/// Every body of the scene, in its order, in this process. Throws InputError.
-std::vector<std::unique_ptr<Subdomain>> launch_local(const Scene& scene, const Document& document);
+/// Every body of the scene, in its order, in this process. Throws InputError. Where `interrupted` is
+/// given, a body that is advancing when it turns true throws RunError: a solve may take minutes.
+std::vector<std::unique_ptr<Subdomain>> launch_local(
+    const Scene& scene, const Document& document, const std::atomic<bool>* interrupted = nullptr);
 
 /// Throws InputError when a body entry cannot be built.
 void validate_body_specs(const Scene& scene, const Document& document);

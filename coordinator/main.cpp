@@ -64,7 +64,7 @@ Placement place(const Scene& scene, const Document& document, bool local,
                 const std::atomic<bool>& interrupted) {
   Placement placement;
   if (local) {
-    placement.bodies = launch_local(scene, document);
+    placement.bodies = launch_local(scene, document, &interrupted);
     return placement;
   }
   LaunchOptions options;
@@ -133,14 +133,29 @@ int report(const Scene& scene, const Measures& measures, const RunEnd& end,
   bool pass = status == "completed";
   for (const ExpectationResult& result : results) pass = pass && result.pass;
   if (!quiet || !pass) {
-    fmt::print("{}\n", scene.meta.title);
+    fmt::print("\n{}\n\n", scene.meta.title);  // apart from the log lines above
     // A run cut short misses expectations for that reason alone.
-    if (status == "completed" && !results.empty()) fmt::print("{}", to_table(results));
+    if (status == "completed" && !results.empty()) fmt::print("{}\n", to_table(results));
     fmt::print("{} after {:.3f} s: {} windows, {} of them in contact, {} exchanges\n", status,
                end.wall_seconds, end.windows, end.contact_windows, end.exchanges);
-    fmt::print("state {:016x}, files in {}\n", end.state_hash, directory.string());
+    if (end.state_hash != 0) fmt::print("state  {:016x}\n", end.state_hash);
+    fmt::print("files  {0}\nplots  abut report {0}\n", directory.string());
   }
   return pass ? 0 : exit_expectation;
+}
+
+/// An error of the world says where the run's files are as well.
+RunEnd conduct(const Scene& scene, const Placement& placement,
+               const std::vector<Observer*>& observers, const std::atomic<bool>& interrupted,
+               const fs::path& directory) {
+  try {
+    return Controller(scene, placement.pointers(), observers, &interrupted).run();
+  } catch (const RunError& error) {
+    std::string remedy = error.remedy;
+    if (remedy.ends_with('.')) remedy.pop_back();
+    throw RunError(error.what_is_wrong, error.where,
+                   fmt::format("{}. The run up to there is in {}", remedy, directory.string()));
+  }
 }
 
 int run_verb(const RunCommand& command) {
@@ -171,8 +186,9 @@ int run_verb(const RunCommand& command) {
   ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !command.quiet);
   const std::vector<Observer*> observers{&recorder, &history, &events, &progress, &summary};
 
-  const RunEnd end = Controller(scene, placement.pointers(), observers, &interrupted).run();
-  if (placement.launch) placement.launch->finish();
+  const RunEnd end = conduct(scene, placement, observers, interrupted, directory);
+  // Bodies in the middle of a solve hear no orderly end; they are ended when the launch goes.
+  if (placement.launch && end.status != "interrupted") placement.launch->finish();
   const int code =
       report(scene, recorder.measures(), end, summary.status(), directory, command.quiet);
   return interrupt_exit_code() != 0 ? interrupt_exit_code() : code;
