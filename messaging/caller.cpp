@@ -109,7 +109,11 @@ bool Caller::is_reply(Bytes frame) {
   }
   if (reply_.number() != number_) return false;  // repeat of an earlier reply
   if (reply_.has_progress()) {
+    // It has the request. Repeats that it cannot look at would fill its queue, and a full queue
+    // takes no heartbeats; only when it is silent again may its reply have been lost.
     deadline_ = context_.channel.now() + context_.deadlines.request;
+    pause_ = context_.deadlines.repeat;
+    repeat_at_ = context_.channel.now() + pause_;
     return false;
   }
   if (reply_.body_case() == v1::Reply::BODY_NOT_SET) refuse_reply("is empty");

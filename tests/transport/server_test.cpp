@@ -209,6 +209,32 @@ TEST(Caller, ProgressExtendsTheDeadline) {
   EXPECT_EQ(loop.fake->counts.advances, 1);
 }
 
+TEST(Caller, ARequestIsNotRepeatedToABodyThatShowsProgress) {
+  // A sign every second for an hour: repeats would fill the queue of a body that cannot look at it.
+  Loop loop;
+  loop.configure();
+  Channel& near = loop.link.near();
+  const TimePoint begin = near.now();
+  TimePoint next = begin + Deadlines{}.progress;
+  v1::Reply progress;
+  progress.set_number(2);
+  progress.mutable_progress();
+  Frame frame;
+  frame.seal(progress);
+  loop.link.on_idle([&] {
+    if (near.now() >= begin + std::chrono::hours(1)) {
+      loop.server.step(Milliseconds(0));
+    } else if (near.now() >= next) {
+      next += Deadlines{}.progress;
+      loop.link.far().send(frame.bytes());
+    }
+  });
+  const int before = loop.to_solver.counts().sent;
+  advance_once(loop);
+  EXPECT_EQ(loop.to_solver.counts().sent - before, 1);
+  EXPECT_EQ(loop.fake->counts.advances, 1);
+}
+
 TEST(Serve, TheHookShowsProgressAtMostOnceASecond) {
   // 10 substeps of 0.4 s: signs are due at 1, 2 and 3 s.
   Loop loop;
