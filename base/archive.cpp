@@ -24,6 +24,19 @@ const char* type_name(char type) {
   }
 }
 
+/// One large memcpy becomes a string move instruction, which some processors run 15 times slower
+/// when the two addresses differ by a few bytes; pieces of this size are copied by vector
+/// registers.
+void copy_bytes(void* to, const void* from, std::size_t size) {
+  constexpr std::size_t piece = 1024;
+  std::byte* target = static_cast<std::byte*>(to);
+  const std::byte* source = static_cast<const std::byte*>(from);
+  for (; size > piece; size -= piece, target += piece, source += piece) {
+    std::memcpy(target, source, piece);
+  }
+  std::memcpy(target, source, size);
+}
+
 }  // namespace
 
 Archive Archive::writer(std::vector<std::byte>& out, Form form) {
@@ -64,7 +77,8 @@ void Archive::field(std::string_view name, std::vector<double>& values) {
   raw(values.data(), count * sizeof(double));
 }
 
-void Archive::finish() const {
+void Archive::finish() {
+  if (mode_ == Mode::write) out_->resize(at_);
   if (mode_ == Mode::read && at_ != in_.size())
     throw RunError("has " + std::to_string(in_.size() - at_) + " bytes after the last field",
                    "saved state", "It belongs to another version of this body; start afresh.");
@@ -103,13 +117,12 @@ void Archive::label(std::string_view name, char type) {
 void Archive::raw(void* data, std::size_t size) {
   if (size == 0) return;
   if (mode_ == Mode::write) {
-    const std::size_t end = out_->size();
-    out_->resize(end + size);
-    std::memcpy(out_->data() + end, data, size);
-    return;
+    if (at_ + size > out_->size()) out_->resize(at_ + size);
+    copy_bytes(out_->data() + at_, data, size);
+  } else {
+    if (size > in_.size() - at_) fail("field", "is cut off");
+    copy_bytes(data, in_.data() + at_, size);
   }
-  if (size > in_.size() - at_) fail("field", "is cut off");
-  std::memcpy(data, in_.data() + at_, size);
   at_ += size;
 }
 

@@ -20,6 +20,7 @@ class Archive {
   enum class Mode { write, read };
   enum class Form { bare, named };
 
+  /// Writes over what `out` holds, which grows as needed: a buffer used again costs no allocation.
   static Archive writer(std::vector<std::byte>& out, Form form);
   static Archive reader(std::span<const std::byte> in, Form form);
 
@@ -30,8 +31,9 @@ class Archive {
   void field(std::string_view name, bool& value);
   void field(std::string_view name, std::vector<double>& values);
 
-  /// Throws RunError when a read has left bytes behind: the archive belongs to another state.
-  void finish() const;
+  /// Cuts what a longer earlier writing left behind. Throws RunError when a read has left bytes
+  /// behind: the archive belongs to another state.
+  void finish();
 
  private:
   Archive(Mode mode, Form form) : mode_(mode), form_(form) {}

@@ -71,9 +71,9 @@ void Body::describe_ports(const std::vector<BodyPort>& ports) {
 }
 
 void Body::save() {
-  saved_.clear();
   Archive archive = Archive::writer(saved_, Archive::Form::bare);
   state(archive);
+  archive.finish();
 }
 
 void Body::restore() {
