@@ -17,8 +17,8 @@ namespace abut {
 // The one place where the coordinator knows our own solver: bodies in this process, and what must
 // be known of body keys before any process is started.
 
-/// Every body of the scene, in its order, in this process. Throws InputError. Where `interrupted` is
-/// given, a body that is advancing when it turns true throws RunError: a solve may take minutes.
+/// Every body of the scene, in its order, in this process. Throws InputError. Where `interrupted`
+/// is given, a body that is advancing when it turns true throws RunError: a solve may take minutes.
 std::vector<std::unique_ptr<Subdomain>> launch_local(
     const Scene& scene, const Document& document, const std::atomic<bool>* interrupted = nullptr);
 
