@@ -1,0 +1,366 @@
+// Goal: contact closes, opens, and is ruled out where geometry and forces say so; roles and islands
+// follow from what the bodies are. Oracles: hand-made traces and bodies.
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "coordinator/coupling/contact.hpp"
+#include "coordinator/coupling/horizon.hpp"
+#include "coordinator/coupling/roles.hpp"
+#include "coordinator/coupling/schwarz.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace abut {
+namespace {
+
+/// A body whose reply is written down beforehand.
+class Scripted : public Subdomain {
+ public:
+  Scripted(double place, double normal, double step, int ports = 1) {
+    description_.step = step;
+    description_.mass = 1.0;
+    for (int p = 0; p < ports; ++p) {
+      Port port;
+      port.geometry.points = {place + p};
+      port.geometry.normals = {p == 0 ? normal : -normal};
+      description_.ports.push_back(port);
+    }
+    reply.ports.resize(static_cast<std::size_t>(ports));
+  }
+  /// u at the times of a window and, if any, forces.
+  void trace(std::vector<double> time, std::vector<double> u, std::vector<double> f = {}) {
+    Waveform& w = reply.ports[0].trace;
+    w.time = std::move(time);
+    w.u = std::move(u);
+    w.f = std::move(f);
+  }
+  const Description& describe() const override { return description_; }
+  void save() override {}
+  void restore() override {}
+  void start(const Advance&) override {}
+  [[nodiscard]] Outcome finish(Response& response) override {
+    response = reply;
+    return Advanced{};
+  }
+  PortKernel kernel(int, double, int) override { return {}; }
+  std::vector<std::byte> checkpoint() override { return {}; }
+  void resume(std::span<const std::byte>) override {}
+  std::uint64_t state_hash() override { return 0; }
+
+  Response reply;
+
+ private:
+  Description description_;
+};
+
+/// Two scripted bodies, the left one looking right, 1 m apart.
+struct Meeting {
+  Scripted left, right;
+  Bodies bodies;
+  Interface interface;
+
+  explicit Meeting(double left_step = 1.0, double right_step = 1.0)
+      : left(-1.0, 1.0, left_step), right(0.0, -1.0, right_step), bodies({&left, &right}) {
+    interface = make_interface("meeting", {Side{0, 0}, Side{1, 0}}, bodies);
+  }
+  void reply() { EXPECT_FALSE(bodies.advance_all()); }
+};
+
+TEST(Interface, KnowsItsGapAndOffsets) {
+  const Meeting m;
+  EXPECT_EQ(m.interface.reference_gap, 1.0);
+  EXPECT_EQ(m.interface.gap(0.25, -0.25), 0.5);
+  EXPECT_EQ(m.interface.offset(0), 1.0);
+  EXPECT_EQ(m.interface.offset(1), -1.0);
+}
+
+TEST(Interface, RefusesPortsThatLookTheSameWay) {
+  Scripted a(0.0, 1.0, 1.0), b(1.0, 1.0, 1.0);
+  const Bodies bodies({&a, &b});
+  EXPECT_THROW(make_interface("i", {Side{0, 0}, Side{1, 0}}, bodies), InputError);
+}
+
+TEST(Interface, RefusesSidesThatOverlapAtTheStart) {
+  Scripted a(0.5, 1.0, 1.0), b(0.0, -1.0, 1.0);
+  const Bodies bodies({&a, &b});
+  try {
+    make_interface("i", {Side{0, 0}, Side{1, 0}}, bodies);
+    FAIL() << "was accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("0.5"), std::string::npos) << error.what();
+  }
+}
+
+TEST(OverlapCriterion, LocatesTheTouchOnTheFinerSide) {
+  Meeting m;
+  m.left.trace({0, 1, 2, 3, 4}, {0.0, 0.25, 0.5, 0.75, 1.0});
+  m.right.trace({0, 4}, {0.0, -1.0});  // closing at 0.5 m/s: the gap of 1 m is gone at 2
+  m.reply();
+  const std::optional<Closing> closing = overlap_criterion(m.interface, m.bodies);
+  ASSERT_TRUE(closing);
+  EXPECT_EQ(closing->time, 2.0);
+  EXPECT_EQ(closing->speed, 0.5);
+}
+
+TEST(OverlapCriterion, InterpolatesWithinASubstep) {
+  Meeting m;
+  m.left.trace({0, 1, 2}, {0.0, 0.8, 1.6});
+  m.right.trace({0, 2}, {0.0, 0.0});
+  m.reply();
+  const std::optional<Closing> closing = overlap_criterion(m.interface, m.bodies);
+  ASSERT_TRUE(closing);
+  EXPECT_NEAR(closing->time, 1.25, roundoff(8, 2.0));
+  EXPECT_NEAR(closing->speed, 0.8, roundoff(8, 2.0));
+}
+
+TEST(OverlapCriterion, AGapThatStaysOpenIsNoTouch) {
+  Meeting m;
+  m.left.trace({0, 1}, {0.0, 0.999});
+  m.right.trace({0, 1}, {0.0, 0.0});
+  m.reply();
+  EXPECT_FALSE(overlap_criterion(m.interface, m.bodies));
+}
+
+TEST(OverlapCriterion, AnOverlapThatGetsSmallerIsARelease) {
+  Meeting m;
+  m.left.trace({0, 1, 2}, {1.01, 1.005, 0.99});
+  m.right.trace({0, 2}, {0.0, 0.0});
+  m.reply();
+  EXPECT_FALSE(overlap_criterion(m.interface, m.bodies));
+}
+
+TEST(OverlapCriterion, DoesNotCloseWithinACoarseStepOfTheRelease) {
+  Meeting m(1.0, 1.0);
+  m.left.trace({0, 1, 2}, {1.0, 1.1, 1.2});
+  m.right.trace({0, 2}, {0.0, 0.0});
+  m.reply();
+  EXPECT_EQ(overlap_criterion(m.interface, m.bodies)->time, 0.0);
+  m.interface.opened_at = 0.0;
+  EXPECT_EQ(overlap_criterion(m.interface, m.bodies)->time, 1.0);
+}
+
+TEST(CompressionCriterion, StaysClosedWhileTheForcePushes) {
+  Meeting m;
+  m.left.trace({0, 1, 2}, {0, 0, 0}, {-5, -3, -1});  // pushed to the left
+  m.right.trace({0, 1, 2}, {0, 0, 0});
+  m.reply();
+  EXPECT_FALSE(compression_criterion(m.interface, m.bodies, 1e-9));
+}
+
+TEST(CompressionCriterion, FindsTheZeroOfTheForceAndTheLastCompressedState) {
+  Meeting m;
+  m.left.trace({0, 1, 2}, {0, 0, 0}, {-5, -3, 1});
+  m.right.trace({0, 1, 2}, {0, 0, 0});
+  m.reply();
+  const std::optional<Opening> opening = compression_criterion(m.interface, m.bodies, 1e-9);
+  ASSERT_TRUE(opening);
+  EXPECT_EQ(opening->state, 1.0);
+  EXPECT_EQ(opening->crossing, 1.75);
+}
+
+TEST(CompressionCriterion, AForceOfKicksActsAtTheBeginOfItsSubstep) {
+  Meeting m;
+  m.left.reply.ports[0].trace.support = ForceSupport::step;
+  m.left.trace({0, 1, 2, 3}, {0, 0, 0, 0}, {0, -3, -3, 1});
+  m.right.trace({0, 1, 2, 3}, {0, 0, 0, 0});
+  m.interface.kinematic = 0;
+  m.reply();
+  const std::optional<Opening> opening = compression_criterion(m.interface, m.bodies, 1e-9);
+  ASSERT_TRUE(opening);
+  EXPECT_EQ(opening->state, 2.0);      // the last state that a push has made
+  EXPECT_EQ(opening->crossing, 1.75);  // -3 acts at 1, +1 at 2
+}
+
+TEST(CompressionCriterion, JudgesTheImpulsesOfTheCoarserSide) {
+  Meeting m(0.5, 2.0);  // a spike of the finer, kinematic side is none of the coarser one
+  m.left.trace({0, .5, 1, 1.5, 2, 2.5, 3, 3.5, 4}, {0, 0, 0, 0, 0, 0, 0, 0, 0},
+               {-4, -4, 1, -4, -4, -4, -4, -4, -4});
+  m.right.trace({0, 2, 4}, {0, 0, 0});
+  m.reply();
+  EXPECT_FALSE(compression_criterion(m.interface, m.bodies, 1e-9));
+  m.left.trace({0, .5, 1, 1.5, 2, 2.5, 3, 3.5, 4}, {0, 0, 0, 0, 0, 0, 0, 0, 0},
+               {-4, -4, -4, -4, -4, 1, 1, 1, 1});
+  m.reply();
+  const std::optional<Opening> opening = compression_criterion(m.interface, m.bodies, 1e-9);
+  ASSERT_TRUE(opening);
+  EXPECT_EQ(opening->state, 2.0);  // a substep's end of the coarser side
+}
+
+TEST(Horizon, IsTheGapOverTheBoundOfTheClosingSpeedAndAMargin) {
+  Meeting m;
+  m.left.trace({0.0}, {0.2});
+  m.right.trace({0.0}, {-0.3});
+  m.left.reply.ports[0].approach_bound = 2.0;
+  m.right.reply.ports[0].approach_bound = 3.0;
+  m.reply();
+  const double horizon = free_flight_horizon({&m.interface, 1}, m.bodies);
+  EXPECT_LE(horizon, 0.5 / 5.0);  // never later than the touch
+  EXPECT_GE(horizon, 0.9 * 0.5 / 5.0);
+}
+
+TEST(Horizon, CountsTheAccelerationOfBodyForces) {
+  Meeting m;
+  m.left.trace({0.0}, {0.0});
+  m.right.trace({0.0}, {0.0});
+  m.left.reply.ports[0].approach_acceleration = 2.0;
+  m.reply();
+  const double horizon = free_flight_horizon({&m.interface, 1}, m.bodies);
+  EXPECT_LE(horizon, 1.0);  // 1 m at 2 m/s^2 from rest
+  EXPECT_GE(horizon, 0.9);
+  m.left.reply.ports[0].approach_bound =
+      -1.0;  // moving apart first: back after 1 s, there at 1.618
+  m.reply();
+  const double later = free_flight_horizon({&m.interface, 1}, m.bodies);
+  EXPECT_GT(later, 1.0);
+  EXPECT_LE(later, 0.5 * (1.0 + std::sqrt(5.0)));
+}
+
+TEST(Horizon, IsEndlessForBodiesThatPartAndNothingForContact) {
+  Meeting m;
+  m.left.trace({0.0}, {0.0});
+  m.right.trace({0.0}, {0.0});
+  m.left.reply.ports[0].approach_bound = -1.0;
+  m.reply();
+  EXPECT_TRUE(std::isinf(free_flight_horizon({&m.interface, 1}, m.bodies)));
+  m.interface.closed = true;
+  EXPECT_EQ(free_flight_horizon({&m.interface, 1}, m.bodies), 0.0);
+  m.interface.closed = false;
+  m.left.trace({0.0}, {1.0});
+  m.reply();
+  EXPECT_EQ(free_flight_horizon({&m.interface, 1}, m.bodies), 0.0);
+}
+
+TEST(Horizon, SweptRangesThatMeetInAnyPartAreSeen) {
+  Meeting m;
+  m.left.reply.ports[0].lower = {0.0, 0.0};
+  m.left.reply.ports[0].upper = {0.4, 0.9};
+  m.right.reply.ports[0].lower = {-0.5, -0.05};
+  m.right.reply.ports[0].upper = {0.0, 0.0};
+  m.reply();
+  EXPECT_TRUE(stayed_apart({&m.interface, 1}, m.bodies));
+  m.left.reply.ports[0].upper = {0.5, 0.9};  // 0.5 + 0.5 = the gap
+  m.reply();
+  EXPECT_FALSE(stayed_apart({&m.interface, 1}, m.bodies));
+}
+
+int kinematic_of(const BarText& left, const BarText& right) {
+  const std::unique_ptr<Subdomain> a = build(left), b = build(right);
+  Bodies bodies({a.get(), b.get()});
+  const Interface interface = make_interface("i", {Side{0, 0}, Side{1, 0}}, bodies);
+  return kinematic_side(interface, bodies, 1e-5);
+}
+
+BarText right_bar() {
+  BarText bar;
+  bar.name = "right";
+  bar.position = 0.02;
+  bar.sides = {"left"};
+  return bar;
+}
+
+TEST(Roles, TheSofterSideIsKinematic) {
+  BarText soft = right_bar();
+  soft.modulus = 1e8;
+  soft.density = 100.0;
+  EXPECT_EQ(kinematic_of(BarText(), soft), 1);
+  BarText hard = right_bar();
+  hard.modulus = 1e10;
+  hard.density = 1e4;
+  EXPECT_EQ(kinematic_of(BarText(), hard), 0);
+}
+
+TEST(Roles, AmongEqualsTheFinerMeshThenTheFinerStepThenTheFirst) {
+  EXPECT_EQ(kinematic_of(BarText(), right_bar()), 0);
+  BarText finer = right_bar();
+  finer.elements = 250;
+  EXPECT_EQ(kinematic_of(BarText(), finer), 1);
+  BarText quicker = right_bar();
+  quicker.integrator = explicit_scheme(5e-8, 6);
+  EXPECT_EQ(kinematic_of(BarText(), quicker), 1);
+}
+
+TEST(Roles, AWallNeverIsKinematic) {
+  const std::unique_ptr<Subdomain> wall = build_wall(0.0, "left");
+  const std::unique_ptr<Subdomain> bar = build(BarText());
+  for (bool wall_first : {true, false}) {
+    Bodies bodies(wall_first ? std::vector<Subdomain*>{wall.get(), bar.get()}
+                             : std::vector<Subdomain*>{bar.get(), wall.get()});
+    const Interface interface = make_interface("i", {Side{0, 0}, Side{1, 0}}, bodies);
+    EXPECT_EQ(kinematic_side(interface, bodies, 1e-5), wall_first ? 1 : 0);
+  }
+}
+
+TEST(Roles, TheForceOfTheParallelFormLivesOnTheLongerSteps) {
+  EXPECT_EQ(coarser_side(Meeting(1.0, 2.0).interface, Meeting(1.0, 2.0).bodies), 1);
+  EXPECT_EQ(coarser_side(Meeting(2.0, 1.0).interface, Meeting(2.0, 1.0).bodies), 0);
+}
+
+/// A row of bodies with an interface between neighbours.
+struct Row {
+  std::vector<Interface> interfaces;
+  std::vector<std::unique_ptr<Transmission>> transmissions;
+  std::vector<Joint> joints;
+
+  explicit Row(const std::vector<std::array<int, 2>>& pairs, bool ordered = true)
+      : interfaces(pairs.size()) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      interfaces[i].sides = {Side{pairs[i][0], 0}, Side{pairs[i][1], 0}};
+      interfaces[i].closed = true;
+      if (ordered) {
+        transmissions.push_back(std::make_unique<Unilateral>());
+      } else {
+        transmissions.push_back(std::make_unique<ParallelForce>());
+      }
+      joints.push_back({&interfaces[i], transmissions[i].get()});
+    }
+  }
+};
+
+TEST(Islands, AreTheBodiesThatClosedInterfacesJoin) {
+  Row row({{0, 1}, {1, 2}, {3, 4}});
+  std::vector<Island> islands = find_islands(row.joints, 6);
+  ASSERT_EQ(islands.size(), 2u);
+  EXPECT_EQ(islands[0].joints, (std::vector<int>{0, 1}));
+  EXPECT_EQ(islands[1].joints, (std::vector<int>{2}));
+  row.interfaces[1].closed = false;
+  islands = find_islands(row.joints, 6);
+  ASSERT_EQ(islands.size(), 2u);
+  EXPECT_EQ(islands[0].joints, (std::vector<int>{0}));
+  for (Interface& i : row.interfaces) i.closed = false;
+  EXPECT_TRUE(find_islands(row.joints, 6).empty());
+}
+
+TEST(Islands, KinematicBodiesAdvanceBeforeThoseThatTakeTheirReactions) {
+  Row row({{0, 1}, {1, 2}});  // 0 is kinematic to 1, 1 to 2
+  const std::vector<std::vector<int>> chain = {{0}, {1}, {2}};
+  EXPECT_EQ(find_islands(row.joints, 3)[0].levels, chain);
+  row.interfaces[0].kinematic = 1;  // the middle one is kinematic to both
+  const std::vector<std::vector<int>> middle = {{1}, {0, 2}};
+  EXPECT_EQ(find_islands(row.joints, 3)[0].levels, middle);
+  row.interfaces[0].kinematic = 0;
+  row.interfaces[1].kinematic = 1;  // the outer ones are
+  const std::vector<std::vector<int>> outer = {{0, 2}, {1}};
+  EXPECT_EQ(find_islands(row.joints, 3)[0].levels, outer);
+}
+
+TEST(Islands, TheParallelFormAdvancesAllAtOnce) {
+  Row row({{0, 1}, {1, 2}}, false);
+  const std::vector<std::vector<int>> levels = {{0, 1, 2}};
+  EXPECT_EQ(find_islands(row.joints, 3)[0].levels, levels);
+}
+
+TEST(Islands, RolesThatGoRoundInACircleAreRefused) {
+  Row row({{0, 1}, {1, 2}, {2, 0}});
+  EXPECT_THROW(find_islands(row.joints, 3), InputError);
+  row.interfaces[2].kinematic = 1;
+  EXPECT_NO_THROW(find_islands(row.joints, 3));
+}
+
+}  // namespace
+}  // namespace abut

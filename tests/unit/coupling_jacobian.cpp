@@ -1,0 +1,195 @@
+// Goal: the interface Jacobians made of port kernels are those of the maps that are iterated.
+// Oracle: differences of the real maps, which are affine: exact for any size of the difference.
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "coordinator/coupling/interface.hpp"
+#include "coordinator/coupling/transmission.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace abut {
+namespace {
+
+struct Pair {
+  std::string name;
+  std::string left, left_layer, right, right_layer;  // the left body is the kinematic one
+
+  friend std::ostream& operator<<(std::ostream& out, const Pair& p) { return out << p.name; }
+};
+
+BarText bar(const std::string& name, const std::string& integrator, const std::string& layer) {
+  BarText b;
+  b.name = name;
+  b.length = 30.0;
+  b.elements = 30;
+  b.area = b.modulus = b.density = 1.0;
+  b.position = name == "left" ? -30.0 : 0.0;
+  b.velocity = name == "left" ? 0.01 : -0.02;
+  b.integrator = integrator;
+  b.layer = layer;
+  b.sides = {name == "left" ? "right" : "left"};
+  if (name == "right") b.modulus = 2.0;  // not the symmetric special case
+  return b;
+}
+
+const std::string massless = "massless: {stiffness_factor: 1.4}";
+const std::string kick = "kick: {}";
+
+std::vector<Pair> pairs() {
+  std::vector<Pair> all;
+  struct Steps {
+    const char* name;
+    double left, right;
+  };
+  // The right bar's wave speed is sqrt(2): its limit is 0.707.
+  for (const Steps& s :
+       {Steps{"1to1", 0.6, 0.6}, {"10to1", 0.6, 0.06}, {"1to10", 0.06, 0.6}, {"2to3", 0.4, 0.6}}) {
+    auto add = [&all, &s](const std::string& name, const std::string& a, const std::string& al,
+                          const std::string& b, const std::string& bl) {
+      all.push_back({name + "_" + s.name, a, al, b, bl});
+    };
+    const std::string el = explicit_scheme(s.left), er = explicit_scheme(s.right);
+    const std::string pl = explicit_scheme(s.left, 6), pr = explicit_scheme(s.right, 6);
+    const std::string nl = implicit_scheme("newmark", s.left);
+    const std::string nr = implicit_scheme("newmark", s.right);
+    add("massless_massless", el, massless, er, massless);
+    add("kick_kick", el, kick, er, kick);
+    add("massless_kick", el, massless, er, kick);
+    add("kick_massless", el, kick, er, massless);
+    add("six_terms", pl, massless, pr, massless);
+    add("six_terms_kick", pl, kick, pr, massless);
+    add("implicit_implicit", nl, massless, nr, massless);
+    add("implicit_explicit", nl, massless, er, massless);
+    add("explicit_implicit", el, massless, nr, massless);
+    add("kick_implicit", el, kick, nr, massless);
+    add("implicit_kick", nl, massless, er, kick);
+    add("hht_alpha", implicit_scheme("hht_alpha", s.left), massless,
+        implicit_scheme("generalized_alpha", s.right), massless);
+  }
+  return all;
+}
+
+/// Two bodies in contact over one window, and the map G of a transmission.
+class Contact {
+ public:
+  Contact(const Pair& pair, Transmission& transmission, int kinematic)
+      : left_(build(bar("left", pair.left, pair.left_layer))),
+        right_(build(bar("right", pair.right, pair.right_layer))),
+        bodies_({left_.get(), right_.get()}),
+        transmission_(transmission) {
+    bodies_.prepare({0, 0.0, 0.0}, 1, Sampling::substeps);
+    EXPECT_FALSE(bodies_.advance_all());
+    bodies_.save_all();
+    interface_ = make_interface("impact", {Side{0, 0}, Side{1, 0}}, bodies_);
+    interface_.kinematic = kinematic;
+    interface_.closed = true;
+    interface_.closing_speed = 0.03;
+    bodies_.prepare(window_, 1, Sampling::substeps);
+    transmission_.begin(window_, interface_, bodies_);
+  }
+
+  Eigen::VectorXd predict() const {
+    Eigen::VectorXd x(transmission_.values());
+    transmission_.predict(x);
+    return x;
+  }
+  Eigen::VectorXd image(const Eigen::VectorXd& x) {
+    bodies_.restore_all();
+    bodies_.prepare(window_, 1, Sampling::substeps);
+    const int k = interface_.kinematic;
+    if (transmission_.ordered()) {
+      for (int side : {k, 1 - k}) {
+        transmission_.impose(side, x, interface_, bodies_);
+        EXPECT_FALSE(bodies_.advance(std::span<const int>(&side, 1)));
+      }
+    } else {
+      for (int side : {0, 1}) transmission_.impose(side, x, interface_, bodies_);
+      EXPECT_FALSE(bodies_.advance_all());
+    }
+    Eigen::VectorXd g(x.size());
+    transmission_.image(x, interface_, bodies_, g);
+    return g;
+  }
+  /// J = -d(G - x) / dx, column by column, with differences of size 1.
+  Eigen::MatrixXd jacobian() {
+    const Eigen::VectorXd x = predict();
+    const Eigen::VectorXd base = image(x) - x;
+    Eigen::MatrixXd j(x.size(), x.size());
+    for (Eigen::Index c = 0; c < x.size(); ++c) {
+      Eigen::VectorXd moved = x;
+      moved[c] += 1.0;
+      j.col(c) = base - (image(moved) - moved);
+    }
+    return j;
+  }
+  Bodies& bodies() { return bodies_; }
+  const TimeWindow& window() const { return window_; }
+  TimeGrid grid(int body) {
+    return TimeGrid(window_.begin, window_.end, bodies_.describe(body).step);
+  }
+
+ private:
+  std::unique_ptr<Subdomain> left_, right_;
+  Bodies bodies_;
+  Interface interface_;
+  Transmission& transmission_;
+  TimeWindow window_{0, 0.0, 3.6};
+};
+
+std::string pair_name(const testing::TestParamInfo<Pair>& info) { return info.param.name; }
+
+class PortJacobian : public testing::TestWithParam<Pair> {};
+INSTANTIATE_TEST_SUITE_P(Coupling, PortJacobian, testing::ValuesIn(pairs()), pair_name);
+
+/// Round-off of a map's difference: a few hundred operations per entry on numbers of the size of
+/// the largest, which 60 substeps may carry on.
+double rounding(const Eigen::MatrixXd& j) {
+  return roundoff(60.0 * 300.0, std::max(1.0, j.lpNorm<Eigen::Infinity>()));
+}
+
+TEST_P(PortJacobian, OfTheUnilateralMapIsItsDifference) {
+  Unilateral transmission;
+  Contact contact(GetParam(), transmission, 0);
+  const Eigen::MatrixXd measured = contact.jacobian();
+  const TimeGrid k = contact.grid(0), n = contact.grid(1);
+  const Eigen::MatrixXd closed = unilateral_jacobian(contact.bodies().kernel(0, 0, k.count), k,
+                                                     contact.bodies().kernel(1, 0, n.count), n);
+  ASSERT_EQ(closed.rows(), measured.rows());
+  EXPECT_LT((closed - measured).lpNorm<Eigen::Infinity>(), rounding(measured));
+  // what the accelerator is given is its inverse
+  const Eigen::VectorXd r = Eigen::VectorXd::LinSpaced(measured.rows(), -1.0, 2.0);
+  const Eigen::VectorXd expected = measured.partialPivLu().solve(r);
+  EXPECT_LT((transmission.apply_inverse(r) - expected).norm(),
+            rounding(measured) * measured.inverse().norm() * r.norm());
+}
+
+TEST_P(PortJacobian, SolvesTheUnilateralWindowInOneCorrection) {
+  Unilateral transmission;
+  Contact contact(GetParam(), transmission, 0);
+  Eigen::VectorXd x = contact.predict();
+  const Eigen::VectorXd first = contact.image(x) - x;
+  x += transmission.apply_inverse(first);
+  const Eigen::VectorXd second = contact.image(x) - x;
+  const Eigen::MatrixXd j = contact.jacobian();
+  EXPECT_LT(second.lpNorm<Eigen::Infinity>(),
+            rounding(j) * std::max(first.norm() * j.inverse().norm(), 0.1));
+  // G's own values of 0.1 m are rounded, too
+}
+
+TEST_P(PortJacobian, OfTheParallelMapIsItsDifference) {
+  ParallelForce transmission;
+  Contact contact(GetParam(), transmission, 0);
+  const Eigen::MatrixXd measured = contact.jacobian();
+  const Eigen::VectorXd r = Eigen::VectorXd::LinSpaced(measured.rows(), -1.0, 2.0);
+  const Eigen::VectorXd expected = measured.partialPivLu().solve(r);
+  EXPECT_LT((transmission.apply_inverse(r) - expected).norm(),
+            rounding(measured) * measured.inverse().norm() * r.norm());
+}
+
+}  // namespace
+}  // namespace abut
