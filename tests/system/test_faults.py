@@ -1,0 +1,292 @@
+"""Goal: whatever fails, the run ends in time, says which body and what to do, and leaves nothing.
+
+Oracles: deadlines that the scenes state, exit codes, words of the message, the process table.
+usage: test_faults.py ABUT ROOT FAKE_SOLVER [CLASS]
+"""
+
+import os
+import resource
+import signal
+import sys
+import time
+from pathlib import Path
+
+from support import ABUT, CONNECTED, ROOT, SOLVER, SystemTest, free_port, main, marked
+
+FAKE = Path(sys.argv[3]).resolve()
+TWO_BARS = ROOT / "configs" / "two_bars.yaml"
+# Windows of one short step: tens of thousands of requests, a few seconds in all.
+BUSY = ["--set", "time.window=1.0e-8",
+        "--set", "bodies.left.integrator.central_difference.step=1.0e-8",
+        "--set", "bodies.right.integrator.central_difference.step=1.0e-8"]
+# The bars fly apart: a thousand windows of ten thousand steps in one request, which takes a second
+# or more.
+LONG = ["--set", "time={begin: 0.0, end: 1.0, window: 1.0e-5}",
+        "--set", "bodies.left.initial.velocity=[-100.0]",
+        "--set", "bodies.right.initial.velocity=[100.0]",
+        "--set", "bodies.left.integrator.central_difference.step=1.0e-9",
+        "--set", "bodies.right.integrator.central_difference.step=1.0e-9"]
+DEADLINE = 1.0  # [s] of the scenes here
+# To end processes: 0.5 s to SIGKILL, and what a loaded machine takes on top.
+ENDING = 3.0
+
+
+def launch(body: str, how: str) -> list:
+    return ["--set", f"bodies.{body}.launch={{{how}}}"]
+
+
+class FaultTest(SystemTest):
+    def setUp(self):
+        super().setUp()
+        text = TWO_BARS.read_text(encoding="utf-8")
+        self.scene = self.folder / "scene.yaml"
+        # It expects nothing and has no closed form, so that every time and velocity will do.
+        self.scene.write_text("meta: {title: Two bars}\n" + text[text.index("\ntime:"):],
+                              encoding="utf-8")
+
+    def run_in_background(self, *arguments: object, **options):
+        return self.start(ABUT, "run", self.scene, "--out", self.out, *arguments, **options)
+
+    def wait_for_windows(self):
+        """Until the run has come to its first contact, which the log of events tells."""
+        until = time.monotonic() + 20.0
+        log = self.out / "events.jsonl"
+        while not log.is_file() or "closed" not in log.read_text(encoding="utf-8"):
+            self.assertLess(time.monotonic(), until, "the run does not come to its contact")
+            time.sleep(0.01)
+
+    def assert_fails(self, run, seconds: float, *words: str):
+        """The run ends in time with code 3 and a message with all of the words."""
+        begin = time.monotonic()
+        result = self.end(run)
+        self.assertLess(time.monotonic() - begin, seconds + ENDING)
+        self.assertEqual(result.returncode, 3, result.stdout + result.stderr)
+        last = result.stderr.splitlines()[-1]
+        for word in ("error: ", *words):
+            self.assertIn(word, last)
+
+    def assert_failure_is_written(self, *words: str):
+        self.assert_whole(self.out, rows=1)
+        self.assertEqual(self.summary()["status"], "failed")
+        last = self.events()[-1]
+        self.assertEqual(last["kind"], "failure")
+        for word in words:
+            self.assertIn(word, last["text"])
+
+
+class LostSolvers(FaultTest):
+    def solver_of(self, body: str) -> int:
+        for pid in self.solvers(2):
+            if Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")[-2] == body.encode():
+                return pid
+        self.fail(f"there is no solver of {body}")
+
+    def test_a_killed_solver_is_named_at_once(self):
+        run = self.run_in_background(*BUSY)
+        self.wait_for_windows()
+        os.kill(self.solver_of("right"), signal.SIGKILL)
+        self.assert_fails(run, 1.0, "body 'right' was killed by signal 9", "tart the run again",
+                          f"is in {self.out}")
+        self.assert_failure_is_written("body 'right' was killed by signal 9")
+
+    def test_a_solver_killed_in_the_middle_of_a_long_solve_is_named_at_once(self):
+        run = self.run_in_background(*LONG)
+        left = self.solver_of("left")
+        time.sleep(1.0)  # both have begun to solve
+        os.kill(left, signal.SIGKILL)
+        self.assert_fails(run, 1.0, "body 'left' was killed by signal 9", "advance")
+        self.assert_failure_is_written("body 'left' was killed by signal 9")
+
+    def test_a_stopped_solver_is_given_up_at_the_request_deadline(self):
+        run = self.run_in_background(*BUSY, "--set", f"network.request_deadline={DEADLINE}")
+        self.wait_for_windows()
+        os.kill(self.solver_of("left"), signal.SIGSTOP)
+        self.assert_fails(run, DEADLINE, "body 'left' has not answered", f"within {DEADLINE:g} s",
+                          "network.request_deadline")
+        self.assert_failure_is_written("body 'left' has not answered")
+
+    def test_a_long_solve_shows_progress_and_outlives_the_deadline(self):
+        # One request of 1000 windows takes seconds, with signs of progress every second.
+        deadline = 1.5
+        self.succeed(self.end(self.run_in_background(
+            *LONG, "--set", "time.end=1.0e-2", "--set", f"network.request_deadline={deadline}",
+            "--set", "bodies.left.model.fe.mesh.bar.elements=400")))
+        longest = max(self.summary()["timing"]["compute_s"].values())
+        self.assertGreater(longest, deadline, "the solve was too short to prove anything")
+
+    def test_a_connected_solver_that_is_killed_is_given_up(self):
+        endpoint = f"tcp://127.0.0.1:{free_port()}"
+        run = self.run_in_background(*BUSY, *launch("left", "connect: {patience: 10}"),
+                                     "--set", f"network.endpoint={endpoint}")
+        solver = self.start(SOLVER, "--connect", endpoint, "--body", "left")
+        self.wait_for_windows()
+        solver.kill()
+        self.end(solver)
+        self.assert_fails(run, 10.0, "body 'left' closed its connection and did not come back",
+                          "tart the run again")
+        self.assert_failure_is_written("body 'left' ")
+
+
+class Strangers(FaultTest):
+    def program(self, text: str) -> Path:
+        path = self.folder / "solver"
+        path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
+        path.chmod(0o755)
+        return path
+
+    def assert_start_fails(self, seconds: float, arguments: list, *words: str):
+        self.assert_fails(self.run_in_background(*arguments), seconds, *words)
+        self.assertEqual(list(self.out.iterdir()), [], "no window, no files")
+
+    def test_a_spawned_program_that_never_connects_is_given_up(self):
+        mute = self.program("exec sleep 600")
+        self.assert_start_fails(
+            DEADLINE, [*launch("left", f"spawn: {{program: {mute}}}"),
+                       "--set", f"network.startup_deadline={DEADLINE}"],
+            "body 'left' did not connect", f"within {DEADLINE:g} s", "network.startup_deadline")
+
+    def test_a_spawned_program_that_ends_is_named_with_its_code(self):
+        self.assert_start_fails(
+            0.5, launch("right", f"spawn: {{program: {self.program('exit 7')}}}"),
+            "the solver of body 'right' exited with code 7")
+
+    def test_a_program_that_is_not_there_is_named(self):
+        self.assert_start_fails(
+            0.5, launch("right", "spawn: {program: /nowhere/solver}"),
+            "cannot start /nowhere/solver: No such file or directory")
+
+    def test_a_body_that_nobody_starts_is_named_with_the_missing_command(self):
+        endpoint = f"tcp://127.0.0.1:{free_port()}"
+        self.assert_start_fails(
+            DEADLINE, [*launch("right", f"connect: {{patience: {DEADLINE}}}"),
+                       "--set", f"network.endpoint={endpoint}"],
+            "body 'right' did not connect",
+            f"abut-solver --connect {endpoint} --body right")
+
+    def test_another_protocol_version_is_named_at_both_ends(self):
+        self.environment["ABUT_FAKE_left"] = "old_version"
+        self.assert_start_fails(
+            0.5, launch("left", f"spawn: {{program: {FAKE}}}"),
+            "the solver of body 'left'", "speaks protocol", "Install the same version")
+
+    def test_a_first_frame_of_noise_is_named_with_its_size(self):
+        self.environment["ABUT_FAKE_right"] = "babble"
+        self.assert_start_fails(
+            0.5, launch("right", f"spawn: {{program: {FAKE}}}"),
+            "body 'right' did not say hello", "99 bytes", "Connect an abut-solver")
+
+    def test_a_solver_of_a_body_that_is_not_there_is_told_the_names_and_the_run_goes_on(self):
+        endpoint = f"tcp://127.0.0.1:{free_port()}"
+        stranger = self.start(SOLVER, "--connect", endpoint, "--body", "middle")
+        run = self.run_in_background(*launch("left", "connect: {}"),
+                                     "--set", f"network.endpoint={endpoint}")
+        refused = self.end(stranger)
+        self.assertEqual(refused.returncode, 3)
+        self.assertIn("left, right", refused.stderr)
+        solver = self.start(SOLVER, "--connect", endpoint, "--body", "left")
+        self.succeed(self.end(run))
+        self.succeed(self.end(solver))
+
+    def test_a_solver_without_a_coordinator_leaves_when_its_patience_ends(self):
+        result = self.end(self.start(SOLVER, "--connect", f"tcp://127.0.0.1:{free_port()}",
+                                     "--body", "left", "--patience", 0.5), 0.5 + ENDING)
+        self.assertEqual(result.returncode, 3)
+        self.assertIn("no coordinator has answered body 'left' within 0.5 s", result.stderr)
+
+    def test_an_endpoint_that_is_taken_is_refused_with_the_key(self):
+        endpoint = f"tcp://127.0.0.1:{free_port()}"
+        arguments = [*launch("left", "connect: {patience: 5}"),
+                     "--set", f"network.endpoint={endpoint}"]
+        first = self.run_in_background(*arguments)
+        self.solvers(1)  # it listens by the time it has started the other body
+        second = self.abut("run", self.scene, "--out", self.folder / "second", *arguments)
+        self.assertEqual(second.returncode, 2, second.stderr)
+        self.assertIn("network.endpoint", second.stderr)
+        self.assertIn("Address already in use", second.stderr)
+        first.terminate()
+        self.assertEqual(self.end(first).returncode, 128 + signal.SIGTERM)
+
+
+class Endings(FaultTest):
+    def test_solvers_end_with_a_killed_coordinator(self):
+        for arguments in (BUSY, LONG):
+            with self.subTest(arguments=arguments[1]):
+                run = self.run_in_background("--force", *arguments)
+                self.solvers(2)
+                time.sleep(0.5)
+                run.kill()
+                self.end(run)
+                self.assertEqual(self.marked_after(1.0), [])
+                self.assertEqual(list(self.temporary.iterdir()), [])
+
+    def test_connected_solvers_leave_a_killed_coordinator_after_the_time_to_reconnect(self):
+        endpoint = f"tcp://127.0.0.1:{free_port()}"
+        run = self.start(ABUT, "run", ROOT / "configs" / f"{CONNECTED}.yaml", "--out", self.out,
+                         "--set", f"network.endpoint={endpoint}", *BUSY)
+        solvers = [self.start(SOLVER, "--connect", endpoint, "--body", body)
+                   for body in ("left", "right")]
+        self.wait_for_windows()
+        run.kill()
+        self.end(run)
+        for solver in solvers:
+            result = self.end(solver, 10.0 + ENDING)  # proto/README.md: 10 s to come back
+            self.assertEqual(result.returncode, 3)
+            self.assertIn("the coordinator of body", result.stderr)
+
+    def test_an_interrupted_run_is_whole_and_leaves_no_solver(self):
+        placements = {"spawned": [], "local": ["--local"]}
+        for sent in (signal.SIGINT, signal.SIGTERM):
+            for name, placement in placements.items():
+                for arguments in (BUSY, LONG):
+                    with self.subTest(signal=sent, placement=name, arguments=arguments[1]):
+                        (self.out / "events.jsonl").unlink(missing_ok=True)
+                        run = self.run_in_background("--force", *placement, *arguments)
+                        if arguments is BUSY:
+                            self.wait_for_windows()
+                        else:
+                            time.sleep(1.0)  # in the middle of a solve
+                        run.send_signal(sent)
+                        result = self.end(run, ENDING)
+                        self.assertEqual(result.returncode, 128 + sent, result.stderr)
+                        self.assertEqual(marked(self.mark), [])
+                        self.assertEqual(self.summary()["status"], "interrupted")
+                        self.assert_whole(self.out, rows=1)
+                        kinds = {event["kind"] for event in self.events()}
+                        self.assertNotIn("failure", kinds)
+
+    def test_connected_solvers_are_told_of_an_interrupted_run(self):
+        endpoint = f"tcp://127.0.0.1:{free_port()}"
+        run = self.run_in_background(*BUSY, *launch("left", "connect: {}"),
+                                     "--set", f"network.endpoint={endpoint}")
+        solver = self.start(SOLVER, "--connect", endpoint, "--body", "left")
+        self.wait_for_windows()
+        run.terminate()
+        self.assertEqual(self.end(run, ENDING).returncode, 128 + signal.SIGTERM)
+        told = self.end(solver, ENDING)
+        self.assertEqual(told.returncode, 3)
+        self.assertIn("the run has ended early", told.stderr)
+
+    def test_a_second_run_into_the_same_folder_changes_nothing(self):
+        self.succeed(self.abut("run", self.scene, "--local", "--out", self.out))
+        before = {path: path.read_bytes() for path in self.out.iterdir()}
+        result = self.abut("run", self.scene, "--local", "--out", self.out)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("--force", result.stderr)
+        self.assertEqual({path: path.read_bytes() for path in self.out.iterdir()}, before)
+
+    def test_a_full_disk_ends_the_run_with_the_file_that_did_not_fit(self):
+        limit = 20_000  # bytes per file: the summary fits, the table does not
+
+        def small_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing fails, as on a full disk
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+        run = self.run_in_background("--set", "output.records_per_window=10",
+                                     preexec_fn=small_files, restore_signals=False)
+        self.assert_fails(run, 5.0, "history.csv", "cannot be written", "space left")
+        self.assertEqual(self.summary()["status"], "failed")
+        self.assertIn("history.csv", self.events()[-1]["text"])
+
+
+if __name__ == "__main__":
+    main(arguments=3)
