@@ -168,25 +168,29 @@ void Body::advance_part(const Advance& request, const Substeps& part, Response& 
   }
   const bool driven = std::any_of(request.boundary.begin(), request.boundary.end(),
                                   [](const BoundaryData& data) { return data.closed(); });
-  EndActions actions = actions_at(request, part, 0);
+  EndActions actions;
+  set_actions(request, part, 0, actions);
   integrator.open(state_, part.length(1), actions);
   for (int i = 1; i <= part.count; ++i) {
-    if (driven) actions = actions_at(request, part, i);
+    if (driven) set_actions(request, part, i, actions);
     integrator.substep(state_, part.length(i), actions);
-    track_sweep();
-    if (request.sampling == Sampling::substeps && i < part.count) {
+    if (request.sampling == Sampling::records) {
+      track_sweep();
+    } else if (i < part.count) {
       push_traces(request, part.time(i), response);
     }
     report_progress();
   }
   integrator.close(state_, part.length(part.count));
-  if (request.sampling == Sampling::substeps) push_traces(request, part.end, response);
+  if (request.sampling == Sampling::substeps) {
+    push_traces(request, part.end, response);
+    sweep_traces(part.count, response);
+  }
   end_sweep(response);
   response.steps += part.count;
 }
 
-EndActions Body::actions_at(const Advance& request, const Substeps& part, int i) {
-  EndActions actions;
+void Body::set_actions(const Advance& request, const Substeps& part, int i, EndActions& actions) {
   const double time = i == 0 ? part.begin : part.time(i);
   for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
     const BoundaryData& data = request.boundary[p];
@@ -212,7 +216,6 @@ EndActions Body::actions_at(const Advance& request, const Substeps& part, int i)
       fill_force(data, part, i, p, action);
     }
   }
-  return actions;
 }
 
 void Body::fill_force(const BoundaryData& data, const Substeps& part, int i, std::size_t port,
@@ -308,6 +311,17 @@ void Body::begin_sweep() {
   for (int end : end_of_port_) {
     EndState& e = state_.end[static_cast<std::size_t>(end)];
     e.swept_low = e.swept_high = scheme_.integrator->port_displacement(state_, end);
+  }
+}
+
+void Body::sweep_traces(int substeps, const Response& response) {
+  for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
+    EndState& e = state_.end[static_cast<std::size_t>(end_of_port_[p])];
+    const std::vector<double>& u = response.ports[p].trace.u;
+    for (std::size_t i = u.size() - static_cast<std::size_t>(substeps); i < u.size(); ++i) {
+      e.swept_low = std::min(e.swept_low, u[i]);
+      e.swept_high = std::max(e.swept_high, u[i]);
+    }
   }
 }
 

@@ -55,7 +55,7 @@ class Body final : public Subdomain {
   void describe_ports(const std::vector<BodyPort>& ports);
   Substeps divide(double begin, double end) const;
   void advance_part(const Advance& request, const Substeps& part, Response& response);
-  EndActions actions_at(const Advance& request, const Substeps& part, int i);
+  void set_actions(const Advance& request, const Substeps& part, int i, EndActions& actions);
   void fill_force(const BoundaryData& data, const Substeps& part, int i, std::size_t port,
                   EndAction& action);
   void apply_impulses(const Advance& request);
@@ -63,6 +63,7 @@ class Body final : public Subdomain {
   void push_traces(const Advance& request, double time, Response& response);
   void begin_sweep();
   void track_sweep();
+  void sweep_traces(int substeps, const Response& response);
   void end_sweep(Response& response) const;
   void record(double time, Response& response);
   void finish_ports(Response& response);

@@ -167,10 +167,9 @@ FieldResiduals Unilateral::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
   const double mismatch = (g - x).lpNorm<Eigen::Infinity>();
   FieldResiduals r;
   r.displacement = scaled(mismatch, scale_.velocity * scale_.step, scale_.roundoff);
-  // The reaction changes by this much when the kinematic side is moved by the mismatch within a
-  // substep.
-  r.force = scaled(mismatch / kinematic_compliance_, scale_.force,
-                   scale_.roundoff / kinematic_compliance_);
+  // The force that would close the mismatch, both sides giving way within a substep.
+  const double compliance = kinematic_compliance_ + neumann_compliance_;
+  r.force = scaled(mismatch / compliance, scale_.force, scale_.roundoff / compliance);
   return r;
 }
 

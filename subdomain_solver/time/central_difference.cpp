@@ -230,6 +230,7 @@ void CentralDifference::open(BarState& state, double dt, const EndActions& openi
   }
   kick_nodes_with(state, 0.5 * dt);
   previous_dt_ = 0.0;
+  prescribed_ = {};
 }
 
 void CentralDifference::kick_nodes_with(BarState& state, double kick) const {
@@ -244,6 +245,7 @@ void CentralDifference::substep(BarState& state, double dt, const EndActions& ac
     drift(state, dt);
   } else {
     for (int end : {0, 1}) {
+      if (!is(end, ContactLayer::kick)) continue;
       const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
       ends_[static_cast<std::size_t>(end)].velocity_before = Bar::outward(end) * state.v[node];
     }
@@ -252,17 +254,19 @@ void CentralDifference::substep(BarState& state, double dt, const EndActions& ac
   previous_dt_ = dt;
   for (int end : {0, 1}) {
     const EndAction& action = actions[static_cast<std::size_t>(end)];
-    EndState& e = state.end[static_cast<std::size_t>(end)];
-    const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
     if (is(end, ContactLayer::kick)) resolve_kick(state, end, action, dt);
-    if (action.kind == EndAction::Kind::motion) state.u[node] = action.u;
-    if (is(end, ContactLayer::massive) && action.kind == EndAction::Kind::force) {
-      e.force = e.dynamic = action.force;
-    }
-    prescribed_[static_cast<std::size_t>(end)] = action;
+    if (is(end, ContactLayer::massive)) resolve_massive(state, end, action);
   }
-  // last: it forms the smoothed displacements of the final places
+  // Last: it forms the smoothed displacements of the final places.
   resolve_massless(state, actions, dt);
+}
+
+void CentralDifference::resolve_massive(BarState& state, int end, const EndAction& action) {
+  EndState& e = state.end[static_cast<std::size_t>(end)];
+  if (action.kind == EndAction::Kind::force) e.force = e.dynamic = action.force;
+  if (action.kind != EndAction::Kind::motion) return;
+  state.u[static_cast<std::size_t>(bar_.node_of(end))] = action.u;
+  prescribed_[static_cast<std::size_t>(end)] = action;
 }
 
 void CentralDifference::close(BarState& state, double dt) {
@@ -274,7 +278,8 @@ void CentralDifference::close(BarState& state, double dt) {
     if (action.kind == EndAction::Kind::motion) {
       state.v[node] = action.v;
       state.a[node] = action.a;
-    } else if (is(end, ContactLayer::massless) && action.kind == EndAction::Kind::open) {
+    } else if (is(end, ContactLayer::massless) &&
+               !state.end[static_cast<std::size_t>(end)].closed) {
       state.v[node] = state.v[static_cast<std::size_t>(bar_.inner_of(end))];
     }
   }

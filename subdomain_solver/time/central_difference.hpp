@@ -52,6 +52,7 @@ class CentralDifference final : public BarIntegrator {
   void kick_nodes_with(BarState& state, double kick) const;
   void place_massless(BarState& state, int end, const EndAction& action, double dt);
   void resolve_massless(BarState& state, const EndActions& actions, double dt);
+  void resolve_massive(BarState& state, int end, const EndAction& action);
   void resolve_kick(BarState& state, int end, const EndAction& action, double dt);
   double reaction_of(const BarState& state, int end) const;
   bool simple() const { return terms_ == 1; }
