@@ -94,6 +94,11 @@ void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bod
   const PortKernel& kernel_n = kernel_of(bodies, n, neumann_grid_.count);
   kinematic_compliance_ = kernel_k.displacement.front();
   neumann_compliance_ = kernel_n.displacement.front();
+  const double moved = *std::max_element(kernel_n.displacement.begin(),
+                                         kernel_n.displacement.begin() + neumann_grid_.count);
+  // The reaction is known to the round-off of a displacement over the compliance, and moves the
+  // Neumann side by that much.
+  roundoff_gain_ = 1.0 + moved / kinematic_compliance_;
   const double step =
       bodies.describe(n.body).step > 0.0 ? neumann_grid_.step : kinematic_grid_.step;
   scale_.step = step;
@@ -159,7 +164,7 @@ void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Interface
     scale_.force = std::max(scale_.force, std::abs(f));
   scale_.velocity =
       std::max(scale_.velocity, scale_.force * kinematic_compliance_ / scale_.step * 1.0e-3);
-  scale_.roundoff = roundoff_of(u_begin_, g[neumann_grid_.count - 1]);
+  scale_.roundoff = roundoff_gain_ * roundoff_of(u_begin_, g[neumann_grid_.count - 1]);
 }
 
 FieldResiduals Unilateral::measure(const Eigen::Ref<const Eigen::VectorXd>& x,

@@ -87,6 +87,7 @@ class Unilateral final : public Transmission {
   Waveform motion_;
   ReferenceScales scale_;
   double kinematic_compliance_ = 0.0, neumann_compliance_ = 0.0;  // [m/N] over one substep
+  double roundoff_gain_ = 1.0;  // of displacements, through the reaction
   KernelInverse inverses_;
   const KernelInverse::Entry* inverse_ = nullptr;
 };
