@@ -119,6 +119,19 @@ Body::Substeps Body::divide(double begin, double end) const {
   return part;
 }
 
+Body::RecordClock::RecordClock(const Advance& request, int substeps)
+    : window_(request.window), records_(std::max(1, request.records)), substeps_(substeps) {}
+
+int Body::RecordClock::substep() const {
+  if (done()) return -1;
+  return static_cast<int>(std::llround(static_cast<double>(next_) * substeps_ / records_));
+}
+
+double Body::RecordClock::time() const {
+  if (next_ == records_) return window_.end;
+  return window_.begin + next_ * (window_.length() / records_);
+}
+
 bool Body::Substeps::matches(const std::vector<double>& times) const {
   if (times.size() != static_cast<std::size_t>(count) + 1) return false;
   for (int i = 0; i <= count; ++i) {
@@ -133,65 +146,62 @@ Outcome Body::finish(Response& response) {
   request_ = nullptr;
   const auto began = std::chrono::steady_clock::now();
   response.records.clear();
-  response.steps = 0;
   begin_traces(request, response);
   apply_impulses(request);
-  const int parts = std::max(1, request.records);
-  const double part_length = request.window.length() / parts;
-  for (int p = 0; p < parts; ++p) {
-    const double begin = request.window.begin + p * part_length;
-    const double end =
-        p + 1 == parts ? request.window.end : request.window.begin + (p + 1) * part_length;
-    const Substeps part = divide(begin, end);
-    advance_part(request, part, response);
-    record(end, response);
-    if (request.sampling == Sampling::records && part.count > 0)
-      push_traces(request, end, response);
-    if (std::optional<Failed> failed = check_finite(response.records.back())) return *failed;
-  }
+  begin_sweep();
+  const Substeps grid = divide(request.window.begin, request.window.end);
+  std::optional<Failed> failed = advance_window(request, grid, response);
+  if (failed) return *failed;
   finish_ports(response);
+  response.steps = grid.count;
   response.compute_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return Advanced{};
 }
 
-void Body::advance_part(const Advance& request, const Substeps& part, Response& response) {
-  begin_sweep();
-  if (part.count == 0) return end_sweep(response);
+std::optional<Failed> Body::advance_window(const Advance& request, const Substeps& grid,
+                                           Response& response) {
   BarIntegrator& integrator = *scheme_.integrator;
+  find_same_grids(request, grid);
+  const bool driven = std::any_of(request.boundary.begin(), request.boundary.end(),
+                                  [](const BoundaryData& data) { return data.closed(); });
+  EndActions actions;
+  set_actions(request, grid, 0, actions);
+  if (grid.count > 0) integrator.open(state_, grid.length(1), actions);
+  RecordClock clock(request, grid.count);
+  for (int i = 1; i <= grid.count; ++i) {
+    if (driven) set_actions(request, grid, i, actions);
+    integrator.substep(state_, grid.length(i), actions);
+    const bool due = i == clock.substep();
+    if (due) integrator.close(state_, grid.length(i));  // u, v and a of one time
+    if (request.sampling == Sampling::substeps) push_traces(request, grid.time(i), response);
+    track_sweep();
+    report_progress();
+    if (!due) continue;
+    if (request.sampling == Sampling::records) push_traces(request, clock.time(), response);
+    for (; i == clock.substep(); clock.next()) {
+      if (std::optional<Failed> failed = record(clock.time(), response)) return failed;
+    }
+    if (i < grid.count) integrator.open(state_, grid.length(i + 1), actions);
+  }
+  for (; !clock.done(); clock.next()) {  // a window of no length
+    if (std::optional<Failed> failed = record(clock.time(), response)) return failed;
+  }
+  return std::nullopt;
+}
+
+void Body::find_same_grids(const Advance& request, const Substeps& grid) {
   for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
     const BoundaryData& data = request.boundary[p];
     const bool pushed = !data.force.empty();
     const Waveform& imposed = pushed ? data.force : data.obstacle.motion;
     same_grid_[p] =
-        part.matches(imposed.time) && (!pushed || imposed.support == support_[end_of_port_[p]]);
+        grid.matches(imposed.time) && (!pushed || imposed.support == support_[end_of_port_[p]]);
   }
-  const bool driven = std::any_of(request.boundary.begin(), request.boundary.end(),
-                                  [](const BoundaryData& data) { return data.closed(); });
-  EndActions actions;
-  set_actions(request, part, 0, actions);
-  integrator.open(state_, part.length(1), actions);
-  for (int i = 1; i <= part.count; ++i) {
-    if (driven) set_actions(request, part, i, actions);
-    integrator.substep(state_, part.length(i), actions);
-    if (request.sampling == Sampling::records) {
-      track_sweep();
-    } else if (i < part.count) {
-      push_traces(request, part.time(i), response);
-    }
-    report_progress();
-  }
-  integrator.close(state_, part.length(part.count));
-  if (request.sampling == Sampling::substeps) {
-    push_traces(request, part.end, response);
-    sweep_traces(part.count, response);
-  }
-  end_sweep(response);
-  response.steps += part.count;
 }
 
-void Body::set_actions(const Advance& request, const Substeps& part, int i, EndActions& actions) {
-  const double time = i == 0 ? part.begin : part.time(i);
+void Body::set_actions(const Advance& request, const Substeps& grid, int i, EndActions& actions) {
+  const double time = i == 0 ? grid.begin : grid.time(i);
   for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
     const BoundaryData& data = request.boundary[p];
     EndAction& action = actions[static_cast<std::size_t>(end_of_port_[p])];
@@ -213,12 +223,12 @@ void Body::set_actions(const Advance& request, const Substeps& part, int i, EndA
       data.motion.interpolate(data.motion.a, time, {&action.a, 1});
     } else if (!data.force.empty()) {
       action.kind = EndAction::Kind::force;
-      fill_force(data, part, i, p, action);
+      fill_force(data, grid, i, p, action);
     }
   }
 }
 
-void Body::fill_force(const BoundaryData& data, const Substeps& part, int i, std::size_t port,
+void Body::fill_force(const BoundaryData& data, const Substeps& grid, int i, std::size_t port,
                       EndAction& action) {
   const int end = end_of_port_[port];
   const double inward = -Bar::outward(end);
@@ -229,12 +239,12 @@ void Body::fill_force(const BoundaryData& data, const Substeps& part, int i, std
     action.force = action.dynamic = inward * force;
     return;
   }
-  const double now = i == 0 ? part.begin : part.time(i);
+  const double now = i == 0 ? grid.begin : grid.time(i);
   data.force.force_at(now, {&force, 1});
   action.force = action.dynamic = inward * force;
   if (layer == ContactLayer::massive) return;  // as published: the value at the substep's end
-  const double before = i == 0 ? part.begin : i == 1 ? part.begin : part.time(i - 1);
-  const double after = i == part.count ? part.end : part.time(i + 1);
+  const double before = i == 0 ? grid.begin : i == 1 ? grid.begin : grid.time(i - 1);
+  const double after = i == grid.count ? grid.end : grid.time(i + 1);
   const bool step_support = support_[end] == ForceSupport::step;
   const double from = step_support ? before : 0.5 * (before + now);
   const double to = step_support ? now : 0.5 * (now + after);
@@ -314,17 +324,6 @@ void Body::begin_sweep() {
   }
 }
 
-void Body::sweep_traces(int substeps, const Response& response) {
-  for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
-    EndState& e = state_.end[static_cast<std::size_t>(end_of_port_[p])];
-    const std::vector<double>& u = response.ports[p].trace.u;
-    for (std::size_t i = u.size() - static_cast<std::size_t>(substeps); i < u.size(); ++i) {
-      e.swept_low = std::min(e.swept_low, u[i]);
-      e.swept_high = std::max(e.swept_high, u[i]);
-    }
-  }
-}
-
 void Body::end_sweep(Response& response) const {
   for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
     const EndState& e = state_.end[static_cast<std::size_t>(end_of_port_[p])];
@@ -333,7 +332,9 @@ void Body::end_sweep(Response& response) const {
   }
 }
 
-void Body::record(double time, Response& response) {
+std::optional<Failed> Body::record(double time, Response& response) {
+  end_sweep(response);
+  begin_sweep();
   BodyRecord r;
   r.time = time;
   r.energy.kinetic = scheme_.integrator->kinetic(state_);
@@ -341,7 +342,9 @@ void Body::record(double time, Response& response) {
   const double body_force = bar_->data().body_force;
   if (body_force != 0.0) r.energy.external_work = body_force * bar_->momentum(state_.u);  // f . u
   r.momentum = {bar_->momentum(state_.v)};
+  std::optional<Failed> failed = check_finite(r);
   response.records.push_back(std::move(r));
+  return failed;
 }
 
 void Body::finish_ports(Response& response) {

@@ -43,7 +43,22 @@ class Body final : public Subdomain {
   void set_progress(std::function<void()> hook) { progress_ = std::move(hook); }
 
  private:
-  struct Substeps {  // how one window, or one equal part of it, is divided
+  /// Records at the ends of equal parts of a window, on the substeps nearest to them. Their times
+  /// are computed alike by all bodies.
+  class RecordClock {
+   public:
+    RecordClock(const Advance& request, int substeps);
+    bool done() const { return next_ > records_; }
+    int substep() const;  // after which the next record is due; -1: no more
+    double time() const;
+    void next() { ++next_; }
+
+   private:
+    TimeWindow window_;
+    int records_, substeps_;
+    int next_ = 1;
+  };
+  struct Substeps {  // how a window is divided
     double begin = 0.0, end = 0.0, step = 0.0, last = 0.0;
     int count = 0;
     double length(int i) const { return i == count ? last : step; }  // i = 1..count
@@ -54,18 +69,19 @@ class Body final : public Subdomain {
   void state(Archive& archive) { state_.state(archive); }
   void describe_ports(const std::vector<BodyPort>& ports);
   Substeps divide(double begin, double end) const;
-  void advance_part(const Advance& request, const Substeps& part, Response& response);
-  void set_actions(const Advance& request, const Substeps& part, int i, EndActions& actions);
-  void fill_force(const BoundaryData& data, const Substeps& part, int i, std::size_t port,
+  std::optional<Failed> advance_window(const Advance& request, const Substeps& grid,
+                                       Response& response);
+  void find_same_grids(const Advance& request, const Substeps& grid);
+  void set_actions(const Advance& request, const Substeps& grid, int i, EndActions& actions);
+  void fill_force(const BoundaryData& data, const Substeps& grid, int i, std::size_t port,
                   EndAction& action);
   void apply_impulses(const Advance& request);
   void begin_traces(const Advance& request, Response& response);
   void push_traces(const Advance& request, double time, Response& response);
   void begin_sweep();
   void track_sweep();
-  void sweep_traces(int substeps, const Response& response);
   void end_sweep(Response& response) const;
-  void record(double time, Response& response);
+  std::optional<Failed> record(double time, Response& response);
   void finish_ports(Response& response);
   double force_on_body(int end, const BoundaryData& data) const;
   void approach(int end, PortResponse& port) const;
