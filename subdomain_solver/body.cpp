@@ -174,8 +174,11 @@ std::optional<Failed> Body::advance_window(const Advance& request, const Substep
     integrator.substep(state_, grid.length(i), actions);
     const bool due = i == clock.substep();
     if (due) integrator.close(state_, grid.length(i));  // u, v and a of one time
-    if (request.sampling == Sampling::substeps) push_traces(request, grid.time(i), response);
-    track_sweep();
+    if (request.sampling == Sampling::substeps) {
+      push_traces(request, grid.time(i), response);
+    } else {
+      track_sweep();
+    }
     report_progress();
     if (!due) continue;
     if (request.sampling == Sampling::records) push_traces(request, clock.time(), response);
@@ -300,6 +303,9 @@ void Body::push_traces(const Advance& request, double time, Response& response) 
     const bool kicked =
         support_[end] == ForceSupport::step && state_.end[static_cast<std::size_t>(end)].closed;
     if (kicked && !trace.empty()) v = (u - trace.u.back()) / (time - trace.time.back());
+    EndState& e = state_.end[static_cast<std::size_t>(end)];
+    e.swept_low = std::min(e.swept_low, u);
+    e.swept_high = std::max(e.swept_high, u);
     trace.time.push_back(time);
     trace.u.push_back(u);
     trace.v.push_back(v);
