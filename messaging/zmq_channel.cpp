@@ -257,7 +257,7 @@ void ZmqDealer::read_monitor() {
     connected_ = event->connected;
     if (connected_) {
       gone_since_.reset();
-    } else {
+    } else if (!gone_since_) {  // attempts to reconnect that fail do not begin the wait anew
       gone_since_ = std::chrono::steady_clock::now();
     }
   }
