@@ -1,8 +1,8 @@
 """A wire between a solver and its coordinator that can be spoiled, for TCP.
 
 It copies bytes in both directions and knows enough of ZMTP 3 (the protocol of ZeroMQ) to tell whole
-frames from each other: 64 bytes of greeting, then per frame one byte of flags (1: more parts follow,
-2: the size takes eight bytes, 4: a command such as a heartbeat), the size, the content.
+frames from each other: 64 bytes of greeting, then per frame one byte of flags (1: more parts
+follow, 2: the size takes eight bytes, 4: a command such as a heartbeat), the size, the content.
 """
 
 import socket
