@@ -16,7 +16,7 @@ from support import ABUT, CONNECTED, ROOT, SOLVER, SystemTest, free_port, main, 
 FAKE = Path(sys.argv[3]).resolve()
 TWO_BARS = ROOT / "configs" / "two_bars.yaml"
 # Windows of one short step: tens of thousands of requests, a few seconds in all.
-BUSY = ["--set", "time.window=1.0e-8",
+BUSY = ["--set", "time.window=1.0e-8", "--set", "output.records_per_window=1",
         "--set", "bodies.left.integrator.central_difference.step=1.0e-8",
         "--set", "bodies.right.integrator.central_difference.step=1.0e-8"]
 # The bars fly apart: a thousand windows of ten thousand steps in one request, which takes a second
