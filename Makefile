@@ -26,8 +26,8 @@ build: dependencies-build
 
 demo: build
 	$(BIN)/abut run configs/two_bars.yaml --out runs/two_bars --force
-	$(BIN)/abut report runs/two_bars
-	@echo "plots: file://$(CURDIR)/runs/two_bars/report.html"
+	@$(BIN)/abut report runs/two_bars >/dev/null
+	@echo "page   file://$(CURDIR)/runs/two_bars/report.html"
 
 test: dependencies-test
 	@sh scripts/build.sh tests
