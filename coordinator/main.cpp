@@ -132,7 +132,7 @@ int report(const Scene& scene, const Measures& measures, const RunEnd& end,
   const std::vector<ExpectationResult> results = evaluate(scene.meta.expect, measures);
   bool pass = status == "completed";
   for (const ExpectationResult& result : results) pass = pass && result.pass;
-  if (!quiet || !pass) {
+  if (!quiet || (!pass && status != "interrupted")) {
     fmt::print("\n{}\n\n", scene.meta.title);  // apart from the log lines above
     // A run cut short misses expectations for that reason alone.
     if (status == "completed" && !results.empty()) fmt::print("{}\n", to_table(results));
