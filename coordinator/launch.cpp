@@ -14,6 +14,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "messaging/codec.hpp"
 #include "messaging/liveness.hpp"
 #include "messaging/remote_subdomain.hpp"
@@ -47,6 +48,13 @@ std::string solver_beside_this_program() {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   return error ? std::string("abut-solver") : (self.parent_path() / "abut-solver").string();
+}
+
+/// What somebody types to start the solver of a body that is waited for.
+std::string command_for(std::string endpoint, const std::string& body) {
+  const std::size_t wildcard = endpoint.find("//0.0.0.0:");
+  if (wildcard != std::string::npos) endpoint.replace(wildcard + 2, 7, "HOST");  // this machine
+  return fmt::format("abut-solver --connect {} --body {}", endpoint, body);
 }
 
 }  // namespace
@@ -107,6 +115,10 @@ void Launch::listen(const Scene& scene) {
     }
     if (!member->spawned && tcp_endpoint_.empty()) {
       tcp_endpoint_ = hub_->bind(scene.network.endpoint);
+    }
+    if (!member->spawned) {
+      log_info(fmt::format("waiting for body '{}': {}", member->name,
+                           command_for(tcp_endpoint_, member->name)));
     }
   }
 }
@@ -226,12 +238,7 @@ void Launch::check_startup(Member& member, TimePoint begin) {
   if (member.spawned) {
     throw RunError(what, "", "raise network.startup_deadline on a slow machine");
   }
-  std::string reachable = endpoint;
-  const std::size_t wildcard = reachable.find("//0.0.0.0:");
-  if (wildcard != std::string::npos)
-    reachable.replace(wildcard + 2, 7, "HOST");  // a name of this machine
-  throw RunError(what, "",
-                 fmt::format("start `abut-solver --connect {} --body {}`", reachable, member.name));
+  throw RunError(what, "", fmt::format("start `{}`", command_for(endpoint, member.name)));
 }
 
 std::vector<std::unique_ptr<Subdomain>> Launch::take_bodies() {

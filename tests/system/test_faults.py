@@ -180,6 +180,8 @@ class Strangers(FaultTest):
         stranger = self.start(SOLVER, "--connect", endpoint, "--body", "middle")
         run = self.run_in_background(*launch("left", "connect: {}"),
                                      "--set", f"network.endpoint={endpoint}")
+        self.assertIn(f"waiting for body 'left': abut-solver --connect {endpoint} --body left",
+                      run.stderr.readline())
         refused = self.end(stranger)
         self.assertEqual(refused.returncode, 3)
         self.assertIn("left, right", refused.stderr)
