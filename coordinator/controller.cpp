@@ -153,18 +153,7 @@ void Controller::step_window() {
     }
     const std::vector<Event> events = first_events(window);
     if (events.empty()) return accept(window, attempt);
-    if (++events_here_ > most_events) {
-      for (Interface& i : coupling_.interfaces) i.closed = false;
-      emit(RunEvent::Kind::warning, window.begin,
-           coupling_.interfaces[static_cast<std::size_t>(events[0].interface)].name,
-           fmt::format(
-               "contact changed more than {} times within a window: one window is accepted as free",
-               most_events));
-      bodies_.restore_all();
-      const Attempt free = advance(window);
-      if (free.failed) return fail(free.failed->time, free.failed->detail);
-      return accept(window, free);
-    }
+    if (++events_here_ > most_events) return step_chattering(window);
     const double cut = events.front().state;
     if (cut >= window.end) {  // a touch at the very end changes nothing before it
       accept(window, attempt);
@@ -181,6 +170,53 @@ void Controller::step_window() {
       return;
     }
     for (const Event& event : events) apply(event);
+  }
+}
+
+void Controller::step_chattering(const TimeWindow& window) {
+  // Contact comes and goes within substeps: no more events are located, every substep decides for
+  // itself. Leaving the sides free instead would let them overlap, and closing an overlap later
+  // would make energy out of nothing.
+  std::vector<int> touching;
+  for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
+    Interface& interface = coupling_.interfaces[i];
+    if (coupling_.rules[i].published) continue;
+    if (!interface.closed) {
+      const std::optional<Closing> closing = overlap_criterion(interface, bodies_);
+      if (!closing) continue;
+      close(static_cast<int>(i), window.begin, closing->speed);
+    }
+    interface.bilateral = false;
+    touching.push_back(static_cast<int>(i));
+  }
+  emit(
+      RunEvent::Kind::warning, window.begin,
+      touching.empty() ? "" : coupling_.interfaces[static_cast<std::size_t>(touching[0])].name,
+      fmt::format("contact changed more than {} times within a window: in one window every substep "
+                  "decides for itself",
+                  most_events));
+  bodies_.restore_all();
+  TimeWindow part = window;
+  Attempt attempt = advance(part);
+  while (attempt.failed || !attempt.converged()) {
+    // fewer substeps at once, fewer kinks in the map that is iterated
+    const double fewer = std::floor(0.5 * part.length() / longest_step() + 0.25) * longest_step();
+    if (!attempt.failed && fewer > 0.0 && fewer < 0.75 * part.length()) {
+      part.end = part.begin + fewer;
+      bodies_.restore_all();
+    } else {
+      if (!handle_trouble(attempt, part)) return;
+      if (!attempt.failed && scene_.schwarz.on_nonconvergence == "accept") break;
+    }
+    attempt = advance(part);
+  }
+  for (int i : touching) coupling_.interfaces[static_cast<std::size_t>(i)].bilateral = true;
+  accept(part, attempt);
+  for (int i : touching) {
+    Interface& interface = coupling_.interfaces[static_cast<std::size_t>(i)];
+    const Waveform& trace = trace_of(bodies_, interface.kinematic_side());
+    const double force = -interface.normal_of(interface.kinematic) * trace.f.back();
+    if (force <= force_floor * interface.force_scale) apply({i, false, part.end, part.end, 0.0});
   }
 }
 
@@ -203,6 +239,12 @@ Controller::Attempt Controller::advance(const TimeWindow& window) {
   }
   attempt.failed = bodies_.advance(free);
   return attempt;
+}
+
+double Controller::longest_step() const {
+  double longest = 0.0;
+  for (int b = 0; b < bodies_.count(); ++b) longest = std::max(longest, bodies_.describe(b).step);
+  return longest > 0.0 ? longest : scene_.time.window;
 }
 
 bool Controller::Attempt::converged() const {

@@ -54,6 +54,7 @@ class Controller {
   Attempt advance(const TimeWindow& window);
   bool handle_trouble(const Attempt& attempt, TimeWindow& window);
   void accept(const TimeWindow& window, const Attempt& attempt);
+  void step_chattering(const TimeWindow& window);
 
   TimeWindow next_window() const;
   void advance_clock(double end, bool whole);
@@ -65,6 +66,7 @@ class Controller {
   void fill_reports(const Attempt& attempt);
   bool is_whole(const TimeWindow& window) const;
   double shortest_step() const;
+  double longest_step() const;
   bool running() const;
   void fail(double time, const std::string& text);
   void emit(RunEvent::Kind kind, double time, const std::string& subject, const std::string& text,

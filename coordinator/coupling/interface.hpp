@@ -22,6 +22,8 @@ struct Interface {
   std::array<double, 2> normal = {0.0, 0.0};  // outward, +1 or -1
   double reference_gap = 0.0;                 // [m] along the normal of side 0, reference positions
   int kinematic = 0;                          // index of the kinematic (Dirichlet) side
+  // False for a window in which contact may open and close: every substep decides for itself.
+  bool bilateral = true;
   // What contact carries from window to window:
   bool closed = false;
   double opened_at = -std::numeric_limits<double>::infinity();  // [s] last release

@@ -143,7 +143,7 @@ void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
   }
   data.obstacle.offset.assign(1, interface.offset(side));
   // the coordinator locates the release and splits the window there
-  data.obstacle.bilateral = true;
+  data.obstacle.bilateral = interface.bilateral;
   guess_.time = motion.time;
   guess_.u = motion.u;
 }
@@ -253,6 +253,7 @@ void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Inte
       travelled = std::max(travelled, std::abs(u[s]));
     }
     g[i - 1] = x[i - 1] - interface.gap(u[0], u[1]) / compliance_;
+    if (!interface.bilateral) g[i - 1] = std::max(0.0, g[i - 1]);
   }
   scale_.force = std::max(interface.force_scale, x.lpNorm<Eigen::Infinity>());
   scale_.velocity = std::max(scale_.velocity, scale_.force * compliance_ / scale_.step * 1.0e-3);
