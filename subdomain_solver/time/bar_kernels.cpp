@@ -34,7 +34,7 @@ void kick_drift_nodes(double* __restrict u, double* __restrict v, std::size_t fi
   std::size_t i = first;
   double left = u[first - 1];  // old displacement left of the next node
   if (i + pack <= last) {
-    Pack moved;
+    Pack moved{};
     for (; i + pack <= last; i += pack) {
       Pack before, here, after, velocity;
       load(before, u + i - 1);
