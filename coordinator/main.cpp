@@ -21,6 +21,7 @@
 #include "coordinator/interrupt.hpp"
 #include "coordinator/launch.hpp"
 #include "coordinator/launch_local.hpp"
+#include "coordinator/record/closed_form_table.hpp"
 #include "coordinator/record/csv_history.hpp"
 #include "coordinator/record/event_log.hpp"
 #include "coordinator/record/expectations.hpp"
@@ -126,14 +127,28 @@ std::string resolved_text(const Scene& scene, const Document& document) {
   return text + resolved.text();
 }
 
+/// The contact and the bodies beside the exact solution; empty when the scene names none.
+std::string against_closed_form(const Scene& scene, const ClosedForm* form,
+                                const Measures& measures, const RunEnd& end) {
+  if (form == nullptr) return "";
+  for (const auto& [name, interface] : scene.interfaces) {
+    if (name != form->interface) continue;
+    const std::array<std::string, 2> bodies = {split_port(interface.sides[0]).body,
+                                               split_port(interface.sides[1]).body};
+    return closed_form_table(*form, bodies, end.time, measures) + "\n";
+  }
+  return "";
+}
+
 /// The result for people; 0, or 1 when an expectation or the run failed.
-int report(const Scene& scene, const Measures& measures, const RunEnd& end,
+int report(const Scene& scene, const ClosedForm* form, const Measures& measures, const RunEnd& end,
            const std::string& status, const fs::path& directory, bool quiet) {
   const std::vector<ExpectationResult> results = evaluate(scene.meta.expect, measures);
   bool pass = status == "completed";
   for (const ExpectationResult& result : results) pass = pass && result.pass;
   if (!quiet || (!pass && status != "interrupted")) {
     fmt::print("\n{}\n\n", scene.meta.title);  // apart from the log lines above
+    if (status == "completed") fmt::print("{}", against_closed_form(scene, form, measures, end));
     // A run cut short misses expectations for that reason alone.
     if (status == "completed" && !results.empty()) fmt::print("{}\n", to_table(results));
     fmt::print("{} after {:.3f} s: {} windows, {} of them in contact, {} exchanges\n", status,
@@ -190,7 +205,7 @@ int run_verb(const RunCommand& command) {
   // Bodies in the middle of a solve hear no orderly end; they are ended when the launch goes.
   if (placement.launch && end.status != "interrupted") placement.launch->finish();
   const int code =
-      report(scene, recorder.measures(), end, summary.status(), directory, command.quiet);
+      report(scene, form, recorder.measures(), end, summary.status(), directory, command.quiet);
   return interrupt_exit_code() != 0 ? interrupt_exit_code() : code;
 }
 
