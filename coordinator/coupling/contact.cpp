@@ -29,7 +29,8 @@ std::vector<ForceSample> coarse_forces(const Interface& interface, const Bodies&
   std::vector<ForceSample> samples;
   if (bodies.describe(n.body).step > bodies.describe(k.body).step) {
     const std::vector<double>& grid = trace_of(bodies, n).time;
-    samples.push_back({grid.front(), inward * own.f.front(), grid.front()});
+    const double known = step_support ? grid.front() - bodies.describe(n.body).step : grid.front();
+    samples.push_back({known, inward * own.f.front(), grid.front()});
     for (std::size_t i = 1; i < grid.size(); ++i) {
       const double from = step_support ? grid[i - 1] : 0.5 * (grid[i - 1] + grid[i]);
       const double to =
@@ -42,7 +43,8 @@ std::vector<ForceSample> coarse_forces(const Interface& interface, const Bodies&
     return samples;
   }
   for (std::size_t i = 0; i < own.size(); ++i) {
-    const double at = step_support && i > 0 ? own.time[i - 1] : own.time[i];
+    double at = own.time[i];
+    if (step_support) at = i > 0 ? own.time[i - 1] : at - bodies.describe(k.body).step;
     samples.push_back({at, inward * own.f[i], own.time[i]});
   }
   return samples;
