@@ -57,11 +57,15 @@ void CentralDifference::smooth(const BarState& state, const std::vector<double>&
       const double d = cell * cell * row.inverse_mass * row.force(*t);
       out[row.node] = u[row.node] + ratio_[pass] * d;
     }
-    for (int end : {0, 1}) {  // an open massless port moves with its inner node
-      if (!is(end, ContactLayer::massless) || state.end[static_cast<std::size_t>(end)].closed)
-        continue;
-      out[static_cast<std::size_t>(bar_.node_of(end))] =
-          out[static_cast<std::size_t>(bar_.inner_of(end))];
+    for (int end : {0, 1}) {
+      const bool closed = state.end[static_cast<std::size_t>(end)].closed;
+      const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+      // a contact node is held by its partner: its row alone, without the contact force, is not
+      // what moves it
+      if (is(end, ContactLayer::kick) && closed) out[node] = u[node];
+      // an open massless port moves with its inner node
+      if (!is(end, ContactLayer::massless) || closed) continue;
+      out[node] = out[static_cast<std::size_t>(bar_.inner_of(end))];
     }
     t = &out;
   }
