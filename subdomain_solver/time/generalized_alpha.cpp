@@ -128,7 +128,7 @@ void GeneralizedAlpha::right_hand_side(const BarState& state, double dt,
   trial_.resize(n);
   const double m = (1.0 - w_.alpha_m) / (w_.beta * dt * dt);
   for (std::size_t i = 0; i < n; ++i) {
-    predicted_[i] = state.u[i] + dt * state.v[i] + dt * dt * (0.5 - w_.beta) * state.a[i];
+    predicted_[i] = dt * state.v[i] + dt * dt * (0.5 - w_.beta) * state.a[i];
     trial_[i] = m * predicted_[i] - w_.alpha_m * state.a[i];
   }
   apply_mass(trial_, rhs_);
@@ -136,10 +136,8 @@ void GeneralizedAlpha::right_hand_side(const BarState& state, double dt,
   if (body_force != 0.0) {
     for (std::size_t i = 0; i < n; ++i) rhs_[i] += bar_.row_mass()[i] * body_force;
   }
-  if (w_.alpha_f != 0.0) {
-    bar_.internal_force(state.u, work_);
-    for (std::size_t i = 0; i < n; ++i) rhs_[i] -= w_.alpha_f * work_[i];
-  }
+  bar_.internal_force(state.u, work_);
+  for (std::size_t i = 0; i < n; ++i) rhs_[i] -= work_[i];
   for (int end : {0, 1}) {
     const std::size_t e = static_cast<std::size_t>(end);
     const double known = actions[e].kind == EndAction::Kind::force ? actions[e].dynamic : 0.0;
@@ -152,15 +150,16 @@ void GeneralizedAlpha::right_hand_side(const BarState& state, double dt,
     const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
     const std::size_t inner = static_cast<std::size_t>(bar_.inner_of(end));
     const EndAction& action = actions[static_cast<std::size_t>(end)];
-    const double place = action.kind == EndAction::Kind::motion ? action.u : state.u[node];
+    const double move = action.kind == EndAction::Kind::motion ? action.u - state.u[node] : 0.0;
     const std::size_t element = end == 0 ? 0 : n - 2;
     rhs_[inner] -=
-        (m * bar_.mass_beside()[element] - (1.0 - w_.alpha_f) * bar_.stiffness()[element]) * place;
-    rhs_[node] = place;
+        (m * bar_.mass_beside()[element] - (1.0 - w_.alpha_f) * bar_.stiffness()[element]) * move;
+    rhs_[node] = move;
   }
 }
 
 void GeneralizedAlpha::apply_reactions(const EndActions& actions, BarState& state) {
+  // trial_ holds increments.
   // Both ends may be kinematic at once; their reactions are coupled through the body. Alternating
   // between them contracts by the square of the (small) coupling, so a few rounds reach round-off.
   std::array<double, 2> reaction = {0.0, 0.0};
@@ -174,7 +173,7 @@ void GeneralizedAlpha::apply_reactions(const EndActions& actions, BarState& stat
       const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
       const double n = Bar::outward(end);
       const double compliance = column_[e][node];
-      const double free_position = n * trial_[node] + compliance * reaction[e];
+      const double free_position = n * (state.u[node] + trial_[node]) + compliance * reaction[e];
       const double next = end_reaction(free_position, compliance, actions[e]);
       const double change = next - reaction[e];
       if (change == 0.0) continue;
@@ -198,14 +197,14 @@ void GeneralizedAlpha::advance_rates(BarState& state, double dt, const EndAction
     if (!is(end, ContactLayer::massless)) continue;
     const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
     predicted_[node] = trial_[node];
-    state.v[node] = (trial_[node] - state.u[node]) / dt;
+    state.v[node] = trial_[node] / dt;
     state.a[node] = 0.0;
   }
   for (std::size_t i = 0; i < trial_.size(); ++i) {
     const double a = inverse * (trial_[i] - predicted_[i]);
     state.v[i] += dt * ((1.0 - w_.gamma) * state.a[i] + w_.gamma * a);
     state.a[i] = a;
-    state.u[i] = trial_[i];
+    state.u[i] += trial_[i];
   }
   for (int end : {0, 1}) {
     if (!held(end, actions)) continue;

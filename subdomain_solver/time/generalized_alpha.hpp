@@ -49,6 +49,8 @@ class GeneralizedAlpha final : public BarIntegrator {
   std::array<std::vector<double>, 2> column_;
   // acceleration per unit end force at one instant
   std::array<std::vector<double>, 2> mass_column_;
+  // Unknowns are the increments of a substep: solving for displacements would lose momentum to the
+  // round-off of M u / (beta dt^2).
   std::vector<double> predicted_, rhs_, work_, trial_;
 };
 
