@@ -17,6 +17,7 @@
 #include "base/yaml_fields.hpp"
 #include "coordinator/command_line.hpp"
 #include "coordinator/controller.hpp"
+#include "coordinator/estimate.hpp"
 #include "coordinator/external_verb.hpp"
 #include "coordinator/interrupt.hpp"
 #include "coordinator/launch.hpp"
@@ -107,12 +108,21 @@ void validate_coupling(const Scene& scene, const Placement& placement, const Doc
 }
 
 /// All that can be said of a scene without another process.
-std::optional<ClosedForm> validate_all(const Scene& scene, const Document& document) {
+struct Validated {
+  std::optional<ClosedForm> form;
+  Estimate estimate;
+};
+
+Validated validate_all(const Scene& scene, const Document& document) {
   const Placement here{nullptr, launch_local(scene, document)};
   validate_bodies(scene, here.descriptions(), document);
   validate_coupling(scene, here, document);
   validate_expectations(scene, here.bodies.front()->describe(), document);
-  return make_closed_form(scene, document);
+  Validated valid{make_closed_form(scene, document), {}};
+  std::optional<double> contact;
+  if (valid.form) contact = valid.form->impact.duration();
+  valid.estimate = estimate(scene, here.descriptions(), contact);
+  return valid;
 }
 
 std::string resolved_text(const Scene& scene, const Document& document) {
@@ -180,7 +190,7 @@ int run_verb(const RunCommand& command) {
   const std::atomic<bool>& interrupted = watch_for_interrupts();
   const Document document = Document::load(command.scene, command.overrides);
   const Scene scene = read_scene(document);
-  const std::optional<ClosedForm> closed_form = validate_all(scene, document);
+  const Validated valid = validate_all(scene, document);
   const fs::path directory =
       command.out.empty() ? default_run_directory(command.scene) : fs::path(command.out);
   make_run_directory(directory, command.force);
@@ -192,12 +202,13 @@ int run_verb(const RunCommand& command) {
 
   clear_run_directory(directory);
   write_whole(directory / "scene.resolved.yaml", resolved_text(scene, document));
-  const ClosedForm* form = closed_form ? &*closed_form : nullptr;
+  const ClosedForm* form = valid.form ? &*valid.form : nullptr;
   MeasureRecorder recorder(form);
   CsvHistory history(directory, form);
   EventLog events(directory);
-  Summary summary(directory, {scene.meta.title, versions(), scene.meta.expect, began}, recorder,
-                  form);
+  Summary summary(directory,
+                  {scene.meta.title, versions(), scene.meta.expect, began, valid.estimate},
+                  recorder, form);
   ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !command.quiet);
   const std::vector<Observer*> observers{&recorder, &history, &events, &progress, &summary};
 
@@ -212,8 +223,8 @@ int run_verb(const RunCommand& command) {
 int check_verb(const CheckCommand& command) {
   const Document document = Document::load(command.scene, command.overrides);
   const Scene scene = read_scene(document);
-  validate_all(scene, document);
-  fmt::print("{}: valid\n", command.scene);
+  const Validated valid = validate_all(scene, document);
+  fmt::print("{}: valid\n{}", command.scene, to_text(valid.estimate));
   return 0;
 }
 

@@ -369,6 +369,15 @@ def details(run: Run) -> str:
     for key in ("windows", "contact_windows", "exchanges", "state_hash"):
         if key in summary:
             rows.append([key.replace("_", " "), str(summary[key])])
+    guess = summary.get("estimate", {})
+    for key in ("windows", "contact_windows", "exchanges"):
+        if key in guess and key in summary:
+            told = guess[key] if isinstance(guess[key], list) else [guess[key]]
+            told = " to ".join(str(count) for count in dict.fromkeys(told))
+            rows.append([f"{key.replace('_', ' ')}: estimate, fact", f"{told}, {summary[key]}"])
+    for key in ("in_use", "not_built"):
+        if guess.get(key):
+            rows.append([f"features {key.replace('_', ' ')}", ", ".join(guess[key])])
     rows += [[f"{body['name']}", body["model"]] for body in summary.get("bodies", [])]
     rows += [[f"version of {name}", text] for name, text in summary.get("versions", {}).items()]
     events = [[shown(event.get("time")), event.get("kind", ""), event.get("subject", ""),

@@ -110,6 +110,20 @@ Json timing_object(const RunEnd& end, const RunStart& start) {
   return timing;
 }
 
+Json estimate_object(const Estimate& estimate) {
+  Json bodies = Json::object();
+  for (const Estimate::Body& body : estimate.bodies) {
+    bodies[body.name] = {
+        {"dofs", body.dofs}, {"substeps", body.substeps}, {"memory_mib", number(body.memory_mib)}};
+  }
+  return {{"windows", estimate.windows},
+          {"contact_windows", {estimate.contact_windows_low, estimate.contact_windows_high}},
+          {"exchanges", {estimate.exchanges_low, estimate.exchanges_high}},
+          {"bodies", bodies},
+          {"in_use", estimate.in_use},
+          {"not_built", estimate.not_built}};
+}
+
 }  // namespace
 
 Summary::Summary(std::filesystem::path directory, Heading heading, const MeasureRecorder& recorder,
@@ -142,6 +156,7 @@ std::string Summary::text(const RunEnd& end) const {
   summary["exchanges"] = end.exchanges;
   summary["timing"] = timing_object(end, start_);
   if (heading_.program_began) summary["timing"]["startup_s"] = number(startup_seconds_);
+  if (heading_.estimate) summary["estimate"] = estimate_object(*heading_.estimate);
   summary["bodies"] = bodies_array(start_);
   summary["ports"] = ports_object(start_);
   summary["interfaces"] = interfaces_object(start_);

@@ -8,6 +8,7 @@
 
 #include "base/clock.hpp"
 #include "coordinator/closed_form.hpp"
+#include "coordinator/estimate.hpp"
 #include "coordinator/record/measure_recorder.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/scene.hpp"
@@ -24,6 +25,7 @@ class Summary : public Observer {
     std::map<std::string, std::string> versions;  // of abut and of what it is built with
     std::vector<Expectation> expectations;
     std::optional<Clock::Time> program_began = std::nullopt;  // for timing.startup_s
+    std::optional<Estimate> estimate = std::nullopt;          // told before the run
   };
 
   /// `form` may be null. The recorder is told of every event before this, and outlives it.

@@ -1,0 +1,101 @@
+#include "coordinator/estimate.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+namespace abut {
+
+namespace {
+
+constexpr double process_mib = 9.5;           // libraries and sockets of a solver process, measured
+constexpr double bytes_per_dof = 200.0;       // state, saved state, matrices and scratch of a bar
+constexpr std::int64_t flights = 8;           // requests of free flight to and from one contact
+constexpr std::int64_t sweeps_usual = 2;      // iterations of linear bodies with port kernels
+constexpr std::int64_t sweeps_published = 3;  // of the published form, explicit bodies
+constexpr std::int64_t per_event = 3;         // attempts and the window cut at an event
+
+void list_features(const Scene& scene, Estimate& e) {
+  auto feature = [&e](bool used, const char* name) {
+    (used ? e.in_use : e.not_built).emplace_back(name);
+  };
+  bool unilateral = false, published = false, connected = false;
+  for (const auto& [name, interface] : scene.interfaces) {
+    const auto& how = interface.transmission;
+    unilateral = unilateral || std::holds_alternative<UnilateralTransmission>(how);
+    published = published || std::holds_alternative<DirichletNeumannTransmission>(how);
+  }
+  for (const auto& [name, body] : scene.bodies) {
+    connected = connected || std::holds_alternative<ConnectLaunch>(body.launch);
+  }
+  const bool coupled = !scene.interfaces.empty();
+  feature(unilateral, "unilateral transmission");
+  feature(published, "published Dirichlet-Neumann form");
+  feature(coupled && scene.schwarz.parallel, "parallel form");
+  feature(coupled && std::holds_alternative<KernelAcceleration>(scene.schwarz.accelerator),
+          "port kernels");
+  feature(coupled && !std::holds_alternative<KernelAcceleration>(scene.schwarz.accelerator) &&
+              !std::holds_alternative<NoAcceleration>(scene.schwarz.accelerator),
+          "relaxation or secants alone");
+  feature(scene.schwarz.on_nonconvergence == "halve", "halving of windows");
+  feature(scene.meta.closed_form.has_value(), "closed form");
+  feature(connected, "network");
+}
+
+}  // namespace
+
+Estimate estimate(const Scene& scene, std::span<const Description* const> bodies,
+                  std::optional<double> contact_time) {
+  Estimate e;
+  const double span = scene.time.end - scene.time.begin;
+  e.windows = static_cast<std::int64_t>(std::ceil(span / scene.time.window - 1.0e-9));
+  for (const Description* body : bodies) {
+    const double steps = body->step > 0.0 ? span / body->step : static_cast<double>(e.windows);
+    e.bodies.push_back({body->name, body->model, body->dofs, std::llround(steps),
+                        process_mib + static_cast<double>(body->dofs) * bytes_per_dof / 1048576.0});
+  }
+  const std::int64_t count = static_cast<std::int64_t>(bodies.size());
+  const std::int64_t joints = static_cast<std::int64_t>(scene.interfaces.size());
+  if (contact_time) {
+    const double windows = std::min(*contact_time, span) / scene.time.window;
+    e.contact_windows_low = e.contact_windows_high = std::llround(windows);
+  } else if (joints > 0) {
+    e.contact_windows_high = e.windows;
+  }
+  const bool published =
+      std::any_of(scene.interfaces.begin(), scene.interfaces.end(), [](const auto& entry) {
+        return std::holds_alternative<DirichletNeumannTransmission>(entry.second.transmission);
+      });
+  const std::int64_t sweeps = published ? sweeps_published : sweeps_usual;
+  const std::int64_t start = count + (joints > 0 && e.contact_windows_high > 0 ? 2 * joints : 0);
+  e.exchanges_low = start + count * (2 + e.contact_windows_low);
+  e.exchanges_high =
+      start + count * (flights + sweeps * e.contact_windows_high + 2 * per_event * joints);
+  e.exchanges_high += e.exchanges_high / 20;  // contact that lasts a little longer, chatter
+  if (joints == 0) e.exchanges_high = e.exchanges_low;
+  list_features(scene, e);
+  return e;
+}
+
+std::string to_text(const Estimate& e) {
+  std::string text;
+  for (const Estimate::Body& body : e.bodies) {
+    text +=
+        fmt::format("  {}: {}; {} degrees of freedom, {} substeps, about {:.1f} MiB in a process\n",
+                    body.name, body.model, body.dofs, body.substeps, body.memory_mib);
+  }
+  const auto range = [](std::int64_t low, std::int64_t high) {
+    return low == high ? fmt::format("about {}", low) : fmt::format("{} to {}", low, high);
+  };
+  text += fmt::format("  windows    {}, in contact {}\n", e.windows,
+                      range(e.contact_windows_low, e.contact_windows_high));
+  text += fmt::format("  exchanges  {}\n", range(e.exchanges_low, e.exchanges_high));
+  text += fmt::format("  in use     {}\n", fmt::join(e.in_use, ", "));
+  text += fmt::format("  not built  {}\n", fmt::join(e.not_built, ", "));
+  return text;
+}
+
+}  // namespace abut

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "contract/subdomain.hpp"
+#include "coordinator/scene.hpp"
+
+namespace abut {
+
+/// What a scene will pay for, told before it runs. Counts are ranges where they depend on contact.
+struct Estimate {
+  struct Body {
+    std::string name, model;
+    std::int64_t dofs = 0;
+    std::int64_t substeps = 0;  // when nothing is repeated
+    double memory_mib = 0.0;    // of its process
+  };
+
+  std::vector<Body> bodies;
+  std::int64_t windows = 0;
+  std::int64_t contact_windows_low = 0, contact_windows_high = 0;
+  std::int64_t exchanges_low = 0, exchanges_high = 0;
+  std::vector<std::string> in_use, not_built;  // optional features
+};
+
+/// `contact_time` [s]: how long interfaces are closed, when a closed form tells it.
+Estimate estimate(const Scene& scene, std::span<const Description* const> bodies,
+                  std::optional<double> contact_time);
+
+/// For people, several lines.
+std::string to_text(const Estimate& estimate);
+
+}  // namespace abut

@@ -1,0 +1,71 @@
+// Goal: what `abut check` tells before a run agrees with what the run then takes. Oracle: counts of
+// hand-made scenes, and the exchanges of shipped scenes as measured (system tests compare them
+// again).
+#include <gtest/gtest.h>
+
+#include "base/yaml_document.hpp"
+#include "coordinator/estimate.hpp"
+#include "coordinator/scene.hpp"
+
+namespace abut {
+namespace {
+
+Scene two_bars(const std::string& more = {}) {
+  const std::string text = R"(
+meta: {title: estimate}
+time: {begin: 0.0, end: 1.0e-3, window: 1.0e-5}
+bodies: {left: {}, right: {}}
+interfaces:
+  impact: {sides: [left.tip, right.tip], contact: {}, transmission: {unilateral: {}}}
+)" + more;
+  return read_scene(Document::from_text("estimate.yaml", text, {}));
+}
+
+Description bar(double step) {
+  Description body;
+  body.name = "bar";
+  body.dofs = 201;
+  body.step = step;
+  return body;
+}
+
+TEST(Estimate, CountsWindowsAndSubsteps) {
+  const Description left = bar(1.0e-7);
+  const Description right = bar(1.0e-6);
+  const Description* bodies[] = {&left, &right};
+  const Estimate e = estimate(two_bars(), bodies, 5.0e-4);
+  EXPECT_EQ(e.windows, 100);
+  EXPECT_EQ(e.contact_windows_low, 50);
+  EXPECT_EQ(e.contact_windows_high, 50);
+  EXPECT_EQ(e.bodies[0].substeps, 10000);
+  EXPECT_EQ(e.bodies[1].substeps, 1000);
+}
+
+TEST(Estimate, HoldsWhatTheShippedSceneTakes) {
+  const Description left = bar(1.0e-7);
+  const Description* bodies[] = {&left, &left};
+  const Estimate e = estimate(two_bars(), bodies, 5.0e-4);
+  EXPECT_LE(e.exchanges_low, 118);   // two_bars.yaml: equal bars, one sweep in most windows
+  EXPECT_GE(e.exchanges_high, 222);  // unequal_bars.yaml: two sweeps in most windows
+}
+
+TEST(Estimate, KnowsNothingOfContactWithoutAClosedForm) {
+  const Description left = bar(1.0e-7);
+  const Description* bodies[] = {&left, &left};
+  const Estimate e = estimate(two_bars(), bodies, std::nullopt);
+  EXPECT_EQ(e.contact_windows_low, 0);
+  EXPECT_EQ(e.contact_windows_high, 100);
+}
+
+TEST(Estimate, EveryFeatureIsEitherInUseOrNotBuilt) {
+  const Description left = bar(1.0e-7);
+  const Description* bodies[] = {&left, &left};
+  const Estimate plain = estimate(two_bars(), bodies, std::nullopt);
+  const Estimate other = estimate(two_bars("schwarz: {form: parallel}\n"), bodies, std::nullopt);
+  EXPECT_EQ(plain.in_use.size() + plain.not_built.size(),
+            other.in_use.size() + other.not_built.size());
+  EXPECT_EQ(plain.in_use.size() + 1, other.in_use.size());
+}
+
+}  // namespace
+}  // namespace abut
