@@ -98,7 +98,7 @@ void Controller::observe_start() {
   prepare(instant, 1, Sampling::substeps);
   if (std::optional<Failed> failed = bodies_.advance_all())
     return fail(failed->time, failed->detail);
-  fill_reports({});
+  fill_reports(nullptr);
   for (Observer* observer : observers_)
     observer->on_window({instant, bodies_.responses(), reports_});
 }
@@ -130,7 +130,7 @@ bool Controller::fly_free() {
     flight_limit_ = std::max(1, windows / 4);  // the bound was wrong: trust it less for a while
     return false;
   }
-  fill_reports({});
+  fill_reports(nullptr);
   for (Observer* observer : observers_)
     observer->on_window({flight, bodies_.responses(), reports_});
   end_.windows += windows;
@@ -146,7 +146,7 @@ void Controller::step_window() {
   apply_criteria_at_start(window);
   bodies_.save_all();
   while (running()) {
-    const Attempt attempt = advance(window);
+    const Attempt& attempt = advance(window);
     if (attempt.failed || !attempt.converged()) {
       if (!handle_trouble(attempt, window)) return;
       if (attempt.failed || scene_.schwarz.on_nonconvergence != "accept") continue;
@@ -163,7 +163,7 @@ void Controller::step_window() {
     bodies_.restore_all();
     if (cut - window.begin >= event_tolerance * shortest_step()) {
       const TimeWindow part{window.index, window.begin, cut};
-      const Attempt shorter = advance(part);
+      const Attempt& shorter = advance(part);
       if (shorter.failed) return fail(shorter.failed->time, shorter.failed->detail);
       accept(part, shorter);
       for (const Event& event : events) apply(event);
@@ -220,25 +220,42 @@ void Controller::step_chattering(const TimeWindow& window) {
   }
 }
 
-Controller::Attempt Controller::advance(const TimeWindow& window) {
-  Attempt attempt;
-  prepare(window, is_whole(window) ? scene_.output.records_per_window : 1, Sampling::substeps);
-  attempt.islands = find_islands(joints_, bodies_.count());
-  std::vector<int> free(static_cast<std::size_t>(bodies_.count()));
-  std::iota(free.begin(), free.end(), 0);
-  for (const Island& island : attempt.islands) {
+const Controller::Partition& Controller::partition() {
+  bool same = partition_.roles.size() == coupling_.interfaces.size() &&
+              !(partition_.islands.empty() && partition_.free.empty());
+  partition_.roles.resize(coupling_.interfaces.size(), -1);
+  for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
+    const Interface& interface = coupling_.interfaces[i];
+    const int role = interface.closed ? interface.kinematic : -1;
+    same = same && partition_.roles[i] == role;
+    partition_.roles[i] = role;
+  }
+  if (same) return partition_;
+  partition_.islands = find_islands(joints_, bodies_.count());
+  partition_.free.resize(static_cast<std::size_t>(bodies_.count()));
+  std::iota(partition_.free.begin(), partition_.free.end(), 0);
+  for (const Island& island : partition_.islands) {
     for (const std::vector<int>& level : island.levels) {
-      for (int body : level) free.erase(std::find(free.begin(), free.end(), body));
+      for (int body : level) std::erase(partition_.free, body);
     }
+  }
+  return partition_;
+}
+
+const Controller::Attempt& Controller::advance(const TimeWindow& window) {
+  attempt_.failed.reset();
+  attempt_.reports.clear();
+  prepare(window, is_whole(window) ? scene_.output.records_per_window : 1, Sampling::substeps);
+  for (const Island& island : partition().islands) {
     std::variant<SchwarzReport, Failed> result = schwarz_.solve(window, island, joints_, bodies_);
     if (Failed* failed = std::get_if<Failed>(&result); failed != nullptr) {
-      attempt.failed = std::move(*failed);
-      return attempt;
+      attempt_.failed = std::move(*failed);
+      return attempt_;
     }
-    attempt.reports.push_back(std::get<SchwarzReport>(result));
+    attempt_.reports.push_back(std::get<SchwarzReport>(result));
   }
-  attempt.failed = bodies_.advance(free);
-  return attempt;
+  attempt_.failed = bodies_.advance(partition_.free);
+  return attempt_;
 }
 
 double Controller::longest_step() const {
@@ -285,8 +302,8 @@ bool Controller::handle_trouble(const Attempt& attempt, TimeWindow& window) {
 }
 
 void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
-  for (const Island& island : attempt.islands) schwarz_.accept(island);
-  fill_reports(attempt);
+  for (const Island& island : partition_.islands) schwarz_.accept(island);
+  fill_reports(&attempt);
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     Interface& interface = coupling_.interfaces[i];
     interface.release_impulse = 0.0;
@@ -297,7 +314,7 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
   for (Observer* observer : observers_)
     observer->on_window({window, bodies_.responses(), reports_});
   ++end_.windows;
-  if (!attempt.islands.empty()) ++end_.contact_windows;
+  if (!partition_.islands.empty()) ++end_.contact_windows;
   const bool whole = is_whole(window);
   advance_clock(window.end, whole);
   if (whole) events_here_ = 0;
@@ -435,16 +452,17 @@ void Controller::prepare(const TimeWindow& window, int records, Sampling samplin
 
 // ---- what others are told -----------------------------------------------------------------------
 
-void Controller::fill_reports(const Attempt& attempt) {
+void Controller::fill_reports(const Attempt* attempt) {
   for (std::size_t i = 0; i < reports_.size(); ++i) {
     reports_[i] = {};
     reports_[i].closed = coupling_.interfaces[i].closed;
     reports_[i].kinematic = coupling_.interfaces[i].kinematic;
   }
-  for (std::size_t k = 0; k < attempt.islands.size(); ++k) {
-    for (int j : attempt.islands[k].joints) {
-      reports_[static_cast<std::size_t>(j)].iterations = attempt.reports[k].iterations;
-      reports_[static_cast<std::size_t>(j)].residual = attempt.reports[k].residual.largest();
+  if (attempt == nullptr) return;
+  for (std::size_t k = 0; k < partition_.islands.size(); ++k) {
+    for (int j : partition_.islands[k].joints) {
+      reports_[static_cast<std::size_t>(j)].iterations = attempt->reports[k].iterations;
+      reports_[static_cast<std::size_t>(j)].residual = attempt->reports[k].residual.largest();
     }
   }
 }

@@ -40,9 +40,13 @@ class Controller {
     double located = 0.0;  // [s] where gap or force cross zero
     double speed = 0.0;    // [m/s] of closing
   };
+  struct Partition {         // of the bodies by the closed interfaces; kept while those stay
+    std::vector<int> roles;  // by interface: kinematic side, or -1 when open
+    std::vector<Island> islands;
+    std::vector<int> free;  // bodies in no island
+  };
   struct Attempt {  // of one window
     std::optional<Failed> failed;
-    std::vector<Island> islands;
     std::vector<SchwarzReport> reports;  // by island
     bool converged() const;
   };
@@ -51,7 +55,8 @@ class Controller {
   void give_up(const RunError& error, bool interrupted, double wall_seconds);
   bool fly_free();
   void step_window();
-  Attempt advance(const TimeWindow& window);
+  const Attempt& advance(const TimeWindow& window);  // valid until the next one
+  const Partition& partition();
   bool handle_trouble(const Attempt& attempt, TimeWindow& window);
   void accept(const TimeWindow& window, const Attempt& attempt);
   void step_chattering(const TimeWindow& window);
@@ -63,7 +68,7 @@ class Controller {
   void apply(const Event& event);
   void close(int interface, double time, double speed);
   void prepare(const TimeWindow& window, int records, Sampling sampling);
-  void fill_reports(const Attempt& attempt);
+  void fill_reports(const Attempt* attempt);  // null: all flew free
   bool is_whole(const TimeWindow& window) const;
   double shortest_step() const;
   double longest_step() const;
@@ -92,6 +97,8 @@ class Controller {
   int flight_limit_ = most_windows_at_once;
   bool grounded_ = false;  // free flight came too near: step once
   RunEnd end_;
+  Partition partition_;
+  Attempt attempt_;
   std::vector<InterfaceReport> reports_;
 };
 

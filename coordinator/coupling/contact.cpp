@@ -20,35 +20,44 @@ struct ForceSample {
 };
 
 /// Contact force at the substeps of the coarser side, the one known at the window's begin first.
-std::vector<ForceSample> coarse_forces(const Interface& interface, const Bodies& bodies) {
-  const Side& k = interface.kinematic_side();
-  const Side& n = interface.neumann_side();
-  const Waveform& own = trace_of(bodies, k);
-  const double inward = -interface.normal_of(interface.kinematic);
-  const bool step_support = own.support == ForceSupport::step;
-  std::vector<ForceSample> samples;
-  if (bodies.describe(n.body).step > bodies.describe(k.body).step) {
-    const std::vector<double>& grid = trace_of(bodies, n).time;
-    const double known = step_support ? grid.front() - bodies.describe(n.body).step : grid.front();
-    samples.push_back({known, inward * own.f.front(), grid.front()});
-    for (std::size_t i = 1; i < grid.size(); ++i) {
-      const double from = step_support ? grid[i - 1] : 0.5 * (grid[i - 1] + grid[i]);
-      const double to =
-          step_support || i + 1 == grid.size() ? grid[i] : 0.5 * (grid[i] + grid[i + 1]);
-      double impulse = 0.0;
-      own.impulse(from, to, {&impulse, 1});
-      samples.push_back(
-          {step_support ? grid[i - 1] : grid[i], inward * impulse / (to - from), grid[i]});
+class CoarseForces {
+ public:
+  CoarseForces(const Interface& interface, const Bodies& bodies)
+      : own_(trace_of(bodies, interface.kinematic_side())),
+        other_(trace_of(bodies, interface.neumann_side())),
+        inward_(-interface.normal_of(interface.kinematic)),
+        step_support_(own_.support == ForceSupport::step) {
+    const double own_step = bodies.describe(interface.kinematic_side().body).step;
+    const double other_step = bodies.describe(interface.neumann_side().body).step;
+    other_is_coarser_ = other_step > own_step;
+    coarse_step_ = std::max(own_step, other_step);
+  }
+
+  std::size_t size() const { return grid().size(); }
+  ForceSample operator[](std::size_t i) const {
+    const std::vector<double>& t = grid();
+    double at = t[i];  // a kick acts at its substep's begin
+    if (step_support_) at = i > 0 ? t[i - 1] : at - coarse_step_;
+    double force = own_.f[i > 0 && other_is_coarser_ ? 0 : i];
+    if (i > 0 && other_is_coarser_) {
+      const double from = step_support_ ? t[i - 1] : 0.5 * (t[i - 1] + t[i]);
+      const double to = step_support_ || i + 1 == t.size() ? t[i] : 0.5 * (t[i] + t[i + 1]);
+      own_.impulse(from, to, {&force, 1});
+      force /= to - from;
     }
-    return samples;
+    return {at, inward_ * force, t[i]};
   }
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    double at = own.time[i];
-    if (step_support) at = i > 0 ? own.time[i - 1] : at - bodies.describe(k.body).step;
-    samples.push_back({at, inward * own.f[i], own.time[i]});
-  }
-  return samples;
-}
+
+ private:
+  const std::vector<double>& grid() const { return other_is_coarser_ ? other_.time : own_.time; }
+
+  const Waveform& own_;
+  const Waveform& other_;
+  double inward_;
+  bool step_support_;
+  bool other_is_coarser_ = false;
+  double coarse_step_ = 0.0;
+};
 
 }  // namespace
 
@@ -76,14 +85,18 @@ std::optional<Closing> overlap_criterion(const Interface& interface, const Bodie
 
 std::optional<Opening> compression_criterion(const Interface& interface, const Bodies& bodies,
                                              double floor) {
-  const std::vector<ForceSample> samples = coarse_forces(interface, bodies);
+  const CoarseForces samples(interface, bodies);
+  ForceSample last = samples[0];
   for (std::size_t i = 1; i < samples.size(); ++i) {
-    if (samples[i].force >= floor) continue;
-    const ForceSample& last = samples[i - 1];
-    const double drop = last.force - samples[i].force;
+    const ForceSample now = samples[i];
+    if (now.force >= floor) {
+      last = now;
+      continue;
+    }
+    const double drop = last.force - now.force;
     double crossing = last.state;
-    if (last.force > 0.0 && drop > 0.0 && samples[i].time > last.time) {
-      crossing = last.time + (samples[i].time - last.time) * std::min(1.0, last.force / drop);
+    if (last.force > 0.0 && drop > 0.0 && now.time > last.time) {
+      crossing = last.time + (now.time - last.time) * std::min(1.0, last.force / drop);
     }
     return Opening{crossing, last.state};
   }

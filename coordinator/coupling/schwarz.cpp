@@ -137,7 +137,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     layout_.first.push_back(layout_.first.back() + joint.transmission->values());
   }
   const Eigen::Index size = layout_.first.back();
-  Eigen::VectorXd x(size), g(size), s(size);
+  for (Eigen::VectorXd* v : {&x_, &g_, &s_}) v->resize(size);
   auto part = [this](Eigen::VectorXd& v, std::size_t i) {
     return v.segment(layout_.first[i], layout_.first[i + 1] - layout_.first[i]);
   };
@@ -145,7 +145,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     return joints[static_cast<std::size_t>(island.joints[i])];
   };
   for (std::size_t i = 0; i < island.joints.size(); ++i)
-    joint_at(i).transmission->predict(part(x, i));
+    joint_at(i).transmission->predict(part(x_, i));
   Accelerator& accelerator = accelerator_of(island, joints);
   accelerator.reset(layout_key(window, layout_.first));
 
@@ -156,17 +156,17 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
         for (int body : level) bodies[body].restore();
       }
     }
-    if (std::optional<Failed> failed = sweep(island, joints, layout_, x, bodies)) return *failed;
+    if (std::optional<Failed> failed = sweep(island, joints, layout_, x_, bodies)) return *failed;
     report.residual = {};
     for (std::size_t i = 0; i < island.joints.size(); ++i) {
       const Joint& joint = joint_at(i);
-      joint.transmission->image(part(x, i), *joint.interface, bodies, part(g, i));
-      report.residual.include(joint.transmission->measure(part(x, i), part(g, i)));
-      joint.transmission->scales(part(s, i));
+      joint.transmission->image(part(x_, i), *joint.interface, bodies, part(g_, i));
+      report.residual.include(joint.transmission->measure(part(x_, i), part(g_, i)));
+      joint.transmission->scales(part(s_, i));
     }
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
-    x = accelerator.next(x.cwiseProduct(s), g.cwiseProduct(s)).cwiseQuotient(s);
+    x_ = accelerator.next(x_.cwiseProduct(s_), g_.cwiseProduct(s_)).cwiseQuotient(s_);
   }
 }
 

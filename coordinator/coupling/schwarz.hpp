@@ -71,7 +71,8 @@ class Schwarz {
 
   Options options_;
   MakeAccelerator make_;
-  Layout layout_;  // of the window being solved: the accelerators' inverse reads it
+  Eigen::VectorXd x_, g_, s_;  // iterate, image, scales: kept, so that windows allocate nothing
+  Layout layout_;              // of the window being solved: the accelerators' inverse reads it
   std::map<std::vector<int>, std::unique_ptr<Accelerator>> accelerators_;
 };
 
