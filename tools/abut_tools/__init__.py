@@ -1,0 +1,1 @@
+"""Modules of abut's readers: `abut report` and `abut study`."""

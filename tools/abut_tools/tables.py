@@ -1,0 +1,156 @@
+"""What readers of finished runs share: tables, JSON, numbers for people, short curves."""
+
+import csv
+import json
+import math
+import re
+from pathlib import Path
+
+# Told apart by all eyes.
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d1f", "#5b5b5b")
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+PREFIXED_UNITS = ("s", "m", "N", "J")
+
+
+class ToolError(Exception):
+    """What is wrong and what to do, with the exit code that says whose turn it is."""
+
+    def __init__(self, message: str, code: int):
+        super().__init__(message)
+        self.code = code
+
+
+class Table:
+    """Columns of numbers by name; an empty cell is None."""
+
+    def __init__(self, names: list[str], rows: list[list[float | None]]):
+        self.columns = {name: [row[i] for row in rows] for i, name in enumerate(names)}
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.columns
+
+    def __getitem__(self, name: str) -> list[float | None]:
+        return self.columns[name]
+
+    def matching(self, pattern: str) -> list[re.Match]:
+        found = (re.fullmatch(pattern, name) for name in self.columns)
+        return [match for match in found if match]
+
+
+def read_table(path: Path) -> Table:
+    """Units leave the header: all are SI. A last row that a killed run cut short is left out."""
+    with path.open(newline="", encoding="utf-8") as file:
+        lines = list(csv.reader(file))
+    if not lines:
+        raise ToolError(f"{path} is empty: run the scene again.", 2)
+    names = [re.sub(r" \[.*\]$", "", name) for name in lines[0]]
+    rows = []
+    for number, line in enumerate(lines[1:], start=2):
+        try:
+            if len(line) != len(names):
+                raise ValueError(f"{len(line)} cells, the header has {len(names)}")
+            rows.append([float(cell) if cell else None for cell in line])
+        except ValueError as error:
+            if number == len(lines):
+                break
+            raise ToolError(f"{path}:{number}: {error}: run the scene again.", 2) from error
+    return Table(names, rows)
+
+
+def read_json(path: Path) -> dict:
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ToolError(f"{path} is not JSON ({error}): run the scene again.", 2) from error
+
+
+class Figure:
+    """Curves over time with one unit."""
+
+    def __init__(self, name: str, title: str, quantity: str, unit: str, points: bool = False):
+        self.name, self.title, self.quantity, self.unit = name, title, quantity, unit
+        self.points = points  # values of windows: dots, not a line
+        self.curves = []
+
+    def add(self, label, colour, times, values, exact=False):
+        pairs = [(t, v) for t, v in zip(times, values) if t is not None and v is not None]
+        if pairs:
+            self.curves.append({"label": label, "colour": colour, "exact": exact,
+                                "x": [t for t, _ in pairs], "y": [v for _, v in pairs]})
+
+    def data(self, limit: int, time_scale: tuple[float, str]) -> dict:
+        largest = max((abs(y) for curve in self.curves for y in curve["y"]), default=0.0)
+        factor, unit = scaled_unit(largest, self.unit)
+        curves = []
+        for curve in self.curves:
+            x, y = thinned(curve["x"], curve["y"], limit)
+            curves.append({**curve, "x": [rounded(t * time_scale[0], 8) for t in x],
+                           "y": [rounded(v * factor, 7) for v in y]})
+        label = f"{self.quantity} [{unit}]" if unit else self.quantity
+        lowest = min((y for curve in self.curves for y in curve["y"]), default=0.0)
+        # Round-off below zero must not open half a figure of empty space.
+        floor = 0 if -0.005 * largest < lowest <= 0.0 else None
+        return {"name": self.name, "label": label, "unit": unit, "points": self.points,
+                "time": time_scale[1], "floor": floor, "curves": curves}
+
+
+def scaled_unit(largest: float, unit: str) -> tuple[float, str]:
+    """Factor and unit with an SI prefix so that the largest value has one to three digits."""
+    if unit not in PREFIXED_UNITS or largest == 0.0 or not math.isfinite(largest):
+        return 1.0, unit
+    # A little more than the value: a thousand that rounding left short is one of the next prefix.
+    exponent = 3 * math.floor(math.log10(largest * 1.000001) / 3)
+    exponent = min(12, max(-12, exponent))
+    return 10.0 ** -exponent, PREFIXES[exponent] + unit
+
+
+def rounded(value: float, digits: int) -> float:
+    return float(f"{value:.{digits}g}")
+
+
+def thinned(x: list, y: list, limit: int) -> tuple[list, list]:
+    """At most about `limit` points; every stretch keeps its smallest and its largest value."""
+    if len(x) <= limit:
+        return x, y
+    stretches = max(1, limit // 2 - 1)
+    keep = {0, len(x) - 1}
+    for k in range(stretches):
+        stretch = range(k * len(x) // stretches, (k + 1) * len(x) // stretches)
+        keep.add(min(stretch, key=y.__getitem__))
+        keep.add(max(stretch, key=y.__getitem__))
+    order = sorted(keep)
+    return [x[i] for i in order], [y[i] for i in order]
+
+
+def with_jumps(times: list, values: list, jumps: list[float]) -> tuple[list, list]:
+    """A step function that is sampled now and then, made vertical where its jumps are known."""
+    out_t, out_v = [], []
+    for k, (time, value) in enumerate(zip(times, values)):
+        if k > 0 and values[k - 1] is not None and value is not None:
+            for jump in jumps:
+                if times[k - 1] < jump <= time:
+                    out_t += [jump, jump]
+                    out_v += [values[k - 1], value]
+        out_t.append(time)
+        out_v.append(value)
+    return out_t, out_v
+
+
+def plus(values: list, offset: float, factor: float = 1.0) -> list:
+    return [None if v is None else factor * v + offset for v in values]
+
+
+def sum_of(columns: list[list]) -> list:
+    return [None if None in row else sum(row) for row in zip(*columns)]
+
+
+def colour_of(names: list[str], name: str) -> str:
+    return COLOURS[names.index(name) % len(COLOURS)]
+
+
+def shown(value) -> str:
+    if value is None:
+        return "no value"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.6g}" if isinstance(value, (int, float)) else str(value)
