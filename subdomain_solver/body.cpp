@@ -145,7 +145,8 @@ Outcome Body::finish(Response& response) {
   const Advance& request = *request_;
   request_ = nullptr;
   const auto began = std::chrono::steady_clock::now();
-  response.records.clear();
+  response.records.resize(static_cast<std::size_t>(std::max(1, request.records)));
+  recorded_ = 0;
   begin_traces(request, response);
   apply_impulses(request);
   begin_sweep();
@@ -341,16 +342,15 @@ void Body::end_sweep(Response& response) const {
 std::optional<Failed> Body::record(double time, Response& response) {
   end_sweep(response);
   begin_sweep();
-  BodyRecord r;
+  BodyRecord& r = response.records[recorded_++];
   r.time = time;
+  r.energy = {};
   r.energy.kinetic = scheme_.integrator->kinetic(state_);
   r.energy.stored = scheme_.integrator->stored(state_);
   const double body_force = bar_->data().body_force;
   if (body_force != 0.0) r.energy.external_work = body_force * bar_->momentum(state_.u);  // f . u
-  r.momentum = {bar_->momentum(state_.v)};
-  std::optional<Failed> failed = check_finite(r);
-  response.records.push_back(std::move(r));
-  return failed;
+  r.momentum.assign(1, bar_->momentum(state_.v));
+  return check_finite(r);
 }
 
 void Body::finish_ports(Response& response) {

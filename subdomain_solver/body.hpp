@@ -99,6 +99,7 @@ class Body final : public Subdomain {
   const Advance* request_ = nullptr;
   std::vector<std::byte> saved_;
   std::vector<bool> same_grid_;  // by port: the imposed waveform is sampled at our own substeps
+  std::size_t recorded_ = 0;     // records of the window so far
   std::function<void()> progress_;
   double work_since_progress_ = 0.0;  // element-steps
 };

@@ -313,7 +313,7 @@ double CentralDifference::kinetic(const BarState& state) const {
 
 double CentralDifference::stored(const BarState& state) const {
   if (simple()) return bar_.stored(state.u);
-  std::vector<double> s;
+  std::vector<double>& s = work_s_;
   smooth(state, state.u, s);
   double sum = 0.0;
   for (std::size_t e = 0; e + 1 < s.size(); ++e) {

@@ -64,7 +64,7 @@ class CentralDifference final : public BarIntegrator {
   std::vector<Row> outer_;        // the outer two nodes at both ends, each once
   std::vector<double> ratio_;     // c_q / c_{q-1}, q = 2..P
   std::vector<double> smoothed_;  // u~ at the present substep (scratch; equals u when P = 1)
-  mutable std::vector<double> work_a_, work_b_;
+  mutable std::vector<double> work_a_, work_b_, work_s_;
   std::vector<double> force_;
   EndActions prescribed_;  // last actions of the run: close() overwrites prescribed motion
 };
