@@ -36,7 +36,7 @@ function draw(figure) {
       (item) => Object.assign(item, {lineDash: chart.data.datasets[item.datasetIndex].borderDash})),
     sort: (one, other) => one.datasetIndex - other.datasetIndex,
   };
-  const legend = {position: "bottom", labels: labels};
+  const legend = {display: figure.legend !== false, position: "bottom", labels: labels};
   const counts = {beginAtZero: true, suggestedMax: 3, ticks: {precision: 0}};
   return new Chart(document.getElementById(figure.name), {
     type: "line",

@@ -1,0 +1,195 @@
+"""Files of a study: results.json and .csv and .md, study.json, the scene of a target."""
+
+import csv
+import io
+import json
+import os
+import platform
+import re
+import subprocess
+from pathlib import Path
+
+from abut_tools.page import write_whole
+from abut_tools.study_file import COSTS, Study
+from abut_tools.study_results import Result, by_status, claims_of, cost_key, front, series_of
+from abut_tools.tables import ToolError
+
+
+def machine() -> dict:
+    model, memory = platform.processor() or platform.machine(), None
+    try:
+        found = re.search(r"^model name\s*:\s*(.+)$",
+                          Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.MULTILINE)
+        model = found[1] if found else model
+        total = re.search(r"^MemTotal:\s*(\d+) kB",
+                          Path("/proc/meminfo").read_text(encoding="utf-8"), re.MULTILINE)
+        memory = round(int(total[1]) / 1024.0 / 1024.0, 1) if total else None
+    except OSError:
+        pass
+    cores = len(os.sched_getaffinity(0))
+    return {"cpu": model, "cores": cores, "memory_gib": memory,
+            "system": f"{platform.system()} {platform.release()}"}
+
+
+def commit_of(folder: Path) -> str | None:
+    """The commit of the study file's tree, with a word when the tree holds more than it."""
+    def git(*words: str) -> str:
+        return subprocess.run(["git", "-C", str(folder), *words], capture_output=True, text=True,
+                              check=True, timeout=10).stdout.strip()
+    try:
+        return git("rev-parse", "--short=12", "HEAD") + (
+            " and changes" if git("status", "--porcelain", "--untracked-files=no") else "")
+    except (OSError, subprocess.SubprocessError):
+        return None
+
+
+def definition_of(study: Study) -> list[dict]:
+    found = []
+    for error in study.errors:
+        what = error.measure.text if error.measure else " + ".join(error.history)
+        how = f"{error.norm} of the difference over time" if error.history else ""
+        against = {"closed_form": "closed form", "reference": "reference run"}.get(error.against)
+        scale = f"{error.relative_to:g}" if error.relative_to else (
+            "largest exact value" if error.history else "")
+        found.append({"name": error.name, "of": what, "how": how,
+                      "against": against or "", "relative_to": scale})
+    return found
+
+
+def facts_of(study: Study, results: list[Result], reference: dict | None, seconds: float,
+             timed: bool) -> dict:
+    versions = next((result.record["summary"]["versions"] for result in results
+                     if "versions" in result.record["summary"]), {})
+    orders = [{key: each[key] for key in ("label", "error", "knob", "order", "steps")}
+              for figure in study.figures if "convergence" in figure
+              for each in series_of(results, figure)]
+    cost = cost_key(results)
+    return {
+        "title": study.title, "study": study.path.name, "runs": len(results),
+        "status": by_status(results), "timed": timed, "repeats": study.repeats if timed else 1,
+        "placement": study.placement, "seconds": round(seconds, 1), "machine": machine(),
+        "versions": versions, "commit": commit_of(study.path.parent),
+        "errors": definition_of(study),
+        "reference": reference and {"settings": study.reference.settings,
+                                    "scene": study.reference.scene.name,
+                                    "folder": reference["folder"]},
+        "cost_of_fronts": cost,
+        "fronts": {error.name: [result.label for result in front(results, error.name, cost)]
+                   for error in study.errors},
+        "orders": orders, "claims": claims_of(study, results)}
+
+
+def csv_of(study: Study, results: list[Result]) -> str:
+    text, names = io.StringIO(), [error.name for error in study.errors]
+    keys = sorted({key for result in results for key in result.point.settings})
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["label", "status", *study.knobs, *COSTS, *names, *keys, "message"])
+    for result in results:
+        cells = [result.point.knobs.get(knob) for knob in study.knobs]
+        cells += [result.cost[name] for name in COSTS] + [result.errors[n] for n in names]
+        cells += [result.point.settings.get(key) for key in keys]
+        writer.writerow(["" if cell is None else cell for cell in
+                         (result.label, result.status, *cells, result.record["message"])])
+    return text.getvalue()
+
+
+def cell(value: object) -> str:
+    text = "" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def md_table(headings: list[str], rows: list[list]) -> str:
+    lines = ["| " + " | ".join(headings) + " |", "|" + "---|" * len(headings)]
+    lines += ["| " + " | ".join(cell(value) for value in row) + " |" for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+def measured_text(claim: dict) -> str:
+    return "; ".join(f"{each['run']}: {each['shown']}" for check in claim["checks"]
+                     for each in check["measured"]) or "no run"
+
+
+def machine_text(facts: dict) -> str:
+    place = facts["machine"]
+    parts = [f"{place['cpu']}, {place['cores']} cores", place["system"]]
+    parts += [f"{name} {text}" for name, text in facts["versions"].items()]
+    parts += [f"commit {facts['commit']}"] if facts["commit"] else []
+    return "; ".join(parts)
+
+
+def timing_text(facts: dict) -> str:
+    if facts["timed"]:
+        times = f"{facts['repeats']} repeats" if facts["repeats"] > 1 else "one repeat"
+        return f"Runs were timed one after another, {times}; wall time is that of all windows."
+    return ("Runs were not timed, because several may have run at once: compute_s is the time "
+            "that bodies spent computing. Time them with --serial.")
+
+
+def md_of(study: Study, results: list[Result], facts: dict) -> str:
+    names = [error.name for error in study.errors]
+    parts = [f"# {study.title}\n\n{study.about.strip()}\n" if study.about else f"# {study.title}\n"]
+    if facts["claims"]:
+        parts.append("## Claims\n\n" + md_table(
+            ["claim", "verdict", "measured", "note"],
+            [[claim["text"], claim["verdict"], measured_text(claim), claim["note"]]
+             for claim in facts["claims"]]))
+    shown = [key for key in COSTS if key not in ("wall_s_min", "wall_s_max")]
+    parts.append("## Runs\n\n" + md_table(
+        ["run", "status", *shown, *names],
+        [[result.label, result.status + (f": {result.record['message']}"
+                                         if result.record["message"] else ""),
+          *(result.cost[key] for key in shown), *(result.errors[name] for name in names)]
+         for result in results]))
+    if facts["orders"]:
+        parts.append("## Orders\n\n" + md_table(
+            ["series", "error", "knob", "fitted order", "from point to point"],
+            [[each["label"], each["error"], each["knob"], f"{each['order']:.2f}",
+              " ".join(f"{step:.2f}" for step in each["steps"])] for each in facts["orders"]]))
+    rows = [[name, label] for name, labels in facts["fronts"].items() for label in labels]
+    parts.append(f"## Fronts\n\nNo other run is cheaper ({facts['cost_of_fronts']}) and better.\n\n"
+                 + md_table(["error", "run, cheapest first"], rows))
+    parts.append(f"## Measured with\n\n{machine_text(facts)}.\n\n{timing_text(facts)}\n")
+    return "\n".join(parts)
+
+
+def write_results(out: Path, study: Study, results: list[Result], facts: dict) -> None:
+    rows = [result.row(study) for result in results]
+    write_whole(out / "results.json", json.dumps(rows, indent=1, allow_nan=False) + "\n")
+    write_whole(out / "study.json", json.dumps(facts, indent=1, allow_nan=False) + "\n")
+    write_whole(out / "results.csv", csv_of(study, results))
+    write_whole(out / "results.md", md_of(study, results, facts))
+
+
+def target_scene(out: Path, study: Study, result: Result, targets: dict[str, float]) -> Path:
+    """The run's resolved scene; its expectations become the target, where a measure says it."""
+    source = out / result.record["folder"] / "scene.resolved.yaml"
+    try:
+        lines = source.read_text(encoding="utf-8").splitlines()
+    except OSError as error:
+        raise ToolError(f"{source}: {error.strerror}. Run the study again with --force.",
+                        3) from error
+    asked = ", ".join(f"{name} at most {value:g}" for name, value in targets.items())
+    expects = []
+    for error in study.errors:
+        plain = error.measure and re.fullmatch(r"(abs\()?([A-Za-z_][\w.]*)\)?", error.measure.text)
+        if error.name not in targets or not plain or error.against:
+            continue
+        bound = targets[error.name] * abs(error.relative_to or 1.0)
+        expects.append(f"    - {{measure: {plain[2]}, equals: {error.minus:.17g}, "
+                       f"absolute: {bound:.17g}, because: \"target: {error.name}\"}}")
+    kept, inside = [], False
+    for line in lines:
+        if line.startswith("#"):
+            continue
+        if line.rstrip() == "  expect:" or line.startswith("  expect: "):
+            inside = True
+            kept += ["  expect:", *expects] if expects else []
+        elif not inside or not line.startswith("    "):
+            inside = False
+            kept.append(line)
+    head = [f"# Cheapest setting of the study {study.path.name} with {asked}: {result.label}.",
+            *(f"# {key}: {value}" for key, value in result.point.settings.items())]
+    name = "_".join(f"{name}_{value:g}" for name, value in targets.items())
+    path = out / f"target_{name}.yaml"
+    write_whole(path, "\n".join(head + kept) + "\n")
+    return path

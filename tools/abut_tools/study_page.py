@@ -1,0 +1,239 @@
+"""The page of a study: claims, costs against errors, orders, curves of all runs, tables."""
+
+import html
+import json
+from pathlib import Path
+
+from abut_tools.page import canvas_of, filled, script_json, section, table_of
+from abut_tools.study_file import COSTS, Study
+from abut_tools.study_output import machine_text, timing_text
+from abut_tools.study_results import Result, front, series_of
+from abut_tools.study_take import matches
+from abut_tools.tables import Figure, ToolError, scaled_unit, shown
+
+MOST_CURVES = 20  # more are not told apart
+# Neighbours differ in hue and in lightness.
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e0a100", "#5b5b5b", "#56b4e9", "#8a2b00",
+           "#00573f", "#7b3fa0", "#8c6d1f", "#a31545")
+EXACT = "#1c2430"
+TITLES = {
+    "position": ("Position of {port}", "position", "m"),
+    "velocity": ("Velocity of {port}", "velocity", "m/s"),
+    "force": ("Contact force at {port}", "force, compression positive", "N"),
+    "mean_velocity": ("Mean velocity of {body}", "mean velocity", "m/s"),
+    "kinetic": ("Kinetic energy of {body}", "energy", "J"),
+    "stored": ("Potential energy of {body}", "energy", "J"),
+    "total": ("Total energy of {body}", "energy", "J"),
+    "kinetic_error": ("Kinetic energy error of {body}", "error, of the exact total", "%"),
+    "stored_error": ("Potential energy error of {body}", "error, of the exact total", "%"),
+    "total_error": ("Total energy error of {body}", "error, of the exact total", "%"),
+}
+COST_WORDS = {
+    "wall_s_median": "wall time, median [s]", "wall_s_min": "wall time, shortest [s]",
+    "wall_s_max": "wall time, longest [s]", "compute_s": "computing of the bodies [s]",
+    "exchanges": "exchanges", "iterations_mean": "Schwarz iterations, mean",
+    "memory_mib": "memory [MiB]"}
+
+
+def colour(k: int) -> str:
+    return COLOURS[k % len(COLOURS)]
+
+
+def words_of(name: str) -> str:
+    return name.replace("_", " ")
+
+
+# ---- curves ------------------------------------------------------------
+
+
+class Curves:
+    """Overlaid histories: one group of figures, with one switch per run for all of them."""
+
+    def __init__(self, number: int, spec: dict, results: list[Result], out: Path):
+        self.port, self.name = spec["of"], f"histories{number}"
+        self.title = spec.get("title", f"Over time, {self.port}")
+        chosen = [result for result in results if result.status == "completed"
+                  and matches(result.label, spec.get("runs", "*"))]
+        if len(chosen) > MOST_CURVES:
+            raise ToolError(f"figures[{number}] overlays {len(chosen)} runs, at most {MOST_CURVES} "
+                            "can be told apart: choose some with runs.", 2)
+        self.runs, self.figures = [], []
+        curves = {}
+        for result in chosen:
+            try:
+                found = json.loads((out / result.record["folder"] / "curves.json").read_text(
+                    encoding="utf-8")).get(self.port)
+            except (OSError, ValueError):
+                found = None
+            if found:
+                curves[result.label] = found
+                self.runs.append(result.label)
+        for quantity in spec["histories"]:
+            title, axis, unit = (text.format(port=self.port, body=self.port.split(".")[0])
+                                 for text in TITLES[quantity])
+            figure = Figure(f"{self.name}_{quantity}", title, axis, unit)
+            for k, label in enumerate(self.runs):
+                if quantity in curves[label]:
+                    figure.add(label, colour(k), curves[label][quantity]["x"],
+                               curves[label][quantity]["y"])
+            exact = next((found[f"exact:{quantity}"] for found in curves.values()
+                          if f"exact:{quantity}" in found), None)
+            if exact:
+                figure.add("exact", EXACT, exact["x"], exact["y"], exact=True)
+            if figure.curves:
+                self.figures.append(figure)
+
+    def data(self, limit: int) -> list[dict]:
+        largest = max((abs(x) for figure in self.figures for each in figure.curves
+                       for x in each["x"]), default=0.0)
+        return [{**figure.data(limit, scaled_unit(largest, "s")), "legend": False,
+                 "group": self.name} for figure in self.figures]
+
+    def html(self) -> str:
+        if not self.figures:
+            return ""
+        chips = "".join(f'<button class="chip" data-group="{self.name}" aria-pressed="true" '
+                        f'style="--c: {colour(k)}">{html.escape(label)}</button>'
+                        for k, label in enumerate(self.runs))
+        if any(each["exact"] for figure in self.figures for each in figure.curves):
+            chips += (f'<button class="chip" data-group="{self.name}" aria-pressed="true" '
+                      f'style="--c: {EXACT}">exact</button>')
+        note = ('<p class="note">Touch a name to hide or show its curves in all figures; twice to '
+                "see it alone. Dashed: closed form.</p>")
+        plots = "".join(canvas_of(figure) for figure in self.figures)
+        return section(self.title, f'{note}<div class="chips">{chips}</div>'
+                       f'<div class="figures">{plots}</div>')
+
+
+# ---- parts ------------------------------------------------------------
+
+
+def claims_html(facts: dict) -> str:
+    kinds = {"holds": "ok", "does not hold": "failed"}
+    parts = []
+    for claim in facts["claims"]:
+        rows = ""
+        for check in claim["checks"]:
+            values = "".join(
+                f'<li class="{"" if each["holds"] is None else "ok" if each["holds"] else "off"}">'
+                f'<span>{html.escape(each["run"])}</span> <b>{html.escape(each["shown"])}</b></li>'
+                for each in check["measured"])
+            rows += (f'<p class="note"><code>{html.escape(check["value"])}</code> '
+                     f'{html.escape(check["expected"])}</p><ul class="values">'
+                     f'{values or "<li>no run</li>"}</ul>')
+        note = f'<p>{html.escape(claim["note"])}</p>' if claim["note"] else ""
+        kind = kinds.get(claim["verdict"], "part")
+        parts.append(f'<details class="claim"><summary><span>{html.escape(claim["text"])}</span>'
+                     f'<span class="badge {kind}">{claim["verdict"]}</span></summary>'
+                     f"{note}{rows}</details>")
+    note = '<p class="note">Open a claim to see the measured values behind its verdict.</p>'
+    return section("Claims against measured values", note + "".join(parts)) if parts else ""
+
+
+def trade_html(study: Study, facts: dict, results: list[Result]) -> str:
+    costs = [key for key in COSTS if any(result.cost[key] is not None for result in results)]
+    if not costs:
+        return ""
+    options = "".join(
+        f'<option value="{key}"{" selected" if key == facts["cost_of_fronts"] else ""}>'
+        f"{html.escape(COST_WORDS[key])}</option>" for key in costs)
+    choose = f'<label class="choose">Cost: <select id="cost">{options}</select></label>'
+    plots = "".join(canvas_of(Figure(f"trade_{error.name}", words_of(error.name).capitalize(),
+                                     "", "")) for error in study.errors)
+    tables = ""
+    for error in study.errors:
+        best = front(results, error.name, facts["cost_of_fronts"])
+        rows = [[result.label, shown(result.cost[facts["cost_of_fronts"]]),
+                 shown(result.errors[error.name])] for result in best]
+        tables += (f"<h3>{html.escape(words_of(error.name).capitalize())}</h3>" + table_of(
+            ["run", COST_WORDS[facts["cost_of_fronts"]], "error"], rows))
+    note = ('<p class="note">Ringed and joined: the front, runs that no other beats in both. Touch '
+            f"a point for its settings. {html.escape(timing_text(facts))}</p>")
+    return section("Cost against error", f'{choose}{note}<div id="groups" class="chips"></div>'
+                   f'<div class="figures">{plots}</div><details><summary>Fronts as tables'
+                   f"</summary>{tables}</details>")
+
+
+def convergence_data(study: Study, results: list[Result]) -> list[dict]:
+    found = []
+    for number, figure in enumerate(study.figures):
+        series = series_of(results, figure) if "convergence" in figure else []
+        if series:
+            found.append({
+                "name": f"convergence{number}", "knob": words_of(figure["knob"]),
+                "title": figure.get("title", f"{words_of(figure['convergence']).capitalize()} "
+                                    f"against {words_of(figure['knob'])}"),
+                "error": words_of(figure["convergence"]),
+                "series": [{**each, "colour": colour(k)} for k, each in enumerate(series)]})
+    return found
+
+
+def convergence_html(data: list[dict]) -> str:
+    plots, rows = "", []
+    for figure in data:
+        plots += canvas_of(Figure(figure["name"], figure["title"], "", ""))
+        rows += [[each["label"], words_of(each["error"]), words_of(each["knob"]),
+                  f"{each['order']:.2f}", "  ".join(f"{step:.2f}" for step in each["steps"])]
+                 for each in figure["series"]]
+    table = table_of(["series", "error", "against", "fitted order", "from point to point"], rows)
+    return section("Orders of convergence",
+                   f'<div class="figures">{plots}</div>{table}') if data else ""
+
+
+def runs_html(study: Study, results: list[Result]) -> str:
+    costs = [key for key in COSTS if any(result.cost[key] is not None for result in results)]
+    headings = ["run", "status", *(error.name for error in study.errors), *costs]
+    swept = any(result.point.sweep for result in results)
+    rows = [[(f"{result.point.sweep}: " if swept else "") + result.label, result.status,
+             *("" if value is None else f"{value:.4g}" for value in (
+                 *result.errors.values(), *(result.cost[key] for key in costs)))]
+            for result in results]
+    kinds = ["" if result.status == "completed" else "failed" for result in results]
+    said = [f"<li><b>{html.escape(result.label)}</b>: {html.escape(result.record['message'])}</li>"
+            for result in results if result.record["message"]]
+    table = table_of(headings, rows, kinds).replace("<table>", '<table class="sortable">')
+    messages = f"<h3>What was said of the others</h3><ul>{''.join(said)}</ul>" if said else ""
+    return section("All runs", '<p class="note">Touch a heading to sort.</p>' + table + messages)
+
+
+def details_html(facts: dict) -> str:
+    rows = [[each["name"], each["of"], each["how"], each["against"], each["relative_to"]]
+            for each in facts["errors"]]
+    parts = table_of(["error", "of", "how", "against", "relative to"], rows)
+    if facts["reference"]:
+        settings = ", ".join(f"{k} = {shown(v)}"
+                             for k, v in facts["reference"]["settings"].items())
+        parts += (f"<p>Reference run: {html.escape(facts['reference']['scene'])} with "
+                  f"{html.escape(settings or 'its own values')}.</p>")
+    parts += (f"<p>{html.escape(machine_text(facts))}. Bodies: "
+              f"{'in one process' if facts['placement'] == 'local' else 'a process each'}.</p>")
+    return section("How it was measured", parts)
+
+
+def page_of(study: Study, results: list[Result], facts: dict, out: Path, template: Path,
+            library: str, limit: int) -> str:
+    groups = [Curves(number, spec, results, out) for number, spec in enumerate(study.figures)
+              if "histories" in spec]
+    orders = convergence_data(study, results)
+    first = study.knobs[0] if study.knobs else ""
+    names = [result.point.variant or (f"{words_of(first)} {shown(result.point.knobs[first])}"
+                                      if first in result.point.knobs else "")
+             for result in results]
+    kinds = list(dict.fromkeys(names))
+    runs = [{"label": result.label, "sweep": result.point.sweep, "group": name,
+             "colour": colour(kinds.index(name)), "status": result.status,
+             "settings": [f"{key} = {shown(value)}" for key, value in
+                          (result.point.knobs or result.point.settings).items()],
+             "cost": result.cost, "errors": result.errors}
+            for result, name in zip(results, names)]
+    status = ", ".join(f"{count} {word}" for word, count in facts["status"].items())
+    data = {"runs": runs, "errors": [error.name for error in study.errors],
+            "costs": COST_WORDS, "convergence": orders,
+            "histories": [each for group in groups for each in group.data(limit)]}
+    about = "".join(f"<p>{html.escape(text)}</p>" for text in study.about.split("\n\n") if text)
+    return filled(
+        template, library, title=html.escape(study.title), status=html.escape(status),
+        kind="ok" if facts["status"].get("completed") else "failed", about=about,
+        claims=claims_html(facts), trade=trade_html(study, facts, results),
+        convergence=convergence_html(orders), histories="".join(each.html() for each in groups),
+        runs=runs_html(study, results), details=details_html(facts), data=script_json(data))
