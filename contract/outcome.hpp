@@ -26,9 +26,9 @@ struct BodyRecord {
   std::vector<double> momentum;   // [kg m/s] (dim)
 };
 
-/// What a body with kicks at a massive contact node knows about its rebound (docs/METHOD.md): the
-/// coordinator forms the release impulse of a pair from the data of both sides. All along the
-/// outward normal.
+/// What a body with a massive contact node knows about impulses on it (docs/METHOD.md): the
+/// coordinator forms the impulses of a pair at impact and release from the data of both sides. All
+/// along the outward normal.
 struct Rebound {
   double node_velocity = 0.0;    // [m/s] force-free half-step velocity of the contact node, w0*
   double nodal_velocity = 0.0;   // [m/s] its velocity at the present time, between the half steps
@@ -36,7 +36,7 @@ struct Rebound {
   double node_mobility = 0.0;    // [1/kg] G0: velocity of the contact node per unit impulse on it
   // [1/kg] G1: velocity of its neighbour per unit impulse on the contact node
   double inner_mobility = 0.0;
-  // [J] work that contact has taken from the body since the port closed, W
+  // [J] work that contact has taken from the body since the port closed, W; 0 where that is unknown
   double captured = 0.0;
 };
 
@@ -47,7 +47,7 @@ struct PortResponse {
   std::vector<double> upper;       // substeps of each record's part of the window
   double approach_bound = 0.0;
   double approach_acceleration = 0.0;  // [m/s^2] by which body forces may raise that bound
-  std::optional<Rebound> rebound;  // only bodies with contact kicks
+  std::optional<Rebound> rebound;  // only bodies with massive contact nodes
 };
 
 /// A body's reply to a window. Reused between windows: buffers keep their memory.

@@ -174,9 +174,8 @@ void Controller::step_window() {
 }
 
 void Controller::step_chattering(const TimeWindow& window) {
-  // Contact comes and goes within substeps: no more events are located, every substep decides for
-  // itself. Leaving the sides free instead would let them overlap, and closing an overlap later
-  // would make energy out of nothing.
+  // No more events are located, every substep decides for itself. Leaving the sides free instead
+  // would let them overlap, and closing an overlap later would make energy out of nothing.
   std::vector<int> touching;
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     Interface& interface = coupling_.interfaces[i];
@@ -415,6 +414,7 @@ void Controller::close(int index, double time, double speed) {
   interface.closing_speed = speed;
   interface.force_scale = 0.0;
   Coupling::Rule& rule = coupling_.rules[static_cast<std::size_t>(index)];
+  if (rule.projection) interface.release_impulse = closing_impulse(interface, bodies_);
   if (!rule.role_fixed) {
     interface.kinematic = scene_.schwarz.parallel
                               ? coarser_side(interface, bodies_)

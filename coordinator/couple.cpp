@@ -89,7 +89,7 @@ void add_published(const InterfaceSpec& spec, const DirichletNeumannTransmission
         "Give form: alternating and an accelerator of none, relaxation, aitken or anderson.");
   }
   coupling.transmissions.push_back(std::make_unique<DirichletNeumann>());
-  coupling.rules.push_back({true, how.swap_every_window, true});
+  coupling.rules.push_back({true, how.swap_every_window, true, how.impact_projection});
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ struct Coupling {
     bool published = false;  // dirichlet_neumann: decided at window starts, no event location
     bool swap = false;       // published form: roles swap after every window in contact
     bool role_fixed = true;  // false: by probe at first touch
+    bool projection = false;  // published form: plastic impact of the contact nodes at first touch
   };
 
   std::vector<Interface> interfaces;

@@ -72,6 +72,8 @@ void DirichletNeumannTransmission::fields(Fields& f) {
   f.required("dirichlet", dirichlet, "", "side on which motion is imposed first, as body.port");
   f.optional("swap_every_window", swap_every_window, "",
              "exchange of the roles in every window, as published");
+  f.optional("impact_projection", impact_projection, "",
+             "common velocity of both contact nodes at first touch, of the same momentum");
 }
 
 void InterfaceSpec::fields(Fields& f) {

@@ -78,6 +78,7 @@ struct DirichletNeumannTransmission {
   static constexpr std::string_view name = "dirichlet_neumann";
   std::string dirichlet;          // body.port
   bool swap_every_window = true;  // as published
+  bool impact_projection = false;
   void fields(Fields& f);
 };
 

@@ -274,8 +274,14 @@ double Body::force_on_body(int end, const BoundaryData& data) const {
   const ContactLayer layer = bar_->data().layer[static_cast<std::size_t>(end)];
   if (layer == ContactLayer::massive) {
     // As published: what is handed over is the internal force of the contact node, without its
-    // inertia.
-    return data.closed() ? scheme_.integrator->internal_force(state_, end) : 0.0;
+    // inertia. A complete reaction holds both.
+    if (!data.closed()) return 0.0;
+    const double internal = scheme_.integrator->internal_force(state_, end);
+    if (!bar_->data().complete_reaction) return internal;
+    if (data.motion.empty())
+      return -Bar::outward(end) * state_.end[static_cast<std::size_t>(end)].force;
+    const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));
+    return internal + bar_->row_mass()[node] * (state_.a[node] - bar_->data().body_force);
   }
   return -Bar::outward(end) * state_.end[static_cast<std::size_t>(end)].force;
 }
@@ -359,7 +365,7 @@ void Body::finish_ports(Response& response) {
     const EndState& e = state_.end[static_cast<std::size_t>(end)];
     PortResponse& port = response.ports[p];
     if (!e.closed) approach(end, port);
-    if (support_[end] != ForceSupport::step) continue;
+    if (bar_->data().layer[static_cast<std::size_t>(end)] == ContactLayer::massless) continue;
     const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));
     const std::size_t inner = static_cast<std::size_t>(bar_->inner_of(end));
     const double half = 0.5 * scheme_.step;

@@ -41,6 +41,10 @@ void CentralDifferenceSpec::fields(Fields& f) {
       "number of terms that correct the dispersion of the lumped bar; 1 is the plain scheme, 2 "
       "equals the averaged mass to leading order; each term costs one more internal force",
       between(1, 30));
+  f.optional("bulk_viscosity", bulk_viscosity, "",
+             "linear bulk viscosity, as the damping ratio of the shortest wave; lowers the stable "
+             "step",
+             between(0.0, 1.0));
 }
 
 void NewmarkSpec::fields(Fields& f) {
@@ -74,6 +78,18 @@ void MasslessSpec::fields(Fields& f) {
       "factor on the stiffness of the contact element; 4/3 is the distance to the centroid of the "
       "mass moved inwards",
       positive);
+}
+
+void MassiveSpec::fields(Fields& f) {
+  f.optional("stabilised", stabilised, "",
+             "dropping of the contact node's acceleration after every substep in contact, as "
+             "published");
+  f.word("reaction", complete_reaction, {"internal", "complete"},
+         "force handed over by the side whose motion is prescribed: internal force of the contact "
+         "node as published, or with its inertia");
+  f.check(!stabilised || !complete_reaction, "reaction",
+          "is complete, but stabilised drops the inertia that it holds",
+          "Give reaction: internal, or stabilised: false.");
 }
 
 void InitialSpec::fields(Fields& f) {

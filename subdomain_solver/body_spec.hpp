@@ -46,6 +46,7 @@ struct CentralDifferenceSpec {
   static constexpr std::string_view name = "central_difference";
   double step = 0.0;  // [s]
   int dispersion_terms = 1;
+  double bulk_viscosity = 0.0;
   void fields(Fields& f);
 };
 struct NewmarkSpec {
@@ -78,7 +79,9 @@ struct KickSpec {
 };
 struct MassiveSpec {
   static constexpr std::string_view name = "massive";
-  void fields(Fields&) {}
+  bool stabilised = false;
+  bool complete_reaction = false;  // "reaction: internal | complete"
+  void fields(Fields& f);
 };
 
 struct InitialSpec {

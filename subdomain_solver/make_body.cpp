@@ -74,6 +74,7 @@ struct SchemeMaker {
     }
     std::string words = fmt::format("central difference, step {:g} s, CFL {:.3g}", s.step,
                                     s.step / (bar.spacing() / bar.data().wave_speed()));
+    if (s.bulk_viscosity > 0.0) words += fmt::format(", bulk viscosity {:g}", s.bulk_viscosity);
     if (s.dispersion_terms > 1) words += fmt::format(", {} dispersion terms", s.dispersion_terms);
     return {std::make_unique<CentralDifference>(bar, s.step, s.dispersion_terms), s.step, true,
             words};
@@ -95,6 +96,12 @@ struct SchemeMaker {
 
 void check_layers(const BodySpec& spec, const BarProperties& bar, const Place& place) {
   const bool explicit_scheme = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+  if (bar.complete_reaction && !explicit_scheme) {
+    place.refuse("contact_layer.massive.reaction",
+                 "complete is not offered by implicit integrators",
+                 "Give reaction: internal, or use contact_layer massless: an implicit step with a "
+                 "massive contact node and a complete reaction is unstable.");
+  }
   int massless = 0;
   for (std::size_t e : {0u, 1u}) {
     if (bar.layer[e] == ContactLayer::kick && !explicit_scheme) {
@@ -139,6 +146,12 @@ std::optional<BarProperties> bar_properties(const BodySpec& spec) {
         return MassForm::lumped;
       },
       *spec.integrator);
+  if (const auto* s = std::get_if<CentralDifferenceSpec>(&*spec.integrator))
+    bar.bulk_viscosity = s->bulk_viscosity;
+  if (const MassiveSpec* massive = std::get_if<MassiveSpec>(&spec.contact_layer)) {
+    bar.stabilised = massive->stabilised;
+    bar.complete_reaction = massive->complete_reaction;
+  }
   if (const MasslessSpec* massless = std::get_if<MasslessSpec>(&spec.contact_layer)) {
     bar.stiffness_factor = massless->stiffness_factor;
   }

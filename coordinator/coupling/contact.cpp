@@ -110,6 +110,20 @@ double peak_force(const Interface& interface, const Bodies& bodies) {
   return peak;
 }
 
+double closing_impulse(const Interface& interface, const Bodies& bodies) {
+  double approach = 0.0;  // sum of w0
+  double mobility = 0.0;  // sum of G0
+  for (const Side& side : interface.sides) {
+    if (std::isinf(bodies.describe(side.body).mass)) continue;
+    const PortResponse& port =
+        bodies.response(side.body).ports[static_cast<std::size_t>(side.port)];
+    if (!port.rebound) return 0.0;
+    approach += port.rebound->nodal_velocity;
+    mobility += port.rebound->node_mobility;
+  }
+  return mobility > 0.0 ? std::max(0.0, approach / mobility) : 0.0;
+}
+
 double release_impulse(const Interface& interface, const Bodies& bodies) {
   double approach = 0.0;  // sum of w0* - w1*
   double mobility = 0.0;  // sum of G0 - G1

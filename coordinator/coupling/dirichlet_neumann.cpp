@@ -14,6 +14,12 @@ void DirichletNeumann::begin(const TimeWindow& window, const Interface& interfac
   u_begin_ = trace.u[now];
   v_begin_ = trace.v[now];
   a_begin_ = trace.a[now];
+  // the guess holds the velocity after the impulse that this window begins with
+  const PortResponse& port = bodies.response(n.body).ports[static_cast<std::size_t>(n.port)];
+  if (port.rebound) {
+    v_begin_ -= interface.normal_of(1 - interface.kinematic) * port.rebound->node_mobility *
+                interface.release_impulse;
+  }
   scale_.step = grid_.step;
   scale_.velocity = interface.closing_speed;
   scale_.roundoff = 64.0 * std::numeric_limits<double>::epsilon() * std::abs(u_begin_);

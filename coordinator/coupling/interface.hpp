@@ -30,7 +30,7 @@ struct Interface {
   double closing_speed = 0.0;                                   // [m/s] at the last first touch
   double force_scale = 0.0;      // [N] largest contact force since it closed
   double rebound_impulse = 0.0;  // [N s] that a release now would give back
-  double release_impulse = 0.0;  // [N s] to be applied at the next window's begin
+  double release_impulse = 0.0;  // [N s] of impact or release, for the next window's begin
 
   void state(Archive& archive);
 

@@ -30,6 +30,11 @@ struct BarProperties {
   double stiffness_factor = 1.0;  // of the contact element behind a massless port, kappa
   std::array<bool, 2> fixed = {false, false};  // left, right end
   std::array<ContactLayer, 2> layer = {ContactLayer::none, ContactLayer::none};
+  // Of massive contact nodes: their acceleration is dropped after every substep in contact.
+  bool stabilised = false;
+  // Of massive contact nodes: the reaction to prescribed motion holds the node's inertia.
+  bool complete_reaction = false;
+  double bulk_viscosity = 0.0;  // damping ratio at the grid's cut-off, explicit bars
 
   double wave_speed() const;  // sqrt(E / rho) [m/s]
   double impedance() const;   // rho c A [kg/s]
@@ -62,7 +67,8 @@ class Bar {
   static double outward(int end) { return end == 0 ? -1.0 : 1.0; }
 
   /// Largest step for which central difference with the row-sum mass is stable [s]: 2 / omega with
-  /// omega^2 the Gershgorin bound of M^-1 K; on a uniform bar exactly h / c.
+  /// omega^2 the Gershgorin bound of M^-1 K, on a uniform bar exactly h / c, and less with bulk
+  /// viscosity.
   double stable_step() const;
 
   /// Internal force K x [N] (nodes).

@@ -73,6 +73,12 @@ class BarIntegrator {
   bool is(int end, ContactLayer layer) const {
     return bar_.data().layer[static_cast<std::size_t>(end)] == layer;
   }
+  /// The published stabilisation: a massive contact node enters the next step without acceleration.
+  void drop_acceleration(BarState& state, int end) const {
+    const bool closed = state.end[static_cast<std::size_t>(end)].closed;
+    if (bar_.data().stabilised && closed && is(end, ContactLayer::massive))
+      state.a[static_cast<std::size_t>(bar_.node_of(end))] = 0.0;
+  }
   /// Records role changes; true when an end opened or closed since the last substep.
   bool update_closed(BarState& state, const EndActions& actions) const;
 

@@ -11,8 +11,10 @@ namespace abut {
 /// With `terms` P > 1 the internal force is K u~, u~ = u + c2 D u + c3 D^2 u + ..., D = (h/c)^2
 /// M^-1 K, which removes the dispersion of the lumped bar up to order 2P; P = 2 is the averaged
 /// mass to leading order.
-/// Conserved: 1/2 v M v + 1/2 u K u~ - dt^2/8 a M a at the nodal times, which is the staggered
-/// energy 1/2 v(-) M v(+) + 1/2 u K u~ between them.
+/// Bulk viscosity b adds the dashpot b rho c A to every element, driven by the velocity of the last
+/// half step; the element of a massless port has none.
+/// Conserved without it: 1/2 v M v + 1/2 u K u~ - dt^2/8 a M a at the nodal times, which is the
+/// staggered energy 1/2 v(-) M v(+) + 1/2 u K u~ between them.
 class CentralDifference final : public BarIntegrator {
  public:
   CentralDifference(const Bar& bar, double step, int terms);
@@ -56,6 +58,8 @@ class CentralDifference final : public BarIntegrator {
   void resolve_kick(BarState& state, int end, const EndAction& action, double dt);
   double reaction_of(const BarState& state, int end) const;
   bool simple() const { return terms_ == 1; }
+  bool viscous() const { return bar_.data().bulk_viscosity > 0.0; }
+  void add_viscous_force(const std::vector<double>& v, std::vector<double>& force) const;
 
   double step_;
   int terms_;
@@ -65,7 +69,7 @@ class CentralDifference final : public BarIntegrator {
   std::vector<double> ratio_;     // c_q / c_{q-1}, q = 2..P
   std::vector<double> smoothed_;  // u~ at the present substep (scratch; equals u when P = 1)
   mutable std::vector<double> work_a_, work_b_, work_s_;
-  std::vector<double> force_;
+  std::vector<double> force_, viscous_;
   EndActions prescribed_;  // last actions of the run: close() overwrites prescribed motion
 };
 

@@ -142,8 +142,9 @@ void GeneralizedAlpha::right_hand_side(const BarState& state, double dt,
     const std::size_t e = static_cast<std::size_t>(end);
     const double known = actions[e].kind == EndAction::Kind::force ? actions[e].dynamic : 0.0;
     const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
-    rhs_[node] -=
-        Bar::outward(end) * ((1.0 - w_.alpha_f) * known + w_.alpha_f * state.end[e].dynamic);
+    // As published, and as HHT-alpha had it first: massive nodes take the force of the step's end.
+    const double before = is(end, ContactLayer::massive) ? known : state.end[e].dynamic;
+    rhs_[node] -= Bar::outward(end) * ((1.0 - w_.alpha_f) * known + w_.alpha_f * before);
   }
   for (int end : {0, 1}) {
     if (!held(end, actions)) continue;
@@ -214,6 +215,7 @@ void GeneralizedAlpha::advance_rates(BarState& state, double dt, const EndAction
     state.v[node] = moving ? action.v : 0.0;
     state.a[node] = moving ? action.a : 0.0;
   }
+  for (int end : {0, 1}) drop_acceleration(state, end);
 }
 
 void GeneralizedAlpha::substep(BarState& state, double dt, const EndActions& actions) {
