@@ -77,7 +77,7 @@ def port_figures(run: Run) -> list[Figure]:
         for name in run.ports():
             if f"{name}.u" not in table:
                 continue
-            colour = colour_of(run.bodies(), name.split(".")[0])
+            colour = colour_of(run.bodies(), run.port(name).get("body", name.split(".")[0]))
             offset = run.port(name).get("position", 0.0) if located else 0.0
             sign = -run.port(name).get("normal", 1.0)
             position.add(name + word, colour, times, plus(table[f"{name}.u"], offset), exact)

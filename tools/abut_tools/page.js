@@ -5,13 +5,22 @@ function darker(colour) {
 }
 function dataset(figure, curve) {
   const colour = curve.exact ? darker(curve.colour) : curve.colour;
+  const width = figure.curves.length > 5 ? 1.75 : 2.75;
   const radius = figure.points || curve.x.length < 2 ? 2 : 0;
   return {
     label: curve.label, data: curve.x.map((x, i) => ({x: x, y: curve.y[i]})),
-    borderColor: colour, backgroundColor: colour, borderWidth: curve.exact ? 1.25 : 2.75,
+    borderColor: colour, backgroundColor: colour, borderWidth: curve.exact ? 1.25 : width,
     borderDash: curve.exact ? [4, 6] : [], pointRadius: radius, pointHitRadius: 8,
     pointHoverRadius: 4, showLine: !figure.points, order: curve.exact ? 0 : 1, tension: 0,
   };
+}
+// Rough curves lie behind calm ones, the exact one lies on top of all.
+function stacked(sets) {
+  const roughness = (set) => set.data.reduce((sum, point, i) =>
+    sum + (i ? Math.abs(point.y - set.data[i - 1].y) : 0), 0);
+  const ranks = sets.filter((set) => set.order > 0).map((set) => [roughness(set), set]);
+  ranks.sort((one, other) => one[0] - other[0]).forEach(([, set], i) => { set.order = i + 1; });
+  return sets;
 }
 function axis(title, more) {
   return Object.assign({
@@ -40,7 +49,7 @@ function draw(figure) {
   const counts = {beginAtZero: true, suggestedMax: 3, ticks: {precision: 0}};
   return new Chart(document.getElementById(figure.name), {
     type: "line",
-    data: {datasets: figure.curves.map((curve) => dataset(figure, curve))},
+    data: {datasets: stacked(figure.curves.map((curve) => dataset(figure, curve)))},
     options: {
       animation: false, normalized: true, parsing: false, maintainAspectRatio: false,
       interaction: {mode: "nearest", axis: "x", intersect: false},

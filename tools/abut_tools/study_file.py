@@ -251,6 +251,25 @@ class Reader:
         return claims
 
 
+def refuse_idle_patterns(reader: Reader, study: Study) -> None:
+    """A claim about runs that do not exist would be a claim about nothing."""
+    labels = [point.label for point in study.points]
+    named = [(figure, ("runs",), f"figures[{i}]") for i, figure in enumerate(study.figures)]
+    named += [(check, ("runs", "below", "above"), f"claims[{i}].checks[{j}]")
+              for i, claim in enumerate(study.claims) for j, check in enumerate(claim["checks"])]
+    for spec, words, key in named:
+        for word in words:
+            patterns = spec.get(word, [])
+            for pattern in [patterns] if isinstance(patterns, str) else patterns:
+                if not any(fnmatchcase(label, pattern) for label in labels):
+                    reader.refuse(f"{key}.{word}", f"no run is labelled '{pattern}'."
+                                  f"{nearest(pattern, labels)} The first is '{labels[0]}'.")
+    twice = {point.label for point in study.points
+             if [(p.sweep, p.label) for p in study.points].count((point.sweep, point.label)) > 1}
+    if twice:
+        reader.refuse("knobs", f"two runs are labelled '{twice.pop()}': a value stands twice.")
+
+
 def read_study(path: Path, abut: Path, is_quick: bool) -> Study:
     reader = Reader(path, KeyList(abut))
     spec = reader.a_map(read_yaml(path), "", "")
@@ -279,10 +298,13 @@ def read_study(path: Path, abut: Path, is_quick: bool) -> Study:
         reference = Point("reference", "", "", scene_path, {}, settings, "reference")
     errors = reader.errors(reader.a_map(spec.get("errors", {}), "errors"), reference is not None)
     repeats = reader.a_number(spec.get("repeats", 1), "repeats", 1)
-    return Study(
+    study = Study(
         path, title, str(spec.get("about", "")), points, errors, knobs,
         1 if is_quick else int(repeats),
         reader.choice(spec.get("placement", "local"), "placement", ("local", "processes")),
         reader.a_number(spec.get("time_limit", 600.0), "time_limit", 0.0),
         reader.figures(spec.get("figures", []), errors, knobs),
         reader.claims(spec.get("claims", [])), reference)
+    if not is_quick:  # the short form has not all runs
+        refuse_idle_patterns(reader, study)
+    return study

@@ -62,7 +62,8 @@ def read(reader, found: dict, key: str) -> list[Knob]:
         if isinstance(keys, list):
             keys = {scene_key: None for scene_key in keys}
         for scene_key, own in reader.a_map(keys, f"{place}.set").items():
-            if own is not None and len(reader.a_list(own, f"{place}.set.{scene_key}")) != len(values):
+            own = None if own is None else reader.a_list(own, f"{place}.set.{scene_key}")
+            if own is not None and len(own) != len(values):
                 reader.refuse(f"{place}.set.{scene_key}",
                               f"has {len(own)} values, the knob has {len(values)}.")
         knobs.append(Knob(name, list(values), keys))

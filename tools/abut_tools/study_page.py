@@ -138,6 +138,12 @@ def trade_html(study: Study, facts: dict, results: list[Result]) -> str:
         f'<option value="{key}"{" selected" if key == facts["cost_of_fronts"] else ""}>'
         f"{html.escape(COST_WORDS[key])}</option>" for key in costs)
     choose = f'<label class="choose">Cost: <select id="cost">{options}</select></label>'
+    sweeps = list(dict.fromkeys(result.point.sweep for result in results))
+    if len(sweeps) > 1:
+        words = "".join(f'<option value="{html.escape(name)}">{html.escape(name)}</option>'
+                        for name in sweeps)
+        choose += (' <label class="choose">Runs: <select id="sweep"><option value="">all</option>'
+                   f"{words}</select></label>")
     plots = "".join(canvas_of(Figure(f"trade_{error.name}", words_of(error.name).capitalize(),
                                      "", "")) for error in study.errors)
     tables = ""
@@ -180,14 +186,28 @@ def convergence_html(data: list[dict]) -> str:
                    f'<div class="figures">{plots}</div>{table}') if data else ""
 
 
+def number(value: float | None) -> str:
+    if value is None or isinstance(value, int):
+        return "" if value is None else str(value)
+    return f"{value:.4g}"
+
+
+def cost_text(result: Result, key: str) -> str:
+    text = number(result.cost[key])
+    if key == "wall_s_median" and text and result.cost["wall_s_min"] < result.cost["wall_s_max"]:
+        text += f" ({result.cost['wall_s_min']:.3g} to {result.cost['wall_s_max']:.3g})"
+    return text
+
+
 def runs_html(study: Study, results: list[Result]) -> str:
-    costs = [key for key in COSTS if any(result.cost[key] is not None for result in results)]
-    headings = ["run", "status", *(error.name for error in study.errors), *costs]
+    costs = [key for key in COSTS if key not in ("wall_s_min", "wall_s_max")
+             and any(result.cost[key] is not None for result in results)]
+    headings = ["run", "status", *(words_of(error.name) for error in study.errors),
+                *(COST_WORDS[key] for key in costs)]
     swept = any(result.point.sweep for result in results)
     rows = [[(f"{result.point.sweep}: " if swept else "") + result.label, result.status,
-             *("" if value is None else f"{value:.4g}" for value in (
-                 *result.errors.values(), *(result.cost[key] for key in costs)))]
-            for result in results]
+             *(number(value) for value in result.errors.values()),
+             *(cost_text(result, key) for key in costs)] for result in results]
     kinds = ["" if result.status == "completed" else "failed" for result in results]
     said = [f"<li><b>{html.escape(result.label)}</b>: {html.escape(result.record['message'])}</li>"
             for result in results if result.record["message"]]

@@ -6,7 +6,7 @@ import statistics
 from abut_tools.study_file import Point, Study
 from abut_tools.study_take import matches
 
-FORM_NAMES = ("begin", "end", "duration", "force", "closing_speed")
+CLEARLY = 0.01
 
 
 def costs_of(record: dict, timed: bool) -> dict:
@@ -79,13 +79,14 @@ def cost_key(results: list[Result]) -> str:
 
 
 def front(results: list[Result], error: str, cost: str) -> list[Result]:
-    """Those that no other beats in both, cheapest first."""
+    """Those that no other beats in both, cheapest first; paying more must better the error by more
+    than CLEARLY, else round-off alone would put runs on the front."""
     able = [result for result in results
             if result.cost[cost] is not None and result.errors[error] is not None]
     able.sort(key=lambda result: (result.cost[cost], abs(result.errors[error])))
     kept, best = [], math.inf
     for result in able:
-        if abs(result.errors[error]) < best:
+        if abs(result.errors[error]) < (1.0 - CLEARLY) * best:
             best = abs(result.errors[error])
             kept.append(result)
     return kept

@@ -81,9 +81,9 @@ def curve(times: list, values: list | None) -> dict | None:
     return {"x": [rounded(t, 8) for t in x], "y": [rounded(v, 6) for v in y]}
 
 
-def quantity_of(name: str, port: str, table: dict, summary: dict) -> list | None:
+def quantity_of(name: str, body: str, port: str, table: dict, summary: dict) -> list | None:
     """One of study_file.QUANTITIES but errors, from a table of columns."""
-    body, facts = port.split(".")[0], summary.get("ports", {}).get(port, {})
+    facts = summary.get("ports", {}).get(port, {})
     if name == "position":
         column, offset, sign = table.get(f"{port}.u"), facts.get("position", 0.0), 1.0
     elif name == "velocity":
@@ -95,16 +95,18 @@ def quantity_of(name: str, port: str, table: dict, summary: dict) -> list | None
     return column and [None if v is None else sign * v + offset for v in column]
 
 
-def curves_of(port: str, wanted: list[str], run: dict, exact: dict, summary: dict) -> dict:
-    """By name: the run's curve, and with `exact:` before it that of the closed form."""
+def curves_of(port: str, own: str, wanted: list[str], run: dict, exact: dict,
+              summary: dict) -> dict:
+    """By name: the run's curve, and with `exact:` before it that of the closed form. `own` is what
+    the run calls the port."""
     form, found, body = summary.get("closed_form", {}), {}, port.split(".")[0]
     jumps = [form[key] for key in ("begin", "end") if key in form]
     for name in wanted:
         kind = name.removesuffix("_error")
-        got = quantity_of(kind, port, run, summary)
+        got = quantity_of(kind, body, own, run, summary)
         if kind == name:
             found[name] = curve(run["time"], got)
-            right = quantity_of(name, port, exact, summary)
+            right = quantity_of(name, body, own, exact, summary)
             if right:
                 times, right = (with_jumps(exact["time"], right, jumps)
                                 if name in ("velocity", "force") else (exact["time"], right))
@@ -117,6 +119,17 @@ def curves_of(port: str, wanted: list[str], run: dict, exact: dict, summary: dic
                 None if g is None or r is None else 100.0 * (g - r) / largest
                 for g, r in zip(got, right)])
     return {name: each for name, each in found.items() if each}
+
+
+def port_in(table: Path, port: str) -> str:
+    """The port's name in this run: a body that holds `left` as a member may call it X.left_tip."""
+    if not table.is_file():
+        return port
+    with table.open(newline="", encoding="utf-8") as file:
+        names = [re.sub(r" \[.*\]$", "", name) for name in next(csv.reader(file), [])]
+    found = [name.removesuffix(".u") for name in names
+             if name.endswith(f".{port.replace('.', '_')}.u")]
+    return port if f"{port}.u" in names or not found else found[0]
 
 
 def figures_for(study: Study, label: str) -> dict[str, list[str]]:
@@ -139,9 +152,10 @@ def take(study: Study, label: str, folder: Path, reference: Path | None) -> dict
     over_time = [error for error in study.errors if error.history]
     wanted = {name for error in over_time for name in error.history}
     drawn = figures_for(study, label)
+    own = {port: port_in(folder / "history.csv", port) for port in drawn}
     for port in drawn:
         body = port.split(".")[0]
-        wanted |= {f"{port}.{name}" for name in ("u", "v", "force")}
+        wanted |= {f"{own[port]}.{name}" for name in ("u", "v", "force")}
         wanted |= {f"{body}.{name}" for name in (*ENERGIES, "mean_velocity")}
     if not wanted:
         return {"errors": {}, "curves": {}}
@@ -151,5 +165,5 @@ def take(study: Study, label: str, folder: Path, reference: Path | None) -> dict
     fine = read_columns(reference / "history.csv", wanted) if reference else {}
     return {"errors": {error.name: history_error(error, run, exact, fine)
                        for error in over_time},
-            "curves": {port: curves_of(port, names, run, exact, summary)
+            "curves": {port: curves_of(port, own[port], names, run, exact, summary)
                        for port, names in drawn.items()}}
