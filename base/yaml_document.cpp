@@ -103,6 +103,14 @@ YAML::Node replaced(const YAML::Node& node, const std::string& step, const YAML:
 
 /// A map with one more entry, or with the entry replaced. Copies, because a YAML alias shares its
 /// map with the anchor and only one of the two is meant.
+/// The map without one of its keys.
+YAML::Node without(const YAML::Node& map, const std::string& key) {
+  YAML::Node rest(YAML::NodeType::Map);
+  for (const auto& pair : map)
+    if (pair.first.Scalar() != key) rest[pair.first] = pair.second;
+  return rest;
+}
+
 YAML::Node with_value(const YAML::Node& node, const std::vector<std::string>& steps, std::size_t at,
                       const YAML::Node& value, const std::string& where) {
   if (at == steps.size()) return value;
@@ -112,6 +120,7 @@ YAML::Node with_value(const YAML::Node& node, const std::vector<std::string>& st
     throw InputError("has no place in the scene", where,
                      index ? "Name an item that the list has, counted from 0."
                            : "Name a key of a map; all but the last key must lead to maps.");
+  if (value.IsNull() && at + 1 == steps.size() && node.IsMap()) return without(node, steps[at]);
   const YAML::Node next = found ? found->node : YAML::Node(YAML::NodeType::Map);
   return replaced(node, steps[at], with_value(next, steps, at + 1, value, where));
 }

@@ -320,6 +320,11 @@ TEST(Overrides, ReplaceAddAndReachIntoLists) {
   EXPECT_EQ(all.extra->end, 4.0);
 }
 
+TEST(Overrides, NullTakesTheKeyOut) {
+  EXPECT_FALSE(parsed(full, {"extra=null"}).extra.has_value());
+  EXPECT_NE(refusal(minimal, {"length=null"}).find("length"), std::string::npos);  // required
+}
+
 TEST(Overrides, CreateMapsOnTheWay) {
   EXPECT_EQ(parsed(minimal, {"span.begin=-5"}).span.begin, -5.0);
 }
