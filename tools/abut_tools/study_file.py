@@ -138,7 +138,8 @@ class Reader:
                 knob.values = knob.values[:quick.get("keep", 2)]
         points = []
         for variant, where in self.variants_of(spec, sweep, key):
-            path, plain = self.scene(variant.get("scene", spec.get("base")), where + "scene")
+            path, plain = self.scene(variant.get("scene", spec.get("base")),
+                                     where + "scene" if "scene" in variant else "base")
             for values in itertools.product(*(range(len(knob.values)) for knob in knobs)):
                 scene = copy.deepcopy(plain)
                 chosen = {knob.name: knob.values[i] for knob, i in zip(knobs, values)}
@@ -179,7 +180,7 @@ class Reader:
                      if any(fnmatchcase(pair[0]["label"], str(pattern)) for pattern in wanted)]
         if not found and "base" not in spec:
             self.refuse("base", "is needed: name a scene, or variants with scenes of their own.")
-        return found or [({}, "base: ")]
+        return found or [({}, "")]
 
     # ---- what is measured ------------------------------------------------------------
 

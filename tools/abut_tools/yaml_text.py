@@ -9,17 +9,20 @@ from abut_tools.tables import ToolError
 
 
 class Loader(yaml.SafeLoader):
-    """PyYAML reads YAML 1.1, where 1e-7 is a word; of two equal keys it silently keeps one."""
+    """PyYAML reads YAML 1.1, where 1e-7 is a word and `off` is false, and keeps the last of two
+    equal keys without a word; the program reads YAML 1.2."""
 
 
 # A list of its own: PyYAML shares that of the parent.
 Loader.yaml_implicit_resolvers = {
-    letter: [(tag, pattern) for tag, pattern in found if tag != "tag:yaml.org,2002:float"]
+    letter: [(tag, pattern) for tag, pattern in found
+             if tag not in ("tag:yaml.org,2002:float", "tag:yaml.org,2002:bool")]
     for letter, found in yaml.SafeLoader.yaml_implicit_resolvers.items()}
 Loader.add_implicit_resolver(
     "tag:yaml.org,2002:float",
     re.compile(r"^[-+]?(\d+\.\d*([eE][-+]?\d+)?|\.\d+([eE][-+]?\d+)?|\d+[eE][-+]?\d+)$"),
     list("-+.0123456789"))
+Loader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(true|false)$"), list("tf"))
 
 
 def map_of(loader: Loader, node: yaml.MappingNode) -> dict:
