@@ -19,11 +19,18 @@ struct Energy {
   double total() const { return kinetic + stored; }
 };
 
+/// State of a member of a body, at the time of the body's record.
+struct MemberRecord {
+  Energy energy;                 // [J]
+  std::vector<double> momentum;  // [kg m/s] (dim)
+};
+
 /// State of a body at one time, as a number or two.
 struct BodyRecord {
   double time = 0.0;              // [s]
-  Energy energy;                  // [J]
+  Energy energy;                  // [J]; of all members and of what acts between them
   std::vector<double> momentum;   // [kg m/s] (dim)
+  std::vector<MemberRecord> members{};  // in the order of Description::members
 };
 
 /// What a body with a massive contact node knows about impulses on it (docs/METHOD.md): the

@@ -23,6 +23,13 @@ struct Capabilities {
   bool complete = false;  // reactions hold the inertia of the contact row: unilateral interfaces
 };
 
+/// A solid inside a body that tables show as if it were a body: monolithic models hold several.
+struct Member {
+  std::string name;
+  double mass = 0.0;                // [kg]
+  std::vector<std::int32_t> ports;  // indices into Description::ports of those that lie on it
+};
+
 struct Description {
   std::string name;
   std::string model;            // one line for people: "fe bar, 200 elements, central difference"
@@ -33,6 +40,7 @@ struct Description {
   double stable_step = 0.0;     // [s] limit of the nominal step; infinity: none
   std::vector<Port> ports;
   Capabilities can;
+  std::vector<Member> members;  // empty: the body is one solid
 };
 
 /// Which traces a response holds.

@@ -83,6 +83,7 @@ class BarImpact {
 struct ClosedForm {
   std::string interface;
   BarImpact impact;
+  std::array<std::string, 2> bodies{};  // of the sides, as tables name them
 };
 
 }  // namespace abut

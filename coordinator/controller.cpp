@@ -179,7 +179,7 @@ void Controller::step_chattering(const TimeWindow& window) {
   std::vector<int> touching;
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     Interface& interface = coupling_.interfaces[i];
-    if (coupling_.rules[i].published) continue;
+    if (!coupling_.rules[i].located()) continue;
     if (!interface.closed) {
       const std::optional<Closing> closing = overlap_criterion(interface, bodies_);
       if (!closing) continue;
@@ -313,7 +313,7 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
   for (Observer* observer : observers_)
     observer->on_window({window, bodies_.responses(), reports_});
   ++end_.windows;
-  if (!partition_.islands.empty()) ++end_.contact_windows;
+  if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
   const bool whole = is_whole(window);
   advance_clock(window.end, whole);
   if (whole) events_here_ = 0;
@@ -382,7 +382,7 @@ void Controller::apply_criteria_at_start(const TimeWindow& window) {
 std::vector<Controller::Event> Controller::first_events(const TimeWindow& window) const {
   std::vector<Event> events;
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
-    if (coupling_.rules[i].published) continue;
+    if (!coupling_.rules[i].located()) continue;
     const Interface& interface = coupling_.interfaces[i];
     if (!interface.closed) {
       if (const std::optional<Closing> c = overlap_criterion(interface, bodies_)) {
@@ -454,11 +454,10 @@ void Controller::prepare(const TimeWindow& window, int records, Sampling samplin
 
 void Controller::fill_reports(const Attempt* attempt) {
   for (std::size_t i = 0; i < reports_.size(); ++i) {
-    reports_[i] = {};
-    reports_[i].closed = coupling_.interfaces[i].closed;
-    reports_[i].kinematic = coupling_.interfaces[i].kinematic;
+    reports_[i] = {coupling_.interfaces[i].closed, coupling_.interfaces[i].kinematic};
   }
   if (attempt == nullptr) return;
+  watch_internal();
   for (std::size_t k = 0; k < partition_.islands.size(); ++k) {
     for (int j : partition_.islands[k].joints) {
       reports_[static_cast<std::size_t>(j)].iterations = attempt->reports[k].iterations;

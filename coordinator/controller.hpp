@@ -69,6 +69,7 @@ class Controller {
   void close(int interface, double time, double speed);
   void prepare(const TimeWindow& window, int records, Sampling sampling);
   void fill_reports(const Attempt* attempt);  // null: all flew free
+  void watch_internal();
   bool is_whole(const TimeWindow& window) const;
   double shortest_step() const;
   double longest_step() const;

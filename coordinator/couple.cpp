@@ -89,7 +89,16 @@ void add_published(const InterfaceSpec& spec, const DirichletNeumannTransmission
         "Give form: alternating and an accelerator of none, relaxation, aitken or anderson.");
   }
   coupling.transmissions.push_back(std::make_unique<DirichletNeumann>());
-  coupling.rules.push_back({true, how.swap_every_window, true, how.impact_projection});
+  coupling.rules.push_back({true, false, how.swap_every_window, true, how.impact_projection});
+}
+
+/// Ports of a body that solves its contact itself show it and take nothing.
+void refuse_members(const Interface& interface, const Bodies& bodies, const std::string& where) {
+  for (const Side& side : interface.sides) {
+    const Description& body = bodies.describe(side.body);
+    require(body.members.empty(), body, where, "solves its contact itself and takes nothing",
+            "Join its two ports with transmission: {internal: {}}, or use single bars.");
+  }
 }
 
 }  // namespace
@@ -108,6 +117,13 @@ Coupling make_coupling(const Scene& scene, const Bodies& bodies) {
     const std::array<Side, 2> sides = {find_side(spec.sides[0], bodies, where),
                                        find_side(spec.sides[1], bodies, where)};
     Interface interface = make_interface(name, sides, bodies);
+    if (std::holds_alternative<InternalTransmission>(spec.transmission)) {
+      coupling.transmissions.push_back(nullptr);  // never closed for the iteration
+      coupling.rules.push_back({.internal = true});
+      coupling.interfaces.push_back(std::move(interface));
+      continue;
+    }
+    refuse_members(interface, bodies, "interfaces." + name);
     if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
       add_unilateral(spec, *unilateral, scene.schwarz.parallel, interface, bodies, coupling);
     } else {

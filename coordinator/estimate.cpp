@@ -22,18 +22,20 @@ void list_features(const Scene& scene, Estimate& e) {
   auto feature = [&e](bool used, const char* name) {
     (used ? e.in_use : e.not_built).emplace_back(name);
   };
-  bool unilateral = false, published = false, connected = false;
+  bool unilateral = false, published = false, internal = false, connected = false;
   for (const auto& [name, interface] : scene.interfaces) {
     const auto& how = interface.transmission;
     unilateral = unilateral || std::holds_alternative<UnilateralTransmission>(how);
     published = published || std::holds_alternative<DirichletNeumannTransmission>(how);
+    internal = internal || std::holds_alternative<InternalTransmission>(how);
   }
   for (const auto& [name, body] : scene.bodies) {
     connected = connected || std::holds_alternative<ConnectLaunch>(body.launch);
   }
-  const bool coupled = !scene.interfaces.empty();
+  const bool coupled = unilateral || published;
   feature(unilateral, "unilateral transmission");
   feature(published, "published Dirichlet-Neumann form");
+  feature(internal, "contact inside a body");
   feature(coupled && scene.schwarz.parallel, "parallel form");
   feature(coupled && std::holds_alternative<KernelAcceleration>(scene.schwarz.accelerator),
           "port kernels");
@@ -43,6 +45,14 @@ void list_features(const Scene& scene, Estimate& e) {
   feature(scene.schwarz.on_nonconvergence == "halve", "halving of windows");
   feature(scene.meta.closed_form.has_value(), "closed form");
   feature(connected, "network");
+}
+
+/// Contact inside bodies alone: nothing is iterated, and nothing flies free.
+bool watched_only(const Scene& scene) {
+  return !scene.interfaces.empty() &&
+         std::all_of(scene.interfaces.begin(), scene.interfaces.end(), [](const auto& entry) {
+           return std::holds_alternative<InternalTransmission>(entry.second.transmission);
+         });
 }
 
 }  // namespace
@@ -76,6 +86,7 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
       start + count * (flights + sweeps * e.contact_windows_high + 2 * per_event * joints);
   e.exchanges_high += e.exchanges_high / 20;  // contact that lasts a little longer, chatter
   if (joints == 0) e.exchanges_high = e.exchanges_low;
+  if (watched_only(scene)) e.exchanges_low = e.exchanges_high = count * (2 + e.windows);
   list_features(scene, e);
   return e;
 }

@@ -6,6 +6,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/yaml_fields.hpp"
+#include "coordinator/record/recorded_bodies.hpp"
 #include "subdomain_solver/body_spec.hpp"
 
 namespace abut {
@@ -16,22 +17,29 @@ std::string path_of(const std::string& body) { return "bodies." + body; }
 /// Reference position [m] and outward normal of a port, as the body itself describes it.
 struct Place {
   double position = 0.0, normal = 0.0;
+  std::string body;  // as tables name it
 };
 
 Place place_of(const PortName& name, const Document& document) {
   const std::unique_ptr<Subdomain> body = make_body(document, path_of(name.body));
-  for (const Port& port : body->describe().ports)
-    if (port.name == name.port) return {port.geometry.points.at(0), port.geometry.normals.at(0)};
+  const std::vector<const Description*> bodies{&body->describe()};
+  const std::vector<Port>& ports = bodies[0]->ports;
+  for (std::size_t p = 0; p < ports.size(); ++p) {
+    if (ports[p].name != name.port) continue;
+    const int recorded = recorded_body_of(bodies, 0, static_cast<int>(p));
+    return {ports[p].geometry.points.at(0), ports[p].geometry.normals.at(0),
+            recorded_bodies(bodies)[static_cast<std::size_t>(recorded)].name};
+  }
   throw InputError("names a port that " + name.body + " does not have",
                    document.where("interfaces"), "Name one of the body's ports.");
 }
 
-BarData bar_data(const PortName& name, double normal, const Document& document) {
+BarData bar_data(const PortName& name, const Place& place, const Document& document) {
   const std::optional<BarProperties> bar =
-      bar_properties(read<BodySpec>(document, path_of(name.body)));
+      bar_properties(read<BodySpec>(document, path_of(name.body)), name.port);
   BarData data;
-  data.name = name.body;
-  data.normal = normal;
+  data.name = place.body;
+  data.normal = place.normal;
   data.wall = !bar;
   if (!bar) return data;
   data.youngs_modulus = bar->youngs_modulus;
@@ -70,11 +78,12 @@ std::optional<ClosedForm> make_closed_form(const Scene& scene, const Document& d
     const std::array<PortName, 2> sides{split_port(interface.sides[0]),
                                         split_port(interface.sides[1])};
     const std::array<Place, 2> places{place_of(sides[0], document), place_of(sides[1], document)};
-    const std::array<BarData, 2> bars{bar_data(sides[0], places[0].normal, document),
-                                      bar_data(sides[1], places[1].normal, document)};
+    const std::array<BarData, 2> bars{bar_data(sides[0], places[0], document),
+                                      bar_data(sides[1], places[1], document)};
     const double gap = places[0].normal * (places[1].position - places[0].position);
     try {
-      return ClosedForm{name, BarImpact(bars, gap, scene.time.begin)};
+      return ClosedForm{
+          name, BarImpact(bars, gap, scene.time.begin), {places[0].body, places[1].body}};
     } catch (const InputError& error) {
       throw InputError(error.what_is_wrong, document.where("meta.closed_form"), error.remedy);
     }

@@ -28,6 +28,7 @@
 #include "coordinator/record/expectations.hpp"
 #include "coordinator/record/measure_recorder.hpp"
 #include "coordinator/record/progress_line.hpp"
+#include "coordinator/record/recorded_bodies.hpp"
 #include "coordinator/record/summary.hpp"
 #include "coordinator/run_directory.hpp"
 #include "coordinator/scene.hpp"
@@ -78,10 +79,11 @@ Placement place(const Scene& scene, const Document& document, bool local,
 }
 
 /// Every expectation names a measure that a run of this scene reports.
-void validate_expectations(const Scene& scene, const Description& body, const Document& document) {
+void validate_expectations(const Scene& scene, const std::vector<const Description*>& bodies,
+                           const Document& document) {
   MeasureScope scope;
-  scope.dim = body.dim;
-  for (const auto& [name, entry] : scene.bodies) scope.bodies.push_back(name);
+  scope.dim = bodies.front()->dim;
+  for (const RecordedBody& body : recorded_bodies(bodies)) scope.bodies.push_back(body.name);
   for (const auto& [name, interface] : scene.interfaces) {
     scope.interfaces.push_back(name);
     scope.ports.insert(scope.ports.end(), interface.sides.begin(), interface.sides.end());
@@ -117,7 +119,7 @@ Validated validate_all(const Scene& scene, const Document& document) {
   const Placement here{nullptr, launch_local(scene, document)};
   validate_bodies(scene, here.descriptions(), document);
   validate_coupling(scene, here, document);
-  validate_expectations(scene, here.bodies.front()->describe(), document);
+  validate_expectations(scene, here.descriptions(), document);
   Validated valid{make_closed_form(scene, document), {}};
   std::optional<double> contact;
   if (valid.form) contact = valid.form->impact.duration();
@@ -138,16 +140,10 @@ std::string resolved_text(const Scene& scene, const Document& document) {
 }
 
 /// The contact and the bodies beside the exact solution; empty when the scene names none.
-std::string against_closed_form(const Scene& scene, const ClosedForm* form,
-                                const Measures& measures, const RunEnd& end) {
+std::string against_closed_form(const ClosedForm* form, const Measures& measures,
+                                const RunEnd& end) {
   if (form == nullptr) return "";
-  for (const auto& [name, interface] : scene.interfaces) {
-    if (name != form->interface) continue;
-    const std::array<std::string, 2> bodies = {split_port(interface.sides[0]).body,
-                                               split_port(interface.sides[1]).body};
-    return closed_form_table(*form, bodies, end.time, measures) + "\n";
-  }
-  return "";
+  return closed_form_table(*form, form->bodies, end.time, measures) + "\n";
 }
 
 /// The result for people; 0, or 1 when an expectation or the run failed.
@@ -158,7 +154,7 @@ int report(const Scene& scene, const ClosedForm* form, const Measures& measures,
   for (const ExpectationResult& result : results) pass = pass && result.pass;
   if (!quiet || (!pass && status != "interrupted")) {
     fmt::print("\n{}\n\n", scene.meta.title);  // apart from the log lines above
-    if (status == "completed") fmt::print("{}", against_closed_form(scene, form, measures, end));
+    if (status == "completed") fmt::print("{}", against_closed_form(form, measures, end));
     // A run cut short misses expectations for that reason alone.
     if (status == "completed" && !results.empty()) fmt::print("{}\n", to_table(results));
     fmt::print("{} after {:.3f} s: {} windows, {} of them in contact, {} exchanges\n", status,

@@ -196,7 +196,13 @@ void validate_interface(const Scene& scene, const InterfaceSpec& interface,
       throw InputError(fmt::format("is {}, but there is no body {}", side, name.body), where,
                        fmt::format("Choose one of the bodies: {}.", names_of(scene.bodies)));
   }
-  if (split_port(interface.sides[0]).body == split_port(interface.sides[1]).body)
+  const bool inside = std::holds_alternative<InternalTransmission>(interface.transmission);
+  const bool same = split_port(interface.sides[0]).body == split_port(interface.sides[1]).body;
+  if (inside && !same)
+    throw InputError("must be ports of one body when the transmission is internal",
+                     document.where(path + ".sides"),
+                     "Name left_tip and right_tip of a bar_pair, or another transmission.");
+  if (!inside && same)
     throw InputError("must be ports of two different bodies", document.where(path + ".sides"),
                      "Name one port of each of the two bodies that meet.");
   if (const auto* u = std::get_if<UnilateralTransmission>(&interface.transmission))
@@ -290,6 +296,25 @@ void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
                      "Move a body with initial.position until the gap is zero or more.");
 }
 
+/// Tables show members as bodies: their names must be new.
+void validate_members(const Scene& scene, std::span<const Description* const> bodies,
+                      const Document& document) {
+  std::map<std::string, std::string> owner;  // name in tables to body
+  for (const Description* body : bodies) {
+    if (body->members.empty()) owner.emplace(body->name, body->name);
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (const Member& member : bodies[i]->members) {
+      const auto [entry, fresh] = owner.emplace(member.name, bodies[i]->name);
+      if (!fresh)
+        throw InputError(fmt::format("holds a bar {}, a name that body {} has as well in tables",
+                                     member.name, entry->second),
+                         document.where("bodies." + scene.bodies[i].first),
+                         "Rename the other body, or run the two in scenes of their own.");
+    }
+  }
+}
+
 }  // namespace
 
 Scene read_scene(const Document& document) {
@@ -325,6 +350,7 @@ void validate(const Scene& scene, const Document& document) {
 void validate_bodies(const Scene& scene, std::span<const Description* const> bodies,
                      const Document& document) {
   ABUT_ASSERT(bodies.size() == scene.bodies.size());
+  validate_members(scene, bodies, document);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const double step = bodies[i]->step;
     const double window = scene.time.window;

@@ -82,11 +82,18 @@ struct DirichletNeumannTransmission {
   void fields(Fields& f);
 };
 
+/// Both sides belong to one body, which solves their contact itself: watched, never iterated.
+struct InternalTransmission {
+  static constexpr std::string_view name = "internal";
+  void fields(Fields&) {}
+};
+
 struct InterfaceSpec {
   std::string name;
   std::array<std::string, 2> sides;  // body.port
   std::optional<ContactSpec> contact;
-  std::variant<UnilateralTransmission, DirichletNeumannTransmission> transmission;
+  std::variant<UnilateralTransmission, DirichletNeumannTransmission, InternalTransmission>
+      transmission;
   void fields(Fields& f);
 };
 

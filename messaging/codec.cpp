@@ -13,11 +13,16 @@ namespace abut {
 namespace {
 
 constexpr int most_ports = 4096;
+constexpr int most_members = 4096;
 
 // A member added to the contract and forgotten here would silently arrive as zero.
 static_assert(sizeof(TimeWindow) == 3 * sizeof(double));
 static_assert(sizeof(Energy) == 4 * sizeof(double));
-static_assert(sizeof(BodyRecord) == sizeof(Energy) + sizeof(double) + sizeof(std::vector<double>));
+static_assert(sizeof(BodyRecord) ==
+              sizeof(Energy) + sizeof(double) + 2 * sizeof(std::vector<double>));
+static_assert(sizeof(MemberRecord) == sizeof(Energy) + sizeof(std::vector<double>));
+static_assert(sizeof(Member) ==
+              sizeof(std::string) + sizeof(double) + sizeof(std::vector<std::int32_t>));
 static_assert(sizeof(Rebound) == 6 * sizeof(double));
 static_assert(sizeof(PortResponse) == sizeof(Waveform) + 2 * sizeof(std::vector<double>) +
                                           2 * sizeof(double) + sizeof(std::optional<Rebound>));
@@ -121,14 +126,40 @@ void decode(const v1::PortResponse& from, const Port& port, std::size_t records,
                        .captured = number(rebound.captured(), at)};
 }
 
-void decode(const v1::BodyRecord& from, std::size_t dim, const FieldPath& path, BodyRecord& to) {
+/// Of a body's record or a member's: both have the same fields.
+template <class Wire>
+void encode_energy(const Energy& from, Wire& to) {
+  to.set_kinetic(from.kinetic);
+  to.set_stored(from.stored);
+  to.set_dissipated(from.dissipated);
+  to.set_external_work(from.external_work);
+}
+
+template <class Wire>
+Energy decode_energy(const Wire& from, const FieldPath& path) {
+  return Energy{.kinetic = number(from.kinetic(), FieldPath{&path, "kinetic"}),
+                .stored = number(from.stored(), FieldPath{&path, "stored"}),
+                .dissipated = number(from.dissipated(), FieldPath{&path, "dissipated"}),
+                .external_work = number(from.external_work(), FieldPath{&path, "external_work"})};
+}
+
+void decode(const v1::BodyRecord& from, const Description& body, const FieldPath& path,
+            BodyRecord& to) {
+  const std::size_t dim = static_cast<std::size_t>(body.dim);
   to.time = number(from.time(), FieldPath{&path, "time"});
-  to.energy =
-      Energy{.kinetic = number(from.kinetic(), FieldPath{&path, "kinetic"}),
-             .stored = number(from.stored(), FieldPath{&path, "stored"}),
-             .dissipated = number(from.dissipated(), FieldPath{&path, "dissipated"}),
-             .external_work = number(from.external_work(), FieldPath{&path, "external_work"})};
+  to.energy = decode_energy(from, path);
   take(from.momentum(), dim, true, FieldPath{&path, "momentum"}, to.momentum);
+  if (static_cast<std::size_t>(from.members_size()) != body.members.size()) {
+    FieldPath{&path, "members"}.fail(
+        fmt::format("has {} entries for {} members", from.members_size(), body.members.size()));
+  }
+  to.members.resize(body.members.size());
+  for (std::size_t i = 0; i < to.members.size(); ++i) {
+    const v1::MemberRecord& wire = from.members(static_cast<int>(i));
+    const FieldPath member{&path, "members", static_cast<int>(i)};
+    to.members[i].energy = decode_energy(wire, member);
+    take(wire.momentum(), dim, true, FieldPath{&member, "momentum"}, to.members[i].momentum);
+  }
 }
 
 void decode(const v1::Port& from, const FieldPath& path, Port& to) {
@@ -222,11 +253,14 @@ void encode(const Response& from, v1::Advanced& to) {
     const BodyRecord& record = from.records[i];
     v1::BodyRecord& wire = *to.mutable_records(static_cast<int>(i));
     wire.set_time(record.time);
-    wire.set_kinetic(record.energy.kinetic);
-    wire.set_stored(record.energy.stored);
-    wire.set_dissipated(record.energy.dissipated);
-    wire.set_external_work(record.energy.external_work);
+    encode_energy(record.energy, wire);
     copy(record.momentum, *wire.mutable_momentum());
+    resize(*wire.mutable_members(), record.members.size());
+    for (std::size_t m = 0; m < record.members.size(); ++m) {
+      v1::MemberRecord& member = *wire.mutable_members(static_cast<int>(m));
+      encode_energy(record.members[m].energy, member);
+      copy(record.members[m].momentum, *member.mutable_momentum());
+    }
   }
   to.set_steps(from.steps);
   to.set_compute_seconds(from.compute_seconds);
@@ -249,7 +283,7 @@ void decode(const v1::Advanced& from, const Description& body, Response& to) {
   if (from.records_size() > most_records) FieldPath{&path, "records"}.fail("has too many entries");
   to.records.resize(static_cast<std::size_t>(from.records_size()));
   for (int i = 0; i < from.records_size(); ++i) {
-    decode(from.records(i), static_cast<std::size_t>(body.dim), FieldPath{&path, "records", i},
+    decode(from.records(i), body, FieldPath{&path, "records", i},
            to.records[static_cast<std::size_t>(i)]);
   }
   to.steps = from.steps();
@@ -322,6 +356,12 @@ void encode(const Description& from, v1::Description& to) {
   can.set_impulse(from.can.impulse);
   can.set_kernel(from.can.kernel);
   can.set_complete(from.can.complete);
+  for (const Member& member : from.members) {
+    v1::Member& wire = *to.add_members();
+    wire.set_name(member.name);
+    wire.set_mass(member.mass);
+    wire.mutable_ports()->Add(member.ports.begin(), member.ports.end());
+  }
 }
 
 void decode(const v1::Description& from, Description& to) {
@@ -346,6 +386,19 @@ void decode(const v1::Description& from, Description& to) {
                         .impulse = can.impulse(),
                         .kernel = can.kernel(),
                         .complete = can.complete()};
+  if (from.members_size() > most_members) FieldPath{&path, "members"}.fail("has too many entries");
+  to.members.resize(static_cast<std::size_t>(from.members_size()));
+  for (int i = 0; i < from.members_size(); ++i) {
+    const FieldPath member{&path, "members", i};
+    Member& ours = to.members[static_cast<std::size_t>(i)];
+    ours.name = from.members(i).name();
+    ours.mass = number(from.members(i).mass(), FieldPath{&member, "mass"}, Allow::infinite);
+    ours.ports.assign(from.members(i).ports().begin(), from.members(i).ports().end());
+    for (const std::int32_t port : ours.ports) {
+      if (port >= 0 && port < from.ports_size()) continue;
+      FieldPath{&member, "ports"}.fail(fmt::format("names port {}", port));
+    }
+  }
 }
 
 }  // namespace abut

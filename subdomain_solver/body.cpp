@@ -15,8 +15,6 @@ namespace abut {
 
 namespace {
 
-/// A remainder below this fraction of a step is round-off of the window's length, not a step.
-constexpr double remainder_tolerance = 1.0e-6;
 /// Element-steps between two signs of life: about 50 ms of work.
 constexpr double progress_work = 1.0e8;
 
@@ -106,40 +104,6 @@ void Body::resume(std::span<const std::byte> bytes) {
 
 std::uint64_t Body::state_hash() { return hash_state(state_); }
 
-Body::Substeps Body::divide(double begin, double end) const {
-  Substeps part{begin, end, scheme_.step, scheme_.step, 0};
-  const double length = end - begin;
-  if (length <= 0.0) return part;
-  const double exact = length / scheme_.step;
-  part.count = std::max(1, static_cast<int>(std::ceil(exact - remainder_tolerance)));
-  const double rest = length - (part.count - 1) * scheme_.step;
-  // A whole step stays the nominal one to the last bit: its factors and kernels are reused.
-  const bool whole = std::abs(rest - scheme_.step) < remainder_tolerance * scheme_.step;
-  part.last = whole ? scheme_.step : rest;
-  return part;
-}
-
-Body::RecordClock::RecordClock(const Advance& request, int substeps)
-    : window_(request.window), records_(std::max(1, request.records)), substeps_(substeps) {}
-
-int Body::RecordClock::substep() const {
-  if (done()) return -1;
-  return static_cast<int>(std::llround(static_cast<double>(next_) * substeps_ / records_));
-}
-
-double Body::RecordClock::time() const {
-  if (next_ == records_) return window_.end;
-  return window_.begin + next_ * (window_.length() / records_);
-}
-
-bool Body::Substeps::matches(const std::vector<double>& times) const {
-  if (times.size() != static_cast<std::size_t>(count) + 1) return false;
-  for (int i = 0; i <= count; ++i) {
-    if (times[static_cast<std::size_t>(i)] != time(i)) return false;
-  }
-  return true;
-}
-
 Outcome Body::finish(Response& response) {
   ABUT_ASSERT(request_ != nullptr);
   const Advance& request = *request_;
@@ -150,7 +114,7 @@ Outcome Body::finish(Response& response) {
   begin_traces(request, response);
   apply_impulses(request);
   begin_sweep();
-  const Substeps grid = divide(request.window.begin, request.window.end);
+  const Substeps grid = Substeps::divide(request.window.begin, request.window.end, scheme_.step);
   std::optional<Failed> failed = advance_window(request, grid, response);
   if (failed) return *failed;
   finish_ports(response);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contract/subdomain.hpp"
+#include "subdomain_solver/substeps.hpp"
 #include "subdomain_solver/time/bar_integrator.hpp"
 
 namespace abut {
@@ -43,32 +44,8 @@ class Body final : public Subdomain {
   void set_progress(std::function<void()> hook) { progress_ = std::move(hook); }
 
  private:
-  /// Records at the ends of equal parts of a window, on the substeps nearest to them. Their times
-  /// are computed alike by all bodies.
-  class RecordClock {
-   public:
-    RecordClock(const Advance& request, int substeps);
-    bool done() const { return next_ > records_; }
-    int substep() const;  // after which the next record is due; -1: no more
-    double time() const;
-    void next() { ++next_; }
-
-   private:
-    TimeWindow window_;
-    int records_, substeps_;
-    int next_ = 1;
-  };
-  struct Substeps {  // how a window is divided
-    double begin = 0.0, end = 0.0, step = 0.0, last = 0.0;
-    int count = 0;
-    double length(int i) const { return i == count ? last : step; }  // i = 1..count
-    double time(int i) const { return i == count ? end : begin + i * step; }
-    bool matches(const std::vector<double>& times) const;  // the same instants, i = 0..count
-  };
-
   void state(Archive& archive) { state_.state(archive); }
   void describe_ports(const std::vector<BodyPort>& ports);
-  Substeps divide(double begin, double end) const;
   std::optional<Failed> advance_window(const Advance& request, const Substeps& grid,
                                        Response& response);
   void find_same_grids(const Advance& request, const Substeps& grid);

@@ -29,6 +29,28 @@ void FeModelSpec::fields(Fields& f) {
   f.choice("mesh", mesh, "mesh of the body");
 }
 
+void PairedBarSpec::fields(Fields& f) {
+  f.required("length", length, "m", "length of the bar", positive);
+  f.required("area", area, "m^2", "cross section", positive);
+  f.required("elements", elements, "", "number of equal two-node elements", at_least(1));
+  f.required("position", position, "m", "place of the bar's left end");
+  f.optional("velocity", velocity, "m/s", "uniform velocity at the start");
+}
+
+void PenaltySpec::fields(Fields& f) {
+  f.required("stiffness", stiffness, "N/m", "spring that resists the overlap of the tips",
+             positive);
+}
+
+void BarPairSpec::fields(Fields& f) {
+  f.section("left", left, "the left bar; its right end may touch");
+  f.section("right", right, "the right bar; its left end may touch");
+  f.choice("contact", contact, "contact between the tips, solved within the body");
+  f.word("lengths", current_lengths, {"reference", "current"},
+         "element lengths on which mass and stiffness are assembled; current: anew in every step, "
+         "as in some published comparisons");
+}
+
 void LinearElasticSpec::fields(Fields& f) {
   f.required("youngs_modulus", youngs_modulus, "Pa", "Young's modulus", positive);
   f.required("density", density, "kg/m^3", "reference density", positive);
@@ -69,6 +91,11 @@ void GeneralizedAlphaSpec::fields(Fields& f) {
   f.optional("spectral_radius", spectral_radius, "",
              "spectral radius at infinite frequency; 1 dissipates nothing, 0 annihilates it",
              between(0.0, 1.0));
+  mass_key(f, mass);
+}
+
+void BackwardEulerSpec::fields(Fields& f) {
+  f.required("step", step, "s", step_help, positive);
   mass_key(f, mass);
 }
 
@@ -127,11 +154,15 @@ void BodySpec::fields(Fields& f) {
   f.map("ports", ports, "named boundary sets through which motion and force pass",
         Presence::optional);
   const bool fe = std::holds_alternative<FeModelSpec>(model);
-  f.check(!fe || material.has_value(), "model", "fe needs a material",
+  const bool pair = std::holds_alternative<BarPairSpec>(model);
+  const std::string words = pair ? "bar_pair" : "fe";
+  f.check(!(fe || pair) || material.has_value(), "model", words + " needs a material",
           "Add material: {linear_elastic: {youngs_modulus: ..., density: ...}} to the body.");
-  f.check(!fe || integrator.has_value(), "model", "fe needs an integrator",
+  f.check(!(fe || pair) || integrator.has_value(), "model", words + " needs an integrator",
           "Add integrator: {central_difference: {step: ...}} or an implicit one to the body.");
-  f.check(fe || ports.size() == 1, "model", "rigid_wall needs exactly one port",
+  f.check(!pair || ports.empty(), "ports", "do not belong to a bar_pair",
+          "Leave ports out: the pair has left_tip and right_tip.");
+  f.check(fe || pair || ports.size() == 1, "model", "rigid_wall needs exactly one port",
           "Add ports: {face: {side: left}}, where the side tells to which side the wall faces.");
 }
 

@@ -36,6 +36,30 @@ struct RigidWallSpec {
   void fields(Fields&) {}
 };
 
+/// Two bars in one body with the contact between them inside: the conventional contact methods.
+struct PairedBarSpec {
+  double length = 0.0, area = 0.0;  // [m] [m^2]
+  int elements = 0;
+  double position = 0.0, velocity = 0.0;  // [m] [m/s]
+  void fields(Fields& f);
+};
+struct PenaltySpec {
+  static constexpr std::string_view name = "penalty";
+  double stiffness = 0.0;  // [N/m]
+  void fields(Fields& f);
+};
+struct MultiplierSpec {
+  static constexpr std::string_view name = "lagrange_multiplier";
+  void fields(Fields&) {}
+};
+struct BarPairSpec {
+  static constexpr std::string_view name = "bar_pair";
+  PairedBarSpec left, right;
+  std::variant<PenaltySpec, MultiplierSpec> contact;
+  bool current_lengths = false;  // "lengths: reference | current"
+  void fields(Fields& f);
+};
+
 struct LinearElasticSpec {
   static constexpr std::string_view name = "linear_elastic";
   double youngs_modulus = 0.0, density = 0.0;  // [Pa] [kg/m^3]
@@ -64,6 +88,13 @@ struct HhtAlphaSpec {
 struct GeneralizedAlphaSpec {
   static constexpr std::string_view name = "generalized_alpha";
   double step = 0.0, spectral_radius = 0.9;
+  MassForm mass = MassForm::averaged;
+  void fields(Fields& f);
+};
+
+struct BackwardEulerSpec {  // of bar pairs only
+  static constexpr std::string_view name = "backward_euler";
+  double step = 0.0;
   MassForm mass = MassForm::averaged;
   void fields(Fields& f);
 };
@@ -99,9 +130,10 @@ struct PortSpec {
 
 struct BodySpec {
   using Integrator =
-      std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec, GeneralizedAlphaSpec>;
+      std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec, GeneralizedAlphaSpec,
+                   BackwardEulerSpec>;
 
-  std::variant<FeModelSpec, RigidWallSpec> model;
+  std::variant<FeModelSpec, RigidWallSpec, BarPairSpec> model;
   std::optional<std::variant<LinearElasticSpec>> material;
   std::optional<Integrator> integrator;
   std::variant<MasslessSpec, KickSpec, MassiveSpec> contact_layer;
@@ -112,13 +144,21 @@ struct BodySpec {
   void fields(Fields& f);
 };
 
-/// Properties of a bar body; empty for a wall. For closed forms and estimates.
-std::optional<BarProperties> bar_properties(const BodySpec& spec);
+/// Properties of the bar on which a port lies; empty for a wall. For closed forms and estimates.
+std::optional<BarProperties> bar_properties(const BodySpec& spec, const std::string& port);
+/// The same of a body that is one bar.
+BarProperties fe_bar_properties(const BodySpec& spec);
+/// Left and right bar of a pair.
+std::array<BarProperties, 2> pair_properties(const BodySpec& spec);
 
 /// Reads one body of a scene and builds it. `path` is the body's key path, e.g. "bodies.left"; its
 /// last part is the name. Throws InputError with file, line and key. `progress` is called now and
 /// then during long advances.
 std::unique_ptr<Subdomain> make_body(const Document& document, const std::string& path,
                                      std::function<void()> progress = {});
+/// The same of a bar_pair whose specification has been read.
+std::unique_ptr<Subdomain> make_pair_body(const BodySpec& spec, const Document& document,
+                                          const std::string& path,
+                                          std::function<void()> progress);
 
 }  // namespace abut

@@ -88,6 +88,10 @@ struct SchemeMaker {
   Body::Scheme operator()(const GeneralizedAlphaSpec& s) const {
     return implicit(AlphaWeights::spectral_radius(s.spectral_radius), s.step, "generalised alpha");
   }
+  Body::Scheme operator()(const BackwardEulerSpec&) const {
+    place.refuse("integrator", "backward_euler is offered to bar_pair only",
+                 "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");
+  }
   Body::Scheme implicit(const AlphaWeights& weights, double step, const char* words) const {
     return {std::make_unique<GeneralizedAlpha>(bar, weights), step, false,
             fmt::format("{}, step {:g} s", words, step)};
@@ -125,10 +129,15 @@ void check_layers(const BodySpec& spec, const BarProperties& bar, const Place& p
 
 }  // namespace
 
-std::optional<BarProperties> bar_properties(const BodySpec& spec) {
-  const FeModelSpec* fe = std::get_if<FeModelSpec>(&spec.model);
-  if (fe == nullptr) return std::nullopt;
-  const BarMeshSpec& mesh = std::get<BarMeshSpec>(fe->mesh);
+std::optional<BarProperties> bar_properties(const BodySpec& spec, const std::string& port) {
+  if (std::holds_alternative<BarPairSpec>(spec.model))
+    return pair_properties(spec)[port == "left_tip" ? 0 : 1];
+  if (std::holds_alternative<FeModelSpec>(spec.model)) return fe_bar_properties(spec);
+  return std::nullopt;
+}
+
+BarProperties fe_bar_properties(const BodySpec& spec) {
+  const BarMeshSpec& mesh = std::get<BarMeshSpec>(std::get<FeModelSpec>(spec.model).mesh);
   const LinearElasticSpec& material = std::get<LinearElasticSpec>(*spec.material);
   BarProperties bar;
   bar.length = mesh.length;
@@ -167,14 +176,16 @@ std::unique_ptr<Subdomain> make_body(const Document& document, const std::string
   const BodySpec spec = read<BodySpec>(document, path);
   const Place place{document, path};
   const std::string name = path.substr(path.rfind('.') + 1);
+  if (std::holds_alternative<BarPairSpec>(spec.model))
+    return make_pair_body(spec, document, path, std::move(progress));
   std::vector<Body::BodyPort> ports = ports_of(spec, place);
-  const std::optional<BarProperties> properties = bar_properties(spec);
-  if (!properties) {
+  if (std::holds_alternative<RigidWallSpec>(spec.model)) {
     return std::make_unique<RigidWall>(name, spec.initial.position[0], ports[0].name,
                                        Bar::outward(ports[0].end));
   }
-  check_layers(spec, *properties, place);
-  std::unique_ptr<Bar> bar = std::make_unique<Bar>(*properties);
+  const BarProperties properties = fe_bar_properties(spec);
+  check_layers(spec, properties, place);
+  std::unique_ptr<Bar> bar = std::make_unique<Bar>(properties);
   Body::Scheme scheme = std::visit(SchemeMaker{*bar, place}, *spec.integrator);
   std::unique_ptr<Body> body =
       std::make_unique<Body>(name, std::move(bar), std::move(scheme), ports);

@@ -10,6 +10,7 @@ namespace abut {
 
 void Interface::state(Archive& archive) {
   archive.field("closed", closed);
+  archive.field("touching", touching);
   archive.field("opened_at", opened_at);
   archive.field("closing_speed", closing_speed);
   archive.field("force_scale", force_scale);

@@ -26,6 +26,7 @@ struct Interface {
   bool bilateral = true;
   // What contact carries from window to window:
   bool closed = false;
+  bool touching = false;  // contact inside a body presses: nothing is iterated
   double opened_at = -std::numeric_limits<double>::infinity();  // [s] last release
   double closing_speed = 0.0;                                   // [m/s] at the last first touch
   double force_scale = 0.0;      // [N] largest contact force since it closed

@@ -10,15 +10,16 @@
 namespace abut {
 namespace {
 
-double own_energy(const BodyRecord& record) {
-  return record.energy.total() - record.energy.external_work;
-}
+double own_energy(const Energy& energy) { return energy.total() - energy.external_work; }
 
 }  // namespace
 
 BalanceMeasures::BalanceMeasures(const RunStart& start, const BarImpact* exact,
                                  std::array<int, 2> exact_body)
-    : start_(start), exact_(exact), bodies_(start.bodies.size()) {
+    : start_(start),
+      exact_(exact),
+      recorded_(recorded_bodies(start.bodies)),
+      bodies_(recorded_.size()) {
   for (const Description* body : start.bodies) immovable_ = immovable_ || std::isinf(body->mass);
   if (exact == nullptr) return;
   for (const int side : {0, 1}) {
@@ -34,12 +35,13 @@ BalanceMeasures::BalanceMeasures(const RunStart& start, const BarImpact* exact,
 void BalanceMeasures::begin(const WindowReport& report) {
   begun_ = true;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const BodyRecord& record = report.responses[b].records.front();
-    bodies_[b].first = own_energy(record);
-    total_first_ += bodies_[b].first;
-    for (std::size_t k = 0; k < record.momentum.size(); ++k)
-      momentum_first_[k] += record.momentum[k];
+    const RecordedBody& recorded = recorded_[b];
+    const BodyRecord& record = report.responses[recorded.body].records.front();
+    const std::vector<double>& momentum = recorded.momentum(record);
+    bodies_[b].first = own_energy(recorded.energy(record));
+    for (std::size_t k = 0; k < momentum.size(); ++k) momentum_first_[k] += momentum[k];
   }
+  total_first_ = total_energy(report, 0);
   for (Body& body : bodies_) {
     if (body.exact_side >= 0) continue;
     body.reference = body.first != 0.0 ? std::abs(body.first) : std::abs(total_first_);
@@ -52,27 +54,35 @@ void BalanceMeasures::on_window(const WindowReport& report) {
   for (std::size_t r = 0; r < report.responses.front().records.size(); ++r) add(report, r);
 }
 
-void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
+/// Of whole bodies: what acts between the members of one belongs to none of them.
+double BalanceMeasures::total_energy(const WindowReport& report, std::size_t record) const {
   double total = 0.0;
+  for (const Response& response : report.responses)
+    total += own_energy(response.records[record].energy);
+  return total;
+}
+
+void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
   Vector sum{};
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     Body& body = bodies_[b];
-    const BodyRecord& now = report.responses[b].records[record];
-    const double energy = own_energy(now);
-    total += energy;
+    const BodyRecord& now = report.responses[recorded_[b].body].records[record];
+    const Energy& energy = recorded_[b].energy(now);
+    const std::vector<double>& momentum = recorded_[b].momentum(now);
     const double expected =
         body.exact_side >= 0 ? exact_->total(body.exact_side, now.time) : body.first;
-    const double held = body.exact_side >= 0 ? now.energy.total() : energy;
+    const double held = body.exact_side >= 0 ? energy.total() : own_energy(energy);
     body.error = body.reference > 0.0 ? (held - expected) / body.reference : held - expected;
     body.error_max = std::max(body.error_max, std::abs(body.error));
     double square = 0.0;
-    for (std::size_t k = 0; k < now.momentum.size(); ++k) {
-      body.momentum[k] = now.momentum[k];
-      sum[k] += now.momentum[k];
-      square += now.momentum[k] * now.momentum[k];
+    for (std::size_t k = 0; k < momentum.size(); ++k) {
+      body.momentum[k] = momentum[k];
+      sum[k] += momentum[k];
+      square += momentum[k] * momentum[k];
     }
     body.momentum_max = std::max(body.momentum_max, std::sqrt(square));
   }
+  const double total = total_energy(report, record);
   drift_ = total_first_ != 0.0 ? (total - total_first_) / total_first_ : total;
   drift_max_ = std::max(drift_max_, std::abs(drift_));
   double square = 0.0;
@@ -84,15 +94,15 @@ void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
 void BalanceMeasures::write(Measures& out) const {
   double scale = 0.0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const Description& description = *start_.bodies[b];
+    const RecordedBody& recorded = recorded_[b];
     const Body& body = bodies_[b];
-    out.set(fmt::format("energy.{}.relative_error_max", description.name), body.error_max);
-    out.set(fmt::format("energy.{}.relative_error_end", description.name), body.error);
+    out.set(fmt::format("energy.{}.relative_error_max", recorded.name), body.error_max);
+    out.set(fmt::format("energy.{}.relative_error_end", recorded.name), body.error);
     for (int axis = 0; axis < out.scope.dim; ++axis) {
       const char* ending = axis_ending(out.scope.dim, axis);
-      out.set(fmt::format("momentum.{}.end{}", description.name, ending), body.momentum[axis]);
-      out.set(fmt::format("mean_velocity.{}.end{}", description.name, ending),
-              body.momentum[axis] / description.mass);
+      out.set(fmt::format("momentum.{}.end{}", recorded.name, ending), body.momentum[axis]);
+      out.set(fmt::format("mean_velocity.{}.end{}", recorded.name, ending),
+              body.momentum[axis] / recorded.mass);
     }
     scale += body.momentum_max;
   }

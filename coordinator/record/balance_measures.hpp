@@ -8,6 +8,7 @@
 #include "coordinator/closed_form.hpp"
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/observer.hpp"
+#include "coordinator/record/recorded_bodies.hpp"
 
 namespace abut {
 
@@ -15,7 +16,7 @@ namespace abut {
 /// first record, since no body is asked before it has advanced.
 class BalanceMeasures {
  public:
-  /// `exact` may be null and describes the bodies `exact_body[0]` and `exact_body[1]`.
+  /// `exact` may be null and describes the recorded bodies `exact_body[0]` and `exact_body[1]`.
   BalanceMeasures(const RunStart& start, const BarImpact* exact, std::array<int, 2> exact_body);
 
   void on_window(const WindowReport& report);
@@ -33,11 +34,13 @@ class BalanceMeasures {
   };
 
   void begin(const WindowReport& report);
+  double total_energy(const WindowReport& report, std::size_t record) const;  // [J]
   void add(const WindowReport& report, std::size_t record);
 
   const RunStart& start_;
   const BarImpact* exact_;
-  std::vector<Body> bodies_;
+  std::vector<RecordedBody> recorded_;
+  std::vector<Body> bodies_;  // as recorded
   bool begun_ = false;
   bool immovable_ = false;
   double total_first_ = 0.0;  // [J]

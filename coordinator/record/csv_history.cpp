@@ -19,7 +19,7 @@ void add_port_names(std::string& header, const Description& body, const Port& po
                             axis_ending(port.geometry.dim, axis), unit);
 }
 
-void add_body_names(std::string& header, const Description& body) {
+void add_body_names(std::string& header, const RecordedBody& body) {
   for (const std::string_view name : {"kinetic", "stored", "total"})
     header += fmt::format(",{}.{} [J]", body.name, name);
   for (int axis = 0; axis < body.dim; ++axis)
@@ -35,6 +35,7 @@ CsvHistory::CsvHistory(const std::filesystem::path& directory, const ClosedForm*
 
 void CsvHistory::on_start(const RunStart& start) {
   start_ = start;
+  recorded_ = recorded_bodies(start_.bodies);
   std::vector<std::vector<int>> index(start.bodies.size());
   for (std::size_t b = 0; b < start.bodies.size(); ++b) {
     const std::vector<Port>& ports = start.bodies[b]->ports;
@@ -63,7 +64,8 @@ std::string CsvHistory::header() const {
   for (std::size_t b = 0; b < start_.bodies.size(); ++b) {
     const Description& body = *start_.bodies[b];
     for (const Port& port : body.ports) add_port_names(text, body, port);
-    add_body_names(text, body);
+    for (const RecordedBody& recorded : recorded_)
+      if (recorded.body == static_cast<int>(b)) add_body_names(text, recorded);
   }
   for (const InterfaceColumn& interface : interfaces_) {
     if (interface.has_gap) text += fmt::format(",{}.gap [m]", interface.info.name);
@@ -78,7 +80,8 @@ std::string CsvHistory::exact_header() const {
   for (const int side : {0, 1}) {
     const Description& body = *start_.bodies[info.body[side]];
     add_port_names(text, body, body.ports[info.port[side]]);
-    add_body_names(text, body);
+    const int recorded = recorded_body_of(start_.bodies, info.body[side], info.port[side]);
+    add_body_names(text, recorded_[static_cast<std::size_t>(recorded)]);
   }
   return text + fmt::format(",{0}.gap [m],{0}.closed\n", info.name);
 }
@@ -118,14 +121,8 @@ void CsvHistory::write_row(const WindowReport& report, std::size_t record) {
       for (int axis = 0; axis < dim; ++axis) number(column.values.v[axis]);
       for (int axis = 0; axis < dim; ++axis) number(column.values.f[axis]);
     }
-    const BodyRecord& now = response.records[record];
-    number(now.energy.kinetic);
-    number(now.energy.stored);
-    number(now.energy.total());
-    const Description& body = *start_.bodies[b];
-    ABUT_ASSERT(now.momentum.size() == static_cast<std::size_t>(body.dim));
-    for (const double value : now.momentum) number(value);
-    for (const double value : now.momentum) number(value / body.mass);
+    for (const RecordedBody& recorded : recorded_)
+      if (recorded.body == static_cast<int>(b)) write_body(recorded, response.records[record]);
   }
   for (std::size_t i = 0; i < interfaces_.size(); ++i) {
     const InterfaceColumn& column = interfaces_[i];
@@ -136,6 +133,17 @@ void CsvHistory::write_row(const WindowReport& report, std::size_t record) {
                    report.interfaces[i].iterations);
   }
   end_row(*history_);
+}
+
+void CsvHistory::write_body(const RecordedBody& body, const BodyRecord& record) {
+  const Energy& energy = body.energy(record);
+  const std::vector<double>& momentum = body.momentum(record);
+  number(energy.kinetic);
+  number(energy.stored);
+  number(energy.total());
+  ABUT_ASSERT(momentum.size() == static_cast<std::size_t>(body.dim));
+  for (const double value : momentum) number(value);
+  for (const double value : momentum) number(value / body.mass);
 }
 
 void CsvHistory::write_exact_row(double time) {

@@ -10,6 +10,7 @@
 #include "coordinator/closed_form.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/port_reader.hpp"
+#include "coordinator/record/recorded_bodies.hpp"
 #include "coordinator/record/text_file.hpp"
 
 namespace abut {
@@ -41,6 +42,7 @@ class CsvHistory : public Observer {
   std::string header() const;
   std::string exact_header() const;
   void write_row(const WindowReport& report, std::size_t record);
+  void write_body(const RecordedBody& body, const BodyRecord& record);
   void write_exact_row(double time);
   void number(double value);
   void end_row(TextFile& file);
@@ -49,6 +51,7 @@ class CsvHistory : public Observer {
   const ClosedForm* form_;
   int form_interface_ = -1;
   RunStart start_;
+  std::vector<RecordedBody> recorded_;
   std::vector<PortColumn> ports_;  // by body, then by port
   std::vector<InterfaceColumn> interfaces_;
   std::optional<TextFile> history_, exact_;

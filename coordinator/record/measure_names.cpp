@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/key.hpp"
 #include "coordinator/record/port_reader.hpp"
+#include "coordinator/record/recorded_bodies.hpp"
 
 namespace abut {
 namespace {
@@ -29,9 +30,9 @@ bool needs_closed_form(const std::string& measure, MeasureScope scope) {
 MeasureScope measure_scope(const RunStart& start, const std::string& closed_form) {
   MeasureScope scope;
   scope.closed_form = closed_form;
-  for (const Description* body : start.bodies) {
-    scope.dim = std::max(scope.dim, body->dim);
-    scope.bodies.push_back(body->name);
+  for (const RecordedBody& body : recorded_bodies(start.bodies)) {
+    scope.dim = std::max(scope.dim, body.dim);
+    scope.bodies.push_back(body.name);
   }
   for (const InterfaceInfo& interface : start.interfaces) {
     scope.interfaces.push_back(interface.name);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/record/port_reader.hpp"
+#include "coordinator/record/recorded_bodies.hpp"
 
 namespace abut {
 
@@ -23,7 +24,9 @@ void MeasureRecorder::on_start(const RunStart& start) {
     contacts_.emplace_back(start_, static_cast<int>(i), exact ? &form_->impact : nullptr);
     if (exact) {
       balance_form = &form_->impact;
-      balance_bodies = {info.body[0], info.body[1]};
+      for (const int side : {0, 1})
+        balance_bodies[side] =
+            recorded_body_of(start_.bodies, info.body[side], info.port[side]);
     }
     for (const int side : {0, 1}) {
       const int dim = start_.bodies[info.body[side]]->ports[info.port[side]].geometry.dim;

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "coordinator/record/expectations.hpp"
+#include "coordinator/record/recorded_bodies.hpp"
 #include "coordinator/record/text_file.hpp"
 
 namespace abut {
@@ -56,7 +57,7 @@ Json closed_form_object(const ClosedForm& form, const RunStart& start) {
   for (const InterfaceInfo& info : start.interfaces) {
     if (info.name != form.interface) continue;
     for (const int side : {0, 1}) {
-      Json& body = object["bodies"][start.bodies[info.body[side]]->name];
+      Json& body = object["bodies"][form.bodies[static_cast<std::size_t>(side)]];
       body["wall"] = impact.is_wall(side);
       body["mean_velocity_end"] = number(impact.mean_velocity(side, impact.end()));
       body["total_begin"] = number(impact.total(side, impact.run_begin()));
@@ -75,6 +76,8 @@ Json bodies_array(const RunStart& start) {
                   {"mass", number(body->mass)},
                   {"step", number(body->step)}};
     if (std::isinf(body->mass)) entry["immovable"] = true;
+    for (const Member& member : body->members)
+      entry["members"].push_back({{"name", member.name}, {"mass", number(member.mass)}});
     array.push_back(entry);
   }
   return array;
@@ -84,11 +87,19 @@ Json bodies_array(const RunStart& start) {
 /// and compression.
 Json ports_object(const RunStart& start) {
   Json object = Json::object();
-  for (const Description* body : start.bodies)
-    for (const Port& port : body->ports)
-      if (port.geometry.dim == 1 && port.geometry.count() == 1)
-        object[body->name + "." + port.name] = {{"position", number(port.geometry.points[0])},
-                                                {"normal", number(port.geometry.normals[0])}};
+  const std::vector<RecordedBody> recorded = recorded_bodies(start.bodies);
+  for (std::size_t b = 0; b < start.bodies.size(); ++b) {
+    const Description& body = *start.bodies[b];
+    for (std::size_t p = 0; p < body.ports.size(); ++p) {
+      const PortGeometry& geometry = body.ports[p].geometry;
+      if (geometry.dim != 1 || geometry.count() != 1) continue;
+      const int on = recorded_body_of(start.bodies, static_cast<int>(b), static_cast<int>(p));
+      object[body.name + "." + body.ports[p].name] = {
+          {"position", number(geometry.points[0])},
+          {"normal", number(geometry.normals[0])},
+          {"body", recorded[static_cast<std::size_t>(on)].name}};
+    }
+  }
   return object;
 }
 

@@ -60,6 +60,7 @@ Description two_ports() {
   Description body = FakeSubdomain().describe();
   body.ports.push_back(body.ports[0]);
   body.ports[1].name = "tail";
+  body.members = {{"front", 1.5, {0}}, {"rear", 2.5, {1}}};
   return body;
 }
 
@@ -74,6 +75,8 @@ Response full_response() {
   response.ports[0].rebound = Rebound{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
   response.ports[1].trace = wave(1, 0.5);
   response.records.push_back(BodyRecord{0.25, Energy{1.0, 2.0, 3.0, 4.0}, {5.0}});
+  response.records[0].members = {{Energy{0.1, 0.2, 0.3, 0.4}, {0.5}},
+                                 {Energy{1.1, 1.2, 1.3, 1.4}, {1.5}}};
   response.steps = 100;
   response.compute_seconds = 0.125;
   return response;
@@ -158,6 +161,16 @@ TEST(Codec, ResponseKeepsEveryField) {
   EXPECT_EQ(got.records[0].energy.dissipated, 3.0);
   EXPECT_EQ(got.records[0].energy.external_work, 4.0);
   EXPECT_EQ(got.records[0].momentum, sent.records[0].momentum);
+  ASSERT_EQ(got.records[0].members.size(), 2U);
+  for (std::size_t m : {0U, 1U}) {
+    const MemberRecord& member = got.records[0].members[m];
+    const MemberRecord& as_sent = sent.records[0].members[m];
+    EXPECT_EQ(member.energy.kinetic, as_sent.energy.kinetic);
+    EXPECT_EQ(member.energy.stored, as_sent.energy.stored);
+    EXPECT_EQ(member.energy.dissipated, as_sent.energy.dissipated);
+    EXPECT_EQ(member.energy.external_work, as_sent.energy.external_work);
+    EXPECT_EQ(member.momentum, as_sent.momentum);
+  }
   EXPECT_EQ(got.steps, 100);
   EXPECT_EQ(got.compute_seconds, 0.125);
 }
@@ -202,6 +215,10 @@ TEST(Codec, DescriptionKeepsEveryFieldAndInfinity) {
   EXPECT_EQ(got.ports[1].geometry.spacing, 0.00125);
   EXPECT_TRUE(got.can.force && got.can.impulse && got.can.kernel && got.can.complete);
   EXPECT_FALSE(got.can.motion || got.can.obstacle);
+  ASSERT_EQ(got.members.size(), 2U);
+  EXPECT_EQ(got.members[1].name, "rear");
+  EXPECT_EQ(got.members[1].mass, 2.5);
+  EXPECT_EQ(got.members[1].ports, std::vector<std::int32_t>{1});
 }
 
 TEST(Codec, EveryCauseOfFailureAndEveryKernelComesBack) {
@@ -243,6 +260,10 @@ TEST(Codec, UnsoundResponsesAreRefusedByFieldName) {
             "advanced.ports[1].trace.f is not finite: entry 2 is nan");
   EXPECT_EQ(refused([](Response& r) { r.records[0].energy.stored = infinity; }),
             "advanced.records[0].stored is not finite: inf");
+  EXPECT_EQ(refused([](Response& r) { r.records[0].members.pop_back(); }),
+            "advanced.records[0].members has 1 entries for 2 members");
+  EXPECT_EQ(refused([](Response& r) { r.records[0].members[1].momentum = {infinity}; }),
+            "advanced.records[0].members[1].momentum is not finite: entry 0 is inf");
   EXPECT_EQ(refused([](Response& r) { r.ports[0].trace.u.pop_back(); }),
             "advanced.ports[0].trace.u has 2 numbers where 3 belong");
   EXPECT_EQ(refused([](Response& r) { r.ports[0].trace.time[1] = r.ports[0].trace.time[0]; }),

@@ -1,0 +1,216 @@
+#include "subdomain_solver/pair_body.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+
+namespace abut {
+
+namespace {
+/// Element-steps between two signs of life: about 50 ms of work.
+constexpr double progress_work = 2.0e7;
+}  // namespace
+
+PairBody::PairBody(std::string name, const Parameters& parameters)
+    : pair_(parameters.bars[0], parameters.bars[1], parameters.lengths) {
+  state_.u.assign(pair_.nodes(), 0.0);
+  state_.v.assign(pair_.nodes(), 0.0);
+  state_.a.assign(pair_.nodes(), 0.0);
+  for (int m : {0, 1}) {
+    for (std::size_t i = pair_.first(m); i <= pair_.last(m); ++i)
+      state_.v[i] = pair_.bar(m).data().velocity;
+  }
+  if (parameters.weights) {
+    integrator_ = std::make_unique<ImplicitPair>(pair_, parameters.contact, *parameters.weights);
+  } else {
+    integrator_ =
+        std::make_unique<ExplicitPair>(pair_, parameters.contact, parameters.step, state_);
+  }
+  description_.name = std::move(name);
+  description_.model = parameters.words;
+  description_.dofs = static_cast<std::int64_t>(pair_.nodes());
+  description_.step = parameters.step;
+  description_.stable_step = parameters.weights ? std::numeric_limits<double>::infinity()
+                                                : pair_.stable_step(parameters.contact.penalty);
+  describe_members(parameters);
+}
+
+void PairBody::describe_members(const Parameters& parameters) {
+  constexpr const char* names[] = {"left", "right"};
+  for (int m : {0, 1}) {
+    const BarProperties& bar = parameters.bars[static_cast<std::size_t>(m)];
+    description_.members.push_back({names[m], bar.mass_total(), {m}});
+    description_.mass += bar.mass_total();
+    Port port;
+    port.name = std::string(names[m]) + "_tip";
+    port.geometry.points = {m == 0 ? bar.position + bar.length : bar.position};
+    port.geometry.normals = {m == 0 ? 1.0 : -1.0};
+    port.geometry.spacing = pair_.bar(m).spacing();
+    description_.ports.push_back(std::move(port));
+  }
+}
+
+void PairBody::save() {
+  Archive archive = Archive::writer(saved_, Archive::Form::bare);
+  state_.state(archive);
+  archive.finish();
+}
+
+void PairBody::restore() {
+  ABUT_ASSERT(!saved_.empty());
+  Archive archive = Archive::reader(saved_, Archive::Form::bare);
+  state_.state(archive);
+  pair_.follow(state_.u);
+}
+
+std::vector<std::byte> PairBody::checkpoint() {
+  std::vector<std::byte> bytes;
+  Archive archive = Archive::writer(bytes, Archive::Form::named);
+  state_.state(archive);
+  return bytes;
+}
+
+void PairBody::resume(std::span<const std::byte> bytes) {
+  Archive archive = Archive::reader(bytes, Archive::Form::named);
+  PairState resumed;
+  resumed.state(archive);
+  archive.finish();
+  const std::size_t n = pair_.nodes();
+  if (resumed.u.size() != n || resumed.v.size() != n || resumed.a.size() != n) {
+    throw RunError(
+        fmt::format("the checkpoint holds {} nodes, but the body has {}", resumed.u.size(), n),
+        fmt::format("body '{}'", description_.name),
+        "Resume with the mesh that wrote the checkpoint.");
+  }
+  state_ = std::move(resumed);
+  pair_.follow(state_.u);
+}
+
+std::uint64_t PairBody::state_hash() { return hash_state(state_); }
+
+PortKernel PairBody::kernel(int, double, int) {
+  throw RunError("does not answer for port kernels", fmt::format("body '{}'", description_.name),
+                 "Ask bodies for kernels only when they offer them.");
+}
+
+Outcome PairBody::finish(Response& response) {
+  ABUT_ASSERT(request_ != nullptr);
+  const Advance& request = *request_;
+  request_ = nullptr;
+  const auto began = std::chrono::steady_clock::now();
+  response.records.clear();
+  response.ports.resize(2);
+  for (PortResponse& port : response.ports) {
+    port.trace.clear();
+    port.trace.support = ForceSupport::nodal;
+    port.lower.clear();
+    port.upper.clear();
+    port.rebound.reset();
+    // Contact inside the body asks nobody: no flight is free.
+    port.approach_bound = std::numeric_limits<double>::infinity();
+    port.approach_acceleration = 0.0;
+  }
+  for (std::size_t m : {0u, 1u}) low_[m] = high_[m] = state_.u[pair_.tip(static_cast<int>(m))];
+  push_traces(request.window.begin, response);
+  const Substeps grid =
+      Substeps::divide(request.window.begin, request.window.end, description_.step);
+  if (std::optional<Failed> failed = advance_window(request, grid, response)) return *failed;
+  response.steps = grid.count;
+  response.compute_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return Advanced{};
+}
+
+std::optional<Failed> PairBody::advance_window(const Advance& request, const Substeps& grid,
+                                               Response& response) {
+  RecordClock clock(request, grid.count);
+  for (int i = 1; i <= grid.count; ++i) {
+    if (!integrator_->substep(state_, grid.length(i))) {
+      return Failed{Failed::Cause::inverted_element, grid.time(i),
+                    fmt::format("an element of body '{}' has no length left; assembled on current "
+                                "lengths it cannot go on",
+                                description_.name)};
+    }
+    sweep();
+    report_progress();
+    const bool due = i == clock.substep();
+    if (request.sampling == Sampling::substeps) {
+      push_traces(grid.time(i), response);
+    } else if (due) {
+      push_traces(clock.time(), response);
+    }
+    for (; i == clock.substep(); clock.next()) {
+      if (std::optional<Failed> failed = record(clock.time(), response)) return failed;
+    }
+  }
+  for (; !clock.done(); clock.next()) {  // a window of no length
+    if (std::optional<Failed> failed = record(clock.time(), response)) return failed;
+  }
+  return std::nullopt;
+}
+
+void PairBody::push_traces(double time, Response& response) const {
+  for (int m : {0, 1}) {
+    const std::size_t tip = pair_.tip(m);
+    Waveform& trace = response.ports[static_cast<std::size_t>(m)].trace;
+    trace.time.push_back(time);
+    trace.u.push_back(state_.u[tip]);
+    trace.v.push_back(state_.v[tip]);
+    trace.a.push_back(state_.a[tip]);
+    trace.f.push_back(m == 0 ? -state_.force : state_.force);
+  }
+}
+
+void PairBody::sweep() {
+  for (std::size_t m : {0u, 1u}) {
+    const double u = state_.u[pair_.tip(static_cast<int>(m))];
+    low_[m] = std::min(low_[m], u);
+    high_[m] = std::max(high_[m], u);
+  }
+}
+
+std::optional<Failed> PairBody::record(double time, Response& response) {
+  BodyRecord r;
+  r.time = time;
+  r.momentum = {0.0};
+  r.energy.stored = integrator_->contact_energy(state_);
+  for (int m : {0, 1}) {
+    MemberRecord member;
+    member.energy.kinetic = integrator_->kinetic(state_, m);
+    member.energy.stored = pair_.stored(m, state_.u);
+    member.momentum = {pair_.momentum(m, state_.v)};
+    r.energy.kinetic += member.energy.kinetic;
+    r.energy.stored += member.energy.stored;
+    r.momentum[0] += member.momentum[0];
+    r.members.push_back(std::move(member));
+    PortResponse& port = response.ports[static_cast<std::size_t>(m)];
+    port.lower.push_back(low_[static_cast<std::size_t>(m)]);
+    port.upper.push_back(high_[static_cast<std::size_t>(m)]);
+    low_[static_cast<std::size_t>(m)] = high_[static_cast<std::size_t>(m)] =
+        state_.u[pair_.tip(m)];
+  }
+  const bool finite = std::isfinite(r.energy.total() + r.momentum[0]);
+  response.records.push_back(std::move(r));
+  if (finite) return std::nullopt;
+  return Failed{
+      Failed::Cause::non_finite, time,
+      fmt::format("the state of body '{}' is no longer finite; its step of {:g} s may be unstable",
+                  description_.name, description_.step)};
+}
+
+void PairBody::report_progress() {
+  if (!progress_) return;
+  work_since_progress_ += static_cast<double>(pair_.nodes());
+  if (work_since_progress_ < progress_work) return;
+  work_since_progress_ = 0.0;
+  progress_();
+}
+
+}  // namespace abut

@@ -1,0 +1,47 @@
+#include "subdomain_solver/substeps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace abut {
+
+namespace {
+/// A remainder below this fraction of a step is round-off of the window's length, not a step.
+constexpr double remainder_tolerance = 1.0e-6;
+}  // namespace
+
+Substeps Substeps::divide(double begin, double end, double step) {
+  Substeps part{begin, end, step, step, 0};
+  const double length = end - begin;
+  if (length <= 0.0) return part;
+  const double exact = length / step;
+  part.count = std::max(1, static_cast<int>(std::ceil(exact - remainder_tolerance)));
+  const double rest = length - (part.count - 1) * step;
+  // A whole step stays the nominal one to the last bit: its factors and kernels are reused.
+  const bool whole = std::abs(rest - step) < remainder_tolerance * step;
+  part.last = whole ? step : rest;
+  return part;
+}
+
+bool Substeps::matches(const std::vector<double>& times) const {
+  if (times.size() != static_cast<std::size_t>(count) + 1) return false;
+  for (int i = 0; i <= count; ++i) {
+    if (times[static_cast<std::size_t>(i)] != time(i)) return false;
+  }
+  return true;
+}
+
+RecordClock::RecordClock(const Advance& request, int substeps)
+    : window_(request.window), records_(std::max(1, request.records)), substeps_(substeps) {}
+
+int RecordClock::substep() const {
+  if (done()) return -1;
+  return static_cast<int>(std::llround(static_cast<double>(next_) * substeps_ / records_));
+}
+
+double RecordClock::time() const {
+  if (next_ == records_) return window_.end;
+  return window_.begin + next_ * (window_.length() / records_);
+}
+
+}  // namespace abut
