@@ -51,7 +51,10 @@ def put(scene: dict, key: str, value: object) -> None:
         if not isinstance(inner, dict):  # absent, or a choice that is written as its name alone
             inner = scene[folder] = {inner: {}} if isinstance(inner, str) else {}
         scene = inner
-    scene[last] = copy.deepcopy(value)
+    if value is None:  # takes the key out, as --set key=null does
+        scene.pop(last, None)
+    else:
+        scene[last] = copy.deepcopy(value)
 
 
 def expanded(scene: dict, key: str, where: str) -> list[str]:
