@@ -25,7 +25,8 @@ MARK = "ABUT_SYSTEM_TEST"  # in the environment of every process that a test sta
 
 def shipped() -> list:
     """The scenes that `abut run` starts by itself."""
-    return [path for path in sorted((ROOT / "configs").glob("*.yaml")) if path.stem != CONNECTED]
+    return [path for path in sorted((ROOT / "configs").rglob("*.yaml"))
+            if path.stem != CONNECTED and path.parent.name != "invalid"]
 
 
 def free_port() -> int:
