@@ -20,6 +20,7 @@ struct Capabilities {
   bool obstacle = false;  // accepts BoundaryData::obstacle: may be the kinematic side
   bool impulse = false;   // accepts BoundaryData::impulse
   bool kernel = false;    // answers kernel()
+  bool impedance = false;  // accepts BoundaryData::impedance
   bool complete = false;  // reactions hold the inertia of the contact row: unilateral interfaces
 };
 

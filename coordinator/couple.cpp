@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "coordinator/coupling/robin.hpp"
+#include "coordinator/coupling/roles.hpp"
 
 namespace abut {
 
@@ -101,6 +103,28 @@ void refuse_members(const Interface& interface, const Bodies& bodies, const std:
   }
 }
 
+void add_robin(const InterfaceSpec& spec, const RobinTransmission& how, const SchwarzSpec& schwarz,
+               Interface& interface, const Bodies& bodies, Coupling& coupling) {
+  const std::string where = "interfaces." + spec.name + ".transmission.robin";
+  for (const Side& side : interface.sides) {
+    const Description& body = bodies.describe(side.body);
+    require(body.can.impedance && body.can.complete && body.can.kernel, body, where,
+            "does not take an impedance",
+            "Give a bar contact_layer massless or kick, or the interface the transmission "
+            "unilateral.");
+  }
+  if (std::holds_alternative<KernelAcceleration>(schwarz.accelerator)) {
+    throw InputError("Robin conditions do not use port kernels as Jacobian", "schwarz.accelerator",
+                     "Give an accelerator of none, relaxation, aitken or anderson.");
+  }
+  interface.kinematic = coarser_side(interface, bodies);
+  const Robin::Rule rule = how.impedance == "matched"  ? Robin::Rule::matched
+                           : how.impedance == "kernel" ? Robin::Rule::kernel
+                                                       : Robin::Rule::given;
+  coupling.transmissions.push_back(std::make_unique<Robin>(rule, how.number, schwarz.parallel));
+  coupling.rules.push_back({});
+}
+
 }  // namespace
 
 std::vector<Joint> Coupling::joints() {
@@ -126,6 +150,8 @@ Coupling make_coupling(const Scene& scene, const Bodies& bodies) {
     refuse_members(interface, bodies, "interfaces." + name);
     if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
       add_unilateral(spec, *unilateral, scene.schwarz.parallel, interface, bodies, coupling);
+    } else if (const auto* robin = std::get_if<RobinTransmission>(&spec.transmission)) {
+      add_robin(spec, *robin, scene.schwarz, interface, bodies, coupling);
     } else {
       add_published(spec, std::get<DirichletNeumannTransmission>(spec.transmission), scene.schwarz,
                     interface, bodies, coupling);
@@ -137,30 +163,33 @@ Coupling make_coupling(const Scene& scene, const Bodies& bodies) {
 
 Schwarz make_schwarz(const SchwarzSpec& spec) {
   struct Maker {
-    QuasiNewton::Inverse inverse;
+    ApplyInverse inverse, probe;
     std::unique_ptr<Accelerator> operator()(const NoAcceleration&) const {
       return std::make_unique<Relaxation>(1.0);
     }
     std::unique_ptr<Accelerator> operator()(const FixedRelaxation& s) const {
-      return std::make_unique<Relaxation>(s.factor);
+      if (s.factor.probed()) return std::make_unique<Relaxation>(probe);
+      return std::make_unique<Relaxation>(s.factor.value);
     }
     std::unique_ptr<Accelerator> operator()(const AitkenAcceleration& s) const {
-      return std::make_unique<Aitken>(s.initial);
+      if (s.initial.probed()) return std::make_unique<Aitken>(probe);
+      return std::make_unique<Aitken>(s.initial.value);
     }
     std::unique_ptr<Accelerator> operator()(const AndersonAcceleration& s) const {
-      const double factor = s.initial;
-      QuasiNewton::Inverse relaxed = [factor](const Eigen::VectorXd& r) {
+      ApplyInverse relaxed = [factor = s.initial.value](const Eigen::VectorXd& r) {
         return Eigen::VectorXd(factor * r);
       };
-      return std::make_unique<QuasiNewton>(relaxed, s.reuse, s.filter, 0);
+      return std::make_unique<QuasiNewton>(s.initial.probed() ? probe : relaxed, s.reuse, s.filter,
+                                           0);
     }
     std::unique_ptr<Accelerator> operator()(const KernelAcceleration& s) const {
       return std::make_unique<QuasiNewton>(inverse, s.reuse, s.filter, 1);
     }
   };
   const Schwarz::Options options{spec.max_iterations, spec.tolerance};
-  return Schwarz(options, [accelerator = spec.accelerator](QuasiNewton::Inverse inverse) {
-    return std::visit(Maker{std::move(inverse)}, accelerator);
+  return Schwarz(options, [accelerator = spec.accelerator](ApplyInverse inverse,
+                                                            ApplyInverse probe) {
+    return std::visit(Maker{std::move(inverse), std::move(probe)}, accelerator);
   });
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -76,6 +77,19 @@ void DirichletNeumannTransmission::fields(Fields& f) {
              "common velocity of both contact nodes at first touch, of the same momentum");
 }
 
+void RobinTransmission::fields(Fields& f) {
+  f.optional("impedance", impedance, "kg/s",
+             "impedance that each side sees: matched to the partner's by probe, kernel (step over "
+             "the kernel's first coefficient), or a number");
+  if (f.purpose() != Fields::Purpose::read || impedance == "matched" || impedance == "kernel")
+    return;
+  const char* end = impedance.data() + impedance.size();
+  const std::from_chars_result parsed = std::from_chars(impedance.data(), end, number);
+  f.check(parsed.ec == std::errc() && parsed.ptr == end && number > 0.0 && std::isfinite(number),
+          "impedance", fmt::format("is {}, which is no impedance", impedance),
+          "Give matched, kernel, or a number above 0 in kg/s.");
+}
+
 void InterfaceSpec::fields(Fields& f) {
   f.required("sides", sides, "", "two ports that meet, as body.port");
   f.optional_section("contact", contact, "frictionless contact between the sides");
@@ -87,19 +101,34 @@ void InterfaceSpec::fields(Fields& f) {
 
 void NoAcceleration::fields(Fields&) {}
 
+void RelaxationFactor::field(Fields& f, std::string_view key, double high, std::string_view help) {
+  std::string text = probed() ? "probe" : fmt::format("{}", value);
+  f.optional(key, text, "", help);
+  if (f.purpose() != Fields::Purpose::read) return;
+  double number = 0.0;
+  const std::from_chars_result parsed =
+      std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
+  f.check(text == "probe" || whole, key, fmt::format("must be a number or probe, but is {}", text),
+          "Give the relaxation factor as a number, or probe.");
+  f.check(!whole || (number > 0.0 && number <= high), key,
+          fmt::format("must be above 0 and at most {:g}, but is {}", high, text),
+          "Give the relaxation factor in this range, or probe.");
+  value = whole ? number : 0.0;
+}
+
 void FixedRelaxation::fields(Fields& f) {
-  f.optional("factor", factor, "", "part of the correction that is taken",
-             Rule{.low = 0.0, .high = 2.0, .above_low = true, .below_high = true});
+  factor.field(f, "factor", 2.0, "part of the correction that is taken, or probe");
 }
 
 void AitkenAcceleration::fields(Fields& f) {
-  f.optional("initial", initial, "", "relaxation factor of a window's first correction",
-             Rule{.low = 0.0, .high = 1.0, .above_low = true});
+  initial.field(f, "initial", 1.0,
+                "relaxation factor of a window's first correction; probe: from the port kernels");
 }
 
 void AndersonAcceleration::fields(Fields& f) {
-  f.optional("initial", initial, "", "relaxation factor while there is no secant",
-             Rule{.low = 0.0, .high = 1.0, .above_low = true});
+  initial.field(f, "initial", 1.0,
+                "relaxation factor while there is no secant; probe: from the port kernels");
   f.optional("reuse", reuse, "", "number of earlier windows whose secants are kept",
              between(0, 100));
   f.optional("filter", filter, "", "relative size below which a secant is dropped",

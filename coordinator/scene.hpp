@@ -87,14 +87,29 @@ struct InternalTransmission {
   static constexpr std::string_view name = "internal";
   void fields(Fields&) {}
 };
+/// Robin conditions on both sides: each sees its partner as a dashpot with the partner's force.
+struct RobinTransmission {
+  static constexpr std::string_view name = "robin";
+  std::string impedance = "matched";  // matched | kernel | a number [kg/s]
+  double number = 0.0;                // [kg/s], where a number is given
+  void fields(Fields& f);
+};
 
 struct InterfaceSpec {
   std::string name;
   std::array<std::string, 2> sides;  // body.port
   std::optional<ContactSpec> contact;
-  std::variant<UnilateralTransmission, DirichletNeumannTransmission, InternalTransmission>
+  std::variant<UnilateralTransmission, DirichletNeumannTransmission, InternalTransmission,
+               RobinTransmission>
       transmission;
   void fields(Fields& f);
+};
+
+/// A relaxation factor, or the word probe.
+struct RelaxationFactor {
+  double value = 0.0;  // 0: by impedance probe
+  bool probed() const { return value == 0.0; }
+  void field(Fields& f, std::string_view key, double high, std::string_view help);
 };
 
 struct NoAcceleration {
@@ -103,17 +118,17 @@ struct NoAcceleration {
 };
 struct FixedRelaxation {
   static constexpr std::string_view name = "relaxation";
-  double factor = 0.5;
+  RelaxationFactor factor{0.5};
   void fields(Fields& f);
 };
 struct AitkenAcceleration {
   static constexpr std::string_view name = "aitken";
-  double initial = 0.5;
+  RelaxationFactor initial;
   void fields(Fields& f);
 };
 struct AndersonAcceleration {  // IQN-ILS
   static constexpr std::string_view name = "anderson";
-  double initial = 0.5;
+  RelaxationFactor initial;
   int reuse = 5;           // windows whose secants are kept
   double filter = 1.0e-7;  // relative size below which a secant is dropped
   void fields(Fields& f);

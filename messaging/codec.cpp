@@ -26,11 +26,12 @@ static_assert(sizeof(Member) ==
 static_assert(sizeof(Rebound) == 6 * sizeof(double));
 static_assert(sizeof(PortResponse) == sizeof(Waveform) + 2 * sizeof(std::vector<double>) +
                                           2 * sizeof(double) + sizeof(std::optional<Rebound>));
-static_assert(sizeof(Capabilities) == 6 * sizeof(bool));
+static_assert(sizeof(Capabilities) == 7 * sizeof(bool));
 static_assert(sizeof(PortKernel) == 3 * sizeof(double) + 2 * sizeof(std::vector<double>));
 static_assert(sizeof(Obstacle) == sizeof(Waveform) + sizeof(std::vector<double>) + sizeof(double));
-static_assert(sizeof(BoundaryData) ==
-              2 * sizeof(Waveform) + sizeof(Obstacle) + sizeof(std::vector<double>));
+static_assert(sizeof(Impedance) == 2 * sizeof(double));
+static_assert(sizeof(BoundaryData) == 2 * sizeof(Waveform) + sizeof(Obstacle) + sizeof(Impedance) +
+                                          sizeof(std::vector<double>));
 static_assert(sizeof(PortGeometry) == 4 * sizeof(std::vector<double>) + 2 * sizeof(double));
 
 constexpr std::array<std::pair<Failed::Cause, v1::FailureCause>, 4> causes{{
@@ -70,6 +71,12 @@ void encode(const BoundaryData& from, v1::BoundaryData& to) {
     copy(from.obstacle.offset, *to.mutable_obstacle()->mutable_offset());
     to.mutable_obstacle()->set_bilateral(from.obstacle.bilateral);
   }
+  if (from.impedance.empty()) {
+    to.clear_impedance();
+  } else {
+    to.mutable_impedance()->set_value(from.impedance.value);
+    to.mutable_impedance()->set_bilateral(from.impedance.bilateral);
+  }
   copy(from.impulse, *to.mutable_impulse());
 }
 
@@ -95,6 +102,12 @@ void decode(const v1::BoundaryData& from, const FieldPath& path, BoundaryData& t
       to.obstacle.offset.size() != static_cast<std::size_t>(to.obstacle.motion.width)) {
     obstacle.fail(fmt::format("has {} offsets for a width of {}", to.obstacle.offset.size(),
                               to.obstacle.motion.width));
+  }
+  to.impedance = {};
+  if (from.has_impedance()) {
+    const FieldPath impedance{&path, "impedance"};
+    to.impedance = {number(from.impedance().value(), impedance), from.impedance().bilateral()};
+    if (to.impedance.value <= 0.0) impedance.fail("is not positive");
   }
   take(from.impulse(), FieldPath{&path, "impulse"}, to.impulse);
 }
@@ -355,6 +368,7 @@ void encode(const Description& from, v1::Description& to) {
   can.set_obstacle(from.can.obstacle);
   can.set_impulse(from.can.impulse);
   can.set_kernel(from.can.kernel);
+  can.set_impedance(from.can.impedance);
   can.set_complete(from.can.complete);
   for (const Member& member : from.members) {
     v1::Member& wire = *to.add_members();
@@ -385,6 +399,7 @@ void decode(const v1::Description& from, Description& to) {
                         .obstacle = can.obstacle(),
                         .impulse = can.impulse(),
                         .kernel = can.kernel(),
+                        .impedance = can.impedance(),
                         .complete = can.complete()};
   if (from.members_size() > most_members) FieldPath{&path, "members"}.fail("has too many entries");
   to.members.resize(static_cast<std::size_t>(from.members_size()));

@@ -49,12 +49,12 @@ Body::Body(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
 void Body::describe_ports(const std::vector<BodyPort>& ports) {
   Capabilities& can = description_.can;
   can.force = true;
-  can.kernel = can.complete = can.obstacle = can.impulse = !ports.empty();
+  can.kernel = can.complete = can.obstacle = can.impedance = can.impulse = !ports.empty();
   for (const BodyPort& p : ports) {
     const ContactLayer layer = bar_->data().layer[static_cast<std::size_t>(p.end)];
     if (layer == ContactLayer::massive) {
       can.motion = true;
-      can.kernel = can.complete = can.obstacle = false;
+      can.kernel = can.complete = can.obstacle = can.impedance = false;
     }
     support_[p.end] = layer == ContactLayer::kick ? ForceSupport::step : ForceSupport::nodal;
     end_of_port_.push_back(p.end);
@@ -182,6 +182,7 @@ void Body::set_actions(const Advance& request, const Substeps& grid, int i, EndA
         motion.interpolate(motion.u, time, {&u, 1});
       }
       action.kind = EndAction::Kind::obstacle;
+      action.yield = 0.0;
       action.target = Bar::outward(end_of_port_[p]) * (data.obstacle.offset[0] + u);
       action.bilateral = data.obstacle.bilateral;
     } else if (!data.motion.empty()) {
@@ -192,8 +193,18 @@ void Body::set_actions(const Advance& request, const Substeps& grid, int i, EndA
     } else if (!data.force.empty()) {
       action.kind = EndAction::Kind::force;
       fill_force(data, grid, i, p, action);
+      if (!data.impedance.empty()) resist(data.impedance, grid, i, end_of_port_[p], action);
     }
   }
+}
+
+void Body::resist(const Impedance& impedance, const Substeps& grid, int i, int end,
+                  EndAction& action) const {
+  // A dashpot over a substep is a spring from where the port was at its begin.
+  action.kind = EndAction::Kind::obstacle;
+  action.target = Bar::outward(end) * scheme_.integrator->port_displacement(state_, end);
+  action.yield = i > 0 ? impedance.value / grid.length(i) : 0.0;
+  action.bilateral = impedance.bilateral;
 }
 
 void Body::fill_force(const BoundaryData& data, const Substeps& grid, int i, std::size_t port,

@@ -52,6 +52,8 @@ class Body final : public Subdomain {
   void set_actions(const Advance& request, const Substeps& grid, int i, EndActions& actions);
   void fill_force(const BoundaryData& data, const Substeps& grid, int i, std::size_t port,
                   EndAction& action);
+  void resist(const Impedance& impedance, const Substeps& grid, int i, int end,
+              EndAction& action) const;
   void apply_impulses(const Advance& request);
   void begin_traces(const Advance& request, Response& response);
   void push_traces(const Advance& request, double time, Response& response);

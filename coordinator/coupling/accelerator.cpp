@@ -13,6 +13,7 @@ constexpr int stagnation = 6;
 }  // namespace
 
 Eigen::VectorXd Relaxation::next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) {
+  if (probe_) return iterate + factor_ * probe_(image - iterate);
   return iterate + factor_ * (image - iterate);
 }
 
@@ -22,7 +23,8 @@ void Aitken::reset(std::uint64_t) {
 }
 
 Eigen::VectorXd Aitken::next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) {
-  const Eigen::VectorXd residual = image - iterate;
+  Eigen::VectorXd residual = image - iterate;
+  if (probe_) residual = probe_(residual);
   if (previous_.size() == residual.size()) {
     const Eigen::VectorXd change = residual - previous_;
     const double squared = change.squaredNorm();

@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -23,26 +24,34 @@ class Accelerator {
   virtual void accept() {}
 };
 
+/// Multiplies a residual by something that stands for the inverse Jacobian: a matrix, or one number
+/// per interface.
+using ApplyInverse = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
+
 /// x_{k+1} = x_k + factor (G - x_k); factor 1 is the plain iteration.
 class Relaxation final : public Accelerator {
  public:
   explicit Relaxation(double factor) : factor_(factor) {}
+  explicit Relaxation(ApplyInverse probe) : factor_(1.0), probe_(std::move(probe)) {}
   void reset(std::uint64_t) override {}
   Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) override;
 
  private:
   double factor_;
+  ApplyInverse probe_;  // empty: 1
 };
 
-/// Aitken's dynamic relaxation, |factor| limited to 2.
+/// Aitken's dynamic relaxation, |factor| limited to 2. With a probe it relaxes the probed residual.
 class Aitken final : public Accelerator {
  public:
   explicit Aitken(double initial) : initial_(initial) {}
+  explicit Aitken(ApplyInverse probe) : initial_(1.0), probe_(std::move(probe)) {}
   void reset(std::uint64_t) override;
   Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) override;
 
  private:
   double initial_;
+  ApplyInverse probe_;  // empty: 1
   double factor_ = 0.0;
   Eigen::VectorXd previous_;  // residual
 };
@@ -55,7 +64,7 @@ class Aitken final : public Accelerator {
 /// proved not to be enough.
 class QuasiNewton final : public Accelerator {
  public:
-  using Inverse = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
+  using Inverse = ApplyInverse;
 
   /// `exact_enough`: number of iterations up to which the inverse alone is trusted; 0: secants
   /// always.

@@ -95,15 +95,23 @@ std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
 Accelerator& Schwarz::accelerator_of(const Island& island, std::span<const Joint> joints) {
   std::unique_ptr<Accelerator>& slot = accelerators_[island.joints];
   if (slot == nullptr) {
-    slot = make_([this, joints](const Eigen::VectorXd& r) {
-      Eigen::VectorXd out(r.size());
-      for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
-        const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
-        const Transmission& t = *joints[static_cast<std::size_t>(layout_.joints[i])].transmission;
-        out.segment(layout_.first[i], count) = t.apply_inverse(r.segment(layout_.first[i], count));
-      }
-      return out;
-    });
+    auto by_joint = [this, joints](auto apply) {
+      return [this, joints, apply](const Eigen::VectorXd& r) {
+        Eigen::VectorXd out(r.size());
+        for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
+          const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
+          const Transmission& t = *joints[static_cast<std::size_t>(layout_.joints[i])].transmission;
+          out.segment(layout_.first[i], count) = apply(t, r.segment(layout_.first[i], count));
+        }
+        return out;
+      };
+    };
+    using Values = Eigen::VectorXd;
+    slot = make_(
+        by_joint([](const Transmission& t, const Values& r) { return t.apply_inverse(r); }),
+        by_joint([](const Transmission& t, const Values& r) -> Values {
+          return t.first_factor() * r;
+        }));
   }
   return *slot;
 }

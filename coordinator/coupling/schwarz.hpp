@@ -45,7 +45,8 @@ class Schwarz {
     int max_iterations = 20;
     double tolerance = 1.0e-6;
   };
-  using MakeAccelerator = std::function<std::unique_ptr<Accelerator>(QuasiNewton::Inverse)>;
+  /// Of the inverse Jacobian and of the probed relaxation factors.
+  using MakeAccelerator = std::function<std::unique_ptr<Accelerator>(ApplyInverse, ApplyInverse)>;
 
   Schwarz(const Options& options, MakeAccelerator make)
       : options_(options), make_(std::move(make)) {}

@@ -104,6 +104,7 @@ void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bod
   scale_.step = step;
   scale_.velocity = reference_velocity(interface, kinematic_compliance_, step);
   scale_.force = interface.force_scale;
+  first_factor_ = 1.0 / (1.0 + neumann_compliance_ / kinematic_compliance_);
   inverse_ = inverses_.find(window.length());
   if (inverse_ != nullptr) return;
   if (kinematic_grid_.same_as(neumann_grid_) && kernel_k.support == kernel_n.support) {
@@ -185,7 +186,7 @@ void Unilateral::scales(Eigen::Ref<Eigen::VectorXd> s) const {
 
 Eigen::VectorXd Unilateral::apply_inverse(const Eigen::VectorXd& r) const {
   if (inverse_ != nullptr) return inverse_->solve(r);
-  return r / (1.0 + neumann_compliance_ / kinematic_compliance_);
+  return first_factor_ * r;
 }
 
 // ---- parallel -----------------------------------------------------------------------------------

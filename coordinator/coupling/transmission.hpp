@@ -36,6 +36,10 @@ class Transmission {
   virtual void scales(Eigen::Ref<Eigen::VectorXd> s) const = 0;
   /// Approximate J^-1 r, J = -d(G - x)/dx, from the port kernels.
   virtual Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const = 0;
+  /// Relaxation factor of a first correction, by impedance probe: stiffness of the Neumann side
+  /// over that of both, each the inverse of its port kernel's first coefficient. 1 where one is not
+  /// needed: what is iterated is scaled by the probe already, or the form is the published one.
+  virtual double first_factor() const { return 1.0; }
   /// True when the sides must be advanced one after the other, the kinematic one first.
   virtual bool ordered() const = 0;
 };
@@ -78,6 +82,7 @@ class Unilateral final : public Transmission {
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
   Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override;
+  double first_factor() const override { return first_factor_; }
   bool ordered() const override { return true; }
 
  private:
@@ -88,6 +93,7 @@ class Unilateral final : public Transmission {
   ReferenceScales scale_;
   double kinematic_compliance_ = 0.0, neumann_compliance_ = 0.0;  // [m/N] over one substep
   double roundoff_gain_ = 1.0;  // of displacements, through the reaction
+  double first_factor_ = 1.0;
   KernelInverse inverses_;
   const KernelInverse::Entry* inverse_ = nullptr;
 };

@@ -40,7 +40,11 @@ bool BarIntegrator::update_closed(BarState& state, const EndActions& actions) co
 }
 
 double end_reaction(double free_position, double compliance, const EndAction& action) {
-  const double reaction = (free_position - action.target) / compliance;
+  const double overlap = free_position - action.target;
+  const double reaction =
+      action.yield > 0.0
+          ? (action.dynamic + action.yield * overlap) / (1.0 + action.yield * compliance)
+          : overlap / compliance;
   return action.bilateral ? reaction : std::max(0.0, reaction);
 }
 

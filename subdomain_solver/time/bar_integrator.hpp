@@ -36,6 +36,7 @@ struct EndAction {
   double dynamic = 0.0;    // [N] mean over the dual cell, or over the substep for kicks (force)
   double target = 0.0;     // [m] outward displacement of the obstacle's surface (obstacle)
   bool bilateral = false;  // keep contact in tension (obstacle)
+  double yield = 0.0;  // [N/m] of the surface; 0: it does not give way (obstacle)
   double u = 0.0, v = 0.0, a = 0.0;  // prescribed (motion)
 };
 using EndActions = std::array<EndAction, 2>;
@@ -86,7 +87,7 @@ class BarIntegrator {
 };
 
 /// Compressive force that keeps x_free - C lambda at or inside the target: the unilateral problem
-/// of one end.
+/// of one end. A surface that yields pushes with its known force plus stiffness x overlap.
 double end_reaction(double free_position, double compliance, const EndAction& action);
 
 }  // namespace abut

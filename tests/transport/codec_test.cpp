@@ -52,6 +52,7 @@ Advance full_advance() {
   advance.boundary[0].obstacle.motion = wave(1, 2.0);
   advance.boundary[0].obstacle.offset = {0.04};
   advance.boundary[0].obstacle.bilateral = true;
+  advance.boundary[0].impedance = {2.5, false};
   advance.boundary[0].impulse = {-0.5};
   return advance;  // the second port has nothing imposed
 }
@@ -115,6 +116,9 @@ TEST(Codec, AdvanceKeepsEveryField) {
   expect_equal(got.boundary[0].obstacle.motion, sent.boundary[0].obstacle.motion);
   EXPECT_EQ(got.boundary[0].obstacle.offset, sent.boundary[0].obstacle.offset);
   EXPECT_TRUE(got.boundary[0].obstacle.bilateral);
+  EXPECT_EQ(got.boundary[0].impedance.value, 2.5);
+  EXPECT_FALSE(got.boundary[0].impedance.bilateral);
+  EXPECT_TRUE(got.boundary[1].impedance.empty());
   EXPECT_EQ(got.boundary[0].impulse, sent.boundary[0].impulse);
   EXPECT_FALSE(got.boundary[1].closed());
   EXPECT_TRUE(got.boundary[1].impulse.empty());

@@ -53,7 +53,7 @@ TEST(Scene, ReadsWhatIsGivenAndKeepsDefaults) {
   EXPECT_EQ(std::get<SpawnLaunch>(scene.bodies[2].second.launch).program, "other");
   EXPECT_EQ(scene.interfaces.at(0).second.name, "impact");
   EXPECT_TRUE(scene.schwarz.parallel);
-  EXPECT_EQ(std::get<AitkenAcceleration>(scene.schwarz.accelerator).initial, 0.25);
+  EXPECT_EQ(std::get<AitkenAcceleration>(scene.schwarz.accelerator).initial.value, 0.25);
   EXPECT_EQ(scene.schwarz.max_iterations, SchwarzSpec().max_iterations);
 }
 
@@ -145,8 +145,13 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"RelaxationOfZero",
             {"schwarz.accelerator={relaxation: {factor: 0}}"},
             "s.yaml, from --set schwarz.accelerator={relaxation: {factor: 0}}: "
-            "schwarz.accelerator.relaxation.factor: must be greater than 0 and less than 2, but is "
-            "0. Give the part of the correction that is taken, greater than 0 and less than 2."},
+            "schwarz.accelerator.relaxation.factor: must be above 0 and at most 2, but is 0. Give "
+            "the relaxation factor in this range, or probe."},
+        Bad{"FirstFactorOfAWord",
+            {"schwarz.accelerator={aitken: {initial: half}}"},
+            "s.yaml, from --set schwarz.accelerator={aitken: {initial: half}}: "
+            "schwarz.accelerator.aitken.initial: must be a number or probe, but is half. Give the "
+            "relaxation factor as a number, or probe."},
         Bad{"EndpointWithoutTransport",
             {"network.endpoint=localhost"},
             "s.yaml, from --set network.endpoint=localhost: network.endpoint: must begin with "
