@@ -21,11 +21,13 @@ from pathlib import Path
 from types import SimpleNamespace
 
 sys.dont_write_bytecode = True
-from support import ABUT, SystemTest, main  # noqa: E402
+from support import ABUT, ROOT, SystemTest, main  # noqa: E402
 
 sys.path.insert(0, str(ABUT.parent))
 from abut_tools.study_results import check_of, front, series_of  # noqa: E402
 from abut_tools.expressions import Expression  # noqa: E402
+from abut_tools.study_file import read_study  # noqa: E402
+from abut_tools.study_runs import check_measures  # noqa: E402
 
 SKIPPED = 77
 CHROMIUM = ("chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
@@ -113,12 +115,14 @@ class Studies(SystemTest):
                 "iterations_mean", "memory_mib"})
             self.assertIsNone(row["cost"]["wall_s_median"], "several at once are not timed")
             self.assertGreater(row["cost"]["compute_s"], 0.0)
-            # A process with a YAML reader and a socket library cannot be smaller; no bar is larger.
-            self.assertTrue(1.0 < row["cost"]["memory_mib"] < 200.0)
             self.assertEqual(row["settings"]["bodies.left.integrator.central_difference.step"],
                              row["knobs"]["step"])
             self.assertEqual(row["settings"]["bodies.right.model.fe.mesh.bar.elements"],
                              row["knobs"]["elements"])
+        # A process with a YAML reader and a socket library is not smaller, nor ten elements larger;
+        # a run of a few milliseconds may end before anybody looks.
+        seen = [row["cost"]["memory_mib"] for row in rows if row["cost"]["memory_mib"] is not None]
+        self.assertTrue(seen and all(1.0 < memory < 200.0 for memory in seen), seen)
         with (self.out / "results.csv").open(newline="", encoding="utf-8") as file:
             table = list(csv.DictReader(file))
         self.assertEqual([float(row["release"]) for row in table],
@@ -294,6 +298,13 @@ claims: [{text: better, checks: [{runs: corrected, value: release, below: plain}
                 self.assertFalse(self.stamps(), "nothing has run")
         ended = self.study("--target", "relese=1")
         self.assertEqual((ended.returncode, "Did you mean release?" in ended.stderr), (2, True))
+
+    def test_shipped_studies_are_valid(self):
+        shipped = sorted((ROOT / "studies").glob("*.yaml"))
+        self.assertGreater(len(shipped), 2, "the studies are found")
+        for path in shipped:
+            with self.subTest(study=path.name):
+                check_measures(read_study(path, ABUT, False), ABUT)
 
     def test_page_is_whole_and_small(self):
         self.succeed(self.study())

@@ -16,7 +16,7 @@ MIB = 1024.0 * 1024.0
 class Ended:
     code: int | None  # None: ended because of the time limit, or because the user wants no more
     said: str
-    memory_mib: float
+    memory_mib: float | None  # None: ended before it could be looked at
 
 
 def family(pid: int) -> list[int]:
@@ -76,7 +76,9 @@ def run(command: list[str], limit: float, stop: threading.Event) -> Ended:
             if stop.is_set() or waited > limit:
                 end(process)
                 break
-            time.sleep(0.001 if waited < 0.1 else 0.02)
+            time.sleep(0.0002 if waited < 0.03 else 0.001 if waited < 0.1 else 0.02)
         log.seek(0)
         said = log.read().decode("utf-8", "replace").strip()
-    return Ended(code, said, sum(peaks.values()) / MIB)
+    memory = sum(peaks.values()) / MIB
+    # No program that has come to life is smaller: this one was seen only as it was loaded.
+    return Ended(code, said, memory if memory > 1.0 else None)

@@ -148,7 +148,8 @@ class Runner:
             if self.stop.is_set():
                 raise KeyboardInterrupt
             record["status"], record["message"] = self.judged(ended, folder)
-            record["memory_mib"] = max(ended.memory_mib, record["memory_mib"] or 0.0)
+            seen = [each for each in (ended.memory_mib, record["memory_mib"]) if each is not None]
+            record["memory_mib"] = max(seen, default=None)
             if record["status"] != "completed":
                 break
             summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
