@@ -86,7 +86,7 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
       start + count * (flights + sweeps * e.contact_windows_high + 2 * per_event * joints);
   e.exchanges_high += e.exchanges_high / 20;  // contact that lasts a little longer, chatter
   if (joints == 0) e.exchanges_high = e.exchanges_low;
-  if (watched_only(scene)) e.exchanges_low = e.exchanges_high = count * (2 + e.windows);
+  if (watched_only(scene)) e.exchanges_low = e.exchanges_high = count * (1 + e.windows);
   list_features(scene, e);
   return e;
 }

@@ -1,0 +1,98 @@
+// Goal: the conventional contact methods have their published figures, for the published reasons.
+// Oracles: the figures that the scenes hold, the mechanics of a penalty spring, equality over windows.
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "coordinator/record/expectations.hpp"
+#include "tests/support/runs.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace abut {
+namespace {
+
+std::string path_of(const std::string& scene) {
+  return std::string(ABUT_SOURCE_DIR) + "/configs/methods/" + scene + ".yaml";
+}
+
+class Conventional : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Conventional,
+                         testing::Values("penalty_explicit", "penalty_implicit",
+                                         "lagrange_explicit", "lagrange_implicit",
+                                         "lagrange_implicit_backward_euler",
+                                         "lagrange_implicit_trapezoidal",
+                                         "penalty_explicit_current_lengths",
+                                         "lagrange_explicit_current_lengths",
+                                         "lagrange_implicit_current_lengths"));
+
+TEST_P(Conventional, HasThePublishedFigures) {
+  const Scene scene = read_scene(Document::load(path_of(GetParam()), {}));
+  const std::unique_ptr<RunResult> r = run_file(path_of(GetParam()));
+  ASSERT_TRUE(r->completed());
+  for (const ExpectationResult& e : evaluate(scene.meta.expect, r->measures))
+    EXPECT_TRUE(e.pass) << e.measure << ": " << e.got << ", expected " << e.expected;
+}
+
+TEST_P(Conventional, DoesNotDependOnTheWindow) {
+  const std::unique_ptr<RunResult> one = run_file(path_of(GetParam()), {"time.window=1.0e-7"});
+  const std::unique_ptr<RunResult> many = run_file(path_of(GetParam()), {"time.window=1.0e-5"});
+  EXPECT_EQ(one->rows.back().total, many->rows.back().total);
+  EXPECT_EQ(one->rows.back().u, many->rows.back().u);
+  EXPECT_EQ(one->measure("contact.impact.count"), many->measure("contact.impact.count"));
+  // a window shows at least two forces before the release, or it is located to one step of 1e-7 s
+  EXPECT_NEAR(one->measure("contact.impact.end"), many->measure("contact.impact.end"), 1.001e-7);
+  EXPECT_NEAR(one->measure("contact.impact.begin"), many->measure("contact.impact.begin"),
+              1.001e-7);
+}
+
+TEST(ConventionalMethods, PenaltyOverlapFollowsTheSpringAndVanishesWithIt) {
+  // A stiff spring overshoots at first touch: 141 N at 7.5e5 N/m. The overlap is that of the force.
+  for (double stiffness : {7.5e4, 7.5e5}) {
+    const std::unique_ptr<RunResult> r =
+        run_file(path_of("penalty_explicit"),
+                 {fmt::format("bodies.pair.model.bar_pair.contact.penalty.stiffness={}", stiffness)});
+    // gaps are known at the ends of windows only, every tenth step: the peak is flat to 2 % there
+    const double overlap = r->measure("contact.impact.force_peak") / stiffness;
+    EXPECT_NEAR(-r->measure("contact.impact.gap_min"), overlap, 0.02 * overlap);
+    EXPECT_GT(overlap, 100.0 / stiffness) << "F / tau, F = 100 N";
+  }
+}
+
+TEST(ConventionalMethods, ExplicitMultiplierLosesTheEnergyOfTheContactCells) {
+  for (int elements : {50, 100}) {
+    const std::string n = std::to_string(elements);
+    const std::unique_ptr<RunResult> r =
+        run_file(path_of("lagrange_explicit"), {"bodies.pair.model.bar_pair.left.elements=" + n,
+                                                "bodies.pair.model.bar_pair.right.elements=" + n});
+    const double expected = -1.0 / (2.0 * elements);
+    // 2 %: the release loses a little more or less than the impact
+    EXPECT_NEAR(r->measure("energy.total.relative_drift_end"), expected, 0.02 * -expected);
+  }
+}
+
+TEST(ConventionalMethods, TheEnergyLossAscribedToThemComesFromTheLengths) {
+  const char* error = "energy.left.relative_error_max";
+  for (const std::string& method : {std::string("penalty_explicit"),
+                                    std::string("lagrange_explicit")}) {
+    const double reference = run_file(path_of(method))->measure(error);
+    const double current = run_file(path_of(method + "_current_lengths"))->measure(error);
+    EXPECT_GT(current, 3.0 * reference) << method;
+  }
+}
+
+TEST(ConventionalMethods, APairIsWatchedAndItsPortsTakeNoOtherTransmission) {
+  try {
+    run_file(path_of("penalty_explicit"),
+             {"interfaces.impact.transmission={unilateral: {}}"});
+    FAIL() << "accepted";
+  } catch (const InputError& refused) {
+    EXPECT_NE(std::string(refused.what()).find("two different bodies"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace abut
