@@ -1,5 +1,6 @@
-// Goal: two bars in one body move as two bodies under their contact force would, conserve what their
-// method says, and rewind. Oracles: the single bars, balances, the law of the contact, equal hashes.
+// Goal: two bars in one body move as two bodies under their contact force would, conserve what
+// their method says, and rewind. Oracles: the single bars, balances, the law of the contact, equal
+// hashes.
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
 // Goal: the conventional contact methods have their published figures, for the published reasons.
-// Oracles: the figures that the scenes hold, the mechanics of a penalty spring, equality over windows.
+// Oracles: the figures that the scenes hold, the mechanics of a penalty spring, equality over
+// windows.
 
 #include <cmath>
 #include <memory>
@@ -50,11 +51,11 @@ TEST_P(Conventional, DoesNotDependOnTheWindow) {
 }
 
 TEST(ConventionalMethods, PenaltyOverlapFollowsTheSpringAndVanishesWithIt) {
-  // A stiff spring overshoots at first touch: 141 N at 7.5e5 N/m. The overlap is that of the force.
+  // A stiff spring overshoots at first touch: 141 N at 7.5e5 N/m. The overlap follows the force.
   for (double stiffness : {7.5e4, 7.5e5}) {
-    const std::unique_ptr<RunResult> r =
-        run_file(path_of("penalty_explicit"),
-                 {fmt::format("bodies.pair.model.bar_pair.contact.penalty.stiffness={}", stiffness)});
+    const std::string spring =
+        fmt::format("bodies.pair.model.bar_pair.contact.penalty.stiffness={}", stiffness);
+    const std::unique_ptr<RunResult> r = run_file(path_of("penalty_explicit"), {spring});
     // gaps are known at the ends of windows only, every tenth step: the peak is flat to 2 % there
     const double overlap = r->measure("contact.impact.force_peak") / stiffness;
     EXPECT_NEAR(-r->measure("contact.impact.gap_min"), overlap, 0.02 * overlap);
