@@ -12,10 +12,10 @@ class Node;
 namespace abut {
 
 /// One parsed YAML file with the values that the command line puts in place (`key.path=value`, the
-/// value in YAML; null takes the key out). Text, name and overrides are kept as given, so that another process can build
-/// the same document from them. Key paths read `bodies.left.initial.velocity` and
-/// `meta.expect[0].measure`. All that is wrong with the file's form throws InputError: syntax,
-/// duplicate keys, several documents.
+/// value in YAML; null takes the key out). Text, name and overrides are kept as given, so that
+/// another process can build the same document from them. Key paths read
+/// `bodies.left.initial.velocity` and `meta.expect[0].measure`. All that is wrong with the file's
+/// form throws InputError: syntax, duplicate keys, several documents.
 class Document {
  public:
   static Document load(const std::string& path, std::vector<std::string> overrides = {});

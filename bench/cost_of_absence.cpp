@@ -1,6 +1,6 @@
-/// What the machinery around the arithmetic costs when nothing optional is used: two_bars.yaml in one process without
-/// observers, against a hand-written loop that takes the same steps of both bars at once, and the allocations of a
-/// window in contact.
+/// What the machinery around the arithmetic costs when nothing optional is used: two_bars.yaml in
+/// one process without observers, against a hand-written loop that takes the same steps of both
+/// bars at once, and the allocations of a window in contact.
 ///
 ///   abut_bench_cost_of_absence [SCENE]
 
@@ -75,7 +75,8 @@ double run_scene(const Scene& scene, const Document& document, std::vector<Obser
   return seconds_since(began);
 }
 
-/// One bar of two_bars.yaml: 200 elements, massless layer with factor 1.4, six dispersion terms. Node 0 is the tip.
+/// One bar of two_bars.yaml: 200 elements, massless layer with factor 1.4, six dispersion terms.
+/// Node 0 is the tip.
 struct HandBar {
   static constexpr std::size_t nodes = 201;
   double u[nodes] = {}, v[nodes] = {}, s[nodes] = {}, t[nodes] = {};
@@ -116,7 +117,8 @@ struct HandBar {
   double force() const { return 1.4 * 8.0e5 * direction * (s[1] - s[0]); }
 };
 
-/// The whole run: both bars step by step, by symmetry against the middle. Returns a value so that nothing is left out.
+/// The whole run: both bars step by step, by symmetry against the middle. Returns a value so that
+/// nothing is left out.
 double run_by_hand() {
   HandBar left(1.0), right(-1.0);
   const double dt = 1.0e-7;
@@ -154,8 +156,10 @@ int run(const char* path) {
   const double allocated = median(counter.counts);
   fmt::print("two_bars.yaml in one process {:.2f} ms, by hand {:.2f} ms (bars end at {:.2f} m/s)\n",
              median(product) * 1e3, median(hand) * 1e3, 0.5 * check);
-  fmt::print("ratio {:.2f}, limit {:.1f}; allocations per window in contact {:.0f}, limit 0; medians of {}\n",
-             ratio, accepted_ratio, allocated, repeats);
+  fmt::print(
+      "ratio {:.2f}, limit {:.1f}; allocations per window in contact {:.0f}, limit 0; medians of "
+      "{}\n",
+      ratio, accepted_ratio, allocated, repeats);
   return ratio <= accepted_ratio && allocated == 0.0 ? 0 : 1;
 }
 

@@ -13,7 +13,8 @@ constexpr std::array<std::string_view, 3> own_verbs{"run", "check", "reference"}
 
 void add_scene(CLI::App& verb, std::string& scene, std::vector<std::string>& overrides) {
   verb.add_option("scene", scene, "scene file")->required()->type_name("SCENE");
-  verb.add_option("--set", overrides, "use this value in place of the scene's, null for none; repeatable")
+  verb.add_option("--set", overrides,
+                  "use this value in place of the scene's, null for none; repeatable")
       ->type_name("key.path=value")
       ->allow_extra_args(false);
 }
