@@ -27,7 +27,7 @@ struct Deadlines {
   Milliseconds repeat{2'000};      // a request is sent again after this long, then twice, ...
   Milliseconds slice{100};         // between two looks at the peer's liveness
   Milliseconds reconnect{10'000};  // a lost TCP connection may come back for this long
-  Milliseconds progress{1'000};    // least time between two signs of progress
+  Milliseconds progress{250};      // least time between two signs of progress
   Milliseconds hello{1'000};       // between two attempts to greet
 };
 

@@ -15,7 +15,7 @@
 
 namespace abut {
 
-/// Cheap to call between any two substeps: says at most once a second that the solve is still going
+/// Cheap to call between any two substeps: says at most four times a second that the solve is still going
 /// on.
 using ProgressHook = std::function<void()>;
 

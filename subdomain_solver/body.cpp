@@ -15,8 +15,8 @@ namespace abut {
 
 namespace {
 
-/// Element-steps between two signs of life: about 50 ms of work.
-constexpr double progress_work = 1.0e8;
+/// Element-steps between two signs of life: about 10 ms of work.
+constexpr double progress_work = 2.0e7;
 
 }  // namespace
 
