@@ -15,8 +15,8 @@
 
 namespace abut {
 
-/// Cheap to call between any two substeps: says at most four times a second that the solve is still going
-/// on.
+/// Cheap to call between any two substeps: says at most four times a second that the solve still
+/// goes on.
 using ProgressHook = std::function<void()>;
 
 /// Makes the body when its specification has arrived. Throws InputError when the specification is

@@ -106,7 +106,7 @@ class LostSolvers(FaultTest):
         self.assert_failure_is_written("body 'left' has not answered")
 
     def test_a_long_solve_shows_progress_and_outlives_the_deadline(self):
-        # One request of 1000 windows takes seconds, with signs of progress every quarter of a second.
+        # One request of 1000 windows takes seconds, with signs of progress in between.
         deadline = 1.5
         self.succeed(self.end(self.run_in_background(
             *LONG, "--set", "time.end=1.0e-2", "--set", f"network.request_deadline={deadline}",
