@@ -1,6 +1,6 @@
 # The front door. Every target checks what it needs first, skips what is done, and may be run again.
 .DEFAULT_GOAL := help
-.PHONY: help demo build test bench clean dependencies-build dependencies-test dependencies-bench
+.PHONY: help demo build test bench extremes clean dependencies-build dependencies-test dependencies-bench
 
 PRESET ?= release
 export PRESET
@@ -11,6 +11,7 @@ help:
 	@echo "make build   the two programs, in $(BIN)"
 	@echo "make test    every test"
 	@echo "make bench   the measured figures"
+	@echo "make extremes  docs/EXTREMES.md, measured anew"
 	@echo "make clean   removes build/ (runs/ is yours and stays)"
 	@echo "Missing Debian packages are installed first, with sudo when you are not root."
 
@@ -36,6 +37,9 @@ test: dependencies-test
 bench: dependencies-bench
 	@sh scripts/build.sh bench
 	@sh bench/run.sh $(BIN)
+
+extremes: build
+	/usr/bin/python3 scripts/extremes.py $(BIN)
 
 clean:
 	rm -rf build
