@@ -14,7 +14,7 @@
 
 namespace abut {
 
-/// Turns a run into measures: docs/RESULTS.md says what each one means. Complete
+/// Turns a run into measures: docs/OUTPUT.md says what each one means. Complete
 /// after on_end, so it is told of the end before those who read it.
 class MeasureRecorder : public Observer {
  public:

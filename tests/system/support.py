@@ -133,7 +133,7 @@ class SystemTest(unittest.TestCase):
         return [strict_json(line) for line in text.splitlines()]
 
     def assert_whole(self, folder: Path, rows: int = 2):
-        """Every file that docs/RESULTS.md promises, readable, without a number that is none.
+        """Every file that docs/OUTPUT.md promises, readable, without a number that is none.
 
         A run that was cut short may have no more than the row of its begin.
         """

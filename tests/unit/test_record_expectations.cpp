@@ -91,7 +91,7 @@ TEST(Expectations, MeasureThatNeedsAClosedFormSaysSo) {
 }
 
 TEST(Expectations, EveryMeasureIsExplainedInTheDocuments) {
-  std::ifstream file(std::string(ABUT_SOURCE_DIR) + "/docs/RESULTS.md");
+  std::ifstream file(std::string(ABUT_SOURCE_DIR) + "/docs/OUTPUT.md");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   MeasureScope scope;
   scope.bodies = {"BODY"};
