@@ -1,0 +1,19 @@
+#include "subdomain_solver/materials/isotropic.hpp"
+
+#include <cmath>
+
+namespace abut {
+
+IsotropicMaterial::IsotropicMaterial(const Moduli& moduli, double density)
+    : moduli_(moduli), density_(density) {
+  require_positive(moduli.bulk, "bulk_modulus", "Pa");
+  require_positive(moduli.shear, "shear_modulus", "Pa");
+  require_positive(density, "density", "kg/m^3");
+}
+
+bool is_finite(const PointResponse& answer, Want want) {
+  return std::isfinite(answer.energy) && std::isfinite(answer.dissipation) &&
+         answer.stress.allFinite() && (want == Want::stress || answer.tangent.allFinite());
+}
+
+}  // namespace abut

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+
+#include <Eigen/Core>
+
+#include "subdomain_solver/materials/moduli.hpp"
+
+namespace abut {
+
+using Matrix3 = Eigen::Matrix3d;
+/// dP_iJ / dF_kL at row i + 3 J, column k + 3 L: the order in which Eigen stores a matrix.
+using Tangent = Eigen::Matrix<double, 9, 9>;
+
+/// What a material answers at one point.
+struct PointResponse {
+  double energy = 0.0;       // [J/m^3] stored, per reference volume
+  double dissipation = 0.0;  // [J/m^3] dissipated in this update, per reference volume
+  Matrix3 stress;            // [Pa] first Piola-Kirchhoff P = d(energy + dissipation)/dF
+  Tangent tangent;           // [Pa] dP/dF, only when wanted
+};
+
+enum class Want { stress, tangent };
+
+/// A material law in three dimensions, in terms of the deformation gradient F. Plane strain, plane
+/// stress and axisymmetry embed their F in it (plane.hpp), so a law is written once.
+class Material {
+ public:
+  virtual ~Material() = default;
+  virtual double density() const = 0;  // [kg/m^3] reference
+  virtual Moduli moduli() const = 0;   // at the undeformed state: wave speeds, stable step
+  /// P is linear in F: one assembly and one factorisation serve a whole run (small strain).
+  virtual bool is_linear() const { return false; }
+  /// Numbers per point that change with the deformation; all zero at the start.
+  virtual int history_size() const { return 0; }
+  /// Response at F; reads the history at the step's begin and writes that at its end (both of
+  /// history_size()). False: F is inadmissible (det F <= 0 for finite-strain laws, numbers that
+  /// are not finite, no local convergence) and out and after are undefined.
+  [[nodiscard]] virtual bool evaluate(const Matrix3& f, std::span<const double> before,
+                                      std::span<double> after, Want want,
+                                      PointResponse& out) const = 0;
+};
+
+}  // namespace abut
