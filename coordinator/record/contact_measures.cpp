@@ -18,14 +18,22 @@ void SquareIntegral::add(double begin, double end, double at_begin, double at_en
   const double last = at_end + slope * (to - end);
   sum_ += 0.5 * (first * first + last * last) * (to - from);
   covered_ += to - from;
+  largest_ = std::max({largest_, std::abs(first), std::abs(last)});
 }
 
-double SquareIntegral::rms(double missing) const {
+double SquareIntegral::bare() const {
   const double length = to_ - from_;
   // Thousands of stretches leave rounding between them, whose root would be far above round-off.
   const double rounding = 1e-11 * length;
-  const double bare = length - covered_ > rounding ? length - covered_ : 0.0;
-  return std::sqrt((sum_ + bare * missing * missing) / length);
+  return length - covered_ > rounding ? length - covered_ : 0.0;
+}
+
+double SquareIntegral::rms(double missing) const {
+  return std::sqrt((sum_ + bare() * missing * missing) / (to_ - from_));
+}
+
+double SquareIntegral::largest(double missing) const {
+  return bare() > 0.0 ? std::max(largest_, std::abs(missing)) : largest_;
 }
 
 double SquareIntegral::rms_of_covered() const {
@@ -215,6 +223,7 @@ void ContactMeasures::write_errors(double run_end, Measures& out) const {
     }
   };
   // Without contact there is no force: the error is the whole of the exact one.
+  put("force_max_error", force_error_.end(), force_error_.largest(1.0));
   put("force_rms_error", force_error_.end(), force_error_.rms(1.0));
   put("force_rms_error_tail", force_error_tail_.end(), force_error_tail_.rms(1.0));
   put("velocity_rms_error", velocity_error_.end(), velocity_error_.rms_of_covered());

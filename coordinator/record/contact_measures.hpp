@@ -11,7 +11,8 @@
 
 namespace abut {
 
-/// Integral of a square over the part of an interval of time that a run covers.
+/// Integral of a square over the part of an interval of time that a run covers, and the largest
+/// magnitude there.
 class SquareIntegral {
  public:
   SquareIntegral() = default;
@@ -24,12 +25,15 @@ class SquareIntegral {
   double rms(double missing) const;
   /// The same over what was added.
   double rms_of_covered() const;
+  /// Largest magnitude in the interval, with `missing` as the value where nothing was added.
+  double largest(double missing) const;
   double end() const { return to_; }
 
  private:
   double from_ = -std::numeric_limits<double>::infinity();
   double to_ = std::numeric_limits<double>::infinity();
-  double sum_ = 0.0, covered_ = 0.0;
+  double bare() const;
+  double sum_ = 0.0, covered_ = 0.0, largest_ = 0.0;
 };
 
 /// Measures of one interface: when it was closed, and the force and motion of its contact as the

@@ -59,7 +59,8 @@ std::vector<std::string> known_measures(const MeasureScope& scope) {
       names.push_back(fmt::format("contact.{}.{}", interface, what));
     if (interface != scope.closed_form) continue;
     for (const char* what : {"begin_error", "release_error", "release_error_half_force",
-                             "force_rms_error", "force_rms_error_tail", "velocity_rms_error"})
+                             "force_max_error", "force_rms_error", "force_rms_error_tail",
+                             "velocity_rms_error"})
       names.push_back(fmt::format("contact.{}.{}", interface, what));
   }
   for (const std::string& body : scope.bodies) {

@@ -133,7 +133,7 @@ class CommandLines(InvalidScenes):
         self.assert_refused(
             abut("rum"),
             "there is no verb rum, and no program abut-rum beside abut or on PATH. Use run, check, "
-            "reference or report; abut --help describes them.")
+            "reference, report or study; abut --help describes them.")
 
     def test_an_unknown_option_is_refused(self):
         result = abut("run", "scene.yaml", "--fast")

@@ -71,6 +71,8 @@ figures:
     of: left.tip
     runs: "*elements 20"
   - {convergence: kinetic, knob: elements}
+  - {table: {release: 100 * release, n: schwarz.iterations_max}, knob: elements, title: Spread}
+  - {table: {release: release, wall: wall_s_median}, runs: "*elements 10", title: By run}
 claims:
   - text: Released within a tenth
     checks: [{value: release, at_most: 0.1, percent: true}]
@@ -196,6 +198,32 @@ class Studies(SystemTest):
         other = json.loads((self.folder / "other" / "results.json").read_text(encoding="utf-8"))
         self.assertEqual([row["errors"] for row in whole], [row["errors"] for row in other])
 
+    def test_tables_hold_the_runs_values(self):
+        self.succeed(self.study())
+        rows = self.rows()
+        spread, by_run = json.loads(
+            (self.out / "study.json").read_text(encoding="utf-8"))["tables"]
+        self.assertEqual(spread["headings"], ["elements", "5", "10", "20"])
+        self.assertEqual([row[0] for row in spread["rows"]],
+                         ["step 5e-06", "step 2.5e-06", "step 1e-06"])
+        for k, row in enumerate(rows):
+            most = self.summary(self.out / row["folder"])["measures"]["schwarz.iterations_max"]
+            self.assertEqual(spread["rows"][k // 3][1 + k % 3],
+                             f"{100 * row['errors']['release']:.3g} / {most:.3g}")
+        self.assertEqual(by_run["headings"], ["run", "release"], "nothing was timed")
+        self.assertEqual(by_run["rows"], [[row["label"], f"{row['errors']['release']:.3g}"]
+                                          for row in rows[1::3]])
+        text = (self.out / "results.md").read_text(encoding="utf-8")
+        self.assertIn("## Spread\n\n| elements | 5 | 10 | 20 |", text)
+
+    def test_short_form_is_that_of_the_study(self):
+        text = STUDY + 'quick: {runs: ["*elements 5"], set: {time.end: 1.0e-4}}\n'
+        self.succeed(self.study("--quick", text=text))
+        self.assertEqual([(row["label"], row["settings"]["time.end"]) for row in self.rows()],
+                         [("step 5e-06, elements 5", 1e-4), ("step 2.5e-06, elements 5", 1e-4)])
+        ended = self.study("--quick", text=text.replace("elements 5", "elements 6"))
+        self.assertEqual((ended.returncode, "quick.runs: no run" in ended.stderr), (2, True))
+
     def test_target_writes_the_scene_that_meets_it(self):
         ended = self.succeed(self.study("--target", "release=0.05", "--target", "kinetic=0.03"))
         able = [row for row in self.rows() if row["errors"]["release"] <= 0.05
@@ -284,6 +312,10 @@ claims: [{text: better, checks: [{runs: corrected, value: release, below: plain}
                 ("norm: rms", "norm: sum", ["'sum' is none of rms, max, end"]),
                 ("[position,", "[positon,", ["positon", "position"]),
                 ("knob: elements", "knob: element", ["figures[1].knob"]),
+                ("release: 100 * release", "release: 100 * relase",
+                 ["figures[2].table.release", "release"]),
+                ("table: {release: release, wall: wall_s_median}", "table: {}",
+                 ["figures[3].table: needs at least one column"]),
                 ("at_most: 0.1, percent: true", "percent: true", ["claims[0].checks[0]: needs"]),
                 ("value: release,", "value: __import__('os'),", ["is something else"]),
                 ("value: release,", "runs: nobody, value: release,", ["no run is labelled"]),

@@ -34,6 +34,7 @@ TEST(Measures, ExactRunHasNoErrors) {
       {"contact.impact.impulse", 2.0},
       {"contact.impact.force_mean", 1.0},
       {"contact.impact.force_peak", 1.0},
+      {"contact.impact.force_max_error", 0.0},
       {"contact.impact.force_rms_error", 0.0},
       {"contact.impact.force_rms_error_tail", 0.0},
       {"contact.impact.begin_error", 0.0},
@@ -88,6 +89,7 @@ TEST(Measures, AlternatingForceErrorIsItsRootMeanSquareInBothSupports) {
     run.play(recorder);
     // 5 to 95 % are 0.2 s to 2.0 s: whole substeps.
     EXPECT_NEAR(measure(recorder, "contact.impact.force_rms_error"), 0.28, roundoff);
+    EXPECT_NEAR(measure(recorder, "contact.impact.force_max_error"), 0.28, roundoff);
     EXPECT_NEAR(measure(recorder, "contact.impact.force_peak"), 1.28, roundoff);
   }
 }
@@ -103,6 +105,7 @@ TEST(Measures, TimeWithoutContactCountsAsWholeForceError) {
   recorder.on_end(run.end());
   // Half of [0.2, 2.0] lacks all of the force.
   EXPECT_NEAR(measure(recorder, "contact.impact.force_rms_error"), std::sqrt(0.5), roundoff);
+  EXPECT_NEAR(measure(recorder, "contact.impact.force_max_error"), 1.0, roundoff);
   EXPECT_NEAR(measure(recorder, "contact.impact.release_error"), -0.5, roundoff);
   EXPECT_NEAR(measure(recorder, "contact.impact.impulse"), 1.0, roundoff);
 }

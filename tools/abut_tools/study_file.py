@@ -25,9 +25,10 @@ KEYS = {
     "reference": ("scene", "set"),
     "histories": ("histories", "of", "runs", "title"),
     "convergence": ("convergence", "knob", "runs", "title"),
+    "table": ("table", "knob", "runs", "title"),
     "claim": ("text", "checks", "note"),
     "check": ("runs", "value", "at_most", "at_least", "below", "above", "percent"),
-    "quick": ("set", "keep"),
+    "quick": ("set", "keep", "runs"),
 }
 
 
@@ -182,6 +183,14 @@ class Reader:
             self.refuse("base", "is needed: name a scene, or variants with scenes of their own.")
         return found or [({}, "")]
 
+    def kept(self, points: list[Point], patterns: list) -> list[Point]:
+        for pattern in self.a_list(patterns, "quick.runs"):
+            if not any(fnmatchcase(point.label, str(pattern)) for point in points):
+                self.refuse("quick.runs", f"no run is labelled '{pattern}'."
+                            f"{nearest(str(pattern), [point.label for point in points])}")
+        return [point for point in points
+                if any(fnmatchcase(point.label, str(pattern)) for pattern in patterns)]
+
     # ---- what is measured ------------------------------------------------------------
 
     def errors(self, found: dict, has_reference: bool) -> list[Error]:
@@ -220,13 +229,23 @@ class Reader:
     def figures(self, found: list, errors: list[Error], knobs: list[str]) -> list[dict]:
         for i, figure in enumerate(self.a_list(found, "figures")):
             key = f"figures[{i}]"
-            kind = "convergence" if "convergence" in self.a_map(figure, key) else "histories"
+            self.a_map(figure, key)
+            kind = next((word for word in ("convergence", "table") if word in figure), "histories")
             self.a_map(figure, key, kind)
             if kind == "convergence":
                 self.choice(figure["convergence"], f"{key}.convergence",
                             tuple(error.name for error in errors))
+            if kind == "convergence" or "knob" in figure:
                 self.choice(figure.get("knob"), f"{key}.knob", tuple(knobs))
-            else:
+            if kind == "table":
+                where = f"{key}.table"
+                figure["table"] = {
+                    str(name): Expression(self.a_text(text, f"{where}.{name}"),
+                                          f"{self.path}: {where}.{name}")
+                    for name, text in self.a_map(figure["table"], where).items()}
+                if not figure["table"]:
+                    self.refuse(where, "needs at least one column: NAME: EXPRESSION.")
+            if kind == "histories":
                 for quantity in self.a_list(figure.get("histories"), f"{key}.histories"):
                     self.choice(quantity, f"{key}.histories", QUANTITIES)
                 if self.a_text(figure.get("of"), f"{key}.of").count(".") != 1:
@@ -289,6 +308,8 @@ def read_study(path: Path, abut: Path, is_quick: bool) -> Study:
             sweep = {"knobs": spec.get("knobs", {})}
         points += reader.points_of(spec, sweep, key, quick)
         knobs += [name for name in sweep.get("knobs", {}) if name not in knobs]
+    if quick is not None and "runs" in quick:
+        points = reader.kept(points, quick["runs"])
     reference = None
     if "reference" in spec:
         found = reader.a_map(spec["reference"], "reference", "reference")

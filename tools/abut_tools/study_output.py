@@ -12,7 +12,11 @@ from pathlib import Path
 from abut_tools.page import write_whole
 from abut_tools.study_file import COSTS, Study
 from abut_tools.study_results import Result, by_status, claims_of, cost_key, front, series_of
+from abut_tools.study_tables import tables_of
 from abut_tools.tables import ToolError
+
+
+MANY_RUNS = 6  # more in one cell of a table are not read
 
 
 def machine() -> dict:
@@ -76,7 +80,8 @@ def facts_of(study: Study, results: list[Result], reference: dict | None, second
         "cost_of_fronts": cost,
         "fronts": {error.name: [result.label for result in front(results, error.name, cost)]
                    for error in study.errors},
-        "orders": orders, "claims": claims_of(study, results)}
+        "orders": orders, "claims": claims_of(study, results),
+        "tables": tables_of(study, results)}
 
 
 def csv_of(study: Study, results: list[Result]) -> str:
@@ -105,8 +110,55 @@ def md_table(headings: list[str], rows: list[list]) -> str:
 
 
 def measured_text(claim: dict) -> str:
-    return "; ".join(f"{each['run']}: {each['shown']}" for check in claim["checks"]
-                     for each in check["measured"]) or "no run"
+    """What was asked, then every run's value; of many runs the smallest and the largest."""
+    parts = []
+    for check in claim["checks"]:
+        measured = [each for each in check["measured"] if each["value"] is not None]
+        values = [f"{each['run']} {each['shown']}" for each in measured]
+        if len(values) > MANY_RUNS:
+            measured.sort(key=lambda each: each["value"])
+            values = [f"{len(values)} runs, from {measured[0]['shown']} ({measured[0]['run']}) to "
+                      f"{measured[-1]['shown']} ({measured[-1]['run']})"]
+        parts.append(f"`{check['value']}` {check['expected']}: {', '.join(values) or 'no value'}")
+    return "; ".join(parts)
+
+
+def claims_md(facts: dict) -> str:
+    return md_table(["claim", "verdict", "measured", "note"],
+                    [[claim["text"], claim["verdict"], measured_text(claim), claim["note"]]
+                     for claim in facts["claims"]])
+
+
+def orders_md(facts: dict) -> str:
+    return md_table(["series", "error", "knob", "fitted order", "from point to point"],
+                    [[each["label"], each["error"], each["knob"], f"{each['order']:.2f}",
+                      " ".join(f"{step:.2f}" for step in each["steps"])]
+                     for each in facts["orders"]])
+
+
+def by_sweep(results: list[Result]) -> dict[str, list[Result]]:
+    found = {}
+    for result in results:
+        found.setdefault(result.point.sweep, []).append(result)
+    return found
+
+
+def with_values(results: list[Result], names: list[str], kind: str) -> list[str]:
+    """The costs or errors (`kind`) that at least one of the runs has."""
+    return [name for name in names
+            if any(getattr(result, kind).get(name) is not None for result in results)]
+
+
+def runs_md(study: Study, results: list[Result]) -> str:
+    costs = with_values(results, [c for c in COSTS if c not in ("wall_s_min", "wall_s_max")],
+                        "cost")
+    errors = with_values(results, [error.name for error in study.errors], "errors")
+    return md_table(
+        ["run", "status", *costs, *errors],
+        [[result.label, result.status + (f": {result.record['message']}"
+                                         if result.record["message"] else ""),
+          *(result.cost[key] for key in costs), *(result.errors[name] for name in errors)]
+         for result in results])
 
 
 def machine_text(facts: dict) -> str:
@@ -126,25 +178,15 @@ def timing_text(facts: dict) -> str:
 
 
 def md_of(study: Study, results: list[Result], facts: dict) -> str:
-    names = [error.name for error in study.errors]
     parts = [f"# {study.title}\n\n{study.about.strip()}\n" if study.about else f"# {study.title}\n"]
     if facts["claims"]:
-        parts.append("## Claims\n\n" + md_table(
-            ["claim", "verdict", "measured", "note"],
-            [[claim["text"], claim["verdict"], measured_text(claim), claim["note"]]
-             for claim in facts["claims"]]))
-    shown = [key for key in COSTS if key not in ("wall_s_min", "wall_s_max")]
-    parts.append("## Runs\n\n" + md_table(
-        ["run", "status", *shown, *names],
-        [[result.label, result.status + (f": {result.record['message']}"
-                                         if result.record["message"] else ""),
-          *(result.cost[key] for key in shown), *(result.errors[name] for name in names)]
-         for result in results]))
+        parts.append("## Claims\n\n" + claims_md(facts))
+    parts += [f"## {table['title']}\n\n{md_table(table['headings'], table['rows'])}"
+              for table in facts["tables"]]
+    parts += [f"## Runs{f': {name}' if name else ''}\n\n{runs_md(study, own)}"
+              for name, own in by_sweep(results).items()]
     if facts["orders"]:
-        parts.append("## Orders\n\n" + md_table(
-            ["series", "error", "knob", "fitted order", "from point to point"],
-            [[each["label"], each["error"], each["knob"], f"{each['order']:.2f}",
-              " ".join(f"{step:.2f}" for step in each["steps"])] for each in facts["orders"]]))
+        parts.append("## Orders\n\n" + orders_md(facts))
     rows = [[name, label] for name, labels in facts["fronts"].items() for label in labels]
     parts.append(f"## Fronts\n\nNo other run is cheaper ({facts['cost_of_fronts']}) and better.\n\n"
                  + md_table(["error", "run, cheapest first"], rows))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from abut_tools.page import canvas_of, filled, script_json, section, table_of
 from abut_tools.study_file import COSTS, Study
-from abut_tools.study_output import machine_text, timing_text
+from abut_tools.study_output import by_sweep, machine_text, timing_text, with_values
 from abut_tools.study_results import Result, front, series_of
 from abut_tools.study_take import matches
 from abut_tools.tables import Figure, ToolError, scaled_unit, shown
@@ -199,21 +199,33 @@ def cost_text(result: Result, key: str) -> str:
     return text
 
 
-def runs_html(study: Study, results: list[Result]) -> str:
-    costs = [key for key in COSTS if key not in ("wall_s_min", "wall_s_max")
-             and any(result.cost[key] is not None for result in results)]
-    headings = ["run", "status", *(words_of(error.name) for error in study.errors),
+def tables_html(facts: dict) -> str:
+    return "".join(section(table["title"], table_of(table["headings"], table["rows"]))
+                   for table in facts["tables"])
+
+
+def runs_table(study: Study, results: list[Result]) -> str:
+    costs = with_values(results, [c for c in COSTS if c not in ("wall_s_min", "wall_s_max")],
+                        "cost")
+    errors = with_values(results, [error.name for error in study.errors], "errors")
+    headings = ["run", "status", *(words_of(name) for name in errors),
                 *(COST_WORDS[key] for key in costs)]
-    swept = any(result.point.sweep for result in results)
-    rows = [[(f"{result.point.sweep}: " if swept else "") + result.label, result.status,
-             *(number(value) for value in result.errors.values()),
+    rows = [[result.label, result.status, *(number(result.errors[name]) for name in errors),
              *(cost_text(result, key) for key in costs)] for result in results]
     kinds = ["" if result.status == "completed" else "failed" for result in results]
     said = [f"<li><b>{html.escape(result.label)}</b>: {html.escape(result.record['message'])}</li>"
             for result in results if result.record["message"]]
     table = table_of(headings, rows, kinds).replace("<table>", '<table class="sortable">')
-    messages = f"<h3>What was said of the others</h3><ul>{''.join(said)}</ul>" if said else ""
-    return section("All runs", '<p class="note">Touch a heading to sort.</p>' + table + messages)
+    return table + (f"<h3>What was said of the others</h3><ul>{''.join(said)}</ul>" if said else "")
+
+
+def runs_html(study: Study, results: list[Result]) -> str:
+    parts, note = by_sweep(results), '<p class="note">Touch a heading to sort.</p>'
+    if len(parts) == 1:
+        return section("All runs", note + runs_table(study, results))
+    return section("All runs", note + "".join(
+        f"<details><summary>{html.escape(name)}, {len(own)} runs</summary>"
+        f"{runs_table(study, own)}</details>" for name, own in parts.items()))
 
 
 def details_html(facts: dict) -> str:
@@ -254,6 +266,7 @@ def page_of(study: Study, results: list[Result], facts: dict, out: Path, templat
     return filled(
         template, library, title=html.escape(study.title), status=html.escape(status),
         kind="ok" if facts["status"].get("completed") else "failed", about=about,
-        claims=claims_html(facts), trade=trade_html(study, facts, results),
+        claims=claims_html(facts), tables=tables_html(facts),
+        trade=trade_html(study, facts, results),
         convergence=convergence_html(orders), histories="".join(each.html() for each in groups),
         runs=runs_html(study, results), details=details_html(facts), data=script_json(data))

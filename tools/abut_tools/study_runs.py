@@ -224,6 +224,7 @@ def check_measures(study: Study, abut: Path) -> None:
     own = {error.name for error in study.errors} | set(COSTS) | set(study.knobs)
     asked = [error.measure for error in study.errors if error.measure]
     asked += [check["value"] for claim in study.claims for check in claim["checks"]]
+    asked += [column for figure in study.figures for column in figure.get("table", {}).values()]
     names = {name: expression.where for expression in reversed(asked) for name in expression.names
              if name not in own and not name.startswith("closed_form.")}
     scenes = {(point.scene, point.variant): point for point in reversed(study.points)}

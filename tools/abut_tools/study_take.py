@@ -132,6 +132,16 @@ def port_in(table: Path, port: str) -> str:
     return port if f"{port}.u" in names or not found else found[0]
 
 
+def read_table(table: Path, wanted: set[str]) -> dict[str, list]:
+    """read_columns, with the columns of a member's port (`left.tip.u`) by the name asked for."""
+    own = {}
+    for name in wanted:
+        port, _, quantity = name.rpartition(".")
+        own[name] = f"{port_in(table, port)}.{quantity}" if "." in port else name
+    found = read_columns(table, wanted | set(own.values()))
+    return {**found, **{name: found[there] for name, there in own.items() if there in found}}
+
+
 def figures_for(study: Study, label: str) -> dict[str, list[str]]:
     """Quantities to draw of a run, by port."""
     wanted = {}
@@ -160,9 +170,9 @@ def take(study: Study, label: str, folder: Path, reference: Path | None) -> dict
     if not wanted:
         return {"errors": {}, "curves": {}}
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    run = read_columns(folder / "history.csv", wanted)
-    exact = read_columns(folder / "closed_form.csv", wanted)
-    fine = read_columns(reference / "history.csv", wanted) if reference else {}
+    run = read_table(folder / "history.csv", wanted)
+    exact = read_table(folder / "closed_form.csv", wanted)
+    fine = read_table(reference / "history.csv", wanted) if reference else {}
     return {"errors": {error.name: history_error(error, run, exact, fine)
                        for error in over_time},
             "curves": {port: curves_of(port, own[port], names, run, exact, summary)
