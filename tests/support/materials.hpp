@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -25,6 +26,9 @@ struct Law {
   std::shared_ptr<const Material> law;  // shared: GoogleTest copies its parameters
   bool objective = true;
 };
+
+/// What GoogleTest prints for the parameter.
+inline void PrintTo(const Law& law, std::ostream* out) { *out << law.name; }
 
 inline const Moduli test_moduli{1.25, 0.5};
 

@@ -52,7 +52,8 @@ TEST_P(MaterialLaw, StressIsTheGradientOfStoredAndDissipatedEnergy) {
     for (const Matrix3& f : sample_deformations()) {
       const PointResponse at = answer(law(), f, start);
       const double scale = at.tangent.cwiseAbs().maxCoeff();
-      const std::function<Eigen::MatrixXd(const Matrix3&)> potential = [&](const Matrix3& x) {
+      const std::function<Eigen::MatrixXd(const Matrix3&)> potential =
+          [&](const Matrix3& x) -> Eigen::MatrixXd {
         const PointResponse r = answer(law(), x, start, false, Want::stress);
         return Eigen::MatrixXd::Constant(1, 1, r.energy + r.dissipation);
       };
@@ -69,7 +70,8 @@ TEST_P(MaterialLaw, TangentIsTheGradientOfTheStress) {
   for (History& start : histories())
     for (const Matrix3& f : sample_deformations()) {
       const Tangent tangent = answer(law(), f, start).tangent;
-      const std::function<Eigen::MatrixXd(const Matrix3&)> stress = [&](const Matrix3& x) {
+      const std::function<Eigen::MatrixXd(const Matrix3&)> stress =
+          [&](const Matrix3& x) -> Eigen::MatrixXd {
         return answer(law(), x, start, false, Want::stress).stress.reshaped();
       };
       for (int i = 0; i < 9; ++i)
