@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <ostream>
 #include <random>
@@ -106,18 +105,6 @@ inline PointResponse answer(const Material& law, const Matrix3& f, History& hist
     throw std::runtime_error("the law has no answer at an admissible deformation");
   if (advance) history = after;
   return out;
-}
-
-/// Derivative along one entry of F by the central difference of fourth order.
-template <class Value>
-Value difference(const std::function<Value(const Matrix3&)>& value, const Matrix3& f, int entry,
-                 double h) {
-  const auto at = [&value, &f, entry](double shift) -> Value {
-    Matrix3 moved = f;
-    moved.reshaped()[entry] += shift;
-    return value(moved);
-  };
-  return (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h);
 }
 
 }  // namespace abut

@@ -3,11 +3,13 @@
 // without an answer rather than with a wrong one where it is not defined.
 // Oracles: central differences, identities.
 
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
+#include "tests/support/material_gradients.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -32,55 +34,18 @@ class MaterialLaw : public testing::TestWithParam<Law> {
   }
 };
 
-// The step, and what twenty roundings of a number of order 1 make of a difference over half of it.
-constexpr double step = 5.0e-4;
-const double rounding = 1.5 * roundoff(20.0, 1.0) / (0.5 * step);
-
-/// Largest distance of a derivative to its difference of fourth order with half a step, in parts of
-/// what that difference may be off: it is 15 times closer to the derivative than that with the
-/// whole step, if the step is small (8 for safety), and rounds. The bound itself is small, or the
-/// sample sits on a kink.
-double distance(const Eigen::MatrixXd& exact, const Eigen::MatrixXd& whole,
-                const Eigen::MatrixXd& half, double scale) {
-  const double off = (whole - half).cwiseAbs().maxCoeff() / 8.0 + rounding * scale;
-  EXPECT_LT(off, 1.0e-8 * scale);
-  return (exact - half).cwiseAbs().maxCoeff() / off;
-}
+constexpr std::array<int, 9> every_entry = {0, 1, 2, 3, 4, 5, 6, 7, 8};
 
 TEST_P(MaterialLaw, StressIsTheGradientOfStoredAndDissipatedEnergy) {
-  for (History& start : histories())
-    for (const Matrix3& f : sample_deformations()) {
-      const PointResponse at = answer(law(), f, start);
-      const double scale = at.tangent.cwiseAbs().maxCoeff();
-      const std::function<Eigen::MatrixXd(const Matrix3&)> potential =
-          [&](const Matrix3& x) -> Eigen::MatrixXd {
-        const PointResponse r = answer(law(), x, start, false, Want::stress);
-        return Eigen::MatrixXd::Constant(1, 1, r.energy + r.dissipation);
-      };
-      for (int i = 0; i < 9; ++i)
-        EXPECT_LT(distance(at.stress.reshaped().row(i), difference(potential, f, i, step),
-                           difference(potential, f, i, step / 2.0), scale),
-                  1.0)
-            << "entry " << i << " at\n"
-            << f;
-    }
+  for (const History& start : histories())
+    for (const Matrix3& f : sample_deformations())
+      EXPECT_LT(gradient_error(law(), f, start, every_entry), 1.0) << "at\n" << f;
 }
 
 TEST_P(MaterialLaw, TangentIsTheGradientOfTheStress) {
-  for (History& start : histories())
-    for (const Matrix3& f : sample_deformations()) {
-      const Tangent tangent = answer(law(), f, start).tangent;
-      const std::function<Eigen::MatrixXd(const Matrix3&)> stress =
-          [&](const Matrix3& x) -> Eigen::MatrixXd {
-        return answer(law(), x, start, false, Want::stress).stress.reshaped();
-      };
-      for (int i = 0; i < 9; ++i)
-        EXPECT_LT(distance(tangent.col(i), difference(stress, f, i, step),
-                           difference(stress, f, i, step / 2.0), tangent.cwiseAbs().maxCoeff()),
-                  1.0)
-            << "entry " << i << " at\n"
-            << f;
-    }
+  for (const History& start : histories())
+    for (const Matrix3& f : sample_deformations())
+      EXPECT_LT(tangent_error(law(), f, start, every_entry), 1.0) << "at\n" << f;
 }
 
 TEST_P(MaterialLaw, TangentIsSymmetric) {
