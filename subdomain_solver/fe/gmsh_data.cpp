@@ -1,0 +1,216 @@
+#include "subdomain_solver/fe/gmsh_data.hpp"
+
+#include <cstddef>
+#include <cstdlib>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "subdomain_solver/fe/gmsh_cursor.hpp"
+
+namespace abut {
+namespace {
+
+const char* const as_version =
+    "Export as version 4.1 (in Gmsh: `gmsh -format msh41`, or Mesh.MshFileVersion = 4.1).";
+
+/// Gmsh's numbers of our elements.
+const std::map<int, std::string_view> element_types = {
+    {1, "bar2"}, {2, "tri3"},   {3, "quad4"},   {4, "tet4"},   {5, "hex8"},  {8, "bar3"},
+    {9, "tri6"}, {11, "tet10"}, {15, "point1"}, {16, "quad8"}, {17, "hex20"}};
+
+/// What to do about elements that we do not have.
+std::string other_element(int type) {
+  const bool complete = type == 10 || type == 12;  // quad9, hex27
+  const bool wedge = type == 6 || type == 7 || type == 13 || type == 14 || type == 18 || type == 19;
+  if (complete) return "Set Mesh.SecondOrderIncomplete = 1 in Gmsh: quad8 and hex20 are supported.";
+  if (wedge) return "Prisms and pyramids are not supported: mesh with tetrahedra or hexahedra.";
+  return "Use elements of order 1 or 2: bars, triangles, quadrilaterals, tetrahedra, hexahedra.";
+}
+
+class Parser {
+ public:
+  Parser(std::string bytes, const std::string& name) : file_(std::move(bytes), name) {
+    data_.name = name;
+  }
+
+  GmshData parse() {
+    format();
+    while (!file_.at_end()) {
+      const std::string section(file_.line());
+      if (section == "$PhysicalNames") {
+        physical_names();
+      } else if (section == "$Entities") {
+        in_binary([this]() { entities(); });
+      } else if (section == "$Nodes") {
+        in_binary([this]() { nodes(); });
+      } else if (section == "$Elements") {
+        in_binary([this]() { elements(); });
+      } else if (section == "$PartitionedEntities" || section == "$GhostElements") {
+        file_.refuse("is a partitioned mesh", "Export it without partitions.");
+      } else if (section.size() > 1 && section[0] == '$' && !section.starts_with("$End")) {
+        file_.skip_to("$End" + section.substr(1));
+        continue;
+      } else {
+        file_.refuse("has a line outside of all sections", "Export the file again.");
+      }
+      file_.expect_line("$End" + section.substr(1));
+    }
+    if (data_.node_tags.empty()) file_.refuse("has no nodes", "Mesh the part before the export.");
+    if (!has_elements_) file_.refuse("has no $Elements", "Mesh the part before the export.");
+    return std::move(data_);
+  }
+
+ private:
+  template <typename Read>
+  void in_binary(Read read) {
+    if (binary_) file_.begin_binary();
+    read();
+    file_.end_binary();
+  }
+
+  void format() {
+    if (file_.at_end() || file_.line() != "$MeshFormat")
+      file_.refuse("is not a Gmsh mesh: it does not begin with $MeshFormat", as_version);
+    const std::string line(file_.line());
+    const std::string version = line.substr(0, line.find(' '));
+    if (version != "4.1") file_.refuse("is in version " + version.substr(0, 12), as_version);
+    if (line != "4.1 0 8" && line != "4.1 1 8")
+      file_.refuse("has the format '" + line.substr(0, 40) + "'",
+                   "Expected is 4.1 0 8 or 4.1 1 8.");
+    binary_ = line[4] == '1';
+    if (binary_) {
+      in_binary([this]() {
+        if (file_.integer() != 1)
+          file_.refuse("was written on a machine of another byte order", "Export it as text.");
+      });
+    }
+    file_.expect_line("$EndMeshFormat");
+  }
+
+  int dimension() {
+    const int dim = file_.integer();
+    if (dim < 0 || dim > 3)
+      file_.refuse(fmt::format("has an entity of {} dimensions", dim), "Export the file again.");
+    return dim;
+  }
+
+  void physical_names() {
+    const std::size_t count = file_.count("physical names", 3);
+    for (std::size_t i = 0; i < count; ++i) {
+      const int dim = dimension();
+      const int tag = file_.integer();
+      const std::string_view name = file_.line();
+      if (name.size() < 3 || name.front() != '"' || name.back() != '"')
+        file_.refuse("has a physical group without a name in quotes", "Name the group in Gmsh.");
+      data_.group_names[{dim, tag}] = name.substr(1, name.size() - 2);
+    }
+  }
+
+  void entities() {
+    std::size_t counts[4];
+    for (std::size_t& count : counts) count = file_.count("entities", 4);
+    for (int dim = 0; dim < 4; ++dim) {
+      for (std::size_t i = 0; i < counts[dim]; ++i) {
+        const int tag = file_.integer();
+        for (int k = 0; k < (dim == 0 ? 3 : 6); ++k) file_.real();  // place, or bounding box
+        std::vector<int>& groups = data_.groups[{dim, tag}];
+        groups.resize(file_.count("physical groups", 1));
+        // the sign is an orientation, which facets have from their cells
+        for (int& group : groups) group = static_cast<int>(std::llabs(file_.integer()));
+        if (dim == 0) continue;
+        const std::size_t bounds = file_.count("boundary entities", 1);
+        for (std::size_t k = 0; k < bounds; ++k) file_.integer();
+      }
+    }
+  }
+
+  void nodes() {
+    if (!data_.node_tags.empty()) file_.refuse("has $Nodes twice", "Export the file again.");
+    const std::size_t blocks = file_.count("blocks of nodes", 4);
+    const std::size_t total = file_.count("nodes", 4);
+    file_.natural();  // smallest and largest tag
+    file_.natural();
+    data_.node_tags.reserve(total);
+    data_.points.reserve(3 * total);
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const int dim = dimension();
+      file_.integer();
+      const bool parametric = file_.integer() != 0;
+      const std::size_t count = file_.count("nodes", 4);
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint64_t tag = file_.natural();
+        if (!number_.try_emplace(tag, static_cast<std::int32_t>(number_.size())).second)
+          file_.refuse(fmt::format("has node {} twice", tag), "Export the file again.");
+        data_.node_tags.push_back(tag);
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        for (int d = 0; d < 3; ++d) data_.points.push_back(file_.real());
+        for (int d = 0; d < (parametric ? dim : 0); ++d) file_.real();
+      }
+    }
+    if (data_.node_tags.size() != total)
+      file_.refuse(fmt::format("announces {} nodes and has {}", total, data_.node_tags.size()),
+                   "Export the file again.");
+  }
+
+  void elements() {
+    if (data_.node_tags.empty()) file_.refuse("has elements before its nodes", "Export it again.");
+    const std::size_t blocks = file_.count("blocks of elements", 4);
+    const std::size_t total = file_.count("elements", 2);
+    file_.natural();  // smallest and largest tag
+    file_.natural();
+    std::size_t read = 0;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      GmshData::Elements block;
+      const int dim = dimension();
+      block.entity = {dim, file_.integer()};
+      const int type = file_.integer();
+      const auto found = element_types.find(type);
+      if (found == element_types.end())
+        file_.refuse(fmt::format("has elements of Gmsh's type {}", type), other_element(type));
+      block.type = &element_named(found->second);
+      if (block.type->dim != dim)
+        file_.refuse(fmt::format("has {} on an entity of {} dimensions", block.type->name, dim),
+                     "Export the file again.");
+      const auto nodes = static_cast<std::size_t>(block.type->nodes);
+      const std::size_t count = file_.count("elements", nodes + 1);
+      block.where = file_.where();
+      block.nodes.reserve(count * nodes);
+      for (std::size_t i = 0; i < count; ++i) {
+        block.tags.push_back(file_.natural());
+        for (std::size_t a = 0; a < nodes; ++a) block.nodes.push_back(node(block.tags.back()));
+      }
+      read += count;
+      data_.elements.push_back(std::move(block));
+    }
+    if (read != total)
+      file_.refuse(fmt::format("announces {} elements and has {}", total, read),
+                   "Export the file again.");
+    has_elements_ = true;
+  }
+
+  std::int32_t node(std::uint64_t element) {
+    const std::uint64_t tag = file_.natural();
+    const auto found = number_.find(tag);
+    if (found == number_.end())
+      file_.refuse(fmt::format("has element {} with node {}, which is not in $Nodes", element, tag),
+                   "Export the file again.");
+    return found->second;
+  }
+
+  GmshCursor file_;
+  GmshData data_;
+  std::unordered_map<std::uint64_t, std::int32_t> number_;  // of a node tag
+  bool binary_ = false, has_elements_ = false;
+};
+
+}  // namespace
+
+GmshData parse_gmsh(std::string bytes, const std::string& name) {
+  return Parser(std::move(bytes), name).parse();
+}
+
+}  // namespace abut

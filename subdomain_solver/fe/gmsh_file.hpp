@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "subdomain_solver/fe/mesh.hpp"
+
+namespace abut {
+
+/// The mesh of a file in Gmsh's format MSH 4.1 (text or binary), with coordinates times `scale` [m
+/// per unit of the file]. The elements of the highest dimension are the cells; meshes in the plane
+/// or on a line must have constant other coordinates.
+///
+/// Physical groups become names: of cells, blocks and node sets; of their facets, sides; of facets
+/// between cells, and of lower dimensions, node sets. A group without a name is called after its
+/// dimension and tag: volume_3, surface_2, curve_1, point_7. Nodes of no cell are dropped.
+///
+/// Throws InputError with file and line (or byte): what cannot be read, groups with one name, and
+/// sides that are no facets of cells. Call check_mesh on the result.
+Mesh read_gmsh(const std::string& path, double scale = 1.0);
+
+/// The same of a file's bytes; `name` is for messages.
+Mesh gmsh_mesh(std::string bytes, const std::string& name, double scale = 1.0);
+
+}  // namespace abut
