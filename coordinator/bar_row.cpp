@@ -20,7 +20,7 @@ constexpr double rounding = 1e-12;
 constexpr double never = std::numeric_limits<double>::infinity();
 
 [[noreturn]] void refuse(const std::string& why) {
-  throw InputError(fmt::format("the exact solution for bars in a row does not exist: {}", why),
+  throw InputError(fmt::format("there is no exact solution for these bars in a row: {}", why),
                    "meta.closed_form",
                    "Leave out meta.closed_form (and expectations that need it), or change the "
                    "bodies.");
@@ -47,6 +47,12 @@ double RowContact::impulse() const {
   double sum = 0.0;
   for (const Stretch& stretch : stretches) sum += stretch.force * (stretch.end - stretch.begin);
   return sum;
+}
+
+double RowContact::force_mean() const {
+  double time = 0.0;
+  for (const Stretch& stretch : stretches) time += stretch.end - stretch.begin;
+  return impulse() / time;
 }
 
 double RowContact::force_at(double time) const {
@@ -270,6 +276,15 @@ void BarRow::add_interface(const std::array<BarEnd, 2>& ends) {
     refuse(
         fmt::format("{} and {} overlap at the begin (gap {:g} m)", first.name, second.name, gap));
   contacts_.push_back({ends, gap > rounding * scale ? gap : 0.0, {}, false});
+}
+
+double BarRow::velocity_spread() const {
+  double least = never, most = -never;
+  for (const Bar& bar : bars_) {
+    least = std::min(least, bar.data.velocity);
+    most = std::max(most, bar.data.velocity);
+  }
+  return most - least;
 }
 
 double BarRow::mass(int bar) const {

@@ -53,6 +53,7 @@ struct RowContact {
   double duration() const { return end() - begin(); }       // [s] first begin to last end
   double force_peak() const;                                // [N]
   double impulse() const;                                   // [N s]
+  double force_mean() const;                                // [N] while pressed
   double force_at(double time) const;                       // [N]
   bool closed(double time) const { return force_at(time) > 0.0; }
 };
@@ -76,7 +77,8 @@ class BarRow {
   int bars() const { return static_cast<int>(bars_.size()); }
   const RowBar& bar(int b) const { return bars_[static_cast<std::size_t>(b)].data; }
   const std::vector<RowContact>& contacts() const { return contacts_; }  // as `interfaces`
-  double gap(int interface, double time) const;                          // [m] >= 0
+  double velocity_spread() const;  // [m/s] largest difference of the bodies' velocities at begin
+  double gap(int interface, double time) const;  // [m] >= 0
 
   // By bar. A wall is at rest and holds nothing.
   double mass(int bar) const;                        // [kg]

@@ -14,42 +14,87 @@ namespace {
 
 std::string path_of(const std::string& body) { return "bodies." + body; }
 
-/// Reference position [m] and outward normal of a port, as the body itself describes it.
-struct Place {
-  double position = 0.0, normal = 0.0;
-  std::string body;  // as tables name it
-};
-
-Place place_of(const PortName& name, const Document& document) {
-  const std::unique_ptr<Subdomain> body = make_body(document, path_of(name.body));
-  const std::vector<const Description*> bodies{&body->describe()};
-  const std::vector<Port>& ports = bodies[0]->ports;
-  for (std::size_t p = 0; p < ports.size(); ++p) {
-    if (ports[p].name != name.port) continue;
-    const int recorded = recorded_body_of(bodies, 0, static_cast<int>(p));
-    return {ports[p].geometry.points.at(0), ports[p].geometry.normals.at(0),
-            recorded_bodies(bodies)[static_cast<std::size_t>(recorded)].name};
-  }
-  throw InputError("names a port that " + name.body + " does not have",
-                   document.where("interfaces"), "Name one of the body's ports.");
+RowBar wall_of(const BodySpec& spec) {
+  RowBar wall;
+  wall.wall = true;
+  wall.position = spec.initial.position[0];
+  return wall;
 }
 
-BarData bar_data(const PortName& name, const Place& place, const Document& document) {
-  const std::optional<BarProperties> bar =
-      bar_properties(read<BodySpec>(document, path_of(name.body)), name.port);
-  BarData data;
-  data.name = place.body;
-  data.normal = place.normal;
-  data.wall = !bar;
-  if (!bar) return data;
-  data.youngs_modulus = bar->youngs_modulus;
-  data.density = bar->density;
-  data.area = bar->area;
-  data.length = bar->length;
-  data.velocity = bar->velocity;
-  data.free = !bar->fixed[0] && !bar->fixed[1];
-  data.body_force = bar->body_force;
+RowBar bar_of(const BarProperties& bar) {
+  RowBar data;
+  data.youngs_modulus = bar.youngs_modulus;
+  data.density = bar.density;
+  data.area = bar.area;
+  data.length = bar.length;
+  data.position = bar.position;
+  data.velocity = bar.velocity;
+  data.fixed = bar.fixed;
+  data.body_force = bar.body_force;
   return data;
+}
+
+/// All bodies of a scene as a row of bars, and where the sides of its interfaces lie on them.
+struct Row {
+  std::vector<RowBar> bars;         // as tables show bodies
+  std::vector<std::string> bodies;  // their names
+  std::vector<std::array<BarEnd, 2>> interfaces;
+};
+
+void add_bars(const BodySpec& spec, Row& row) {
+  if (std::holds_alternative<BarPairSpec>(spec.model)) {
+    for (const BarProperties& bar : pair_properties(spec)) row.bars.push_back(bar_of(bar));
+  } else if (std::holds_alternative<FeModelSpec>(spec.model)) {
+    row.bars.push_back(bar_of(fe_bar_properties(spec)));
+  } else {
+    row.bars.push_back(wall_of(spec));
+  }
+}
+
+BarEnd end_of(const Scene& scene, const std::vector<const Description*>& bodies,
+              const PortName& name) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (scene.bodies[b].first != name.body) continue;
+    for (std::size_t p = 0; p < bodies[b]->ports.size(); ++p) {
+      const Port& port = bodies[b]->ports[p];
+      if (port.name == name.port)
+        return {recorded_body_of(bodies, static_cast<int>(b), static_cast<int>(p)),
+                port.geometry.normals.at(0) > 0.0 ? 1 : 0};
+    }
+  }
+  throw InputError("names a port that " + name.body + " does not have", "interfaces",
+                   "Name one of the body's ports.");
+}
+
+Row row_of(const Scene& scene, const Document& document) {
+  const std::vector<std::unique_ptr<Subdomain>> built = launch_local(scene, document);
+  std::vector<const Description*> bodies;
+  for (const std::unique_ptr<Subdomain>& body : built) bodies.push_back(&body->describe());
+  Row row;
+  for (const auto& [name, entry] : scene.bodies)
+    add_bars(read<BodySpec>(document, path_of(name)), row);
+  for (const RecordedBody& body : recorded_bodies(bodies)) row.bodies.push_back(body.name);
+  ABUT_ASSERT(row.bodies.size() == row.bars.size());
+  for (std::size_t b = 0; b < row.bars.size(); ++b) row.bars[b].name = row.bodies[b];
+  for (const auto& [name, interface] : scene.interfaces)
+    row.interfaces.push_back({end_of(scene, bodies, split_port(interface.sides[0])),
+                              end_of(scene, bodies, split_port(interface.sides[1]))});
+  return row;
+}
+
+/// The two bodies of one interface alone.
+ClosedForm impact_of(const Scene& scene, const Row& row, const std::string& interface) {
+  std::size_t index = 0;
+  while (scene.interfaces[index].first != interface) ++index;
+  const std::array<BarEnd, 2>& ends = row.interfaces[index];
+  const std::size_t first = static_cast<std::size_t>(ends[0].bar);
+  const std::size_t second = static_cast<std::size_t>(ends[1].bar);
+  return {std::string(BarImpactForm::name),
+          bar_impact({row.bars[first], row.bars[second]},
+                     {BarEnd{0, ends[0].side}, BarEnd{1, ends[1].side}}, scene.time.begin,
+                     scene.time.end),
+          {interface},
+          {row.bodies[first], row.bodies[second]}};
 }
 
 }  // namespace
@@ -72,24 +117,17 @@ void validate_body_specs(const Scene& scene, const Document& document) {
 
 std::optional<ClosedForm> make_closed_form(const Scene& scene, const Document& document) {
   if (!scene.meta.closed_form) return std::nullopt;
-  const std::string& name = std::get<BarImpactForm>(*scene.meta.closed_form).interface;
-  for (const auto& [interface_name, interface] : scene.interfaces) {
-    if (interface_name != name) continue;
-    const std::array<PortName, 2> sides{split_port(interface.sides[0]),
-                                        split_port(interface.sides[1])};
-    const std::array<Place, 2> places{place_of(sides[0], document), place_of(sides[1], document)};
-    const std::array<BarData, 2> bars{bar_data(sides[0], places[0], document),
-                                      bar_data(sides[1], places[1], document)};
-    const double gap = places[0].normal * (places[1].position - places[0].position);
-    try {
-      return ClosedForm{
-          name, BarImpact(bars, gap, scene.time.begin), {places[0].body, places[1].body}};
-    } catch (const InputError& error) {
-      throw InputError(error.what_is_wrong, document.where("meta.closed_form"), error.remedy);
-    }
+  const Row row = row_of(scene, document);
+  const std::vector<std::string> names = exact_interfaces(scene);
+  try {
+    if (std::holds_alternative<BarImpactForm>(*scene.meta.closed_form))
+      return impact_of(scene, row, names[0]);
+    return ClosedForm{std::string(BarsForm::name),
+                      BarRow(row.bars, row.interfaces, scene.time.begin, scene.time.end), names,
+                      row.bodies};
+  } catch (const InputError& error) {
+    throw InputError(error.what_is_wrong, document.where("meta.closed_form"), error.remedy);
   }
-  ABUT_ASSERT(!"validate() has checked that the interface exists");
-  return std::nullopt;
 }
 
 void document_body_keys(Reference& reference) { reference.add<BodySpec>("bodies.<name>"); }

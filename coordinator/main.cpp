@@ -88,8 +88,7 @@ void validate_expectations(const Scene& scene, const std::vector<const Descripti
     scope.interfaces.push_back(name);
     scope.ports.insert(scope.ports.end(), interface.sides.begin(), interface.sides.end());
   }
-  if (scene.meta.closed_form)
-    scope.closed_form = std::get<BarImpactForm>(*scene.meta.closed_form).interface;
+  scope.exact = exact_interfaces(scene);
   for (std::size_t i = 0; i < scene.meta.expect.size(); ++i) {
     try {
       require_measure(scene.meta.expect[i].measure, scope);
@@ -122,7 +121,7 @@ Validated validate_all(const Scene& scene, const Document& document) {
   validate_expectations(scene, here.descriptions(), document);
   Validated valid{make_closed_form(scene, document), {}};
   std::optional<double> contact;
-  if (valid.form) contact = valid.form->impact.duration();
+  if (valid.form) contact = valid.form->contact_time();
   valid.estimate = estimate(scene, here.descriptions(), contact);
   return valid;
 }
@@ -143,7 +142,7 @@ std::string resolved_text(const Scene& scene, const Document& document) {
 std::string against_closed_form(const ClosedForm* form, const Measures& measures,
                                 const RunEnd& end) {
   if (form == nullptr) return "";
-  return closed_form_table(*form, form->bodies, end.time, measures) + "\n";
+  return closed_form_table(*form, end.time, measures) + "\n";
 }
 
 /// The result for people; 0, or 1 when an expectation or the run failed.

@@ -13,32 +13,6 @@
 
 namespace abut {
 
-void Expectation::fields(Fields& f) {
-  f.required("measure", measure, "", "name of the measure in summary.json");
-  f.optional("equals", equals, "", "expected value");
-  f.optional("at_most", at_most, "", "upper bound");
-  f.optional("at_least", at_least, "", "lower bound");
-  f.optional("relative", relative, "", "tolerance of equals as a fraction of it", non_negative);
-  f.optional("absolute", absolute, "", "tolerance of equals in the measure's unit", non_negative);
-  f.required("because", because, "", "reason for the value and the tolerance");
-  const int bounds = int(equals.has_value()) + int(at_most.has_value()) + int(at_least.has_value());
-  const int tolerances = int(relative.has_value()) + int(absolute.has_value());
-  f.check(bounds == 1, "measure", fmt::format("has {} expected values", bounds),
-          "Give exactly one of equals, at_most, at_least beside it.");
-  f.check(tolerances == (equals ? 1 : 0), "measure", fmt::format("has {} tolerances", tolerances),
-          "Give exactly one of relative, absolute beside equals, and none beside a bound.");
-}
-
-void BarImpactForm::fields(Fields& f) {
-  f.required("interface", interface, "", "name of the interface at which the bars meet");
-}
-
-void Meta::fields(Fields& f) {
-  f.required("title", title, "", "sentence that says what the scene shows");
-  f.choice("closed_form", closed_form, "exact solution to compare with");
-  f.list("expect", expect, "statements about the result, evaluated after the run");
-}
-
 void TimeSpec::fields(Fields& f) {
   f.required("begin", begin, "s", "time at which the run begins");
   f.required("end", end, "s", "time at which the run ends");
@@ -346,6 +320,17 @@ void validate_members(const Scene& scene, std::span<const Description* const> bo
 
 }  // namespace
 
+std::vector<std::string> exact_interfaces(const Scene& scene) {
+  std::vector<std::string> names;
+  if (!scene.meta.closed_form) return names;
+  if (const BarImpactForm* form = std::get_if<BarImpactForm>(&*scene.meta.closed_form)) {
+    names.push_back(form->interface);
+  } else {
+    for (const auto& [name, interface] : scene.interfaces) names.push_back(name);
+  }
+  return names;
+}
+
 Scene read_scene(const Document& document) {
   const Scene scene = read<Scene>(document);
   validate(scene, document);
@@ -366,13 +351,13 @@ void validate(const Scene& scene, const Document& document) {
     validate_interface(scene, interface, document);
   validate_ports_used_once(scene, document);
   if (scene.meta.closed_form) {
-    const BarImpactForm& form = std::get<BarImpactForm>(*scene.meta.closed_form);
-    if (!has_name(scene.interfaces, form.interface))
-      throw InputError(fmt::format("is {}, but there is no such interface", form.interface),
-                       document.where("meta.closed_form.bar_impact.interface"),
-                       scene.interfaces.empty()
-                           ? "Declare it under interfaces."
-                           : fmt::format("Choose one of: {}.", names_of(scene.interfaces)));
+    for (const std::string& name : exact_interfaces(scene))
+      if (!has_name(scene.interfaces, name))
+        throw InputError(fmt::format("is {}, but there is no such interface", name),
+                         document.where("meta.closed_form.bar_impact.interface"),
+                         scene.interfaces.empty()
+                             ? "Declare it under interfaces."
+                             : fmt::format("Choose one of: {}.", names_of(scene.interfaces)));
   }
 }
 

@@ -13,31 +13,9 @@
 #include "base/fields.hpp"
 #include "base/yaml_document.hpp"
 #include "contract/subdomain.hpp"
+#include "coordinator/scene_meta.hpp"
 
 namespace abut {
-
-/// One statement about the run's result; exactly one of equals, at_most, at_least is given.
-struct Expectation {
-  std::string measure;
-  std::optional<double> equals, at_most, at_least;
-  std::optional<double> relative, absolute;  // tolerance of equals: exactly one
-  std::string because;
-  void fields(Fields& f);
-};
-
-/// Closed form of two free uniform bars that hit head-on, or of one bar on a rigid wall.
-struct BarImpactForm {
-  static constexpr std::string_view name = "bar_impact";
-  std::string interface;
-  void fields(Fields& f);
-};
-
-struct Meta {
-  std::string title;
-  std::optional<std::variant<BarImpactForm>> closed_form;
-  std::vector<Expectation> expect;
-  void fields(Fields& f);
-};
 
 struct TimeSpec {
   double begin = 0.0, end = 0.0, window = 0.0;  // [s]
@@ -174,6 +152,9 @@ struct Scene {
   NetworkSpec network;
   void fields(Fields& f);
 };
+
+/// The interfaces that the scene's closed form describes.
+std::vector<std::string> exact_interfaces(const Scene& scene);
 
 /// A port as scenes name it: "body.port".
 struct PortName {

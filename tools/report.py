@@ -62,6 +62,16 @@ class Run:
 # ---- figures ------------------------------------------------------------
 
 
+def exact_force_label(run: Run, port: str) -> str:
+    """The exact force is the same on both sides of an interface: one curve, of its first side."""
+    interfaces = run.summary.get("interfaces", {})
+    described = [name for name in interfaces if f"{name}.gap" in run.exact]
+    for name in described:
+        if interfaces[name]["sides"][0] == port:
+            return "exact" if len(described) == 1 else f"{name}, exact"
+    return ""
+
+
 def port_figures(run: Run) -> list[Figure]:
     located = all("position" in run.port(name) for name in run.ports())
     place = "Position" if located else "Displacement"
@@ -82,9 +92,8 @@ def port_figures(run: Run) -> list[Figure]:
             sign = -run.port(name).get("normal", 1.0)
             position.add(name + word, colour, times, plus(table[f"{name}.u"], offset), exact)
             steps = [(velocity, name + word, table[f"{name}.v"])]
-            # The exact force is the same on both sides: one curve, named once.
-            if not any(curve["exact"] for curve in force.curves):
-                label = "exact" if exact else name
+            label = exact_force_label(run, name) if exact else name
+            if label:
                 steps.append((force, label, plus(table[f"{name}.force"], 0.0, sign)))
             for figure, label, values in steps:
                 t, v = with_jumps(times, values, jumps) if exact else (times, values)
@@ -171,11 +180,20 @@ def closed_form_table(run: Run) -> str:
     form, measures = run.summary.get("closed_form"), run.summary.get("measures", {})
     if not form:
         return ""
-    contact, lasts = f"contact.{form['interface']}", form["duration"]
-    compared = [("begin of contact", "s", form["begin"], f"{contact}.begin", lasts),
-                ("end of contact", "s", form["end"], f"{contact}.end", lasts),
-                ("duration of contact", "s", lasts, f"{contact}.duration", lasts),
-                ("mean contact force", "N", form["force"], f"{contact}.force_mean", form["force"])]
+    contacts = form.get("interfaces", {form.get("interface"): form})
+    compared = []
+    for interface, exact in contacts.items():
+        contact, lasts = f"contact.{interface}", exact.get("duration")
+        if lasts is None:  # no contact, or none that ends
+            continue
+        of = f"{interface}: " if len(contacts) > 1 else ""
+        last = (("mean contact force", "N", exact["force"], f"{contact}.force_mean", exact["force"])
+                if "interface" in form else
+                (f"{of}impulse", "N s", exact["impulse"], f"{contact}.impulse", exact["impulse"]))
+        compared += [
+            (f"{of}begin of contact", "s", exact["begin"], f"{contact}.begin", lasts),
+            (f"{of}end of contact", "s", exact["end"], f"{contact}.end", lasts),
+            (f"{of}duration of contact", "s", lasts, f"{contact}.duration", lasts), last]
     for body, exact in form.get("bodies", {}).items():
         if not exact["wall"]:
             scale = form["closing_speed"]

@@ -14,21 +14,19 @@ double own_energy(const Energy& energy) { return energy.total() - energy.externa
 
 }  // namespace
 
-BalanceMeasures::BalanceMeasures(const RunStart& start, const BarImpact* exact,
-                                 std::array<int, 2> exact_body)
+BalanceMeasures::BalanceMeasures(const RunStart& start, const ClosedForm* exact)
     : start_(start),
       exact_(exact),
       recorded_(recorded_bodies(start.bodies)),
       bodies_(recorded_.size()) {
   for (const Description* body : start.bodies) immovable_ = immovable_ || std::isinf(body->mass);
   if (exact == nullptr) return;
-  for (const int side : {0, 1}) {
-    if (exact->is_wall(side)) continue;
-    Body& body = bodies_[exact_body[side]];
-    body.exact_side = side;
-    // The larger of before and after: a bar may be at rest at one of them, never at both.
-    body.reference =
-        std::max(exact->total(side, exact->run_begin()), exact->total(side, exact->end()));
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const int bar = exact->bar_index(recorded_[b].name);
+    if (bar < 0 || exact->row.bar(bar).wall) continue;
+    bodies_[b].bar = bar;
+    // The largest: a bar may be at rest before its impact or after it.
+    bodies_[b].reference = exact->row.total_peak(bar);
   }
 }
 
@@ -43,7 +41,7 @@ void BalanceMeasures::begin(const WindowReport& report) {
   }
   total_first_ = total_energy(report, 0);
   for (Body& body : bodies_) {
-    if (body.exact_side >= 0) continue;
+    if (body.bar >= 0) continue;
     body.reference = body.first != 0.0 ? std::abs(body.first) : std::abs(total_first_);
   }
 }
@@ -69,9 +67,8 @@ void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
     const BodyRecord& now = report.responses[recorded_[b].body].records[record];
     const Energy& energy = recorded_[b].energy(now);
     const std::vector<double>& momentum = recorded_[b].momentum(now);
-    const double expected =
-        body.exact_side >= 0 ? exact_->total(body.exact_side, now.time) : body.first;
-    const double held = body.exact_side >= 0 ? energy.total() : own_energy(energy);
+    const double expected = body.bar >= 0 ? exact_->row.total(body.bar, now.time) : body.first;
+    const double held = body.bar >= 0 ? energy.total() : own_energy(energy);
     body.error = body.reference > 0.0 ? (held - expected) / body.reference : held - expected;
     body.error_max = std::max(body.error_max, std::abs(body.error));
     double square = 0.0;

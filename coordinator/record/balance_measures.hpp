@@ -16,8 +16,8 @@ namespace abut {
 /// first record, since no body is asked before it has advanced.
 class BalanceMeasures {
  public:
-  /// `exact` may be null and describes the recorded bodies `exact_body[0]` and `exact_body[1]`.
-  BalanceMeasures(const RunStart& start, const BarImpact* exact, std::array<int, 2> exact_body);
+  /// `exact` may be null; `start` and `exact` must outlive this.
+  BalanceMeasures(const RunStart& start, const ClosedForm* exact);
 
   void on_window(const WindowReport& report);
   void write(Measures& out) const;
@@ -30,7 +30,7 @@ class BalanceMeasures {
     double error = 0.0, error_max = 0.0;
     Vector momentum{};  // [kg m/s]
     double momentum_max = 0.0;
-    int exact_side = -1;  // of the closed form; -1: not described by it
+    int bar = -1;  // of the closed form; -1: not described by it, or a wall
   };
 
   void begin(const WindowReport& report);
@@ -38,7 +38,7 @@ class BalanceMeasures {
   void add(const WindowReport& report, std::size_t record);
 
   const RunStart& start_;
-  const BarImpact* exact_;
+  const ClosedForm* exact_;
   std::vector<RecordedBody> recorded_;
   std::vector<Body> bodies_;  // as recorded
   bool begun_ = false;

@@ -21,22 +21,33 @@ double clean(double value, double scale) {
   return std::abs(value) < 1.0e-12 * std::abs(scale) ? 0.0 : value;
 }
 
+/// What is compared at one interface; `of` tells it from others.
+void add_contact(const RowContact& exact, const std::string& interface, const std::string& of,
+                 std::vector<Row>& rows) {
+  if (!exact.ever()) return;
+  const std::string contact = "contact." + interface;
+  rows.push_back({of + "contact begins [s]", contact + ".begin", exact.begin(), exact.duration()});
+  if (!exact.pressed_at_end)
+    rows.push_back({of + "contact ends [s]", contact + ".end", exact.end(), exact.duration()});
+  rows.push_back({of + "mean contact force [N]", contact + ".force_mean", exact.force_mean(),
+                  exact.force_mean()});
+}
+
 }  // namespace
 
-std::string closed_form_table(const ClosedForm& form, const std::array<std::string, 2>& bodies,
-                              double end, const Measures& measures) {
-  const BarImpact& exact = form.impact;
-  const std::string contact = "contact." + form.interface;
-  std::vector<Row> rows = {
-      {"contact begins [s]", contact + ".begin", exact.begin(), exact.duration()},
-      {"contact ends [s]", contact + ".end", exact.end(), exact.duration()},
-      {"mean contact force [N]", contact + ".force_mean", exact.force(), exact.force()}};
-  for (int side : {0, 1}) {
-    const std::string& body = bodies[static_cast<std::size_t>(side)];
-    if (exact.is_wall(side)) continue;
+std::string closed_form_table(const ClosedForm& form, double end, const Measures& measures) {
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < form.interfaces.size(); ++i) {
+    const std::string& name = form.interfaces[i];
+    const std::string of = form.interfaces.size() > 1 ? name + ": " : "";
+    add_contact(form.row.contacts()[i], name, of, rows);
+  }
+  for (int b = 0; b < form.row.bars(); ++b) {
+    if (form.row.bar(b).wall) continue;
+    const std::string& body = form.bodies[static_cast<std::size_t>(b)];
     rows.push_back({"mean velocity of " + body + " at the end [m/s]",
-                    "mean_velocity." + body + ".end", exact.mean_velocity(side, end),
-                    exact.closing_speed()});
+                    "mean_velocity." + body + ".end", form.row.mean_velocity(b, end),
+                    form.row.velocity_spread()});
   }
   std::size_t width = 0;
   for (const Row& row : rows) width = std::max(width, row.quantity.size());

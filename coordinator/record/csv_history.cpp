@@ -8,7 +8,6 @@
 #include "base/assert.hpp"
 
 namespace abut {
-namespace {
 
 void add_port_names(std::string& header, const Description& body, const Port& port) {
   const std::pair<std::string_view, std::string_view> fields[] = {
@@ -27,8 +26,6 @@ void add_body_names(std::string& header, const RecordedBody& body) {
   for (int axis = 0; axis < body.dim; ++axis)
     header += fmt::format(",{}.mean_velocity{} [m/s]", body.name, axis_ending(body.dim, axis));
 }
-
-}  // namespace
 
 CsvHistory::CsvHistory(const std::filesystem::path& directory, const ClosedForm* form)
     : directory_(directory), form_(form) {}
@@ -50,13 +47,10 @@ void CsvHistory::on_start(const RunStart& start) {
     interfaces_.push_back({info,
                            {index[info.body[0]][info.port[0]], index[info.body[1]][info.port[1]]},
                            port.geometry.dim == 1});
-    if (form_ != nullptr && form_->interface == info.name) form_interface_ = static_cast<int>(i);
   }
   history_.emplace(directory_ / "history.csv");
   history_->append(header());
-  if (form_interface_ < 0) return;
-  exact_.emplace(directory_ / "closed_form.csv");
-  exact_->append(exact_header());
+  if (form_ != nullptr) exact_.emplace(directory_ / "closed_form.csv", *form_, start_);
 }
 
 std::string CsvHistory::header() const {
@@ -74,24 +68,12 @@ std::string CsvHistory::header() const {
   return text + "\n";
 }
 
-std::string CsvHistory::exact_header() const {
-  std::string text = "time [s]";
-  const InterfaceInfo& info = interfaces_[form_interface_].info;
-  for (const int side : {0, 1}) {
-    const Description& body = *start_.bodies[info.body[side]];
-    add_port_names(text, body, body.ports[info.port[side]]);
-    const int recorded = recorded_body_of(start_.bodies, info.body[side], info.port[side]);
-    add_body_names(text, recorded_[static_cast<std::size_t>(recorded)]);
-  }
-  return text + fmt::format(",{0}.gap [m],{0}.closed\n", info.name);
-}
-
 void CsvHistory::on_window(const WindowReport& report) {
   if (report.responses.empty()) return;
   const std::vector<BodyRecord>& records = report.responses.front().records;
   for (std::size_t r = 0; r < records.size(); ++r) {
     write_row(report, r);
-    if (exact_) write_exact_row(records[r].time);
+    if (exact_) exact_->write_row(records[r].time);
   }
 }
 
@@ -144,25 +126,6 @@ void CsvHistory::write_body(const RecordedBody& body, const BodyRecord& record) 
   ABUT_ASSERT(momentum.size() == static_cast<std::size_t>(body.dim));
   for (const double value : momentum) number(value);
   for (const double value : momentum) number(value / body.mass);
-}
-
-void CsvHistory::write_exact_row(double time) {
-  const BarImpact& exact = form_->impact;
-  row_.clear();
-  fmt::format_to(std::back_inserter(row_), "{}", time);
-  for (const int side : {0, 1}) {
-    number(exact.displacement(side, time));
-    number(exact.velocity(side, time));
-    number(exact.port_force(side, time));
-    number(exact.kinetic(side, time));
-    number(exact.stored(side, time));
-    number(exact.total(side, time));
-    number(exact.momentum(side, time));
-    number(exact.mean_velocity(side, time));
-  }
-  number(exact.gap(time));
-  fmt::format_to(std::back_inserter(row_), ",{:d}", exact.closed(time));
-  end_row(*exact_);
 }
 
 void CsvHistory::on_end(const RunEnd&) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/closed_form.hpp"
+#include "coordinator/record/closed_form_csv.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/port_reader.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
@@ -16,8 +17,8 @@
 namespace abut {
 
 /// history.csv: one row per record, numbers in their shortest exact form, units in the header.
-/// Where a closed form is named also closed_form.csv: the same times, the columns that the closed
-/// form knows, same names. A number that is not finite leaves its cell empty (Measures reports it).
+/// Where a closed form is named also closed_form.csv at the same times. A number that is not finite
+/// leaves its cell empty (Measures reports it).
 class CsvHistory : public Observer {
  public:
   /// `form` may be null; else it must outlive the history.
@@ -40,22 +41,24 @@ class CsvHistory : public Observer {
   };
 
   std::string header() const;
-  std::string exact_header() const;
   void write_row(const WindowReport& report, std::size_t record);
   void write_body(const RecordedBody& body, const BodyRecord& record);
-  void write_exact_row(double time);
   void number(double value);
   void end_row(TextFile& file);
 
   std::filesystem::path directory_;
   const ClosedForm* form_;
-  int form_interface_ = -1;
   RunStart start_;
   std::vector<RecordedBody> recorded_;
   std::vector<PortColumn> ports_;  // by body, then by port
   std::vector<InterfaceColumn> interfaces_;
-  std::optional<TextFile> history_, exact_;
+  std::optional<TextFile> history_;
+  std::optional<ClosedFormCsv> exact_;
   fmt::memory_buffer row_;
 };
+
+/// Names of the columns of a port and of a body, each with a comma before it.
+void add_port_names(std::string& header, const Description& body, const Port& port);
+void add_body_names(std::string& header, const RecordedBody& body);
 
 }  // namespace abut

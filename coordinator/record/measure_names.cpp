@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,18 +19,15 @@ bool contains(const std::vector<std::string>& sorted, const std::string& name) {
 }
 
 bool needs_closed_form(const std::string& measure, MeasureScope scope) {
-  for (const std::string& interface : scope.interfaces) {
-    scope.closed_form = interface;
-    if (contains(known_measures(scope), measure)) return true;
-  }
-  return false;
+  scope.exact = scope.interfaces;
+  return contains(known_measures(scope), measure);
 }
 
 }  // namespace
 
-MeasureScope measure_scope(const RunStart& start, const std::string& closed_form) {
+MeasureScope measure_scope(const RunStart& start, std::vector<std::string> exact) {
   MeasureScope scope;
-  scope.closed_form = closed_form;
+  scope.exact = std::move(exact);
   for (const RecordedBody& body : recorded_bodies(start.bodies)) {
     scope.dim = std::max(scope.dim, body.dim);
     scope.bodies.push_back(body.name);
@@ -57,12 +55,10 @@ std::vector<std::string> known_measures(const MeasureScope& scope) {
     for (const char* what : {"begin", "end", "duration", "count", "impulse", "force_mean",
                              "force_peak", "velocity_rms", "gap_min"})
       names.push_back(fmt::format("contact.{}.{}", interface, what));
-    if (interface != scope.closed_form) continue;
-    for (const char* what : {"begin_error", "release_error", "release_error_half_force",
-                             "force_max_error", "force_rms_error", "force_rms_error_tail",
-                             "velocity_rms_error"})
-      names.push_back(fmt::format("contact.{}.{}", interface, what));
   }
+  for (const std::string& interface : scope.exact)
+    for (const char* what : contact_errors)
+      names.push_back(fmt::format("contact.{}.{}", interface, what));
   for (const std::string& body : scope.bodies) {
     names.push_back(fmt::format("energy.{}.relative_error_max", body));
     names.push_back(fmt::format("energy.{}.relative_error_end", body));

@@ -8,17 +8,23 @@
 
 namespace abut {
 
+/// Of an interface that a closed form describes.
+inline constexpr const char* contact_errors[] = {
+    "begin_error",        "release_error",   "release_error_half_force",
+    "force_max_error",    "force_rms_error", "force_rms_error_tail",
+    "velocity_rms_error", "count_error",     "impulse_error"};
+
 /// The parts of a scene that give measures their names; known before a run as well as after it.
 struct MeasureScope {
   int dim = 1;
   std::vector<std::string> bodies;
   std::vector<std::string> ports;  // "body.port" of those that interfaces join
   std::vector<std::string> interfaces;
-  std::string closed_form;  // the interface it describes; empty: none
+  std::vector<std::string> exact;  // the interfaces that a closed form describes
 };
 
-/// The scope of a run; `closed_form` is the interface that a closed form describes, or empty.
-MeasureScope measure_scope(const RunStart& start, const std::string& closed_form);
+/// The scope of a run; `exact` are the interfaces that a closed form describes.
+MeasureScope measure_scope(const RunStart& start, std::vector<std::string> exact);
 
 /// Every measure that a run of this scope reports, sorted.
 std::vector<std::string> known_measures(const MeasureScope& scope);

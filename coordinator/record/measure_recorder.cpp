@@ -3,31 +3,27 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "coordinator/record/port_reader.hpp"
-#include "coordinator/record/recorded_bodies.hpp"
 
 namespace abut {
 
 void MeasureRecorder::on_start(const RunStart& start) {
   start_ = start;
   last_time_ = start.begin;
-  const std::string& described = form_ != nullptr ? form_->interface : std::string();
-  measures_.scope = measure_scope(start_, described);
-  const BarImpact* balance_form = nullptr;
-  std::array<int, 2> balance_bodies{};
+  measures_.scope =
+      measure_scope(start_, form_ != nullptr ? form_->interfaces : std::vector<std::string>());
   for (std::size_t i = 0; i < start_.interfaces.size(); ++i) {
     const InterfaceInfo& info = start_.interfaces[i];
-    const bool exact = form_ != nullptr && form_->interface == info.name;
-    contacts_.emplace_back(start_, static_cast<int>(i), exact ? &form_->impact : nullptr);
-    if (exact) {
-      balance_form = &form_->impact;
-      for (const int side : {0, 1})
-        balance_bodies[side] =
-            recorded_body_of(start_.bodies, info.body[side], info.port[side]);
-    }
+    const int exact = form_ != nullptr ? form_->interface_index(info.name) : -1;
+    std::optional<ContactErrors> errors;
+    if (exact >= 0)
+      errors.emplace(form_->row, form_->row.contacts()[static_cast<std::size_t>(exact)]);
+    contacts_.emplace_back(start_, static_cast<int>(i), std::move(errors));
     for (const int side : {0, 1}) {
       const int dim = start_.bodies[info.body[side]]->ports[info.port[side]].geometry.dim;
       positions_.push_back({info.body[side], info.port[side],
@@ -35,7 +31,7 @@ void MeasureRecorder::on_start(const RunStart& start) {
                                                 -std::numeric_limits<double>::infinity())});
     }
   }
-  balance_.emplace(start_, balance_form, balance_bodies);
+  balance_.emplace(start_, form_);
 }
 
 void MeasureRecorder::on_window(const WindowReport& report) {

@@ -18,7 +18,7 @@ namespace abut {
 /// after on_end, so it is told of the end before those who read it.
 class MeasureRecorder : public Observer {
  public:
-  /// `form` may be null; else it must outlive this. Its sides are those of the interface it names.
+  /// `form` may be null; else it must outlive this.
   explicit MeasureRecorder(const ClosedForm* form) : form_(form) {}
 
   void on_start(const RunStart& start) override;

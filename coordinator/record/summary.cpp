@@ -45,24 +45,35 @@ Json expectations_array(const std::vector<Expectation>& expectations, const Meas
   return array;
 }
 
-Json closed_form_object(const ClosedForm& form, const RunStart& start) {
-  const BarImpact& impact = form.impact;
-  Json object = {{"name", "bar_impact"},
-                 {"interface", form.interface},
-                 {"begin", impact.begin()},
-                 {"end", impact.end()},
-                 {"duration", impact.duration()},
-                 {"force", impact.force()},
-                 {"closing_speed", impact.closing_speed()}};
-  for (const InterfaceInfo& info : start.interfaces) {
-    if (info.name != form.interface) continue;
-    for (const int side : {0, 1}) {
-      Json& body = object["bodies"][form.bodies[static_cast<std::size_t>(side)]];
-      body["wall"] = impact.is_wall(side);
-      body["mean_velocity_end"] = number(impact.mean_velocity(side, impact.end()));
-      body["total_begin"] = number(impact.total(side, impact.run_begin()));
-      body["total_end"] = number(impact.total(side, impact.end()));
-    }
+Json contact_object(const RowContact& contact) {
+  Json object = {{"count", contact.count()}};
+  if (!contact.ever()) return object;
+  object["begin"] = contact.begin();
+  object["end"] = contact.pressed_at_end ? Json(nullptr) : Json(contact.end());
+  object["duration"] = contact.pressed_at_end ? Json(nullptr) : Json(contact.duration());
+  object["force"] = contact.force_peak();
+  object["impulse"] = contact.impulse();
+  return object;
+}
+
+/// Of bar_impact the one contact, beside the name; else all, by interface.
+Json closed_form_object(const ClosedForm& form) {
+  const BarRow& row = form.row;
+  Json object = {{"name", form.name}};
+  const bool single = form.name == BarImpactForm::name;
+  if (single) {
+    object["interface"] = form.interfaces[0];
+    object.update(contact_object(row.contacts()[0]));
+  }
+  object["closing_speed"] = row.velocity_spread();
+  for (std::size_t i = 0; !single && i < form.interfaces.size(); ++i)
+    object["interfaces"][form.interfaces[i]] = contact_object(row.contacts()[i]);
+  for (int b = 0; b < row.bars(); ++b) {
+    Json& body = object["bodies"][form.bodies[static_cast<std::size_t>(b)]];
+    body["wall"] = row.bar(b).wall;
+    body["mean_velocity_end"] = number(row.mean_velocity(b, row.end()));
+    body["total_begin"] = number(row.total(b, row.begin()));
+    body["total_end"] = number(row.total(b, row.end()));
   }
   return object;
 }
@@ -160,7 +171,7 @@ std::string Summary::text(const RunEnd& end) const {
   summary["time"] = {{"begin", start_.begin}, {"end", start_.end}, {"reached", number(end.time)}};
   summary["measures"] = measures_object(recorder_.measures(), notes);
   summary["expectations"] = expectations_array(heading_.expectations, recorder_.measures(), notes);
-  if (form_ != nullptr) summary["closed_form"] = closed_form_object(*form_, start_);
+  if (form_ != nullptr) summary["closed_form"] = closed_form_object(*form_);
   summary["state_hash"] = fmt::format("{:016x}", end.state_hash);
   summary["windows"] = end.windows;
   summary["contact_windows"] = end.contact_windows;

@@ -82,6 +82,7 @@ def summary_of(title: str) -> dict:
                         "bodies": bodies},
         "ports": {"left.tip": {"position": -0.02, "normal": 1.0},
                   "right.tip": {"position": 0.02, "normal": -1.0}},
+        "interfaces": {"impact": {"sides": ["left.tip", "right.tip"]}},
         "state_hash": "0123456789abcdef", "windows": 100, "contact_windows": 50, "exchanges": 210,
         "timing": {"wall_s": 0.05, "compute_s": {"left": 0.01, "right": 0.012},
                    "overhead_per_exchange_us_median": 31.5},

@@ -18,7 +18,7 @@ class HandMadeRun {
  public:
   using Field = std::function<double(int side, double time)>;
 
-  HandMadeRun() : form{"impact", make_form()}, responses(2), interfaces(1) {
+  HandMadeRun() : form(make_form()), responses(2), interfaces(1) {
     for (const int side : {0, 1}) {
       Description& body = bodies[side];
       body.name = side == 0 ? "left" : "right";
@@ -34,24 +34,31 @@ class HandMadeRun {
     start.end = 3.0;
     start.bodies = {&bodies[0], &bodies[1]};
     start.interfaces = {{"impact", {0, 1}, {0, 0}, 0.2}};
-    u = [this](int side, double time) { return form.impact.displacement(side, time); };
-    v = [this](int side, double time) { return form.impact.velocity(side, time); };
-    f = [this](int side, double time) { return form.impact.port_force(side, time); };
-    kinetic = [this](int side, double time) { return form.impact.kinetic(side, time); };
-    stored = [this](int side, double time) { return form.impact.stored(side, time); };
-    momentum = [this](int side, double time) { return form.impact.momentum(side, time); };
+    u = [this](int side, double time) { return form.row.displacement(end_at(side), time); };
+    v = [this](int side, double time) { return form.row.velocity(end_at(side), time); };
+    f = [this](int side, double time) { return form.row.force(end_at(side), time); };
+    kinetic = [this](int side, double time) { return form.row.kinetic(side, time); };
+    stored = [this](int side, double time) { return form.row.stored(side, time); };
+    momentum = [this](int side, double time) { return form.row.momentum(side, time); };
   }
   HandMadeRun(const HandMadeRun&) = delete;
   HandMadeRun& operator=(const HandMadeRun&) = delete;
 
-  static BarImpact make_form() {
-    BarData left;
+  static BarEnd end_at(int side) { return {side, 1 - side}; }
+
+  static ClosedForm make_form() {
+    RowBar left;
     left.name = "left";
     left.youngs_modulus = left.density = left.area = left.length = left.velocity = 1.0;
-    BarData right = left;
+    left.position = -1.1;
+    RowBar right = left;
     right.name = "right";
-    right.normal = right.velocity = -1.0;
-    return BarImpact({left, right}, 0.2, 0.0);
+    right.position = 0.1;
+    right.velocity = -1.0;
+    return {"bar_impact",
+            bar_impact({left, right}, {end_at(0), end_at(1)}, 0.0, 3.0),
+            {"impact"},
+            {"left", "right"}};
   }
 
   void window(Observer& observer, double begin, double end, bool closed, int iterations = 0) {

@@ -97,7 +97,7 @@ TEST(Expectations, EveryMeasureIsExplainedInTheDocuments) {
   scope.bodies = {"BODY"};
   scope.ports = {"BODY.PORT"};
   scope.interfaces = {"INTERFACE"};
-  scope.closed_form = "INTERFACE";
+  scope.exact = {"INTERFACE"};
   for (const std::string& name : known_measures(scope))
     EXPECT_NE(text.find("`" + name + "`"), std::string::npos) << name;
 }
