@@ -4,19 +4,6 @@
 
 namespace abut {
 
-AlphaWeights AlphaWeights::newmark(double beta, double gamma) { return {0.0, 0.0, beta, gamma}; }
-
-AlphaWeights AlphaWeights::hht(double alpha) {
-  return {0.0, -alpha, 0.25 * (1.0 - alpha) * (1.0 - alpha), 0.5 - alpha};
-}
-
-AlphaWeights AlphaWeights::spectral_radius(double rho) {
-  const double alpha_m = (2.0 * rho - 1.0) / (rho + 1.0);
-  const double alpha_f = rho / (rho + 1.0);
-  const double shift = 1.0 - alpha_m + alpha_f;
-  return {alpha_m, alpha_f, 0.25 * shift * shift, 0.5 - alpha_m + alpha_f};
-}
-
 GeneralizedAlpha::GeneralizedAlpha(const Bar& bar, const AlphaWeights& weights)
     : BarIntegrator(bar), w_(weights) {
   // Mass matrix with the rows that have no mass of their own, or are held, taken out.

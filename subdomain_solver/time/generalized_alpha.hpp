@@ -3,20 +3,10 @@
 #include <vector>
 
 #include "subdomain_solver/solve/tridiagonal.hpp"
+#include "subdomain_solver/time/alpha_weights.hpp"
 #include "subdomain_solver/time/bar_integrator.hpp"
 
 namespace abut {
-
-/// Weights of the generalised-alpha family (Chung and Hulbert 1993):
-///   (1 - am) M a(n+1) + am M a(n) + (1 - af) (K u(n+1) - f(n+1)) + af (K u(n) - f(n)) = 0
-/// with Newmark's beta and gamma. am = af = 0 is Newmark, am = 0 is HHT-alpha.
-struct AlphaWeights {
-  double alpha_m = 0.0, alpha_f = 0.0, beta = 0.25, gamma = 0.5;
-
-  static AlphaWeights newmark(double beta, double gamma);
-  static AlphaWeights hht(double alpha);                     // alpha in [-1/3, 0]
-  static AlphaWeights spectral_radius(double rho_infinity);  // in [0, 1]
-};
 
 /// Implicit bar: one tridiagonal solve per substep, factored once per step length.
 /// Conserved by the trapezoidal rule (Newmark 1/4, 1/2): 1/2 v M v + 1/2 u K u.

@@ -1,0 +1,205 @@
+#include "subdomain_solver/fe/loads.hpp"
+
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+namespace abut {
+
+namespace {
+
+std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Normal times area per unit of reference area: cross product of the tangents, or the tangent
+/// turned clockwise. Columns of `tangents` (3, facet dimension).
+Eigen::Vector3d directed_area(const Eigen::Matrix<double, 3, Eigen::Dynamic>& tangents) {
+  if (tangents.cols() == 2)
+    return Eigen::Vector3d(tangents.col(0)).cross(Eigen::Vector3d(tangents.col(1)));
+  return {tangents(1, 0), -tangents(0, 0), 0.0};
+}
+
+double value(const ScalarField& field, const std::array<double, 3>& at, double time) {
+  return field ? field(at, time) : 0.0;
+}
+
+/// Depth of a plane or axisymmetric model at a radius.
+double depth(const FeModel& model, double radius) {
+  if (model.mesh().dim == 3) return 1.0;
+  if (model.options().plane == Plane::axisymmetric) return 2.0 * std::numbers::pi * radius;
+  return model.options().thickness;
+}
+
+/// Adds forces on nodes given in the axes of space.
+void add_nodal(const FeModel& model, Vector nodal, Vector& force) {
+  model.to_frames({nodal.data(), index(nodal.size())});
+  force += nodal;
+}
+
+}  // namespace
+
+SidePoints SidePoints::of(const FeModel& model, const std::string& side) {
+  const Mesh& mesh = model.mesh();
+  const int dim = mesh.dim;
+  SidePoints out;
+  for (const Facet& facet : mesh.side(side)) {
+    const Element& element =
+        element_named(mesh.blocks[index(facet.block)].element->facet_name);
+    const Tabulation table =
+        tabulate(element, quadrature(element.shape, 2 * element.order + 1));
+    FacetPoints f{mesh.nodes_of(facet), {}};
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(3, table.nodes);
+    for (int a = 0; a < table.nodes; ++a) {
+      for (int i = 0; i < dim; ++i) x(i, a) = mesh.points[index(f.nodes[index(a)] * dim + i)];
+    }
+    for (int p = 0; p < table.points; ++p) {
+      Point point;
+      const double* n = table.n.data() + index(p * table.nodes);
+      const double* dn = table.dn.data() + index(p * table.nodes * table.dim);
+      point.n.assign(n, n + table.nodes);
+      point.dn.assign(dn, dn + table.nodes * table.dim);
+      point.weight = table.weight[index(p)];
+      const Eigen::Vector3d position = x * Eigen::Map<const Vector>(n, table.nodes);
+      point.position = {position(0), position(1), position(2)};
+      const Eigen::Vector3d area = directed_area(x * Eigen::Map<const Rows>(dn, table.nodes, table.dim));
+      point.area = area.norm() * point.weight * depth(model, position(0));
+      point.normal = area.normalized();
+      f.points.push_back(std::move(point));
+    }
+    out.facets.push_back(std::move(f));
+  }
+  return out;
+}
+
+double SidePoints::area() const {
+  double sum = 0.0;
+  for (const FacetPoints& facet : facets) {
+    for (const Point& point : facet.points) sum += point.area;
+  }
+  return sum;
+}
+
+BodyForce::BodyForce(const FeModel& model, VectorField acceleration)
+    : model_(model), acceleration_(std::move(acceleration)) {}
+
+/// The acceleration is interpolated between the nodes: f = M b, exact where b is uniform.
+void BodyForce::add(double time, std::span<const double>, Vector& force) const {
+  const Mesh& mesh = model_.mesh();
+  const int dim = mesh.dim;
+  Vector b = Vector::Zero(model_.dofs());
+  for (int node = 0; node < mesh.node_count(); ++node) {
+    std::array<double, 3> at = {0.0, 0.0, 0.0};
+    for (int i = 0; i < dim; ++i) at[index(i)] = mesh.points[index(node * dim + i)];
+    for (int i = 0; i < dim; ++i) b(node * dim + i) = value(acceleration_[index(i)], at, time);
+  }
+  model_.to_frames({b.data(), index(b.size())});
+  force += model_.mass() * b;
+}
+
+Traction::Traction(const FeModel& model, const std::string& side, VectorField traction)
+    : model_(model), side_(SidePoints::of(model, side)), traction_(std::move(traction)) {}
+
+void Traction::add(double time, std::span<const double>, Vector& force) const {
+  const int dim = model_.mesh().dim;
+  Vector nodal = Vector::Zero(model_.dofs());
+  for (const SidePoints::FacetPoints& facet : side_.facets) {
+    for (const SidePoints::Point& point : facet.points) {
+      for (int i = 0; i < dim; ++i) {
+        const double f = point.area * value(traction_[index(i)], point.position, time);
+        for (std::size_t a = 0; a < facet.nodes.size(); ++a)
+          nodal(facet.nodes[a] * dim + i) += f * point.n[a];
+      }
+    }
+  }
+  add_nodal(model_, std::move(nodal), force);
+}
+
+Pressure::Pressure(const FeModel& model, const std::string& side, ScalarField pressure,
+                   bool follows)
+    : model_(model),
+      side_(SidePoints::of(model, side)),
+      pressure_(std::move(pressure)),
+      follows_(follows) {}
+
+/// Present positions of a facet's nodes (3, nodes).
+Eigen::MatrixXd Pressure::present(const SidePoints::FacetPoints& facet,
+                                  std::span<const double> q) const {
+  const Mesh& mesh = model_.mesh();
+  const int dim = mesh.dim;
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(3, static_cast<Eigen::Index>(facet.nodes.size()));
+  for (std::size_t a = 0; a < facet.nodes.size(); ++a) {
+    for (int i = 0; i < dim; ++i) {
+      const std::size_t at = index(facet.nodes[a] * dim + i);
+      x(i, static_cast<Eigen::Index>(a)) = mesh.points[at] + q[at];
+    }
+  }
+  return x;
+}
+
+void Pressure::add(double time, std::span<const double> q, Vector& force) const {
+  const int dim = model_.mesh().dim;
+  std::vector<double> u;
+  if (follows_) {
+    u.assign(q.begin(), q.end());
+    model_.to_space(u);
+  }
+  Vector nodal = Vector::Zero(model_.dofs());
+  for (const SidePoints::FacetPoints& facet : side_.facets) {
+    const Eigen::MatrixXd x = follows_ ? present(facet, u) : Eigen::MatrixXd();
+    const int nodes = static_cast<int>(facet.nodes.size());
+    for (const SidePoints::Point& point : facet.points) {
+      Eigen::Vector3d area = point.area * point.normal;
+      if (follows_) {
+        const Rows dn = Eigen::Map<const Rows>(point.dn.data(), nodes,
+                                               static_cast<int>(point.dn.size()) / nodes);
+        const double radius = x.row(0).dot(Eigen::Map<const Vector>(point.n.data(), nodes));
+        area = directed_area(x * dn) * point.weight * depth(model_, radius);
+      }
+      const Eigen::Vector3d f = -value(pressure_, point.position, time) * area;
+      for (std::size_t a = 0; a < facet.nodes.size(); ++a) {
+        for (int i = 0; i < dim; ++i) nodal(facet.nodes[a] * dim + i) += f(i) * point.n[a];
+      }
+    }
+  }
+  add_nodal(model_, std::move(nodal), force);
+}
+
+/// -df/dq of f_a = -p N_a (x,1 cross x,2) w; in the plane of (x2,1 , -x1,1) w depth.
+void Pressure::add_tangent(double time, std::span<const double> q, SparseMatrix& tangent) const {
+  if (!follows_) return;
+  const int dim = model_.mesh().dim;
+  std::vector<double> u(q.begin(), q.end());
+  model_.to_space(u);
+  for (const SidePoints::FacetPoints& facet : side_.facets) {
+    const Eigen::MatrixXd x = present(facet, u);
+    const int nodes = static_cast<int>(facet.nodes.size());
+    Eigen::MatrixXd local = Eigen::MatrixXd::Zero(nodes * dim, nodes * dim);
+    for (const SidePoints::Point& point : facet.points) {
+      const int along = static_cast<int>(point.dn.size()) / nodes;
+      const Rows dn = Eigen::Map<const Rows>(point.dn.data(), nodes, along);
+      const Eigen::Matrix<double, 3, Eigen::Dynamic> tangents = x * dn;
+      const double radius = x.row(0).dot(Eigen::Map<const Vector>(point.n.data(), nodes));
+      const double p =
+          value(pressure_, point.position, time) * point.weight * depth(model_, radius);
+      for (int b = 0; b < nodes; ++b) {
+        for (int k = 0; k < dim; ++k) {
+          Eigen::Vector3d change = Eigen::Vector3d::Zero();  // of the directed area
+          for (int d = 0; d < along; ++d) {
+            Eigen::Matrix<double, 3, Eigen::Dynamic> moved = tangents;
+            moved.col(d) = Eigen::Vector3d::Unit(k) * dn(b, d);
+            change += directed_area(moved);
+          }
+          for (int a = 0; a < nodes; ++a) {
+            for (int i = 0; i < dim; ++i)
+              local(a * dim + i, b * dim + k) += p * point.n[static_cast<std::size_t>(a)] * change(i);
+          }
+        }
+      }
+    }
+    local = (0.5 * (local + local.transpose())).eval();
+    model_.add_to_tangent(facet.nodes, local, tangent);
+  }
+}
+
+}  // namespace abut

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "subdomain_solver/fe/fe_model.hpp"
+#include "subdomain_solver/time/problem.hpp"
+
+namespace abut {
+
+/// A scalar as a function of the reference position (x, y, z) [m] and time [s].
+using ScalarField = std::function<double(const std::array<double, 3>&, double)>;
+/// A vector, component by component; an absent component is zero.
+using VectorField = std::array<ScalarField, 3>;
+
+/// Points of a side at which loads on it are integrated.
+struct SidePoints {
+  struct Point {
+    std::array<double, 3> position = {0.0, 0.0, 0.0};  // [m] reference
+    double area = 0.0;                                 // [m^2] reference, weight included
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // outward unit normal, reference
+    std::vector<double> n, dn;                         // of the facet's element
+    double weight = 0.0;                               // of the quadrature rule
+  };
+  struct FacetPoints {
+    std::vector<std::int32_t> nodes;
+    std::vector<Point> points;
+  };
+  std::vector<FacetPoints> facets;
+
+  /// Throws InputError when the mesh has no such side.
+  static SidePoints of(const FeModel& model, const std::string& side);
+  double area() const;  // [m^2] reference
+};
+
+/// Force per reference volume: density x acceleration, e.g. gravity [m/s^2].
+class BodyForce final : public Load {
+ public:
+  BodyForce(const FeModel& model, VectorField acceleration);
+  void add(double time, std::span<const double> q, Vector& force) const override;
+
+ private:
+  const FeModel& model_;
+  VectorField acceleration_;
+};
+
+/// Dead traction on a side: force per reference area [Pa], in the axes of space.
+class Traction final : public Load {
+ public:
+  Traction(const FeModel& model, const std::string& side, VectorField traction);
+  void add(double time, std::span<const double> q, Vector& force) const override;
+
+ private:
+  const FeModel& model_;
+  SidePoints side_;
+  VectorField traction_;
+};
+
+/// Pressure on a side [Pa], positive towards the body. Dead: along the reference normal, per
+/// reference area. Follower: along the present normal, per present area; its stiffness, made
+/// symmetric, joins the tangent [M.47].
+class Pressure final : public Load {
+ public:
+  Pressure(const FeModel& model, const std::string& side, ScalarField pressure, bool follows);
+  void add(double time, std::span<const double> q, Vector& force) const override;
+  void add_tangent(double time, std::span<const double> q, SparseMatrix& tangent) const override;
+
+ private:
+  Eigen::MatrixXd present(const SidePoints::FacetPoints& facet, std::span<const double> q) const;
+
+  const FeModel& model_;
+  SidePoints side_;
+  ScalarField pressure_;
+  bool follows_;
+};
+
+}  // namespace abut

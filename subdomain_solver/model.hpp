@@ -1,0 +1,65 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "base/archive.hpp"
+
+namespace abut {
+
+using Vector = Eigen::VectorXd;
+using SparseMatrix = Eigen::SparseMatrix<double>;  // column by column, indices of 32 bits
+
+/// What of a body changes during a step: its one state list.
+struct Motion {
+  std::vector<double> q, v, a;  // (dofs) coordinates and their first two derivatives in time
+  std::vector<double> force;    // [N] (dofs) internal force r(q)
+  std::vector<double> history;  // internal variables of the material points
+  double stored = 0.0;          // [J]
+  double external_work = 0.0;   // [J] done on the body by loads and prescribed motion
+  double dissipated = 0.0;      // [J] by the material
+
+  void state(Archive& archive) {
+    archive.field("q", q);
+    archive.field("v", v);
+    archive.field("a", a);
+    archive.field("force", force);
+    archive.field("history", history);
+    archive.field("stored", stored);
+    archive.field("external_work", external_work);
+    archive.field("dissipated", dissipated);
+  }
+};
+
+/// What a model answers at given coordinates.
+struct ModelResponse {
+  Vector force;                // [N] (dofs) internal force r(q)
+  SparseMatrix tangent;        // [N/m] dr/dq, symmetric, both halves stored
+  std::vector<double> history; // at the end of the step
+  double stored = 0.0;         // [J]
+  double dissipation = 0.0;    // [J] since the history it started from
+};
+
+/// Semi-discrete body in its own coordinates q:   M q'' + r(q) = f(t)   [M.40]. Integrators see
+/// nothing else of a body. The fidelity ladder is made of models under the same integrators.
+class Model {
+ public:
+  enum class Want { force, tangent };
+
+  virtual ~Model() = default;
+  virtual int dofs() const = 0;
+  virtual bool is_linear() const = 0;             // the tangent never changes: factor once
+  virtual std::size_t history_size() const = 0;
+  virtual const SparseMatrix& mass() const = 0;   // [kg] consistent
+  virtual const Vector& lumped_mass() const = 0;  // [kg] (dofs) of the same total
+  /// [N] size of the round-off in r(q): a balance of forces below it cannot be improved.
+  virtual double roundoff(std::span<const double> q) const = 0;
+  /// r(q), from the history at the step's begin; the tangent when wanted. False: q is inadmissible
+  /// (an inverted element, a material point without an answer), and out undefined.
+  [[nodiscard]] virtual bool evaluate(std::span<const double> q, std::span<const double> history,
+                                      Want want, ModelResponse& out) = 0;
+};
+
+}  // namespace abut

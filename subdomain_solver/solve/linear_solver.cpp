@@ -1,0 +1,57 @@
+#include "subdomain_solver/solve/linear_solver.hpp"
+
+#include <Eigen/SparseCholesky>
+
+#include "subdomain_solver/solve/cholmod_solver.hpp"
+
+namespace abut {
+
+namespace {
+
+class Ldlt final : public LinearSolver {
+ public:
+  [[nodiscard]] bool factor(const SparseMatrix& matrix) override {
+    if (!analysed_) solver_.analyzePattern(matrix);
+    analysed_ = true;
+    solver_.factorize(matrix);
+    return solver_.info() == Eigen::Success;
+  }
+  [[nodiscard]] bool solve(const Vector& b, Vector& x) override {
+    x = solver_.solve(b);
+    return x.allFinite();
+  }
+
+ private:
+  Eigen::SimplicialLDLT<SparseMatrix> solver_;
+  bool analysed_ = false;
+};
+
+/// Supernodal factors while the matrix is positive definite; past a buckling load, for instance,
+/// it is not, and the simplicial LDL^T takes over.
+class FirstThatFactors final : public LinearSolver {
+ public:
+  explicit FirstThatFactors(std::unique_ptr<LinearSolver> quick) : quick_(std::move(quick)) {}
+
+  [[nodiscard]] bool factor(const SparseMatrix& matrix) override {
+    definite_ = quick_->factor(matrix);
+    return definite_ || general_.factor(matrix);
+  }
+  [[nodiscard]] bool solve(const Vector& b, Vector& x) override {
+    return definite_ ? quick_->solve(b, x) : general_.solve(b, x);
+  }
+
+ private:
+  std::unique_ptr<LinearSolver> quick_;
+  Ldlt general_;
+  bool definite_ = true;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_direct_solver() {
+  if (std::unique_ptr<LinearSolver> quick = make_cholmod_solver(); quick != nullptr)
+    return std::make_unique<FirstThatFactors>(std::move(quick));
+  return std::make_unique<Ldlt>();
+}
+
+}  // namespace abut

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+
+#include "subdomain_solver/model.hpp"
+
+namespace abut {
+
+/// Solves K x = b for symmetric K. One object serves matrices of one pattern, whose analysis is
+/// kept from the first factorisation on.
+class LinearSolver {
+ public:
+  virtual ~LinearSolver() = default;
+  /// False: the matrix is singular, or not a number.
+  [[nodiscard]] virtual bool factor(const SparseMatrix& matrix) = 0;
+  /// False: not solved to the solver's own tolerance. x is of the size of b.
+  [[nodiscard]] virtual bool solve(const Vector& b, Vector& x) = 0;
+};
+
+/// Direct: CHOLMOD when the build has it (docs/adr/0006), Eigen's own LDL^T otherwise and for
+/// matrices that are not positive definite.
+std::unique_ptr<LinearSolver> make_direct_solver();
+/// Conjugate gradients with incomplete Cholesky factors; for positive definite matrices too large
+/// to factor. `tolerance` is of the residual relative to the right-hand side.
+std::unique_ptr<LinearSolver> make_conjugate_gradients(double tolerance);
+
+}  // namespace abut

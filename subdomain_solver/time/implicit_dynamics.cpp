@@ -1,0 +1,183 @@
+#include "subdomain_solver/time/implicit_dynamics.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace abut {
+
+namespace {
+
+using View = Eigen::Map<const Vector>;
+
+View view(const std::vector<double>& values) {
+  return View(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+void store(const Vector& from, std::vector<double>& to) {
+  to.assign(from.data(), from.data() + from.size());
+}
+
+Failed failed_newton(const NewtonReport& report, double time) {
+  using End = NewtonReport::End;
+  switch (report.end) {
+    case End::inadmissible:
+      return {Failed::Cause::inverted_element, time,
+              "an element is inverted, or its material has no answer: take a smaller step or a finer "
+              "mesh there"};
+    case End::singular:
+      return {Failed::Cause::no_convergence, time,
+              "the tangent is singular: the body may lack a support, or it buckles"};
+    default:
+      return {Failed::Cause::no_convergence, time,
+              fmt::format("Newton's method has not converged after {} iterations, relative residual "
+                          "{:.2g}: take a smaller step",
+                          report.iterations, report.residual)};
+  }
+}
+
+}  // namespace
+
+/// Balance of momentum at the end of a step, with the free accelerations as unknowns.
+class ImplicitDynamics::Balance final : public Equations {
+ public:
+  Balance(ImplicitDynamics& owner, const Motion& motion, double time, double dt)
+      : o_(owner), w_(owner.options_.weights), motion_(motion), end_(time + dt), dt_(dt) {
+    const View q = view(motion.q), v = view(motion.v), a = view(motion.a);
+    q_start_ = q + dt * v + (0.5 - w_.beta) * dt * dt * a;  // for no acceleration at the end
+    v_start_ = v + (1.0 - w_.gamma) * dt * a;
+    a_ = a;
+    for (const Prescribed& p : o_.problem_.supports)
+      a_(p.dof) = (p.value(end_) - q_start_(p.dof)) / (w_.beta * dt * dt);
+    past_ = w_.alpha_m * o_.times_mass(a);
+    if (w_.alpha_f > 0.0)
+      past_ += w_.alpha_f * (view(motion.force) - o_.problem_.external_force(time, motion.q));
+  }
+
+  Vector first_guess() const { return o_.free_.pick(a_); }
+
+  [[nodiscard]] bool residual(const Vector& x, Vector& r, double& scale) override {
+    for (int i = 0; i < o_.free_.count(); ++i) a_(o_.free_.list()[static_cast<std::size_t>(i)]) = x(i);
+    q_ = q_start_ + w_.beta * dt_ * dt_ * a_;
+    Model& model = *o_.problem_.model;
+    const std::span<const double> q(q_.data(), static_cast<std::size_t>(q_.size()));
+    if (!model.evaluate(q, motion_.history, Model::Want::force, response)) return false;
+    external_ = o_.problem_.external_force(end_, q);
+    const Vector inertia = (1.0 - w_.alpha_m) * o_.times_mass(a_);
+    const Vector inner = (1.0 - w_.alpha_f) * response.force;
+    const Vector outer = (1.0 - w_.alpha_f) * external_;
+    r = o_.free_.pick(inertia + inner - outer + past_);
+    scale = std::max({inertia.norm(), inner.norm(), outer.norm(), past_.norm(),
+                      model.roundoff(q) / o_.options_.newton.tolerance});
+    return true;
+  }
+
+  [[nodiscard]] bool correct(const Vector& r, Vector& dx) override {
+    Model& model = *o_.problem_.model;
+    if (!model.is_linear() || o_.factored_dt_ != dt_) {
+      ModelResponse here;
+      const std::span<const double> q(q_.data(), static_cast<std::size_t>(q_.size()));
+      if (!model.evaluate(q, motion_.history, Model::Want::tangent, here)) return false;
+      for (const std::unique_ptr<Load>& load : o_.problem_.loads)
+        load->add_tangent(end_, q, here.tangent);
+      const SparseMatrix whole = (1.0 - w_.alpha_m) * o_.mass() +
+                                 (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_ * here.tangent;
+      o_.free_.extract(whole, o_.matrix_);
+      o_.factored_dt_ = 0.0;
+      if (!o_.solver_->factor(o_.matrix_)) return false;
+      o_.factored_dt_ = dt_;
+    }
+    if (!o_.solver_->solve(r, dx)) return false;
+    dx = -dx;
+    return true;
+  }
+
+  double smallest_step(const Vector& x) const override {
+    return 4.0 * std::numeric_limits<double>::epsilon() * x.lpNorm<Eigen::Infinity>();
+  }
+
+  void finish(Motion& motion) const {
+    const Vector v = v_start_ + w_.gamma * dt_ * a_;
+    // Loads and supports do the work that the other forces take.
+    const Vector now = response.force + o_.times_mass(a_);
+    const Vector before = view(motion.force) + o_.times_mass(view(motion.a));
+    motion.external_work += 0.5 * (now + before).dot(q_ - view(motion.q));
+    motion.dissipated += response.dissipation;
+    motion.stored = response.stored;
+    motion.history = response.history;
+    store(q_, motion.q);
+    store(v, motion.v);
+    store(a_, motion.a);
+    store(response.force, motion.force);
+  }
+
+  ModelResponse response;
+
+ private:
+  ImplicitDynamics& o_;
+  const AlphaWeights& w_;
+  const Motion& motion_;
+  double end_, dt_;
+  Vector q_start_, v_start_, a_, q_, past_, external_;
+};
+
+ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& options,
+                                   std::unique_ptr<LinearSolver> solver)
+    : problem_(problem),
+      options_(options),
+      solver_(std::move(solver)),
+      free_(problem.model->dofs(), problem.supports) {
+  if (options.mass == MassMatrix::consistent) return;
+  lumped_ = problem.model->lumped_mass();
+  diagonal_.resize(lumped_.size(), lumped_.size());
+  for (int i = 0; i < lumped_.size(); ++i) diagonal_.insert(i, i) = lumped_(i);
+  diagonal_.makeCompressed();
+}
+
+Vector ImplicitDynamics::times_mass(const Vector& x) const {
+  if (lumped_.size() > 0) return lumped_.cwiseProduct(x);
+  return problem_.model->mass() * x;
+}
+
+/// Accelerations from the balance at the begin: M a = f - r on the free coordinates.
+std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
+  Model& model = *problem_.model;
+  ModelResponse response;
+  motion.history.resize(model.history_size(), 0.0);
+  motion.a.assign(motion.q.size(), 0.0);
+  for (const Prescribed& p : problem_.supports)
+    motion.q[static_cast<std::size_t>(p.dof)] = p.value(time);
+  if (!model.evaluate(motion.q, motion.history, Model::Want::force, response))
+    return failed_newton({NewtonReport::End::inadmissible}, time);
+  const Vector r = free_.pick(problem_.external_force(time, motion.q) - response.force);
+  SparseMatrix free_mass;
+  FreeCoordinates(model.dofs(), problem_.supports).extract(mass(), free_mass);
+  std::unique_ptr<LinearSolver> solver = make_direct_solver();
+  Vector a;
+  if (!solver->factor(free_mass) || !solver->solve(r, a))
+    return Failed{Failed::Cause::no_convergence, time, "the mass matrix is singular"};
+  Vector all = Vector::Zero(model.dofs());
+  free_.add(a, all);
+  store(all, motion.a);
+  store(response.force, motion.force);
+  motion.stored = response.stored;
+  return std::nullopt;
+}
+
+std::optional<Failed> ImplicitDynamics::step(Motion& motion, double time, double dt) {
+  Balance balance(*this, motion, time, dt);
+  Vector a = balance.first_guess();
+  const NewtonReport report = solve_newton(balance, a, options_.newton);
+  iterations_ += report.iterations;
+  if (!report.converged()) return failed_newton(report, time + dt);
+  balance.finish(motion);
+  return std::nullopt;
+}
+
+double ImplicitDynamics::kinetic(const Motion& motion) const {
+  const View v = view(motion.v);
+  return 0.5 * v.dot(times_mass(v));
+}
+
+}  // namespace abut

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+
+#include "contract/outcome.hpp"
+#include "subdomain_solver/time/problem.hpp"
+
+namespace abut {
+
+/// Advances a problem's motion in time. Sees nothing of the body but its Model.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  /// Makes what a motion needs beside q and v: accelerations, internal forces at the begin.
+  [[nodiscard]] virtual std::optional<Failed> begin(Motion& motion, double time) = 0;
+  /// From `time` to `time + dt`. When it fails, the motion is as before.
+  [[nodiscard]] virtual std::optional<Failed> step(Motion& motion, double time, double dt) = 0;
+  /// [J] in the form that the scheme conserves where it conserves one.
+  virtual double kinetic(const Motion& motion) const = 0;
+  double stored(const Motion& motion) const { return motion.stored; }
+  /// Newton iterations of all steps so far, for people.
+  int iterations() const { return iterations_; }
+
+ protected:
+  int iterations_ = 0;
+};
+
+}  // namespace abut

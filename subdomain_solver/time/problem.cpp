@@ -1,0 +1,53 @@
+#include "subdomain_solver/time/problem.hpp"
+
+namespace abut {
+
+Vector Problem::external_force(double time, std::span<const double> q) const {
+  Vector force = Vector::Zero(model->dofs());
+  for (const std::unique_ptr<Load>& load : loads) load->add(time, q, force);
+  return force;
+}
+
+FreeCoordinates::FreeCoordinates(int dofs, const std::vector<Prescribed>& supports)
+    : place_(static_cast<std::size_t>(dofs), 0) {
+  for (const Prescribed& p : supports) place_[static_cast<std::size_t>(p.dof)] = -1;
+  for (int i = 0; i < dofs; ++i) {
+    int& place = place_[static_cast<std::size_t>(i)];
+    if (place < 0) continue;
+    place = count();
+    free_.push_back(i);
+  }
+}
+
+Vector FreeCoordinates::pick(const Vector& all) const {
+  Vector out(count());
+  for (int i = 0; i < count(); ++i) out(i) = all(free_[static_cast<std::size_t>(i)]);
+  return out;
+}
+
+void FreeCoordinates::add(const Vector& free, Vector& all) const {
+  for (int i = 0; i < count(); ++i) all(free_[static_cast<std::size_t>(i)]) += free(i);
+}
+
+void FreeCoordinates::extract(const SparseMatrix& all, SparseMatrix& free) {
+  if (entries_ != all.nonZeros()) {  // a new pattern
+    entries_ = all.nonZeros();
+    from_.clear();
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int column : free_) {
+      const int first = all.outerIndexPtr()[column], last = all.outerIndexPtr()[column + 1];
+      for (int k = first; k < last; ++k) {
+        const int row = place_[static_cast<std::size_t>(all.innerIndexPtr()[k])];
+        if (row < 0) continue;
+        entries.emplace_back(row, place_[static_cast<std::size_t>(column)], 0.0);
+        from_.push_back(k);
+      }
+    }
+    free.resize(count(), count());
+    free.setFromTriplets(entries.begin(), entries.end());
+  }
+  for (std::size_t k = 0; k < from_.size(); ++k)
+    free.valuePtr()[k] = all.valuePtr()[from_[k]];
+}
+
+}  // namespace abut

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "subdomain_solver/model.hpp"
+
+namespace abut {
+
+/// Forces that act on a body, as a function of time and place.
+class Load {
+ public:
+  virtual ~Load() = default;
+  /// Adds the nodal forces [N] (dofs) at a time and coordinates q.
+  virtual void add(double time, std::span<const double> q, Vector& force) const = 0;
+  /// Adds -df/dq to the tangent, for loads that follow the body. Its pattern is the model's.
+  virtual void add_tangent(double, std::span<const double>, SparseMatrix&) const {}
+};
+
+/// A coordinate whose value is given.
+struct Prescribed {
+  int dof = 0;
+  std::function<double(double)> value;  // [m] of time [s]
+};
+
+/// A model with what acts on it.
+struct Problem {
+  Model* model = nullptr;
+  std::vector<Prescribed> supports;           // one per coordinate at most, sorted by dof
+  std::vector<std::unique_ptr<Load>> loads;
+
+  Vector external_force(double time, std::span<const double> q) const;
+};
+
+/// Free and prescribed coordinates, and the rows and columns of a matrix that belong to free ones.
+class FreeCoordinates {
+ public:
+  FreeCoordinates(int dofs, const std::vector<Prescribed>& supports);
+
+  int count() const { return static_cast<int>(free_.size()); }
+  const std::vector<int>& list() const { return free_; }
+  Vector pick(const Vector& all) const;
+  void add(const Vector& free, Vector& all) const;
+  void extract(const SparseMatrix& all, SparseMatrix& free);
+
+ private:
+  std::vector<int> free_;          // dofs
+  std::vector<int> place_;         // (dofs) among the free ones, or -1
+  std::vector<Eigen::Index> from_; // of each entry of the extracted matrix
+  Eigen::Index entries_ = -1;      // of the matrix that from_ belongs to
+};
+
+}  // namespace abut
