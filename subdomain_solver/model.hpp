@@ -35,11 +35,11 @@ struct Motion {
 
 /// What a model answers at given coordinates.
 struct ModelResponse {
-  Vector force;                // [N] (dofs) internal force r(q)
-  SparseMatrix tangent;        // [N/m] dr/dq, symmetric, both halves stored
-  std::vector<double> history; // at the end of the step
-  double stored = 0.0;         // [J]
-  double dissipation = 0.0;    // [J] since the history it started from
+  Vector force;                 // [N] (dofs) internal force r(q)
+  SparseMatrix tangent;         // [N/m] dr/dq, symmetric, both halves stored
+  std::vector<double> history;  // at the end of the step
+  double stored = 0.0;          // [J]
+  double dissipation = 0.0;     // [J] since the history it started from
 };
 
 /// Semi-discrete body in its own coordinates q:   M q'' + r(q) = f(t)   [M.40]. Integrators see
@@ -50,7 +50,7 @@ class Model {
 
   virtual ~Model() = default;
   virtual int dofs() const = 0;
-  virtual bool is_linear() const = 0;             // the tangent never changes: factor once
+  virtual bool is_linear() const = 0;  // the tangent never changes: factor once
   virtual std::size_t history_size() const = 0;
   virtual const SparseMatrix& mass() const = 0;   // [kg] consistent
   virtual const Vector& lumped_mass() const = 0;  // [kg] (dofs) of the same total

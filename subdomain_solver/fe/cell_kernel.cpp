@@ -134,9 +134,8 @@ void CellKernel::fill_operator(const CellGeometry& cell, std::size_t p, Operator
 /// dFbar = s dF + Fbar (dtheta / theta - F^-T : dF) / 3; linear: dF + I (dtheta - tr dF) / 3.
 void CellKernel::average_operator(Point& point) {
   const bool linear = material_.is_linear();
-  const Eigen::RowVectorXd change =
-      mean_gradient_.transpose() / (linear ? 1.0 : dilatation_) -
-      vary(point.inverse.transpose()).transpose() * point.b;
+  const Eigen::RowVectorXd change = mean_gradient_.transpose() / (linear ? 1.0 : dilatation_) -
+                                    vary(point.inverse.transpose()).transpose() * point.b;
   point.b *= point.stretch;
   point.b.noalias() += vary(linear ? Matrix3(Matrix3::Identity()) : point.f) * change / 3.0;
 }
@@ -176,13 +175,12 @@ void CellKernel::fill_exchange(const CellGeometry& cell, std::size_t p) {
   const Eigen::MatrixXd g = inverse.topLeftCorner(dim_, dim_).transpose() * reference;
   for (int a = 0; a < cell.nodes; ++a) {
     for (int b = 0; b < cell.nodes; ++b) {
-      exchange_.block(a * dim_, b * dim_, dim_, dim_).noalias() =
-          g.col(b) * g.col(a).transpose();
+      exchange_.block(a * dim_, b * dim_, dim_, dim_).noalias() = g.col(b) * g.col(a).transpose();
       if (cell.hoop.empty()) continue;
       const std::size_t at = p * static_cast<std::size_t>(cell.nodes);
       exchange_(a * dim_, b * dim_) += cell.hoop[at + static_cast<std::size_t>(a)] *
-                                       cell.hoop[at + static_cast<std::size_t>(b)] *
-                                       inverse(2, 2) * inverse(2, 2);
+                                       cell.hoop[at + static_cast<std::size_t>(b)] * inverse(2, 2) *
+                                       inverse(2, 2);
     }
   }
 }

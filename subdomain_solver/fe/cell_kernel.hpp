@@ -29,8 +29,8 @@ struct CellGeometry {
 
 /// One cell's answer. Buffers are reused from cell to cell.
 struct CellResponse {
-  Eigen::VectorXd force;     // [N] (nodes x dim)
-  Eigen::MatrixXd tangent;   // [N/m] symmetric
+  Eigen::VectorXd force;                   // [N] (nodes x dim)
+  Eigen::MatrixXd tangent;                 // [N/m] symmetric
   double stored = 0.0, dissipation = 0.0;  // [J]
 };
 

@@ -36,8 +36,8 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
   blocks_.resize(mesh_.blocks.size());
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const CellBlock& cells = mesh_.blocks[b];
-    blocks_[b].table =
-        tabulate(*cells.element, quadrature(cells.element->shape, stiffness_degree(*cells.element)));
+    blocks_[b].table = tabulate(*cells.element,
+                                quadrature(cells.element->shape, stiffness_degree(*cells.element)));
     measure(cells, blocks_[b]);
     blocks_[b].history = history_size_;
     history_size_ += blocks_[b].volume.size() * index(kernel_.history_size());
@@ -73,11 +73,13 @@ void FeModel::measure(const CellBlock& cells, Block& block) const {
       const Eigen::Map<const Vector> n(t.n.data() + index(p * t.nodes), t.nodes);
       const Eigen::MatrixXd jacobian = x.transpose() * dn;  // dX/dxi
       const double radius = round ? n.dot(x.col(0)) : 0.0;
-      const double depth =
-          round ? 2.0 * std::numbers::pi * radius : dim == 2 ? options_.thickness : 1.0;
+      const double depth = round      ? 2.0 * std::numbers::pi * radius
+                           : dim == 2 ? options_.thickness
+                                      : 1.0;
       block.volume.push_back(t.weight[index(p)] * jacobian.determinant() * depth);
       const Rows gradient = dn * jacobian.inverse();
-      block.gradient.insert(block.gradient.end(), gradient.data(), gradient.data() + gradient.size());
+      block.gradient.insert(block.gradient.end(), gradient.data(),
+                            gradient.data() + gradient.size());
       if (!round) continue;
       for (int a = 0; a < t.nodes; ++a) block.hoop.push_back(n(a) / radius);
     }
@@ -280,9 +282,8 @@ void FeModel::add_matrix(const CellBlock& cells, const Block& block, int cell,
 
 const Matrix3* FeModel::frame(std::int32_t node) const {
   if (frames_.empty()) return nullptr;
-  const auto at =
-      std::lower_bound(frames_.begin(), frames_.end(), node,
-                       [](const NodeFrame& f, std::int32_t n) { return f.node < n; });
+  const auto at = std::lower_bound(frames_.begin(), frames_.end(), node,
+                                   [](const NodeFrame& f, std::int32_t n) { return f.node < n; });
   return at != frames_.end() && at->node == node ? &at->axes : nullptr;
 }
 
@@ -347,7 +348,8 @@ bool FeModel::visit(std::span<const double> q, std::span<const double> history,
     const std::size_t each = index(blocks_[k].table.points) * per_point;
     after.resize(each);
     for (int c = 0; c < cells.count(); ++c) {
-      const std::span<const double> before = history.subspan(blocks_[k].history + index(c) * each, each);
+      const std::span<const double> before =
+          history.subspan(blocks_[k].history + index(c) * each, each);
       const CellGeometry cell = geometry(blocks_[k], c);
       gather(cells, c, q, u_);
       if (!kernel_.evaluate(cell, u_, before, after, abut::Want::stress, local_)) return false;

@@ -14,7 +14,7 @@ namespace abut {
 struct FeOptions {
   Plane plane = Plane::strain;  // of meshes in two dimensions
   Formulation formulation = Formulation::full;
-  double thickness = 1.0;       // [m] of plane cells; axisymmetric ones span the full circle
+  double thickness = 1.0;  // [m] of plane cells; axisymmetric ones span the full circle
 };
 
 /// Orthonormal frame of one node (dim x dim, columns are its axes): the node's coordinates q are
@@ -55,8 +55,8 @@ class FeModel final : public Model {
   /// State of one quadrature point.
   struct PointState {
     int block = 0, cell = 0, point = 0;
-    double volume = 0.0;                    // [m^3] reference
-    Matrix3 deformation, stress;            // F; first Piola-Kirchhoff [Pa]
+    double volume = 0.0;          // [m^3] reference
+    Matrix3 deformation, stress;  // F; first Piola-Kirchhoff [Pa]
     std::span<const double> history;
   };
   /// Calls `see` for every quadrature point, in order. False: q is inadmissible.
@@ -71,8 +71,8 @@ class FeModel final : public Model {
     std::size_t history = 0;             // where its numbers begin
   };
 
-  [[nodiscard]] bool assemble(std::span<const double> q, std::span<const double> history,
-                              Want want, ModelResponse& out);
+  [[nodiscard]] bool assemble(std::span<const double> q, std::span<const double> history, Want want,
+                              ModelResponse& out);
   void measure(const CellBlock& cells, Block& block) const;
   void find_units(const Block& block);
   void find_pattern();
@@ -94,11 +94,11 @@ class FeModel final : public Model {
   FeOptions options_;
   std::vector<Block> blocks_;
   std::size_t history_size_ = 0;
-  std::vector<NodeFrame> frames_;          // sorted by node; usually none
-  SparseMatrix pattern_;                   // zeros where the tangent has entries
-  SparseMatrix stiffness_;                 // of linear models, which need no other
-  double force_unit_ = 0.0;                // [N] largest force of a cell at unit strain
-  double gradient_unit_ = 0.0;             // [1/m] largest gradient of a shape function
+  std::vector<NodeFrame> frames_;  // sorted by node; usually none
+  SparseMatrix pattern_;           // zeros where the tangent has entries
+  SparseMatrix stiffness_;         // of linear models, which need no other
+  double force_unit_ = 0.0;        // [N] largest force of a cell at unit strain
+  double gradient_unit_ = 0.0;     // [1/m] largest gradient of a shape function
   SparseMatrix mass_;
   Vector lumped_;
   CellKernel kernel_;

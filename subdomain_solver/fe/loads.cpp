@@ -44,10 +44,8 @@ SidePoints SidePoints::of(const FeModel& model, const std::string& side) {
   const int dim = mesh.dim;
   SidePoints out;
   for (const Facet& facet : mesh.side(side)) {
-    const Element& element =
-        element_named(mesh.blocks[index(facet.block)].element->facet_name);
-    const Tabulation table =
-        tabulate(element, quadrature(element.shape, 2 * element.order + 1));
+    const Element& element = element_named(mesh.blocks[index(facet.block)].element->facet_name);
+    const Tabulation table = tabulate(element, quadrature(element.shape, 2 * element.order + 1));
     FacetPoints f{mesh.nodes_of(facet), {}};
     Eigen::MatrixXd x = Eigen::MatrixXd::Zero(3, table.nodes);
     for (int a = 0; a < table.nodes; ++a) {
@@ -62,7 +60,8 @@ SidePoints SidePoints::of(const FeModel& model, const std::string& side) {
       point.weight = table.weight[index(p)];
       const Eigen::Vector3d position = x * Eigen::Map<const Vector>(n, table.nodes);
       point.position = {position(0), position(1), position(2)};
-      const Eigen::Vector3d area = directed_area(x * Eigen::Map<const Rows>(dn, table.nodes, table.dim));
+      const Eigen::Vector3d area =
+          directed_area(x * Eigen::Map<const Rows>(dn, table.nodes, table.dim));
       point.area = area.norm() * point.weight * depth(model, position(0));
       point.normal = area.normalized();
       f.points.push_back(std::move(point));
@@ -192,7 +191,8 @@ void Pressure::add_tangent(double time, std::span<const double> q, SparseMatrix&
           }
           for (int a = 0; a < nodes; ++a) {
             for (int i = 0; i < dim; ++i)
-              local(a * dim + i, b * dim + k) += p * point.n[static_cast<std::size_t>(a)] * change(i);
+              local(a * dim + i, b * dim + k) +=
+                  p * point.n[static_cast<std::size_t>(a)] * change(i);
           }
         }
       }

@@ -3,48 +3,16 @@
 #include <cmath>
 #include <limits>
 
-#include <fmt/format.h>
+#include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
-
-namespace {
-
-using View = Eigen::Map<const Vector>;
-
-View view(const std::vector<double>& values) {
-  return View(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
-void store(const Vector& from, std::vector<double>& to) {
-  to.assign(from.data(), from.data() + from.size());
-}
-
-Failed failed_newton(const NewtonReport& report, double time) {
-  using End = NewtonReport::End;
-  switch (report.end) {
-    case End::inadmissible:
-      return {Failed::Cause::inverted_element, time,
-              "an element is inverted, or its material has no answer: take a smaller step or a finer "
-              "mesh there"};
-    case End::singular:
-      return {Failed::Cause::no_convergence, time,
-              "the tangent is singular: the body may lack a support, or it buckles"};
-    default:
-      return {Failed::Cause::no_convergence, time,
-              fmt::format("Newton's method has not converged after {} iterations, relative residual "
-                          "{:.2g}: take a smaller step",
-                          report.iterations, report.residual)};
-  }
-}
-
-}  // namespace
 
 /// Balance of momentum at the end of a step, with the free accelerations as unknowns.
 class ImplicitDynamics::Balance final : public Equations {
  public:
   Balance(ImplicitDynamics& owner, const Motion& motion, double time, double dt)
       : o_(owner), w_(owner.options_.weights), motion_(motion), end_(time + dt), dt_(dt) {
-    const View q = view(motion.q), v = view(motion.v), a = view(motion.a);
+    const auto q = view(motion.q), v = view(motion.v), a = view(motion.a);
     q_start_ = q + dt * v + (0.5 - w_.beta) * dt * dt * a;  // for no acceleration at the end
     v_start_ = v + (1.0 - w_.gamma) * dt * a;
     a_ = a;
@@ -58,10 +26,11 @@ class ImplicitDynamics::Balance final : public Equations {
   Vector first_guess() const { return o_.free_.pick(a_); }
 
   [[nodiscard]] bool residual(const Vector& x, Vector& r, double& scale) override {
-    for (int i = 0; i < o_.free_.count(); ++i) a_(o_.free_.list()[static_cast<std::size_t>(i)]) = x(i);
+    for (int i = 0; i < o_.free_.count(); ++i)
+      a_(o_.free_.list()[static_cast<std::size_t>(i)]) = x(i);
     q_ = q_start_ + w_.beta * dt_ * dt_ * a_;
     Model& model = *o_.problem_.model;
-    const std::span<const double> q(q_.data(), static_cast<std::size_t>(q_.size()));
+    const std::span<const double> q = span_of(q_);
     if (!model.evaluate(q, motion_.history, Model::Want::force, response)) return false;
     external_ = o_.problem_.external_force(end_, q);
     const Vector inertia = (1.0 - w_.alpha_m) * o_.times_mass(a_);
@@ -77,12 +46,12 @@ class ImplicitDynamics::Balance final : public Equations {
     Model& model = *o_.problem_.model;
     if (!model.is_linear() || o_.factored_dt_ != dt_) {
       ModelResponse here;
-      const std::span<const double> q(q_.data(), static_cast<std::size_t>(q_.size()));
+      const std::span<const double> q = span_of(q_);
       if (!model.evaluate(q, motion_.history, Model::Want::tangent, here)) return false;
       for (const std::unique_ptr<Load>& load : o_.problem_.loads)
         load->add_tangent(end_, q, here.tangent);
-      const SparseMatrix whole = (1.0 - w_.alpha_m) * o_.mass() +
-                                 (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_ * here.tangent;
+      const SparseMatrix whole =
+          (1.0 - w_.alpha_m) * o_.mass() + (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_ * here.tangent;
       o_.free_.extract(whole, o_.matrix_);
       o_.factored_dt_ = 0.0;
       if (!o_.solver_->factor(o_.matrix_)) return false;
@@ -176,7 +145,7 @@ std::optional<Failed> ImplicitDynamics::step(Motion& motion, double time, double
 }
 
 double ImplicitDynamics::kinetic(const Motion& motion) const {
-  const View v = view(motion.v);
+  const auto v = view(motion.v);
   return 0.5 * v.dot(times_mass(v));
 }
 

@@ -31,15 +31,17 @@ class ImplicitDynamics final : public Integrator {
   class Balance;
 
   Vector times_mass(const Vector& x) const;
-  const SparseMatrix& mass() const { return lumped_.size() > 0 ? diagonal_ : problem_.model->mass(); }
+  const SparseMatrix& mass() const {
+    return lumped_.size() > 0 ? diagonal_ : problem_.model->mass();
+  }
 
   const Problem& problem_;
   Options options_;
   std::unique_ptr<LinearSolver> solver_;
   FreeCoordinates free_;
-  Vector lumped_;           // empty: consistent
-  SparseMatrix diagonal_;   // the lumped mass as a matrix
-  SparseMatrix matrix_;     // of the free coordinates
+  Vector lumped_;          // empty: consistent
+  SparseMatrix diagonal_;  // the lumped mass as a matrix
+  SparseMatrix matrix_;    // of the free coordinates
   double factored_dt_ = 0.0;
 };
 

@@ -46,8 +46,7 @@ void FreeCoordinates::extract(const SparseMatrix& all, SparseMatrix& free) {
     free.resize(count(), count());
     free.setFromTriplets(entries.begin(), entries.end());
   }
-  for (std::size_t k = 0; k < from_.size(); ++k)
-    free.valuePtr()[k] = all.valuePtr()[from_[k]];
+  for (std::size_t k = 0; k < from_.size(); ++k) free.valuePtr()[k] = all.valuePtr()[from_[k]];
 }
 
 }  // namespace abut

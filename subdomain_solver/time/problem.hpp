@@ -27,7 +27,7 @@ struct Prescribed {
 /// A model with what acts on it.
 struct Problem {
   Model* model = nullptr;
-  std::vector<Prescribed> supports;           // one per coordinate at most, sorted by dof
+  std::vector<Prescribed> supports;  // one per coordinate at most, sorted by dof
   std::vector<std::unique_ptr<Load>> loads;
 
   Vector external_force(double time, std::span<const double> q) const;
@@ -45,10 +45,10 @@ class FreeCoordinates {
   void extract(const SparseMatrix& all, SparseMatrix& free);
 
  private:
-  std::vector<int> free_;          // dofs
-  std::vector<int> place_;         // (dofs) among the free ones, or -1
-  std::vector<Eigen::Index> from_; // of each entry of the extracted matrix
-  Eigen::Index entries_ = -1;      // of the matrix that from_ belongs to
+  std::vector<int> free_;           // dofs
+  std::vector<int> place_;          // (dofs) among the free ones, or -1
+  std::vector<Eigen::Index> from_;  // of each entry of the extracted matrix
+  Eigen::Index entries_ = -1;       // of the matrix that from_ belongs to
 };
 
 }  // namespace abut
