@@ -9,9 +9,6 @@
 
 namespace abut {
 
-/// Kinematics of cells whose space has two dimensions; three need no choice.
-enum class Plane { strain, stress, axisymmetric };
-
 /// Treatment of volume change inside a cell [M.44].
 enum class Formulation {
   full,            // pointwise
@@ -38,8 +35,8 @@ struct CellResponse {
 /// K = sum_p V_p B^T A B + geometric terms [M.43]. B maps nodal displacements to dF.
 class CellKernel {
  public:
-  CellKernel(const Material& material, Plane plane, Formulation formulation)
-      : material_(material), plane_(plane), formulation_(formulation) {}
+  CellKernel(const Material& material, Formulation formulation)
+      : material_(material), formulation_(formulation) {}
 
   /// Numbers of history per quadrature point.
   int history_size() const;
@@ -78,7 +75,6 @@ class CellKernel {
   Components vary(const Matrix3& tensor) const;
 
   const Material& material_;
-  Plane plane_;
   Formulation formulation_;
   std::vector<Point> points_;
   int dim_ = 3;

@@ -21,15 +21,21 @@ std::span<const std::int32_t> nodes_of(const CellBlock& cells, int cell) {
   return std::span(cells.nodes).subspan(index(cell) * n, n);
 }
 
+std::unique_ptr<const Material> in_its_space(std::unique_ptr<const Material> law, int dim,
+                                             Plane plane) {
+  if (dim == 3 || plane != Plane::stress) return law;
+  return std::make_unique<PlaneStress>(std::move(law));
+}
+
 }  // namespace
 
 FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOptions& options,
                  const std::vector<NodeFrame>& frames)
     : mesh_(std::move(mesh)),
-      material_(std::move(material)),
+      material_(in_its_space(std::move(material), mesh_.dim, options.plane)),
       options_(options),
       frames_(frames),
-      kernel_(*material_, options.plane, options.formulation) {
+      kernel_(*material_, options.formulation) {
   ABUT_ASSERT(mesh_.dim == 2 || mesh_.dim == 3);
   std::sort(frames_.begin(), frames_.end(),
             [](const NodeFrame& a, const NodeFrame& b) { return a.node < b.node; });

@@ -7,6 +7,7 @@
 
 #include "subdomain_solver/fe/cell_kernel.hpp"
 #include "subdomain_solver/fe/mesh.hpp"
+#include "subdomain_solver/materials/plane.hpp"
 #include "subdomain_solver/model.hpp"
 
 namespace abut {

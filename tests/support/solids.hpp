@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "subdomain_solver/fe/fe_model.hpp"
+#include "subdomain_solver/fe/mesh_generators.hpp"
+#include "subdomain_solver/time/problem.hpp"
+
+namespace abut {
+
+/// A square or cube of side 1 with its corner at the origin, n elements along each edge.
+inline Mesh unit_mesh(const std::string& element, int n) {
+  if (element_named(element).dim == 2) {
+    RectangleMesh m;
+    m.lengths = {1.0, 1.0};
+    m.elements = {n, n};
+    m.element = element;
+    return generate(m, "test");
+  }
+  BoxMesh m;
+  m.lengths = {1.0, 1.0, 1.0};
+  m.elements = {n, n, n};
+  m.element = element;
+  return generate(m, "test");
+}
+
+/// Moves the nodes inside a unit mesh, so that no cell is a parallelepiped. `size` in parts of the
+/// unit; nodes on the boundary stay.
+inline void distort(Mesh& mesh, double size) {
+  std::mt19937_64 engine(7);
+  const std::size_t dim = static_cast<std::size_t>(mesh.dim);
+  for (std::size_t node = 0; node < mesh.points.size() / dim; ++node) {
+    double* x = mesh.points.data() + node * dim;
+    bool inside = true;
+    for (std::size_t i = 0; i < dim; ++i) inside = inside && x[i] > 1.0e-9 && x[i] < 1.0 - 1.0e-9;
+    for (std::size_t i = 0; i < dim; ++i) {
+      const double draw = static_cast<double>(engine() >> 11) * 0x1p-53 - 0.5;
+      if (inside) x[i] += 2.0 * size * draw;
+    }
+  }
+}
+
+/// Every element that fills a plane or space.
+inline std::vector<std::string> solid_elements() {
+  std::vector<std::string> names;
+  for (const Element& e : all_elements()) {
+    if (e.dim >= 2) names.emplace_back(e.name);
+  }
+  return names;
+}
+
+}  // namespace abut

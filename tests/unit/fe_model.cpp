@@ -1,0 +1,171 @@
+// Goal: a cell's force is the gradient of its energy and its tangent the derivative of the force,
+// for every element, formulation, plane and law. Oracles: differences; identities of rigid motion.
+#include "subdomain_solver/fe/fe_model.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/materials.hpp"
+#include "tests/support/solids.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace abut {
+namespace {
+
+struct Case {
+  std::string element;
+  Formulation formulation;
+  Plane plane;
+  std::string law;
+};
+
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.element << (c.formulation == Formulation::full ? " full " : " mean_dilatation ")
+       << static_cast<int>(c.plane) << " " << c.law;
+}
+
+std::unique_ptr<const Material> law_named(const std::string& name) {
+  if (name == "linear_elastic") return std::make_unique<LinearElastic>(test_moduli, 1.0);
+  if (name == "neo_hookean") return std::make_unique<NeoHookean>(test_moduli, 1.0);
+  return std::make_unique<J2Plasticity>(test_moduli, test_hardening(), 1.0);
+}
+
+std::vector<Case> cases(const std::vector<std::string>& laws) {
+  std::vector<Case> out;
+  for (const std::string& element : solid_elements()) {
+    const bool flat = element_named(element).dim == 2;
+    for (Formulation formulation : {Formulation::full, Formulation::mean_dilatation}) {
+      for (Plane plane : {Plane::strain, Plane::stress, Plane::axisymmetric}) {
+        if (!flat && plane != Plane::strain) continue;
+        if (plane == Plane::stress && formulation != Formulation::full) continue;
+        for (const std::string& law : laws) out.push_back({element, formulation, plane, law});
+      }
+    }
+  }
+  return out;
+}
+
+/// One distorted cell, away from the axis of an axisymmetric one.
+FeModel one_cell(const Case& c) {
+  Mesh mesh = unit_mesh(c.element, 1);
+  Draw draw;
+  for (double& x : mesh.points) x += 1.0 + 0.05 * draw.between(-1.0, 1.0);
+  return FeModel(std::move(mesh), law_named(c.law), {c.plane, c.formulation, 0.7});
+}
+
+std::vector<double> displaced(const FeModel& model, double size) {
+  Draw draw;
+  std::vector<double> q(static_cast<std::size_t>(model.dofs()));
+  for (double& x : q) x = size * draw.between(-1.0, 1.0);
+  return q;
+}
+
+class Cells : public testing::TestWithParam<Case> {};
+
+// Steps of 1e-6 at values of order 1: the error of central differences is 1e-12 of third
+// derivatives of order 1 to 100, plus round-off 1e-16 / 1e-6.
+constexpr double step = 1.0e-6, tolerance = 2.0e-8;
+
+TEST_P(Cells, TangentIsTheDerivativeOfTheForce) {
+  FeModel model = one_cell(GetParam());
+  std::vector<double> q = displaced(model, 0.04);
+  const std::vector<double> history(model.history_size(), 0.0);
+  ModelResponse here, there;
+  ASSERT_TRUE(model.evaluate(q, history, Model::Want::tangent, here));
+  const double scale = Eigen::MatrixXd(here.tangent).cwiseAbs().maxCoeff();
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    const double kept = q[k];
+    q[k] = kept + step;
+    ASSERT_TRUE(model.evaluate(q, history, Model::Want::force, there));
+    Vector slope = there.force;
+    q[k] = kept - step;
+    ASSERT_TRUE(model.evaluate(q, history, Model::Want::force, there));
+    slope = (slope - there.force) / (2.0 * step);
+    q[k] = kept;
+    const Vector column = Eigen::MatrixXd(here.tangent).col(static_cast<Eigen::Index>(k));
+    EXPECT_LT((slope - column).cwiseAbs().maxCoeff(), tolerance * 10.0 * scale) << "column " << k;
+  }
+}
+
+class ElasticCells : public Cells {};  // plasticity has no potential
+
+TEST_P(ElasticCells, ForceIsTheGradientOfTheEnergy) {
+  FeModel model = one_cell(GetParam());
+  std::vector<double> q = displaced(model, 0.04);
+  const std::vector<double> history(model.history_size(), 0.0);
+  ModelResponse here, there;
+  ASSERT_TRUE(model.evaluate(q, history, Model::Want::force, here));
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    const double kept = q[k];
+    q[k] = kept + step;
+    ASSERT_TRUE(model.evaluate(q, history, Model::Want::force, there));
+    double slope = there.stored;
+    q[k] = kept - step;
+    ASSERT_TRUE(model.evaluate(q, history, Model::Want::force, there));
+    slope = (slope - there.stored) / (2.0 * step);
+    q[k] = kept;
+    EXPECT_NEAR(slope, here.force(static_cast<Eigen::Index>(k)), tolerance) << "coordinate " << k;
+  }
+}
+
+TEST_P(Cells, TranslationCostsNothing) {
+  const Case& c = GetParam();
+  FeModel model = one_cell(c);
+  const int dim = model.mesh().dim;
+  std::vector<double> q(static_cast<std::size_t>(model.dofs()));
+  // Axisymmetric bodies are free to move along their axis alone.
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const bool along = c.plane != Plane::axisymmetric || i % static_cast<std::size_t>(dim) == 1;
+    q[i] = along ? 0.3 : 0.0;
+  }
+  const std::vector<double> history(model.history_size(), 0.0);
+  ModelResponse response;
+  ASSERT_TRUE(model.evaluate(q, history, Model::Want::force, response));
+  // Sums over at most 20 nodes of gradients of order 10 leave round-off of F - I.
+  EXPECT_LT(response.force.cwiseAbs().maxCoeff(), roundoff(1000.0, 1.0));
+}
+
+const std::vector<std::string> elastic = {"linear_elastic", "neo_hookean"};
+INSTANTIATE_TEST_SUITE_P(Elastic, Cells, testing::ValuesIn(cases(elastic)));
+INSTANTIATE_TEST_SUITE_P(Plastic, Cells, testing::ValuesIn(cases({"j2_plasticity"})));
+INSTANTIATE_TEST_SUITE_P(Elastic, ElasticCells, testing::ValuesIn(cases(elastic)));
+
+TEST(FeModel, MassesAreThoseOfTheVolume) {
+  for (const std::string& element : solid_elements()) {
+    Mesh mesh = unit_mesh(element, 3);
+    distort(mesh, 0.05);
+    const FeModel model(std::move(mesh), std::make_unique<NeoHookean>(test_moduli, 2.0), {});
+    const int dim = model.mesh().dim;
+    const double total = 2.0 * dim;  // density x unit volume, in every direction
+    EXPECT_NEAR(model.lumped_mass().sum(), total, roundoff(1e4, total)) << element;
+    EXPECT_NEAR(model.mass().sum(), total, roundoff(1e4, total)) << element;
+    EXPECT_GT(model.lumped_mass().minCoeff(), 0.0) << element;
+  }
+}
+
+TEST(FeModel, RotationCostsNothingAtFiniteStrain) {
+  for (const std::string& element : solid_elements()) {
+    for (Formulation formulation : {Formulation::full, Formulation::mean_dilatation}) {
+      Mesh mesh = unit_mesh(element, 2);
+      distort(mesh, 0.05);
+      FeModel model(std::move(mesh), std::make_unique<NeoHookean>(test_moduli, 1.0),
+                    {Plane::strain, formulation, 1.0});
+      const std::size_t dim = static_cast<std::size_t>(model.mesh().dim);
+      std::vector<double> q(static_cast<std::size_t>(model.dofs()), 0.0);
+      const double cosine = std::cos(1.0), sine = std::sin(1.0);
+      for (std::size_t n = 0; n < q.size(); n += dim) {
+        const double x = model.mesh().points[n], y = model.mesh().points[n + 1];
+        q[n] = cosine * x - sine * y - x;
+        q[n + 1] = sine * x + cosine * y - y;
+      }
+      ModelResponse response;
+      ASSERT_TRUE(model.evaluate(q, {}, Model::Want::force, response));
+      EXPECT_LT(response.force.cwiseAbs().maxCoeff(), roundoff(1000.0, 1.0)) << element;
+      EXPECT_LT(response.stored, roundoff(1000.0, 1.0)) << element;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace abut
