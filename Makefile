@@ -1,6 +1,6 @@
 # The front door. Every target checks what it needs first, skips what is done, and may be run again.
 .DEFAULT_GOAL := help
-.PHONY: help demo build test bench extremes clean dependencies-build dependencies-test dependencies-bench
+.PHONY: help demo build test bench results extremes clean dependencies-build dependencies-test dependencies-bench
 
 PRESET ?= release
 export PRESET
@@ -11,6 +11,7 @@ help:
 	@echo "make build   the two programs, in $(BIN)"
 	@echo "make test    every test"
 	@echo "make bench   the measured figures"
+	@echo "make results   docs/RESULTS.md, measured anew (minutes)"
 	@echo "make extremes  docs/EXTREMES.md, measured anew"
 	@echo "make clean   removes build/ (runs/ is yours and stays)"
 	@echo "Missing Debian packages are installed first, with sudo when you are not root."
@@ -38,8 +39,8 @@ bench: dependencies-bench
 	@sh scripts/build.sh bench
 	@sh bench/run.sh $(BIN)
 
-extremes: build
-	/usr/bin/python3 scripts/extremes.py $(BIN)
+results extremes: build
+	/usr/bin/python3 scripts/study_documents.py $(BIN) $@
 
 clean:
 	rm -rf build

@@ -125,7 +125,8 @@ def run_study(options: argparse.Namespace) -> int:
     finally:
         progress.close()
     results = results_of(study, records, reference, options.serial)
-    facts = facts_of(study, results, reference, time.monotonic() - started, options.serial)
+    facts = facts_of(study, results, reference, time.monotonic() - started, progress.timed,
+                     options.serial)
     write_results(out, study, results, facts)
     template = HERE.with_name(f"{HERE.stem}.html")
     page = fitting_page(

@@ -11,7 +11,8 @@ from pathlib import Path
 
 from abut_tools.page import write_whole
 from abut_tools.study_file import COSTS, Study
-from abut_tools.study_results import Result, by_status, claims_of, cost_key, front, series_of
+from abut_tools.study_results import (Result, by_status, by_sweep, claims_of, cost_key, fronts_of,
+                                      series_of)
 from abut_tools.study_tables import tables_of
 from abut_tools.tables import ToolError
 
@@ -61,7 +62,8 @@ def definition_of(study: Study) -> list[dict]:
 
 
 def facts_of(study: Study, results: list[Result], reference: dict | None, seconds: float,
-             timed: bool) -> dict:
+             made: int, timed: bool) -> dict:
+    """`made`: runs of this time, the others were there before."""
     versions = next((result.record["summary"]["versions"] for result in results
                      if "versions" in result.record["summary"]), {})
     orders = [{key: each[key] for key in ("label", "error", "knob", "order", "steps")}
@@ -69,7 +71,7 @@ def facts_of(study: Study, results: list[Result], reference: dict | None, second
               for each in series_of(results, figure)]
     cost = cost_key(results)
     return {
-        "title": study.title, "study": study.path.name, "runs": len(results),
+        "title": study.title, "study": study.path.name, "runs": len(results), "runs_made": made,
         "status": by_status(results), "timed": timed, "repeats": study.repeats if timed else 1,
         "placement": study.placement, "seconds": round(seconds, 1), "machine": machine(),
         "versions": versions, "commit": commit_of(study.path.parent),
@@ -78,8 +80,7 @@ def facts_of(study: Study, results: list[Result], reference: dict | None, second
                                     "scene": study.reference.scene.name,
                                     "folder": reference["folder"]},
         "cost_of_fronts": cost,
-        "fronts": {error.name: [result.label for result in front(results, error.name, cost)]
-                   for error in study.errors},
+        "fronts": fronts_of(study, results, cost),
         "orders": orders, "claims": claims_of(study, results),
         "tables": tables_of(study, results)}
 
@@ -136,13 +137,6 @@ def orders_md(facts: dict) -> str:
                      for each in facts["orders"]])
 
 
-def by_sweep(results: list[Result]) -> dict[str, list[Result]]:
-    found = {}
-    for result in results:
-        found.setdefault(result.point.sweep, []).append(result)
-    return found
-
-
 def with_values(results: list[Result], names: list[str], kind: str) -> list[str]:
     """The costs or errors (`kind`) that at least one of the runs has."""
     return [name for name in names
@@ -163,7 +157,8 @@ def runs_md(study: Study, results: list[Result]) -> str:
 
 def machine_text(facts: dict) -> str:
     place = facts["machine"]
-    parts = [f"{place['cpu']}, {place['cores']} cores", place["system"]]
+    memory = f", {place['memory_gib']} GiB" if place["memory_gib"] else ""
+    parts = [f"{place['cpu']}, {place['cores']} cores{memory}", place["system"]]
     parts += [f"{name} {text}" for name, text in facts["versions"].items()]
     parts += [f"commit {facts['commit']}"] if facts["commit"] else []
     return "; ".join(parts)
@@ -178,6 +173,7 @@ def timing_text(facts: dict) -> str:
 
 
 def md_of(study: Study, results: list[Result], facts: dict) -> str:
+    sweeps = len(by_sweep(results))
     parts = [f"# {study.title}\n\n{study.about.strip()}\n" if study.about else f"# {study.title}\n"]
     if facts["claims"]:
         parts.append("## Claims\n\n" + claims_md(facts))
@@ -187,8 +183,9 @@ def md_of(study: Study, results: list[Result], facts: dict) -> str:
               for name, own in by_sweep(results).items()]
     if facts["orders"]:
         parts.append("## Orders\n\n" + orders_md(facts))
-    rows = [[name, label] for name, labels in facts["fronts"].items() for label in labels]
-    parts.append(f"## Fronts\n\nNo other run is cheaper ({facts['cost_of_fronts']}) and better.\n\n"
+    rows = [[each["error"], label] for each in facts["fronts"] for label in each["runs"]]
+    parts.append(f"## Fronts\n\nNo other run {'of its set ' if sweeps > 1 else ''}is cheaper "
+                 f"({facts['cost_of_fronts']}) and better.\n\n"
                  + md_table(["error", "run, cheapest first"], rows))
     parts.append(f"## Measured with\n\n{machine_text(facts)}.\n\n{timing_text(facts)}\n")
     return "\n".join(parts)

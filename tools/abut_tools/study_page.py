@@ -6,15 +6,15 @@ from pathlib import Path
 
 from abut_tools.page import canvas_of, filled, script_json, section, table_of
 from abut_tools.study_file import COSTS, Study
-from abut_tools.study_output import by_sweep, machine_text, timing_text, with_values
-from abut_tools.study_results import Result, front, series_of
+from abut_tools.study_output import machine_text, timing_text, with_values
+from abut_tools.study_results import Result, by_sweep, front, series_of
 from abut_tools.study_take import matches
 from abut_tools.tables import Figure, ToolError, scaled_unit, shown
 
 MOST_CURVES = 20  # more are not told apart
 # Neighbours differ in hue and in lightness.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e0a100", "#5b5b5b", "#56b4e9", "#8a2b00",
-           "#00573f", "#7b3fa0", "#8c6d1f", "#a31545")
+           "#00573f", "#7b3fa0", "#8c6d1f", "#a31545", "#7fb800", "#243c8f", "#ff8fa3", "#00a7b5")
 EXACT = "#1c2430"
 TITLES = {
     "position": ("Position of {port}", "position", "m"),
@@ -130,6 +130,17 @@ def claims_html(facts: dict) -> str:
     return section("Claims against measured values", note + "".join(parts)) if parts else ""
 
 
+def fronts_html(study: Study, facts: dict, sweep: str, results: list[Result]) -> str:
+    cost, text = facts["cost_of_fronts"], ""
+    for error in study.errors:
+        rows = [[result.label, shown(result.cost[cost]), shown(result.errors[error.name])]
+                for result in front(results, error.name, cost)]
+        title = words_of(error.name).capitalize() + (f", {sweep}" if sweep else "")
+        text += (f"<h3>{html.escape(title)}</h3>" + table_of(
+            ["run", COST_WORDS[cost], "error"], rows)) if rows else ""
+    return text
+
+
 def trade_html(study: Study, facts: dict, results: list[Result]) -> str:
     costs = [key for key in COSTS if any(result.cost[key] is not None for result in results)]
     if not costs:
@@ -142,17 +153,11 @@ def trade_html(study: Study, facts: dict, results: list[Result]) -> str:
     if len(sweeps) > 1:
         words = "".join(f'<option value="{html.escape(name)}">{html.escape(name)}</option>'
                         for name in sweeps)
-        choose += (' <label class="choose">Runs: <select id="sweep"><option value="">all</option>'
-                   f"{words}</select></label>")
+        choose += f' <label class="choose">Runs: <select id="sweep">{words}</select></label>'
     plots = "".join(canvas_of(Figure(f"trade_{error.name}", words_of(error.name).capitalize(),
                                      "", "")) for error in study.errors)
-    tables = ""
-    for error in study.errors:
-        best = front(results, error.name, facts["cost_of_fronts"])
-        rows = [[result.label, shown(result.cost[facts["cost_of_fronts"]]),
-                 shown(result.errors[error.name])] for result in best]
-        tables += (f"<h3>{html.escape(words_of(error.name).capitalize())}</h3>" + table_of(
-            ["run", COST_WORDS[facts["cost_of_fronts"]], "error"], rows))
+    tables = "".join(fronts_html(study, facts, name, own)
+                     for name, own in by_sweep(results).items())
     note = ('<p class="note">Ringed and joined: the front, runs that no other beats in both. Touch '
             f"a point for its settings. {html.escape(timing_text(facts))}</p>")
     return section("Cost against error", f'{choose}{note}<div id="groups" class="chips"></div>'

@@ -92,6 +92,21 @@ def front(results: list[Result], error: str, cost: str) -> list[Result]:
     return kept
 
 
+def by_sweep(results: list[Result]) -> dict[str, list[Result]]:
+    found = {}
+    for result in results:
+        found.setdefault(result.point.sweep, []).append(result)
+    return found
+
+
+def fronts_of(study: Study, results: list[Result], cost: str) -> list[dict]:
+    """Runs of one sweep are compared with each other only: they differ in their knobs alone."""
+    found = [{"sweep": sweep, "error": error.name,
+              "runs": [result.label for result in front(own, error.name, cost)]}
+             for sweep, own in by_sweep(results).items() for error in study.errors]
+    return [each for each in found if each["runs"]]
+
+
 def slope(pairs: list[tuple[float, float]]) -> float:
     """Least squares in logarithms."""
     logs = [(math.log(x), math.log(y)) for x, y in pairs]
