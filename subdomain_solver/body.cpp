@@ -381,7 +381,8 @@ std::optional<Failed> Body::check_finite(const BodyRecord& record) const {
   if (std::isfinite(sum)) return std::nullopt;
   return Failed{
       Failed::Cause::non_finite, record.time,
-      fmt::format("the state of body '{}' is no longer finite; its step of {:g} s may be unstable",
+      fmt::format("the state of body '{}' is no longer finite; its step of {:g} s may be unstable "
+                  "or a value out of range: give a smaller step, check the scene's values",
                   description_.name, scheme_.step)};
 }
 

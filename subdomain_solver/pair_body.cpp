@@ -201,7 +201,8 @@ std::optional<Failed> PairBody::record(double time, Response& response) {
   if (finite) return std::nullopt;
   return Failed{
       Failed::Cause::non_finite, time,
-      fmt::format("the state of body '{}' is no longer finite; its step of {:g} s may be unstable",
+      fmt::format("the state of body '{}' is no longer finite; its step of {:g} s may be unstable "
+                  "or a value out of range: give a smaller step, check the scene's values",
                   description_.name, description_.step)};
 }
 
