@@ -296,9 +296,8 @@ bool Controller::handle_trouble(const Attempt& attempt, TimeWindow& window) {
     bodies_.restore_all();
     return true;
   }
-  if (!attempt.failed)
-    text += "; raise schwarz.max_iterations, shorten time.window or choose another accelerator";
-  fail(window.begin, text);
+  constexpr const char* remedy = "; raise schwarz.max_iterations or choose another accelerator";
+  fail(window.begin, attempt.failed ? text : text + remedy);
   return false;
 }
 

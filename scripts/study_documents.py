@@ -30,9 +30,9 @@ differ is told in [METHOD.md](METHOD.md).
 """
 ITERATIONS = """\
 Equal bars but for one ratio, right over left; implicit, windows of ten steps, in contact from the
-first moment. *Kinematic* is the side whose contact problem is solved, the other one takes its force.
-*Aitken* begins with the factor 0.5, *by probe* with the one that the port kernels give; Anderson
-keeps the secants of five windows.
+first moment. *Kinematic* is the side whose contact problem is solved, the other one takes its
+force. *Aitken* begins with the factor 0.5, *by probe* with the one that the port kernels give;
+Anderson keeps the secants of five windows.
 """
 
 

@@ -1,5 +1,5 @@
-"""Goal: at numerical extremes a run keeps its stated accuracy, or says what was exceeded and what to
-change. Oracle: the claims of studies/extremes.yaml, of which every run is a part, in its short form.
+"""Goal: at numerical extremes a run keeps its stated accuracy, or says what was exceeded and what
+to change. Oracle: the claims of studies/extremes.yaml in its short form; every run is part of one.
 
 usage: test_extremes.py ABUT ROOT
 """
