@@ -15,8 +15,6 @@ double Moduli::poissons_ratio() const {
   return (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));
 }
 
-double Moduli::lame() const { return bulk - 2.0 / 3.0 * shear; }
-
 namespace {
 
 Moduli of_youngs_lame(double e, double lambda) {

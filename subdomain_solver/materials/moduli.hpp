@@ -8,9 +8,9 @@ namespace abut {
 struct Moduli {
   double bulk = 0.0, shear = 0.0;
   double p_wave() const { return bulk + 4.0 / 3.0 * shear; }
-  double youngs() const;          // E
-  double poissons_ratio() const;  // nu [1]
-  double lame() const;            // lambda
+  double youngs() const;                                    // E
+  double poissons_ratio() const;                            // nu [1]
+  double lame() const { return bulk - 2.0 / 3.0 * shear; }  // lambda
 };
 
 /// The constants by which data sheets give an isotropic solid; two of them say it all.
