@@ -10,11 +10,11 @@ namespace abut {
 
 /// Where a port is. All arrays are flat and row-major.
 struct PortGeometry {
-  int dim = 1;                         // 1, 2 or 3
-  std::vector<double> points;          // [m] (n, dim), reference configuration
-  std::vector<double> normals;         // (n, dim), unit, out of the body
-  std::vector<std::int32_t> facets;    // facet connectivity; empty in 1D
-  std::vector<std::int32_t> offsets;   // of the facets; empty in 1D
+  int dim = 1;                        // 1, 2 or 3
+  std::vector<double> points;         // [m] (n, dim), reference configuration
+  std::vector<double> normals;        // (n, dim), unit, out of the body
+  std::vector<std::int32_t> facets;   // facet connectivity; empty in 1D
+  std::vector<std::int32_t> offsets;  // of the facets; empty in 1D
   // [m] typical distance of mesh nodes behind the port; 0: rigid
   double spacing = 0.0;
 
@@ -24,12 +24,13 @@ struct PortGeometry {
 struct Port {
   std::string name;
   PortGeometry geometry;
+  bool tied = false;  // for tied interfaces only: contact would make its node unstable
 };
 
 /// Response of a port to a unit force along its outward normal, from rest and with all other loads
 /// absent: the building block of the interface Jacobian (docs/METHOD.md, port kernel).
 struct PortKernel {
-  double step = 0.0;                 // [s] the substep it was computed for
+  double step = 0.0;  // [s] the substep it was computed for
   ForceSupport support = ForceSupport::nodal;
   // [m/N] quasi-static part: follows the force of the same instant
   double compliance = 0.0;

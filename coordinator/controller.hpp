@@ -63,6 +63,8 @@ class Controller {
 
   TimeWindow next_window() const;
   void advance_clock(double end, bool whole);
+  void tie();
+  void choose_roles(int interface);
   void apply_criteria_at_start(const TimeWindow& window);
   std::vector<Event> first_events(const TimeWindow& window) const;
   void apply(const Event& event);
@@ -94,6 +96,9 @@ class Controller {
   double time_;             // [s]
   int events_here_ = 0;     // since the last whole window: a bound on chatter
   int halvings_ = 0;
+  // of a substep: an event so near to the window's begin is there
+  static constexpr double event_tolerance = 1.0e-4;
+  static constexpr int most_events = 8;              // per window; more is chatter
   static constexpr int most_windows_at_once = 1000;  // of free flight: bounds the size of one reply
   int flight_limit_ = most_windows_at_once;
   bool grounded_ = false;  // free flight came too near: step once

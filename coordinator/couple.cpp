@@ -1,6 +1,7 @@
 #include "coordinator/couple.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,9 @@
 namespace abut {
 
 namespace {
+
+/// Of the coarser mesh: sides this near to each other coincide.
+constexpr double coincidence = 1.0e-6;
 
 Side find_side(const std::string& text, const Bodies& bodies, const std::string& where) {
   const std::size_t dot = text.find('.');
@@ -36,6 +40,53 @@ void require(bool able, const Description& body, const std::string& where, const
              const std::string& remedy) {
   if (!able) {
     throw InputError(fmt::format("body '{}' ({}) {}", body.name, body.model, what), where, remedy);
+  }
+}
+
+/// A node whose mass both sides share has one motion only where both step alike: at other steps
+/// roundings of the partner's path become accelerations that grow.
+void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies,
+                       const Interface& interface) {
+  const Description& a = bodies.describe(interface.sides[0].body);
+  const Description& b = bodies.describe(interface.sides[1].body);
+  const bool shared[] = {a.ports[static_cast<std::size_t>(interface.sides[0].port)].tied,
+                         b.ports[static_cast<std::size_t>(interface.sides[1].port)].tied};
+  if (!shared[0] && !shared[1]) return;
+  const bool held = std::isinf(a.mass) || std::isinf(b.mass);
+  const bool alike = a.step == b.step && std::isinf(a.stable_step) == std::isinf(b.stable_step);
+  if (held || (shared[0] && shared[1] && alike)) return;
+  throw InputError(
+      "joins a port with tied: true to one of another kind of node, integrator or step",
+      "interfaces." + spec.name + ".sides",
+      "Make both ports tied: true and both bodies explicit or both implicit with one step, or take "
+      "tied off both ports and give contact_layer: {massless: {stiffness_factor: 1}}.");
+}
+
+/// Sides of a tied interface are one as they stand: the rounding of their places is no gap.
+void join(const InterfaceSpec& spec, const Bodies& bodies, Interface& interface) {
+  double spacing = 0.0;
+  for (const Side& side : interface.sides) {
+    const Port& port = bodies.describe(side.body).ports[static_cast<std::size_t>(side.port)];
+    spacing = std::max(spacing, port.geometry.spacing);
+  }
+  if (interface.reference_gap > coincidence * spacing) {
+    throw InputError(fmt::format("its sides are {:g} m apart", interface.reference_gap),
+                     "interfaces." + spec.name + ".tied",
+                     "Move a body with initial.position until they coincide.");
+  }
+  interface.reference_gap = 0.0;
+  check_shared_node(spec, bodies, interface);
+}
+
+void refuse_joints(const InterfaceSpec& spec, const Bodies& bodies, const Interface& interface) {
+  for (const Side& side : interface.sides) {
+    const Description& body = bodies.describe(side.body);
+    const Port& port = body.ports[static_cast<std::size_t>(side.port)];
+    if (!port.tied) continue;
+    throw InputError(
+        fmt::format("port '{}' of body '{}' is for tied interfaces", port.name, body.name),
+        "interfaces." + spec.name + ".contact",
+        "Give the interface tied: {}, or take tied off the port.");
   }
 }
 
@@ -91,7 +142,8 @@ void add_published(const InterfaceSpec& spec, const DirichletNeumannTransmission
         "Give form: alternating and an accelerator of none, relaxation, aitken or anderson.");
   }
   coupling.transmissions.push_back(std::make_unique<DirichletNeumann>());
-  coupling.rules.push_back({true, false, how.swap_every_window, true, how.impact_projection});
+  coupling.rules.push_back(
+      {.published = true, .swap = how.swap_every_window, .projection = how.impact_projection});
 }
 
 /// Ports of a body that solves its contact itself show it and take nothing.
@@ -148,6 +200,11 @@ Coupling make_coupling(const Scene& scene, const Bodies& bodies) {
       continue;
     }
     refuse_members(interface, bodies, "interfaces." + name);
+    if (spec.tied) {
+      join(spec, bodies, interface);
+    } else {
+      refuse_joints(spec, bodies, interface);
+    }
     if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
       add_unilateral(spec, *unilateral, scene.schwarz.parallel, interface, bodies, coupling);
     } else if (const auto* robin = std::get_if<RobinTransmission>(&spec.transmission)) {
@@ -156,6 +213,7 @@ Coupling make_coupling(const Scene& scene, const Bodies& bodies) {
       add_published(spec, std::get<DirichletNeumannTransmission>(spec.transmission), scene.schwarz,
                     interface, bodies, coupling);
     }
+    coupling.rules.back().tied = spec.tied.has_value();
     coupling.interfaces.push_back(std::move(interface));
   }
   return coupling;
@@ -187,10 +245,10 @@ Schwarz make_schwarz(const SchwarzSpec& spec) {
     }
   };
   const Schwarz::Options options{spec.max_iterations, spec.tolerance};
-  return Schwarz(options, [accelerator = spec.accelerator](ApplyInverse inverse,
-                                                            ApplyInverse probe) {
-    return std::visit(Maker{std::move(inverse), std::move(probe)}, accelerator);
-  });
+  return Schwarz(options,
+                 [accelerator = spec.accelerator](ApplyInverse inverse, ApplyInverse probe) {
+                   return std::visit(Maker{std::move(inverse), std::move(probe)}, accelerator);
+                 });
 }
 
 }  // namespace abut

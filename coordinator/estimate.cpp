@@ -22,12 +22,13 @@ void list_features(const Scene& scene, Estimate& e) {
   auto feature = [&e](bool used, const char* name) {
     (used ? e.in_use : e.not_built).emplace_back(name);
   };
-  bool unilateral = false, published = false, internal = false, connected = false;
+  bool unilateral = false, published = false, internal = false, connected = false, tied = false;
   for (const auto& [name, interface] : scene.interfaces) {
     const auto& how = interface.transmission;
     unilateral = unilateral || std::holds_alternative<UnilateralTransmission>(how);
     published = published || std::holds_alternative<DirichletNeumannTransmission>(how);
     internal = internal || std::holds_alternative<InternalTransmission>(how);
+    tied = tied || interface.tied.has_value();
   }
   for (const auto& [name, body] : scene.bodies) {
     connected = connected || std::holds_alternative<ConnectLaunch>(body.launch);
@@ -36,6 +37,7 @@ void list_features(const Scene& scene, Estimate& e) {
   feature(unilateral, "unilateral transmission");
   feature(published, "published Dirichlet-Neumann form");
   feature(internal, "contact inside a body");
+  feature(tied, "tied interfaces");
   feature(coupled && scene.schwarz.parallel, "parallel form");
   feature(coupled && std::holds_alternative<KernelAcceleration>(scene.schwarz.accelerator),
           "port kernels");
@@ -69,7 +71,11 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
   }
   const std::int64_t count = static_cast<std::int64_t>(bodies.size());
   const std::int64_t joints = static_cast<std::int64_t>(scene.interfaces.size());
-  if (contact_time) {
+  const bool tied = std::any_of(scene.interfaces.begin(), scene.interfaces.end(),
+                                [](const auto& entry) { return entry.second.tied.has_value(); });
+  if (tied) {
+    e.contact_windows_low = e.contact_windows_high = e.windows;
+  } else if (contact_time) {
     const double windows = std::min(*contact_time, span) / scene.time.window;
     e.contact_windows_low = e.contact_windows_high = std::llround(windows);
   } else if (joints > 0) {

@@ -10,6 +10,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/yaml_fields.hpp"
+#include "coordinator/coupling/interface.hpp"
 
 namespace abut {
 
@@ -67,10 +68,13 @@ void RobinTransmission::fields(Fields& f) {
 void InterfaceSpec::fields(Fields& f) {
   f.required("sides", sides, "", "two ports that meet, as body.port");
   f.optional_section("contact", contact, "frictionless contact between the sides");
-  f.choice("transmission", transmission, "rule that couples the sides while they touch",
+  f.choice("transmission", transmission, "rule that couples the sides while they are closed",
            Presence::optional);
-  f.check(contact.has_value(), "contact", "is missing",
-          "Write contact: {}; interfaces without contact are not known.");
+  f.optional_section("tied", tied, "sides that are one from the start and never part");
+  f.check(contact.has_value() || tied.has_value(), "contact", "is missing",
+          "Write contact: {}, or tied: {} where the sides are joined from the start.");
+  f.check(!contact || !tied, "tied", "stands beside contact",
+          "Keep one of the two: tied sides never part.");
 }
 
 void NoAcceleration::fields(Fields&) {}
@@ -201,6 +205,9 @@ void validate_interface(const Scene& scene, const InterfaceSpec& interface,
   }
   const bool inside = std::holds_alternative<InternalTransmission>(interface.transmission);
   const bool same = split_port(interface.sides[0]).body == split_port(interface.sides[1]).body;
+  if (inside && interface.tied)
+    throw InputError("is tied, but transmission internal is contact inside a body",
+                     document.where(path + ".tied"), "Give contact: {}, or another transmission.");
   if (inside && !same)
     throw InputError("must be ports of one body when the transmission is internal",
                      document.where(path + ".sides"),
@@ -294,7 +301,8 @@ void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
     throw InputError("look the same way and cannot touch", document.where(path),
                      "Join a right end with a left end.");
   const double gap = normal * (ports[1]->points.at(0) - ports[0]->points.at(0));
-  if (gap < 0.0)
+  const double place = std::max(std::abs(ports[0]->points.at(0)), std::abs(ports[1]->points.at(0)));
+  if (gap < -place_rounding * place)
     throw InputError(fmt::format("overlap by {:.6g} m at the start", -gap), document.where(path),
                      "Move a body with initial.position until the gap is zero or more.");
 }

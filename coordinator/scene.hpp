@@ -43,6 +43,9 @@ struct BodyEntry {
 struct ContactSpec {  // frictionless
   void fields(Fields& f);
 };
+struct TiedSpec {  // joined from the start, for the whole run
+  void fields(Fields&) {}
+};
 
 /// The kinematic side solves a one-body unilateral problem against the partner's moving surface
 /// (default).
@@ -75,8 +78,9 @@ struct RobinTransmission {
 
 struct InterfaceSpec {
   std::string name;
-  std::array<std::string, 2> sides;  // body.port
-  std::optional<ContactSpec> contact;
+  std::array<std::string, 2> sides;    // body.port
+  std::optional<ContactSpec> contact;  // exactly one of these two
+  std::optional<TiedSpec> tied;
   std::variant<UnilateralTransmission, DirichletNeumannTransmission, InternalTransmission,
                RobinTransmission>
       transmission;
@@ -119,8 +123,8 @@ struct KernelAcceleration {  // port kernels as interface Jacobian, plus secants
 };
 
 struct SchwarzSpec {
-  bool parallel = false;         // "form: alternating | parallel"
-  double tolerance = 1.0e-6;     // scaled by reference velocity x step
+  bool parallel = false;      // "form: alternating | parallel"
+  double tolerance = 1.0e-6;  // scaled by reference velocity x step
   int max_iterations = 20;
   std::variant<KernelAcceleration, NoAcceleration, FixedRelaxation, AitkenAcceleration,
                AndersonAcceleration>

@@ -33,6 +33,7 @@ static_assert(sizeof(Impedance) == 2 * sizeof(double));
 static_assert(sizeof(BoundaryData) == 2 * sizeof(Waveform) + sizeof(Obstacle) + sizeof(Impedance) +
                                           sizeof(std::vector<double>));
 static_assert(sizeof(PortGeometry) == 4 * sizeof(std::vector<double>) + 2 * sizeof(double));
+static_assert(sizeof(Port) == sizeof(std::string) + sizeof(PortGeometry) + sizeof(double));
 
 constexpr std::array<std::pair<Failed::Cause, v1::FailureCause>, 4> causes{{
     {Failed::Cause::no_convergence, v1::FAILURE_CAUSE_NO_CONVERGENCE},
@@ -192,6 +193,7 @@ void decode(const v1::Port& from, const FieldPath& path, Port& to) {
     FieldPath{&path, "facets"}.fail(fmt::format("names point {}", point));
   }
   geometry.spacing = number(from.spacing(), FieldPath{&path, "spacing"});
+  to.tied = from.tied();
 }
 
 }  // namespace
@@ -361,6 +363,7 @@ void encode(const Description& from, v1::Description& to) {
     wire.mutable_facets()->Add(port.geometry.facets.begin(), port.geometry.facets.end());
     wire.mutable_offsets()->Add(port.geometry.offsets.begin(), port.geometry.offsets.end());
     wire.set_spacing(port.geometry.spacing);
+    wire.set_tied(port.tied);
   }
   v1::Capabilities& can = *to.mutable_can();
   can.set_motion(from.can.motion);

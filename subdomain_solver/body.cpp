@@ -60,6 +60,7 @@ void Body::describe_ports(const std::vector<BodyPort>& ports) {
     end_of_port_.push_back(p.end);
     Port port;
     port.name = p.name;
+    port.tied = p.tied;
     port.geometry.dim = 1;
     port.geometry.points = {bar_->data().position + (p.end == 0 ? 0.0 : bar_->data().length)};
     port.geometry.normals = {Bar::outward(p.end)};

@@ -18,6 +18,7 @@ class Body final : public Subdomain {
   struct BodyPort {
     std::string name;
     int end = 0;  // 0 left, 1 right
+    bool tied = false;
   };
   struct Scheme {
     std::unique_ptr<BarIntegrator> integrator;

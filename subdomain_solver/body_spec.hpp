@@ -125,13 +125,13 @@ struct SupportsSpec {
 };
 struct PortSpec {
   std::string side;
+  bool tied = false;  // a joint for the whole run: the node keeps its mass
   void fields(Fields& f);
 };
 
 struct BodySpec {
-  using Integrator =
-      std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec, GeneralizedAlphaSpec,
-                   BackwardEulerSpec>;
+  using Integrator = std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec,
+                                  GeneralizedAlphaSpec, BackwardEulerSpec>;
 
   std::variant<FeModelSpec, RigidWallSpec, BarPairSpec> model;
   std::optional<std::variant<LinearElasticSpec>> material;
@@ -158,7 +158,6 @@ std::unique_ptr<Subdomain> make_body(const Document& document, const std::string
                                      std::function<void()> progress = {});
 /// The same of a bar_pair whose specification has been read.
 std::unique_ptr<Subdomain> make_pair_body(const BodySpec& spec, const Document& document,
-                                          const std::string& path,
-                                          std::function<void()> progress);
+                                          const std::string& path, std::function<void()> progress);
 
 }  // namespace abut

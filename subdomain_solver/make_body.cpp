@@ -43,12 +43,16 @@ std::vector<Body::BodyPort> ports_of(const BodySpec& spec, const Place& place) {
       place.refuse(key, fmt::format("side '{}' is the port '{}' already", port.side, other.name),
                    "Let each side be one port.");
     }
-    ports.push_back({name, end});
+    ports.push_back({name, end, port.tied});
   }
   return ports;
 }
 
-ContactLayer layer_of(const BodySpec& spec) {
+ContactLayer layer_of(const BodySpec& spec, const PortSpec& port) {
+  if (port.tied) {
+    const bool kicked = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+    return kicked ? ContactLayer::kick : ContactLayer::shared;
+  }
   constexpr ContactLayer layers[] = {ContactLayer::massless, ContactLayer::kick,
                                      ContactLayer::massive};
   return layers[spec.contact_layer.index()];
@@ -166,7 +170,7 @@ BarProperties fe_bar_properties(const BodySpec& spec) {
   }
   for (const auto& [name, port] : spec.ports) {
     const int end = end_of(port.side);
-    if (end >= 0) bar.layer[static_cast<std::size_t>(end)] = layer_of(spec);
+    if (end >= 0) bar.layer[static_cast<std::size_t>(end)] = layer_of(spec, port);
   }
   return bar;
 }

@@ -121,7 +121,7 @@ double closing_impulse(const Interface& interface, const Bodies& bodies) {
     approach += port.rebound->nodal_velocity;
     mobility += port.rebound->node_mobility;
   }
-  return mobility > 0.0 ? std::max(0.0, approach / mobility) : 0.0;
+  return mobility > 0.0 ? approach / mobility : 0.0;
 }
 
 double release_impulse(const Interface& interface, const Bodies& bodies) {

@@ -37,8 +37,8 @@ std::optional<Opening> compression_criterion(const Interface& interface, const B
 /// Largest contact force [N] on the kinematic side in the latest responses.
 double peak_force(const Interface& interface, const Bodies& bodies);
 
-/// Impulse [N s] that gives massive contact nodes a common velocity at first touch: a plastic
-/// impact of the nodes alone, exact in momentum. 0 when a side does not tell its node's mass.
+/// Impulse [N s] that gives massive contact nodes a common velocity: a plastic impact of the nodes
+/// alone, exact in momentum; negative where they part. 0 when a side does not tell its node's mass.
 double closing_impulse(const Interface& interface, const Bodies& bodies);
 
 /// Release impulse [N s] after contact of massive contact nodes that take kicks: gives back what

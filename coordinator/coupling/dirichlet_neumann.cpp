@@ -71,6 +71,10 @@ void DirichletNeumann::image(const Eigen::Ref<const Eigen::VectorXd>&, const Int
     trace.interpolate(trace.v, time, {&g[n + i], 1});
     trace.interpolate(trace.a, time, {&g[2 * n + i], 1});
   }
+  // sides that were tied from the start have no velocity of a first touch
+  if (interface.closing_speed == 0.0) {
+    scale_.velocity = std::max(std::abs(v_begin_), g.segment(n, n).lpNorm<Eigen::Infinity>());
+  }
 }
 
 FieldResiduals DirichletNeumann::measure(const Eigen::Ref<const Eigen::VectorXd>& x,

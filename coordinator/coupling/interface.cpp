@@ -1,5 +1,7 @@
 #include "coordinator/coupling/interface.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -35,11 +37,13 @@ Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodi
                      "Join a right end with a left end.");
   }
   interface.reference_gap = interface.normal[0] * (place[1] - place[0]);
-  if (interface.reference_gap < 0.0) {
+  const double rounding = place_rounding * std::max(std::abs(place[0]), std::abs(place[1]));
+  if (interface.reference_gap < -rounding) {
     throw InputError(
         fmt::format("its sides overlap by {:g} m at the start", -interface.reference_gap), where,
         "Move a body with initial.position until the gap is zero or more.");
   }
+  interface.reference_gap = std::max(0.0, interface.reference_gap);
   return interface;
 }
 

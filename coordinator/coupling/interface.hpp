@@ -44,6 +44,9 @@ struct Interface {
   double gap(double u0, double u1) const { return reference_gap + normal[0] * (u1 - u0); }
 };
 
+/// Ends of bars are sums of what scenes say: an overlap of this share of a coordinate is no gap.
+constexpr double place_rounding = 4.0 * std::numeric_limits<double>::epsilon();
+
 /// Builds an interface of two ports. Throws InputError when they do not face each other or overlap
 /// at the start.
 Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodies& bodies);

@@ -144,6 +144,7 @@ void Robin::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& i
   if (parallel_) outgoing(1 - kinematic_, interface, bodies, g.tail(x.size() - first));
   for (double f : trace_of(bodies, interface.kinematic_side()).f)
     scale_.force = std::max(scale_.force, std::abs(f));
+  scale_.velocity = std::max(scale_.velocity, scale_.force / impedance_sum_ * 1.0e-3);
 }
 
 FieldResiduals Robin::measure(const Eigen::Ref<const Eigen::VectorXd>& x,

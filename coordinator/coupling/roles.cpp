@@ -32,6 +32,14 @@ int kinematic_side(const Interface& interface, Bodies& bodies, double length) {
   return step[1] < step[0] ? 1 : 0;
 }
 
+int tied_side(const Interface& interface, Bodies& bodies, double length) {
+  const Description& a = bodies.describe(interface.sides[0].body);
+  const Description& b = bodies.describe(interface.sides[1].body);
+  const int coarser = coarser_side(interface, bodies);
+  const bool able = coarser == 0 ? a.can.obstacle : b.can.obstacle;
+  return able && a.step != b.step ? coarser : kinematic_side(interface, bodies, length);
+}
+
 int coarser_side(const Interface& interface, const Bodies& bodies) {
   const double step0 = bodies.describe(interface.sides[0].body).step;
   const double step1 = bodies.describe(interface.sides[1].body).step;

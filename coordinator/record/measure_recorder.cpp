@@ -48,6 +48,7 @@ void MeasureRecorder::on_event(const RunEvent& event) {
 }
 
 void MeasureRecorder::count_iterations(const WindowReport& report) {
+  if (report.window.length() <= 0.0) return;  // the start
   int most = 0;
   bool closed = false;
   for (const InterfaceReport& interface : report.interfaces) {

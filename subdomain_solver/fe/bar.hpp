@@ -11,6 +11,7 @@ enum class ContactLayer {
   massless,  // mass of the end element moved to its inner node: the port follows quasi-statically
   kick,      // massive node, contact impulse to the velocities at the substep's start
   massive,   // massive node as in the published scheme
+  shared,    // massive node of an implicit bar whose reaction is complete: tied ends only
 };
 
 /// Mass matrix of an element: m_e [[1/2 - b, b], [b, 1/2 - b]].

@@ -17,11 +17,12 @@ GeneralizedAlpha::GeneralizedAlpha(const Bar& bar, const AlphaWeights& weights)
   }
   mass_matrix_.factor(diagonal, beside);
   for (int end : {0, 1}) {
-    if (!is(end, ContactLayer::massless)) continue;
+    const bool shared = is(end, ContactLayer::shared);
+    if (!shared && !is(end, ContactLayer::massless)) continue;
     std::vector<double>& column = mass_column_[static_cast<std::size_t>(end)];
     column.assign(diagonal.size(), 0.0);
     // a massless end passes its force on
-    column[static_cast<std::size_t>(bar_.inner_of(end))] = 1.0;
+    column[static_cast<std::size_t>(shared ? bar_.node_of(end) : bar_.inner_of(end))] = 1.0;
     mass_matrix_.solve(column);
   }
 }
@@ -78,9 +79,12 @@ void GeneralizedAlpha::initial_acceleration(BarState& state) const {
   for (std::size_t i = 0; i < state.a.size(); ++i) {
     state.a[i] = bar_.row_mass()[i] * bar_.data().body_force - state.a[i];
   }
-  // a closed massless end is in balance with its force: nothing is left over there
   for (int end : {0, 1}) {
-    if (is(end, ContactLayer::massless)) state.a[static_cast<std::size_t>(bar_.node_of(end))] = 0.0;
+    const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
+    // a closed massless end is in balance with its force: nothing is left over there
+    if (is(end, ContactLayer::massless)) state.a[node] = 0.0;
+    if (is(end, ContactLayer::shared))
+      state.a[node] -= Bar::outward(end) * state.end[static_cast<std::size_t>(end)].dynamic;
   }
   for (std::size_t i = 0; i < state.a.size(); ++i) {
     if (bar_.inverse_mass()[i] == 0.0) state.a[i] = 0.0;
@@ -91,7 +95,7 @@ void GeneralizedAlpha::initial_acceleration(BarState& state) const {
 void GeneralizedAlpha::open(BarState& state, double, const EndActions& opening) {
   const bool changed = update_closed(state, opening);
   for (int end : {0, 1}) {
-    if (!is(end, ContactLayer::massless)) continue;
+    if (!is(end, ContactLayer::massless) && !is(end, ContactLayer::shared)) continue;
     const std::size_t e = static_cast<std::size_t>(end);
     const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
     const std::size_t inner = static_cast<std::size_t>(bar_.inner_of(end));
@@ -103,7 +107,9 @@ void GeneralizedAlpha::open(BarState& state, double, const EndActions& opening) 
       s.force = opening[e].force;
       s.dynamic = opening[e].dynamic;
     }
-    if (changed && opening[e].kind == EndAction::Kind::open) state.u[node] = state.u[inner];
+    const bool follows = is(end, ContactLayer::massless);
+    if (follows && changed && opening[e].kind == EndAction::Kind::open)
+      state.u[node] = state.u[inner];
   }
   if (changed) initial_acceleration(state);
 }

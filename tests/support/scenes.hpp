@@ -35,10 +35,14 @@ struct BarText {
   double position = -0.27, velocity = 100.0, body_force = 0.0;  // [m] [m/s] [m/s^2]
   std::vector<std::string> sides = {"right"};
   std::string fixed;  // side held at rest, or empty
+  std::string tied;   // sides among them that are joints
 
   std::string text() const {
     std::string ports;
-    for (const std::string& side : sides) ports += fmt::format("{0}: {{side: {0}}}, ", side);
+    for (const std::string& side : sides) {
+      const bool joint = tied.find(side) != std::string::npos;
+      ports += fmt::format("{0}: {{side: {0}{1}}}, ", side, joint ? ", tied: true" : "");
+    }
     std::string out = fmt::format("  {}:\n", name);
     out += fmt::format(
         "    model: {{fe: {{dimension: 1, mesh: {{bar: {{length: {}, elements: {}, area: "

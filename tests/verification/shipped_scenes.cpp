@@ -31,7 +31,7 @@ INSTANTIATE_TEST_SUITE_P(Verification, ShippedScene,
                          testing::Values("two_bars", "two_bars_step_windows", "two_bars_implicit",
                                          "two_bars_implicit_explicit", "two_bars_cfl1",
                                          "two_bars_parallel", "two_bars_paper", "unequal_bars",
-                                         "rigid_wall"));
+                                         "rigid_wall", "bars/tied_halves"));
 
 TEST_P(ShippedScene, MeetsItsOwnExpectations) {
   const Document document = Document::load(path_of(GetParam()));
