@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -31,8 +32,9 @@ struct CellResponse {
   double stored = 0.0, dissipation = 0.0;  // [J]
 };
 
-/// Internal force and tangent of a cell, total Lagrangian: f = sum_p V_p B^T P(F) [M.42] and
-/// K = sum_p V_p B^T A B + geometric terms [M.43]. B maps nodal displacements to dF.
+/// Internal force and tangent of a cell, total Lagrangian: f = sum_p B^T S [M.42] and
+/// K = sum_p B^T D B [M.43]. B maps nodal displacements to dF; S and D are stress and moduli of a
+/// point times its volume. Mean dilatation changes S and D, and adds a term of rank two [M.45].
 class CellKernel {
  public:
   CellKernel(const Material& material, Formulation formulation)
@@ -51,37 +53,45 @@ class CellKernel {
   }
 
  private:
-  // Entries of F that vary: all nine in space; 11, 21, 12, 22 and 33 in the plane.
-  static constexpr int most_components = 9;
-  using Components = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_components, 1>;
-  using Operator = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;
+  /// (nodes, 3) derivatives of three entries of F by the displacements along one direction.
+  using Operator = Eigen::Matrix<double, Eigen::Dynamic, 3>;
   struct Point {
-    Matrix3 f = Matrix3::Identity(), inverse = Matrix3::Identity();
-    double jacobian = 1.0, stretch = 1.0;  // det F; s: Fbar = s F in mean dilatation
+    std::array<Operator, 2> b;  // in space the first serves all directions
+    double volume = 0.0;        // [m^3] reference
+    Matrix3 f = Matrix3::Identity();
     PointResponse response;
-    Operator b;  // (components, nodes x dim)
+    Matrix3 force;   // S [J]
+    Tangent moduli;  // D [J]
+    // Of mean dilatation, where Fbar = s F; identities and ones where the law is linear.
+    double jacobian = 1.0, stretch = 1.0;   // det F; s
+    Matrix3 inverse = Matrix3::Identity();  // F^-T
+    Matrix3 carrier = Matrix3::Identity();  // what d/3 multiplies in dFbar: Fbar
+    Matrix3 swell, coupling;                // dtheta/dF; mixed second derivative by theta and F
   };
 
-  void deform(const CellGeometry& cell, std::span<const double> u);
-  bool average_volume(const CellGeometry& cell);
-  bool respond(const CellGeometry& cell, std::span<const double> before, std::span<double> after,
-               Want want, CellResponse& out);
-  void fill_operator(const CellGeometry& cell, std::size_t p, Operator& b) const;
-  void average_operator(Point& point);
-  void add_force(const CellGeometry& cell, CellResponse& out) const;
-  void add_tangent(const CellGeometry& cell, CellResponse& out);
-  void add_geometric(const CellGeometry& cell, CellResponse& out);
-  void fill_exchange(const CellGeometry& cell, std::size_t p);
-  Components vary(const Matrix3& tensor) const;
+  int entry(int direction, int column) const;
+  const Operator& along(const Point& point, int direction) const;
+  void fill_operators(const CellGeometry& cell);
+  void deform(std::span<const double> u);
+  bool average_volume();
+  bool respond(std::span<const double> before, std::span<double> after, Want want,
+               CellResponse& out);
+  double split_force();
+  double split_moduli(double on_mean);
+  double mean_scale() const { return material_.is_linear() ? 1.0 : dilatation_; }
+  void integrate(Matrix3 Point::*field, Eigen::VectorXd& out) const;
+  void integrate_moduli(Eigen::MatrixXd& out);
 
   const Material& material_;
   Formulation formulation_;
   std::vector<Point> points_;
-  int dim_ = 3;
+  int dim_ = 3, nodes_ = 0;
+  double volume_ = 0.0;            // [m^3] of the cell
   double dilatation_ = 1.0;        // theta: mean det F of the cell; linear: mean trace of grad u
-  Eigen::VectorXd mean_gradient_;  // d theta / du (nodes x dim)
+  Eigen::VectorXd mean_gradient_;  // m = d theta / du (nodes x dim)
+  Eigen::VectorXd coupling_;       // work space (nodes x dim)
   Operator scaled_;                // work space
-  Eigen::MatrixXd exchange_;       // work space (nodes x dim, nodes x dim)
+  Eigen::MatrixXd part_;           // work space (nodes, nodes)
 };
 
 }  // namespace abut

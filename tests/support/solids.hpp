@@ -43,6 +43,27 @@ inline void distort(Mesh& mesh, double size) {
   }
 }
 
+/// Puts the nodes between two corners of a cell into their middle.
+inline void straighten(Mesh& mesh) {
+  const int dim = mesh.dim;
+  for (const CellBlock& cells : mesh.blocks) {
+    const Element& e = *cells.element;
+    const Eigen::Map<const Eigen::MatrixXd> xi(e.corners.data(), dim, e.nodes);
+    Eigen::Map<Eigen::MatrixXd> x(mesh.points.data(), dim, mesh.node_count());
+    for (int c = 0; c < cells.count(); ++c) {
+      const std::int32_t* nodes = cells.nodes.data() + c * e.nodes;
+      for (int m = e.corner_count(); m < e.nodes; ++m) {
+        for (int a = 0; a < e.corner_count(); ++a) {
+          for (int b = 0; b < a; ++b) {
+            if (!xi.col(m).isApprox(0.5 * (xi.col(a) + xi.col(b)), 1.0e-12)) continue;
+            x.col(nodes[m]) = 0.5 * (x.col(nodes[a]) + x.col(nodes[b]));
+          }
+        }
+      }
+    }
+  }
+}
+
 /// Every element that fills a plane or space.
 inline std::vector<std::string> solid_elements() {
   std::vector<std::string> names;
