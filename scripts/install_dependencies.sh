@@ -1,12 +1,13 @@
 #!/bin/sh
 # Installs the Debian packages of the named groups of packages.txt that are missing, and only those.
-#   usage: scripts/install_dependencies.sh GROUP...     groups: build, test, bench, runtime
+#   usage: scripts/install_dependencies.sh GROUP...
+#   groups: build, test, bench, optional, runtime
 # DEPENDENCIES=installed skips the check: for systems without apt, once the list was installed by
 # hand.
 set -eu
 
 list="$(dirname "$0")/packages.txt"
-[ $# -gt 0 ] || { echo "usage: $0 GROUP...   (groups: build, test, bench, runtime)" >&2; exit 2; }
+[ $# -gt 0 ] || { echo "usage: $0 GROUP...   (groups: see packages.txt)" >&2; exit 2; }
 [ "${DEPENDENCIES:-}" != installed ] || exit 0
 
 packages_of() {  # names of the packages of one group

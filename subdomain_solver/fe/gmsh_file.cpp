@@ -1,7 +1,6 @@
 #include "subdomain_solver/fe/gmsh_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <fstream>
@@ -17,6 +16,7 @@
 #include "base/error.hpp"
 #include "subdomain_solver/fe/facet_index.hpp"
 #include "subdomain_solver/fe/gmsh_data.hpp"
+#include "subdomain_solver/fe/named_sides.hpp"
 
 namespace abut {
 namespace {
@@ -47,11 +47,7 @@ class Builder {
         if (block.type->dim != mesh_.dim - 1) add_node_set(group, block);
       }
     }
-    settle_sides();
-    for (auto& [name, nodes] : mesh_.node_sets) {
-      std::sort(nodes.begin(), nodes.end());
-      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    }
+    settle_names(mesh_, data_.name);
     return std::move(mesh_);
   }
 
@@ -166,11 +162,7 @@ class Builder {
         if (own != nodes) refuse_side(group, block, e, "but for nodes between corners");
       }
       if (found.empty()) refuse_side(group, block, e, "");
-      if (found.size() == 1) side.push_back(found.front());
-      if (found.size() > 1) {
-        std::vector<std::int32_t>& set = inside_[group];
-        set.insert(set.end(), nodes.begin(), nodes.end());
-      }
+      side.push_back(found.front());
     }
   }
 
@@ -182,30 +174,10 @@ class Builder {
         block.where, "Mesh sides and inside together, in one order, and export both.");
   }
 
-  /// Groups of facets between cells are node sets; a side has no such facets, and none twice.
-  void settle_sides() {
-    for (auto& [group, nodes] : inside_) {
-      if (!mesh_.sides[group].empty())
-        throw InputError("has a group '" + group + "' of facets both on the boundary and inside",
-                         data_.name, "Make two groups of it.");
-      mesh_.sides.erase(group);
-      mesh_.node_sets[group] = std::move(nodes);
-    }
-    for (auto& [group, side] : mesh_.sides) {
-      std::set<std::array<std::int32_t, 3>> seen;
-      for (const Facet& facet : side) {
-        if (!seen.insert({facet.block, facet.cell, facet.local}).second)
-          throw InputError("has a facet twice in group '" + group + "'", data_.name,
-                           "Remove duplicate elements in Gmsh (Mesh.RemoveDuplicateElements).");
-      }
-    }
-  }
-
   GmshData data_;
   double scale_;
   Mesh mesh_;
   std::vector<std::int32_t> number_;  // in the mesh, of a node of the file; -1: in no cell
-  std::map<std::string, std::vector<std::int32_t>> inside_;  // nodes of facets between cells
 };
 
 }  // namespace

@@ -1,0 +1,72 @@
+#include "subdomain_solver/fe/named_sides.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "base/error.hpp"
+#include "subdomain_solver/fe/facet_index.hpp"
+
+namespace abut {
+namespace {
+
+bool before(const Facet& a, const Facet& b) {
+  return std::tie(a.block, a.cell, a.local) < std::tie(b.block, b.cell, b.local);
+}
+
+void refuse_repeats(std::vector<Facet> side, const std::string& name, const std::string& where) {
+  std::sort(side.begin(), side.end(), before);
+  if (std::adjacent_find(side.begin(), side.end()) != side.end())
+    throw InputError("has a facet twice in the side '" + name + "'", where,
+                     "Remove the duplicate from the group.");
+}
+
+/// True when all facets of a side lie between two cells, false when none does.
+bool inside(const Mesh& mesh, const FacetIndex& facets, const std::vector<Facet>& side,
+            const std::string& name, const std::string& where) {
+  std::size_t shared = 0;
+  for (const Facet& facet : side) {
+    const std::vector<std::int32_t> nodes = mesh.nodes_of(facet);
+    const Element& cell = *mesh.blocks[static_cast<std::size_t>(facet.block)].element;
+    const auto corners = static_cast<std::size_t>(element_named(cell.facet_name).corner_count());
+    if (facets.find(std::span(nodes).first(corners)).size() > 1) ++shared;
+  }
+  if (shared > 0 && shared < side.size())
+    throw InputError("has the side '" + name + "' both on the boundary and between cells", where,
+                     "Make two groups of it.");
+  return shared > 0;
+}
+
+}  // namespace
+
+void settle_names(Mesh& mesh, const std::string& where) {
+  const FacetIndex facets(mesh);
+  for (auto side = mesh.sides.begin(); side != mesh.sides.end();) {
+    if (!inside(mesh, facets, side->second, side->first, where)) {
+      refuse_repeats(side->second, side->first, where);
+      ++side;
+      continue;
+    }
+    const std::vector<std::int32_t> nodes = mesh.nodes_of(side->first);
+    std::vector<std::int32_t>& set = mesh.node_sets[side->first];
+    set.insert(set.end(), nodes.begin(), nodes.end());
+    side = mesh.sides.erase(side);
+  }
+  for (auto set = mesh.node_sets.begin(); set != mesh.node_sets.end();) {
+    std::vector<std::int32_t>& nodes = set->second;
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    if (!mesh.sides.contains(set->first)) {
+      ++set;
+      continue;
+    }
+    if (nodes != mesh.nodes_of(set->first))
+      throw InputError("has a side and a node set called '" + set->first + "' of different nodes",
+                       where, "Give them different names.");
+    set = mesh.node_sets.erase(set);
+  }
+}
+
+}  // namespace abut

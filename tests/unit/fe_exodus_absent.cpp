@@ -1,0 +1,24 @@
+// Goal: without NetCDF an Exodus file is refused with what to do.
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "subdomain_solver/fe/exodus_file.hpp"
+
+namespace abut {
+namespace {
+
+TEST(ExodusFile, IsRefusedWithARemedyWithoutNetcdf) {
+  try {
+    read_exodus("part.exo");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where, "part.exo");
+    EXPECT_NE(error.remedy.find("libnetcdf-dev"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace abut
