@@ -17,7 +17,8 @@ bool Hencky::evaluate(const Matrix3& f, std::span<const double>, std::span<doubl
   out.dissipation = 0.0;
   out.stress = kirchhoff * finite.inverse_transpose;
   if (want == Want::tangent)
-    out.tangent = log.tangent(f, finite.inverse_transpose, kirchhoff, isotropic_modulus(moduli()));
+    out.tangent =
+        log.tangent(f, finite.inverse_transpose, kirchhoff, PrincipalModulus::isotropic(moduli()));
   return is_finite(out, want);
 }
 

@@ -94,13 +94,14 @@ bool J2Plasticity::return_to_surface(Return& r) const {
 }
 
 /// d tau / d trial strain (de Souza Neto et al., 2008, box 7.6).
-Tangent J2Plasticity::modulus(const LogStrain& log, const Return& r) const {
+PrincipalModulus J2Plasticity::modulus(const Return& r) const {
   const double mu = shear();
-  const Tangent elastic = isotropic_modulus({bulk(), mu * r.left});
-  if (!r.yields) return elastic;
-  const Matrix3 n = log.with_axes(r.trial / r.trial.norm());
+  PrincipalModulus modulus = PrincipalModulus::isotropic({bulk(), mu * r.left});
+  if (!r.yields) return modulus;
+  const Eigen::Vector3d n = r.trial / r.trial.norm();
   const double scale = r.p / r.mises - 1.0 / (3.0 * mu + hardening_.slope(r.a + r.p));
-  return elastic + 6.0 * mu * mu * scale * outer(n, n);
+  modulus.normal += 6.0 * mu * mu * scale * n * n.transpose();
+  return modulus;
 }
 
 bool J2Plasticity::evaluate(const Matrix3& f, std::span<const double> before,
@@ -127,7 +128,7 @@ bool J2Plasticity::evaluate(const Matrix3& f, std::span<const double> before,
                hardening_.stored(r.a + r.p);
   out.dissipation = hardening_.yield_stress * r.p;
   if (want == Want::tangent)
-    out.tangent = log.tangent(f + f_plastic, finite.inverse_transpose, kirchhoff, modulus(log, r));
+    out.tangent = log.tangent(f + f_plastic, finite.inverse_transpose, kirchhoff, modulus(r));
   if (r.yields) {
     // C_p^-1 changes by F^-1 (b_e - b_e of the trial) F^-T: a difference, so that rounding of the
     // elastic part does not build up in it.

@@ -6,7 +6,7 @@
 
 namespace abut {
 
-class LogStrain;
+struct PrincipalModulus;
 
 /// The part of hardening that saturates (Voce).
 struct Saturation {
@@ -46,7 +46,7 @@ class J2Plasticity final : public IsotropicMaterial {
  private:
   struct Return;
   [[nodiscard]] bool return_to_surface(Return& r) const;
-  Tangent modulus(const LogStrain& log, const Return& r) const;
+  PrincipalModulus modulus(const Return& r) const;
 
   Hardening hardening_;
 };

@@ -29,29 +29,29 @@ bool LogStrain::set(const Matrix3& elastic) {
   return true;
 }
 
-Tangent LogStrain::derivative() const {
-  Eigen::Matrix<double, 9, 1> differences;
-  for (int b = 0; b < 3; ++b)
-    for (int a = 0; a < 3; ++a)
-      differences[a + 3 * b] = divided_difference(elastic_[a], elastic_[b]);
-  const Tangent rotation = kronecker(axes_, axes_);
-  return rotation * differences.asDiagonal() * rotation.transpose();
-}
-
 Tangent LogStrain::tangent(const Matrix3& f_g, const Matrix3& inverse_transpose,
-                           const Matrix3& kirchhoff, const Tangent& modulus) const {
-  const Matrix3 identity = Matrix3::Identity();
-  // db_pq/dF_kL = delta_pk (F G)_qL + (F G)_pL delta_qk
-  const Tangent growth = kronecker(identity, f_g) + crossed(f_g, identity);
-  const Tangent spatial = modulus * derivative() * growth;  // dtau/dF
-  return kronecker(identity, inverse_transpose.transpose()) * spatial -
-         crossed(kirchhoff * inverse_transpose, inverse_transpose);
-}
-
-Tangent isotropic_modulus(const Moduli& moduli) {
-  const Matrix3 identity = Matrix3::Identity();
-  return moduli.lame() * outer(identity, identity) +
-         moduli.shear * (kronecker(identity, identity) + crossed(identity, identity));
+                           const Matrix3& kirchhoff, const PrincipalModulus& modulus) const {
+  Matrix3 differences;
+  for (int b = 0; b < 3; ++b)
+    for (int a = 0; a < 3; ++a) differences(a, b) = divided_difference(elastic_[a], elastic_[b]);
+  // Everything in principal axes, one column of the tangent after the other.
+  const Matrix3 f_g_axes = axes_.transpose() * f_g;
+  const Matrix3 inverse_axes = axes_.transpose() * inverse_transpose;
+  const Matrix3 stress = kirchhoff * inverse_transpose;  // P
+  Tangent result;
+  for (int l = 0; l < 3; ++l)
+    for (int k = 0; k < 3; ++k) {
+      // db_pq/dF_kL = delta_pk (F G)_qL + (F G)_pL delta_qk
+      const Matrix3 half = axes_.row(k).transpose() * f_g_axes.col(l).transpose();
+      const Matrix3 strain = differences.cwiseProduct(half + half.transpose());
+      Matrix3 change = 2.0 * modulus.shear * strain;
+      change.diagonal() = modulus.normal * strain.diagonal();
+      const Matrix3 turned = axes_ * change;
+      // dF^-T_mJ/dF_kL = -F^-T_mL F^-T_kJ
+      result.col(k + 3 * l).reshaped(3, 3) =
+          turned * inverse_axes - stress.col(l) * inverse_transpose.row(k);
+    }
+  return result;
 }
 
 }  // namespace abut

@@ -6,6 +6,20 @@
 
 namespace abut {
 
+/// d tau / d strain [Pa] in the principal axes that both share: dtau_aa = sum_b normal_ab
+/// dstrain_bb and dtau_ab = 2 shear dstrain_ab.
+struct PrincipalModulus {
+  Matrix3 normal;
+  double shear = 0.0;
+
+  /// kappa and mu alone: that of Hencky.
+  static PrincipalModulus isotropic(const Moduli& moduli) {
+    Matrix3 normal = Matrix3::Constant(moduli.lame());
+    normal.diagonal().array() += 2.0 * moduli.shear;
+    return {normal, moduli.shear};
+  }
+};
+
 /// Logarithmic strain of an elastic left Cauchy-Green tensor b_e = F G F^T with G = (F_p^T F_p)^-1
 /// held fixed, by principal values [M.35]. What Hencky and plasticity share.
 class LogStrain {
@@ -25,16 +39,11 @@ class LogStrain {
 
   /// dP/dF for a Kirchhoff stress tau(strain) with dtau/dstrain = modulus; f_g = F G.
   Tangent tangent(const Matrix3& f_g, const Matrix3& inverse_transpose, const Matrix3& kirchhoff,
-                  const Tangent& modulus) const;
+                  const PrincipalModulus& modulus) const;
 
  private:
-  Tangent derivative() const;  // d strain / d b_e
-
   Matrix3 strain_, axes_;
   Eigen::Vector3d elastic_, principal_;
 };
-
-/// kappa I x I + 2 mu (deviatoric projector), on symmetric tensors: d tau / d strain of Hencky.
-Tangent isotropic_modulus(const Moduli& moduli);
 
 }  // namespace abut
