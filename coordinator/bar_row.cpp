@@ -242,6 +242,9 @@ BarRow::Bar BarRow::make_bar(RowBar data, double begin) {
     bar.speed = std::sqrt(data.youngs_modulus / data.density);
     bar.impedance = std::sqrt(data.youngs_modulus * data.density) * data.area;
     bar.transit = data.length / bar.speed;
+    if (!std::isfinite(bar.transit) || !std::isfinite(bar.impedance) || !(bar.transit > 0.0))
+      refuse(fmt::format("waves take {:g} s through {}, beyond the range of numbers", bar.transit,
+                         data.name));
   }
   bar.outgoing.assign(2, StepFunction(begin, 0.5 * data.velocity));
   bar.velocity.assign(2, StepFunction(begin, data.velocity));

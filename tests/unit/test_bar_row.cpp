@@ -301,12 +301,16 @@ TEST(BarRow, RefusesWhatItCannotDescribe) {
   pulled.body_force = 9.81;
   clamped.fixed[0] = true;
   hollow.area = 0.0;
+  RowBar endless = bar(1.0, 0.0);
+  endless.youngs_modulus = 1e-300;
+  endless.density = 1e300;
   const auto has = [](const std::string& text, const char* words) {
     return text.find(words) != std::string::npos;
   };
   EXPECT_TRUE(has(reason({bar(0.0, 0.0), pulled}), "a body force acts on bar"));
   EXPECT_TRUE(has(reason({bar(0.0, 0.0), clamped}), "the end of bar that meets another body"));
   EXPECT_TRUE(has(reason({bar(0.0, 0.0), hollow}), "not positive"));
+  EXPECT_TRUE(has(reason({bar(0.0, 0.0), endless}), "beyond the range of numbers"));
   EXPECT_TRUE(has(reason({bar(0.5, 0.0), bar(1.0, 0.0)}), "overlap"));
   EXPECT_TRUE(has(reason({wall(0.0), wall(1.0)}), "both sides are walls"));
   EXPECT_THROW(BarRow({bar(0, 0), bar(1, 0)}, {{BarEnd{0, 1}, BarEnd{1, 1}}}, 0.0, 1.0),
