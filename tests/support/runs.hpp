@@ -30,10 +30,11 @@ struct SceneText {
   bool tied = false;    // all interfaces, instead of contact
   std::string schwarz;  // keys of that section
   bool closed_form = true;
+  std::string form = "bar_impact: {interface: first}";
 
   std::string text() const {
     std::string out = "meta: {title: test";
-    if (closed_form) out += ", closed_form: {bar_impact: {interface: first}}";
+    if (closed_form) out += fmt::format(", closed_form: {{{}}}", form);
     out += fmt::format("}}\ntime: {{begin: {}, end: {}, window: {}}}\nbodies:\n", number(begin),
                        number(end), number(window));
     for (const BarText& bar : bars) out += bar.text();
