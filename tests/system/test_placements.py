@@ -33,13 +33,14 @@ class Placements(SystemTest):
     def test_every_shipped_scene_meets_its_expectations_here_and_in_processes(self):
         self.assertGreater(len(shipped()), 8, "the scenes are found")
         for scene in shipped():
-            with self.subTest(scene=scene.name):
+            stem = "_".join(scene.relative_to(ROOT / "configs").with_suffix("").parts)
+            with self.subTest(scene=stem):
                 self.assertIn("valid", self.succeed(self.abut("check", scene)).stdout)
-                local = self.run_in(f"{scene.stem}_local", scene, "--local")
+                local = self.run_in(f"{stem}_local", scene, "--local")
                 self.assertTrue(self.summary(local)["expectations"], "the scene expects something")
-                spawned = self.run_in(f"{scene.stem}_spawned", scene)
+                spawned = self.run_in(f"{stem}_spawned", scene)
                 self.assertEqual(self.bits(spawned), self.bits(local))
-                again = self.run_in(f"{scene.stem}_again", local / "scene.resolved.yaml", "--local")
+                again = self.run_in(f"{stem}_again", local / "scene.resolved.yaml", "--local")
                 self.assertEqual(self.bits(again), self.bits(local))
 
     def connected(self, name: str, start_order: list) -> Path:
