@@ -141,7 +141,7 @@ void add_published(const InterfaceSpec& spec, const DirichletNeumannTransmission
         "the published form knows neither the parallel form nor port kernels", "schwarz",
         "Give form: alternating and an accelerator of none, relaxation, aitken or anderson.");
   }
-  coupling.transmissions.push_back(std::make_unique<DirichletNeumann>());
+  coupling.transmissions.push_back(std::make_unique<DirichletNeumann>(how.swap_every_window));
   coupling.rules.push_back(
       {.published = true, .swap = how.swap_every_window, .projection = how.impact_projection});
 }

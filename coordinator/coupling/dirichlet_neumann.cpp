@@ -14,6 +14,7 @@ void DirichletNeumann::begin(const TimeWindow& window, const Interface& interfac
   u_begin_ = trace.u[now];
   v_begin_ = trace.v[now];
   a_begin_ = trace.a[now];
+  f_begin_ = trace.f[now];
   // the guess holds the velocity after the impulse that this window begins with
   const PortResponse& port = bodies.response(n.body).ports[static_cast<std::size_t>(n.port)];
   if (port.rebound) {
@@ -42,6 +43,9 @@ void DirichletNeumann::impose(int side, const Eigen::Ref<const Eigen::VectorXd>&
     data.force.time = from.time;
     data.force.f = from.f;
     for (double& f : data.force.f) f = -f;
+    // Substeps see a straight line from the force last exchanged, which was this side's own when
+    // roles swap; the Dirichlet side's at that moment lacks another inertia.
+    if (roles_swap_) data.force.f.front() = f_begin_;
     return;
   }
   const int n = grid_.count;

@@ -130,6 +130,9 @@ class ParallelForce final : public Transmission {
 /// handed to the other side. Iterated is the Neumann side's u, v and a  [M.14].
 class DirichletNeumann final : public Transmission {
  public:
+  /// `roles_swap`: what is the Neumann side now was the Dirichlet side of the window before.
+  explicit DirichletNeumann(bool roles_swap) : roles_swap_(roles_swap) {}
+
   void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
   int values() const override { return 3 * grid_.count; }
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
@@ -144,8 +147,10 @@ class DirichletNeumann final : public Transmission {
   bool ordered() const override { return true; }
 
  private:
+  bool roles_swap_;
   TimeGrid grid_;
   double u_begin_ = 0.0, v_begin_ = 0.0, a_begin_ = 0.0;
+  double f_begin_ = 0.0;  // [N] on the Neumann side, as exchanged at the end of the last window
   ReferenceScales scale_;
 };
 

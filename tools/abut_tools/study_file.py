@@ -20,7 +20,7 @@ KEYS = {
     "": ("title", "about", "base", "set", "knobs", "variants", "sweeps", "errors", "reference",
          "repeats", "placement", "time_limit", "figures", "claims", "quick"),
     "variant": ("label", "scene", "set"),
-    "sweep": ("title", "variants", "set", "knobs"),
+    "sweep": ("title", "variants", "set", "knobs", "repeats"),
     "error": ("measure", "history", "norm", "abs", "minus", "relative_to", "against"),
     "reference": ("scene", "set"),
     "histories": ("histories", "of", "runs", "title"),
@@ -54,6 +54,7 @@ class Point:
     knobs: dict
     settings: dict
     kind: str = "run"
+    repeats: int = 1  # timed runs with --serial
 
 
 @dataclass
@@ -138,6 +139,8 @@ class Reader:
             for knob in knobs:
                 knob.values = knob.values[:quick.get("keep", 2)]
         points = []
+        repeats = int(self.a_number(sweep.get("repeats", spec.get("repeats", 1)),
+                                    f"{key}repeats" if "repeats" in sweep else "repeats", 1))
         for variant, where in self.variants_of(spec, sweep, key):
             path, plain = self.scene(variant.get("scene", spec.get("base")),
                                      where + "scene" if "scene" in variant else "base")
@@ -155,7 +158,8 @@ class Reader:
                 words = [variant["label"]] if variant.get("label") else []
                 words += [f"{name} {study_knobs.shown(value)}" for name, value in chosen.items()]
                 points.append(Point(", ".join(words) or "base", sweep.get("title", ""),
-                                    variant.get("label", ""), path, chosen, settings))
+                                    variant.get("label", ""), path, chosen, settings,
+                                    repeats=1 if quick is not None else repeats))
         return points
 
     def variants_of(self, spec: dict, sweep: dict, key: str) -> list[tuple[dict, str]]:
@@ -319,10 +323,9 @@ def read_study(path: Path, abut: Path, is_quick: bool) -> Study:
             reader.apply(scene, settings, reader.a_map(step, place), place)
         reference = Point("reference", "", "", scene_path, {}, settings, "reference")
     errors = reader.errors(reader.a_map(spec.get("errors", {}), "errors"), reference is not None)
-    repeats = reader.a_number(spec.get("repeats", 1), "repeats", 1)
     study = Study(
         path, title, str(spec.get("about", "")), points, errors, knobs,
-        1 if is_quick else int(repeats),
+        max(point.repeats for point in points),
         reader.choice(spec.get("placement", "local"), "placement", ("local", "processes")),
         reader.a_number(spec.get("time_limit", 600.0), "time_limit", 0.0),
         reader.figures(spec.get("figures", []), errors, knobs),

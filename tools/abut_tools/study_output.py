@@ -166,7 +166,7 @@ def machine_text(facts: dict) -> str:
 
 def timing_text(facts: dict) -> str:
     if facts["timed"]:
-        times = f"{facts['repeats']} repeats" if facts["repeats"] > 1 else "one repeat"
+        times = f"up to {facts['repeats']} repeats" if facts["repeats"] > 1 else "one repeat"
         return f"Runs were timed one after another, {times}; wall time is that of all windows."
     return ("Runs were not timed, because several may have run at once: compute_s is the time "
             "that bodies spent computing. Time them with --serial.")

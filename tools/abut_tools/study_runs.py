@@ -106,7 +106,7 @@ class Runner:
         if self.force or record["id"] != self.identity(point) or record["status"] == "lost":
             return None
         if self.timed and record["status"] != "refused":
-            if not record["timed"] or len(record["walls"]) < self.study.repeats:
+            if not record["timed"] or len(record["walls"]) < point.repeats:
                 return None
         if record["taken"] == self.definition(point):
             return record
@@ -142,7 +142,7 @@ class Runner:
         command = self.command(point, folder)
         record = {"id": self.identity(point), "command": command, "timed": self.timed,
                   "walls": [], "memory_mib": None, "message": "", "taken": "", "summary": {}}
-        computes, repeats = [], self.study.repeats if self.timed else 1
+        computes, repeats = [], point.repeats if self.timed else 1
         while len(record["walls"]) < repeats:
             ended = study_process.run(command, self.study.time_limit, self.stop)
             if self.stop.is_set():
