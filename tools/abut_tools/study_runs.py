@@ -40,6 +40,8 @@ class Progress:
         self.total, self.done, self.quiet = total, 0, quiet
         self.started, self.timed, self.lock = time.monotonic(), 0, threading.Lock()
         self.live = sys.stderr.isatty()
+        if self.live and not quiet:
+            self.draw("")  # the first run may take a while
 
     def step(self, label: str, status: str, fresh: bool) -> None:
         with self.lock:
@@ -55,14 +57,17 @@ class Progress:
             if self.timed:
                 seconds = (time.monotonic() - self.started) / self.timed * (self.total - self.done)
                 left = f"  {int(seconds) // 60}:{int(seconds) % 60:02d} left"
-            part = 30 * self.done // self.total
-            bar = "#" * part + "-" * (30 - part)
-            columns = shutil.get_terminal_size().columns
-            line = f"[{bar}] {self.done}/{self.total}{left}  {label}"
-            print(f"\r\033[K{line[:columns - 1]}", end="", file=sys.stderr, flush=True)
+            self.draw(f"{left}  {label}")
+
+    def draw(self, words: str) -> None:
+        part = 30 * self.done // self.total
+        bar = "#" * part + "-" * (30 - part)
+        columns = shutil.get_terminal_size().columns
+        line = f"[{bar}] {self.done}/{self.total}{words}"
+        print(f"\r\033[K{line[:columns - 1]}", end="", file=sys.stderr, flush=True)
 
     def close(self) -> None:
-        if self.live and self.done and not self.quiet:
+        if self.live and not self.quiet:
             print("\r\033[K", end="", file=sys.stderr, flush=True)
 
 
