@@ -67,6 +67,13 @@ void CentralDifferenceSpec::fields(Fields& f) {
              "linear bulk viscosity, as the damping ratio of the shortest wave; lowers the stable "
              "step",
              between(0.0, 1.0));
+  f.optional("tchamwa", tchamwa, "",
+             "parameter phi of Tchamwa and Wielgosz, which damps short waves most; 1 dissipates "
+             "nothing; lowers the stable step",
+             between(1.0, 2.0));
+  f.check(tchamwa == 1.0 || (dispersion_terms == 1 && bulk_viscosity == 0.0), "tchamwa",
+          fmt::format("is {:g} beside dispersion terms or bulk viscosity", tchamwa),
+          "Choose one of them: what they do together has no known stable step.");
 }
 
 void NewmarkSpec::fields(Fields& f) {

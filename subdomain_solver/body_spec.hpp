@@ -71,6 +71,7 @@ struct CentralDifferenceSpec {
   double step = 0.0;  // [s]
   int dispersion_terms = 1;
   double bulk_viscosity = 0.0;
+  double tchamwa = 1.0;
   void fields(Fields& f);
 };
 struct NewmarkSpec {

@@ -79,6 +79,7 @@ struct SchemeMaker {
     std::string words = fmt::format("central difference, step {:g} s, CFL {:.3g}", s.step,
                                     s.step / (bar.spacing() / bar.data().wave_speed()));
     if (s.bulk_viscosity > 0.0) words += fmt::format(", bulk viscosity {:g}", s.bulk_viscosity);
+    if (s.tchamwa > 1.0) words += fmt::format(", Tchamwa-Wielgosz {:g}", s.tchamwa);
     if (s.dispersion_terms > 1) words += fmt::format(", {} dispersion terms", s.dispersion_terms);
     return {std::make_unique<CentralDifference>(bar, s.step, s.dispersion_terms), s.step, true,
             words};
@@ -159,8 +160,10 @@ BarProperties fe_bar_properties(const BodySpec& spec) {
         return MassForm::lumped;
       },
       *spec.integrator);
-  if (const auto* s = std::get_if<CentralDifferenceSpec>(&*spec.integrator))
+  if (const auto* s = std::get_if<CentralDifferenceSpec>(&*spec.integrator)) {
     bar.bulk_viscosity = s->bulk_viscosity;
+    bar.tchamwa = s->tchamwa;
+  }
   if (const MassiveSpec* massive = std::get_if<MassiveSpec>(&spec.contact_layer)) {
     bar.stabilised = massive->stabilised;
     bar.complete_reaction = massive->complete_reaction;

@@ -25,9 +25,9 @@ struct PairScheme {
   void operator()(const CentralDifferenceSpec& s) const {
     parameters.step = s.step;
     parameters.words += ", central difference";
-    if (s.dispersion_terms > 1 || s.bulk_viscosity > 0.0) {
+    if (s.dispersion_terms > 1 || s.bulk_viscosity > 0.0 || s.tchamwa > 1.0) {
       refuse("integrator.central_difference",
-             "has dispersion terms or bulk viscosity, which bar_pair does not offer",
+             "has dispersion terms, bulk viscosity or tchamwa, which bar_pair does not offer",
              "Leave them out: the conventional methods are measured on the plain scheme.");
     }
     const double limit =

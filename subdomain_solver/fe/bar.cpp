@@ -64,7 +64,9 @@ double Bar::stable_step() const {
   }
   // viscous forces use the velocity of the last half step, which costs a part of the limit
   const double b = data_.bulk_viscosity;
-  return 2.0 / std::sqrt(omega_squared) * (std::sqrt(1.0 + b * b) - b);
+  // determinant 1 - (phi - 1) z and trace 2 - phi z of a step, z = (omega dt)^2: the root -1
+  const double forward = std::sqrt(2.0 * data_.tchamwa - 1.0);
+  return 2.0 / std::sqrt(omega_squared) * (std::sqrt(1.0 + b * b) - b) / forward;
 }
 
 void Bar::internal_force(const std::vector<double>& x, std::vector<double>& out) const {

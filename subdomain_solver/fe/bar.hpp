@@ -36,6 +36,7 @@ struct BarProperties {
   // Of massive contact nodes: the reaction to prescribed motion holds the node's inertia.
   bool complete_reaction = false;
   double bulk_viscosity = 0.0;  // damping ratio at the grid's cut-off, explicit bars
+  double tchamwa = 1.0;         // phi of Tchamwa and Wielgosz, explicit bars
 
   double wave_speed() const;  // sqrt(E / rho) [m/s]
   double impedance() const;   // rho c A [kg/s]

@@ -101,6 +101,7 @@ void CentralDifference::kick_drift(BarState& state, double kick, double dt) {
     add_viscous_force(state.v, viscous_);
     for (std::size_t i = 0; i < n; ++i) state.v[i] -= kick * bar_.inverse_mass()[i] * viscous_[i];
   }
+  if (forward()) acceleration(state);  // before the places move on
   kick_end_nodes(state, s, kick);
   if (n > 4 && simple()) {
     kick_drift_nodes(state.u.data(), state.v.data(), 2, n - 2, g, shift, dt);
@@ -109,6 +110,15 @@ void CentralDifference::kick_drift(BarState& state, double kick, double dt) {
     drift_nodes(state.u.data(), state.v.data(), 2, n - 2, dt);
   }
   drift_end_nodes(state, dt);
+  push_on(state, kick, dt);
+}
+
+void CentralDifference::push_on(BarState& state, double kick, double dt) const {
+  if (!forward()) return;
+  const double weight = (bar_.data().tchamwa - 1.0) * kick * dt;
+  for (std::size_t i = 0; i < state.u.size(); ++i) {
+    if (bar_.inverse_mass()[i] > 0.0) state.u[i] += weight * state.a[i];
+  }
 }
 
 void CentralDifference::add_viscous_force(const std::vector<double>& v,
@@ -264,11 +274,13 @@ void CentralDifference::kick_nodes_with(BarState& state, double kick) const {
 void CentralDifference::substep(BarState& state, double dt, const EndActions& actions) {
   if (previous_dt_ == 0.0) {
     drift(state, dt);
+    push_on(state, dt, dt);
   } else if (bar_.data().stabilised) {
     // the next predictor must not see the accelerations that close() drops
     close(state, previous_dt_);
     kick_nodes_with(state, 0.5 * dt);
     drift(state, dt);
+    push_on(state, dt, dt);
   } else {
     for (int end : {0, 1}) {
       if (!is(end, ContactLayer::kick)) continue;

@@ -78,8 +78,10 @@ TEST(Bar, StableStepOfAUniformBarIsCellOverWaveSpeed) {
 
 /// Largest size of a displacement after a zigzag start, relative to it, in 500 steps of a share of
 /// the limit.
-double growth(double share) {
-  const Bar bar(properties(10));
+double growth(double share, double tchamwa = 1.0) {
+  BarProperties data = properties(10);
+  data.tchamwa = tchamwa;
+  const Bar bar(data);
   const double dt = share * bar.stable_step();
   CentralDifference scheme(bar, dt, 1);
   BarState state;
@@ -101,6 +103,43 @@ TEST(Bar, AStepAboveTheLimitGrowsAndOneBelowStaysBounded) {
   // per step, exp(141) in 500 steps.
   EXPECT_LT(growth(0.99), 7.1);
   EXPECT_GT(growth(1.01), 1.0e50);
+}
+
+TEST(Tchamwa, LowersTheStableStepAsTheoryTells) {
+  // phi = 1.2, z = s^2 4 / (2 phi - 1). At s = 0.99 the outer root is -0.83: the recurrence from 1,
+  // 1 (no acceleration at the start), 1 - phi z = -2.36, 2.77 decays from there on. At s = 1.02 it
+  // is -1.24, and 1.24^500 = 1e46.
+  EXPECT_LT(growth(0.99, 1.2), 2.78);
+  EXPECT_GT(growth(1.02, 1.2), 1.0e40);
+}
+
+TEST(Tchamwa, OneMassOnASpringFollowsItsRecurrence) {
+  // Tchamwa and Wielgosz: u(n+1) - (2 - phi z) u(n) + (1 - (phi - 1) z) u(n-1) = 0, z = (omega
+  // dt)^2, so that the energy falls by the factor 1 - (phi - 1) z in a step.
+  BarProperties data = properties(1);
+  data.fixed = {true, false};
+  data.tchamwa = 1.1;
+  const Bar bar(data);
+  const double dt = 0.6 * bar.stable_step();
+  const double z = dt * dt * bar.element_stiffness() * bar.inverse_mass().back();
+  for (const int window : {1, 7}) {  // steps between open and close
+    CentralDifference scheme(bar, dt, 1);
+    BarState state;
+    state.u = {0.0, 1.0};
+    state.v = {0.0, 0.3};
+    state.a = {0.0, -bar.element_stiffness() * bar.inverse_mass().back()};
+    std::vector<double> u{state.u.back()};
+    for (int i = 0; i < 70; ++i) {
+      if (i % window == 0) scheme.open(state, dt, {});
+      scheme.substep(state, dt, {});
+      u.push_back(state.u.back());
+      if (i % window == window - 1) scheme.close(state, dt);
+    }
+    for (std::size_t n = 1; n + 1 < u.size(); ++n) {
+      const double rest = u[n + 1] - (2.0 - 1.1 * z) * u[n] + (1.0 - 0.1 * z) * u[n - 1];
+      EXPECT_NEAR(rest, 0.0, roundoff(20, 1.0)) << "window " << window << ", step " << n;
+    }
+  }
 }
 
 TEST(TriDiagonal, SolvesAsADenseSolverDoes) {
