@@ -42,8 +42,9 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
   blocks_.resize(mesh_.blocks.size());
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const CellBlock& cells = mesh_.blocks[b];
-    blocks_[b].table = tabulate(*cells.element,
-                                quadrature(cells.element->shape, stiffness_degree(*cells.element)));
+    blocks_[b].table =
+        tabulate(*cells.element, quadrature(cells.element->shape,
+                                            stiffness_degree(*cells.element) + (round() ? 1 : 0)));
     measure(cells, blocks_[b]);
     blocks_[b].history = history_size_;
     history_size_ += blocks_[b].volume.size() * index(kernel_.history_size());
@@ -63,7 +64,7 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
 void FeModel::measure(const CellBlock& cells, Block& block) const {
   const Tabulation& t = block.table;
   const int dim = mesh_.dim;
-  const bool round = options_.plane == Plane::axisymmetric && dim == 2;
+  const bool round = this->round();
   block.volume.clear();
   block.gradient.clear();
   block.hoop.clear();

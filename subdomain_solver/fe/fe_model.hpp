@@ -44,6 +44,7 @@ class FeModel final : public Model {
   const Mesh& mesh() const { return mesh_; }
   const Material& material() const { return *material_; }
   const FeOptions& options() const { return options_; }
+  bool round() const { return mesh_.dim == 2 && options_.plane == Plane::axisymmetric; }
   double volume() const;  // [m^3] reference
   /// From the nodes' own frames to the axes of space and back, in place: (nodes, dim).
   void to_space(std::span<double> values) const { rotate(values, false); }
