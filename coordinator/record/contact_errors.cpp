@@ -57,8 +57,8 @@ void ContactErrors::write(const std::string& interface, const SeenContact& seen,
                           Measures& out) const {
   const std::string prefix = fmt::format("contact.{}.", interface);
   if (!exact_.ever()) {
-    for (const char* what : contact_errors)
-      out.none(prefix + what, "the exact solution has no contact here");
+    for (const std::string what : contact_errors)
+      if (what != "count_error") out.none(prefix + what, "the exact solution has no contact here");
     out.set(prefix + "count_error", seen.count);
     return;
   }
