@@ -338,6 +338,18 @@ claims: [{text: better, checks: [{runs: corrected, value: release, below: plain}
             with self.subTest(study=path.name):
                 check_measures(read_study(path, ABUT, False), ABUT)
 
+    def test_documents_are_those_of_the_shipped_studies(self):
+        """Names only: numbers are measured again by make results and make extremes."""
+        for study, document in (("two_bars_methods", "RESULTS"), ("extremes", "EXTREMES")):
+            found = read_study(ROOT / "studies" / f"{study}.yaml", ABUT, False)
+            text = (ROOT / "docs" / f"{document}.md").read_text(encoding="utf-8")
+            wanted = [claim["text"] for claim in found.claims]
+            wanted += [figure["title"] for figure in found.figures if "table" in figure]
+            wanted += [f"\n| {point.variant}" for point in found.points]
+            for name in dict.fromkeys(wanted):
+                with self.subTest(document=document):
+                    self.assertIn(name, text, f"run make {document.lower()}")
+
     def test_page_is_whole_and_small(self):
         self.succeed(self.study())
         page = (self.out / "index.html").read_text(encoding="utf-8")
