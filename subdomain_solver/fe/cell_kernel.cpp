@@ -13,6 +13,31 @@ int CellKernel::history_size() const { return material_.history_size(); }
 bool CellKernel::evaluate(const CellGeometry& cell, std::span<const double> u,
                           std::span<const double> before, std::span<double> after, Want want,
                           CellResponse& out) {
+  if (!evaluate_points(cell, u, before, after, want, out)) return false;
+  if (!cell.hourglass.empty()) add_hourglass(cell, u, want, out);
+  return true;
+}
+
+/// Every component of u on its own.
+void CellKernel::add_hourglass(const CellGeometry& cell, std::span<const double> u, Want want,
+                               CellResponse& out) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Map<const Rows> k(cell.hourglass.data(), cell.nodes, cell.nodes);
+  const Eigen::Map<const Rows> moved(u.data(), cell.nodes, cell.dim);
+  const Rows force = k * moved;
+  out.stored += 0.5 * force.cwiseProduct(moved).sum();
+  out.force += force.reshaped<Eigen::RowMajor>();
+  if (want != Want::tangent) return;
+  for (int a = 0; a < cell.nodes; ++a) {
+    for (int b = 0; b < cell.nodes; ++b)
+      out.tangent.block(a * cell.dim, b * cell.dim, cell.dim, cell.dim).diagonal().array() +=
+          k(a, b);
+  }
+}
+
+bool CellKernel::evaluate_points(const CellGeometry& cell, std::span<const double> u,
+                                 std::span<const double> before, std::span<double> after, Want want,
+                                 CellResponse& out) {
   const bool average = formulation_ == Formulation::mean_dilatation;
   fill_operators(cell);
   deform(u);

@@ -12,17 +12,21 @@ namespace abut {
 
 /// Treatment of volume change inside a cell [M.44].
 enum class Formulation {
-  full,            // pointwise
-  mean_dilatation  // one volume change per cell: no locking when nearly incompressible (B-bar when
-                   // the material is linear, F-bar from an energy when it is not)
+  full,             // pointwise
+  mean_dilatation,  // one volume change per cell: no locking when nearly incompressible (B-bar when
+                    // the material is linear, F-bar from an energy when it is not)
+  one_point         // the mean gradient of the cell and an hourglass stiffness [M.51, M.52]; cells
+                    // of one point are as they are, quadratic ones have no such form
 };
 
 /// Reference geometry of one cell at its quadrature points: what never changes.
 struct CellGeometry {
   int nodes = 0, points = 0, dim = 0;
-  std::span<const double> volume;    // [m^3] (points) weight x Jacobian x thickness
-  std::span<const double> gradient;  // [1/m] (points, nodes, dim) dN/dX
-  std::span<const double> hoop;      // [1/m] (points, nodes) N/R of axisymmetric cells; else empty
+  std::span<const double> volume;     // [m^3] (points) weight x Jacobian x thickness
+  std::span<const double> gradient;   // [1/m] (points, nodes, dim) dN/dX
+  std::span<const double> hoop;       // [1/m] (points, nodes) N/R of axisymmetric cells; else empty
+  std::span<const double> hourglass;  // [N/m] (nodes, nodes) stiffness, the same for every
+                                      // component; else empty
 };
 
 /// One cell's answer. Buffers are reused from cell to cell.
@@ -69,6 +73,11 @@ class CellKernel {
     Matrix3 swell, coupling;                // dtheta/dF; mixed second derivative by theta and F
   };
 
+  [[nodiscard]] bool evaluate_points(const CellGeometry& cell, std::span<const double> u,
+                                     std::span<const double> before, std::span<double> after,
+                                     Want want, CellResponse& out);
+  static void add_hourglass(const CellGeometry& cell, std::span<const double> u, Want want,
+                            CellResponse& out);
   int entry(int direction, int column) const;
   const Operator& along(const Point& point, int direction) const;
   void fill_operators(const CellGeometry& cell);

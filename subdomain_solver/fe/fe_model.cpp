@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-
-#include <Eigen/LU>
 
 #include "base/assert.hpp"
 
@@ -39,77 +36,59 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
   ABUT_ASSERT(mesh_.dim == 2 || mesh_.dim == 3);
   std::sort(frames_.begin(), frames_.end(),
             [](const NodeFrame& a, const NodeFrame& b) { return a.node < b.node; });
-  blocks_.resize(mesh_.blocks.size());
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const CellBlock& cells = mesh_.blocks[b];
-    blocks_[b].table =
-        tabulate(*cells.element, quadrature(cells.element->shape,
-                                            stiffness_degree(*cells.element) + (round() ? 1 : 0)));
-    measure(cells, blocks_[b]);
-    blocks_[b].history = history_size_;
-    history_size_ += blocks_[b].volume.size() * index(kernel_.history_size());
-    find_units(blocks_[b]);
+  for (const CellBlock& cells : mesh_.blocks) {
+    const Element& element = *cells.element;
+    ABUT_ASSERT(options.formulation != Formulation::one_point || element.order == 1);
+    Block block;
+    const int degree = stiffness_degree(element) + (round() ? 1 : 0);
+    block.table = tabulate(element, quadrature(element.shape, degree));
+    block.history = history_size_;
+    const int points = cells.count() * law_points(element, block.table, options.formulation);
+    history_size_ += index(points) * index(kernel_.history_size());
+    blocks_.push_back(std::move(block));
   }
-  find_pattern();
-  assemble_mass();
-  if (!is_linear()) return;
-  ModelResponse response;
-  const std::vector<double> rest(index(dofs()), 0.0);
-  const bool admissible = assemble(rest, {}, Want::tangent, response);
-  ABUT_ASSERT(admissible);
-  stiffness_ = std::move(response.tangent);
+  lump_mass();
+  const bool plain = options.formulation != Formulation::mean_dilatation &&
+                     (mesh_.dim == 3 || options.plane == Plane::strain);
+  if (!options.batched || !plain || !BatchedCells::can(mesh_, *material_)) return;
+  batched_ = std::make_unique<BatchedCells>(
+      mesh_, *material_,
+      BatchedOptions{options.formulation == Formulation::one_point, options.hourglass,
+                     options.thickness, options.threads});
 }
 
-/// Volumes and dN/dX at the points of the block's table.
-void FeModel::measure(const CellBlock& cells, Block& block) const {
-  const Tabulation& t = block.table;
-  const int dim = mesh_.dim;
-  const bool round = this->round();
-  block.volume.clear();
-  block.gradient.clear();
-  block.hoop.clear();
-  Eigen::MatrixXd x(t.nodes, dim);
-  for (int cell = 0; cell < cells.count(); ++cell) {
-    const std::span<const std::int32_t> nodes = nodes_of(cells, cell);
-    for (int a = 0; a < t.nodes; ++a) {
-      for (int i = 0; i < dim; ++i) x(a, i) = mesh_.points[index(nodes[index(a)] * dim + i)];
-    }
-    for (int p = 0; p < t.points; ++p) {
-      using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      const Eigen::Map<const Rows> dn(t.dn.data() + index(p * t.nodes * dim), t.nodes, dim);
-      const Eigen::Map<const Vector> n(t.n.data() + index(p * t.nodes), t.nodes);
-      const Eigen::MatrixXd jacobian = x.transpose() * dn;  // dX/dxi
-      const double radius = round ? n.dot(x.col(0)) : 0.0;
-      const double depth = round      ? 2.0 * std::numbers::pi * radius
-                           : dim == 2 ? options_.thickness
-                                      : 1.0;
-      block.volume.push_back(t.weight[index(p)] * jacobian.determinant() * depth);
-      const Rows gradient = dn * jacobian.inverse();
-      block.gradient.insert(block.gradient.end(), gradient.data(),
-                            gradient.data() + gradient.size());
-      if (!round) continue;
-      for (int a = 0; a < t.nodes; ++a) block.hoop.push_back(n(a) / radius);
-    }
+FeModel::Assembly& FeModel::assembly() const {
+  if (assembly_) return *assembly_;
+  assembly_ = std::make_unique<Assembly>();
+  const double p_wave = material_->moduli().p_wave();
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    CellMeasures measures;
+    for (int c = 0; c < mesh_.blocks[k].count(); ++c)
+      measure_cell(mesh_, mesh_.blocks[k], c, blocks_[k].table, options_, p_wave, measures);
+    find_units(measures, *assembly_);
+    assembly_->measures.push_back(std::move(measures));
   }
+  find_pattern(*assembly_);
+  return *assembly_;
 }
 
 /// Largest gradient of a shape function, and the force of a unit strain on a cell.
-void FeModel::find_units(const Block& block) {
-  const int points = block.table.points;
-  for (std::size_t p = 0; p < block.volume.size(); p += index(points)) {
+void FeModel::find_units(const CellMeasures& measures, Assembly& out) const {
+  const std::size_t points = index(measures.points);
+  for (std::size_t p = 0; p < measures.volume.size(); p += points) {
     double volume = 0.0, steepest = 0.0;
-    for (std::size_t k = 0; k < index(points); ++k) volume += block.volume[p + k];
-    const std::size_t each = index(block.table.nodes * mesh_.dim);
-    for (std::size_t k = p * each; k < (p + index(points)) * each; ++k)
-      steepest = std::max(steepest, std::abs(block.gradient[k]));
-    gradient_unit_ = std::max(gradient_unit_, steepest);
-    force_unit_ = std::max(force_unit_, material_->moduli().p_wave() * volume * steepest);
+    for (std::size_t k = 0; k < points; ++k) volume += measures.volume[p + k];
+    const std::size_t each = index(measures.nodes * measures.dim);
+    for (std::size_t k = p * each; k < (p + points) * each; ++k)
+      steepest = std::max(steepest, std::abs(measures.gradient[k]));
+    out.gradient_unit = std::max(out.gradient_unit, steepest);
+    out.force_unit = std::max(out.force_unit, material_->moduli().p_wave() * volume * steepest);
   }
 }
 
 /// Entries of the tangent: all pairs of nodes that share a cell. Columns of one node have the same
 /// rows, so the place of a pair's first entry is enough to find the others.
-void FeModel::find_pattern() {
+void FeModel::find_pattern(Assembly& out) const {
   const int dim = mesh_.dim;
   std::vector<std::vector<std::int32_t>> neighbours(index(mesh_.node_count()));
   for (const CellBlock& cells : mesh_.blocks) {
@@ -127,116 +106,155 @@ void FeModel::find_pattern() {
     for (int k = 0; k < dim; ++k)
       sizes(static_cast<int>(b) * dim + k) = static_cast<int>(neighbours[b].size()) * dim;
   }
-  pattern_.resize(dofs(), dofs());
-  pattern_.reserve(sizes);
+  out.pattern.resize(dofs(), dofs());
+  out.pattern.reserve(sizes);
   for (std::size_t b = 0; b < neighbours.size(); ++b) {
     for (int k = 0; k < dim; ++k) {
       for (std::int32_t a : neighbours[b]) {
         for (int i = 0; i < dim; ++i)
-          pattern_.insert(a * dim + i, static_cast<int>(b) * dim + k) = 0.0;
+          out.pattern.insert(a * dim + i, static_cast<int>(b) * dim + k) = 0.0;
       }
     }
   }
-  pattern_.makeCompressed();
-  for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    const CellBlock& cells = mesh_.blocks[k];
+  out.pattern.makeCompressed();
+  for (const CellBlock& cells : mesh_.blocks) {
+    std::vector<std::int32_t>& position = out.position.emplace_back();
     for (int c = 0; c < cells.count(); ++c) {
       for (std::int32_t a : nodes_of(cells, c)) {
         for (std::int32_t b : nodes_of(cells, c)) {
           const std::vector<std::int32_t>& rows = neighbours[index(b)];
           const auto at = std::lower_bound(rows.begin(), rows.end(), a) - rows.begin();
-          blocks_[k].position.push_back(pattern_.outerIndexPtr()[b * dim] +
-                                        static_cast<std::int32_t>(at) * dim);
+          position.push_back(out.pattern.outerIndexPtr()[b * dim] +
+                             static_cast<std::int32_t>(at) * dim);
         }
       }
     }
   }
 }
 
-/// Consistent mass; lumped by scaling its diagonal to the cell's mass (Hinton, Rock, Zienkiewicz
-/// 1976), which equals the row sum for linear elements on parallelepipeds and is positive for all.
-void FeModel::assemble_mass() {
+/// Integral of N_a N_b of one cell, times density.
+Eigen::MatrixXd FeModel::nodal_mass(int block, int cell, const Tabulation& t) const {
+  FeOptions every_point = options_;
+  every_point.formulation = Formulation::full;
+  CellMeasures measures;
+  measure_cell(mesh_, mesh_.blocks[index(block)], cell, t, every_point, 0.0, measures);
+  Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(t.nodes, t.nodes);
+  for (int p = 0; p < t.points; ++p) {
+    const Eigen::Map<const Vector> n(t.n.data() + index(p * t.nodes), t.nodes);
+    nodal += material_->density() * measures.volume[index(p)] * n * n.transpose();
+  }
+  return nodal;
+}
+
+/// The diagonal scaled to the cell's mass (Hinton, Rock, Zienkiewicz 1976), which equals the row
+/// sum for linear elements on parallelepipeds and is positive for all.
+void FeModel::lump_mass() {
   const int dim = mesh_.dim;
-  const double density = material_->density();
-  mass_ = pattern_;
   lumped_.setZero(dofs());
+  for (int k = 0; k < static_cast<int>(blocks_.size()); ++k) {
+    const CellBlock& cells = mesh_.blocks[index(k)];
+    const Element& element = *cells.element;
+    const Tabulation table = tabulate(element, quadrature(element.shape, mass_degree(element)));
+    for (int c = 0; c < cells.count(); ++c) {
+      const Eigen::MatrixXd nodal = nodal_mass(k, c, table);
+      const double scale = nodal.sum() / nodal.trace();
+      int a = 0;
+      for (std::int32_t node : nodes_of(cells, c)) {
+        lumped_.segment(node * dim, dim).array() += scale * nodal(a, a);
+        ++a;
+      }
+    }
+  }
+}
+
+const SparseMatrix& FeModel::mass() const {
+  SparseMatrix& mass = assembly().mass;
+  if (mass.size() == 0) assemble_mass(mass);
+  return mass;
+}
+
+void FeModel::assemble_mass(SparseMatrix& out) const {
+  const int dim = mesh_.dim;
+  out = assembly().pattern;
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const CellBlock& cells = mesh_.blocks[k];
-    Block fine;
-    fine.table =
-        tabulate(*cells.element, quadrature(cells.element->shape, mass_degree(*cells.element)));
-    measure(cells, fine);
-    const Tabulation& t = fine.table;
+    const Element& element = *cells.element;
+    const Tabulation t = tabulate(element, quadrature(element.shape, mass_degree(element)));
     for (int c = 0; c < cells.count(); ++c) {
-      Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(t.nodes, t.nodes);
-      for (int p = 0; p < t.points; ++p) {
-        const Eigen::Map<const Vector> n(t.n.data() + index(p * t.nodes), t.nodes);
-        nodal += density * fine.volume[index(c * t.points + p)] * n * n.transpose();
-      }
-      const double scale = nodal.sum() / nodal.trace();
-      const std::span<const std::int32_t> nodes = nodes_of(cells, c);
+      const Eigen::MatrixXd nodal = nodal_mass(static_cast<int>(k), c, t);
       Eigen::MatrixXd local = Eigen::MatrixXd::Zero(t.nodes * dim, t.nodes * dim);
       for (int a = 0; a < t.nodes; ++a) {
-        for (int i = 0; i < dim; ++i) {
-          lumped_(nodes[index(a)] * dim + i) += scale * nodal(a, a);
-          for (int b = 0; b < t.nodes; ++b) local(a * dim + i, b * dim + i) = nodal(a, b);
+        for (int b = 0; b < t.nodes; ++b) {
+          for (int i = 0; i < dim; ++i) local(a * dim + i, b * dim + i) = nodal(a, b);
         }
       }
-      turn(nodes, nullptr, &local);
-      add_matrix(cells, blocks_[k], c, local, mass_);
+      turn(nodes_of(cells, c), nullptr, &local);
+      add_matrix(k, c, assembly(), local, out);
     }
   }
-  mass_.prune([](Eigen::Index, Eigen::Index, double value) { return value != 0.0; });
-}
-
-CellGeometry FeModel::geometry(const Block& block, int cell) const {
-  const Tabulation& t = block.table;
-  const std::size_t points = index(t.points), nodes = index(t.nodes), dim = index(t.dim);
-  const std::size_t first = index(cell) * points;
-  CellGeometry g{t.nodes, t.points, t.dim, {}, {}, {}};
-  g.volume = std::span(block.volume).subspan(first, points);
-  g.gradient = std::span(block.gradient).subspan(first * nodes * dim, points * nodes * dim);
-  if (!block.hoop.empty()) g.hoop = std::span(block.hoop).subspan(first * nodes, points * nodes);
-  return g;
+  out.prune([](Eigen::Index, Eigen::Index, double value) { return value != 0.0; });
 }
 
 bool FeModel::evaluate(std::span<const double> q, std::span<const double> history, Want want,
                        ModelResponse& out) {
+  if (batched_ && want == Want::force) return batched_force(q, out);
   if (!is_linear()) return assemble(q, history, want, out);
+  SparseMatrix& stiffness = assembly().stiffness;
+  if (stiffness.size() == 0) {
+    const std::vector<double> rest(index(dofs()), 0.0);
+    const bool admissible = assemble(rest, {}, Want::tangent, out);
+    ABUT_ASSERT(admissible);
+    stiffness = out.tangent;
+  }
   const Eigen::Map<const Vector> u(q.data(), dofs());
-  out.force.noalias() = stiffness_ * u;
-  if (want == Want::tangent) out.tangent = stiffness_;
+  out.force.noalias() = stiffness * u;
+  if (want == Want::tangent) out.tangent = stiffness;
   out.stored = 0.5 * u.dot(out.force);
   out.dissipation = 0.0;
   out.history.clear();
   return true;
 }
 
+bool FeModel::batched_force(std::span<const double> q, ModelResponse& out) {
+  out.dissipation = 0.0;
+  out.history.clear();
+  out.force.resize(dofs());
+  const std::span<double> force(out.force.data(), index(dofs()));
+  if (frames_.empty()) return batched_->evaluate(q, force, out.stored);
+  u_.assign(q.begin(), q.end());
+  to_space(u_);
+  const bool admissible = batched_->evaluate(u_, force, out.stored);
+  to_frames(force);
+  return admissible;
+}
+
 double FeModel::roundoff(std::span<const double> q) const {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const Assembly& units = assembly();
   const Eigen::Map<const Vector> u(q.data(), dofs());
-  const double strain = is_linear() ? u.lpNorm<Eigen::Infinity>() * gradient_unit_ : 1.0;
-  return epsilon * force_unit_ * strain * std::sqrt(static_cast<double>(dofs()));
+  const double strain = is_linear() ? u.lpNorm<Eigen::Infinity>() * units.gradient_unit : 1.0;
+  return epsilon * units.force_unit * strain * std::sqrt(static_cast<double>(dofs()));
 }
 
 bool FeModel::assemble(std::span<const double> q, std::span<const double> history, Want want,
                        ModelResponse& out) {
   out.force.setZero(dofs());
-  if (want == Want::tangent) out.tangent = pattern_;
+  const Assembly& reference = assembly();
+  if (want == Want::tangent) out.tangent = reference.pattern;
   out.history.resize(history_size_);
   out.stored = out.dissipation = 0.0;
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const CellBlock& cells = mesh_.blocks[k];
-    const std::size_t each = index(blocks_[k].table.points * kernel_.history_size());
+    const CellMeasures& measures = reference.measures[k];
+    const std::size_t each = index(measures.points * kernel_.history_size());
     for (int c = 0; c < cells.count(); ++c) {
       const std::size_t at = blocks_[k].history + index(c) * each;
       gather(cells, c, q, u_);
       const bool admissible = kernel_.evaluate(
-          geometry(blocks_[k], c), u_, history.subspan(at, each),
-          std::span(out.history).subspan(at, each),
+          measures.of(c), u_, history.subspan(at, each), std::span(out.history).subspan(at, each),
           want == Want::tangent ? abut::Want::tangent : abut::Want::stress, local_);
       if (!admissible) return false;
-      scatter(cells, blocks_[k], c, want, local_, out);
+      scatter(k, c, want, local_, out);
     }
   }
   return true;
@@ -255,8 +273,9 @@ void FeModel::gather(const CellBlock& cells, int cell, std::span<const double> q
   }
 }
 
-void FeModel::scatter(const CellBlock& cells, const Block& block, int cell, Want want,
-                      CellResponse& local, ModelResponse& out) const {
+void FeModel::scatter(std::size_t block, int cell, Want want, CellResponse& local,
+                      ModelResponse& out) const {
+  const CellBlock& cells = mesh_.blocks[block];
   const int dim = mesh_.dim;
   turn(nodes_of(cells, cell), &local.force, want == Want::tangent ? &local.tangent : nullptr);
   int a = 0;
@@ -264,21 +283,22 @@ void FeModel::scatter(const CellBlock& cells, const Block& block, int cell, Want
     out.force.segment(node * dim, dim) += local.force.segment(dim * a, dim);
     ++a;
   }
-  if (want == Want::tangent) add_matrix(cells, block, cell, local.tangent, out.tangent);
+  if (want == Want::tangent) add_matrix(block, cell, assembly(), local.tangent, out.tangent);
   out.stored += local.stored;
   out.dissipation += local.dissipation;
 }
 
-void FeModel::add_matrix(const CellBlock& cells, const Block& block, int cell,
+void FeModel::add_matrix(std::size_t block, int cell, const Assembly& assembly,
                          const Eigen::MatrixXd& local, SparseMatrix& out) const {
+  const CellBlock& cells = mesh_.blocks[block];
   const int dim = mesh_.dim, n = cells.element->nodes;
   const std::span<const std::int32_t> nodes = nodes_of(cells, cell);
-  const std::int32_t* position = block.position.data() + index(cell) * index(n * n);
+  const std::int32_t* position = assembly.position[block].data() + index(cell) * index(n * n);
   double* values = out.valuePtr();
   for (int a = 0; a < n; ++a) {
     for (int b = 0; b < n; ++b) {
       const std::int32_t first = position[a * n + b];
-      const std::int32_t* column = pattern_.outerIndexPtr() + nodes[index(b)] * dim;
+      const std::int32_t* column = assembly.pattern.outerIndexPtr() + nodes[index(b)] * dim;
       for (int k = 0; k < dim; ++k) {
         double* at = values + first + (column[k] - column[0]);
         for (int i = 0; i < dim; ++i) at[i] += local(a * dim + i, b * dim + k);
@@ -340,8 +360,8 @@ void FeModel::add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::Matr
 
 double FeModel::volume() const {
   double sum = 0.0;
-  for (const Block& block : blocks_) {
-    for (double v : block.volume) sum += v;
+  for (const CellMeasures& cells : assembly().measures) {
+    for (double v : cells.volume) sum += v;
   }
   return sum;
 }
@@ -352,12 +372,13 @@ bool FeModel::visit(std::span<const double> q, std::span<const double> history,
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const CellBlock& cells = mesh_.blocks[k];
     const std::size_t per_point = index(kernel_.history_size());
-    const std::size_t each = index(blocks_[k].table.points) * per_point;
+    const CellMeasures& measures = assembly().measures[k];
+    const std::size_t each = index(measures.points) * per_point;
     after.resize(each);
     for (int c = 0; c < cells.count(); ++c) {
       const std::span<const double> before =
           history.subspan(blocks_[k].history + index(c) * each, each);
-      const CellGeometry cell = geometry(blocks_[k], c);
+      const CellGeometry cell = measures.of(c);
       gather(cells, c, q, u_);
       if (!kernel_.evaluate(cell, u_, before, after, abut::Want::stress, local_)) return false;
       for (int p = 0; p < cell.points; ++p) {

@@ -5,18 +5,13 @@
 #include <optional>
 #include <vector>
 
+#include "subdomain_solver/fe/batched_cells.hpp"
 #include "subdomain_solver/fe/cell_kernel.hpp"
+#include "subdomain_solver/fe/cell_measures.hpp"
 #include "subdomain_solver/fe/mesh.hpp"
-#include "subdomain_solver/materials/plane.hpp"
 #include "subdomain_solver/model.hpp"
 
 namespace abut {
-
-struct FeOptions {
-  Plane plane = Plane::strain;  // of meshes in two dimensions
-  Formulation formulation = Formulation::full;
-  double thickness = 1.0;  // [m] of plane cells; axisymmetric ones span the full circle
-};
 
 /// Orthonormal frame of one node (dim x dim, columns are its axes): the node's coordinates q are
 /// components along them, which makes an inclined roller a prescribed coordinate.
@@ -26,7 +21,9 @@ struct NodeFrame {
 };
 
 /// Finite elements in two or three dimensions, total Lagrangian [M.41]: q holds the nodal
-/// displacements (nodes, dim), in the node's own frame where it has one.
+/// displacements (nodes, dim), in the node's own frame where it has one. What only tangents need
+/// (geometry at all points, pattern, consistent mass) is made when first asked for: forces by
+/// batched cells need none of it.
 class FeModel final : public Model {
  public:
   FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOptions& options,
@@ -35,7 +32,7 @@ class FeModel final : public Model {
   int dofs() const override { return mesh_.node_count() * mesh_.dim; }
   bool is_linear() const override { return material_->is_linear(); }
   std::size_t history_size() const override { return history_size_; }
-  const SparseMatrix& mass() const override { return mass_; }
+  const SparseMatrix& mass() const override;
   const Vector& lumped_mass() const override { return lumped_; }
   double roundoff(std::span<const double> q) const override;
   [[nodiscard]] bool evaluate(std::span<const double> q, std::span<const double> history, Want want,
@@ -66,25 +63,35 @@ class FeModel final : public Model {
                            const std::function<void(const PointState&)>& see);
 
  private:
-  struct Block {  // reference geometry of the cells of one element
+  struct Block {  // the cells of one element
     Tabulation table;
-    std::vector<double> volume, gradient, hoop;  // (cells, points), (..., nodes, dim), (..., nodes)
-    std::vector<std::int32_t> position;  // (cells, nodes, nodes) of the first entry in the tangent
-    std::size_t history = 0;             // where its numbers begin
+    std::size_t history = 0;  // where its numbers begin
+  };
+  struct Assembly {                                   // of whole matrices
+    std::vector<CellMeasures> measures;               // (blocks)
+    std::vector<std::vector<std::int32_t>> position;  // (blocks; cells, nodes, nodes) of the first
+                                                      // entry in the tangent
+    SparseMatrix pattern;                             // zeros where the tangent has entries
+    SparseMatrix stiffness;                           // of linear models, which need no other
+    SparseMatrix mass;
+    double force_unit = 0.0;     // [N] largest force of a cell at unit strain
+    double gradient_unit = 0.0;  // [1/m] largest gradient of a shape function
   };
 
+  Assembly& assembly() const;
   [[nodiscard]] bool assemble(std::span<const double> q, std::span<const double> history, Want want,
                               ModelResponse& out);
-  void measure(const CellBlock& cells, Block& block) const;
-  void find_units(const Block& block);
-  void find_pattern();
-  void assemble_mass();
-  CellGeometry geometry(const Block& block, int cell) const;
+  void find_units(const CellMeasures& measures, Assembly& out) const;
+  void find_pattern(Assembly& out) const;
+  void assemble_mass(SparseMatrix& out) const;
+  void lump_mass();
+  Eigen::MatrixXd nodal_mass(int block, int cell, const Tabulation& table) const;
+  [[nodiscard]] bool batched_force(std::span<const double> q, ModelResponse& out);
   void gather(const CellBlock& cells, int cell, std::span<const double> q,
               std::vector<double>& u) const;
-  void scatter(const CellBlock& cells, const Block& block, int cell, Want want, CellResponse& local,
+  void scatter(std::size_t block, int cell, Want want, CellResponse& local,
                ModelResponse& out) const;
-  void add_matrix(const CellBlock& cells, const Block& block, int cell,
+  void add_matrix(std::size_t block, int cell, const Assembly& assembly,
                   const Eigen::MatrixXd& local, SparseMatrix& out) const;
   const Matrix3* frame(std::int32_t node) const;
   void rotate(std::span<double> values, bool into_frames) const;
@@ -97,11 +104,8 @@ class FeModel final : public Model {
   std::vector<Block> blocks_;
   std::size_t history_size_ = 0;
   std::vector<NodeFrame> frames_;  // sorted by node; usually none
-  SparseMatrix pattern_;           // zeros where the tangent has entries
-  SparseMatrix stiffness_;         // of linear models, which need no other
-  double force_unit_ = 0.0;        // [N] largest force of a cell at unit strain
-  double gradient_unit_ = 0.0;     // [1/m] largest gradient of a shape function
-  SparseMatrix mass_;
+  mutable std::unique_ptr<Assembly> assembly_;
+  std::unique_ptr<BatchedCells> batched_;  // null: cell by cell
   Vector lumped_;
   CellKernel kernel_;
   CellResponse local_;

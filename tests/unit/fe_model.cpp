@@ -21,8 +21,9 @@ struct Case {
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
-  *out << c.element << (c.formulation == Formulation::full ? " full " : " mean_dilatation ")
-       << static_cast<int>(c.plane) << " " << c.law;
+  const char* names[] = {" full ", " mean_dilatation ", " one_point "};
+  *out << c.element << names[static_cast<int>(c.formulation)] << static_cast<int>(c.plane) << " "
+       << c.law;
 }
 
 std::unique_ptr<const Material> law_named(const std::string& name) {
@@ -34,11 +35,13 @@ std::unique_ptr<const Material> law_named(const std::string& name) {
 std::vector<Case> cases(const std::vector<std::string>& laws) {
   std::vector<Case> out;
   for (const std::string& element : solid_elements()) {
-    const bool flat = element_named(element).dim == 2;
-    for (Formulation formulation : {Formulation::full, Formulation::mean_dilatation}) {
+    const bool flat = element_named(element).dim == 2, linear = element_named(element).order == 1;
+    for (Formulation formulation :
+         {Formulation::full, Formulation::mean_dilatation, Formulation::one_point}) {
+      if (formulation == Formulation::one_point && !linear) continue;
       for (Plane plane : {Plane::strain, Plane::stress, Plane::axisymmetric}) {
         if (!flat && plane != Plane::strain) continue;
-        if (plane == Plane::stress && formulation != Formulation::full) continue;
+        if (plane == Plane::stress && formulation == Formulation::mean_dilatation) continue;
         for (const std::string& law : laws) out.push_back({element, formulation, plane, law});
       }
     }

@@ -1,0 +1,144 @@
+#include "subdomain_solver/fe/batched_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/assert.hpp"
+#include "subdomain_solver/materials/linear_elastic.hpp"
+#include "subdomain_solver/materials/neo_hookean.hpp"
+#include "subdomain_solver/materials/saint_venant_kirchhoff.hpp"
+
+namespace abut {
+
+namespace {
+
+std::optional<BatchedLaw> law_of(const Material& material) {
+  if (dynamic_cast<const LinearElastic*>(&material) != nullptr) return BatchedLaw::linear_elastic;
+  if (dynamic_cast<const SaintVenantKirchhoff*>(&material) != nullptr)
+    return BatchedLaw::saint_venant_kirchhoff;
+  if (dynamic_cast<const NeoHookean*>(&material) != nullptr) return BatchedLaw::neo_hookean;
+  return std::nullopt;
+}
+
+std::optional<BatchedCell> cell_of(const Element& element, bool one_point) {
+  if (element.name == "hex8") return one_point ? BatchedCell::hex8_one_point : BatchedCell::hex8;
+  if (element.name == "quad4") return one_point ? BatchedCell::quad4_one_point : BatchedCell::quad4;
+  if (element.name == "tet4") return BatchedCell::tet4;
+  return std::nullopt;
+}
+
+std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+/// Rows of Dim numbers, wherever they lie, to rows of 4, and back.
+template <int Dim>
+void copy_in(const std::vector<std::int32_t>& nodes, const double* from, double* to) {
+  for (const std::int32_t node : nodes) {
+    const double* row = from + index(node) * Dim;
+    for (int i = 0; i < Dim; ++i) to[i] = row[i];
+    to += 4;
+  }
+}
+template <int Dim>
+void copy_out(std::span<const std::int32_t> nodes, const double* from, double* to) {
+  for (const std::int32_t node : nodes) {
+    double* row = to + index(node) * Dim;
+    for (int i = 0; i < Dim; ++i) row[i] = from[i];
+    from += 4;
+  }
+}
+
+}  // namespace
+
+std::vector<const KernelTable*> batched_kernels() {
+  std::vector<const KernelTable*> tables;
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("x86-64-v4")) tables.push_back(&batched_kernels_avx512());
+  if (__builtin_cpu_supports("x86-64-v3")) tables.push_back(&batched_kernels_avx2());
+#endif
+  tables.push_back(&batched_kernels_generic());
+  return tables;
+}
+
+bool BatchedCells::can(const Mesh& mesh, const Material& material) {
+  return law_of(material) &&
+         std::all_of(mesh.blocks.begin(), mesh.blocks.end(), [](const CellBlock& block) {
+           return cell_of(*block.element, false).has_value();
+         });
+}
+
+BatchedCells::BatchedCells(const Mesh& mesh, const Material& material,
+                           const BatchedOptions& options)
+    : dim_(mesh.dim),
+      patches_(mesh),
+      table_(options.kernels != nullptr ? *options.kernels : *batched_kernels().front()),
+      parameters_{material.moduli(), options.hourglass * material.moduli().p_wave(),
+                  options.thickness},
+      threads_(options.threads) {
+  ABUT_ASSERT(can(mesh, material));
+  for (const CellBlock& block : mesh.blocks)
+    kernels_.push_back(table_.of(*cell_of(*block.element, options.one_point), *law_of(material)));
+  copies_.resize(index(threads_.count()));
+  for (Copies& c : copies_) {
+    c.displacement.resize(4 * patches_.most_copies());
+    c.force.resize(4 * patches_.most_copies());
+  }
+  shared_.resize(patches_.shared_copies() * index(dim_));
+  stored_.resize(patches_.list().size());
+  answers_.resize(patches_.list().size());
+}
+
+void BatchedCells::evaluate(std::size_t p, Copies& copies, std::span<const double> q,
+                            std::span<double> force) {
+  const CellPatch& patch = patches_.list()[p];
+  const std::size_t rest = 4 * patch.nodes.size(), end = patch.reference.size();
+  double* u = copies.displacement.data();
+  if (dim_ == 3)
+    copy_in<3>(patch.nodes, q.data(), u);
+  else
+    copy_in<2>(patch.nodes, q.data(), u);
+  std::fill(u + rest, u + end, 0.0);
+  std::fill_n(copies.force.begin(), end, 0.0);
+  PatchView view{
+      patch.batches, patch.places.data(), patch.reference.data(), u, copies.force.data(), {}};
+  answers_[p] = kernels_[index(patch.block)](view, parameters_);
+  stored_[p] = 0.0;
+  for (const double energy : view.stored) stored_[p] += energy;
+  const std::span<const std::int32_t> own = std::span(patch.nodes).first(index(patch.own));
+  if (dim_ == 3)
+    copy_out<3>(own, copies.force.data(), force.data());
+  else
+    copy_out<2>(own, copies.force.data(), force.data());
+  const std::size_t dim = index(dim_);
+  for (std::size_t n = own.size(); n < patch.nodes.size(); ++n)
+    for (std::size_t i = 0; i < dim; ++i)
+      shared_[(patch.first_shared + n - own.size()) * dim + i] = copies.force[4 * n + i];
+}
+
+bool BatchedCells::evaluate(std::span<const double> q, std::span<double> force, double& stored) {
+  threads_.run(patches_.list().size(), [this, q, force](std::size_t patch, int worker) {
+    evaluate(patch, copies_[index(worker)], q, force);
+  });
+  const std::size_t dim = index(dim_), count = patches_.shared_count();
+  constexpr std::size_t each = 4096;  // shared nodes of one task
+  threads_.run((count + each - 1) / each, [this, force, dim, count](std::size_t task, int) {
+    for (std::size_t s = task * each; s < std::min(count, (task + 1) * each); ++s) {
+      const CellPatches::SharedNode node = patches_.shared(s);
+      for (std::size_t i = 0; i < dim; ++i) {
+        double sum = 0.0;
+        for (const std::int32_t copy : node.copies) sum += shared_[index(copy) * dim + i];
+        force[index(node.node) * dim + i] = sum;
+      }
+    }
+  });
+  stored = 0.0;
+  for (const double energy : stored_) stored += energy;
+  return std::isfinite(stored) && std::find(answers_.begin(), answers_.end(), 0) == answers_.end();
+}
+
+std::size_t BatchedCells::bytes() const {
+  std::size_t sum = patches_.bytes() + (shared_.size() + stored_.size()) * sizeof(double);
+  for (const Copies& c : copies_) sum += (c.displacement.size() + c.force.size()) * sizeof(double);
+  return sum;
+}
+
+}  // namespace abut

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/worker_threads.hpp"
+#include "subdomain_solver/fe/batched_kernel.hpp"
+#include "subdomain_solver/fe/cell_patches.hpp"
+#include "subdomain_solver/materials/material.hpp"
+
+namespace abut {
+
+struct BatchedOptions {
+  bool one_point = false;   // hex8 and quad4 with the mean gradient and hourglass stiffness
+  double hourglass = 0.05;  // coefficient of that stiffness [M.52]
+  double thickness = 1.0;   // [m] of plane cells, in plane strain
+  int threads = 1;
+  const KernelTable* kernels = nullptr;  // null: the widest that the machine has
+};
+
+/// Instruction sets that both the build and this machine know, the widest first.
+std::vector<const KernelTable*> batched_kernels();
+
+/// Internal force and stored energy of a whole mesh by cells in batches of 8: for explicit steps.
+/// Reference geometry is computed anew from the nodes each time, which is cheaper than to read it
+/// from memory. The same bits for every number of threads and every width of registers.
+class BatchedCells {
+ public:
+  /// Whether all cells (hex8, quad4, tet4) and the law have a batched form.
+  static bool can(const Mesh& mesh, const Material& material);
+
+  BatchedCells(const Mesh& mesh, const Material& material, const BatchedOptions& options);
+
+  /// q: [m] (nodes, dim) displacements; force: [N] (nodes, dim) r(q). False: a point has no answer,
+  /// or a number is not finite, and both results are undefined.
+  [[nodiscard]] bool evaluate(std::span<const double> q, std::span<double> force, double& stored);
+
+  WorkerThreads& threads() { return threads_; }
+  const char* instructions() const { return table_.instructions; }
+  std::size_t bytes() const;  // [B] of memory that this object holds
+
+ private:
+  struct Copies {  // of what the nodes of one patch carry
+    std::vector<double> displacement, force;
+  };
+  void evaluate(std::size_t patch, Copies& copies, std::span<const double> q,
+                std::span<double> force);
+
+  int dim_;
+  CellPatches patches_;
+  const KernelTable& table_;
+  BatchedParameters parameters_;
+  std::vector<PatchKernel> kernels_;    // (blocks)
+  std::vector<Copies> copies_;          // (threads)
+  std::vector<double> shared_;          // [N] (shared copies, dim)
+  std::vector<double> stored_;          // [J] (patches)
+  std::vector<unsigned char> answers_;  // (patches)
+  WorkerThreads threads_;
+};
+
+}  // namespace abut

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "subdomain_solver/materials/moduli.hpp"
+
+namespace abut {
+
+inline constexpr int batch_lanes = 8;  // cells of a batch, whatever the width of registers
+
+/// Cells of one element that are computed together, in batches of 8, on their own copy of what
+/// their nodes carry.
+struct PatchView {
+  int batches = 0;
+  const std::int32_t* nodes = nullptr;       // (batches, nodes of the element, 8) into the copies
+  const double* reference = nullptr;         // [m] (nodes, 4) position; the fourth number is unused
+  const double* displacement = nullptr;      // [m] (nodes, 4)
+  double* force = nullptr;                   // [N] (nodes, 4) to which the cells add
+  std::array<double, batch_lanes> stored{};  // [J] per lane, to which the cells add
+};
+
+struct BatchedParameters {
+  Moduli moduli;
+  double hourglass = 0.0;  // [Pa] coefficient x P-wave modulus
+  double thickness = 1.0;  // [m] of plane cells
+};
+
+/// Internal force and stored energy of a patch. False: a point has no answer.
+using PatchKernel = bool (*)(PatchView&, const BatchedParameters&);
+
+enum class BatchedLaw { linear_elastic, saint_venant_kirchhoff, neo_hookean, count };
+enum class BatchedCell { hex8, hex8_one_point, quad4, quad4_one_point, tet4, count };
+
+/// Kernels of every cell (rows) with every law (columns), for one instruction set.
+struct KernelTable {
+  const char* instructions = "";
+  std::array<std::array<PatchKernel, static_cast<int>(BatchedLaw::count)>,
+             static_cast<int>(BatchedCell::count)>
+      kernels{};
+
+  PatchKernel of(BatchedCell cell, BatchedLaw law) const {
+    return kernels[static_cast<std::size_t>(cell)][static_cast<std::size_t>(law)];
+  }
+};
+
+// The same source, compiled once for each instruction set; all give the same bits.
+const KernelTable& batched_kernels_generic();
+const KernelTable& batched_kernels_avx2();
+const KernelTable& batched_kernels_avx512();
+
+}  // namespace abut
