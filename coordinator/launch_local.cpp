@@ -3,6 +3,8 @@
 #include <array>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/yaml_fields.hpp"
@@ -82,6 +84,17 @@ Row row_of(const Scene& scene, const Document& document) {
   return row;
 }
 
+/// Exact solutions are of bodies that push each other and never pull.
+void require_contact(const Scene& scene, const Document& document) {
+  for (const auto& [name, interface] : scene.interfaces)
+    if (interface.tied)
+      throw InputError(
+          fmt::format("describes contact, but the interface {} is tied", name),
+          document.where("meta.closed_form"),
+          "Leave out meta.closed_form (and expectations that need it), or make one bar of the tied "
+          "ones.");
+}
+
 /// The two bodies of one interface alone.
 ClosedForm impact_of(const Scene& scene, const Row& row, const std::string& interface) {
   std::size_t index = 0;
@@ -117,6 +130,7 @@ void validate_body_specs(const Scene& scene, const Document& document) {
 
 std::optional<ClosedForm> make_closed_form(const Scene& scene, const Document& document) {
   if (!scene.meta.closed_form) return std::nullopt;
+  require_contact(scene, document);
   const Row row = row_of(scene, document);
   const std::vector<std::string> names = exact_interfaces(scene);
   try {
