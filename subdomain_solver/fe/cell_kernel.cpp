@@ -63,40 +63,38 @@ int CellKernel::entry(int direction, int column) const {
   return dim_ == 3 || column < 2 ? direction + 3 * column : 8;
 }
 
-const CellKernel::Operator& CellKernel::along(const Point& point, int direction) const {
-  return point.b[dim_ == 3 ? 0 : static_cast<std::size_t>(direction)];
+const Eigen::MatrixXd& CellKernel::along(int direction) const {
+  return b_[dim_ == 3 ? 0 : static_cast<std::size_t>(direction)];
 }
 
 void CellKernel::fill_operators(const CellGeometry& cell) {
   dim_ = cell.dim;
   nodes_ = cell.nodes;
   points_.resize(static_cast<std::size_t>(cell.points));
-  const double* gradient = cell.gradient.data();
-  for (std::size_t p = 0; p < points_.size(); ++p, gradient += nodes_ * dim_) {
-    Point& point = points_[p];
-    point.volume = cell.volume[p];
-    for (std::size_t i = 0; i < (dim_ == 3 ? 1 : 2); ++i) {
-      Operator& b = point.b[i];
-      b.resize(nodes_, 3);
-      b.leftCols(dim_) = Eigen::Map<const Eigen::MatrixXd>(gradient, dim_, nodes_).transpose();
-      if (dim_ == 3) continue;
-      const bool hoop = i == 0 && !cell.hoop.empty();
-      for (int a = 0; a < nodes_; ++a)
-        b(a, 2) =
-            hoop ? cell.hoop[p * static_cast<std::size_t>(nodes_) + static_cast<std::size_t>(a)]
-                 : 0.0;
+  for (int p = 0; p < cell.points; ++p)
+    points_[static_cast<std::size_t>(p)].volume = cell.volume[static_cast<std::size_t>(p)];
+  for (std::size_t i = 0; i < (dim_ == 3 ? 1 : 2); ++i) {
+    b_[i].setZero(nodes_, 3 * cell.points);
+    for (int p = 0; p < cell.points; ++p) {
+      const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(p) * nodes_;
+      const double* gradient = cell.gradient.data() + first * dim_;
+      for (int a = 0; a < nodes_; ++a) {
+        for (int j = 0; j < dim_; ++j) b_[i](a, 3 * p + j) = gradient[a * dim_ + j];
+        if (i == 0 && !cell.hoop.empty()) b_[i](a, 3 * p + 2) = cell.hoop.data()[first + a];
+      }
     }
   }
 }
 
 void CellKernel::deform(std::span<const double> u) {
-  for (Point& point : points_) {
-    point.f.setIdentity();
-    for (int i = 0; i < dim_; ++i) {
-      const Operator& b = along(point, i);
+  for (Point& point : points_) point.f.setIdentity();
+  for (int i = 0; i < dim_; ++i) {
+    for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
       for (int j = 0; j < 3; ++j) {
-        double& f = point.f.data()[entry(i, j)];
-        for (int a = 0; a < nodes_; ++a) f += b(a, j) * u[static_cast<std::size_t>(a * dim_ + i)];
+        const double* b = along(i).col(3 * p + j).data();
+        double sum = 0.0;
+        for (int a = 0; a < nodes_; ++a) sum += b[a] * u[static_cast<std::size_t>(a * dim_ + i)];
+        points_[static_cast<std::size_t>(p)].f.data()[entry(i, j)] += sum;
       }
     }
   }
@@ -188,38 +186,40 @@ double CellKernel::split_moduli(double on_mean) {
 }
 
 /// Sum over the points of B^T S.
-void CellKernel::integrate(Matrix3 Point::*field, Eigen::VectorXd& out) const {
-  out.setZero(nodes_ * dim_);
-  for (const Point& point : points_) {
-    const Matrix3& s = point.*field;
-    for (int i = 0; i < dim_; ++i) {
-      const Operator& b = along(point, i);
-      const Eigen::Vector3d part(s.data()[entry(i, 0)], s.data()[entry(i, 1)],
-                                 s.data()[entry(i, 2)]);
-      for (int a = 0; a < nodes_; ++a) out(a * dim_ + i) += b.row(a).dot(part);
+void CellKernel::integrate(Matrix3 Point::*field, Eigen::VectorXd& out) {
+  out.resize(nodes_ * dim_);
+  entries_.resize(3 * static_cast<Eigen::Index>(points_.size()));
+  for (int i = 0; i < dim_; ++i) {
+    int column = 0;
+    for (const Point& point : points_) {
+      for (int j = 0; j < 3; ++j) entries_(column++) = (point.*field).data()[entry(i, j)];
     }
+    Eigen::Map<Eigen::VectorXd, 0, Eigen::InnerStride<>>(
+        out.data() + i, nodes_, Eigen::InnerStride<>(dim_)) = along(i).lazyProduct(entries_);
   }
 }
 
-/// Sum over the points of B^T D B, for one pair of directions after the other: loops over nodes
-/// are then products of (nodes, 3) matrices without holes.
+/// Sum over the points of B^T D B, for one pair of directions after the other: no entry of these
+/// matrices is zero in space.
 void CellKernel::integrate_moduli(Eigen::MatrixXd& out) {
   const int size = nodes_ * dim_;
   out.resize(size, size);
   using Stride = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
   using Pair = Eigen::Map<Eigen::MatrixXd, 0, Stride>;
   const Stride stride(dim_ * size, dim_);
+  scaled_.resize(nodes_, 3 * static_cast<Eigen::Index>(points_.size()));
   for (int i = 0; i < dim_; ++i) {
     for (int k = i; k < dim_; ++k) {
-      part_.setZero(nodes_, nodes_);
+      int column = 0;
       for (const Point& point : points_) {
         Matrix3 d;
         for (int j = 0; j < 3; ++j) {
           for (int l = 0; l < 3; ++l) d(j, l) = point.moduli(entry(i, j), entry(k, l));
         }
-        scaled_.noalias() = along(point, i).lazyProduct(d);
-        part_.noalias() += scaled_.lazyProduct(along(point, k).transpose());
+        scaled_.middleCols<3>(column) = along(i).middleCols<3>(column).lazyProduct(d);
+        column += 3;
       }
+      part_.noalias() = scaled_ * along(k).transpose();
       Pair(out.data() + i + k * size, nodes_, nodes_, stride) = part_;
       Pair(out.data() + k + i * size, nodes_, nodes_, stride) = part_.transpose();
     }

@@ -57,11 +57,8 @@ class CellKernel {
   }
 
  private:
-  /// (nodes, 3) derivatives of three entries of F by the displacements along one direction.
-  using Operator = Eigen::Matrix<double, Eigen::Dynamic, 3>;
   struct Point {
-    std::array<Operator, 2> b;  // in space the first serves all directions
-    double volume = 0.0;        // [m^3] reference
+    double volume = 0.0;  // [m^3] reference
     Matrix3 f = Matrix3::Identity();
     PointResponse response;
     Matrix3 force;   // S [J]
@@ -79,7 +76,7 @@ class CellKernel {
   static void add_hourglass(const CellGeometry& cell, std::span<const double> u, Want want,
                             CellResponse& out);
   int entry(int direction, int column) const;
-  const Operator& along(const Point& point, int direction) const;
+  const Eigen::MatrixXd& along(int direction) const;
   void fill_operators(const CellGeometry& cell);
   void deform(std::span<const double> u);
   bool average_volume();
@@ -88,18 +85,22 @@ class CellKernel {
   double split_force();
   double split_moduli(double on_mean);
   double mean_scale() const { return material_.is_linear() ? 1.0 : dilatation_; }
-  void integrate(Matrix3 Point::*field, Eigen::VectorXd& out) const;
+  void integrate(Matrix3 Point::*field, Eigen::VectorXd& out);
   void integrate_moduli(Eigen::MatrixXd& out);
 
   const Material& material_;
   Formulation formulation_;
   std::vector<Point> points_;
   int dim_ = 3, nodes_ = 0;
+  /// (nodes, 3 x points) B: derivatives of three entries of F at a point by the displacements along
+  /// one direction. In space the first matrix serves all directions.
+  std::array<Eigen::MatrixXd, 2> b_;
   double volume_ = 0.0;            // [m^3] of the cell
   double dilatation_ = 1.0;        // theta: mean det F of the cell; linear: mean trace of grad u
   Eigen::VectorXd mean_gradient_;  // m = d theta / du (nodes x dim)
   Eigen::VectorXd coupling_;       // work space (nodes x dim)
-  Operator scaled_;                // work space
+  Eigen::VectorXd entries_;        // work space (3 x points)
+  Eigen::MatrixXd scaled_;         // work space (nodes, 3 x points)
   Eigen::MatrixXd part_;           // work space (nodes, nodes)
 };
 

@@ -17,7 +17,7 @@ class LinearSolver {
   [[nodiscard]] virtual bool solve(const Vector& b, Vector& x) = 0;
 };
 
-/// Direct: CHOLMOD when the build has it (docs/adr/0006), Eigen's own LDL^T otherwise and for
+/// Direct: CHOLMOD when the build has it (docs/adr/0007), Eigen's own LDL^T otherwise and for
 /// matrices that are not positive definite.
 std::unique_ptr<LinearSolver> make_direct_solver();
 /// Conjugate gradients with incomplete Cholesky factors; for positive definite matrices too large

@@ -27,7 +27,7 @@ TEST(YieldingCube, FollowsTheUniaxialLawThroughLoadAndUnload) {
   Hardening hardening;
   hardening.yield_stress = s0;
   hardening.modulus = h;
-  for (const std::string& element : {"hex8", "tet10"}) {
+  for (const std::string element : {"hex8", "tet10"}) {
     for (Formulation formulation : {Formulation::full, Formulation::mean_dilatation}) {
       Solid s(unit_mesh(element, 1),
               std::make_unique<J2Plasticity>(isotropic(young, 0.3), hardening, 1.0),

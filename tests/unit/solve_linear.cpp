@@ -1,0 +1,63 @@
+// Goal: direct and iterative solvers of symmetric systems, definite, indefinite and singular.
+// Oracle: the equation itself.
+#include "subdomain_solver/solve/linear_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/tolerance.hpp"
+
+namespace abut {
+namespace {
+
+/// Second differences of n points, clamped at both ends, with `shift` taken from the diagonal. The
+/// eigenvalues are 2 - 2 cos(k pi/(n+1)) - shift.
+SparseMatrix chain(int n, double shift) {
+  SparseMatrix k(n, n);
+  for (int i = 0; i < n; ++i) {
+    k.insert(i, i) = 2.0 - shift;
+    if (i > 0) k.insert(i - 1, i) = -1.0;
+    if (i + 1 < n) k.insert(i + 1, i) = -1.0;
+  }
+  k.makeCompressed();
+  return k;
+}
+
+void expect_solution(LinearSolver& solver, const SparseMatrix& k, double tolerance) {
+  const Vector b = Vector::LinSpaced(k.rows(), -1.0, 2.0);
+  Vector x;
+  ASSERT_TRUE(solver.factor(k));
+  ASSERT_TRUE(solver.solve(b, x));
+  EXPECT_LT((k * x - b).norm(), tolerance * b.norm());
+}
+
+TEST(DirectSolver, SolvesDefiniteAndIndefiniteSystemsOfOnePatternInTurn) {
+  const std::unique_ptr<LinearSolver> solver = make_direct_solver();
+  // Backward stable: round-off of a residual whose terms are 4 |x|; |x| is up to 500 |b| here.
+  expect_solution(*solver, chain(50, 0.0), roundoff(1.0e4, 1.0));
+  expect_solution(*solver, chain(50, 1.3), roundoff(1.0e4, 1.0));
+  expect_solution(*solver, chain(50, 0.0), roundoff(1.0e4, 1.0));
+}
+
+TEST(DirectSolver, SaysThatASystemIsSingular) {
+  SparseMatrix k = chain(4, 0.0);
+  for (int i : {0, 3}) k.coeffRef(i, i) = 1.0;  // both ends free
+  const std::unique_ptr<LinearSolver> solver = make_direct_solver();
+  Vector x;
+  EXPECT_FALSE(solver->factor(k) && solver->solve(Vector::Ones(4), x));
+}
+
+TEST(DirectSolver, SaysThatAMatrixIsNotANumber) {
+  SparseMatrix k = chain(4, 0.0);
+  k.coeffRef(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  const std::unique_ptr<LinearSolver> solver = make_direct_solver();
+  Vector x;
+  EXPECT_FALSE(solver->factor(k) && solver->solve(Vector::Ones(4), x));
+}
+
+TEST(ConjugateGradients, SolveToTheirTolerance) {
+  const std::unique_ptr<LinearSolver> solver = make_conjugate_gradients(1.0e-10);
+  expect_solution(*solver, chain(200, 0.0), 1.0e-9);  // recurred and true residual drift apart
+}
+
+}  // namespace
+}  // namespace abut
