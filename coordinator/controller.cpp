@@ -31,7 +31,8 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       joints_(coupling_.joints()),
       schwarz_(make_schwarz(scene.schwarz)),
       anchor_(scene.time.begin),
-      time_(scene.time.begin) {
+      time_(scene.time.begin),
+      energy_guard_(scene.schwarz.energy_guard) {
   end_.status = "completed";
   reports_.resize(coupling_.interfaces.size());
 }
@@ -59,8 +60,11 @@ RunEnd Controller::run() {
 /// The bodies are in the middle of a solve, or gone: there is no state to hash.
 void Controller::give_up(const RunError& error, bool interrupted, double wall_seconds) {
   end_.status = "interrupted";  // a wait that the user has ended is no failure
-  if (!interrupted)
-    fail(time_, (error.where.empty() ? "" : error.where + ": ") + error.what_is_wrong);
+  if (!interrupted) {
+    end_.status = "failed";
+    const std::string text = (error.where.empty() ? "" : error.where + ": ") + error.what_is_wrong;
+    tell({RunEvent::Kind::failure, time_, blamed(text), text, {}, true});
+  }
   end_.compute_seconds = bodies_.compute_seconds();
   end_.wall_seconds = wall_seconds;
   end_.exchanges = bodies_.exchanges();
@@ -94,6 +98,7 @@ void Controller::observe_start() {
   if (std::optional<Failed> failed = bodies_.advance_all())
     return fail(failed->time, failed->detail);
   tie();
+  watch_energy(time_);
   fill_reports(nullptr);
   for (Observer* observer : observers_)
     observer->on_window({instant, bodies_.responses(), reports_});
@@ -132,6 +137,7 @@ bool Controller::fly_free() {
   end_.windows += windows;
   since_ += windows;
   time_ = flight.end;
+  watch_energy(time_);
   events_here_ = 0;
   flight_limit_ = std::min(most_windows_at_once, 2 * flight_limit_);
   return true;
@@ -158,9 +164,15 @@ void Controller::step_window() {
     }
     bodies_.restore_all();
     if (cut - window.begin >= event_tolerance * shortest_step()) {
-      const TimeWindow part{window.index, window.begin, cut};
+      TimeWindow part{window.index, window.begin, cut};
       const Attempt& shorter = advance(part);
-      if (shorter.failed) return fail(shorter.failed->time, shorter.failed->detail);
+      if (shorter.failed || !shorter.converged()) {
+        if (!handle_trouble(shorter, part)) return;
+        if (shorter.failed || scene_.schwarz.on_nonconvergence != "accept") {
+          window = part;  // halved
+          continue;
+        }
+      }
       accept(part, shorter);
       for (const Event& event : events) apply(event);
       return;
@@ -270,6 +282,7 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
   advance_clock(window.end, whole);
   if (whole) events_here_ = 0;
   halvings_ = 0;
+  watch_energy(window.end);
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     Interface& interface = coupling_.interfaces[i];
     if (interface.closed && coupling_.rules[i].swap) interface.kinematic = 1 - interface.kinematic;
@@ -337,15 +350,46 @@ void Controller::fill_reports(const Attempt* attempt) {
   }
 }
 
+/// Contact is passive: energy that appears says that steps or windows are unstable here.
+void Controller::watch_energy(double time) {
+  const bool ours = std::ranges::any_of(coupling_.rules, [](const Coupling::Rule& rule) {
+    return !rule.internal;  // contact inside a body is that body's own affair
+  });
+  if (!ours) return;
+  const EnergyGuard::Verdict verdict = energy_guard_.look(bodies_.responses());
+  if (verdict == EnergyGuard::Verdict::fine) return;
+  const std::string text = fmt::format(
+      "energy has grown by {:.2g} % of the most there was in motion, and contact makes none; give "
+      "smaller steps, or contact_layer: massless",
+      100.0 * energy_guard_.growth());
+  if (verdict == EnergyGuard::Verdict::warn) {
+    emit(RunEvent::Kind::warning, time, "", text, {{"growth", energy_guard_.growth()}});
+  } else if (end_.status == "completed") {
+    fail(time, text + fmt::format("; the bound of {:g} % is schwarz.energy_guard",
+                                  100.0 * scene_.schwarz.energy_guard));
+  }
+}
+
 void Controller::emit(RunEvent::Kind kind, double time, const std::string& subject,
                       const std::string& text, std::map<std::string, double> values) {
-  const RunEvent event{kind, time, subject, text, std::move(values)};
+  tell({kind, time, subject, text, std::move(values)});
+}
+
+void Controller::tell(const RunEvent& event) {
   for (Observer* observer : observers_) observer->on_event(event);
+}
+
+std::string Controller::blamed(const std::string& text) const {
+  for (int b = 0; b < bodies_.count(); ++b) {
+    const std::string& name = bodies_.describe(b).name;
+    if (text.find("body '" + name + "'") != std::string::npos) return name;
+  }
+  return "";
 }
 
 void Controller::fail(double time, const std::string& text) {
   end_.status = "failed";
-  emit(RunEvent::Kind::failure, time, "", text);
+  emit(RunEvent::Kind::failure, time, blamed(text), text);
 }
 
 std::uint64_t Controller::state_hash() {

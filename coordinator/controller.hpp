@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "coordinator/couple.hpp"
+#include "coordinator/energy_guard.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/scene.hpp"
 
@@ -77,6 +78,9 @@ class Controller {
   double longest_step() const;
   bool running() const;
   void fail(double time, const std::string& text);
+  void tell(const RunEvent& event);
+  std::string blamed(const std::string& text) const;  // the body that a text names, or empty
+  void watch_energy(double time);
   void emit(RunEvent::Kind kind, double time, const std::string& subject, const std::string& text,
             std::map<std::string, double> values = {});
   std::uint64_t state_hash();
@@ -106,6 +110,7 @@ class Controller {
   Partition partition_;
   Attempt attempt_;
   std::vector<InterfaceReport> reports_;
+  EnergyGuard energy_guard_;
 };
 
 }  // namespace abut

@@ -158,7 +158,7 @@ int report(const Scene& scene, const ClosedForm* form, const Measures& measures,
     if (status == "completed" && !results.empty()) fmt::print("{}\n", to_table(results));
     fmt::print("{} after {:.3f} s: {} windows, {} of them in contact, {} exchanges\n", status,
                end.wall_seconds, end.windows, end.contact_windows, end.exchanges);
-    if (end.state_hash != 0) fmt::print("state  {:016x}\n", end.state_hash);
+    if (end.state_hash) fmt::print("state  {:016x}\n", *end.state_hash);
     fmt::print("files  {0}\nplots  abut report {0}\n", directory.string());
   }
   return pass ? 0 : exit_expectation;
@@ -188,10 +188,16 @@ int run_verb(const RunCommand& command) {
   const Validated valid = validate_all(scene, document);
   const fs::path directory =
       command.out.empty() ? default_run_directory(command.scene) : fs::path(command.out);
-  make_run_directory(directory, command.force);
+  const bool fresh = make_run_directory(directory, command.force);
 
-  Placement placement = place(scene, document, command.local, interrupted);
-  validate_bodies(scene, placement.descriptions(), document);
+  Placement placement;
+  try {
+    placement = place(scene, document, command.local, interrupted);
+    validate_bodies(scene, placement.descriptions(), document);
+  } catch (...) {  // a run that never begins leaves nothing behind
+    if (fresh) remove_run_directory(directory);
+    throw;
+  }
   for (const Description* body : placement.descriptions())
     log_info(fmt::format("{}: {}", body->name, body->model));
 

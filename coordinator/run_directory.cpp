@@ -41,7 +41,7 @@ fs::path default_run_directory(const std::string& scene_path) {
   return fs::path("runs") / fs::path(scene_path).stem();
 }
 
-void make_run_directory(const fs::path& directory, bool force) {
+bool make_run_directory(const fs::path& directory, bool force) {
   const fs::path there = existing_part(directory);
   std::error_code error;
   if (!fs::is_directory(there, error))
@@ -51,8 +51,14 @@ void make_run_directory(const fs::path& directory, bool force) {
   if (!force && (is_there(directory / run_files[0]) || is_there(directory / run_files[1])))
     throw InputError("holds a run already", directory.string(),
                      "Give another directory with --out, or --force to replace that run.");
-  fs::create_directories(directory, error);
+  const bool fresh = fs::create_directories(directory, error);
   if (error) refuse(directory, "cannot be made: " + error.message());
+  return fresh;
+}
+
+void remove_run_directory(const fs::path& directory) {
+  std::error_code not_empty;
+  fs::remove(directory, not_empty);
 }
 
 void clear_run_directory(const fs::path& directory) {

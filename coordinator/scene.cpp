@@ -131,6 +131,10 @@ void SchwarzSpec::fields(Fields& f) {
   f.choice("accelerator", accelerator, "choice of the next iterate", Presence::optional);
   f.word("on_nonconvergence", on_nonconvergence, {"stop", "halve", "accept"},
          "answer to a window that does not converge: end the run, halve the window, or go on");
+  f.optional("energy_guard", energy_guard, "",
+             "growth of the bodies' energy, less external work, that ends the run as failed, as a "
+             "fraction of the most kinetic and stored energy so far; half of it is warned of",
+             positive);
 }
 
 void OutputSpec::fields(Fields& f) {

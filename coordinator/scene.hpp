@@ -130,6 +130,7 @@ struct SchwarzSpec {
                AndersonAcceleration>
       accelerator;
   std::string on_nonconvergence = "stop";  // stop | halve | accept
+  double energy_guard = 0.01;  // of the most energy in motion: growth that ends the run
   void fields(Fields& f);
 };
 

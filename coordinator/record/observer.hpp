@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,6 +49,7 @@ struct RunEvent {
   std::string subject;                   // interface or body name
   std::string text;                      // one sentence for people
   std::map<std::string, double> values;  // e.g. velocity_jump, window
+  bool thrown = false;                   // the error that ends the program says it on the terminal
 };
 
 const char* to_string(RunEvent::Kind kind);
@@ -55,7 +57,8 @@ const char* to_string(RunEvent::Kind kind);
 struct RunEnd {
   std::string status;                    // completed | failed | interrupted
   double time = 0.0;                     // [s] how far the run came
-  std::uint64_t state_hash = 0;          // over bodies and coordinator, equal in every placement
+  // over bodies and coordinator, equal in every placement; empty: the bodies were gone
+  std::optional<std::uint64_t> state_hash;
   std::int64_t windows = 0;              // accepted
   std::int64_t contact_windows = 0;      // accepted with a closed interface
   std::int64_t exchanges = 0;            // requests answered by bodies, kernels included

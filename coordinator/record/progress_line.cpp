@@ -40,6 +40,7 @@ std::string ProgressLine::text(const WindowReport& report) const {
 
 void ProgressLine::on_event(const RunEvent& event) {
   erase();
+  if (event.thrown) return;
   const std::string line = fmt::format("{:.6e} s: {}", event.time, event.text);
   if (event.kind == RunEvent::Kind::failure)
     log_error(line);

@@ -172,7 +172,8 @@ std::string Summary::text(const RunEnd& end) const {
   summary["measures"] = measures_object(recorder_.measures(), notes);
   summary["expectations"] = expectations_array(heading_.expectations, recorder_.measures(), notes);
   if (form_ != nullptr) summary["closed_form"] = closed_form_object(*form_);
-  summary["state_hash"] = fmt::format("{:016x}", end.state_hash);
+  summary["state_hash"] =
+      end.state_hash ? Json(fmt::format("{:016x}", *end.state_hash)) : Json(nullptr);
   summary["windows"] = end.windows;
   summary["contact_windows"] = end.contact_windows;
   summary["exchanges"] = end.exchanges;

@@ -64,12 +64,16 @@ class FaultTest(SystemTest):
         last = result.stderr.splitlines()[-1]
         for word in ("error: ", *words):
             self.assertIn(word, last)
+        told = [line for line in result.stderr.splitlines() if words[0] in line]
+        self.assertEqual(told, [last], "said once")
 
     def assert_failure_is_written(self, *words: str):
         self.assert_whole(self.out, rows=1)
         self.assertEqual(self.summary()["status"], "failed")
+        self.assertIsNone(self.summary()["state_hash"], "the bodies are gone")
         last = self.events()[-1]
         self.assertEqual(last["kind"], "failure")
+        self.assertIn(f"body '{last['subject']}'", last["text"])
         for word in words:
             self.assertIn(word, last["text"])
 
@@ -136,7 +140,7 @@ class Strangers(FaultTest):
 
     def assert_start_fails(self, seconds: float, arguments: list, *words: str):
         self.assert_fails(self.run_in_background(*arguments), seconds, *words)
-        self.assertEqual(list(self.out.iterdir()), [], "no window, no files")
+        self.assertFalse(self.out.exists(), "a run that never begins leaves nothing behind")
 
     def test_a_spawned_program_that_never_connects_is_given_up(self):
         mute = self.program("exec sleep 600")
