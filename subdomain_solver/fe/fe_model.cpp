@@ -65,6 +65,8 @@ FeModel::Assembly& FeModel::assembly() const {
     CellMeasures measures;
     for (int c = 0; c < mesh_.blocks[k].count(); ++c)
       measure_cell(mesh_, mesh_.blocks[k], c, blocks_[k].table, options_, p_wave, measures);
+    measures.volume.shrink_to_fit();
+    measures.gradient.shrink_to_fit();
     find_units(measures, *assembly_);
     assembly_->measures.push_back(std::move(measures));
   }
@@ -193,6 +195,7 @@ void FeModel::assemble_mass(SparseMatrix& out) const {
     }
   }
   out.prune([](Eigen::Index, Eigen::Index, double value) { return value != 0.0; });
+  out.data().squeeze();  // two of three entries are gone, their memory not yet
 }
 
 bool FeModel::evaluate(std::span<const double> q, std::span<const double> history, Want want,
