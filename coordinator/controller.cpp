@@ -150,12 +150,24 @@ void Controller::step_window() {
   while (running()) {
     const Attempt& attempt = advance(window);
     if (attempt.failed || !attempt.converged()) {
+      if (!attempt.failed && shorten_loose(window)) {
+        bodies_.restore_all();
+        continue;
+      }
       if (!handle_trouble(attempt, window)) return;
       if (attempt.failed || scene_.schwarz.on_nonconvergence != "accept") continue;
     }
     const std::vector<Event> events = first_events(window);
     if (events.empty()) return accept(window, attempt);
-    if (++events_here_ > most_events) return step_chattering(window);
+    if (loosen_grazing()) {
+      bodies_.restore_all();
+      continue;
+    }
+    if (++events_here_ > most_events) {
+      loosen_chattering(window);
+      bodies_.restore_all();
+      continue;
+    }
     const double cut = events.front().state;
     if (cut >= window.end) {  // a touch at the very end changes nothing before it
       accept(window, attempt);
@@ -167,6 +179,11 @@ void Controller::step_window() {
       TimeWindow part{window.index, window.begin, cut};
       const Attempt& shorter = advance(part);
       if (shorter.failed || !shorter.converged()) {
+        if (!shorter.failed && shorten_loose(part)) {
+          window = part;
+          bodies_.restore_all();
+          continue;
+        }
         if (!handle_trouble(shorter, part)) return;
         if (shorter.failed || scene_.schwarz.on_nonconvergence != "accept") {
           window = part;  // halved
@@ -282,6 +299,7 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
   advance_clock(window.end, whole);
   if (whole) events_here_ = 0;
   halvings_ = 0;
+  settle(window);
   watch_energy(window.end);
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     Interface& interface = coupling_.interfaces[i];
@@ -338,7 +356,9 @@ void Controller::prepare(const TimeWindow& window, int records, Sampling samplin
 
 void Controller::fill_reports(const Attempt* attempt) {
   for (std::size_t i = 0; i < reports_.size(); ++i) {
-    reports_[i] = {coupling_.interfaces[i].closed, coupling_.interfaces[i].kinematic};
+    const Interface& interface = coupling_.interfaces[i];
+    const bool silent = interface.loose() && peak_force(interface, bodies_) == 0.0;
+    reports_[i] = {interface.closed && !silent, interface.kinematic};
   }
   if (attempt == nullptr) return;
   watch_internal();

@@ -60,7 +60,13 @@ class Controller {
   const Partition& partition();
   bool handle_trouble(const Attempt& attempt, TimeWindow& window);
   void accept(const TimeWindow& window, const Attempt& attempt);
-  void step_chattering(const TimeWindow& window);
+  void loosen(int interface, double speed);
+  bool loosen_grazing();
+  void loosen_chattering(const TimeWindow& window);
+  bool shorten_loose(TimeWindow& window) const;
+  void settle(const TimeWindow& window);
+  void tell_closed(const Interface& interface, double time);
+  void tell_opened(const Interface& interface, double time);
 
   TimeWindow next_window() const;
   void advance_clock(double end, bool whole);
@@ -100,6 +106,8 @@ class Controller {
   double time_;             // [s]
   int events_here_ = 0;     // since the last whole window: a bound on chatter
   int halvings_ = 0;
+  double fastest_closing_ = 0.0;  // [m/s] of all first touches
+  double force_reference_ = 0.0;  // [N] largest contact force of the run
   // of a substep: an event so near to the window's begin is there
   static constexpr double event_tolerance = 1.0e-4;
   static constexpr int most_events = 8;              // per window; more is chatter

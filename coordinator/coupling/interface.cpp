@@ -12,6 +12,8 @@ namespace abut {
 
 void Interface::state(Archive& archive) {
   archive.field("closed", closed);
+  archive.field("bilateral", bilateral);
+  archive.field("pressed", pressed);
   archive.field("touching", touching);
   archive.field("opened_at", opened_at);
   archive.field("closing_speed", closing_speed);

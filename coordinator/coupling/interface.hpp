@@ -22,10 +22,11 @@ struct Interface {
   std::array<double, 2> normal = {0.0, 0.0};  // outward, +1 or -1
   double reference_gap = 0.0;                 // [m] along the normal of side 0, reference positions
   int kinematic = 0;                          // index of the kinematic (Dirichlet) side
-  // False for a window in which contact may open and close: every substep decides for itself.
-  bool bilateral = true;
   // What contact carries from window to window:
   bool closed = false;
+  // False: closed, but loosely. Contact may come and go, and every substep decides for itself.
+  bool bilateral = true;
+  bool pressed = false;   // told of as closed, and not of as open since
   bool touching = false;  // contact inside a body presses: nothing is iterated
   double opened_at = -std::numeric_limits<double>::infinity();  // [s] last release
   double closing_speed = 0.0;                                   // [m/s] at the last first touch
@@ -35,6 +36,7 @@ struct Interface {
 
   void state(Archive& archive);
 
+  bool loose() const { return closed && !bilateral; }
   const Side& kinematic_side() const { return sides[static_cast<std::size_t>(kinematic)]; }
   const Side& neumann_side() const { return sides[static_cast<std::size_t>(1 - kinematic)]; }
   double normal_of(int side) const { return normal[static_cast<std::size_t>(side)]; }

@@ -131,6 +131,26 @@ Eigen::VectorXd solve_toeplitz(const std::vector<double>& column, const Eigen::V
   return x;
 }
 
+Eigen::VectorXd solve_unilateral(const std::vector<double>& kinematic,
+                                 const std::vector<double>& neumann, double normal,
+                                 const Eigen::VectorXd& r, const Eigen::VectorXd& overlap,
+                                 const Eigen::VectorXd& force) {
+  const Eigen::Index n = r.size();
+  ABUT_ASSERT(static_cast<Eigen::Index>(std::min(kinematic.size(), neumann.size())) >= n);
+  const Eigen::Map<const Eigen::VectorXd> ck(kinematic.data(), n);
+  const Eigen::Map<const Eigen::VectorXd> cn(neumann.data(), n);
+  const double both = ck[0] + cn[0];
+  Eigen::VectorXd left = overlap + normal * r;  // overlap that is left to be removed
+  Eigen::VectorXd motion = r;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double change = std::max(left[i] / both, -force[i]);
+    if (change == 0.0) continue;
+    left.tail(n - i) -= change * (ck + cn).head(n - i);
+    motion.tail(n - i) -= normal * change * cn.head(n - i);
+  }
+  return motion;
+}
+
 std::vector<double> unilateral_jacobian_column(const PortKernel& kinematic,
                                                const PortKernel& neumann, int count) {
   // Products and inverses of such matrices are such matrices again: C_N C_K^-1 has the column

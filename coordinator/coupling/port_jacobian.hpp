@@ -37,6 +37,15 @@ Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const TimeGrid&
 std::vector<double> unilateral_jacobian_column(const PortKernel& kinematic,
                                                const PortKernel& neumann, int count);
 
+/// The same where every substep decides for itself whether contact pushes: change of the Neumann
+/// side's motion that makes forces and gaps complementary, substep by substep  [M.32].
+/// `r` residual along x, `normal` outward of the Neumann side, `overlap` [m] and `force` [N] of the
+/// kinematic side at the substeps of the last sweep (n).
+Eigen::VectorXd solve_unilateral(const std::vector<double>& kinematic,
+                                 const std::vector<double>& neumann, double normal,
+                                 const Eigen::VectorXd& r, const Eigen::VectorXd& overlap,
+                                 const Eigen::VectorXd& force);
+
 /// x with T x = r for the lower triangular Toeplitz matrix T of a first column.
 Eigen::VectorXd solve_toeplitz(const std::vector<double>& column, const Eigen::VectorXd& r);
 

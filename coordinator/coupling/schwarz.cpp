@@ -92,6 +92,17 @@ std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
   return islands;
 }
 
+Eigen::VectorXd Schwarz::apply_inverses(const Eigen::VectorXd& r,
+                                        std::span<const Joint> joints) const {
+  Eigen::VectorXd out(r.size());
+  for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
+    const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
+    const Transmission& t = *joints[static_cast<std::size_t>(layout_.joints[i])].transmission;
+    out.segment(layout_.first[i], count) = t.apply_inverse(r.segment(layout_.first[i], count));
+  }
+  return out;
+}
+
 Accelerator& Schwarz::accelerator_of(const Island& island, std::span<const Joint> joints) {
   std::unique_ptr<Accelerator>& slot = accelerators_[island.joints];
   if (slot == nullptr) {
@@ -107,11 +118,11 @@ Accelerator& Schwarz::accelerator_of(const Island& island, std::span<const Joint
       };
     };
     using Values = Eigen::VectorXd;
-    slot = make_(
-        by_joint([](const Transmission& t, const Values& r) { return t.apply_inverse(r); }),
-        by_joint([](const Transmission& t, const Values& r) -> Values {
-          return t.first_factor() * r;
-        }));
+    slot =
+        make_(by_joint([](const Transmission& t, const Values& r) { return t.apply_inverse(r); }),
+              by_joint([](const Transmission& t, const Values& r) -> Values {
+                return t.first_factor() * r;
+              }));
   }
   return *slot;
 }
@@ -174,6 +185,12 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     }
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
+    if (std::ranges::any_of(island.joints, [&joints](int j) {
+          return joints[static_cast<std::size_t>(j)].transmission->projects();
+        })) {
+      x_ += apply_inverses(g_ - x_, joints);
+      continue;
+    }
     x_ = accelerator.next(x_.cwiseProduct(s_), g_.cwiseProduct(s_)).cwiseQuotient(s_);
   }
 }

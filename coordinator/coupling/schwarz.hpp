@@ -68,6 +68,7 @@ class Schwarz {
   };
   std::optional<Failed> sweep(const Island& island, std::span<const Joint> joints,
                               const Layout& layout, const Eigen::VectorXd& x, Bodies& bodies) const;
+  Eigen::VectorXd apply_inverses(const Eigen::VectorXd& r, std::span<const Joint> joints) const;
   Accelerator& accelerator_of(const Island& island, std::span<const Joint> joints);
 
   Options options_;

@@ -105,9 +105,14 @@ void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bod
   scale_.velocity = reference_velocity(interface, kinematic_compliance_, step);
   scale_.force = interface.force_scale;
   first_factor_ = 1.0 / (1.0 + neumann_compliance_ / kinematic_compliance_);
+  const bool alike = kinematic_grid_.same_as(neumann_grid_) && kernel_k.support == kernel_n.support;
+  projects_ = interface.loose() && alike;
+  kernel_k_ = &kernel_k;
+  kernel_n_ = &kernel_n;
+  outward_n_ = interface.normal_of(1 - interface.kinematic);
   inverse_ = inverses_.find(window.length());
   if (inverse_ != nullptr) return;
-  if (kinematic_grid_.same_as(neumann_grid_) && kernel_k.support == kernel_n.support) {
+  if (alike) {
     inverse_ = inverses_.store(window.length(),
                                unilateral_jacobian_column(kernel_k, kernel_n, neumann_grid_.count));
   } else if (std::max(kinematic_grid_.count, neumann_grid_.count) <= KernelInverse::largest) {
@@ -149,7 +154,7 @@ void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
   guess_.u = motion.u;
 }
 
-void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Interface& interface,
+void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
                        const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
   const Waveform& trace = trace_of(bodies, interface.neumann_side());
   const bool same = static_cast<int>(trace.size()) == neumann_grid_.count + 1;
@@ -158,6 +163,19 @@ void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Interface
       g[i - 1] = trace.u[static_cast<std::size_t>(i)];
     } else {
       trace.interpolate(trace.u, neumann_grid_.time(i), {&g[i - 1], 1});
+    }
+  }
+  if (projects_) {
+    const Waveform& reply = trace_of(bodies, interface.kinematic_side());
+    overlap_.resize(g.size());
+    force_.resize(g.size());
+    for (Eigen::Index i = 0; i < g.size(); ++i) {
+      const std::size_t at = static_cast<std::size_t>(i) + 1;
+      double u[2];
+      u[interface.kinematic] = reply.u[at];
+      u[1 - interface.kinematic] = x[i];
+      overlap_[i] = -interface.gap(u[0], u[1]);
+      force_[i] = -interface.normal_of(interface.kinematic) * reply.f[at];
     }
   }
   scale_.force = std::max(interface.force_scale, 0.0);
@@ -185,6 +203,10 @@ void Unilateral::scales(Eigen::Ref<Eigen::VectorXd> s) const {
 }
 
 Eigen::VectorXd Unilateral::apply_inverse(const Eigen::VectorXd& r) const {
+  if (projects_) {
+    return solve_unilateral(kernel_k_->displacement, kernel_n_->displacement, outward_n_, r,
+                            overlap_, force_);
+  }
   if (inverse_ != nullptr) return inverse_->solve(r);
   return first_factor_ * r;
 }

@@ -40,6 +40,9 @@ class Transmission {
   /// over that of both, each the inverse of its port kernel's first coefficient. 1 where one is not
   /// needed: what is iterated is scaled by the probe already, or the form is the published one.
   virtual double first_factor() const { return 1.0; }
+  /// True when apply_inverse answers contact that comes and goes within the window exactly, for
+  /// linear bodies: secants of other substeps in contact would spoil it.
+  virtual bool projects() const { return false; }
   /// True when the sides must be advanced one after the other, the kinematic one first.
   virtual bool ordered() const = 0;
 };
@@ -83,6 +86,7 @@ class Unilateral final : public Transmission {
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
   Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override;
   double first_factor() const override { return first_factor_; }
+  bool projects() const override { return projects_; }
   bool ordered() const override { return true; }
 
  private:
@@ -94,6 +98,12 @@ class Unilateral final : public Transmission {
   double kinematic_compliance_ = 0.0, neumann_compliance_ = 0.0;  // [m/N] over one substep
   double roundoff_gain_ = 1.0;  // of displacements, through the reaction
   double first_factor_ = 1.0;
+  // of a loose window: kernels, and what the last sweep left on K's side at the substeps
+  bool projects_ = false;
+  const PortKernel* kernel_k_ = nullptr;
+  const PortKernel* kernel_n_ = nullptr;
+  double outward_n_ = 1.0;
+  Eigen::VectorXd overlap_, force_;  // [m] [N] compressive
   KernelInverse inverses_;
   const KernelInverse::Entry* inverse_ = nullptr;
 };

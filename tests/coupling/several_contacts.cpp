@@ -151,6 +151,45 @@ TEST(ThreeBars, ThatTouchPassTheBlowOnWithoutMakingEnergy) {
   }
 }
 
+/// Bars of given impedances in a row that touch; the first one flies. They pass the blow on: bar k
+/// presses the next one from time k on for the time 2.
+SceneText touching(const std::vector<double>& impedances) {
+  SceneText scene = pair(1.0, 1.0, static_cast<double>(impedances.size()) + 1.5);
+  scene.bars.clear();
+  scene.interfaces.clear();
+  for (std::size_t b = 0; b < impedances.size(); ++b) {
+    const std::string name(1, static_cast<char>('a' + b));
+    scene.bars.push_back(unit_bar(name, static_cast<double>(b) - 1.0, 1.0, b == 0 ? 1.0 : 0.0,
+                                  impedances[b], {"left", "right"}));
+    if (b > 0) scene.interfaces.push_back({scene.bars[b - 1].name + ".right", name + ".left"});
+  }
+  return scene;
+}
+
+TEST(TouchingBars, CloseOnceEachWhenTheWaveArrives) {
+  constexpr const char* names[] = {"first", "second", "third", "fourth"};
+  for (const std::vector<double>& z :
+       std::vector<std::vector<double>>{{1, 1, 1}, {1, 0.5, 0.25}, {1, 1, 1, 1, 1}}) {
+    for (double steps : {1.0, 10.0, 50.0}) {
+      SceneText scene = touching(z);
+      scene.window = steps * step;
+      const ResultPtr r = run(scene);
+      ASSERT_TRUE(r->completed()) << z.size() << " bars, " << steps << r->events.back().text;
+      double v = 1.0;  // of the blow in the bar before, doubled at its free end
+      for (std::size_t i = 0; i + 1 < z.size(); ++i) {
+        const std::vector<double> closed = r->times(Kind::contact_closed, names[i]);
+        ASSERT_EQ(closed.size(), 1u) << z.size() << " bars, " << steps << names[i];
+        // a front is some cells wide, and counts from a twentieth of its height
+        EXPECT_NEAR(closed[0], static_cast<double>(i), 4 * front);
+        v *= 2.0 * z[i] / (z[i] + z[i + 1]);
+      }
+      EXPECT_NEAR(r->velocity(z.size() - 1), v, 2 * vibration * v);
+      EXPECT_LT(r->energy_error(), 1e-4);
+      EXPECT_GT(r->energy_error(), -1e-3);
+    }
+  }
+}
+
 TEST(ThreeBars, AreHitFromBothSidesAtOnceAndAtDifferentTimes) {
   for (double gap : {0.0, 0.1}) {
     const ResultPtr r = run(row(gap, -1.0));

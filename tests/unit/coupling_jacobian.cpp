@@ -191,5 +191,36 @@ TEST_P(PortJacobian, OfTheParallelMapIsItsDifference) {
             rounding(measured) * measured.inverse().norm() * r.norm());
 }
 
+TEST(UnilateralSolution, MakesForcesAndGapsComplementary) {
+  // kernels of two softening ports; contact at some substeps of the last sweep, gaps at others
+  const std::vector<double> ck = {2.0, 1.5, 1.2, 1.0, 0.9, 0.85},
+                            cn = {1.0, 1.1, 1.2, 1.2, 1.1, 1.0};
+  const Eigen::Index n = 6;
+  Eigen::VectorXd overlap(n), force(n), r(n);
+  overlap << 0.0, -0.4, 0.0, -0.1, 0.0, -2.0;
+  force << 0.5, 0.0, 2.0, 0.0, 0.1, 0.0;
+  r << -3.0, 1.0, 0.5, 2.0, -4.0, 0.3;
+  for (double normal : {1.0, -1.0}) {
+    const Eigen::VectorXd motion = solve_unilateral(ck, cn, normal, r, overlap, force);
+    // the change of force that this motion belongs to, and what it leaves of the overlap
+    const Eigen::VectorXd change = solve_toeplitz(cn, normal * (r - motion));
+    Eigen::VectorXd left = overlap + normal * r;
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j <= i; ++j)
+        left[i] -=
+            (ck[static_cast<std::size_t>(i - j)] + cn[static_cast<std::size_t>(i - j)]) * change[j];
+    const Eigen::VectorXd now = force + change;
+    int pressed = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      EXPECT_GE(now[i], -1e-12);
+      EXPECT_LE(left[i], 1e-12);
+      EXPECT_NEAR(now[i] * left[i], 0.0, 1e-12);
+      pressed += now[i] > 1e-12 ? 1 : 0;
+    }
+    EXPECT_GT(pressed, 0);
+    EXPECT_LT(pressed, n);
+  }
+}
+
 }  // namespace
 }  // namespace abut
