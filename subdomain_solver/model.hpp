@@ -6,6 +6,7 @@
 #include <Eigen/SparseCore>
 
 #include "base/archive.hpp"
+#include "base/worker_threads.hpp"
 
 namespace abut {
 
@@ -54,6 +55,8 @@ class Model {
   virtual std::size_t history_size() const = 0;
   virtual const SparseMatrix& mass() const = 0;   // [kg] consistent
   virtual const Vector& lumped_mass() const = 0;  // [kg] (dofs) of the same total
+  /// Threads that steps may use too; null: none.
+  virtual WorkerThreads* threads() { return nullptr; }
   /// [N] size of the round-off in r(q): a balance of forces below it cannot be improved.
   virtual double roundoff(std::span<const double> q) const = 0;
   /// r(q), from the history at the step's begin; the tangent when wanted. False: q is inadmissible

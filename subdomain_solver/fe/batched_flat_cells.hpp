@@ -12,9 +12,9 @@ struct QuadModes {
   Real at[2][4];  // (component, mode)
 
   [[gnu::always_inline]] void load_from(const double* nodal) {
-    for (int i = 0; i < 2; ++i) {
+    ABUT_UNROLLED (i, 0, 2) {
       Real n[4];
-      for (int a = 0; a < 4; ++a) n[a] = load<N>(nodal + (3 * a + i) * batch_lanes);
+      ABUT_UNROLLED (a, 0, 4) n[a] = load<N>(nodal + (3 * a + i) * batch_lanes);
       const Real s0 = n[1] + n[0], d0 = n[1] - n[0], s1 = n[2] + n[3], d1 = n[2] - n[3];
       at[i][one] = s1 + s0;
       at[i][x] = d1 + d0;
@@ -24,12 +24,12 @@ struct QuadModes {
   }
   /// Forces of the modes to forces of the nodes; mode 1 carries none.
   [[gnu::always_inline]] void store_to(double* nodal) const {
-    for (int i = 0; i < 2; ++i) {
+    ABUT_UNROLLED (i, 0, 2) {
       const Real d0 = at[i][x] - at[i][xy], d1 = at[i][x] + at[i][xy], s = at[i][y];
       const Real n[4] = {-s - d0, d0 - s, s + d1, s - d1};
-      for (int a = 0; a < 4; ++a) store<N>(n[a], nodal + (3 * a + i) * batch_lanes);
+      ABUT_UNROLLED (a, 0, 4) store<N>(n[a], nodal + (3 * a + i) * batch_lanes);
     }
-    for (int a = 0; a < 4; ++a) store<N>(Real{}, nodal + (3 * a + 2) * batch_lanes);
+    ABUT_UNROLLED (a, 0, 4) store<N>(Real{}, nodal + (3 * a + 2) * batch_lanes);
   }
 };
 
@@ -38,8 +38,8 @@ template <int N>
 [[gnu::always_inline]] inline TensorLanes<N> plane_gradient(
     const typename Lanes<N>::Real (&h)[2][2]) {
   TensorLanes<N> out{};
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j) out.entry[i + 3 * j] = h[i][j];
+  ABUT_UNROLLED (i, 0, 2)
+    ABUT_UNROLLED (j, 0, 2) out.entry[i + 3 * j] = h[i][j];
   return out;
 }
 
@@ -57,14 +57,14 @@ struct Quad4 {
     QuadModes<N> x, u, pull;
     x.load_from(nodal_x);
     u.load_from(nodal_u);
-    for (int i = 0; i < 2; ++i)
-      for (int m = 0; m < 4; ++m) pull.at[i][m] = Real{};
+    ABUT_UNROLLED (i, 0, 2)
+      ABUT_UNROLLED (m, 0, 4) pull.at[i][m] = Real{};
     const double scale = parameters.thickness / 16.0;  // 4^2: modes carry the factor 4
     for (int p = 0; p < 4; ++p) {
       const double a = (p & 1) != 0 ? gauss_point : -gauss_point;
       const double b = p > 1 ? gauss_point : -gauss_point;
       Real j[2][2], g[2][2];  // (component, direction)
-      for (int i = 0; i < 2; ++i) {
+      ABUT_UNROLLED (i, 0, 2) {
         j[i][0] = fused(broadcast<Real>(b), x.at[i][3], x.at[i][1]);
         j[i][1] = fused(broadcast<Real>(a), x.at[i][3], x.at[i][2]);
         g[i][0] = fused(broadcast<Real>(b), u.at[i][3], u.at[i][1]);
@@ -74,14 +74,14 @@ struct Quad4 {
       const Real cof[2][2] = {{j[1][1], -j[1][0]}, {-j[0][1], j[0][0]}};
       const Real inverse = 1.0 / det;
       Real h[2][2];
-      for (int i = 0; i < 2; ++i)
-        for (int k = 0; k < 2; ++k)
+      ABUT_UNROLLED (i, 0, 2)
+        ABUT_UNROLLED (k, 0, 2)
           h[i][k] = fused(g[i][0], cof[k][0], Real(g[i][1] * cof[k][1])) * inverse;
       LaneResponse<N> response;
       law(plane_gradient<N>(h), response);
       valid &= response.valid > 0.0;
       stored = fused(Real(scale * det), response.energy, stored);
-      for (int i = 0; i < 2; ++i) {
+      ABUT_UNROLLED (i, 0, 2) {
         const Real* s = response.stress.entry + i;
         const Real fx = fused(s[0], cof[0][0], Real(s[3] * cof[1][0])) * scale;
         const Real fy = fused(s[0], cof[0][1], Real(s[3] * cof[1][1])) * scale;
@@ -113,8 +113,8 @@ struct Quad4OnePoint {
     const Real det = fused(x.at[0][1], cof[0][0], Real(x.at[0][2] * cof[0][1]));
     const Real inverse = 1.0 / det, volume = (0.25 * parameters.thickness) * det;
     Real h[2][2];
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j)
+    ABUT_UNROLLED (i, 0, 2)
+      ABUT_UNROLLED (j, 0, 2)
         h[i][j] = fused(u.at[i][1], cof[j][0], Real(u.at[i][2] * cof[j][1])) * inverse;
     LaneResponse<N> response;
     law(plane_gradient<N>(h), response);
@@ -125,13 +125,13 @@ struct Quad4OnePoint {
     squares = fused(cof[0][1], cof[0][1], squares);
     squares = fused(cof[1][0], cof[1][0], fused(cof[1][1], cof[1][1], squares));
     const Real k = (parameters.hourglass * parameters.thickness / 8.0) * squares * inverse;
-    for (int i = 0; i < 2; ++i) {
+    ABUT_UNROLLED (i, 0, 2) {
       Real gap = u.at[i][3];
-      for (int j = 0; j < 2; ++j) gap = fused(Real(-h[i][j]), x.at[j][3], gap);
+      ABUT_UNROLLED (j, 0, 2) gap = fused(Real(-h[i][j]), x.at[j][3], gap);
       const Real q = k * gap;
       stored = fused(Real(0.5 * q), gap, stored);
       Real work[2];
-      for (int j = 0; j < 2; ++j) {
+      ABUT_UNROLLED (j, 0, 2) {
         const Real moment = q * x.at[j][3] * inverse;
         work[j] = fused(response.stress.entry[i + 3 * j],
                         broadcast<Real>(0.25 * parameters.thickness), Real(-moment));
@@ -156,8 +156,8 @@ struct Tet4 {
                                               typename Lanes<N>::Bits& valid) {
     using Real = typename Lanes<N>::Real;
     TensorLanes<N> j, g, cof, h;
-    for (int d = 0; d < 3; ++d)
-      for (int i = 0; i < 3; ++i) {
+    ABUT_UNROLLED (d, 0, 3)
+      ABUT_UNROLLED (i, 0, 3) {
         const int at = (3 * (d + 1) + i) * batch_lanes, origin = i * batch_lanes;
         j.entry[i + 3 * d] = load<N>(x + at) - load<N>(x + origin);
         g.entry[i + 3 * d] = load<N>(u + at) - load<N>(u + origin);
@@ -168,10 +168,10 @@ struct Tet4 {
     law(h, response);
     valid &= response.valid > 0.0;
     stored = fused(Real((1.0 / 6.0) * det), response.energy, stored);
-    for (int i = 0; i < 3; ++i) {
+    ABUT_UNROLLED (i, 0, 3) {
       const Real* s = response.stress.entry + i;
       Real rest = Real{};
-      for (int d = 0; d < 3; ++d) {
+      ABUT_UNROLLED (d, 0, 3) {
         const Real* c = cof.entry + 3 * d;
         const Real f = fused(s[0], c[0], fused(s[3], c[1], Real(s[6] * c[2]))) * (1.0 / 6.0);
         store<N>(f, force + (3 * (d + 1) + i) * batch_lanes);

@@ -55,9 +55,9 @@ template <int N>
 [[gnu::always_inline]] inline void load_hex_modes(const double* nodal,
                                                   typename Lanes<N>::Real (&mode)[3][8]) {
   using Real = typename Lanes<N>::Real;
-  for (int i = 0; i < 3; ++i) {
+  ABUT_UNROLLED (i, 0, 3) {
     Real n[8];
-    for (int a = 0; a < 8; ++a) n[a] = load<N>(nodal + (3 * a + i) * batch_lanes);
+    ABUT_UNROLLED (a, 0, 8) n[a] = load<N>(nodal + (3 * a + i) * batch_lanes);
     to_hex_modes(n, mode[i]);
   }
 }
@@ -66,10 +66,10 @@ template <int N>
 [[gnu::always_inline]] inline void store_hex_modes(const typename Lanes<N>::Real (&mode)[3][8],
                                                    double* nodal) {
   using Real = typename Lanes<N>::Real;
-  for (int i = 0; i < 3; ++i) {
+  ABUT_UNROLLED (i, 0, 3) {
     Real n[8];
     from_hex_modes(mode[i], n);
-    for (int a = 0; a < 8; ++a) store<N>(n[a], nodal + (3 * a + i) * batch_lanes);
+    ABUT_UNROLLED (a, 0, 8) store<N>(n[a], nodal + (3 * a + i) * batch_lanes);
   }
 }
 
@@ -90,8 +90,8 @@ inline constexpr double gauss_point = 0.57735026918962576451;  // 1/sqrt(3)
 template <class Real>
 [[gnu::always_inline]] inline void hex_gradients(const Real (&mode)[3][8],
                                                  HexGradients<Real>& out) {
-  for (int i = 0; i < 3; ++i)
-    for (int d = 0; d < 3; ++d) {
+  ABUT_UNROLLED (i, 0, 3)
+    ABUT_UNROLLED (d, 0, 3) {
       const int(&m)[4] = hex_line_modes[d];
       const Real e = gauss_point * mode[i][m[1]], f = gauss_point * mode[i][m[2]];
       const Real ef = (1.0 / 3.0) * mode[i][m[3]], mean = mode[i][m[0]];
@@ -107,9 +107,9 @@ template <class Real>
 template <class Real>
 [[gnu::always_inline]] inline void hex_forces(const HexGradients<Real>& s, double scale,
                                               Real (&mode)[3][8]) {
-  for (int i = 0; i < 3; ++i) {
-    for (int m = 0; m < 8; ++m) mode[i][m] = Real{};
-    for (int d = 0; d < 3; ++d) {
+  ABUT_UNROLLED (i, 0, 3) {
+    ABUT_UNROLLED (m, 0, 8) mode[i][m] = Real{};
+    ABUT_UNROLLED (d, 0, 3) {
       const int(&m)[4] = hex_line_modes[d];
       const Real low = s.at[d][1][i] + s.at[d][0][i], high = s.at[d][3][i] + s.at[d][2][i];
       const Real e_low = s.at[d][1][i] - s.at[d][0][i], e_high = s.at[d][3][i] - s.at[d][2][i];
@@ -128,8 +128,8 @@ template <int N>
                                                          const typename Lanes<N>::Real& inverse,
                                                          TensorLanes<N>& h) {
   using Real = typename Lanes<N>::Real;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
+  ABUT_UNROLLED (i, 0, 3)
+    ABUT_UNROLLED (j, 0, 3) {
       const Real sum =
           fused(g.entry[i], cof.entry[j],
                 fused(g.entry[i + 3], cof.entry[j + 3], Real(g.entry[i + 6] * cof.entry[j + 6])));
@@ -155,15 +155,15 @@ struct Hex8 {
     hex_gradients(mode, along);
     load_hex_modes<N>(u, mode);
     hex_gradients(mode, moved);
-    for (int d = 0; d < 3; ++d)
-      for (int l = 0; l < 4; ++l)
-        for (int i = 0; i < 3; ++i) pull.at[d][l][i] = Real{};
+    ABUT_UNROLLED (d, 0, 3)
+      ABUT_UNROLLED (l, 0, 4)
+        ABUT_UNROLLED (i, 0, 3) pull.at[d][l][i] = Real{};
     for (int p = 0; p < 8; ++p) {
       const int a = p & 1, b = (p >> 1) & 1, c = p >> 2;
       const int line[3] = {b + 2 * c, a + 2 * c, a + 2 * b};
       TensorLanes<N> j, g, cof, h;
-      for (int d = 0; d < 3; ++d)
-        for (int i = 0; i < 3; ++i) {
+      ABUT_UNROLLED (d, 0, 3)
+        ABUT_UNROLLED (i, 0, 3) {
           j.entry[i + 3 * d] = along.at[d][line[d]][i];
           g.entry[i + 3 * d] = moved.at[d][line[d]][i];
         }
@@ -174,8 +174,8 @@ struct Hex8 {
       stored = fused(Real(scale * det), response.energy, stored);
       valid &= response.valid > 0.0;
       const Real* s = response.stress.entry;
-      for (int d = 0; d < 3; ++d)
-        for (int i = 0; i < 3; ++i) {
+      ABUT_UNROLLED (d, 0, 3)
+        ABUT_UNROLLED (i, 0, 3) {
           Real& at = pull.at[d][line[d]][i];
           at = fused(
               s[i], cof.entry[3 * d],

@@ -7,7 +7,7 @@ namespace abut {
 /// c += a x b of two modes.
 template <class Real>
 [[gnu::always_inline]] inline void add_cross(const Real (&mode)[3][8], int a, int b, Real (&c)[3]) {
-  for (int i = 0; i < 3; ++i) {
+  ABUT_UNROLLED (i, 0, 3) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     c[i] += fused(mode[j][a], mode[k][b], Real(-mode[k][a] * mode[j][b]));
   }
@@ -23,19 +23,19 @@ struct HexMeanGradients {
   [[gnu::always_inline]] explicit HexMeanGradients(const Real (&x)[3][8]) {
     constexpr int linear[3] = {hex_mode::x, hex_mode::y, hex_mode::z};
     constexpr int product[3] = {hex_mode::yz, hex_mode::zx, hex_mode::xy};
-    for (int m = 0; m < 7; ++m)
-      for (int i = 0; i < 3; ++i) at[m][i] = Real{};
-    for (int d = 0; d < 3; ++d) {
+    ABUT_UNROLLED (m, 0, 7)
+      ABUT_UNROLLED (i, 0, 3) at[m][i] = Real{};
+    ABUT_UNROLLED (d, 0, 3) {
       const int e = (d + 1) % 3, f = (d + 2) % 3;
       // Mode d: (e x f) + 1/3 (de x df). Mode ef: 1/3 (f x df + de x e).
       Real third[3] = {};
       add_cross(x, product[f], product[e], third);
-      for (int i = 0; i < 3; ++i) at[linear[d]][i] = (1.0 / 3.0) * third[i];
+      ABUT_UNROLLED (i, 0, 3) at[linear[d]][i] = (1.0 / 3.0) * third[i];
       add_cross(x, linear[e], linear[f], at[linear[d]]);
       Real twice[3] = {};
       add_cross(x, linear[f], product[e], twice);
       add_cross(x, product[f], linear[e], twice);
-      for (int i = 0; i < 3; ++i) at[product[d]][i] = (1.0 / 3.0) * twice[i];
+      ABUT_UNROLLED (i, 0, 3) at[product[d]][i] = (1.0 / 3.0) * twice[i];
     }
   }
 };
@@ -58,13 +58,13 @@ struct Hex8OnePoint {
     load_hex_modes<N>(nodal_u, u);
     const HexMeanGradients<Real> mean(x);
     Real scaled = x[0][1] * mean.at[1][0];  // 64 V, by V = sum x_a V db_a/dx
-    for (int m = 2; m < 7; ++m) scaled = fused(x[0][m], mean.at[m][0], scaled);
+    ABUT_UNROLLED (m, 2, 7) scaled = fused(x[0][m], mean.at[m][0], scaled);
     const Real inverse = 1.0 / scaled, volume = (1.0 / 64.0) * scaled;
     TensorLanes<N> h;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
+    ABUT_UNROLLED (i, 0, 3)
+      ABUT_UNROLLED (j, 0, 3) {
         Real sum = u[i][1] * mean.at[1][j];
-        for (int m = 2; m < 7; ++m) sum = fused(u[i][m], mean.at[m][j], sum);
+        ABUT_UNROLLED (m, 2, 7) sum = fused(u[i][m], mean.at[m][j], sum);
         h.entry[i + 3 * j] = sum * inverse;
       }
     LaneResponse<N> response;
@@ -74,31 +74,30 @@ struct Hex8OnePoint {
 
     // k = coefficient M/24 V sum_a |b_a|^2; sum_a |V b_a|^2 = 8/64^2 sum_m |mean_m|^2.
     Real squares = mean.at[1][0] * mean.at[1][0];
-    for (int m = 1; m < 7; ++m)
-      for (int j = (m == 1 ? 1 : 0); j < 3; ++j)
-        squares = fused(mean.at[m][j], mean.at[m][j], squares);
+    ABUT_UNROLLED (m, 1, 7)
+      ABUT_UNROLLED (j, (m == 1 ? 1 : 0), 3) squares = fused(mean.at[m][j], mean.at[m][j], squares);
     const Real k = (parameters.hourglass / (24.0 * 8.0)) * squares * inverse;
     Real q[3][4], sum_q = Real{};  // k x gamma.u of the hourglasses 4 to 7
-    for (int i = 0; i < 3; ++i)
-      for (int m = 0; m < 4; ++m) {
+    ABUT_UNROLLED (i, 0, 3)
+      ABUT_UNROLLED (m, 0, 4) {
         Real gap = u[i][m + 4];
-        for (int j = 0; j < 3; ++j) gap = fused(Real(-h.entry[i + 3 * j]), x[j][m + 4], gap);
+        ABUT_UNROLLED (j, 0, 3) gap = fused(Real(-h.entry[i + 3 * j]), x[j][m + 4], gap);
         sum_q = fused(gap, gap, sum_q);
         q[i][m] = k * gap;
       }
     stored = fused(Real(0.5 * k), sum_q, stored);
 
     Real mode[3][8];
-    for (int i = 0; i < 3; ++i) {
+    ABUT_UNROLLED (i, 0, 3) {
       Real pull[3];  // what works on V b_a
-      for (int j = 0; j < 3; ++j) {
+      ABUT_UNROLLED (j, 0, 3) {
         Real moment = q[i][0] * x[j][4];
-        for (int m = 1; m < 4; ++m) moment = fused(q[i][m], x[j][m + 4], moment);
+        ABUT_UNROLLED (m, 1, 4) moment = fused(q[i][m], x[j][m + 4], moment);
         pull[j] =
             fused(moment, Real(-64.0 * inverse), response.stress.entry[i + 3 * j]) * (1.0 / 64.0);
       }
       mode[i][0] = Real{};
-      for (int m = 1; m < 7; ++m) {
+      ABUT_UNROLLED (m, 1, 7) {
         mode[i][m] = fused(pull[0], mean.at[m][0],
                            fused(pull[1], mean.at[m][1], Real(pull[2] * mean.at[m][2])));
         if (m >= 4) mode[i][m] += q[i][m - 4];

@@ -15,8 +15,9 @@ using Row = Lanes<4>::Real;  // what a node carries: 3 numbers and one unused
 template <int nodes>
 [[gnu::always_inline]] inline void gather(const double* from, const std::int32_t* list,
                                           double* out) {
-  for (int a = 0; a < nodes; ++a)
-    for (int half = 0; half < batch_lanes; half += 4) {
+  ABUT_UNROLLED (a, 0, nodes)
+    ABUT_UNROLLED (part, 0, 2) {
+      const int half = 4 * part;
       const std::int32_t* at = list + a * batch_lanes + half;
       const Row r0 = load<4>(from + 4 * at[0]), r1 = load<4>(from + 4 * at[1]);
       const Row r2 = load<4>(from + 4 * at[2]), r3 = load<4>(from + 4 * at[3]);
@@ -37,8 +38,9 @@ template <int nodes>
 [[gnu::always_inline]] inline void scatter(const double* from, const std::int32_t* list,
                                            double* out) {
   const Row none{};
-  for (int a = 0; a < nodes; ++a)
-    for (int half = 0; half < batch_lanes; half += 4) {
+  ABUT_UNROLLED (a, 0, nodes)
+    ABUT_UNROLLED (part, 0, 2) {
+      const int half = 4 * part;
       const std::int32_t* at = list + a * batch_lanes + half;
       const double* values = from + 3 * a * batch_lanes + half;
       const Row x = load<4>(values), y = load<4>(values + batch_lanes);
@@ -51,7 +53,7 @@ template <int nodes>
                            __builtin_shufflevector(xy13, z13, 0, 1, 4, 5),
                            __builtin_shufflevector(xy02, z02, 2, 3, 6, 7),
                            __builtin_shufflevector(xy13, z13, 2, 3, 6, 7)};
-      for (int l = 0; l < 4; ++l) {
+      ABUT_UNROLLED (l, 0, 4) {
         double* node = out + 4 * at[l];
         store<4>(Row(load<4>(node) + rows[l]), node);
       }
@@ -79,7 +81,7 @@ bool run_patch(PatchView& patch, const BatchedParameters& parameters) {
     }
     scatter<Cell::nodes>(force, list, patch.force);
   }
-  for (int l = 0; l < lanes; ++l)
+  ABUT_UNROLLED (l, 0, lanes)
     if (valid[l] == 0) return false;
   return true;
 }

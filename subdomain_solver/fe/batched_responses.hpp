@@ -25,7 +25,7 @@ struct LinearElasticResponse {
     const HookeLanes<Real> hooke(moduli, e);
     const Real* s = hooke.stress;
     const Real entries[9] = {s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]};
-    for (int k = 0; k < 9; ++k) out.stress.entry[k] = entries[k];
+    ABUT_UNROLLED (k, 0, 9) out.stress.entry[k] = entries[k];
     out.energy = hooke.energy(e);
     out.valid = broadcast<Real>(1.0);
   }
@@ -34,7 +34,7 @@ struct LinearElasticResponse {
 template <int N>
 [[gnu::always_inline]] inline TensorLanes<N> plus_identity(const TensorLanes<N>& h) {
   TensorLanes<N> f = h;
-  for (int k = 0; k < 9; k += 4) f.entry[k] += 1.0;
+  ABUT_UNROLLED (i, 0, 3) f.entry[4 * i] += 1.0;
   return f;
 }
 
@@ -50,7 +50,7 @@ struct SaintVenantKirchhoffResponse {
     const Real* s = hooke.stress;
     const TensorLanes<N> f = plus_identity(h);
     const Real* g = f.entry;
-    for (int i = 0; i < 3; ++i) {  // P = F S
+    ABUT_UNROLLED (i, 0, 3) {  // P = F S
       out.stress.entry[i] = fused(g[i], s[0], fused(g[i + 3], s[3], Real(g[i + 6] * s[5])));
       out.stress.entry[i + 3] = fused(g[i], s[3], fused(g[i + 3], s[1], Real(g[i + 6] * s[4])));
       out.stress.entry[i + 6] = fused(g[i], s[5], fused(g[i + 3], s[4], Real(g[i + 6] * s[2])));

@@ -21,8 +21,8 @@ template <int N>
                                                                TensorLanes<N>& cofactor) {
   using Real = typename Lanes<N>::Real;
   const Real* f = tensor.entry;
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i) {
+  ABUT_UNROLLED (j, 0, 3)
+    ABUT_UNROLLED (i, 0, 3) {
       const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = 3 * ((j + 1) % 3), j2 = 3 * ((j + 2) % 3);
       cofactor.entry[i + 3 * j] = fused(f[i1 + j1], f[i2 + j2], Real(-f[i1 + j2] * f[i2 + j1]));
     }
@@ -35,7 +35,7 @@ template <int N>
   using Real = typename Lanes<N>::Real;
   const Real* a = tensor.entry;
   Real sum = a[0] * a[0];
-  for (int k = 1; k < 9; ++k) sum = fused(a[k], a[k], sum);
+  ABUT_UNROLLED (k, 1, 9) sum = fused(a[k], a[k], sum);
   return sum;
 }
 
@@ -47,8 +47,8 @@ struct HookeLanes {
   [[gnu::always_inline]] HookeLanes(const Moduli& m, const Real (&e)[6]) {
     const Real mean = broadcast<Real>(m.lame()) * (e[0] + e[1] + e[2]);
     const Real twice = broadcast<Real>(2.0 * m.shear);
-    for (int k = 0; k < 3; ++k) stress[k] = fused(twice, e[k], mean);
-    for (int k = 3; k < 6; ++k) stress[k] = twice * e[k];
+    ABUT_UNROLLED (k, 0, 3) stress[k] = fused(twice, e[k], mean);
+    ABUT_UNROLLED (k, 3, 6) stress[k] = twice * e[k];
   }
   [[gnu::always_inline]] Real energy(const Real (&e)[6]) const {
     const Real normal = stress[0] * e[0] + stress[1] * e[1] + stress[2] * e[2];
@@ -79,7 +79,7 @@ template <bool green, class Real>
 template <int N>
 [[gnu::always_inline]] inline TensorLanes<N> minus_identity(const TensorLanes<N>& f) {
   TensorLanes<N> h = f;
-  for (int k = 0; k < 9; k += 4) h.entry[k] -= 1.0;
+  ABUT_UNROLLED (i, 0, 3) h.entry[4 * i] -= 1.0;
   return h;
 }
 
@@ -95,7 +95,7 @@ struct BatchedLinearElastic {
     const HookeLanes<Real> hooke(moduli, e);
     const Real* s = hooke.stress;
     const Real entries[9] = {s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]};
-    for (int k = 0; k < 9; ++k) p.entry[k] = entries[k];
+    ABUT_UNROLLED (k, 0, 9) p.entry[k] = entries[k];
     valid = broadcast<Real>(1.0);
   }
   template <int N>
@@ -119,7 +119,7 @@ struct BatchedSaintVenantKirchhoff {
     const HookeLanes<Real> hooke(moduli, e);
     const Real* s = hooke.stress;
     const Real* g = f.entry;
-    for (int i = 0; i < 3; ++i) {  // P = F S
+    ABUT_UNROLLED (i, 0, 3) {  // P = F S
       p.entry[i] = fused(g[i], s[0], fused(g[i + 3], s[3], Real(g[i + 6] * s[5])));
       p.entry[i + 3] = fused(g[i], s[3], fused(g[i + 3], s[1], Real(g[i + 6] * s[4])));
       p.entry[i + 6] = fused(g[i], s[5], fused(g[i + 3], s[4], Real(g[i + 6] * s[2])));
@@ -152,7 +152,7 @@ struct BatchedNeoHookean {
         fused(broadcast<Real>(0.5 * moduli.bulk), square, broadcast<Real>(-0.5 * moduli.bulk));
     const Real inverse = (j * part) * (part * part);
     const Real b = fused(a, Real(squared_norm(f) * (-1.0 / 3.0)), pressure) * inverse;
-    for (int k = 0; k < 9; ++k) p.entry[k] = fused(a, f.entry[k], Real(b * cof.entry[k]));
+    ABUT_UNROLLED (k, 0, 9) p.entry[k] = fused(a, f.entry[k], Real(b * cof.entry[k]));
     valid = j;
   }
   template <int N>
@@ -164,7 +164,7 @@ struct BatchedNeoHookean {
     const Real growth = trace + (cof.entry[0] + cof.entry[4] + cof.entry[8]) + determinant;
     const Real i1 = 2.0 * trace + squared_norm(h);  // I1 - 3
     Real w;
-    for (int l = 0; l < N; ++l) {
+    ABUT_UNROLLED (l, 0, N) {
       const double log_volume = std::log1p(growth[l]);
       const double less = std::expm1(-2.0 / 3.0 * log_volume);  // J^(-2/3) - 1
       w[l] = 0.25 * moduli.bulk * (growth[l] * (2.0 + growth[l]) - 2.0 * log_volume) +

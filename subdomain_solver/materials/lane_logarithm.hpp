@@ -29,7 +29,7 @@ template <int N>
   const Real x = m == y ? e : m - 1.0;
   const Real s = x / (2.0 + x), square = s * s;
   Real series = broadcast<Real>(1.0 / 21.0);
-  for (int k = 19; k > 0; k -= 2) series = fused(series, square, broadcast<Real>(1.0 / k));
+  ABUT_UNROLLED (k, 0, 10) series = fused(series, square, broadcast<Real>(1.0 / (19.0 - 2.0 * k)));
   return fused(octaves, broadcast<Real>(0x1.62e42fefa39efp-1), Real(2.0 * s * series));
 }
 

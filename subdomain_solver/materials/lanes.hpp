@@ -2,6 +2,11 @@
 
 #include <cstring>
 
+/// Loop over first <= i < end that becomes straight code: only then do the entries of small arrays
+/// of lanes live in registers.
+#define ABUT_UNROLLED(i, first, end) \
+  _Pragma("GCC unroll 16") for (int i = (first); i < static_cast<int>(end); ++i)
+
 namespace abut {
 
 /// N doubles that go through one computation together (GCC vector extension): + - * / act lane by
@@ -37,8 +42,7 @@ template <int N>
 template <class Real>
 [[gnu::always_inline]] inline Real fused(const Real& a, const Real& b, const Real& c) {
   Real sum;
-  for (unsigned i = 0; i < sizeof(Real) / sizeof(double); ++i)
-    sum[i] = __builtin_fma(a[i], b[i], c[i]);
+  ABUT_UNROLLED (i, 0, sizeof(Real) / sizeof(double)) sum[i] = __builtin_fma(a[i], b[i], c[i]);
   // Keeps GCC from taking neighbouring calls apart into scalars before it has seen the vector.
   return __builtin_assoc_barrier(sum);
 }
@@ -52,7 +56,7 @@ template <class Real>
 template <class Real>
 [[gnu::always_inline]] inline bool all_positive(const Real& x) {
   bool positive = true;
-  for (unsigned i = 0; i < sizeof(Real) / sizeof(double); ++i) positive = positive && x[i] > 0.0;
+  ABUT_UNROLLED (i, 0, sizeof(Real) / sizeof(double)) positive = positive && x[i] > 0.0;
   return positive;
 }
 

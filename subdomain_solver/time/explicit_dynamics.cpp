@@ -1,62 +1,124 @@
 #include "subdomain_solver/time/explicit_dynamics.hpp"
 
+#include <algorithm>
+
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
 
 ExplicitDynamics::ExplicitDynamics(const Problem& problem)
-    : problem_(problem), mass_(problem.model->lumped_mass()) {}
+    : problem_(problem), inverse_mass_(problem.model->lumped_mass().cwiseInverse()) {
+  for (const Prescribed& p : problem_.supports) inverse_mass_(p.dof) = 0.0;
+}
 
-void ExplicitDynamics::accelerate(double time, const ModelResponse& response,
-                                  Motion& motion) const {
-  view(motion.a) = (problem_.external_force(time, motion.q) - response.force).cwiseQuotient(mass_);
-  for (const Prescribed& p : problem_.supports) motion.a[static_cast<std::size_t>(p.dof)] = 0.0;
+template <class Update>
+void ExplicitDynamics::update_all(std::size_t count, const Update& update) {
+  constexpr std::size_t length = 16384;  // 128 kB of each vector
+  const std::size_t ranges = (count + length - 1) / length;
+  work_.resize(ranges);
+  const auto one = [&update, count](std::size_t range, int) {
+    update(range, Range{range * length, std::min(count, (range + 1) * length)});
+  };
+  if (WorkerThreads* threads = problem_.model->threads()) {
+    threads->run(ranges, one);
+  } else {
+    for (std::size_t range = 0; range < ranges; ++range) one(range, 0);
+  }
+}
+
+void ExplicitDynamics::find_loads(double time, std::span<const double> q) {
+  if (problem_.loads.empty()) return;
+  loads_.setZero(problem_.model->dofs());
+  for (const std::unique_ptr<Load>& load : problem_.loads) load->add(time, q, loads_);
 }
 
 std::optional<Failed> ExplicitDynamics::begin(Motion& motion, double time) {
   motion.history.resize(problem_.model->history_size(), 0.0);
-  motion.a.assign(motion.q.size(), 0.0);
   for (const Prescribed& p : problem_.supports)
     motion.q[static_cast<std::size_t>(p.dof)] = p.value(time);
   if (!problem_.model->evaluate(motion.q, motion.history, Model::Want::force, response_))
     return failed_newton({NewtonReport::End::inadmissible}, time);
   store(response_.force, motion.force);
   motion.stored = response_.stored;
-  accelerate(time, response_, motion);
+  find_loads(time, motion.q);
+  motion.a.resize(motion.q.size());
+  view(motion.a) = -inverse_mass_.cwiseProduct(response_.force);
+  if (loads_.size() > 0) view(motion.a) += inverse_mass_.cwiseProduct(loads_);
   return std::nullopt;
 }
 
-std::optional<Failed> ExplicitDynamics::step(Motion& motion, double time, double dt) {
-  const Motion before = motion;
-  view(motion.v) += 0.5 * dt * view(motion.a);
-  view(motion.q) += dt * view(motion.v);
+void ExplicitDynamics::predict(const Motion& motion, double dt, Range range) {
+  const double *q = motion.q.data(), *v = motion.v.data(), *a = motion.a.data();
+  double* next = next_.data();
+  const double half = 0.5 * dt;
+  for (std::size_t i = range.begin; i < range.end; ++i) next[i] = q[i] + dt * (v[i] + half * a[i]);
+}
+
+/// Accelerations, velocities and forces of the step's end. Returns the work of the loads: the mean
+/// of theirs at both ends, of which that at the begin is what inertia and internal force took.
+double ExplicitDynamics::correct(Motion& motion, double dt, Range range) const {
+  double* __restrict v = motion.v.data(), * __restrict a = motion.a.data();
+  double* __restrict force = motion.force.data();
+  const double* __restrict inverse = inverse_mass_.data(), *r = response_.force.data();
+  const double half = 0.5 * dt;
+  if (loads_.size() == 0) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const double acceleration = -(inverse[i] * r[i]);
+      v[i] = (v[i] + half * a[i]) + half * acceleration;
+      a[i] = acceleration;
+      force[i] = r[i];
+    }
+    return 0.0;
+  }
+  const double *mass = problem_.model->lumped_mass().data(), *load = loads_.data();
+  double work = 0.0;
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const double acceleration = inverse[i] * (load[i] - r[i]);
+    const double before = inverse[i] != 0.0 ? mass[i] * a[i] + force[i] : 0.0;
+    const double now = inverse[i] != 0.0 ? load[i] : 0.0;
+    work += 0.5 * (before + now) * (next_[i] - motion.q[i]);
+    v[i] = (v[i] + half * a[i]) + half * acceleration;
+    a[i] = acceleration;
+    force[i] = r[i];
+  }
+  return work;
+}
+
+/// Prescribed coordinates move from value to value; their reaction does work. The velocity of the
+/// half step is that of the whole one.
+double ExplicitDynamics::correct_supports(Motion& motion, double dt) const {
+  double work = 0.0;
   for (const Prescribed& p : problem_.supports) {
     const std::size_t i = static_cast<std::size_t>(p.dof);
-    motion.q[i] = p.value(time + dt);
-    motion.v[i] = (motion.q[i] - before.q[i]) / dt;
+    const double moved = next_[i] - motion.q[i];
+    motion.v[i] = moved / dt;
+    work += 0.5 * (motion.force[i] + response_.force(p.dof)) * moved;
   }
-  if (!problem_.model->evaluate(motion.q, motion.history, Model::Want::force, response_)) {
-    motion = before;
+  return work;
+}
+
+std::optional<Failed> ExplicitDynamics::step(Motion& motion, double time, double dt) {
+  next_.resize(motion.q.size());
+  update_all(motion.q.size(), [&](std::size_t, Range range) { predict(motion, dt, range); });
+  for (const Prescribed& p : problem_.supports)
+    next_[static_cast<std::size_t>(p.dof)] = p.value(time + dt);
+  if (!problem_.model->evaluate(next_, motion.history, Model::Want::force, response_))
     return failed_newton({NewtonReport::End::inadmissible}, time + dt);
-  }
-  // Loads and supports do the work that inertia and internal force take; the velocity of the half
-  // step is that of the whole one.
-  const Vector moved = view(motion.q) - view(before.q);
+  find_loads(time + dt, next_);
+  motion.external_work += correct_supports(motion, dt);
+  update_all(motion.q.size(),
+             [&](std::size_t k, Range range) { work_[k] = correct(motion, dt, range); });
+  for (const double work : work_) motion.external_work += work;
+  motion.q.swap(next_);
   motion.history.swap(response_.history);
   motion.dissipated += response_.dissipation;
   motion.stored = response_.stored;
-  store(response_.force, motion.force);
-  accelerate(time + dt, response_, motion);
-  view(motion.v) += 0.5 * dt * view(motion.a);
-  const Vector external = 0.5 * (mass_.cwiseProduct(view(before.a) + view(motion.a)) +
-                                 view(before.force) + view(motion.force));
-  motion.external_work += external.dot(moved);
   return std::nullopt;
 }
 
 double ExplicitDynamics::kinetic(const Motion& motion) const {
   const auto v = view(motion.v);
-  return 0.5 * v.dot(mass_.cwiseProduct(v));
+  return 0.5 * v.dot(problem_.model->lumped_mass().cwiseProduct(v));
 }
 
 }  // namespace abut

@@ -7,7 +7,7 @@ namespace abut {
 /// Central differences on any model with lumped mass, in the form that has positions, velocities
 /// and accelerations at the same times (velocity Verlet) [M.48]. Conserves momentum exactly and,
 /// below the stable step, an energy that differs from 1/2 v M v + stored by terms of second order
-/// in dt.
+/// in dt. A step is two passes over the motion around the model's force, and allocates nothing.
 class ExplicitDynamics final : public Integrator {
  public:
   explicit ExplicitDynamics(const Problem& problem);
@@ -17,10 +17,22 @@ class ExplicitDynamics final : public Integrator {
   double kinetic(const Motion& motion) const override;
 
  private:
-  void accelerate(double time, const ModelResponse& response, Motion& motion) const;
+  struct Range {  // of coordinates that one thread updates
+    std::size_t begin, end;
+  };
+  /// Over all coordinates, in ranges of fixed length: their sums do not depend on threads.
+  template <class Update>
+  void update_all(std::size_t count, const Update& update);
+  void find_loads(double time, std::span<const double> q);
+  void predict(const Motion& motion, double dt, Range range);
+  double correct(Motion& motion, double dt, Range range) const;
+  double correct_supports(Motion& motion, double dt) const;
 
   const Problem& problem_;
-  Vector mass_;
+  Vector inverse_mass_;       // [1/kg] (dofs) zero where the motion is prescribed
+  std::vector<double> next_;  // (dofs) q at the step's end
+  Vector loads_;              // [N] (dofs) at the step's end; empty without loads
+  std::vector<double> work_;  // [J] (ranges) external
   ModelResponse response_;
 };
 

@@ -1,0 +1,145 @@
+/// Cost of explicit solids: whole steps (force and update) of boxes of hex8, per element and step,
+/// full and one point, neo-Hookean and linear; the share of the force; beside it what the
+/// machine's memory allows for the bytes moved, in the same run.
+///
+///   abut_bench_explicit_solid [EDGE OF THE LARGE BOX] [REPEATS]
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "subdomain_solver/fe/fe_model.hpp"
+#include "subdomain_solver/fe/mesh_generators.hpp"
+#include "subdomain_solver/materials/linear_elastic.hpp"
+#include "subdomain_solver/materials/neo_hookean.hpp"
+#include "subdomain_solver/time/explicit_dynamics.hpp"
+
+namespace abut {
+namespace {
+
+struct Seconds {
+  double wall = 0.0, processor = 0.0;  // processor: of all threads
+};
+
+Seconds seconds(const std::function<void()>& work) {
+  const auto began = std::chrono::steady_clock::now();
+  const std::clock_t ticks = std::clock();
+  work();
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(),
+          static_cast<double>(std::clock() - ticks) / CLOCKS_PER_SEC};
+}
+
+/// The least of some repeats: other work on the machine only adds. One thread is measured by the
+/// processor's time, which other work adds less to; several by the wall's.
+double least(int repeats, int threads, const std::function<void()>& work) {
+  double best = std::numeric_limits<double>::infinity();
+  for (int r = 0; r < repeats; ++r) {
+    const Seconds s = seconds(work);
+    best = std::min(best, threads == 1 ? s.processor : s.wall);
+  }
+  return best;
+}
+
+struct Setting {
+  std::array<int, 3> elements;
+  bool one_point, linear;
+  int threads;
+};
+
+struct Cost {
+  double step = 0.0, force = 0.0;  // [ns] per element and step
+};
+
+const Moduli rubber{1.0e9 / 1.5, 0.4e9};
+
+Cost cost(const Setting& s, int repeats) {
+  BoxMesh box;
+  for (std::size_t d = 0; d < 3; ++d) box.lengths[d] = 1.0e-3 * s.elements[d];
+  box.elements = s.elements;
+  std::unique_ptr<Material> law = std::make_unique<NeoHookean>(rubber, 1000.0);
+  if (s.linear) law = std::make_unique<LinearElastic>(rubber, 1000.0);
+  FeOptions options;
+  options.formulation = s.one_point ? Formulation::one_point : Formulation::full;
+  options.batched = true;
+  options.threads = s.threads;
+  FeModel model(generate(box, "bench"), std::move(law), options);
+  Problem problem;
+  problem.model = &model;
+  ExplicitDynamics scheme(problem);
+  Motion motion;
+  motion.q.assign(static_cast<std::size_t>(model.dofs()), 0.0);
+  motion.v = motion.q;
+  for (std::size_t i = 0; i < motion.v.size(); i += 3)  // waves along x
+    motion.v[i] = 10.0 * (model.mesh().points[i] - 0.5 * box.lengths[0]) / box.lengths[0];
+  if (scheme.begin(motion, 0.0)) std::abort();
+  const int count = s.elements[0] * s.elements[1] * s.elements[2];
+  const int steps = std::max(1, 400'000 / count);
+  double time = 0.0;
+  const double dt = 2.0e-7;
+  const double whole = least(repeats, s.threads, [&] {
+    for (int k = 0; k < steps; ++k, time += dt)
+      if (scheme.step(motion, time, dt)) std::abort();
+  });
+  ModelResponse response;
+  const double force = least(repeats, s.threads, [&] {
+    for (int k = 0; k < steps; ++k)
+      if (!model.evaluate(motion.q, {}, Model::Want::force, response)) std::abort();
+  });
+  const double each = 1.0e9 / (double(steps) * count);
+  return {whole * each, force * each};
+}
+
+/// Nanoseconds per element for the bytes that a step must move at least: two passes over the
+/// vectors of motion (24 bytes per node, and a node per element), and the nodes of the cells.
+double streaming_limit(int elements, int repeats) {
+  const std::size_t n = static_cast<std::size_t>(elements) * 3;
+  std::vector<double> q(n, 1.0), v(n, 2.0), a(n, 3.0), force(n, 4.0), mass(n, 5.0), next(n, 0.0);
+  const double wall = least(repeats, 1, [&] {
+    for (std::size_t i = 0; i < n; ++i) next[i] = q[i] + 1.0e-9 * (v[i] + 1.0e-9 * a[i]);
+    for (std::size_t i = 0; i < n; ++i) force[i] = next[i];
+    for (std::size_t i = 0; i < n; ++i) {
+      const double before = a[i];
+      a[i] = force[i] * mass[i];
+      v[i] += 1.0e-9 * (before + a[i]);
+    }
+    q.swap(next);
+  });
+  return wall * 1.0e9 / elements;
+}
+
+void run(int edge, int repeats) {
+  fmt::print("explicit hex8, whole steps, least of {}; instructions: {}\n", repeats,
+             batched_kernels().front()->instructions);
+  fmt::print("{:>9} {:>8} {:>10} {:>7} {:>8} {:>8} {:>9}   ns per element-step\n", "elements",
+             "law", "points", "threads", "step", "force", "streaming");
+  for (const std::array<int, 3>& elements :
+       {std::array<int, 3>{64, 32, 40}, std::array<int, 3>{edge, edge, edge}}) {
+    const int count = elements[0] * elements[1] * elements[2];
+    for (const bool linear : {false, true}) {
+      for (const bool one_point : {false, true}) {
+        for (const int threads : {1, 2}) {
+          const Cost c = cost({elements, one_point, linear, threads}, repeats);
+          fmt::print("{:>9} {:>8} {:>10} {:>7} {:>8.1f} {:>8.1f} {:>9.1f}\n", count,
+                     linear ? "linear" : "neo", one_point ? 1 : 8, threads, c.step, c.force,
+                     streaming_limit(count, repeats));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace abut
+
+int main(int argc, char** argv) {
+  const int edge = argc > 1 ? std::max(1, std::atoi(argv[1])) : 100;
+  abut::run(edge, argc > 2 ? std::max(1, std::atoi(argv[2])) : 5);
+  return 0;
+}
