@@ -1,6 +1,7 @@
 /// Cost of explicit solids: whole steps (force and update) of boxes of hex8, per element and step,
-/// full and one point, neo-Hookean and linear; the share of the force; beside it what the
-/// machine's memory allows for the bytes moved, in the same run.
+/// full and one point, neo-Hookean and linear; the share of the force; the force on each
+/// instruction set; beside it what the machine's memory allows for the bytes moved, in the same
+/// run.
 ///
 ///   abut_bench_explicit_solid [EDGE OF THE LARGE BOX] [REPEATS]
 
@@ -17,6 +18,7 @@
 
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
+#include "subdomain_solver/fe/stable_step.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
 #include "subdomain_solver/time/explicit_dynamics.hpp"
@@ -96,8 +98,50 @@ Cost cost(const Setting& s, int repeats) {
   return {whole * each, force * each};
 }
 
-/// Nanoseconds per element for the bytes that a step must move at least: two passes over the
-/// vectors of motion (24 bytes per node, and a node per element), and the nodes of the cells.
+/// The force alone, on each instruction set that the machine has, and the memory that it takes.
+void run_instructions(int repeats) {
+  BoxMesh box;
+  box.elements = {64, 32, 40};
+  box.lengths = {0.064, 0.032, 0.04};
+  const Mesh mesh = generate(box, "bench");
+  const int count = mesh.cell_count();
+  const NeoHookean law(rubber, 1000.0);
+  std::vector<double> q(mesh.points.size()), force(q.size());
+  for (std::size_t i = 0; i < q.size(); ++i) q[i] = 1.0e-5 * static_cast<double>(i % 17);
+  for (const KernelTable* kernels : batched_kernels()) {
+    fmt::print("{:>9} {:>8}", count, kernels->instructions);
+    for (const bool one_point : {false, true}) {
+      BatchedCells cells(mesh, law, {one_point, 0.05, 1.0, 1, kernels});
+      double stored = 0.0;
+      const double wall = least(repeats, 1, [&] {
+        if (!cells.evaluate(q, force, stored)) std::abort();
+      });
+      fmt::print("   {} point(s): {:.1f} ns, {} B an element", one_point ? 1 : 8,
+                 wall * 1.0e9 / count, cells.bytes() / static_cast<std::size_t>(count));
+    }
+    fmt::print("\n");
+  }
+}
+
+/// The stable step of a box at rest, whose cells are equal, and of one deformed everywhere.
+void run_stable_step(int repeats) {
+  BoxMesh box;
+  box.elements = {20, 20, 20};
+  box.lengths = {0.02, 0.02, 0.02};
+  FeModel model(generate(box, "bench"), std::make_unique<NeoHookean>(rubber, 1000.0), {});
+  std::vector<double> q(static_cast<std::size_t>(model.dofs()), 0.0);
+  const double count = model.mesh().cell_count();
+  double sum = 0.0;
+  const double rest = least(repeats, 1, [&] { sum += stable_step(model, q, {}); });
+  for (std::size_t i = 0; i < q.size(); ++i) q[i] = 1.0e-8 * static_cast<double>(i * i % 9973);
+  const double moved = least(repeats, 1, [&] { sum += stable_step(model, q, {}); });
+  if (!(sum > 0.0)) std::abort();
+  fmt::print("stable step, ns per element: equal cells {:.0f}, all different {:.0f}\n",
+             rest * 1.0e9 / count, moved * 1.0e9 / count);
+}
+
+/// Nanoseconds per element for what a step must move at least, the vectors of motion: 11 reads and
+/// writes of each of three coordinates, 264 bytes an element.
 double streaming_limit(int elements, int repeats) {
   const std::size_t n = static_cast<std::size_t>(elements) * 3;
   std::vector<double> q(n, 1.0), v(n, 2.0), a(n, 3.0), force(n, 4.0), mass(n, 5.0), next(n, 0.0);
@@ -117,6 +161,8 @@ double streaming_limit(int elements, int repeats) {
 void run(int edge, int repeats) {
   fmt::print("explicit hex8, whole steps, least of {}; instructions: {}\n", repeats,
              batched_kernels().front()->instructions);
+  run_instructions(repeats);
+  run_stable_step(repeats);
   fmt::print("{:>9} {:>8} {:>10} {:>7} {:>8} {:>8} {:>9}   ns per element-step\n", "elements",
              "law", "points", "threads", "step", "force", "streaming");
   for (const std::array<int, 3>& elements :

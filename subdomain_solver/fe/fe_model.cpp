@@ -42,6 +42,7 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
     Block block;
     const int degree = stiffness_degree(element) + (round() ? 1 : 0);
     block.table = tabulate(element, quadrature(element.shape, degree));
+    block.mass_table = tabulate(element, quadrature(element.shape, mass_degree(element)));
     block.history = history_size_;
     const int points = cells.count() * law_points(element, block.table, options.formulation);
     history_size_ += index(points) * index(kernel_.history_size());
@@ -135,11 +136,12 @@ void FeModel::find_pattern(Assembly& out) const {
 }
 
 /// Integral of N_a N_b of one cell, times density.
-Eigen::MatrixXd FeModel::nodal_mass(int block, int cell, const Tabulation& t) const {
+Eigen::MatrixXd FeModel::nodal_mass(std::size_t block, int cell) const {
+  const Tabulation& t = blocks_[block].mass_table;
   FeOptions every_point = options_;
   every_point.formulation = Formulation::full;
   CellMeasures measures;
-  measure_cell(mesh_, mesh_.blocks[index(block)], cell, t, every_point, 0.0, measures);
+  measure_cell(mesh_, mesh_.blocks[block], cell, t, every_point, 0.0, measures);
   Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(t.nodes, t.nodes);
   for (int p = 0; p < t.points; ++p) {
     const Eigen::Map<const Vector> n(t.n.data() + index(p * t.nodes), t.nodes);
@@ -150,19 +152,21 @@ Eigen::MatrixXd FeModel::nodal_mass(int block, int cell, const Tabulation& t) co
 
 /// The diagonal scaled to the cell's mass (Hinton, Rock, Zienkiewicz 1976), which equals the row
 /// sum for linear elements on parallelepipeds and is positive for all.
+Vector FeModel::lumped_mass(std::size_t block, int cell) const {
+  const Eigen::MatrixXd nodal = nodal_mass(block, cell);
+  return nodal.sum() / nodal.trace() * nodal.diagonal();
+}
+
 void FeModel::lump_mass() {
   const int dim = mesh_.dim;
   lumped_.setZero(dofs());
-  for (int k = 0; k < static_cast<int>(blocks_.size()); ++k) {
-    const CellBlock& cells = mesh_.blocks[index(k)];
-    const Element& element = *cells.element;
-    const Tabulation table = tabulate(element, quadrature(element.shape, mass_degree(element)));
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const CellBlock& cells = mesh_.blocks[k];
     for (int c = 0; c < cells.count(); ++c) {
-      const Eigen::MatrixXd nodal = nodal_mass(k, c, table);
-      const double scale = nodal.sum() / nodal.trace();
+      const Vector nodal = lumped_mass(k, c);
       int a = 0;
       for (std::int32_t node : nodes_of(cells, c)) {
-        lumped_.segment(node * dim, dim).array() += scale * nodal(a, a);
+        lumped_.segment(node * dim, dim).array() += nodal(a);
         ++a;
       }
     }
@@ -180,10 +184,9 @@ void FeModel::assemble_mass(SparseMatrix& out) const {
   out = assembly().pattern;
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const CellBlock& cells = mesh_.blocks[k];
-    const Element& element = *cells.element;
-    const Tabulation t = tabulate(element, quadrature(element.shape, mass_degree(element)));
+    const Tabulation& t = blocks_[k].mass_table;
     for (int c = 0; c < cells.count(); ++c) {
-      const Eigen::MatrixXd nodal = nodal_mass(static_cast<int>(k), c, t);
+      const Eigen::MatrixXd nodal = nodal_mass(k, c);
       Eigen::MatrixXd local = Eigen::MatrixXd::Zero(t.nodes * dim, t.nodes * dim);
       for (int a = 0; a < t.nodes; ++a) {
         for (int b = 0; b < t.nodes; ++b) {
@@ -359,6 +362,25 @@ void FeModel::add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::Matr
       }
     }
   }
+}
+
+bool FeModel::cell_matrices(int block, int cell, std::span<const double> q,
+                            std::span<const double> history, Eigen::MatrixXd& tangent,
+                            Vector& mass) {
+  const CellBlock& cells = mesh_.blocks[index(block)];
+  mass = lumped_mass(index(block), cell);
+  CellMeasures measures;
+  measure_cell(mesh_, cells, cell, blocks_[index(block)].table, options_,
+               material_->moduli().p_wave(), measures);
+  const std::size_t each = index(measures.points * kernel_.history_size());
+  const std::size_t first = blocks_[index(block)].history + index(cell) * each;
+  std::vector<double> after(each);
+  gather(cells, cell, q, u_);
+  if (!kernel_.evaluate(measures.of(0), u_, history.subspan(first, each), after,
+                        abut::Want::tangent, local_))
+    return false;
+  tangent = local_.tangent;
+  return true;
 }
 
 double FeModel::volume() const {

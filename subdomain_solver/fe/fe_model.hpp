@@ -52,6 +52,12 @@ class FeModel final : public Model {
   void add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::MatrixXd local,
                       SparseMatrix& tangent) const;
 
+  /// Tangent of one cell at q (nodes x dim), in the axes of space, and its share of the lumped
+  /// mass [kg] (nodes). False: inadmissible.
+  [[nodiscard]] bool cell_matrices(int block, int cell, std::span<const double> q,
+                                   std::span<const double> history, Eigen::MatrixXd& tangent,
+                                   Vector& mass);
+
   /// State of one quadrature point.
   struct PointState {
     int block = 0, cell = 0, point = 0;
@@ -65,7 +71,7 @@ class FeModel final : public Model {
 
  private:
   struct Block {  // the cells of one element
-    Tabulation table;
+    Tabulation table, mass_table;
     std::size_t history = 0;  // where its numbers begin
   };
   struct Assembly {                                   // of whole matrices
@@ -86,7 +92,8 @@ class FeModel final : public Model {
   void find_pattern(Assembly& out) const;
   void assemble_mass(SparseMatrix& out) const;
   void lump_mass();
-  Eigen::MatrixXd nodal_mass(int block, int cell, const Tabulation& table) const;
+  Vector lumped_mass(std::size_t block, int cell) const;
+  Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
   [[nodiscard]] bool batched_force(std::span<const double> q, ModelResponse& out);
   void gather(const CellBlock& cells, int cell, std::span<const double> q,
               std::vector<double>& u) const;
