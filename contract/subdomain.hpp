@@ -42,6 +42,7 @@ struct Description {
   std::vector<Port> ports;
   Capabilities can;
   std::vector<Member> members;  // empty: the body is one solid
+  std::vector<std::string> measures;  // names of what measure() tells, in its order
 };
 
 /// Which traces a response holds.
@@ -83,6 +84,9 @@ class Subdomain {
   virtual std::vector<std::byte> checkpoint() = 0;          // durable form of the state
   virtual void resume(std::span<const std::byte> bytes) = 0;
   virtual std::uint64_t state_hash() = 0;                   // equal states, equal hashes
+  /// Numbers that sum up the present state, in the order of Description::measures; SI units. Asked
+  /// for at the end of a run.
+  virtual std::vector<double> measure() { return {}; }
 
   [[nodiscard]] Outcome advance(const Advance& request, Response& response) {
     start(request);

@@ -427,6 +427,7 @@ RunEnd Controller::finish(double wall_seconds) {
   end_.compute_seconds = bodies_.compute_seconds();
   end_.overhead_median_seconds = bodies_.overhead_median();
   end_.state_hash = state_hash();
+  for (int b = 0; b < bodies_.count(); ++b) end_.body_measures.push_back(bodies_[b].measure());
   for (Observer* observer : observers_) observer->on_end(end_);
   return end_;
 }

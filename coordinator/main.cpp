@@ -89,6 +89,7 @@ void validate_expectations(const Scene& scene, const std::vector<const Descripti
     scope.ports.insert(scope.ports.end(), interface.sides.begin(), interface.sides.end());
   }
   scope.exact = exact_interfaces(scene);
+  scope.told = told_measures(bodies);
   for (std::size_t i = 0; i < scene.meta.expect.size(); ++i) {
     try {
       require_measure(scene.meta.expect[i].measure, scope);

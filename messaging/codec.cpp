@@ -373,6 +373,7 @@ void encode(const Description& from, v1::Description& to) {
   can.set_kernel(from.can.kernel);
   can.set_impedance(from.can.impedance);
   can.set_complete(from.can.complete);
+  to.mutable_measures()->Assign(from.measures.begin(), from.measures.end());
   for (const Member& member : from.members) {
     v1::Member& wire = *to.add_members();
     wire.set_name(member.name);
@@ -404,6 +405,8 @@ void decode(const v1::Description& from, Description& to) {
                         .kernel = can.kernel(),
                         .impedance = can.impedance(),
                         .complete = can.complete()};
+  if (from.measures_size() > most_members) FieldPath{&path, "measures"}.fail("has too many entries");
+  to.measures.assign(from.measures().begin(), from.measures().end());
   if (from.members_size() > most_members) FieldPath{&path, "members"}.fail("has too many entries");
   to.members.resize(static_cast<std::size_t>(from.members_size()));
   for (int i = 0; i < from.members_size(); ++i) {

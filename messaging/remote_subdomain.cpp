@@ -108,4 +108,16 @@ std::uint64_t RemoteSubdomain::state_hash() {
   return reply.hash().hash();
 }
 
+std::vector<double> RemoteSubdomain::measure() {
+  if (description_.measures.empty()) return {};
+  caller_.request().mutable_measure();
+  carry_flags();
+  const v1::Reply& reply = caller_.call("measure");
+  if (!reply.has_measure()) caller_.refuse_reply("not measures");
+  const auto& values = reply.measure().values();
+  if (static_cast<std::size_t>(values.size()) != description_.measures.size())
+    caller_.refuse_reply("measures of another number than its description says");
+  return {values.begin(), values.end()};
+}
+
 }  // namespace abut

@@ -34,6 +34,7 @@ class RemoteSubdomain : public Subdomain {
   std::vector<std::byte> checkpoint() override;
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override;
+  std::vector<double> measure() override;
 
  private:
   void carry_flags();

@@ -204,6 +204,11 @@ void Server::dispatch() {
     case v1::Request::kHash:
       reply_.mutable_hash()->set_hash(body_->state_hash());
       return;
+    case v1::Request::kMeasure: {
+      const std::vector<double> values = body_->measure();
+      reply_.mutable_measure()->mutable_values()->Assign(values.begin(), values.end());
+      return;
+    }
     default:
       throw CodecError("the request is empty or unknown");
   }

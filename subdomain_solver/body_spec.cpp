@@ -25,8 +25,28 @@ void BarMeshSpec::fields(Fields& f) {
 }
 
 void FeModelSpec::fields(Fields& f) {
-  f.required("dimension", dimension, "", "space dimension of the body", between(1, 1));
+  f.required("dimension", dimension, "", "space dimension of the body", between(1, 3));
   f.choice("mesh", mesh, "mesh of the body");
+  f.word("plane", plane, {"strain", "stress", "axisymmetric"},
+         "kinematics in two dimensions; axisymmetric: x is the radius, y the axis");
+  f.optional("thickness", thickness, "m", "thickness in plane strain and stress", positive);
+  f.word("formulation", formulation, {"full", "mean_dilatation"},
+         "volume change of an element: pointwise, or one for all of it (B-bar, F-bar), which does "
+         "not lock when nearly incompressible");
+  const bool bar = std::holds_alternative<BarMeshSpec>(mesh);
+  const bool flat =
+      std::holds_alternative<RectangleSpec>(mesh) || std::holds_alternative<DiskSpec>(mesh);
+  const bool file = std::holds_alternative<GmshSpec>(mesh);
+  const int wanted = bar ? 1 : flat ? 2 : 3;
+  f.check(file ? dimension > 1 : dimension == wanted, "dimension",
+          fmt::format("is {}, but the mesh has {}", dimension,
+                      file ? "2 or 3" : std::to_string(wanted)),
+          "Give the dimension of the mesh.");
+  f.check(plane == Plane::strain || dimension == 2, "plane",
+          "is for bodies in two dimensions", "Leave plane out.");
+  f.check(plane != Plane::stress || formulation == Formulation::full, "formulation",
+          "mean_dilatation does not apply to plane stress, which cannot lock",
+          "Leave formulation out.");
 }
 
 void PairedBarSpec::fields(Fields& f) {
@@ -49,11 +69,6 @@ void BarPairSpec::fields(Fields& f) {
   f.word("lengths", current_lengths, {"reference", "current"},
          "element lengths on which mass and stiffness are assembled; current: anew in every step, "
          "as in some published comparisons");
-}
-
-void LinearElasticSpec::fields(Fields& f) {
-  f.required("youngs_modulus", youngs_modulus, "Pa", "Young's modulus", positive);
-  f.required("density", density, "kg/m^3", "reference density", positive);
 }
 
 void CentralDifferenceSpec::fields(Fields& f) {
@@ -101,6 +116,13 @@ void GeneralizedAlphaSpec::fields(Fields& f) {
   mass_key(f, mass);
 }
 
+void QuasiStaticSpec::fields(Fields& f) {
+  f.required("step", step, "s", step_help, positive);
+  f.optional("halvings", halvings, "",
+             "number of times that a step may be halved where Newton's method fails",
+             between(0, 30));
+}
+
 void BackwardEulerSpec::fields(Fields& f) {
   f.required("step", step, "s", step_help, positive);
   mass_key(f, mass);
@@ -130,10 +152,10 @@ void InitialSpec::fields(Fields& f) {
   f.optional("position", position, "m", "place of the body's own origin, one number per dimension");
   f.optional("velocity", velocity, "m/s",
              "uniform velocity at the start, one number per dimension");
-  f.check(position.size() == 1, "position", fmt::format("has {} numbers", position.size()),
-          "Give one number: the body has one dimension.");
-  f.check(velocity.size() == 1, "velocity", fmt::format("has {} numbers", velocity.size()),
-          "Give one number: the body has one dimension.");
+  f.optional("displacement_field", displacement_field, "m",
+             "initial displacement of a solid, one expression in x, y, z per dimension");
+  f.optional("velocity_field", velocity_field, "m/s",
+             "initial velocity of a solid, added to velocity, one expression per dimension");
 }
 
 void SupportsSpec::fields(Fields& f) {
@@ -159,10 +181,14 @@ void BodySpec::fields(Fields& f) {
   f.defaulted("initial", initial, "initial state");
   f.defaulted("supports", supports, "supports of the ends");
   f.optional("body_force", body_force, "m/s^2", "force per mass, one number per dimension");
-  f.check(body_force.size() == 1, "body_force", fmt::format("has {} numbers", body_force.size()),
-          "Give one number: the body has one dimension.");
   f.map("ports", ports, "named boundary sets through which motion and force pass",
         Presence::optional);
+  f.map("constraints", constraints, "prescribed displacements of a solid", Presence::optional);
+  f.map("loads", loads, "forces on a solid", Presence::optional);
+  f.defaulted("equations", equations, "solution of the equations of an implicit or static solid");
+  check_dimensions(f);
+  if (is_bar()) check_bar(f);
+  if (is_solid()) check_solid(f);
   const bool fe = std::holds_alternative<FeModelSpec>(model);
   const bool pair = std::holds_alternative<BarPairSpec>(model);
   const std::string words = pair ? "bar_pair" : "fe";
@@ -174,6 +200,67 @@ void BodySpec::fields(Fields& f) {
           "Leave ports out: the pair has left_tip and right_tip.");
   f.check(fe || pair || ports.size() == 1, "model", "rigid_wall needs exactly one port",
           "Add ports: {face: {side: left}}, where the side tells to which side the wall faces.");
+}
+
+bool BodySpec::is_bar() const {
+  const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
+  return fe != nullptr && std::holds_alternative<BarMeshSpec>(fe->mesh);
+}
+
+bool BodySpec::is_solid() const {
+  return std::holds_alternative<FeModelSpec>(model) && !is_bar();
+}
+
+void BodySpec::check_dimensions(Fields& f) const {
+  const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
+  const std::size_t dim = fe != nullptr ? static_cast<std::size_t>(fe->dimension) : 1;
+  const std::string numbers = dim == 1 ? "Give one number: the body has one dimension."
+                                       : fmt::format("Give {} numbers, one per dimension.", dim);
+  auto check = [&](const std::vector<double>& list, const char* key) {
+    const bool absent = list.size() == 1 && list[0] == 0.0;  // as when left out
+    f.check(list.size() == dim || absent, key, fmt::format("has {} numbers", list.size()), numbers);
+  };
+  check(initial.position, "initial.position");
+  check(initial.velocity, "initial.velocity");
+  check(body_force, "body_force");
+  for (const auto& [list, key] : {std::pair(&initial.displacement_field, "initial.displacement_field"),
+                                  {&initial.velocity_field, "initial.velocity_field"}}) {
+    f.check(list->empty() || list->size() == dim, key,
+            fmt::format("has {} expressions", list->size()),
+            fmt::format("Give {} expressions, one per dimension.", dim));
+  }
+}
+
+void BodySpec::check_bar(Fields& f) const {
+  const LinearElasticSpec* elastic =
+      material ? std::get_if<LinearElasticSpec>(&*material) : nullptr;
+  f.check(!material || elastic != nullptr, "material", "is not offered to a bar",
+          "Use linear_elastic: the bar is a model of small strain.");
+  f.check(elastic == nullptr || elastic->youngs_modulus.has_value(),
+          "material.linear_elastic.youngs_modulus", "is missing",
+          "Give the Young's modulus in Pa, greater than 0.");
+  f.check(constraints.empty(), "constraints", "are for solids", "Use supports.");
+  f.check(loads.empty(), "loads", "are for solids", "Use body_force.");
+  f.check(initial.displacement_field.empty() && initial.velocity_field.empty(), "initial",
+          "has a field, which is for solids", "Use velocity.");
+}
+
+void BodySpec::check_solid(Fields& f) const {
+  f.check(!supports.left_fixed && !supports.right_fixed, "supports", "are for bars",
+          "Use constraints, e.g. {clamp: {on: left, fixed: true}}.");
+  f.check(std::holds_alternative<MasslessSpec>(contact_layer), "contact_layer",
+          "is for bodies that may touch; contact of solids is not offered yet",
+          "Leave contact_layer out.");
+  if (!integrator) return;
+  f.check(!std::holds_alternative<BackwardEulerSpec>(*integrator), "integrator",
+          "backward_euler is offered to bar_pair only",
+          "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");
+  if (const auto* s = std::get_if<CentralDifferenceSpec>(&*integrator)) {
+    f.check(s->dispersion_terms == 1, "integrator.central_difference.dispersion_terms",
+            "are for bars", "Leave dispersion_terms out.");
+    f.check(s->bulk_viscosity == 0.0, "integrator.central_difference.bulk_viscosity",
+            "is for bars", "Leave bulk_viscosity out.");
+  }
 }
 
 }  // namespace abut

@@ -13,6 +13,7 @@
 #include "base/yaml_document.hpp"
 #include "contract/subdomain.hpp"
 #include "subdomain_solver/fe/bar.hpp"
+#include "subdomain_solver/solid_spec.hpp"
 
 namespace abut {
 
@@ -28,7 +29,11 @@ struct BarMeshSpec {
 struct FeModelSpec {
   static constexpr std::string_view name = "fe";
   int dimension = 1;
-  std::variant<BarMeshSpec> mesh;
+  std::variant<BarMeshSpec, RectangleSpec, DiskSpec, BoxSpec, CylinderSpec, SphereSpec, GmshSpec>
+      mesh;
+  Plane plane = Plane::strain;
+  double thickness = 1.0;  // [m]
+  Formulation formulation = Formulation::full;
   void fields(Fields& f);
 };
 struct RigidWallSpec {
@@ -60,12 +65,6 @@ struct BarPairSpec {
   void fields(Fields& f);
 };
 
-struct LinearElasticSpec {
-  static constexpr std::string_view name = "linear_elastic";
-  double youngs_modulus = 0.0, density = 0.0;  // [Pa] [kg/m^3]
-  void fields(Fields& f);
-};
-
 struct CentralDifferenceSpec {
   static constexpr std::string_view name = "central_difference";
   double step = 0.0;  // [s]
@@ -93,6 +92,12 @@ struct GeneralizedAlphaSpec {
   void fields(Fields& f);
 };
 
+struct QuasiStaticSpec {  // of solids only
+  static constexpr std::string_view name = "quasi_static";
+  double step = 0.0;
+  int halvings = 8;
+  void fields(Fields& f);
+};
 struct BackwardEulerSpec {  // of bar pairs only
   static constexpr std::string_view name = "backward_euler";
   double step = 0.0;
@@ -118,6 +123,8 @@ struct MassiveSpec {
 
 struct InitialSpec {
   std::vector<double> position = {0.0}, velocity = {0.0};  // [m] [m/s] (dim)
+  // of solids: one expression per dimension, added to the uniform values
+  std::vector<std::string> displacement_field, velocity_field;
   void fields(Fields& f);
 };
 struct SupportsSpec {
@@ -131,18 +138,30 @@ struct PortSpec {
 };
 
 struct BodySpec {
-  using Integrator = std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec,
-                                  GeneralizedAlphaSpec, BackwardEulerSpec>;
+  using Integrator =
+      std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec, GeneralizedAlphaSpec,
+                   QuasiStaticSpec, BackwardEulerSpec>;
 
   std::variant<FeModelSpec, RigidWallSpec, BarPairSpec> model;
-  std::optional<std::variant<LinearElasticSpec>> material;
+  std::optional<MaterialSpec> material;
   std::optional<Integrator> integrator;
   std::variant<MasslessSpec, KickSpec, MassiveSpec> contact_layer;
   InitialSpec initial;
   SupportsSpec supports;
   std::vector<double> body_force = {0.0};  // [m/s^2] (dim)
   std::vector<std::pair<std::string, PortSpec>> ports;
+  // of solids
+  std::vector<std::pair<std::string, ConstraintSpec>> constraints;
+  std::vector<std::pair<std::string, LoadSpec>> loads;
+  EquationsSpec equations;
   void fields(Fields& f);
+
+  bool is_bar() const;    // fe in one dimension
+  bool is_solid() const;  // fe in two or three
+ private:
+  void check_dimensions(Fields& f) const;
+  void check_bar(Fields& f) const;
+  void check_solid(Fields& f) const;
 };
 
 /// Properties of the bar on which a port lies; empty for a wall. For closed forms and estimates.
@@ -157,6 +176,10 @@ std::array<BarProperties, 2> pair_properties(const BodySpec& spec);
 /// then during long advances.
 std::unique_ptr<Subdomain> make_body(const Document& document, const std::string& path,
                                      std::function<void()> progress = {});
+/// The same of a solid whose specification has been read.
+std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document& document,
+                                           const std::string& path,
+                                           std::function<void()> progress);
 /// The same of a bar_pair whose specification has been read.
 std::unique_ptr<Subdomain> make_pair_body(const BodySpec& spec, const Document& document,
                                           const std::string& path, std::function<void()> progress);

@@ -93,6 +93,10 @@ struct SchemeMaker {
   Body::Scheme operator()(const GeneralizedAlphaSpec& s) const {
     return implicit(AlphaWeights::spectral_radius(s.spectral_radius), s.step, "generalised alpha");
   }
+  Body::Scheme operator()(const QuasiStaticSpec&) const {
+    place.refuse("integrator", "quasi_static is not offered to a bar",
+                 "Use newmark or another implicit integrator.");
+  }
   Body::Scheme operator()(const BackwardEulerSpec&) const {
     place.refuse("integrator", "backward_euler is offered to bar_pair only",
                  "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");
@@ -137,7 +141,7 @@ void check_layers(const BodySpec& spec, const BarProperties& bar, const Place& p
 std::optional<BarProperties> bar_properties(const BodySpec& spec, const std::string& port) {
   if (std::holds_alternative<BarPairSpec>(spec.model))
     return pair_properties(spec)[port == "left_tip" ? 0 : 1];
-  if (std::holds_alternative<FeModelSpec>(spec.model)) return fe_bar_properties(spec);
+  if (spec.is_bar()) return fe_bar_properties(spec);
   return std::nullopt;
 }
 
@@ -148,7 +152,7 @@ BarProperties fe_bar_properties(const BodySpec& spec) {
   bar.length = mesh.length;
   bar.area = mesh.area;
   bar.elements = mesh.elements;
-  bar.youngs_modulus = material.youngs_modulus;
+  bar.youngs_modulus = *material.youngs_modulus;
   bar.density = material.density;
   bar.position = spec.initial.position[0];
   bar.velocity = spec.initial.velocity[0];
@@ -185,6 +189,7 @@ std::unique_ptr<Subdomain> make_body(const Document& document, const std::string
   const std::string name = path.substr(path.rfind('.') + 1);
   if (std::holds_alternative<BarPairSpec>(spec.model))
     return make_pair_body(spec, document, path, std::move(progress));
+  if (spec.is_solid()) return make_solid_body(spec, document, path, std::move(progress));
   std::vector<Body::BodyPort> ports = ports_of(spec, place);
   if (std::holds_alternative<RigidWallSpec>(spec.model)) {
     return std::make_unique<RigidWall>(name, spec.initial.position[0], ports[0].name,

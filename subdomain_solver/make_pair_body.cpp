@@ -50,6 +50,7 @@ struct PairScheme {
     parameters.words += ", backward Euler";
   }
   void operator()(const HhtAlphaSpec&) const { unknown(); }
+  void operator()(const QuasiStaticSpec&) const { unknown(); }
   void operator()(const GeneralizedAlphaSpec&) const { unknown(); }
   void unknown() const {
     refuse("integrator", "is not offered to bar_pair",
@@ -89,7 +90,7 @@ std::array<BarProperties, 2> pair_properties(const BodySpec& spec) {
     bar.elements = from.elements;
     bar.position = from.position;
     bar.velocity = from.velocity;
-    bar.youngs_modulus = material.youngs_modulus;
+    bar.youngs_modulus = *material.youngs_modulus;
     bar.density = material.density;
     bar.mass = std::visit(
         [](const auto& scheme) {

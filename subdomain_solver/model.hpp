@@ -7,6 +7,7 @@
 
 #include "base/archive.hpp"
 #include "base/worker_threads.hpp"
+#include "subdomain_solver/mass_form.hpp"
 
 namespace abut {
 
@@ -64,5 +65,8 @@ class Model {
   [[nodiscard]] virtual bool evaluate(std::span<const double> q, std::span<const double> history,
                                       Want want, ModelResponse& out) = 0;
 };
+
+/// [kg] in the form that a scheme asks for; averaged is half lumped, half consistent.
+SparseMatrix mass_matrix(const Model& model, MassForm form);
 
 }  // namespace abut

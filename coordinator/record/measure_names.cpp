@@ -25,6 +25,19 @@ bool needs_closed_form(const std::string& measure, MeasureScope scope) {
 
 }  // namespace
 
+std::string body_measure(const std::string& body, const std::string& measure) {
+  return fmt::format("body.{}.{}", body, measure);
+}
+
+std::vector<std::string> told_measures(std::span<const Description* const> bodies) {
+  std::vector<std::string> names;
+  for (const Description* body : bodies) {
+    for (const std::string& measure : body->measures)
+      names.push_back(body_measure(body->name, measure));
+  }
+  return names;
+}
+
 MeasureScope measure_scope(const RunStart& start, std::vector<std::string> exact) {
   MeasureScope scope;
   scope.exact = std::move(exact);
@@ -32,6 +45,7 @@ MeasureScope measure_scope(const RunStart& start, std::vector<std::string> exact
     scope.dim = std::max(scope.dim, body.dim);
     scope.bodies.push_back(body.name);
   }
+  scope.told = told_measures(start.bodies);
   for (const InterfaceInfo& interface : start.interfaces) {
     scope.interfaces.push_back(interface.name);
     for (const int side : {0, 1}) {
@@ -70,6 +84,7 @@ std::vector<std::string> known_measures(const MeasureScope& scope) {
   for (const std::string& port : scope.ports)
     for (int axis = 0; axis < scope.dim; ++axis)
       names.push_back(fmt::format("position.{}.max{}", port, axis_ending(scope.dim, axis)));
+  names.insert(names.end(), scope.told.begin(), scope.told.end());
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;

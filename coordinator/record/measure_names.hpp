@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,14 @@ struct MeasureScope {
   std::vector<std::string> ports;  // "body.port" of those that interfaces join
   std::vector<std::string> interfaces;
   std::vector<std::string> exact;  // the interfaces that a closed form describes
+  std::vector<std::string> told;   // "body.<name>.<measure>" of Description::measures
 };
+
+/// Name of a number that a body tells of itself.
+std::string body_measure(const std::string& body, const std::string& measure);
+
+/// All that bodies tell of themselves.
+std::vector<std::string> told_measures(std::span<const Description* const> bodies);
 
 /// The scope of a run; `exact` are the interfaces that a closed form describes.
 MeasureScope measure_scope(const RunStart& start, std::vector<std::string> exact);

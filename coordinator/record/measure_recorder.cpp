@@ -107,10 +107,26 @@ void MeasureRecorder::write_positions() {
   }
 }
 
+/// What bodies tell of themselves.
+void MeasureRecorder::write_told(const RunEnd& end) {
+  for (std::size_t b = 0; b < start_.bodies.size(); ++b) {
+    const Description& body = *start_.bodies[b];
+    for (std::size_t k = 0; k < body.measures.size(); ++k) {
+      const std::string name = body_measure(body.name, body.measures[k]);
+      if (b < end.body_measures.size() && k < end.body_measures[b].size()) {
+        measures_.set(name, end.body_measures[b][k]);
+      } else {
+        measures_.none(name, "the run did not come to its end");
+      }
+    }
+  }
+}
+
 void MeasureRecorder::on_end(const RunEnd& end) {
   for (const ContactMeasures& contact : contacts_) contact.write(last_time_, measures_);
   if (balance_) balance_->write(measures_);
   write_positions();
+  write_told(end);
   const double windows = static_cast<double>(std::max<std::int64_t>(1, contact_windows_));
   measures_.set("schwarz.iterations_mean", static_cast<double>(iterations_) / windows);
   measures_.set("schwarz.iterations_max", iterations_max_);

@@ -40,6 +40,7 @@ class MeasureRecorder : public Observer {
   void follow_positions(const WindowReport& report);
   void check_finite(const WindowReport& report);
   void write_positions();
+  void write_told(const RunEnd& end);
 
   const ClosedForm* form_;
   RunStart start_;

@@ -64,6 +64,8 @@ struct RunEnd {
   std::int64_t exchanges = 0;            // requests answered by bodies, kernels included
   double wall_seconds = 0.0;             // first window to last
   std::vector<double> compute_seconds;   // by body
+  // by body, in the order of its Description::measures; empty where the run did not come to its end
+  std::vector<std::vector<double>> body_measures;
   double overhead_median_seconds = 0.0;  // per exchange: wall minus compute
 };
 

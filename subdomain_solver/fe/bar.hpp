@@ -3,6 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "subdomain_solver/mass_form.hpp"
+
 namespace abut {
 
 /// How the contact node's mass is treated (docs/METHOD.md, contact layer).
@@ -13,9 +15,6 @@ enum class ContactLayer {
   massive,   // massive node as in the published scheme
   shared,    // massive node of an implicit bar whose reaction is complete: tied ends only
 };
-
-/// Mass matrix of an element: m_e [[1/2 - b, b], [b, 1/2 - b]].
-enum class MassForm { lumped, averaged, consistent };  // b = 0, 1/12, 1/6
 
 /// What a uniform bar of two-node elements is made of.
 struct BarProperties {

@@ -51,7 +51,7 @@ class ImplicitDynamics::Balance final : public Equations {
       for (const std::unique_ptr<Load>& load : o_.problem_.loads)
         load->add_tangent(end_, q, here.tangent);
       const SparseMatrix whole =
-          (1.0 - w_.alpha_m) * o_.mass() + (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_ * here.tangent;
+          (1.0 - w_.alpha_m) * o_.mass_ + (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_ * here.tangent;
       o_.free_.extract(whole, o_.matrix_);
       o_.factored_dt_ = 0.0;
       if (!o_.solver_->factor(o_.matrix_)) return false;
@@ -97,17 +97,10 @@ ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& option
       options_(options),
       solver_(std::move(solver)),
       free_(problem.model->dofs(), problem.supports) {
-  if (options.mass == MassMatrix::consistent) return;
-  lumped_ = problem.model->lumped_mass();
-  diagonal_.resize(lumped_.size(), lumped_.size());
-  for (int i = 0; i < lumped_.size(); ++i) diagonal_.insert(i, i) = lumped_(i);
-  diagonal_.makeCompressed();
+  mass_ = mass_matrix(*problem.model, options.mass);
 }
 
-Vector ImplicitDynamics::times_mass(const Vector& x) const {
-  if (lumped_.size() > 0) return lumped_.cwiseProduct(x);
-  return problem_.model->mass() * x;
-}
+Vector ImplicitDynamics::times_mass(const Vector& x) const { return mass_ * x; }
 
 /// Accelerations from the balance at the begin: M a = f - r on the free coordinates.
 std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
@@ -121,7 +114,7 @@ std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
     return failed_newton({NewtonReport::End::inadmissible}, time);
   const Vector r = free_.pick(problem_.external_force(time, motion.q) - response.force);
   SparseMatrix free_mass;
-  FreeCoordinates(model.dofs(), problem_.supports).extract(mass(), free_mass);
+  FreeCoordinates(model.dofs(), problem_.supports).extract(mass_, free_mass);
   std::unique_ptr<LinearSolver> solver = make_direct_solver();
   Vector a;
   if (!solver->factor(free_mass) || !solver->solve(r, a))

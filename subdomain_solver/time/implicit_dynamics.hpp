@@ -1,13 +1,12 @@
 #pragma once
 
+#include "subdomain_solver/mass_form.hpp"
 #include "subdomain_solver/solve/linear_solver.hpp"
 #include "subdomain_solver/solve/newton.hpp"
 #include "subdomain_solver/time/alpha_weights.hpp"
 #include "subdomain_solver/time/integrator.hpp"
 
 namespace abut {
-
-enum class MassMatrix { lumped, consistent };
 
 /// The generalised-alpha family on any model [M.46]: one Newton solve per step, one factorisation
 /// per step length when the model is linear. Newmark 1/4, 1/2 conserves 1/2 v M v + stored energy
@@ -16,7 +15,7 @@ class ImplicitDynamics final : public Integrator {
  public:
   struct Options {
     AlphaWeights weights;
-    MassMatrix mass = MassMatrix::consistent;
+    MassForm mass = MassForm::consistent;
     NewtonOptions newton;
   };
 
@@ -31,16 +30,12 @@ class ImplicitDynamics final : public Integrator {
   class Balance;
 
   Vector times_mass(const Vector& x) const;
-  const SparseMatrix& mass() const {
-    return lumped_.size() > 0 ? diagonal_ : problem_.model->mass();
-  }
 
   const Problem& problem_;
   Options options_;
   std::unique_ptr<LinearSolver> solver_;
   FreeCoordinates free_;
-  Vector lumped_;          // empty: consistent
-  SparseMatrix diagonal_;  // the lumped mass as a matrix
+  SparseMatrix mass_;
   SparseMatrix matrix_;    // of the free coordinates
   double factored_dt_ = 0.0;
 };

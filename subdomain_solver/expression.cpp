@@ -1,0 +1,53 @@
+#include "subdomain_solver/expression.hpp"
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include "base/error.hpp"
+
+namespace abut {
+
+namespace {
+
+/// The parser with the variables that it refers to.
+struct Formula {
+  explicit Formula(const std::string& text) {
+    parser.DefineVar("x", &x);
+    parser.DefineVar("y", &y);
+    parser.DefineVar("z", &z);
+    parser.DefineVar("t", &t);
+    parser.DefineConst("pi", std::numbers::pi);
+    parser.SetExpr(text);
+    parser.Eval();  // reads it
+  }
+  Formula(const Formula&) = delete;
+  Formula& operator=(const Formula&) = delete;
+
+  mu::Parser parser;
+  double x = 0.0, y = 0.0, z = 0.0, t = 0.0;
+};
+
+}  // namespace
+
+std::function<double(const std::array<double, 3>&, double)> expression(const std::string& text,
+                                                                       const std::string& where) {
+  try {
+    std::shared_ptr<Formula> formula = std::make_shared<Formula>(text);  // std::function copies
+    return [formula](const std::array<double, 3>& at, double time) {
+      formula->x = at[0];
+      formula->y = at[1];
+      formula->z = at[2];
+      formula->t = time;
+      return formula->parser.Eval();
+    };
+  } catch (const mu::Parser::exception_type& error) {
+    throw InputError(fmt::format("'{}' cannot be read as an expression: {}", text, error.GetMsg()),
+                     where, "Write it with numbers, x, y, z, t, pi, + - * / ^ and functions such as sin.");
+  }
+}
+
+}  // namespace abut

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "contract/subdomain.hpp"
+#include "subdomain_solver/fe/fe_model.hpp"
+#include "subdomain_solver/solid_measures.hpp"
+#include "subdomain_solver/substeps.hpp"
+#include "subdomain_solver/time/integrator.hpp"
+
+namespace abut {
+
+/// Our subdomain in two and three dimensions: finite elements, what acts on them, an integrator,
+/// and ports, which are sides or node sets of the mesh.
+class SolidBody final : public Subdomain {
+ public:
+  struct PortNodes {
+    std::string name, side;
+  };
+  struct Scheme {
+    std::unique_ptr<Integrator> integrator;
+    double step = 0.0;  // [s]
+    double stable_step = 0.0;  // [s]; infinity: none
+    MassForm mass = MassForm::lumped;
+    std::string words;  // for people
+  };
+  struct Parts {  // in the order of construction: later ones refer to earlier ones
+    std::unique_ptr<FeModel> model;
+    std::unique_ptr<Problem> problem;
+    Scheme scheme;
+    Motion motion;  // q and v of the start
+  };
+
+  SolidBody(std::string name, Parts parts, const std::vector<PortNodes>& ports);
+
+  const Description& describe() const override { return description_; }
+  void save() override;
+  void restore() override;
+  void start(const Advance& request) override { request_ = &request; }
+  [[nodiscard]] Outcome finish(Response& response) override;
+  PortKernel kernel(int port, double step, int count) override;
+  std::vector<std::byte> checkpoint() override;
+  void resume(std::span<const std::byte> bytes) override;
+  std::uint64_t state_hash() override { return hash_state(state_); }
+  std::vector<double> measure() override;
+
+  void set_progress(std::function<void()> hook) { progress_ = std::move(hook); }
+
+ private:
+  class PortForces;
+  struct State {
+    Motion motion;
+    bool begun = false;  // accelerations and forces of the start are there
+    void state(Archive& archive) {
+      motion.state(archive);
+      archive.field("begun", begun);
+    }
+  };
+
+  void describe(std::string name, const std::vector<PortNodes>& ports);
+  Port port_of(const PortNodes& port, const std::vector<std::int32_t>& list) const;
+  Energy energy() const;
+  std::optional<Failed> advance(const Advance& request, const Substeps& grid, Response& response);
+  void push_traces(double time, Response& response) const;
+  void widen_sweep();
+  void begin_sweep();
+  void end_sweep(Response& response) const;
+  std::optional<Failed> record(double time, Response& response);
+  Vector momentum_of_nodes() const;
+  void report_progress();
+
+  Parts parts_;
+  SparseMatrix mass_;  // [kg] that of the scheme
+  Description description_;
+  std::vector<NamedNodes> ports_;
+  PortForces* port_forces_ = nullptr;             // owned by the problem
+  State state_;
+  const Advance* request_ = nullptr;
+  std::vector<std::byte> saved_;
+  std::size_t recorded_ = 0;
+  std::vector<std::vector<double>> lower_, upper_;  // [m] (dim) by port, since the last record
+  std::function<void()> progress_;
+  double work_since_progress_ = 0.0;  // cell-steps
+};
+
+}  // namespace abut

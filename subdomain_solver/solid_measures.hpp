@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "contract/outcome.hpp"
+#include "subdomain_solver/fe/fe_model.hpp"
+
+namespace abut {
+
+/// Nodes under a name: a port.
+struct NamedNodes {
+  std::string name;
+  std::vector<std::int32_t> nodes;
+};
+
+/// Names of what a solid tells of its state, in the order of solid_measures: displacement.x.min,
+/// velocity.y.mean, stress.xx.mean, von_mises.max, energy.stored, angular_momentum.z, and of every
+/// port its mean displacement and velocity, tip.displacement.x (docs/OUTPUT.md).
+std::vector<std::string> solid_measure_names(int dim, const std::vector<NamedNodes>& ports);
+
+/// Their values. Means are over nodes (displacement, velocity) and over quadrature points (Cauchy
+/// stress [Pa]); angular momentum is about the origin of space [kg m^2/s], with `nodal_momentum`
+/// the momentum of each node (nodes, dim). Not a number where the state is inadmissible.
+std::vector<double> solid_measures(FeModel& model, const Motion& motion, const Energy& energy,
+                                   const Vector& nodal_momentum,
+                                   const std::vector<NamedNodes>& ports);
+
+/// Cauchy stress [Pa] from first Piola-Kirchhoff stress and deformation gradient; P itself where the
+/// law is one of small strain.
+Matrix3 cauchy_stress(const Material& material, const Matrix3& stress, const Matrix3& deformation);
+double von_mises(const Matrix3& stress);
+
+}  // namespace abut
