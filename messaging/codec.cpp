@@ -405,7 +405,8 @@ void decode(const v1::Description& from, Description& to) {
                         .kernel = can.kernel(),
                         .impedance = can.impedance(),
                         .complete = can.complete()};
-  if (from.measures_size() > most_members) FieldPath{&path, "measures"}.fail("has too many entries");
+  if (from.measures_size() > most_members)
+    FieldPath{&path, "measures"}.fail("has too many entries");
   to.measures.assign(from.measures().begin(), from.measures().end());
   if (from.members_size() > most_members) FieldPath{&path, "members"}.fail("has too many entries");
   to.members.resize(static_cast<std::size_t>(from.members_size()));

@@ -36,14 +36,15 @@ void FeModelSpec::fields(Fields& f) {
   const bool bar = std::holds_alternative<BarMeshSpec>(mesh);
   const bool flat =
       std::holds_alternative<RectangleSpec>(mesh) || std::holds_alternative<DiskSpec>(mesh);
-  const bool file = std::holds_alternative<GmshSpec>(mesh);
+  const bool file =
+      std::holds_alternative<GmshSpec>(mesh) || std::holds_alternative<ExodusSpec>(mesh);
   const int wanted = bar ? 1 : flat ? 2 : 3;
   f.check(file ? dimension > 1 : dimension == wanted, "dimension",
           fmt::format("is {}, but the mesh has {}", dimension,
                       file ? "2 or 3" : std::to_string(wanted)),
           "Give the dimension of the mesh.");
-  f.check(plane == Plane::strain || dimension == 2, "plane",
-          "is for bodies in two dimensions", "Leave plane out.");
+  f.check(plane == Plane::strain || dimension == 2, "plane", "is for bodies in two dimensions",
+          "Leave plane out.");
   f.check(plane != Plane::stress || formulation == Formulation::full, "formulation",
           "mean_dilatation does not apply to plane stress, which cannot lock",
           "Leave formulation out.");
@@ -207,9 +208,7 @@ bool BodySpec::is_bar() const {
   return fe != nullptr && std::holds_alternative<BarMeshSpec>(fe->mesh);
 }
 
-bool BodySpec::is_solid() const {
-  return std::holds_alternative<FeModelSpec>(model) && !is_bar();
-}
+bool BodySpec::is_solid() const { return std::holds_alternative<FeModelSpec>(model) && !is_bar(); }
 
 void BodySpec::check_dimensions(Fields& f) const {
   const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
@@ -223,8 +222,9 @@ void BodySpec::check_dimensions(Fields& f) const {
   check(initial.position, "initial.position");
   check(initial.velocity, "initial.velocity");
   check(body_force, "body_force");
-  for (const auto& [list, key] : {std::pair(&initial.displacement_field, "initial.displacement_field"),
-                                  {&initial.velocity_field, "initial.velocity_field"}}) {
+  for (const auto& [list, key] :
+       {std::pair(&initial.displacement_field, "initial.displacement_field"),
+        {&initial.velocity_field, "initial.velocity_field"}}) {
     f.check(list->empty() || list->size() == dim, key,
             fmt::format("has {} expressions", list->size()),
             fmt::format("Give {} expressions, one per dimension.", dim));
@@ -258,8 +258,8 @@ void BodySpec::check_solid(Fields& f) const {
   if (const auto* s = std::get_if<CentralDifferenceSpec>(&*integrator)) {
     f.check(s->dispersion_terms == 1, "integrator.central_difference.dispersion_terms",
             "are for bars", "Leave dispersion_terms out.");
-    f.check(s->bulk_viscosity == 0.0, "integrator.central_difference.bulk_viscosity",
-            "is for bars", "Leave bulk_viscosity out.");
+    f.check(s->bulk_viscosity == 0.0, "integrator.central_difference.bulk_viscosity", "is for bars",
+            "Leave bulk_viscosity out.");
   }
 }
 

@@ -29,7 +29,8 @@ struct BarMeshSpec {
 struct FeModelSpec {
   static constexpr std::string_view name = "fe";
   int dimension = 1;
-  std::variant<BarMeshSpec, RectangleSpec, DiskSpec, BoxSpec, CylinderSpec, SphereSpec, GmshSpec>
+  std::variant<BarMeshSpec, RectangleSpec, DiskSpec, BoxSpec, CylinderSpec, SphereSpec, GmshSpec,
+               ExodusSpec>
       mesh;
   Plane plane = Plane::strain;
   double thickness = 1.0;  // [m]
@@ -138,9 +139,8 @@ struct PortSpec {
 };
 
 struct BodySpec {
-  using Integrator =
-      std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec, GeneralizedAlphaSpec,
-                   QuasiStaticSpec, BackwardEulerSpec>;
+  using Integrator = std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec,
+                                  GeneralizedAlphaSpec, QuasiStaticSpec, BackwardEulerSpec>;
 
   std::variant<FeModelSpec, RigidWallSpec, BarPairSpec> model;
   std::optional<MaterialSpec> material;
@@ -178,8 +178,7 @@ std::unique_ptr<Subdomain> make_body(const Document& document, const std::string
                                      std::function<void()> progress = {});
 /// The same of a solid whose specification has been read.
 std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document& document,
-                                           const std::string& path,
-                                           std::function<void()> progress);
+                                           const std::string& path, std::function<void()> progress);
 /// The same of a bar_pair whose specification has been read.
 std::unique_ptr<Subdomain> make_pair_body(const BodySpec& spec, const Document& document,
                                           const std::string& path, std::function<void()> progress);

@@ -45,8 +45,11 @@ std::function<double(const std::array<double, 3>&, double)> expression(const std
       return formula->parser.Eval();
     };
   } catch (const mu::Parser::exception_type& error) {
-    throw InputError(fmt::format("'{}' cannot be read as an expression: {}", text, error.GetMsg()),
-                     where, "Write it with numbers, x, y, z, t, pi, + - * / ^ and functions such as sin.");
+    std::string why = error.GetMsg();
+    while (why.ends_with('.')) why.pop_back();
+    throw InputError(fmt::format("'{}' cannot be read as an expression: {}", text, why),
+                     where,
+                     "Write it with numbers, x, y, z, t, pi, + - * / ^ and functions such as sin.");
   }
 }
 

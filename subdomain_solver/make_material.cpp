@@ -53,8 +53,8 @@ std::unique_ptr<const Material> make_material(const MaterialSpec& spec, const Do
     return std::visit(LawMaker{}, spec);
   } catch (const InputError& error) {  // `where` is the constant's name
     const std::string law = std::visit([](const auto& s) { return std::string(s.name); }, spec);
-    throw InputError(error.what_is_wrong, document.where(path + "." + law + "." + error.where),
-                     error.remedy);
+    const std::string key = error.where.empty() ? "" : "." + error.where;
+    throw InputError(error.what_is_wrong, document.where(path + "." + law + key), error.remedy);
   }
 }
 

@@ -8,8 +8,8 @@
 
 namespace abut {
 
-/// The law that a scene describes at a key path, e.g. "bodies.left.material". Throws InputError with
-/// file, line and key.
+/// The law that a scene describes at a key path, e.g. "bodies.left.material". Throws InputError
+/// with file, line and key.
 std::unique_ptr<const Material> make_material(const MaterialSpec& spec, const Document& document,
                                               const std::string& path);
 

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "subdomain_solver/body_spec.hpp"
 #include "subdomain_solver/expression.hpp"
+#include "subdomain_solver/fe/exodus_file.hpp"
 #include "subdomain_solver/fe/gmsh_file.hpp"
 #include "subdomain_solver/fe/loads.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
@@ -53,8 +54,12 @@ struct MeshMaker {
 
   Mesh operator()(const BarMeshSpec&) const { return {}; }  // a bar is no solid
   Mesh operator()(const RectangleSpec& s) const {
-    return generate(RectangleMesh{{}, origin_of(s.centred), array_of<2>(s.lengths),
-                                  counts_of<2>(s.elements), array_of<2>(s.grading), s.element},
+    return generate(RectangleMesh{{},
+                                  origin_of(s.centred),
+                                  array_of<2>(s.lengths),
+                                  counts_of<2>(s.elements),
+                                  array_of<2>(s.grading),
+                                  s.element},
                     place.where("model.fe.mesh.rectangle"));
   }
   Mesh operator()(const DiskSpec& s) const {
@@ -62,24 +67,37 @@ struct MeshMaker {
                     place.where("model.fe.mesh.disk"));
   }
   Mesh operator()(const BoxSpec& s) const {
-    return generate(BoxMesh{{}, origin_of(s.centred), array_of<3>(s.lengths),
-                            counts_of<3>(s.elements), array_of<3>(s.grading), s.element},
+    return generate(BoxMesh{{},
+                            origin_of(s.centred),
+                            array_of<3>(s.lengths),
+                            counts_of<3>(s.elements),
+                            array_of<3>(s.grading),
+                            s.element},
                     place.where("model.fe.mesh.box"));
   }
   Mesh operator()(const CylinderSpec& s) const {
-    return generate(CylinderMesh{{}, origin_of(s.centred), s.radius, s.length, s.core, s.layers,
-                                 s.elements, s.grading, s.element},
+    return generate(CylinderMesh{{},
+                                 origin_of(s.centred),
+                                 s.radius,
+                                 s.length,
+                                 s.core,
+                                 s.layers,
+                                 s.elements,
+                                 s.grading,
+                                 s.element},
                     place.where("model.fe.mesh.cylinder"));
   }
   Mesh operator()(const SphereSpec& s) const {
     return generate(SphereMesh{{}, s.radius, s.core, s.layers, s.element},
                     place.where("model.fe.mesh.sphere"));
   }
-  Mesh operator()(const GmshSpec& s) const {
+  Mesh operator()(const GmshSpec& s) const { return read_gmsh(path_of(s.file), s.scale); }
+  Mesh operator()(const ExodusSpec& s) const { return read_exodus(path_of(s.file), s.scale); }
+
+  /// Relative to the scene file.
+  std::string path_of(const std::string& file) const {
     const std::string& scene = place.document.name();
-    const bool absolute = s.file.starts_with('/');
-    const std::string folder = absolute ? "" : scene.substr(0, scene.rfind('/') + 1);
-    return read_gmsh(folder + s.file, s.scale);
+    return file.starts_with('/') ? file : scene.substr(0, scene.rfind('/') + 1) + file;
   }
 };
 
@@ -134,7 +152,8 @@ std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node) {
 /// An orthonormal frame whose first axis is along a direction.
 Matrix3 frame_along(const std::vector<double>& direction) {
   Eigen::Vector3d first = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < direction.size(); ++i) first(static_cast<Eigen::Index>(i)) = direction[i];
+  for (std::size_t i = 0; i < direction.size(); ++i)
+    first(static_cast<Eigen::Index>(i)) = direction[i];
   first.normalize();
   Matrix3 axes;
   if (direction.size() == 2) {

@@ -76,7 +76,8 @@ void SolidBody::describe(std::string name, const std::vector<PortNodes>& ports) 
   description_.name = std::move(name);
   std::string cells;
   for (const CellBlock& block : mesh.blocks)
-    cells += fmt::format("{}{} {}", cells.empty() ? "" : " and ", block.count(), block.element->name);
+    cells +=
+        fmt::format("{}{} {}", cells.empty() ? "" : " and ", block.count(), block.element->name);
   description_.model = fmt::format("fe, {}, {}", cells, parts_.scheme.words);
   description_.dim = mesh.dim;
   description_.dofs = parts_.model->dofs();
@@ -129,7 +130,8 @@ Port SolidBody::port_of(const PortNodes& nodes, const std::vector<std::int32_t>&
     for (std::size_t i = 0; i < dim && length > 0.0; ++i) normals[k + i] /= length;
   }
   const double facets = static_cast<double>(std::max<std::size_t>(1, side.facets.size()));
-  port.geometry.spacing = std::pow(area / facets, 1.0 / std::max(1.0, static_cast<double>(dim) - 1.0));
+  port.geometry.spacing =
+      std::pow(area / facets, 1.0 / std::max(1.0, static_cast<double>(dim) - 1.0));
   return port;
 }
 
@@ -213,8 +215,10 @@ std::optional<Failed> SolidBody::advance(const Advance& request, const Substeps&
     widen_sweep();
     report_progress();
     const bool due = i == clock.substep();
-    if (request.sampling == Sampling::substeps) push_traces(grid.time(i), response);
-    else if (due) push_traces(clock.time(), response);
+    if (request.sampling == Sampling::substeps)
+      push_traces(grid.time(i), response);
+    else if (due)
+      push_traces(clock.time(), response);
     for (; i == clock.substep(); clock.next()) {
       if (std::optional<Failed> failed = record(clock.time(), response)) return failed;
     }

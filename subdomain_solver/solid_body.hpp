@@ -22,7 +22,7 @@ class SolidBody final : public Subdomain {
   };
   struct Scheme {
     std::unique_ptr<Integrator> integrator;
-    double step = 0.0;  // [s]
+    double step = 0.0;         // [s]
     double stable_step = 0.0;  // [s]; infinity: none
     MassForm mass = MassForm::lumped;
     std::string words;  // for people
@@ -76,7 +76,7 @@ class SolidBody final : public Subdomain {
   SparseMatrix mass_;  // [kg] that of the scheme
   Description description_;
   std::vector<NamedNodes> ports_;
-  PortForces* port_forces_ = nullptr;             // owned by the problem
+  PortForces* port_forces_ = nullptr;  // owned by the problem
   State state_;
   const Advance* request_ = nullptr;
   std::vector<std::byte> saved_;

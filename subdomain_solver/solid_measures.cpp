@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <fmt/format.h>
 
 namespace abut {
 
@@ -66,7 +66,8 @@ std::vector<std::string> solid_measure_names(int dim, const std::vector<NamedNod
     }
   }
   for (int k = 0; k < stress_count(dim); ++k)
-    names.push_back(fmt::format("stress.{}.mean", stress_entries[static_cast<std::size_t>(k)].name));
+    names.push_back(
+        fmt::format("stress.{}.mean", stress_entries[static_cast<std::size_t>(k)].name));
   names.insert(names.end(), {"von_mises.mean", "von_mises.max", "energy.kinetic", "energy.stored",
                              "energy.dissipated", "energy.external_work"});
   for (int i = 0; i < dim; ++i)
@@ -129,7 +130,8 @@ std::vector<double> solid_measures(FeModel& model, const Motion& motion, const E
     for (const std::vector<double>* field : {&u, &v}) {
       for (int i = 0; i < dim; ++i) {
         double total = 0.0;
-        for (std::int32_t node : port.nodes) total += (*field)[static_cast<std::size_t>(node * dim + i)];
+        for (std::int32_t node : port.nodes)
+          total += (*field)[static_cast<std::size_t>(node * dim + i)];
         out.push_back(total / static_cast<double>(port.nodes.size()));
       }
     }

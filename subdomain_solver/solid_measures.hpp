@@ -26,8 +26,8 @@ std::vector<double> solid_measures(FeModel& model, const Motion& motion, const E
                                    const Vector& nodal_momentum,
                                    const std::vector<NamedNodes>& ports);
 
-/// Cauchy stress [Pa] from first Piola-Kirchhoff stress and deformation gradient; P itself where the
-/// law is one of small strain.
+/// Cauchy stress [Pa] from first Piola-Kirchhoff stress and deformation gradient; P itself where
+/// the law is one of small strain.
 Matrix3 cauchy_stress(const Material& material, const Matrix3& stress, const Matrix3& deformation);
 double von_mises(const Matrix3& stress);
 

@@ -73,8 +73,8 @@ void SphereSpec::fields(Fields& f) {
   element_key(f, element, {"hex8", "hex20", "tet4", "tet10"});
 }
 
-void GmshSpec::fields(Fields& f) {
-  f.required("file", file, "", "mesh file of format MSH 4.1, relative to the scene file");
+void MeshFileSpec::fields(Fields& f) {
+  f.required("file", file, "", "mesh file, relative to the scene file: MSH 4.1, or Exodus II");
   f.optional("scale", scale, "m", "length of the file's unit", positive);
 }
 
@@ -122,9 +122,9 @@ void ConstraintSpec::fields(Fields& f) {
              "direction along which value is prescribed (an inclined roller), one number per "
              "dimension");
   f.optional("value", value, "m", "displacement along direction, an expression");
-  const int ways = (fixed ? 1 : 0) + (x.empty() && y.empty() && z.empty() ? 0 : 1) + (direction.empty() ? 0 : 1);
-  f.check(ways == 1, "on",
-          ways == 0 ? "prescribes nothing" : "is prescribed in more than one way",
+  const int ways =
+      (fixed ? 1 : 0) + (x.empty() && y.empty() && z.empty() ? 0 : 1) + (direction.empty() ? 0 : 1);
+  f.check(ways == 1, "on", ways == 0 ? "prescribes nothing" : "is prescribed in more than one way",
           "Give one of: fixed: true; x, y, z; direction with value.");
 }
 
@@ -134,8 +134,7 @@ void LoadSpec::fields(Fields& f) {
              "force per reference area, one expression per dimension in x, y, z and t");
   f.optional("pressure", pressure, "Pa", "pressure towards the body, an expression");
   f.optional("follows", follows, "", "following of the present surface by the pressure");
-  f.optional("acceleration", acceleration, "m/s^2",
-             "force per mass, one expression per dimension");
+  f.optional("acceleration", acceleration, "m/s^2", "force per mass, one expression per dimension");
   const int ways =
       (traction.empty() ? 0 : 1) + (pressure.empty() ? 0 : 1) + (acceleration.empty() ? 0 : 1);
   f.check(ways == 1, "on", ways == 0 ? "carries no load" : "carries more than one load",

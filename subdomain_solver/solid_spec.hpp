@@ -49,11 +49,16 @@ struct SphereSpec {
   std::string element = "hex8";
   void fields(Fields& f);
 };
-struct GmshSpec {
-  static constexpr std::string_view name = "gmsh";
+struct MeshFileSpec {
   std::string file;
   double scale = 1.0;  // [m] per unit of the file
   void fields(Fields& f);
+};
+struct GmshSpec : MeshFileSpec {
+  static constexpr std::string_view name = "gmsh";
+};
+struct ExodusSpec : MeshFileSpec {
+  static constexpr std::string_view name = "exodus";
 };
 
 /// Elastic constants of an isotropic solid, any two of them.
@@ -95,17 +100,17 @@ struct J2PlasticitySpec : ElasticSpec {
 struct ConstraintSpec {
   std::string on;
   bool fixed = false;
-  std::string x, y, z;                 // [m]; empty: free
+  std::string x, y, z;  // [m]; empty: free
   std::vector<double> direction;
-  std::string value = "0";             // [m] along the direction
+  std::string value = "0";  // [m] along the direction
   void fields(Fields& f);
 };
 
 /// Force on a side, or on the whole volume. Expressions in x, y, z [m] and t [s].
 struct LoadSpec {
-  std::string on;                                  // empty: the volume
-  std::vector<std::string> traction, acceleration; // [Pa] [m/s^2] one expression per dimension
-  std::string pressure;                            // [Pa]
+  std::string on;                                   // empty: the volume
+  std::vector<std::string> traction, acceleration;  // [Pa] [m/s^2] one expression per dimension
+  std::string pressure;                             // [Pa]
   bool follows = false;
   void fields(Fields& f);
 };
@@ -127,10 +132,7 @@ struct EquationsSpec {
   void fields(Fields& f);
 };
 
-using SolidMeshSpec =
-    std::variant<RectangleSpec, DiskSpec, BoxSpec, CylinderSpec, SphereSpec, GmshSpec>;
-using MaterialSpec =
-    std::variant<LinearElasticSpec, SaintVenantKirchhoffSpec, NeoHookeanSpec, MooneyRivlinSpec,
-                 HenckySpec, J2PlasticitySpec>;
+using MaterialSpec = std::variant<LinearElasticSpec, SaintVenantKirchhoffSpec, NeoHookeanSpec,
+                                  MooneyRivlinSpec, HenckySpec, J2PlasticitySpec>;
 
 }  // namespace abut

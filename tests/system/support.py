@@ -24,9 +24,16 @@ MARK = "ABUT_SYSTEM_TEST"  # in the environment of every process that a test sta
 
 
 def shipped() -> list:
-    """The scenes that `abut run` starts by itself."""
+    """The scenes that `abut run` starts by itself, and that this program was built for."""
     return [path for path in sorted((ROOT / "configs").rglob("*.yaml"))
-            if path.stem != CONNECTED and path.parent.name != "invalid"]
+            if path.stem != CONNECTED and path.parent.name != "invalid"
+            and not (path.parent.name == "optional" and lacks_library(path))]
+
+
+def lacks_library(scene: Path) -> bool:
+    """Whether the scene is refused because an optional library was not there at build time."""
+    said = subprocess.run([ABUT, "check", scene], capture_output=True, text=True, check=False)
+    return said.returncode == 2 and "this program was built without" in said.stderr
 
 
 def free_port() -> int:
