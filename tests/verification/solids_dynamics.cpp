@@ -56,7 +56,7 @@ double order_of(const AlphaWeights& weights) {
   std::vector<double> errors;
   for (int steps : {100, 200}) {
     Plate plate(false);
-    ImplicitDynamics run(plate.s.problem, {weights, MassMatrix::consistent, {}},
+    ImplicitDynamics run(plate.s.problem, {weights, MassForm::consistent, {}},
                          make_direct_solver());
     errors.push_back(plate.error(run, steps));
   }
@@ -108,7 +108,7 @@ TEST(LinearBody, NewmarkKeepsItsEnergyAtAnyStep) {
     ASSERT_NEAR(run.kinetic(motion) + run.stored(motion), energy, roundoff(1.0e4, energy));
   }
   // Algorithmic damping takes energy and never gives any over these steps.
-  ImplicitDynamics damped(plate.s.problem, {AlphaWeights::hht(-0.1), MassMatrix::consistent, {}},
+  ImplicitDynamics damped(plate.s.problem, {AlphaWeights::hht(-0.1), MassForm::consistent, {}},
                           make_direct_solver());
   ASSERT_FALSE(damped.begin(motion, 0.0));
   for (int k = 0; k < 200; ++k) ASSERT_FALSE(damped.step(motion, 0.3 * k, 0.3));
