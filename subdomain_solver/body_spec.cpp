@@ -203,6 +203,17 @@ void BodySpec::fields(Fields& f) {
           "Add ports: {face: {side: left}}, where the side tells to which side the wall faces.");
 }
 
+void BodySpec::place_files(const std::string& folder) {
+  FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
+  if (fe == nullptr) return;
+  auto place = [&folder](auto& mesh) {
+    if constexpr (requires { mesh.file; }) {
+      if (!mesh.file.starts_with('/')) mesh.file = folder + mesh.file;
+    }
+  };
+  std::visit(place, fe->mesh);
+}
+
 bool BodySpec::is_bar() const {
   const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
   return fe != nullptr && std::holds_alternative<BarMeshSpec>(fe->mesh);

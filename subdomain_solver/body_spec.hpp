@@ -156,6 +156,9 @@ struct BodySpec {
   EquationsSpec equations;
   void fields(Fields& f);
 
+  /// Mesh files that are named relative to the scene file are named with its folder ("" or "a/b/").
+  void place_files(const std::string& folder);
+
   bool is_bar() const;    // fe in one dimension
   bool is_solid() const;  // fe in two or three
  private:

@@ -62,6 +62,7 @@ Description two_ports() {
   body.ports.push_back(body.ports[0]);
   body.ports[1].name = "tail";
   body.members = {{"front", 1.5, {0}}, {"rear", 2.5, {1}}};
+  body.measures = {"displacement.x.max", "energy.stored"};
   return body;
 }
 
@@ -219,6 +220,7 @@ TEST(Codec, DescriptionKeepsEveryFieldAndInfinity) {
   EXPECT_EQ(got.ports[1].geometry.spacing, 0.00125);
   EXPECT_TRUE(got.can.force && got.can.impulse && got.can.kernel && got.can.complete);
   EXPECT_FALSE(got.can.motion || got.can.obstacle);
+  EXPECT_EQ(got.measures, (std::vector<std::string>{"displacement.x.max", "energy.stored"}));
   ASSERT_EQ(got.members.size(), 2U);
   EXPECT_EQ(got.members[1].name, "rear");
   EXPECT_EQ(got.members[1].mass, 2.5);
