@@ -1,6 +1,7 @@
 #include "coordinator/launch_local.hpp"
 
 #include <array>
+#include <filesystem>
 #include <string>
 
 #include <fmt/format.h>
@@ -147,8 +148,13 @@ std::optional<ClosedForm> make_closed_form(const Scene& scene, const Document& d
 void document_body_keys(Reference& reference) { reference.add<BodySpec>("bodies.<name>"); }
 
 void resolve_body_keys(const Scene& scene, const Document& document, ResolvedYaml& resolved) {
-  for (const auto& [name, entry] : scene.bodies)
-    resolved.add(path_of(name), read<BodySpec>(document, path_of(name)));
+  // The resolved scene lies in another folder than the scene, and means the same files.
+  const std::filesystem::path folder = std::filesystem::absolute(document.name()).parent_path();
+  for (const auto& [name, entry] : scene.bodies) {
+    BodySpec spec = read<BodySpec>(document, path_of(name));
+    spec.place_files((folder / "").string());
+    resolved.add(path_of(name), spec);
+  }
 }
 
 }  // namespace abut

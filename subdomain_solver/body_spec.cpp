@@ -30,9 +30,13 @@ void FeModelSpec::fields(Fields& f) {
   f.word("plane", plane, {"strain", "stress", "axisymmetric"},
          "kinematics in two dimensions; axisymmetric: x is the radius, y the axis");
   f.optional("thickness", thickness, "m", "thickness in plane strain and stress", positive);
-  f.word("formulation", formulation, {"full", "mean_dilatation"},
-         "volume change of an element: pointwise, or one for all of it (B-bar, F-bar), which does "
-         "not lock when nearly incompressible");
+  f.word("formulation", formulation, {"full", "mean_dilatation", "one_point"},
+         "integration of an element: full; with one volume change for all of it (B-bar, F-bar), "
+         "which does not lock when nearly incompressible; or one point with hourglass control, for "
+         "explicit steps");
+  f.optional("hourglass", hourglass, "", "coefficient of the hourglass stiffness of one_point",
+             between(0.0, 1.0));
+  f.optional("threads", threads, "", "number of threads of an explicit body", between(1, 256));
   const bool bar = std::holds_alternative<BarMeshSpec>(mesh);
   const bool flat =
       std::holds_alternative<RectangleSpec>(mesh) || std::holds_alternative<DiskSpec>(mesh);
@@ -45,7 +49,7 @@ void FeModelSpec::fields(Fields& f) {
           "Give the dimension of the mesh.");
   f.check(plane == Plane::strain || dimension == 2, "plane", "is for bodies in two dimensions",
           "Leave plane out.");
-  f.check(plane != Plane::stress || formulation == Formulation::full, "formulation",
+  f.check(plane != Plane::stress || formulation != Formulation::mean_dilatation, "formulation",
           "mean_dilatation does not apply to plane stress, which cannot lock",
           "Leave formulation out.");
 }
@@ -87,6 +91,8 @@ void CentralDifferenceSpec::fields(Fields& f) {
              "parameter phi of Tchamwa and Wielgosz, which damps short waves most; 1 dissipates "
              "nothing; lowers the stable step",
              between(1.0, 2.0));
+  f.word("above_limit", clamp, {"refuse", "clamp"},
+         "answer to a step of a solid above its stable limit: refuse, or take 0.95 of the limit");
   f.check(tchamwa == 1.0 || (dispersion_terms == 1 && bulk_viscosity == 0.0), "tchamwa",
           fmt::format("is {:g} beside dispersion terms or bulk viscosity", tchamwa),
           "Choose one of them: what they do together has no known stable step.");
@@ -271,6 +277,8 @@ void BodySpec::check_solid(Fields& f) const {
             "are for bars", "Leave dispersion_terms out.");
     f.check(s->bulk_viscosity == 0.0, "integrator.central_difference.bulk_viscosity", "is for bars",
             "Leave bulk_viscosity out.");
+    f.check(s->tchamwa == 1.0, "integrator.central_difference.tchamwa", "is for bars",
+            "Leave tchamwa out.");
   }
 }
 

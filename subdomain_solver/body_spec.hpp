@@ -35,6 +35,8 @@ struct FeModelSpec {
   Plane plane = Plane::strain;
   double thickness = 1.0;  // [m]
   Formulation formulation = Formulation::full;
+  double hourglass = 0.05;
+  int threads = 1;
   void fields(Fields& f);
 };
 struct RigidWallSpec {
@@ -71,6 +73,7 @@ struct CentralDifferenceSpec {
   double step = 0.0;  // [s]
   int dispersion_terms = 1;
   double bulk_viscosity = 0.0;
+  bool clamp = false;  // "above_limit: refuse | clamp"
   double tchamwa = 1.0;
   void fields(Fields& f);
 };

@@ -184,7 +184,8 @@ BarProperties fe_bar_properties(const BodySpec& spec) {
 
 std::unique_ptr<Subdomain> make_body(const Document& document, const std::string& path,
                                      std::function<void()> progress) {
-  const BodySpec spec = read<BodySpec>(document, path);
+  BodySpec spec = read<BodySpec>(document, path);
+  spec.place_files(document.name().substr(0, document.name().rfind('/') + 1));
   const Place place{document, path};
   const std::string name = path.substr(path.rfind('.') + 1);
   if (std::holds_alternative<BarPairSpec>(spec.model))

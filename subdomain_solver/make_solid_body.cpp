@@ -12,6 +12,7 @@
 #include "subdomain_solver/fe/gmsh_file.hpp"
 #include "subdomain_solver/fe/loads.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
+#include "subdomain_solver/fe/stable_step.hpp"
 #include "subdomain_solver/make_material.hpp"
 #include "subdomain_solver/solid_body.hpp"
 #include "subdomain_solver/time/explicit_dynamics.hpp"
@@ -24,6 +25,9 @@ namespace abut {
 namespace {
 
 std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+/// Of the stable limit, where a step is clamped: finite strain may lower the limit a little.
+constexpr double clamped = 0.95;
 
 struct Place {
   const Document& document;
@@ -91,14 +95,8 @@ struct MeshMaker {
     return generate(SphereMesh{{}, s.radius, s.core, s.layers, s.element},
                     place.where("model.fe.mesh.sphere"));
   }
-  Mesh operator()(const GmshSpec& s) const { return read_gmsh(path_of(s.file), s.scale); }
-  Mesh operator()(const ExodusSpec& s) const { return read_exodus(path_of(s.file), s.scale); }
-
-  /// Relative to the scene file.
-  std::string path_of(const std::string& file) const {
-    const std::string& scene = place.document.name();
-    return file.starts_with('/') ? file : scene.substr(0, scene.rfind('/') + 1) + file;
-  }
+  Mesh operator()(const GmshSpec& s) const { return read_gmsh(s.file, s.scale); }
+  Mesh operator()(const ExodusSpec& s) const { return read_exodus(s.file, s.scale); }
 };
 
 Mesh make_mesh(const BodySpec& spec, const Place& place) {
@@ -288,12 +286,27 @@ struct SchemeMaker {
   const BodySpec& spec;
   const Place& place;
   const Problem& problem;
-  const FeModel& model;
+  FeModel& model;
+  const Motion& motion;
 
   SolidBody::Scheme operator()(const CentralDifferenceSpec& s) const {
-    return {std::make_unique<ExplicitDynamics>(problem), s.step,
-            std::numeric_limits<double>::infinity(), MassForm::lumped,
-            fmt::format("central difference, step {:g} s", s.step)};
+    const std::vector<double> history(model.history_size(), 0.0);
+    const double limit = stable_step(model, motion.q, history);
+    const std::string key = "integrator.central_difference.step";
+    if (std::isnan(limit)) {
+      throw InputError("has no stable limit: an element is inverted by the initial displacement",
+                       place.where(key), "Correct initial.displacement_field.");
+    }
+    if (s.step > limit && !s.clamp) {
+      throw InputError(fmt::format("{:g} s is above the stable limit of {:g} s", s.step, limit),
+                       place.where(key),
+                       "Give a step of at most the limit, above_limit: clamp, or an implicit "
+                       "integrator such as newmark.");
+    }
+    const double step = s.step > limit ? clamped * limit : s.step;
+    return {std::make_unique<ExplicitDynamics>(problem), step, limit, MassForm::lumped,
+            fmt::format("central difference, step {:.4g} s, stable limit {:.4g} s{}", step, limit,
+                        step < s.step ? " (clamped)" : "")};
   }
   SolidBody::Scheme operator()(const NewmarkSpec& s) const {
     return implicit(AlphaWeights::newmark(s.beta, s.gamma), s.step, s.mass, "newmark");
@@ -327,6 +340,16 @@ struct SchemeMaker {
     return make_direct_solver();
   }
 };
+
+/// Cells that the formulation has a form for.
+void check_formulation(const FeModelSpec& fe, const Mesh& mesh, const Place& place) {
+  for (const CellBlock& block : mesh.blocks) {
+    if (fe.formulation != Formulation::one_point || block.element->order == 1) continue;
+    throw InputError(fmt::format("one_point does not fit {}", block.element->name),
+                     place.where("model.fe.formulation"),
+                     "Use quad4 or hex8 with it, or formulation: full.");
+  }
+}
 
 /// Coordinates and velocities of the start, in the nodes' frames.
 Motion initial_motion(const BodySpec& spec, const Place& place, const FeModel& model) {
@@ -372,17 +395,20 @@ std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document&
     if (!constraint.direction.empty()) constraints.add(name, constraint);
   }
   Constraints made = constraints.take();
+  check_formulation(fe, mesh, place);
+  const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
   SolidBody::Parts parts;
   parts.model = std::make_unique<FeModel>(
       std::move(mesh), make_material(*spec.material, document, path + ".material"),
-      FeOptions{fe.plane, fe.formulation, fe.thickness}, made.frames);
+      FeOptions{fe.plane, fe.formulation, fe.thickness, fe.hourglass, explicit_in_time, fe.threads},
+      made.frames);
   parts.problem = std::make_unique<Problem>();
   parts.problem->model = parts.model.get();
   parts.problem->supports = std::move(made.supports);
   add_loads(spec, place, *parts.model, *parts.problem);
-  parts.scheme =
-      std::visit(SchemeMaker{spec, place, *parts.problem, *parts.model}, *spec.integrator);
   parts.motion = initial_motion(spec, place, *parts.model);
+  parts.scheme = std::visit(SchemeMaker{spec, place, *parts.problem, *parts.model, parts.motion},
+                            *spec.integrator);
   const std::string name = path.substr(path.rfind('.') + 1);
   std::unique_ptr<SolidBody> body = std::make_unique<SolidBody>(name, std::move(parts), ports);
   body->set_progress(std::move(progress));

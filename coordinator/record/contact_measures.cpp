@@ -29,9 +29,11 @@ void ContactMeasures::on_event(const RunEvent& event) {
     if (seen_.count == 0) seen_.begin = event.time;
     ++seen_.count;
     seen_.open = false;
+    closed_since_ = event.time;
   } else if (event.kind == RunEvent::Kind::contact_opened) {
     seen_.end = event.time;
     seen_.open = true;
+    closed_time_ += event.time - closed_since_;
   }
 }
 
@@ -52,7 +54,6 @@ void ContactMeasures::on_window(const WindowReport& report) {
     if (errors_) errors_->vanish(last_step_);
     return;
   }
-  closed_time_ += report.window.length();
   add_closed(*traces[mine.kinematic], mine.kinematic);
 }
 
@@ -90,11 +91,11 @@ void ContactMeasures::add_velocity(const Waveform& trace, int side, std::size_t 
 }
 
 void ContactMeasures::write(double run_end, Measures& out) const {
-  write_plain(out);
+  write_plain(run_end, out);
   if (errors_) errors_->write(info_.name, seen_, run_end, out);
 }
 
-void ContactMeasures::write_plain(Measures& out) const {
+void ContactMeasures::write_plain(double run_end, Measures& out) const {
   const std::string never = "the interface never closed";
   out.set(name("count"), seen_.count);
   out.set(name("impulse"), seen_.impulse);
@@ -104,8 +105,10 @@ void ContactMeasures::write_plain(Measures& out) const {
   } else {
     out.none(name("gap_min"), "a gap is known between single points in one dimension only");
   }
-  if (closed_time_ > 0.0) {
-    out.set(name("force_mean"), seen_.impulse / closed_time_);
+  const bool at_end = seen_.count > 0 && !seen_.open;
+  const double closed = closed_time_ + (at_end ? run_end - closed_since_ : 0.0);
+  if (closed > 0.0 && velocity_.covered() > 0.0) {
+    out.set(name("force_mean"), seen_.impulse / closed);
     out.set(name("velocity_rms"), std::sqrt(velocity_.sum() / velocity_.covered()));
   } else {
     out.none(name("force_mean"), never);

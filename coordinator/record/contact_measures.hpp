@@ -28,7 +28,7 @@ class ContactMeasures {
   void add_closed(const Waveform& trace, int side);
   void add_force(double from, double to, double force_from, double force_to);
   void add_velocity(const Waveform& trace, int side, std::size_t i);
-  void write_plain(Measures& out) const;
+  void write_plain(double run_end, Measures& out) const;
   std::string name(const char* what) const;
 
   const RunStart& start_;
@@ -37,7 +37,10 @@ class ContactMeasures {
   std::array<PortReader, 2> readers_;
 
   SeenContact seen_;
-  double closed_time_ = 0.0, peak_ = 0.0;
+  // [s] between contact's begins and ends; touching without force is no contact
+  double closed_time_ = 0.0;
+  double closed_since_ = 0.0;
+  double peak_ = 0.0;
   double gap_min_;
   SquareIntegral velocity_;
   double last_step_ = 0.0;
