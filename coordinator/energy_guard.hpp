@@ -8,7 +8,7 @@ namespace abut {
 
 /// Watches the bodies' energy less the work of external loads. Supports, ties and contact make
 /// none, so it must not grow; that it does is how an unstable step or window shows itself before
-/// its numbers overflow  [M.31].
+/// its numbers overflow  [M.21].
 class EnergyGuard {
  public:
   enum class Verdict { fine, warn, fail };

@@ -38,7 +38,7 @@ std::vector<double> unilateral_jacobian_column(const PortKernel& kinematic,
                                                const PortKernel& neumann, int count);
 
 /// The same where every substep decides for itself whether contact pushes: change of the Neumann
-/// side's motion that makes forces and gaps complementary, substep by substep  [M.32].
+/// side's motion that makes forces and gaps complementary, substep by substep  [M.20].
 /// `r` residual along x, `normal` outward of the Neumann side, `overlap` [m] and `force` [N] of the
 /// kinematic side at the substeps of the last sweep (n).
 Eigen::VectorXd solve_unilateral(const std::vector<double>& kinematic,

@@ -54,6 +54,7 @@ void ContactMeasures::on_window(const WindowReport& report) {
     if (errors_) errors_->vanish(last_step_);
     return;
   }
+  joined_time_ += report.window.length();
   add_closed(*traces[mine.kinematic], mine.kinematic);
 }
 
@@ -106,7 +107,8 @@ void ContactMeasures::write_plain(double run_end, Measures& out) const {
     out.none(name("gap_min"), "a gap is known between single points in one dimension only");
   }
   const bool at_end = seen_.count > 0 && !seen_.open;
-  const double closed = closed_time_ + (at_end ? run_end - closed_since_ : 0.0);
+  const double last = at_end ? run_end - closed_since_ : 0.0;
+  const double closed = seen_.count > 0 ? closed_time_ + last : joined_time_;
   if (closed > 0.0 && velocity_.covered() > 0.0) {
     out.set(name("force_mean"), seen_.impulse / closed);
     out.set(name("velocity_rms"), std::sqrt(velocity_.sum() / velocity_.covered()));

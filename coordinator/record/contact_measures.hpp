@@ -37,8 +37,10 @@ class ContactMeasures {
   std::array<PortReader, 2> readers_;
 
   SeenContact seen_;
-  // [s] between contact's begins and ends; touching without force is no contact
+  // [s] between contact's begins and ends (touching without force is no contact), and in all
+  // windows: ties have no events
   double closed_time_ = 0.0;
+  double joined_time_ = 0.0;
   double closed_since_ = 0.0;
   double peak_ = 0.0;
   double gap_min_;
