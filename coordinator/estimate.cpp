@@ -11,10 +11,11 @@ namespace abut {
 
 namespace {
 
-constexpr double process_mib = 9.5;           // libraries and sockets of a solver process, measured
-constexpr double bytes_per_dof = 200.0;       // state, saved state, matrices and scratch of a bar
-constexpr std::int64_t flights = 8;           // requests of free flight to and from one contact
-constexpr std::int64_t sweeps_usual = 2;      // iterations of linear bodies with port kernels
+constexpr double process_mib = 9.5;        // libraries and sockets of a solver process, measured
+constexpr double bytes_per_dof = 200.0;    // state, saved state, matrices and scratch of a bar
+constexpr double bytes_factored = 3500.0;  // the same of an implicit solid and its factors, at 2e4
+constexpr std::int64_t flights = 8;        // requests of free flight to and from one contact
+constexpr std::int64_t sweeps_usual = 2;   // iterations of linear bodies with port kernels
 constexpr std::int64_t sweeps_published = 3;  // of the published form, explicit bodies
 constexpr std::int64_t per_event = 3;         // attempts and the window cut at an event
 
@@ -57,6 +58,12 @@ bool watched_only(const Scene& scene) {
          });
 }
 
+double memory_mib(const Description& body) {
+  const bool factored = body.dim > 1 && std::isinf(body.stable_step);
+  const double bytes = factored ? bytes_factored : bytes_per_dof;
+  return process_mib + static_cast<double>(body.dofs) * bytes / 1048576.0;
+}
+
 }  // namespace
 
 Estimate estimate(const Scene& scene, std::span<const Description* const> bodies,
@@ -66,8 +73,8 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
   e.windows = static_cast<std::int64_t>(std::ceil(span / scene.time.window - 1.0e-9));
   for (const Description* body : bodies) {
     const double steps = body->step > 0.0 ? span / body->step : static_cast<double>(e.windows);
-    e.bodies.push_back({body->name, body->model, body->dofs, std::llround(steps),
-                        process_mib + static_cast<double>(body->dofs) * bytes_per_dof / 1048576.0});
+    e.bodies.push_back(
+        {body->name, body->model, body->dofs, std::llround(steps), memory_mib(*body)});
   }
   const std::int64_t count = static_cast<std::int64_t>(bodies.size());
   const std::int64_t joints = static_cast<std::int64_t>(scene.interfaces.size());
