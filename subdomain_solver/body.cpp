@@ -10,6 +10,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "subdomain_solver/saved_state.hpp"
 
 namespace abut {
 
@@ -69,30 +70,14 @@ void Body::describe_ports(const std::vector<BodyPort>& ports) {
   }
 }
 
-void Body::save() {
-  Archive archive = Archive::writer(saved_, Archive::Form::bare);
-  state(archive);
-  archive.finish();
-}
+void Body::save() { save_state(state_, saved_); }
 
-void Body::restore() {
-  ABUT_ASSERT(!saved_.empty());
-  Archive archive = Archive::reader(saved_, Archive::Form::bare);
-  state(archive);
-}
+void Body::restore() { restore_state(state_, saved_); }
 
-std::vector<std::byte> Body::checkpoint() {
-  std::vector<std::byte> bytes;
-  Archive archive = Archive::writer(bytes, Archive::Form::named);
-  state(archive);
-  return bytes;
-}
+std::vector<std::byte> Body::checkpoint() { return checkpoint_of(state_); }
 
 void Body::resume(std::span<const std::byte> bytes) {
-  Archive archive = Archive::reader(bytes, Archive::Form::named);
-  BarState resumed;
-  resumed.state(archive);
-  archive.finish();
+  BarState resumed = state_of_checkpoint<BarState>(bytes);
   const std::size_t n = state_.u.size();
   if (resumed.u.size() != n || resumed.v.size() != n || resumed.a.size() != n) {
     throw RunError(

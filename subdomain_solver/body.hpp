@@ -45,7 +45,6 @@ class Body final : public Subdomain {
   void set_progress(std::function<void()> hook) { progress_ = std::move(hook); }
 
  private:
-  void state(Archive& archive) { state_.state(archive); }
   void describe_ports(const std::vector<BodyPort>& ports);
   std::optional<Failed> advance_window(const Advance& request, const Substeps& grid,
                                        Response& response);

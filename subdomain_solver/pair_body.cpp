@@ -10,6 +10,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "subdomain_solver/saved_state.hpp"
 
 namespace abut {
 
@@ -57,31 +58,17 @@ void PairBody::describe_members(const Parameters& parameters) {
   }
 }
 
-void PairBody::save() {
-  Archive archive = Archive::writer(saved_, Archive::Form::bare);
-  state_.state(archive);
-  archive.finish();
-}
+void PairBody::save() { save_state(state_, saved_); }
 
 void PairBody::restore() {
-  ABUT_ASSERT(!saved_.empty());
-  Archive archive = Archive::reader(saved_, Archive::Form::bare);
-  state_.state(archive);
+  restore_state(state_, saved_);
   pair_.follow(state_.u);
 }
 
-std::vector<std::byte> PairBody::checkpoint() {
-  std::vector<std::byte> bytes;
-  Archive archive = Archive::writer(bytes, Archive::Form::named);
-  state_.state(archive);
-  return bytes;
-}
+std::vector<std::byte> PairBody::checkpoint() { return checkpoint_of(state_); }
 
 void PairBody::resume(std::span<const std::byte> bytes) {
-  Archive archive = Archive::reader(bytes, Archive::Form::named);
-  PairState resumed;
-  resumed.state(archive);
-  archive.finish();
+  PairState resumed = state_of_checkpoint<PairState>(bytes);
   const std::size_t n = pair_.nodes();
   if (resumed.u.size() != n || resumed.v.size() != n || resumed.a.size() != n) {
     throw RunError(

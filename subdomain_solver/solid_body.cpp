@@ -9,6 +9,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "subdomain_solver/saved_state.hpp"
 #include "subdomain_solver/fe/loads.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
@@ -135,30 +136,14 @@ Port SolidBody::port_of(const PortNodes& nodes, const std::vector<std::int32_t>&
   return port;
 }
 
-void SolidBody::save() {
-  Archive archive = Archive::writer(saved_, Archive::Form::bare);
-  state_.state(archive);
-  archive.finish();
-}
+void SolidBody::save() { save_state(state_, saved_); }
 
-void SolidBody::restore() {
-  ABUT_ASSERT(!saved_.empty());
-  Archive archive = Archive::reader(saved_, Archive::Form::bare);
-  state_.state(archive);
-}
+void SolidBody::restore() { restore_state(state_, saved_); }
 
-std::vector<std::byte> SolidBody::checkpoint() {
-  std::vector<std::byte> bytes;
-  Archive archive = Archive::writer(bytes, Archive::Form::named);
-  state_.state(archive);
-  return bytes;
-}
+std::vector<std::byte> SolidBody::checkpoint() { return checkpoint_of(state_); }
 
 void SolidBody::resume(std::span<const std::byte> bytes) {
-  Archive archive = Archive::reader(bytes, Archive::Form::named);
-  State resumed;
-  resumed.state(archive);
-  archive.finish();
+  State resumed = state_of_checkpoint<State>(bytes);
   if (resumed.motion.q.size() != state_.motion.q.size()) {
     throw RunError(fmt::format("the checkpoint holds {} coordinates, but the body has {}",
                                resumed.motion.q.size(), state_.motion.q.size()),

@@ -2,6 +2,8 @@
 
 #ifdef ABUT_HAVE_CHOLMOD
 #include <Eigen/CholmodSupport>
+
+#include "subdomain_solver/solve/eigen_solver.hpp"
 #endif
 
 namespace abut {
@@ -10,24 +12,9 @@ namespace abut {
 
 namespace {
 
-class Cholmod final : public LinearSolver {
+class Cholmod final : public EigenSolver<Eigen::CholmodSupernodalLLT<SparseMatrix>> {
  public:
   Cholmod() { solver_.cholmod().print = 0; }  // a failure is a value, not a line on the terminal
-
-  [[nodiscard]] bool factor(const SparseMatrix& matrix) override {
-    if (!analysed_) solver_.analyzePattern(matrix);
-    analysed_ = true;
-    solver_.factorize(matrix);
-    return solver_.info() == Eigen::Success;
-  }
-  [[nodiscard]] bool solve(const Vector& b, Vector& x) override {
-    x = solver_.solve(b);
-    return x.allFinite();
-  }
-
- private:
-  Eigen::CholmodSupernodalLLT<SparseMatrix> solver_;
-  bool analysed_ = false;
 };
 
 }  // namespace

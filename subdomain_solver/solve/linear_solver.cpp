@@ -3,28 +3,13 @@
 #include <Eigen/SparseCholesky>
 
 #include "subdomain_solver/solve/cholmod_solver.hpp"
+#include "subdomain_solver/solve/eigen_solver.hpp"
 
 namespace abut {
 
 namespace {
 
-class Ldlt final : public LinearSolver {
- public:
-  [[nodiscard]] bool factor(const SparseMatrix& matrix) override {
-    if (!analysed_) solver_.analyzePattern(matrix);
-    analysed_ = true;
-    solver_.factorize(matrix);
-    return solver_.info() == Eigen::Success;
-  }
-  [[nodiscard]] bool solve(const Vector& b, Vector& x) override {
-    x = solver_.solve(b);
-    return x.allFinite();
-  }
-
- private:
-  Eigen::SimplicialLDLT<SparseMatrix> solver_;
-  bool analysed_ = false;
-};
+using Ldlt = EigenSolver<Eigen::SimplicialLDLT<SparseMatrix>>;
 
 /// Supernodal factors while the matrix is positive definite; past a buckling load, for instance,
 /// it is not, and the simplicial LDL^T takes over.
