@@ -136,6 +136,10 @@ struct Contrast {
   const char* layer;
 };
 
+void PrintTo(const Contrast& c, std::ostream* out) {
+  *out << c.ratio << " " << c.role << " " << c.layer;
+}
+
 class ImpedanceRatio : public testing::TestWithParam<Contrast> {};
 
 std::vector<Contrast> contrasts() {
