@@ -95,8 +95,23 @@ struct MeshMaker {
     return generate(SphereMesh{{}, s.radius, s.core, s.layers, s.element},
                     place.where("model.fe.mesh.sphere"));
   }
-  Mesh operator()(const GmshSpec& s) const { return read_gmsh(s.file, s.scale); }
-  Mesh operator()(const ExodusSpec& s) const { return read_exodus(s.file, s.scale); }
+  Mesh operator()(const GmshSpec& s) const {
+    return told_of("gmsh", [&s] { return read_gmsh(s.file, s.scale); });
+  }
+  Mesh operator()(const ExodusSpec& s) const {
+    return told_of("exodus", [&s] { return read_exodus(s.file, s.scale); });
+  }
+
+  /// An error of the mesh file, with the scene's key before the file's own place.
+  template <class Read>
+  Mesh told_of(const char* kind, Read read) const {
+    try {
+      return read();
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", error.where, error.what_is_wrong),
+                       place.where(fmt::format("model.fe.mesh.{}.file", kind)), error.remedy);
+    }
+  }
 };
 
 Mesh make_mesh(const BodySpec& spec, const Place& place) {

@@ -215,6 +215,7 @@ std::optional<Failed> SolidBody::advance(const Advance& request, const Substeps&
 }
 
 void SolidBody::push_traces(double time, Response& response) const {
+  if (ports_.empty()) return;
   const std::size_t dim = index(description_.dim);
   std::vector<double> u = state_.motion.q, v = state_.motion.v, a = state_.motion.a;
   for (std::vector<double>* field : {&u, &v, &a}) parts_.model->to_space(*field);

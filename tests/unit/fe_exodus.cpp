@@ -15,6 +15,7 @@
 #include "base/error.hpp"
 #include "subdomain_solver/fe/exodus_file.hpp"
 #include "tests/support/mesh_measures.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -29,15 +30,6 @@ std::string bytes_of(const std::string& file) {
   std::ostringstream bytes;
   bytes << stream.rdbuf();
   return bytes.str();
-}
-
-std::string refusal(const std::function<void()>& run) {
-  try {
-    run();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "not refused";
 }
 
 void expect_words(const std::string& text, std::initializer_list<const char*> words) {

@@ -16,6 +16,7 @@
 #include "subdomain_solver/fe/gmsh_file.hpp"
 #include "subdomain_solver/fe/shape_functions.hpp"
 #include "tests/support/mesh_measures.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -30,15 +31,6 @@ std::string bytes_of(const std::string& file) {
   std::ostringstream bytes;
   bytes << stream.rdbuf();
   return bytes.str();
-}
-
-std::string refusal(const std::function<void()>& run) {
-  try {
-    run();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "not refused";
 }
 
 std::string refusal_of(const std::string& bytes) {

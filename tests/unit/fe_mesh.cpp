@@ -12,6 +12,7 @@
 #include "subdomain_solver/fe/facet_index.hpp"
 #include "subdomain_solver/fe/mesh.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace abut {
 namespace {
@@ -27,16 +28,7 @@ Mesh two_squares() {
   return mesh;
 }
 
-std::string refusal(const std::function<void()>& run) {
-  try {
-    run();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
-
-std::string refusal(const Mesh& mesh) {
+std::string refusal_of(const Mesh& mesh) {
   return refusal([&mesh]() { check_mesh(mesh, "part.msh"); });
 }
 
@@ -79,17 +71,17 @@ TEST(CheckMesh, LetsGoodMeshesPass) {
 TEST(CheckMesh, RefusesInvertedAndFlatCellsWithNumberAndPosition) {
   Mesh mesh = two_squares();
   mesh.points[2 * 4] = 2.5;  // the upper middle node beyond the right one: cell 2 folds
-  expect_words(refusal(mesh), {"part.msh", "1 inverted or degenerate cells of 2",
-                               "cell 2 (quad4 around (1.875, 0.5) m)"});
+  expect_words(refusal_of(mesh), {"part.msh", "1 inverted or degenerate cells of 2",
+                                  "cell 2 (quad4 around (1.875, 0.5) m)"});
   mesh = two_squares();
   mesh.points = {0, 0, 1, 0, 2, 0, 0, 0, 1, 1, 2, 1};  // cell 1 has a corner of 180 degrees
-  expect_words(refusal(mesh), {"cell 1"});
+  expect_words(refusal_of(mesh), {"cell 1"});
   mesh = two_squares();
   mesh.blocks[0].nodes = {0, 3, 4, 1, 1, 4, 5, 2};
-  expect_words(refusal(mesh), {"2 inverted", "wrong way round"});
+  expect_words(refusal_of(mesh), {"2 inverted", "wrong way round"});
   mesh = two_squares();
   mesh.points[3] = std::numeric_limits<double>::quiet_NaN();
-  expect_words(refusal(mesh), {"cell 1", "nan"});
+  expect_words(refusal_of(mesh), {"cell 1", "nan"});
 }
 
 TEST(CheckMesh, SeesAFlatCellThroughTheRoundingOfFarCoordinates) {
@@ -102,7 +94,7 @@ TEST(CheckMesh, SeesAFlatCellThroughTheRoundingOfFarCoordinates) {
       mesh.points.clear();
       for (const auto& [s, t] : {std::pair(0.1, 0.2), {1.3, 0.1 * k}, {0.4, 1.1}, {0.7, 0.6}})
         for (double slope : {0.3, 0.7, 1.1}) mesh.points.push_back(size * (s * slope + t / slope));
-      expect_words(refusal(mesh), {"inverted or degenerate"});
+      expect_words(refusal_of(mesh), {"inverted or degenerate"});
     }
   }
 }
@@ -117,17 +109,17 @@ TEST(CheckMesh, RefusesAQuadraticCellWhoseMiddleNodeIsPastTheQuarter) {
   mesh.points[2 * 3] = 0.26;  // between corners 0 and 1: the map folds below a quarter
   EXPECT_NO_THROW(check_mesh(mesh, "m"));
   mesh.points[2 * 3] = 0.24;
-  expect_words(refusal(mesh), {"cell 1 (tri6"});
+  expect_words(refusal_of(mesh), {"cell 1 (tri6"});
 }
 
 TEST(CheckMesh, RefusesLooseAndDuplicateNodes) {
   Mesh mesh = two_squares();
   mesh.points.insert(mesh.points.end(), {3.0, 4.0});
-  expect_words(refusal(mesh), {"node 7 at (3, 4) m", "no cell"});
+  expect_words(refusal_of(mesh), {"node 7 at (3, 4) m", "no cell"});
   mesh = two_squares();  // the squares torn apart: their common nodes twice
   mesh.points.insert(mesh.points.end(), {1.0, 0.0, 1.0, 1.0 + 1e-9});
   mesh.blocks[0].nodes = {0, 1, 4, 3, 6, 2, 5, 7};
-  expect_words(refusal(mesh), {"nodes 2 and 7 at (1, 0) m", "Merge"});
+  expect_words(refusal_of(mesh), {"nodes 2 and 7 at (1, 0) m", "Merge"});
   mesh.points[2 * 6 + 1] = -1e-3;  // a crack that is open at both ends
   mesh.points[2 * 7 + 1] = 1.001;
   EXPECT_NO_THROW(check_mesh(mesh, "m"));
@@ -136,15 +128,15 @@ TEST(CheckMesh, RefusesLooseAndDuplicateNodes) {
 TEST(CheckMesh, RefusesWrongDimensionsNumbersAndNothing) {
   Mesh mesh = two_squares();
   mesh.blocks[0].nodes[3] = 6;
-  expect_words(refusal(mesh), {"node 7 of 6"});
+  expect_words(refusal_of(mesh), {"node 7 of 6"});
   mesh = two_squares();
   mesh.dim = 3;
-  expect_words(refusal(mesh), {"2 dimensions (quad4)", "space of 3"});
+  expect_words(refusal_of(mesh), {"2 dimensions (quad4)", "space of 3"});
   mesh.dim = 0;
-  expect_words(refusal(mesh), {"0 dimensions"});
+  expect_words(refusal_of(mesh), {"0 dimensions"});
   mesh = two_squares();
   mesh.blocks.clear();
-  expect_words(refusal(mesh), {"no cells"});
+  expect_words(refusal_of(mesh), {"no cells"});
 }
 
 }  // namespace
