@@ -24,19 +24,12 @@ void BarMeshSpec::fields(Fields& f) {
   f.required("elements", elements, "", "number of equal two-node elements", at_least(1));
 }
 
-void FeModelSpec::fields(Fields& f) {
+void SolidShapeSpec::fields(Fields& f) {
   f.required("dimension", dimension, "", "space dimension of the body", between(1, 3));
   f.choice("mesh", mesh, "mesh of the body");
   f.word("plane", plane, {"strain", "stress", "axisymmetric"},
          "kinematics in two dimensions; axisymmetric: x is the radius, y the axis");
   f.optional("thickness", thickness, "m", "thickness in plane strain and stress", positive);
-  f.word("formulation", formulation, {"full", "mean_dilatation", "one_point"},
-         "integration of an element: full; with one volume change for all of it (B-bar, F-bar), "
-         "which does not lock when nearly incompressible; or one point with hourglass control, for "
-         "explicit steps");
-  f.optional("hourglass", hourglass, "", "coefficient of the hourglass stiffness of one_point",
-             between(0.0, 1.0));
-  f.optional("threads", threads, "", "number of threads of an explicit body", between(1, 256));
   const bool bar = std::holds_alternative<BarMeshSpec>(mesh);
   const bool flat =
       std::holds_alternative<RectangleSpec>(mesh) || std::holds_alternative<DiskSpec>(mesh);
@@ -49,6 +42,17 @@ void FeModelSpec::fields(Fields& f) {
           "Give the dimension of the mesh.");
   f.check(plane == Plane::strain || dimension == 2, "plane", "is for bodies in two dimensions",
           "Leave plane out.");
+}
+
+void FeModelSpec::fields(Fields& f) {
+  SolidShapeSpec::fields(f);
+  f.word("formulation", formulation, {"full", "mean_dilatation", "one_point"},
+         "integration of an element: full; with one volume change for all of it (B-bar, F-bar), "
+         "which does not lock when nearly incompressible; or one point with hourglass control, for "
+         "explicit steps");
+  f.optional("hourglass", hourglass, "", "coefficient of the hourglass stiffness of one_point",
+             between(0.0, 1.0));
+  f.optional("threads", threads, "", "number of threads of an explicit body", between(1, 256));
   f.check(plane != Plane::stress || formulation != Formulation::mean_dilatation, "formulation",
           "mean_dilatation does not apply to plane stress, which cannot lock",
           "Leave formulation out.");

@@ -26,14 +26,18 @@ struct BarMeshSpec {
   int elements = 0;
   void fields(Fields& f);
 };
-struct FeModelSpec {
-  static constexpr std::string_view name = "fe";
+/// The mesh of a body and how it lies in space: of every rung of the fidelity ladder.
+struct SolidShapeSpec {
   int dimension = 1;
   std::variant<BarMeshSpec, RectangleSpec, DiskSpec, BoxSpec, CylinderSpec, SphereSpec, GmshSpec,
                ExodusSpec>
       mesh;
   Plane plane = Plane::strain;
   double thickness = 1.0;  // [m]
+  void fields(Fields& f);
+};
+struct FeModelSpec : SolidShapeSpec {
+  static constexpr std::string_view name = "fe";
   Formulation formulation = Formulation::full;
   double hourglass = 0.05;
   int threads = 1;

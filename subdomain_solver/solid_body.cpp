@@ -9,8 +9,8 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
-#include "subdomain_solver/saved_state.hpp"
 #include "subdomain_solver/fe/loads.hpp"
+#include "subdomain_solver/saved_state.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -31,18 +31,18 @@ class SolidBody::PortForces final : public Load {
 
   void impose(const Advance* request) { request_ = request; }
 
-  void add(double time, std::span<const double>, Vector& force) const override {
+  void add(double time, std::span<const double> q, Vector& force) const override {
     if (request_ == nullptr) return;
     for (std::size_t p = 0; p < body_.ports_.size(); ++p) {
       const std::vector<double> values = at(p, time);
       if (values.empty()) continue;
       const std::size_t dim = index(body_.description_.dim);
-      Vector nodal = Vector::Zero(force.size());
+      Vector nodal = Vector::Zero(static_cast<Eigen::Index>(body_.nodal_values()));
       for (std::size_t k = 0; k < values.size(); ++k)
         nodal(static_cast<Eigen::Index>(index(body_.ports_[p].nodes[k / dim]) * dim + k % dim)) +=
             values[k];
       body_.parts_.model->to_frames({nodal.data(), index(nodal.size())});
-      force += nodal;
+      body_.parts_.map->lift(q, {nodal.data(), index(nodal.size())}, force);
     }
   }
 
@@ -79,9 +79,9 @@ void SolidBody::describe(std::string name, const std::vector<PortNodes>& ports) 
   for (const CellBlock& block : mesh.blocks)
     cells +=
         fmt::format("{}{} {}", cells.empty() ? "" : " and ", block.count(), block.element->name);
-  description_.model = fmt::format("fe, {}, {}", cells, parts_.scheme.words);
+  description_.model = fmt::format("{}, {}, {}", parts_.rung, cells, parts_.scheme.words);
   description_.dim = mesh.dim;
-  description_.dofs = parts_.model->dofs();
+  description_.dofs = parts_.problem->model->dofs();
   description_.mass = parts_.model->material().density() * parts_.model->volume();
   description_.step = parts_.scheme.step;
   description_.stable_step = parts_.scheme.stable_step;
@@ -214,11 +214,32 @@ std::optional<Failed> SolidBody::advance(const Advance& request, const Substeps&
   return std::nullopt;
 }
 
+/// Of the nodes (nodes, dim), along the axes of space [m].
+std::vector<double> SolidBody::displacement() const {
+  std::vector<double> u(nodal_values());
+  parts_.map->displacement(state_.motion.q, u);
+  parts_.model->to_space(u);
+  return u;
+}
+
+std::vector<double> SolidBody::velocity() const {
+  std::vector<double> v(nodal_values());
+  parts_.map->velocity(state_.motion.q, state_.motion.v, v);
+  parts_.model->to_space(v);
+  return v;
+}
+
+std::vector<double> SolidBody::acceleration() const {
+  std::vector<double> a(nodal_values());
+  parts_.map->acceleration(state_.motion.q, state_.motion.v, state_.motion.a, a);
+  parts_.model->to_space(a);
+  return a;
+}
+
 void SolidBody::push_traces(double time, Response& response) const {
   if (ports_.empty()) return;
   const std::size_t dim = index(description_.dim);
-  std::vector<double> u = state_.motion.q, v = state_.motion.v, a = state_.motion.a;
-  for (std::vector<double>* field : {&u, &v, &a}) parts_.model->to_space(*field);
+  const std::vector<double> u = displacement(), v = velocity(), a = acceleration();
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     Waveform& trace = response.ports[p].trace;
     trace.width = static_cast<int>(ports_[p].nodes.size() * dim);
@@ -247,8 +268,7 @@ void SolidBody::begin_sweep() {
 void SolidBody::widen_sweep() {
   if (ports_.empty()) return;
   const std::size_t dim = index(description_.dim);
-  std::vector<double> u = state_.motion.q;
-  parts_.model->to_space(u);
+  const std::vector<double> u = displacement();
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     for (std::int32_t node : ports_[p].nodes) {
       for (std::size_t i = 0; i < dim; ++i) {
@@ -269,7 +289,9 @@ void SolidBody::end_sweep(Response& response) const {
 
 /// Momentum of each node (nodes, dim) along the axes of space.
 Vector SolidBody::momentum_of_nodes() const {
-  Vector momentum = mass_ * view(state_.motion.v);
+  std::vector<double> v(nodal_values());
+  parts_.map->velocity(state_.motion.q, state_.motion.v, v);
+  Vector momentum = mass_ * view(v);
   parts_.model->to_space({momentum.data(), index(momentum.size())});
   return momentum;
 }
@@ -292,7 +314,10 @@ std::optional<Failed> SolidBody::record(double time, Response& response) {
 }
 
 std::vector<double> SolidBody::measure() {
-  return solid_measures(*parts_.model, state_.motion, energy(), momentum_of_nodes(), ports_);
+  std::vector<double> u(nodal_values());
+  parts_.map->displacement(state_.motion.q, u);
+  return solid_measures(
+      *parts_.model, {u, velocity(), state_.motion.history, energy(), momentum_of_nodes()}, ports_);
 }
 
 Energy SolidBody::energy() const {

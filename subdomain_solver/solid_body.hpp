@@ -7,14 +7,16 @@
 
 #include "contract/subdomain.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
+#include "subdomain_solver/nodal_map.hpp"
 #include "subdomain_solver/solid_measures.hpp"
 #include "subdomain_solver/substeps.hpp"
 #include "subdomain_solver/time/integrator.hpp"
 
 namespace abut {
 
-/// Our subdomain in two and three dimensions: finite elements, what acts on them, an integrator,
-/// and ports, which are sides or node sets of the mesh.
+/// Our subdomain in two and three dimensions: a mesh, the rung of the fidelity ladder whose
+/// coordinates move it, what acts on it, an integrator, and ports, which are sides or node sets of
+/// the mesh.
 class SolidBody final : public Subdomain {
  public:
   struct PortNodes {
@@ -28,10 +30,13 @@ class SolidBody final : public Subdomain {
     std::string words;  // for people
   };
   struct Parts {  // in the order of construction: later ones refer to earlier ones
-    std::unique_ptr<FeModel> model;
+    std::unique_ptr<FeModel> model;  // the mesh with its material and mass
+    std::unique_ptr<Model> reduced;  // of rungs other than fe; null: the model of the mesh
+    std::unique_ptr<NodalMap> map;   // from the problem's coordinates to the nodes
     std::unique_ptr<Problem> problem;
     Scheme scheme;
-    Motion motion;  // q and v of the start
+    Motion motion;            // q and v of the start
+    std::string rung = "fe";  // for people
   };
 
   SolidBody(std::string name, Parts parts, const std::vector<PortNodes>& ports);
@@ -64,6 +69,10 @@ class SolidBody final : public Subdomain {
   Port port_of(const PortNodes& port, const std::vector<std::int32_t>& list) const;
   Energy energy() const;
   std::optional<Failed> advance(const Advance& request, const Substeps& grid, Response& response);
+  std::size_t nodal_values() const { return static_cast<std::size_t>(parts_.model->dofs()); }
+  std::vector<double> displacement() const;
+  std::vector<double> velocity() const;
+  std::vector<double> acceleration() const;
   void push_traces(double time, Response& response) const;
   void widen_sweep();
   void begin_sweep();
@@ -73,7 +82,7 @@ class SolidBody final : public Subdomain {
   void report_progress();
 
   Parts parts_;
-  SparseMatrix mass_;  // [kg] that of the scheme
+  SparseMatrix mass_;  // [kg] of the nodes, in the form of the scheme
   Description description_;
   std::vector<NamedNodes> ports_;
   PortForces* port_forces_ = nullptr;  // owned by the problem

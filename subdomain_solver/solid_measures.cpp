@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -94,20 +95,20 @@ double von_mises(const Matrix3& stress) {
   return std::sqrt(1.5 * deviator.squaredNorm());
 }
 
-std::vector<double> solid_measures(FeModel& model, const Motion& motion, const Energy& energy,
-                                   const Vector& nodal_momentum,
+std::vector<double> solid_measures(FeModel& model, const SolidState& state,
                                    const std::vector<NamedNodes>& ports) {
   const int dim = model.mesh().dim;
-  std::vector<double> out, u = motion.q, v = motion.v;
+  const Energy& energy = state.energy;
+  const std::vector<double>& v = state.velocity;
+  std::vector<double> out, u(state.q.begin(), state.q.end());
   model.to_space(u);
-  model.to_space(v);
   summarise(u, dim, out);
   summarise(v, dim, out);
   Matrix3 sum = Matrix3::Zero();
   double mises = 0.0, most = 0.0;
   std::int64_t points = 0;
   const bool admissible =
-      model.visit(motion.q, motion.history, [&](const FeModel::PointState& point) {
+      model.visit(state.q, state.history, [&](const FeModel::PointState& point) {
         const Matrix3 stress = cauchy_stress(model.material(), point.stress, point.deformation);
         sum += stress;
         mises += von_mises(stress);
@@ -123,11 +124,11 @@ std::vector<double> solid_measures(FeModel& model, const Motion& motion, const E
   out.insert(out.end(), {mises * each, admissible ? most : nothing, energy.kinetic, energy.stored,
                          energy.dissipated, energy.external_work});
   for (int i = 0; i < dim; ++i)
-    out.push_back(nodal_momentum(Eigen::seqN(i, model.mesh().node_count(), dim)).sum());
-  const Eigen::Vector3d angular = angular_momentum(model, u, nodal_momentum);
+    out.push_back(state.nodal_momentum(Eigen::seqN(i, model.mesh().node_count(), dim)).sum());
+  const Eigen::Vector3d angular = angular_momentum(model, u, state.nodal_momentum);
   for (int i = dim == 3 ? 0 : 2; i < 3; ++i) out.push_back(angular(i));
   for (const NamedNodes& port : ports) {
-    for (const std::vector<double>* field : {&u, &v}) {
+    for (const std::vector<double>* field : {&std::as_const(u), &v}) {
       for (int i = 0; i < dim; ++i) {
         double total = 0.0;
         for (std::int32_t node : port.nodes)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,19 @@ struct NamedNodes {
 /// port its mean displacement and velocity, tip.displacement.x (docs/OUTPUT.md).
 std::vector<std::string> solid_measure_names(int dim, const std::vector<NamedNodes>& ports);
 
+/// What a solid's measures are taken of.
+struct SolidState {
+  std::span<const double> q;     // [m] coordinates of the mesh's model
+  std::vector<double> velocity;  // [m/s] (nodes, dim) along the axes of space, as below
+  std::span<const double> history;
+  Energy energy;
+  Vector nodal_momentum;  // [kg m/s] (nodes, dim)
+};
+
 /// Their values. Means are over nodes (displacement, velocity) and over quadrature points (Cauchy
-/// stress [Pa]); angular momentum is about the origin of space [kg m^2/s], with `nodal_momentum`
-/// the momentum of each node (nodes, dim). Not a number where the state is inadmissible.
-std::vector<double> solid_measures(FeModel& model, const Motion& motion, const Energy& energy,
-                                   const Vector& nodal_momentum,
+/// stress [Pa]); angular momentum is about the origin of space [kg m^2/s]. Not a number where the
+/// state is inadmissible.
+std::vector<double> solid_measures(FeModel& model, const SolidState& state,
                                    const std::vector<NamedNodes>& ports);
 
 /// Cauchy stress [Pa] from first Piola-Kirchhoff stress and deformation gradient; P itself where

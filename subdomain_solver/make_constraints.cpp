@@ -1,0 +1,132 @@
+#include "subdomain_solver/make_constraints.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "subdomain_solver/expression.hpp"
+#include "subdomain_solver/make_fields.hpp"
+
+namespace abut {
+
+namespace {
+
+std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+/// An orthonormal frame whose first axis is along a direction.
+Matrix3 frame_along(const std::vector<double>& direction) {
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < direction.size(); ++i)
+    first(static_cast<Eigen::Index>(i)) = direction[i];
+  first.normalize();
+  Matrix3 axes;
+  if (direction.size() == 2) {
+    axes << first(0), -first(1), 0.0, first(1), first(0), 0.0, 0.0, 0.0, 1.0;
+    return axes;
+  }
+  Eigen::Index least = 0;
+  first.cwiseAbs().minCoeff(&least);
+  const Eigen::Vector3d second = (Eigen::Vector3d::Unit(least) - first(least) * first).normalized();
+  const Eigen::Vector3d third(first(1) * second(2) - first(2) * second(1),
+                              first(2) * second(0) - first(0) * second(2),
+                              first(0) * second(1) - first(1) * second(0));
+  axes << first, second, third;
+  return axes;
+}
+
+class ConstraintMaker {
+ public:
+  ConstraintMaker(const Mesh& mesh, const Place& place) : mesh_(mesh), place_(place) {}
+
+  void add(const std::string& name, const ConstraintSpec& spec) {
+    const std::string key = "constraints." + name;
+    const std::vector<std::int32_t> nodes =
+        named(place_, key + ".on", [&] { return mesh_.nodes_of(spec.on); });
+    if (!spec.direction.empty()) return add_inclined(spec, key, nodes);
+    const std::string* texts[] = {&spec.x, &spec.y, &spec.z};
+    constexpr const char* names[] = {".x", ".y", ".z"};
+    for (int i = 0; i < 3; ++i) {
+      const std::string& text = spec.fixed ? zero_ : *texts[i];
+      if (text.empty() || (spec.fixed && i >= mesh_.dim)) continue;
+      if (i >= mesh_.dim) {
+        throw InputError("is a direction that the body does not have", place_.where(key + names[i]),
+                         "Leave it out.");
+      }
+      const ScalarField value = expression(text, place_.where(key + (spec.fixed ? "" : names[i])));
+      for (std::int32_t node : nodes) prescribe(node, i, value, key);
+    }
+  }
+
+  Constraints take() {
+    std::sort(made_.supports.begin(), made_.supports.end(),
+              [](const Prescribed& a, const Prescribed& b) { return a.dof < b.dof; });
+    return std::move(made_);
+  }
+
+ private:
+  void prescribe(std::int32_t node, int direction, const ScalarField& value,
+                 const std::string& key) {
+    const int dof = node * mesh_.dim + direction;
+    const std::array<double, 3> at = position_of(mesh_, node);
+    const auto [place, fresh] = by_dof_.emplace(dof, made_.supports.size());
+    if (!fresh) {
+      // Sides that meet share nodes: what both prescribe must agree, and is kept once.
+      const double before = made_.supports[place->second].value(0.0), now = value(at, 0.0);
+      if (std::abs(before - now) <= 1.0e-12 * std::max(std::abs(before), std::abs(now))) return;
+      throw InputError(
+          fmt::format("prescribes {:g} m where another constraint prescribes {:g} m, at node {}",
+                      now, before, node + 1),
+          place_.where(key), "Let constraints of sides that meet agree where they meet.");
+    }
+    made_.supports.push_back({dof, [at, value](double time) { return value(at, time); }});
+  }
+
+  void add_inclined(const ConstraintSpec& spec, const std::string& key,
+                    const std::vector<std::int32_t>& nodes) {
+    double length = 0.0;
+    for (double d : spec.direction) length = std::hypot(length, d);
+    if (spec.direction.size() != index(mesh_.dim) || !(length > 0.0)) {
+      throw InputError("is no direction of the body", place_.where(key + ".direction"),
+                       fmt::format("Give {} numbers that are not all zero.", mesh_.dim));
+    }
+    const Matrix3 axes = frame_along(spec.direction);
+    const ScalarField value = expression(spec.value, place_.where(key + ".value"));
+    for (std::int32_t node : nodes) {
+      const bool shared = std::any_of(made_.frames.begin(), made_.frames.end(),
+                                      [node](const NodeFrame& f) { return f.node == node; });
+      bool other = false;
+      for (int i = 0; i < mesh_.dim; ++i) other = other || by_dof_.contains(node * mesh_.dim + i);
+      if (shared || other) {
+        throw InputError(
+            fmt::format("and another constraint prescribe node {} in directions that differ",
+                        node + 1),
+            place_.where(key), "Let sides with a direction share no node with other constraints.");
+      }
+      made_.frames.push_back({node, axes});
+      prescribe(node, 0, value, key);
+    }
+  }
+
+  const Mesh& mesh_;
+  const Place& place_;
+  const std::string zero_ = "0";
+  std::map<int, std::size_t> by_dof_;
+  Constraints made_;
+};
+
+}  // namespace
+
+Constraints make_constraints(const BodySpec& spec, const Place& place, const Mesh& mesh) {
+  ConstraintMaker constraints(mesh, place);
+  for (const auto& [name, constraint] : spec.constraints) {  // frames come last: they refuse others
+    if (constraint.direction.empty()) constraints.add(name, constraint);
+  }
+  for (const auto& [name, constraint] : spec.constraints) {
+    if (!constraint.direction.empty()) constraints.add(name, constraint);
+  }
+  return constraints.take();
+}
+
+}  // namespace abut

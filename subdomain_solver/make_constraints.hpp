@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/place.hpp"
+#include "subdomain_solver/time/problem.hpp"
+
+namespace abut {
+
+/// Prescribed coordinates, sorted, and the frames that inclined ones need.
+struct Constraints {
+  std::vector<Prescribed> supports;
+  std::vector<NodeFrame> frames;
+};
+
+/// What a scene's constraints prescribe on a mesh. Throws InputError.
+Constraints make_constraints(const BodySpec& spec, const Place& place, const Mesh& mesh);
+
+}  // namespace abut

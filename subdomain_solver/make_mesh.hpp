@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/place.hpp"
+
+namespace abut {
+
+/// The checked mesh of a solid, moved to its position (dim; otherwise not moved). `model` is the
+/// key of the spec, e.g. "model.fe". Throws InputError.
+Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,
+               const std::string& model);
+
+}  // namespace abut
