@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contract/boundary_data.hpp"
+#include "contract/field.hpp"
 #include "contract/outcome.hpp"
 #include "contract/port.hpp"
 #include "contract/time_window.hpp"
@@ -43,6 +44,7 @@ struct Description {
   Capabilities can;
   std::vector<Member> members;  // empty: the body is one solid
   std::vector<std::string> measures;  // names of what measure() tells, in its order
+  std::vector<FieldInfo> fields;      // what fields() tells, in its order; empty: has none
 };
 
 /// Which traces a response holds.
@@ -87,6 +89,11 @@ class Subdomain {
   /// Numbers that sum up the present state, in the order of Description::measures; SI units. Asked
   /// for at the end of a run.
   virtual std::vector<double> measure() { return {}; }
+  /// Where fields() has its values; never changes. Asked for only where the scene wants fields.
+  virtual Grid grid() { return {}; }
+  /// Description::fields in the present state, in their order; the state is left untouched. Values
+  /// that cannot be told (an inadmissible state) are not finite.
+  virtual std::vector<FieldValues> fields() { return {}; }
 
   [[nodiscard]] Outcome advance(const Advance& request, Response& response) {
     start(request);

@@ -33,7 +33,7 @@ void Caller::post(const char* verb) {
         fmt::format("{} for body '{}' would be a frame of {} bytes, above the limit of {}",
                     under_way_text(), body_, request_.ByteSizeLong() + frame_header_bytes,
                     context_.limits.frame_bytes),
-        "", "use shorter windows or fewer records per window");
+        "", remedy_of_large_frame(request_));
   }
   frame_.seal(request_);
   under_way_ = true;
@@ -87,7 +87,7 @@ bool Caller::is_reply(Bytes frame) {
     throw RunError(
         fmt::format("body '{}' sent a frame of {} bytes while at {}; the limit is {} bytes", body_,
                     frame.size(), under_way_text(), context_.limits.frame_bytes),
-        "", "use shorter windows or fewer records per window");
+        "", remedy_of_large_frame(request_));
   }
   const std::optional<Bytes> payload = open_frame(frame);
   if (!payload || !parse_into(reply_, *payload)) {

@@ -374,6 +374,7 @@ void encode(const Description& from, v1::Description& to) {
   can.set_impedance(from.can.impedance);
   can.set_complete(from.can.complete);
   to.mutable_measures()->Assign(from.measures.begin(), from.measures.end());
+  encode(from.fields, to);
   for (const Member& member : from.members) {
     v1::Member& wire = *to.add_members();
     wire.set_name(member.name);
@@ -408,6 +409,7 @@ void decode(const v1::Description& from, Description& to) {
   if (from.measures_size() > most_members)
     FieldPath{&path, "measures"}.fail("has too many entries");
   to.measures.assign(from.measures().begin(), from.measures().end());
+  decode(from, path, to.fields);
   if (from.members_size() > most_members) FieldPath{&path, "members"}.fail("has too many entries");
   to.members.resize(static_cast<std::size_t>(from.members_size()));
   for (int i = 0; i < from.members_size(); ++i) {

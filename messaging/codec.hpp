@@ -26,6 +26,8 @@ void encode(const Response& from, v1::Advanced& to);
 void encode(const Failed& from, v1::Failed& to);
 void encode(const PortKernel& from, v1::KernelReply& to);
 void encode(const Description& from, v1::Description& to);
+void encode(const Grid& from, v1::GridReply& to);
+void encode(const std::vector<FieldValues>& from, v1::FieldsReply& to);
 
 // Wire to contract. Shapes, counts, enums and finite numbers are checked; throws CodecError.
 void decode(const v1::Advance& from, std::size_t ports, Advance& to);
@@ -34,6 +36,13 @@ void decode(const v1::Advanced& from, const Description& body, Response& to);
 void decode(const v1::Failed& from, Failed& to);
 void decode(const v1::KernelReply& from, PortKernel& to);
 void decode(const v1::Description& from, Description& to);
+void decode(const v1::GridReply& from, Grid& to);
+/// Values may be other than finite: whoever writes fields says at which node or cell.
+void decode(const v1::FieldsReply& from, const Description& body, std::size_t nodes,
+            std::size_t cells, std::vector<FieldValues>& to);
+
+/// What to do about a frame above the limit that carries this request or its reply.
+const char* remedy_of_large_frame(const v1::Request& request);
 
 /// Largest counts that a request may ask of a body.
 inline constexpr int most_records = 1'000'000;

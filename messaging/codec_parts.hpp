@@ -41,4 +41,8 @@ void decode(const v1::Waveform& from, const FieldPath& path, Waveform& to);
 v1::ForceSupport encode(ForceSupport support);
 ForceSupport decode(v1::ForceSupport support, const FieldPath& path);
 
+/// Description::fields alone.
+void encode(const std::vector<FieldInfo>& from, v1::Description& to);
+void decode(const v1::Description& from, const FieldPath& path, std::vector<FieldInfo>& to);
+
 }  // namespace abut

@@ -120,4 +120,36 @@ std::vector<double> RemoteSubdomain::measure() {
   return {values.begin(), values.end()};
 }
 
+Grid RemoteSubdomain::grid() {
+  Grid grid;
+  if (description_.fields.empty()) return grid;
+  caller_.request().mutable_grid();
+  carry_flags();
+  const v1::Reply& reply = caller_.call("grid");
+  if (!reply.has_grid()) caller_.refuse_reply("not a grid");
+  try {
+    decode(reply.grid(), grid);
+  } catch (const CodecError& error) {
+    caller_.refuse_reply(error.what());
+  }
+  grid_size_ = {grid.nodes(), grid.cells()};
+  return grid;
+}
+
+std::vector<FieldValues> RemoteSubdomain::fields() {
+  std::vector<FieldValues> values;
+  if (description_.fields.empty()) return values;
+  if (!grid_size_) grid();
+  caller_.request().mutable_fields();
+  carry_flags();
+  const v1::Reply& reply = caller_.call("fields");
+  if (!reply.has_fields()) caller_.refuse_reply("not fields");
+  try {
+    decode(reply.fields(), description_, grid_size_->nodes, grid_size_->cells, values);
+  } catch (const CodecError& error) {
+    caller_.refuse_reply(error.what());
+  }
+  return values;
+}
+
 }  // namespace abut

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +36,9 @@ class RemoteSubdomain : public Subdomain {
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override;
   std::vector<double> measure() override;
+  Grid grid() override;
+  /// Asks for the grid first where that has not been done: the reply is held against it.
+  std::vector<FieldValues> fields() override;
 
  private:
   void carry_flags();
@@ -43,6 +47,10 @@ class RemoteSubdomain : public Subdomain {
   Description description_;
   bool save_first_ = false;     // wanted, not yet sent
   bool restore_first_ = false;  // before the save
+  struct GridSize {
+    std::size_t nodes = 0, cells = 0;
+  };
+  std::optional<GridSize> grid_size_;  // once asked for
 };
 
 }  // namespace abut

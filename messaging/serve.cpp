@@ -149,7 +149,7 @@ void Server::seal_reply() {
     fault(v1::FAULT_KIND_RUN,
           fmt::format("the reply would be a frame of {} bytes, above the limit of {}", size,
                       reply_limit_),
-          name_, "use shorter windows or fewer records per window");
+          name_, remedy_of_large_frame(request_));
     reply_.set_number(executed_);
   }
   reply_frame_.seal(reply_);
@@ -209,6 +209,12 @@ void Server::dispatch() {
       reply_.mutable_measure()->mutable_values()->Assign(values.begin(), values.end());
       return;
     }
+    case v1::Request::kGrid:
+      encode(body_->grid(), *reply_.mutable_grid());
+      return;
+    case v1::Request::kFields:
+      encode(body_->fields(), *reply_.mutable_fields());
+      return;
     default:
       throw CodecError("the request is empty or unknown");
   }

@@ -10,6 +10,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "subdomain_solver/bar_fields.hpp"
 #include "subdomain_solver/saved_state.hpp"
 
 namespace abut {
@@ -44,6 +45,7 @@ Body::Body(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
   description_.step = scheme_.step;
   description_.stable_step =
       scheme_.explicit_in_time ? bar_->stable_step() : std::numeric_limits<double>::infinity();
+  description_.fields = bar_fields();
   describe_ports(ports);
 }
 
@@ -89,6 +91,21 @@ void Body::resume(std::span<const std::byte> bytes) {
 }
 
 std::uint64_t Body::state_hash() { return hash_state(state_); }
+
+Grid Body::grid() {
+  Grid grid;
+  add_bar(bar_->data(), grid);
+  return grid;
+}
+
+std::vector<FieldValues> Body::fields() {
+  std::vector<double> u = state_.u, stress;
+  u.front() = scheme_.integrator->port_displacement(state_, 0);  // as partners see the ends
+  u.back() = scheme_.integrator->port_displacement(state_, 1);
+  for (std::size_t e = 0; e + 1 < u.size(); ++e)
+    stress.push_back(bar_->stiffness()[e] * (u[e + 1] - u[e]) / bar_->data().area);
+  return bar_field_values(u, state_.v, stress);
+}
 
 Outcome Body::finish(Response& response) {
   ABUT_ASSERT(request_ != nullptr);

@@ -39,6 +39,8 @@ class Body final : public Subdomain {
   std::vector<std::byte> checkpoint() override;
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override;
+  Grid grid() override;
+  std::vector<FieldValues> fields() override;
 
   /// Called now and then during a long advance, so that the caller can tell others that the body
   /// lives.

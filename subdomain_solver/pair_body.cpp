@@ -10,6 +10,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "subdomain_solver/bar_fields.hpp"
 #include "subdomain_solver/saved_state.hpp"
 
 namespace abut {
@@ -40,6 +41,7 @@ PairBody::PairBody(std::string name, const Parameters& parameters)
   description_.step = parameters.step;
   description_.stable_step = parameters.weights ? std::numeric_limits<double>::infinity()
                                                 : pair_.stable_step(parameters.contact.penalty);
+  description_.fields = bar_fields();
   describe_members(parameters);
 }
 
@@ -81,6 +83,21 @@ void PairBody::resume(std::span<const std::byte> bytes) {
 }
 
 std::uint64_t PairBody::state_hash() { return hash_state(state_); }
+
+Grid PairBody::grid() {
+  Grid grid;
+  for (int m : {0, 1}) add_bar(pair_.bar(m).data(), grid);
+  return grid;
+}
+
+std::vector<FieldValues> PairBody::fields() {
+  std::vector<double> stress;
+  for (int m : {0, 1}) {
+    for (std::size_t e = pair_.first(m); e < pair_.last(m); ++e)
+      stress.push_back(pair_.stress(m, e, state_.u));
+  }
+  return bar_field_values(state_.u, state_.v, stress);
+}
 
 PortKernel PairBody::kernel(int, double, int) {
   throw RunError("does not answer for port kernels", fmt::format("body '{}'", description_.name),
@@ -180,8 +197,7 @@ std::optional<Failed> PairBody::record(double time, Response& response) {
     PortResponse& port = response.ports[static_cast<std::size_t>(m)];
     port.lower.push_back(low_[static_cast<std::size_t>(m)]);
     port.upper.push_back(high_[static_cast<std::size_t>(m)]);
-    low_[static_cast<std::size_t>(m)] = high_[static_cast<std::size_t>(m)] =
-        state_.u[pair_.tip(m)];
+    low_[static_cast<std::size_t>(m)] = high_[static_cast<std::size_t>(m)] = state_.u[pair_.tip(m)];
   }
   const bool finite = std::isfinite(r.energy.total() + r.momentum[0]);
   response.records.push_back(std::move(r));

@@ -39,6 +39,8 @@ class PairBody final : public Subdomain {
   std::vector<std::byte> checkpoint() override;
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override;
+  Grid grid() override;
+  std::vector<FieldValues> fields() override;
 
   /// Called now and then during a long advance.
   void set_progress(std::function<void()> hook) { progress_ = std::move(hook); }

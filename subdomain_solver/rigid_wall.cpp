@@ -23,7 +23,16 @@ RigidWall::RigidWall(std::string name, double position, std::string port, double
   p.geometry.points = {position};
   p.geometry.normals = {normal};
   description_.ports.push_back(std::move(p));
+  description_.fields = {{"displacement", FieldPlace::nodes, 3},
+                         {"velocity", FieldPlace::nodes, 3}};
 }
+
+Grid RigidWall::grid() {
+  constexpr std::int32_t vtk_vertex = 1;
+  return {{description_.ports[0].geometry.points[0], 0.0, 0.0}, {vtk_vertex}, {0}, {0, 1}};
+}
+
+std::vector<FieldValues> RigidWall::fields() { return {FieldValues(3, 0.0), FieldValues(3, 0.0)}; }
 
 Outcome RigidWall::finish(Response& response) {
   ABUT_ASSERT(request_ != nullptr);

@@ -18,6 +18,8 @@ class RigidWall final : public Subdomain {
   std::vector<std::byte> checkpoint() override { return {}; }
   void resume(std::span<const std::byte>) override {}
   std::uint64_t state_hash() override { return 0; }
+  Grid grid() override;  // the port's point
+  std::vector<FieldValues> fields() override;
 
  private:
   Description description_;

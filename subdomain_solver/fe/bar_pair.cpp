@@ -56,6 +56,12 @@ bool BarPair::follow(const std::vector<double>& u) {
   return true;
 }
 
+double BarPair::stress(int member, std::size_t element, const std::vector<double>& u) const {
+  const double strain = (u[element + 1] - u[element]) / bar(member).spacing();
+  const double modulus = bar(member).data().youngs_modulus;
+  return modulus * (lengths_ == ElementLengths::current ? std::log1p(strain) : strain);
+}
+
 double BarPair::stable_step(double contact_stiffness) const {
   double omega_squared = 0.0;
   for (std::size_t i = 0; i < nodes(); ++i) {

@@ -51,9 +51,10 @@ class BarPair {
   void apply_mass(const std::vector<double>& x, std::vector<double>& out) const;
 
   // Of one of the bars:
-  double mass_norm(int member, const std::vector<double>& x) const;  // x M x
-  double stored(int member, const std::vector<double>& u) const;  // [J] 1/2 tension^2 / stiffness
-  double momentum(int member, const std::vector<double>& v) const;   // [kg m/s]
+  double stress(int member, std::size_t element, const std::vector<double>& u) const;  // [Pa]
+  double mass_norm(int member, const std::vector<double>& x) const;                    // x M x
+  double stored(int member, const std::vector<double>& u) const;    // [J] 1/2 tension^2 / stiffness
+  double momentum(int member, const std::vector<double>& v) const;  // [kg m/s]
 
  private:
   void assemble_mass();

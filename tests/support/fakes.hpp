@@ -28,7 +28,7 @@ class FakeSubdomain : public Subdomain {
     int substeps = 10;        // per window
   };
   struct Counts {
-    int advances = 0, saves = 0, restores = 0, kernels = 0;
+    int advances = 0, saves = 0, restores = 0, kernels = 0, grids = 0, fields = 0;
   };
 
   FakeSubdomain() : FakeSubdomain(Options{}) {}
@@ -45,12 +45,16 @@ class FakeSubdomain : public Subdomain {
     port.geometry.normals = {1.0};
     description_.ports.push_back(port);
     description_.can = Capabilities{false, true, false, true, true};
+    description_.fields = {{"displacement", FieldPlace::nodes, 3}};
     save();
     counts = Counts{};
   }
 
   /// Called once per substep: a test may sleep, fail or report progress here.
   std::function<void()> during_substep;
+  /// A test may make the grid or the fields unsound here.
+  std::function<void(Grid&)> spoil_grid;
+  std::function<void(std::vector<FieldValues>&)> spoil_fields;
   Counts counts;
 
   const Description& describe() const override { return description_; }
@@ -126,6 +130,19 @@ class FakeSubdomain : public Subdomain {
     archive.finish();
   }
   std::uint64_t state_hash() override { return hash_state(*this); }
+
+  Grid grid() override {
+    ++counts.grids;
+    Grid grid{{0.25, 0.0, 0.0}, {1}, {0}, {0, 1}};
+    if (spoil_grid) spoil_grid(grid);
+    return grid;
+  }
+  std::vector<FieldValues> fields() override {
+    ++counts.fields;
+    std::vector<FieldValues> values{{u_, 0.0, 0.0}};
+    if (spoil_fields) spoil_fields(values);
+    return values;
+  }
 
   void state(Archive& archive) {
     archive.field("u", u_);

@@ -63,6 +63,7 @@ Description two_ports() {
   body.ports[1].name = "tail";
   body.members = {{"front", 1.5, {0}}, {"rear", 2.5, {1}}};
   body.measures = {"displacement.x.max", "energy.stored"};
+  body.fields.push_back({"stress", FieldPlace::cells, 6});
   return body;
 }
 
@@ -221,6 +222,12 @@ TEST(Codec, DescriptionKeepsEveryFieldAndInfinity) {
   EXPECT_TRUE(got.can.force && got.can.impulse && got.can.kernel && got.can.complete);
   EXPECT_FALSE(got.can.motion || got.can.obstacle);
   EXPECT_EQ(got.measures, (std::vector<std::string>{"displacement.x.max", "energy.stored"}));
+  ASSERT_EQ(got.fields.size(), 2U);
+  EXPECT_EQ(got.fields[0].name, "displacement");
+  EXPECT_EQ(got.fields[0].place, FieldPlace::nodes);
+  EXPECT_EQ(got.fields[1].name, "stress");
+  EXPECT_EQ(got.fields[1].place, FieldPlace::cells);
+  EXPECT_EQ(got.fields[1].components, 6);
   ASSERT_EQ(got.members.size(), 2U);
   EXPECT_EQ(got.members[1].name, "rear");
   EXPECT_EQ(got.members[1].mass, 2.5);

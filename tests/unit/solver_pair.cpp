@@ -75,6 +75,17 @@ BarText single(const Method& m, int side) {
   return bar;
 }
 
+/// What the single bar tells all over itself is the pair's share of that side.
+void expect_same_fields(Subdomain& bar, Subdomain& pair, int side) {
+  const std::vector<FieldValues> own = bar.fields(), both = pair.fields();
+  ASSERT_EQ(own.size(), both.size());
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const std::size_t from = side == 0 ? 0 : both[k].size() - own[k].size();
+    for (std::size_t i = 0; i < own[k].size(); ++i)
+      ASSERT_NEAR(own[k][i], both[k][from + i], roundoff(10000, pair_speed * 60.0)) << k;
+  }
+}
+
 class Pair : public testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(Solver, Pair, testing::ValuesIn(methods()),
                          [](const auto& method) { return method.param.name; });
@@ -107,6 +118,7 @@ TEST_P(PairBesideBars, MoveAsTwoBodiesUnderTheirContactForceWould) {
     EXPECT_NEAR(own.v.back(), seen.v.back(), roundoff(10000, pair_speed));
     const MemberRecord& member = both.records[0].members[static_cast<std::size_t>(side)];
     EXPECT_NEAR(alone.records[0].energy.total(), member.energy.total(), roundoff(100000, 0.05));
+    expect_same_fields(*bar, *pair, side);
   }
 }
 
@@ -133,8 +145,7 @@ TEST_P(Pair, MomentumStaysAndForcesAreOppositeAndNeverPull) {
   double most = 0.0;
   for (const BodyRecord& record : response.records) {
     EXPECT_NEAR(record.momentum[0], -10.0 * pair_speed, roundoff(20000, scale));
-    EXPECT_NEAR(record.momentum[0],
-                record.members[0].momentum[0] + record.members[1].momentum[0],
+    EXPECT_NEAR(record.momentum[0], record.members[0].momentum[0] + record.members[1].momentum[0],
                 roundoff(10, scale));
   }
   for (std::size_t i = 0; i < response.ports[0].trace.size(); ++i) {
@@ -206,8 +217,8 @@ TEST(PairEnergy, OfThePenaltySpringIsPartOfTheWhole) {
     double spring_most = 0.0;
     for (std::size_t i = 0; i < response.records.size(); ++i) {
       const BodyRecord& r = response.records[i];
-      const double spring = r.energy.total() - r.members[0].energy.total() -
-                            r.members[1].energy.total();
+      const double spring =
+          r.energy.total() - r.members[0].energy.total() - r.members[1].energy.total();
       const double force = response.ports[1].trace.f[i + 1];  // one record per substep
       EXPECT_NEAR(spring, force * force / (2.0 * 0.2), roundoff(1000, first)) << m.name;
       spring_most = std::max(spring_most, spring);
