@@ -30,6 +30,9 @@ struct BodyRecord {
   double time = 0.0;              // [s]
   Energy energy;                  // [J]; of all members and of what acts between them
   std::vector<double> momentum;   // [kg m/s] (dim)
+  // [kg m^2/s] about the origin of space: one number in two dimensions, three in three; empty:
+  // none, or not told
+  std::vector<double> angular_momentum{};
   std::vector<MemberRecord> members{};  // in the order of Description::members
 };
 

@@ -19,7 +19,7 @@ constexpr int most_members = 4096;
 static_assert(sizeof(TimeWindow) == 3 * sizeof(double));
 static_assert(sizeof(Energy) == 4 * sizeof(double));
 static_assert(sizeof(BodyRecord) ==
-              sizeof(Energy) + sizeof(double) + 2 * sizeof(std::vector<double>));
+              sizeof(Energy) + sizeof(double) + 3 * sizeof(std::vector<double>));
 static_assert(sizeof(MemberRecord) == sizeof(Energy) + sizeof(std::vector<double>));
 static_assert(sizeof(Member) ==
               sizeof(std::string) + sizeof(double) + sizeof(std::vector<std::int32_t>));
@@ -163,6 +163,8 @@ void decode(const v1::BodyRecord& from, const Description& body, const FieldPath
   to.time = number(from.time(), FieldPath{&path, "time"});
   to.energy = decode_energy(from, path);
   take(from.momentum(), dim, true, FieldPath{&path, "momentum"}, to.momentum);
+  take(from.angular_momentum(), dim < 3 ? dim - 1 : dim, true,
+       FieldPath{&path, "angular_momentum"}, to.angular_momentum);
   if (static_cast<std::size_t>(from.members_size()) != body.members.size()) {
     FieldPath{&path, "members"}.fail(
         fmt::format("has {} entries for {} members", from.members_size(), body.members.size()));
@@ -270,6 +272,7 @@ void encode(const Response& from, v1::Advanced& to) {
     wire.set_time(record.time);
     encode_energy(record.energy, wire);
     copy(record.momentum, *wire.mutable_momentum());
+    copy(record.angular_momentum, *wire.mutable_angular_momentum());
     resize(*wire.mutable_members(), record.members.size());
     for (std::size_t m = 0; m < record.members.size(); ++m) {
       v1::MemberRecord& member = *wire.mutable_members(static_cast<int>(m));

@@ -306,8 +306,10 @@ std::optional<Failed> SolidBody::record(double time, Response& response) {
   r.momentum.assign(index(description_.dim), 0.0);
   for (Eigen::Index k = 0; k < momentum.size(); ++k)
     r.momentum[index(k) % r.momentum.size()] += momentum(k);
+  r.angular_momentum = angular_momentum(parts_.model->mesh(), displacement(), momentum);
   double sum = r.energy.total() + r.energy.external_work;
   for (double p : r.momentum) sum += p;
+  for (double p : r.angular_momentum) sum += p;
   if (std::isfinite(sum)) return std::nullopt;
   return Failed{Failed::Cause::non_finite, time,
                 "the state is not a number any more: take a smaller step"};

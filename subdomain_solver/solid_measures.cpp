@@ -40,23 +40,24 @@ void summarise(const std::vector<double>& field, int dim, std::vector<double>& o
   }
 }
 
-Eigen::Vector3d angular_momentum(const FeModel& model, const std::vector<double>& u,
-                                 const Vector& nodal_momentum) {
-  const int dim = model.mesh().dim;
+}  // namespace
+
+std::vector<double> angular_momentum(const Mesh& mesh, const std::vector<double>& u,
+                                     const Vector& nodal_momentum) {
+  if (mesh.dim == 1) return {};
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int node = 0; node < model.mesh().node_count(); ++node) {
+  for (int node = 0; node < mesh.node_count(); ++node) {
     Eigen::Vector3d x = Eigen::Vector3d::Zero(), p = Eigen::Vector3d::Zero();
-    for (int i = 0; i < dim; ++i) {
-      const std::size_t at = static_cast<std::size_t>(node * dim + i);
-      x(i) = model.mesh().points[at] + u[at];
-      p(i) = nodal_momentum(node * dim + i);
+    for (int i = 0; i < mesh.dim; ++i) {
+      const std::size_t at = static_cast<std::size_t>(node * mesh.dim + i);
+      x(i) = mesh.points[at] + u[at];
+      p(i) = nodal_momentum(node * mesh.dim + i);
     }
     sum += x.cross(p);
   }
-  return sum;
+  if (mesh.dim == 2) return {sum(2)};
+  return {sum(0), sum(1), sum(2)};
 }
-
-}  // namespace
 
 std::vector<std::string> solid_measure_names(int dim, const std::vector<NamedNodes>& ports) {
   std::vector<std::string> names;
@@ -125,8 +126,8 @@ std::vector<double> solid_measures(FeModel& model, const SolidState& state,
                          energy.dissipated, energy.external_work});
   for (int i = 0; i < dim; ++i)
     out.push_back(state.nodal_momentum(Eigen::seqN(i, model.mesh().node_count(), dim)).sum());
-  const Eigen::Vector3d angular = angular_momentum(model, u, state.nodal_momentum);
-  for (int i = dim == 3 ? 0 : 2; i < 3; ++i) out.push_back(angular(i));
+  const std::vector<double> angular = angular_momentum(model.mesh(), u, state.nodal_momentum);
+  out.insert(out.end(), angular.begin(), angular.end());
   for (const NamedNodes& port : ports) {
     for (const std::vector<double>* field : {&std::as_const(u), &v}) {
       for (int i = 0; i < dim; ++i) {

@@ -35,6 +35,11 @@ struct SolidState {
 std::vector<double> solid_measures(FeModel& model, const SolidState& state,
                                    const std::vector<NamedNodes>& ports);
 
+/// [kg m^2/s] about the origin of space, from displacements [m] and the nodes' momenta [kg m/s]
+/// (nodes, dim); about the axis out of the plane in two dimensions, none in one.
+std::vector<double> angular_momentum(const Mesh& mesh, const std::vector<double>& u,
+                                     const Vector& nodal_momentum);
+
 /// Cauchy stress [Pa] from first Piola-Kirchhoff stress and deformation gradient; P itself where
 /// the law is one of small strain.
 Matrix3 cauchy_stress(const Material& material, const Matrix3& stress, const Matrix3& deformation);

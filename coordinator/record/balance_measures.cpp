@@ -12,6 +12,16 @@ namespace {
 
 double own_energy(const Energy& energy) { return energy.total() - energy.external_work; }
 
+/// About the axes of space; zero where a body tells none.
+std::array<double, 3> angular_momentum(const BodyRecord& record) {
+  const std::vector<double>& told = record.angular_momentum;
+  std::array<double, 3> out{};
+  std::copy(told.begin(), told.end(), out.end() - static_cast<std::ptrdiff_t>(told.size()));
+  return out;
+}
+
+double length(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
+
 }  // namespace
 
 BalanceMeasures::BalanceMeasures(const RunStart& start, const ClosedForm* exact)
@@ -38,6 +48,9 @@ void BalanceMeasures::begin(const WindowReport& report) {
     const std::vector<double>& momentum = recorded.momentum(record);
     bodies_[b].first = own_energy(recorded.energy(record));
     for (std::size_t k = 0; k < momentum.size(); ++k) momentum_first_[k] += momentum[k];
+    if (recorded.member > 0) continue;  // angular momentum is told of whole bodies
+    const Vector angular = angular_momentum(record);
+    for (std::size_t k = 0; k < 3; ++k) angular_first_[k] += angular[k];
   }
   total_first_ = total_energy(report, 0);
   for (Body& body : bodies_) {
@@ -86,6 +99,35 @@ void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
   for (std::size_t k = 0; k < sum.size(); ++k)
     square += (sum[k] - momentum_first_[k]) * (sum[k] - momentum_first_[k]);
   momentum_change_ = std::max(momentum_change_, std::sqrt(square));
+  add_angular(report, record);
+}
+
+void BalanceMeasures::add_angular(const WindowReport& report, std::size_t record) {
+  Vector change = {-angular_first_[0], -angular_first_[1], -angular_first_[2]};
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (recorded_[b].member > 0) continue;
+    Body& body = bodies_[b];
+    body.angular = angular_momentum(report.responses[recorded_[b].body].records[record]);
+    body.angular_max = std::max(body.angular_max, length(body.angular));
+    for (std::size_t k = 0; k < 3; ++k) change[k] += body.angular[k];
+  }
+  angular_change_ = std::max(angular_change_, length(change));
+}
+
+void BalanceMeasures::write_angular(Measures& out) const {
+  double scale = 0.0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    for (int axis = first_rotation_axis(out.scope.dim); axis < 3; ++axis)
+      out.set(fmt::format("angular_momentum.{}.end{}", recorded_[b].name, axis_ending(3, axis)),
+              bodies_[b].angular[static_cast<std::size_t>(axis)]);
+    scale += bodies_[b].angular_max;
+  }
+  if (out.scope.dim == 1) return;
+  if (immovable_) {
+    out.none("angular_momentum.total", "an immovable body takes momentum and does not keep it");
+  } else {
+    out.set("angular_momentum.total", scale > 0.0 ? angular_change_ / scale : 0.0);
+  }
 }
 
 void BalanceMeasures::write(Measures& out) const {
@@ -110,6 +152,7 @@ void BalanceMeasures::write(Measures& out) const {
   } else {
     out.set("momentum.total", scale > 0.0 ? momentum_change_ / scale : 0.0);
   }
+  write_angular(out);
 }
 
 }  // namespace abut

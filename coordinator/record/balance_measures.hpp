@@ -30,12 +30,16 @@ class BalanceMeasures {
     double error = 0.0, error_max = 0.0;
     Vector momentum{};  // [kg m/s]
     double momentum_max = 0.0;
+    Vector angular{};  // [kg m^2/s] about the origin
+    double angular_max = 0.0;
     int bar = -1;  // of the closed form; -1: not described by it, or a wall
   };
 
   void begin(const WindowReport& report);
   double total_energy(const WindowReport& report, std::size_t record) const;  // [J]
   void add(const WindowReport& report, std::size_t record);
+  void add_angular(const WindowReport& report, std::size_t record);
+  void write_angular(Measures& out) const;
 
   const RunStart& start_;
   const ClosedForm* exact_;
@@ -47,6 +51,8 @@ class BalanceMeasures {
   double drift_ = 0.0, drift_max_ = 0.0;
   Vector momentum_first_{};
   double momentum_change_ = 0.0;
+  Vector angular_first_{};
+  double angular_change_ = 0.0;
 };
 
 }  // namespace abut

@@ -2,12 +2,28 @@
 
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string_view>
 #include <utility>
 
 #include "base/assert.hpp"
 
 namespace abut {
+
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();  // leaves the cell empty
+
+/// Columns that closed forms do not have.
+void add_balance_names(std::string& header, const RecordedBody& body) {
+  for (const std::string_view name : {"dissipated", "external_work"})
+    header += fmt::format(",{}.{} [J]", body.name, name);
+  if (body.member >= 0) return;
+  for (int axis = first_rotation_axis(body.dim); axis < 3; ++axis)
+    header += fmt::format(",{}.angular_momentum{} [kg m^2/s]", body.name, axis_ending(3, axis));
+}
+
+}  // namespace
 
 void add_port_names(std::string& header, const Description& body, const Port& port) {
   const std::pair<std::string_view, std::string_view> fields[] = {
@@ -59,7 +75,10 @@ std::string CsvHistory::header() const {
     const Description& body = *start_.bodies[b];
     for (const Port& port : body.ports) add_port_names(text, body, port);
     for (const RecordedBody& recorded : recorded_)
-      if (recorded.body == static_cast<int>(b)) add_body_names(text, recorded);
+      if (recorded.body == static_cast<int>(b)) {
+        add_body_names(text, recorded);
+        add_balance_names(text, recorded);
+      }
   }
   for (const InterfaceColumn& interface : interfaces_) {
     if (interface.has_gap) text += fmt::format(",{}.gap [m]", interface.info.name);
@@ -126,6 +145,13 @@ void CsvHistory::write_body(const RecordedBody& body, const BodyRecord& record) 
   ABUT_ASSERT(momentum.size() == static_cast<std::size_t>(body.dim));
   for (const double value : momentum) number(value);
   for (const double value : momentum) number(value / body.mass);
+  number(energy.dissipated);
+  number(energy.external_work);
+  if (body.member >= 0) return;
+  const int rotations = 3 - first_rotation_axis(body.dim);
+  const std::vector<double>& angular = record.angular_momentum;
+  for (int i = 0; i < rotations; ++i)
+    number(angular.empty() ? nothing : angular[static_cast<std::size_t>(i)]);
 }
 
 void CsvHistory::on_end(const RunEnd&) {

@@ -65,6 +65,7 @@ std::vector<std::string> known_measures(const MeasureScope& scope) {
                                     "exchanges",
                                     "windows",
                                     "contact_windows"};
+  if (scope.dim > 1) names.push_back("angular_momentum.total");
   for (const std::string& interface : scope.interfaces) {
     for (const char* what : {"begin", "end", "duration", "count", "impulse", "force_mean",
                              "force_peak", "velocity_rms", "gap_min"})
@@ -80,6 +81,8 @@ std::vector<std::string> known_measures(const MeasureScope& scope) {
       names.push_back(fmt::format("momentum.{}.end{}", body, axis_ending(scope.dim, axis)));
       names.push_back(fmt::format("mean_velocity.{}.end{}", body, axis_ending(scope.dim, axis)));
     }
+    for (int axis = first_rotation_axis(scope.dim); axis < 3; ++axis)
+      names.push_back(fmt::format("angular_momentum.{}.end{}", body, axis_ending(3, axis)));
   }
   for (const std::string& port : scope.ports)
     for (int axis = 0; axis < scope.dim; ++axis)

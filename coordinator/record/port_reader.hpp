@@ -44,5 +44,7 @@ double gap_of(const InterfaceInfo& interface, const RunStart& start, double u0, 
 
 /// Ending of a name for one axis of a quantity: none in 1D, else _x, _y, _z.
 const char* axis_ending(int dim, int axis);
+/// First axis about which a body turns: z in two dimensions, x in three; 3 in one: none.
+inline int first_rotation_axis(int dim) { return dim == 1 ? 3 : dim == 2 ? 2 : 0; }
 
 }  // namespace abut

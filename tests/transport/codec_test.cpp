@@ -1,5 +1,6 @@
 // Goal: what one end encodes, the other end decodes unchanged, and nothing unsound gets through.
 // Oracle: bit-equal values; for unsound messages the name of the field in the error.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -124,6 +125,30 @@ TEST(Codec, AdvanceKeepsEveryField) {
   EXPECT_EQ(got.boundary[0].impulse, sent.boundary[0].impulse);
   EXPECT_FALSE(got.boundary[1].closed());
   EXPECT_TRUE(got.boundary[1].impulse.empty());
+}
+
+TEST(Codec, AngularMomentumHasOneNumberPerAxisOfRotationOrNone) {
+  Description body;
+  Response sent;
+  sent.records.push_back(BodyRecord{0.25, {}, {}, {}});
+  for (const auto& [dim, axes] : {std::pair{1, 0u}, {2, 1u}, {3, 3u}}) {
+    body.dim = dim;
+    sent.records[0].momentum.assign(static_cast<std::size_t>(dim), 1.0);
+    for (const std::size_t count : {0u, 1u, 2u, 3u}) {
+      sent.records[0].angular_momentum.assign(count, 2.5);
+      const v1::Advanced wire = through_bytes<Response, v1::Advanced>(sent);
+      Response got;
+      const std::string why = refusal([&] { decode(wire, body, got); });
+      if (count == 0 || count == axes) {
+        EXPECT_EQ(why, "accepted");
+        EXPECT_EQ(got.records[0].angular_momentum, sent.records[0].angular_momentum);
+      } else {
+        EXPECT_EQ(why, fmt::format("advanced.records[0].angular_momentum has {} numbers where {} "
+                                   "belong",
+                                   count, axes));
+      }
+    }
+  }
 }
 
 TEST(Codec, AReusedMessageHoldsNothingOfTheLastOne) {
