@@ -145,6 +145,7 @@ void BalanceMeasures::write(Measures& out) const {
     }
     scale += body.momentum_max;
   }
+  out.set("energy.total.begin", total_first_);
   out.set("energy.total.relative_drift_max", drift_max_);
   out.set("energy.total.relative_drift_end", drift_);
   if (immovable_) {

@@ -57,7 +57,8 @@ MeasureScope measure_scope(const RunStart& start, std::vector<std::string> exact
 }
 
 std::vector<std::string> known_measures(const MeasureScope& scope) {
-  std::vector<std::string> names = {"energy.total.relative_drift_max",
+  std::vector<std::string> names = {"energy.total.begin",
+                                    "energy.total.relative_drift_max",
                                     "energy.total.relative_drift_end",
                                     "momentum.total",
                                     "schwarz.iterations_mean",
