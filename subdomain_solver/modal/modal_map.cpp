@@ -1,0 +1,31 @@
+#include "subdomain_solver/modal/modal_map.hpp"
+
+namespace abut {
+
+namespace {
+
+Eigen::Map<const Vector> view(std::span<const double> values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
+}  // namespace
+
+void ModalMap::displacement(std::span<const double> q, std::span<double> u) const {
+  Eigen::Map<Vector>(u.data(), shapes_.rows()).noalias() = shapes_ * view(q);
+}
+
+void ModalMap::velocity(std::span<const double>, std::span<const double> v,
+                        std::span<double> out) const {
+  displacement(v, out);
+}
+
+void ModalMap::acceleration(std::span<const double>, std::span<const double>,
+                            std::span<const double> a, std::span<double> out) const {
+  displacement(a, out);
+}
+
+void ModalMap::lift(std::span<const double>, std::span<const double> nodal, Vector& force) const {
+  force.noalias() += shapes_.transpose() * view(nodal);
+}
+
+}  // namespace abut
