@@ -13,6 +13,7 @@
 #include "base/yaml_document.hpp"
 #include "contract/subdomain.hpp"
 #include "subdomain_solver/fe/bar.hpp"
+#include "subdomain_solver/integrator_spec.hpp"
 #include "subdomain_solver/solid_spec.hpp"
 
 namespace abut {
@@ -72,47 +73,6 @@ struct BarPairSpec {
   void fields(Fields& f);
 };
 
-struct CentralDifferenceSpec {
-  static constexpr std::string_view name = "central_difference";
-  double step = 0.0;  // [s]
-  int dispersion_terms = 1;
-  double bulk_viscosity = 0.0;
-  bool clamp = false;  // "above_limit: refuse | clamp"
-  double tchamwa = 1.0;
-  void fields(Fields& f);
-};
-struct NewmarkSpec {
-  static constexpr std::string_view name = "newmark";
-  double step = 0.0, beta = 0.25, gamma = 0.5;
-  MassForm mass = MassForm::averaged;
-  void fields(Fields& f);
-};
-struct HhtAlphaSpec {
-  static constexpr std::string_view name = "hht_alpha";
-  double step = 0.0, alpha = -0.05;
-  MassForm mass = MassForm::averaged;
-  void fields(Fields& f);
-};
-struct GeneralizedAlphaSpec {
-  static constexpr std::string_view name = "generalized_alpha";
-  double step = 0.0, spectral_radius = 0.9;
-  MassForm mass = MassForm::averaged;
-  void fields(Fields& f);
-};
-
-struct QuasiStaticSpec {  // of solids only
-  static constexpr std::string_view name = "quasi_static";
-  double step = 0.0;
-  int halvings = 8;
-  void fields(Fields& f);
-};
-struct BackwardEulerSpec {  // of bar pairs only
-  static constexpr std::string_view name = "backward_euler";
-  double step = 0.0;
-  MassForm mass = MassForm::averaged;
-  void fields(Fields& f);
-};
-
 struct MasslessSpec {
   static constexpr std::string_view name = "massless";
   double stiffness_factor = 4.0 / 3.0;
@@ -158,6 +118,7 @@ struct BodySpec {
   std::vector<double> body_force = {0.0};  // [m/s^2] (dim)
   std::vector<std::pair<std::string, PortSpec>> ports;
   // of solids
+  std::vector<std::pair<std::string, PointSpec>> points;
   std::vector<std::pair<std::string, ConstraintSpec>> constraints;
   std::vector<std::pair<std::string, LoadSpec>> loads;
   EquationsSpec equations;

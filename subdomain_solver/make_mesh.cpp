@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "subdomain_solver/fe/exodus_file.hpp"
 #include "subdomain_solver/fe/gmsh_file.hpp"
@@ -95,7 +98,63 @@ struct MeshMaker {
   }
 };
 
+/// Of the distance between the farthest corners of a mesh: a node this near is meant.
+constexpr double same_place = 1.0e-6;
+
+std::string words(const double* at, int dim) {
+  return fmt::format("({:.10g})", fmt::join(at, at + dim, ", "));
+}
+
+/// Node nearest to a place and its distance [m].
+std::pair<std::int32_t, double> nearest_node(const Mesh& mesh, const std::vector<double>& at) {
+  std::pair<std::int32_t, double> best = {0, std::numeric_limits<double>::infinity()};
+  for (std::int32_t node = 0; node < mesh.node_count(); ++node) {
+    double distance = 0.0;
+    for (int i = 0; i < mesh.dim; ++i)
+      distance = std::hypot(distance, mesh.points[index(node * mesh.dim + i)] - at[index(i)]);
+    if (distance < best.second) best = {node, distance};
+  }
+  return best;
+}
+
+double size_of(const Mesh& mesh) {
+  double size = 0.0;
+  for (int i = 0; i < mesh.dim; ++i) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t k = index(i); k < mesh.points.size(); k += index(mesh.dim)) {
+      low = std::min(low, mesh.points[k]);
+      high = std::max(high, mesh.points[k]);
+    }
+    size = std::hypot(size, high - low);
+  }
+  return size;
+}
+
 }  // namespace
+
+void name_points(const BodySpec& spec, const Place& place, Mesh& mesh) {
+  for (const auto& [name, point] : spec.points) {
+    const std::string key = place.where("points." + name);
+    if (mesh.sides.contains(name) || mesh.node_sets.contains(name)) {
+      throw InputError("is the name of a side or node set of the mesh", key,
+                       "Give the point another name.");
+    }
+    if (point.at.size() != index(mesh.dim)) {
+      throw InputError(fmt::format("has {} numbers", point.at.size()),
+                       place.where("points." + name + ".at"),
+                       fmt::format("Give {} numbers, one per dimension.", mesh.dim));
+    }
+    const auto [node, distance] = nearest_node(mesh, point.at);
+    if (distance > same_place * size_of(mesh)) {
+      throw InputError(
+          fmt::format("no node is at {}", words(point.at.data(), mesh.dim)),
+          place.where("points." + name + ".at"),
+          fmt::format("The nearest is node {} at {}: give that place, or another mesh.", node + 1,
+                      words(mesh.points.data() + index(node * mesh.dim), mesh.dim)));
+    }
+    mesh.node_sets[name] = {node};
+  }
+}
 
 Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,
                const std::string& model) {

@@ -13,4 +13,8 @@ namespace abut {
 Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,
                const std::string& model);
 
+/// Adds the scene's named points to a mesh, as sets of one node. Throws InputError where no node
+/// is.
+void name_points(const BodySpec& spec, const Place& place, Mesh& mesh);
+
 }  // namespace abut

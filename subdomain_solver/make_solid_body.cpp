@@ -32,6 +32,7 @@ std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document&
   const Place place{document, path};
   const FeModelSpec& fe = std::get<FeModelSpec>(spec.model);
   Mesh mesh = make_mesh(fe, spec.initial.position, place, "model.fe");
+  name_points(spec, place, mesh);
   const std::vector<SolidBody::PortNodes> ports = make_ports(spec, place, mesh);
   Constraints constraints = make_constraints(spec, place, mesh);
   check_formulation(fe, mesh, place);

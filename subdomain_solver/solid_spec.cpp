@@ -112,6 +112,10 @@ void J2PlasticitySpec::fields(Fields& f) {
           "is above saturation.stress", "Give a saturation stress of at least the yield stress.");
 }
 
+void PointSpec::fields(Fields& f) {
+  f.required("at", at, "m", "place of a node at the start, undeformed, one number per dimension");
+}
+
 void ConstraintSpec::fields(Fields& f) {
   f.required("on", on, "", "side or node set of the mesh");
   f.optional("fixed", fixed, "", "no displacement in any direction");

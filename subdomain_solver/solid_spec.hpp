@@ -96,6 +96,11 @@ struct J2PlasticitySpec : ElasticSpec {
   void fields(Fields& f);
 };
 
+/// A node under a name of its own, on which ports and constraints may lie.
+struct PointSpec {
+  std::vector<double> at;  // [m] (dim) reference position
+  void fields(Fields& f);
+};
 /// Prescribed displacement of a side or node set. Expressions in x, y, z [m] and t [s].
 struct ConstraintSpec {
   std::string on;
