@@ -113,7 +113,8 @@ bool Controller::fly_free() {
   const double horizon = free_flight_horizon(coupling_.interfaces, bodies_);
   const double left = scene_.time.end - time_;
   const double whole = std::floor(std::min(horizon, left) / window + clock_tolerance);
-  const int windows = static_cast<int>(std::min<double>(whole, flight_limit_));
+  const int windows =
+      static_cast<int>(std::min<double>(whole, std::min(flight_limit_, windows_to_fields())));
   if (windows < 1) return false;
   TimeWindow flight = next_window();
   flight.end = anchor_ + static_cast<double>(since_ + windows) * window;
@@ -132,9 +133,9 @@ bool Controller::fly_free() {
     return false;
   }
   fill_reports(nullptr);
-  for (Observer* observer : observers_)
-    observer->on_window({flight, bodies_.responses(), reports_});
   end_.windows += windows;
+  for (Observer* observer : observers_)
+    observer->on_window({flight, bodies_.responses(), reports_, end_.windows});
   since_ += windows;
   time_ = flight.end;
   watch_energy(time_);
@@ -291,9 +292,9 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
     if (coupling_.rules[i].tied) continue;  // never released
     interface.rebound_impulse = release_impulse(interface, bodies_);
   }
-  for (Observer* observer : observers_)
-    observer->on_window({window, bodies_.responses(), reports_});
   ++end_.windows;
+  for (Observer* observer : observers_)
+    observer->on_window({window, bodies_.responses(), reports_, end_.windows});
   if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
   const bool whole = is_whole(window);
   advance_clock(window.end, whole);
@@ -330,6 +331,12 @@ void Controller::advance_clock(double end, bool whole) {
 
 bool Controller::is_whole(const TimeWindow& window) const {
   return std::abs(window.length() - scene_.time.window) < clock_tolerance * scene_.time.window;
+}
+
+int Controller::windows_to_fields() const {
+  if (!scene_.output.field_output) return most_windows_at_once;
+  const int every = scene_.output.field_output->every;
+  return every - static_cast<int>(end_.windows % every);
 }
 
 double Controller::shortest_step() const {

@@ -80,6 +80,7 @@ class Controller {
   void fill_reports(const Attempt* attempt);  // null: all flew free
   void watch_internal();
   bool is_whole(const TimeWindow& window) const;
+  int windows_to_fields() const;  // fields are asked for between flights
   double shortest_step() const;
   double longest_step() const;
   bool running() const;

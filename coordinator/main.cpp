@@ -30,6 +30,7 @@
 #include "coordinator/record/progress_line.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 #include "coordinator/record/summary.hpp"
+#include "coordinator/record/vtk_fields.hpp"
 #include "coordinator/run_directory.hpp"
 #include "coordinator/scene.hpp"
 
@@ -161,6 +162,7 @@ int report(const Scene& scene, const ClosedForm* form, const Measures& measures,
                end.wall_seconds, end.windows, end.contact_windows, end.exchanges);
     if (end.state_hash) fmt::print("state  {:016x}\n", *end.state_hash);
     fmt::print("files  {0}\nplots  abut report {0}\n", directory.string());
+    if (scene.output.field_output) fmt::print("fields {}/fields.pvd\n", directory.string());
   }
   return pass ? 0 : exit_expectation;
 }
@@ -212,7 +214,10 @@ int run_verb(const RunCommand& command) {
                   {scene.meta.title, versions(), scene.meta.expect, began, valid.estimate},
                   recorder, form);
   ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !command.quiet);
-  const std::vector<Observer*> observers{&recorder, &history, &events, &progress, &summary};
+  std::vector<Observer*> observers{&recorder, &history, &events, &progress, &summary};
+  std::optional<VtkFields> fields;
+  if (const std::optional<FieldOutputSpec>& wanted = scene.output.field_output)
+    observers.push_back(&fields.emplace(directory, placement.pointers(), wanted->every));
 
   const RunEnd end = conduct(scene, placement, observers, interrupted, directory);
   // Bodies in the middle of a solve hear no orderly end; they are ended when the launch goes.

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <system_error>
+#include <vector>
 
 #include "base/error.hpp"
 
@@ -14,13 +15,23 @@ namespace {
 namespace fs = std::filesystem;
 
 // The first two say that a directory holds a run.
-constexpr std::array<const char*, 6> run_files{"scene.resolved.yaml", "summary.json",
-                                               "history.csv",         "closed_form.csv",
-                                               "events.jsonl",        "report.html"};
+constexpr std::array<const char*, 7> run_files{"scene.resolved.yaml", "summary.json", "history.csv",
+                                               "closed_form.csv",     "events.jsonl", "report.html",
+                                               "fields.pvd"};
 
 bool is_there(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(fs::symlink_status(path, ignored));
+}
+
+/// Takes out the states of an earlier run; the folder stays where it holds something else.
+void clear_fields(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> states;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".vtu") states.push_back(entry.path());
+  for (const fs::path& state : states) fs::remove(state, error);
+  fs::remove(folder, error);
 }
 
 /// The deepest part of the path that is there: its permissions decide.
@@ -67,6 +78,7 @@ void clear_run_directory(const fs::path& directory) {
     fs::remove(directory / name, error);
     if (error) refuse(directory, fmt::format("cannot lose {}: {}", name, error.message()));
   }
+  clear_fields(directory / "fields");
 }
 
 }  // namespace abut

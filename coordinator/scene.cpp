@@ -137,9 +137,17 @@ void SchwarzSpec::fields(Fields& f) {
              positive);
 }
 
+void FieldOutputSpec::fields(Fields& f) {
+  f.required("every", every, "", "number of windows from one state that is written to the next",
+             between(1, 1000000));
+}
+
 void OutputSpec::fields(Fields& f) {
   f.optional("records_per_window", records_per_window, "",
              "number of rows of history.csv per controller window", between(1, 1000));
+  f.optional_section("fields", field_output,
+                     "fields of all bodies for ParaView (fields.pvd): at the begin, after every so "
+                     "many windows and at the end; bodies fly free no further than that at once");
 }
 
 void NetworkSpec::fields(Fields& f) {
@@ -398,6 +406,10 @@ void validate_bodies(const Scene& scene, std::span<const Description* const> bod
   }
   for (const auto& [name, interface] : scene.interfaces)
     validate_geometry(interface, scene, bodies, document);
+  const auto silent = [](const Description* body) { return body->fields.empty(); };
+  if (scene.output.field_output && std::all_of(bodies.begin(), bodies.end(), silent))
+    throw InputError("asks for fields, but no body of the scene has any",
+                     document.where("output.fields"), "Leave out output.fields.");
 }
 
 }  // namespace abut

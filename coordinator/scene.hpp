@@ -134,8 +134,14 @@ struct SchwarzSpec {
   void fields(Fields& f);
 };
 
+struct FieldOutputSpec {
+  int every = 1;  // windows
+  void fields(Fields& f);
+};
+
 struct OutputSpec {
   int records_per_window = 1;  // rows of history.csv per controller window
+  std::optional<FieldOutputSpec> field_output;  // key fields; absent: no body is asked
   void fields(Fields& f);
 };
 

@@ -39,6 +39,7 @@ struct WindowReport {
   TimeWindow window;
   std::span<const Response> responses;          // by body
   std::span<const InterfaceReport> interfaces;  // by interface
+  std::int64_t windows = 0;                     // accepted so far, these included
 };
 
 /// Something that happened at a time.

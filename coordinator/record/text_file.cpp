@@ -30,6 +30,13 @@ void TextFile::flush() {
   if (std::fflush(file_.get()) != 0) fail("written");
 }
 
+void TextFile::append_ended(std::string_view text, std::string_view ending) {
+  append(text);
+  append(ending);
+  flush();
+  if (std::fseek(file_.get(), -static_cast<long>(ending.size()), SEEK_CUR) != 0) fail("written");
+}
+
 void TextFile::close() {
   if (!file_) return;
   if (std::fclose(file_.release()) != 0) fail("written");

@@ -15,6 +15,8 @@ class TextFile {
 
   void append(std::string_view text);  // reaches the file in pieces
   void flush();                        // all of it is in the file now
+  /// The text and an ending are in the file now; what comes next takes the ending's place.
+  void append_ended(std::string_view text, std::string_view ending);
   void close();
 
  private:

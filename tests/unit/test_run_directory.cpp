@@ -51,14 +51,19 @@ TEST_F(RunDirectory, ThatHoldsARunIsRefusedAndKept) {
 }
 
 TEST_F(RunDirectory, ForcedLosesTheFilesOfTheRunAndNoOther) {
-  for (const char* name : {"summary.json", "history.csv", "report.html", "notes.txt"})
+  for (const char* name : {"summary.json", "history.csv", "report.html", "notes.txt", "fields.pvd",
+                           "fields/bar_000010.vtu", "fields/notes.txt"})
     put(root / name);
   EXPECT_EQ(refusal(root, true), "accepted");
   EXPECT_TRUE(fs::exists(root / "summary.json")) << "until the new run has its bodies";
   clear_run_directory(root);
   EXPECT_FALSE(fs::exists(root / "summary.json") || fs::exists(root / "history.csv") ||
                fs::exists(root / "report.html"));
-  EXPECT_TRUE(fs::exists(root / "notes.txt"));
+  EXPECT_FALSE(fs::exists(root / "fields.pvd") || fs::exists(root / "fields" / "bar_000010.vtu"));
+  EXPECT_TRUE(fs::exists(root / "notes.txt") && fs::exists(root / "fields" / "notes.txt"));
+  fs::remove(root / "fields" / "notes.txt");
+  clear_run_directory(root);
+  EXPECT_FALSE(fs::exists(root / "fields"));
 }
 
 TEST_F(RunDirectory, WithOtherFilesIsNobodysRun) {

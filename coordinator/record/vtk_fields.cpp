@@ -1,0 +1,76 @@
+#include "coordinator/record/vtk_fields.hpp"
+
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+
+namespace abut {
+namespace {
+
+constexpr const char* folder = "fields";
+constexpr const char* list_begin =
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n <Collection>\n";
+constexpr const char* list_end = " </Collection>\n</VTKFile>\n";
+
+}  // namespace
+
+VtkFields::VtkFields(const std::filesystem::path& directory, std::vector<Subdomain*> bodies,
+                     int every)
+    : directory_(directory), bodies_(std::move(bodies)), every_(every) {
+  ABUT_ASSERT(every > 0);
+}
+
+void VtkFields::on_start(const RunStart&) {
+  for (Subdomain* body : bodies_) {
+    if (body->describe().fields.empty()) continue;
+    shown_.push_back({body, VtuFile(body->grid(), body->describe().fields)});
+  }
+  std::error_code error;
+  std::filesystem::create_directory(directory_ / folder, error);
+  if (error)
+    throw RunError(fmt::format("cannot be made: {}", error.message()),
+                   (directory_ / folder).string(),
+                   "Check that the folder above is writable and has space left.");
+  list_.emplace(directory_ / "fields.pvd");
+  list_->append(list_begin);
+  list_->append_ended("", list_end);
+}
+
+void VtkFields::on_window(const WindowReport& report) {
+  const std::int64_t before = std::exchange(windows_, report.windows);
+  const bool begin = report.window.length() <= 0.0;
+  if (begin || windows_ / every_ > before / every_) write(report.window.end);
+}
+
+void VtkFields::on_end(const RunEnd& end) {
+  // A failed run ends in a state that was never accepted; where there is no hash the bodies are
+  // gone.
+  const bool there = end.state_hash.has_value() && end.status != "failed";
+  if (there && end.time > written_) write(end.time);
+  if (list_) list_->close();
+}
+
+void VtkFields::write(double time) {
+  std::string lines;
+  for (std::size_t b = 0; b < shown_.size(); ++b) {
+    const Description& body = shown_[b].body->describe();
+    const std::vector<FieldValues> values = shown_[b].body->fields();
+    const std::string fault = not_finite(values, body.fields);
+    if (!fault.empty())
+      throw RunError(fmt::format("{} at {:.9g} s", fault, time),
+                     fmt::format("body '{}'", body.name),
+                     "Take smaller steps, and look at the states before this one");
+    const std::string name = fmt::format("{}/{}_{:06}.vtu", folder, body.name, windows_);
+    shown_[b].file.write(directory_ / name, time, values);
+    lines += fmt::format("  <DataSet timestep=\"{}\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", time,
+                         b, body.name, name);
+  }
+  list_->append_ended(lines, list_end);
+  written_ = time;
+}
+
+}  // namespace abut
