@@ -47,7 +47,7 @@ struct Row {
 void add_bars(const BodySpec& spec, Row& row) {
   if (std::holds_alternative<BarPairSpec>(spec.model)) {
     for (const BarProperties& bar : pair_properties(spec)) row.bars.push_back(bar_of(bar));
-  } else if (std::holds_alternative<FeModelSpec>(spec.model)) {
+  } else if (spec.is_bar()) {
     row.bars.push_back(bar_of(fe_bar_properties(spec)));
   } else {
     row.bars.push_back(wall_of(spec));
@@ -74,8 +74,15 @@ Row row_of(const Scene& scene, const Document& document) {
   std::vector<const Description*> bodies;
   for (const std::unique_ptr<Subdomain>& body : built) bodies.push_back(&body->describe());
   Row row;
-  for (const auto& [name, entry] : scene.bodies)
-    add_bars(read<BodySpec>(document, path_of(name)), row);
+  for (const auto& [name, entry] : scene.bodies) {
+    const BodySpec spec = read<BodySpec>(document, path_of(name));
+    if (spec.is_solid()) {
+      throw InputError(fmt::format("describes bars and walls, but the body {} is neither", name),
+                       document.where("meta.closed_form"),
+                       "Leave out meta.closed_form and the expectations that need it.");
+    }
+    add_bars(spec, row);
+  }
   for (const RecordedBody& body : recorded_bodies(bodies)) row.bodies.push_back(body.name);
   ABUT_ASSERT(row.bodies.size() == row.bars.size());
   for (std::size_t b = 0; b < row.bars.size(); ++b) row.bars[b].name = row.bodies[b];

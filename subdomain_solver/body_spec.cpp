@@ -46,6 +46,13 @@ void FeModelSpec::fields(Fields& f) {
           "Leave formulation out.");
 }
 
+void RigidModelSpec::fields(Fields& f) {
+  SolidShapeSpec::fields(f);
+  f.check(plane != Plane::axisymmetric, "plane",
+          "axisymmetric does not fit a rigid body, which turns about its centre",
+          "Mesh the whole body in space, or leave plane out.");
+}
+
 void PairedBarSpec::fields(Fields& f) {
   f.required("length", length, "m", "length of the bar", positive);
   f.required("area", area, "m^2", "cross section", positive);
@@ -133,28 +140,44 @@ void BodySpec::fields(Fields& f) {
   check_dimensions(f);
   if (is_bar()) check_bar(f);
   if (is_solid()) check_solid(f);
-  const bool fe = std::holds_alternative<FeModelSpec>(model);
+  const bool wall = std::holds_alternative<RigidWallSpec>(model);
   const bool pair = std::holds_alternative<BarPairSpec>(model);
-  const std::string words = pair ? "bar_pair" : "fe";
-  f.check(!(fe || pair) || material.has_value(), "model", words + " needs a material",
+  const bool rigid = std::holds_alternative<RigidModelSpec>(model);
+  if (rigid) check_rigid(f);
+  const std::string words(std::visit([](const auto& m) { return m.name; }, model));
+  f.check(wall || material.has_value(), "model", words + " needs a material",
           "Add material: {linear_elastic: {youngs_modulus: ..., density: ...}} to the body.");
-  f.check(!(fe || pair) || integrator.has_value(), "model", words + " needs an integrator",
-          "Add integrator: {central_difference: {step: ...}} or an implicit one to the body.");
+  f.check(wall || integrator.has_value(), "model", words + " needs an integrator",
+          rigid ? "Add integrator: {rigid_motion: {step: ...}} to the body."
+                : "Add integrator: {central_difference: {step: ...}} or an implicit one to the "
+                  "body.");
+  f.check(rigid || !integrator || !std::holds_alternative<RigidMotionSpec>(*integrator),
+          "integrator", "rigid_motion is offered to model rigid only",
+          "Use newmark: {step: ...} or another integrator of bodies that deform.");
   f.check(!pair || ports.empty(), "ports", "do not belong to a bar_pair",
           "Leave ports out: the pair has left_tip and right_tip.");
-  f.check(fe || pair || ports.size() == 1, "model", "rigid_wall needs exactly one port",
+  f.check(!wall || ports.size() == 1, "model", "rigid_wall needs exactly one port",
           "Add ports: {face: {side: left}}, where the side tells to which side the wall faces.");
 }
 
 void BodySpec::place_files(const std::string& folder) {
-  FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
-  if (fe == nullptr) return;
   auto place = [&folder](auto& mesh) {
     if constexpr (requires { mesh.file; }) {
       if (!mesh.file.starts_with('/')) mesh.file = folder + mesh.file;
     }
   };
-  std::visit(place, fe->mesh);
+  auto place_mesh = [&place](auto& kind) {
+    if constexpr (requires { kind.mesh; }) std::visit(place, kind.mesh);
+  };
+  std::visit(place_mesh, model);
+}
+
+const SolidShapeSpec* BodySpec::shape() const {
+  auto find = [](const auto& kind) -> const SolidShapeSpec* {
+    if constexpr (requires { kind.mesh; }) return &kind;
+    return nullptr;
+  };
+  return std::visit(find, model);
 }
 
 bool BodySpec::is_bar() const {
@@ -162,11 +185,10 @@ bool BodySpec::is_bar() const {
   return fe != nullptr && std::holds_alternative<BarMeshSpec>(fe->mesh);
 }
 
-bool BodySpec::is_solid() const { return std::holds_alternative<FeModelSpec>(model) && !is_bar(); }
+bool BodySpec::is_solid() const { return shape() != nullptr && !is_bar(); }
 
 void BodySpec::check_dimensions(Fields& f) const {
-  const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
-  const std::size_t dim = fe != nullptr ? static_cast<std::size_t>(fe->dimension) : 1;
+  const std::size_t dim = shape() != nullptr ? static_cast<std::size_t>(shape()->dimension) : 1;
   const std::string numbers = dim == 1 ? "Give one number: the body has one dimension."
                                        : fmt::format("Give {} numbers, one per dimension.", dim);
   auto check = [&](const std::vector<double>& list, const char* key) {
@@ -218,6 +240,14 @@ void BodySpec::check_solid(Fields& f) const {
     f.check(s->tchamwa == 1.0, "integrator.central_difference.tchamwa", "is for bars",
             "Leave tchamwa out.");
   }
+}
+
+void BodySpec::check_rigid(Fields& f) const {
+  f.check(constraints.empty(), "constraints",
+          "prescribe displacements of single nodes, which a rigid body does not have",
+          "Leave constraints out, or use model fe.");
+  f.check(!integrator || std::holds_alternative<RigidMotionSpec>(*integrator), "integrator",
+          "is for bodies that deform", "Use rigid_motion: {step: ...} with model rigid.");
 }
 
 }  // namespace abut

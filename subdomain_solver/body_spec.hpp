@@ -44,6 +44,10 @@ struct FeModelSpec : SolidShapeSpec {
   int threads = 1;
   void fields(Fields& f);
 };
+struct RigidModelSpec : SolidShapeSpec {
+  static constexpr std::string_view name = "rigid";
+  void fields(Fields& f);
+};
 struct RigidWallSpec {
   static constexpr std::string_view name = "rigid_wall";
   void fields(Fields&) {}
@@ -106,10 +110,11 @@ struct PortSpec {
 };
 
 struct BodySpec {
-  using Integrator = std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec,
-                                  GeneralizedAlphaSpec, QuasiStaticSpec, BackwardEulerSpec>;
+  using Integrator =
+      std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec, GeneralizedAlphaSpec,
+                   QuasiStaticSpec, RigidMotionSpec, BackwardEulerSpec>;
 
-  std::variant<FeModelSpec, RigidWallSpec, BarPairSpec> model;
+  std::variant<FeModelSpec, RigidModelSpec, RigidWallSpec, BarPairSpec> model;
   std::optional<MaterialSpec> material;
   std::optional<Integrator> integrator;
   std::variant<MasslessSpec, KickSpec, MassiveSpec> contact_layer;
@@ -128,11 +133,15 @@ struct BodySpec {
   void place_files(const std::string& folder);
 
   bool is_bar() const;    // fe in one dimension
-  bool is_solid() const;  // fe in two or three
+  bool is_solid() const;  // fe in two or three, and every other rung of the fidelity ladder
+  /// Of the rungs of the fidelity ladder; null: the body is something else.
+  const SolidShapeSpec* shape() const;
+
  private:
   void check_dimensions(Fields& f) const;
   void check_bar(Fields& f) const;
   void check_solid(Fields& f) const;
+  void check_rigid(Fields& f) const;
 };
 
 /// Properties of the bar on which a port lies; empty for a wall. For closed forms and estimates.
@@ -147,11 +156,5 @@ std::array<BarProperties, 2> pair_properties(const BodySpec& spec);
 /// then during long advances.
 std::unique_ptr<Subdomain> make_body(const Document& document, const std::string& path,
                                      std::function<void()> progress = {});
-/// The same of a solid whose specification has been read.
-std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document& document,
-                                           const std::string& path, std::function<void()> progress);
-/// The same of a bar_pair whose specification has been read.
-std::unique_ptr<Subdomain> make_pair_body(const BodySpec& spec, const Document& document,
-                                          const std::string& path, std::function<void()> progress);
 
 }  // namespace abut

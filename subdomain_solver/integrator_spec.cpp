@@ -70,6 +70,11 @@ void QuasiStaticSpec::fields(Fields& f) {
              between(0, 30));
 }
 
+void RigidMotionSpec::fields(Fields& f) {
+  f.required("step", step, "s", step_help, positive);
+  mass_key(f, mass);
+}
+
 void BackwardEulerSpec::fields(Fields& f) {
   f.required("step", step, "s", step_help, positive);
   mass_key(f, mass);

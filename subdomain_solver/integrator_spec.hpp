@@ -43,6 +43,12 @@ struct QuasiStaticSpec {  // of solids only
   int halvings = 8;
   void fields(Fields& f);
 };
+struct RigidMotionSpec {  // of rigid bodies only
+  static constexpr std::string_view name = "rigid_motion";
+  double step = 0.0;
+  MassForm mass = MassForm::consistent;
+  void fields(Fields& f);
+};
 struct BackwardEulerSpec {  // of bar pairs only
   static constexpr std::string_view name = "backward_euler";
   double step = 0.0;

@@ -5,7 +5,7 @@
 #include "base/error.hpp"
 #include "base/yaml_fields.hpp"
 #include "subdomain_solver/body.hpp"
-#include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/makers.hpp"
 #include "subdomain_solver/rigid_wall.hpp"
 #include "subdomain_solver/time/central_difference.hpp"
 #include "subdomain_solver/time/generalized_alpha.hpp"
@@ -97,6 +97,7 @@ struct SchemeMaker {
     place.refuse("integrator", "quasi_static is not offered to a bar",
                  "Use newmark or another implicit integrator.");
   }
+  Body::Scheme operator()(const RigidMotionSpec&) const { return {}; }  // refused before
   Body::Scheme operator()(const BackwardEulerSpec&) const {
     place.refuse("integrator", "backward_euler is offered to bar_pair only",
                  "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");
@@ -190,6 +191,8 @@ std::unique_ptr<Subdomain> make_body(const Document& document, const std::string
   const std::string name = path.substr(path.rfind('.') + 1);
   if (std::holds_alternative<BarPairSpec>(spec.model))
     return make_pair_body(spec, document, path, std::move(progress));
+  if (std::holds_alternative<RigidModelSpec>(spec.model))
+    return make_rigid_body(spec, document, path, std::move(progress));
   if (spec.is_solid()) return make_solid_body(spec, document, path, std::move(progress));
   std::vector<Body::BodyPort> ports = ports_of(spec, place);
   if (std::holds_alternative<RigidWallSpec>(spec.model)) {

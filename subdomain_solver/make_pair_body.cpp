@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/makers.hpp"
 #include "subdomain_solver/pair_body.hpp"
 
 namespace abut {
@@ -51,6 +51,7 @@ struct PairScheme {
   }
   void operator()(const HhtAlphaSpec&) const { unknown(); }
   void operator()(const QuasiStaticSpec&) const { unknown(); }
+  void operator()(const RigidMotionSpec&) const { unknown(); }
   void operator()(const GeneralizedAlphaSpec&) const { unknown(); }
   void unknown() const {
     refuse("integrator", "is not offered to bar_pair",

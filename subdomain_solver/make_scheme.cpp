@@ -56,6 +56,7 @@ struct SchemeMaker {
             s.step, std::numeric_limits<double>::infinity(), MassForm::lumped,
             fmt::format("quasi-static, step {:g} s", s.step)};
   }
+  SolidBody::Scheme operator()(const RigidMotionSpec&) const { return {}; }    // refused before
   SolidBody::Scheme operator()(const BackwardEulerSpec&) const { return {}; }  // refused before
 
   SolidBody::Scheme implicit(const AlphaWeights& weights, double step, MassForm mass,

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include "subdomain_solver/body_spec.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
 #include "subdomain_solver/make_constraints.hpp"
 #include "subdomain_solver/make_fields.hpp"
 #include "subdomain_solver/make_material.hpp"
 #include "subdomain_solver/make_mesh.hpp"
 #include "subdomain_solver/make_scheme.hpp"
+#include "subdomain_solver/makers.hpp"
 #include "subdomain_solver/place.hpp"
 #include "subdomain_solver/solid_body.hpp"
 

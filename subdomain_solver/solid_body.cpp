@@ -90,7 +90,7 @@ void SolidBody::describe(std::string name, const std::vector<PortNodes>& ports) 
     ports_.push_back({p.name, mesh.nodes_of(p.side)});
     description_.ports.push_back(port_of(p, ports_.back().nodes));
   }
-  description_.measures = solid_measure_names(mesh.dim, ports_);
+  description_.measures = solid_measure_names(mesh.dim, parts_.deforms, ports_);
   lower_.resize(ports.size());
   upper_.resize(ports.size());
 }
@@ -319,7 +319,9 @@ std::vector<double> SolidBody::measure() {
   std::vector<double> u(nodal_values());
   parts_.map->displacement(state_.motion.q, u);
   return solid_measures(
-      *parts_.model, {u, velocity(), state_.motion.history, energy(), momentum_of_nodes()}, ports_);
+      *parts_.model,
+      {parts_.deforms, u, velocity(), state_.motion.history, energy(), momentum_of_nodes()},
+      ports_);
 }
 
 Energy SolidBody::energy() const {

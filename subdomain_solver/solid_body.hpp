@@ -37,6 +37,7 @@ class SolidBody final : public Subdomain {
     Scheme scheme;
     Motion motion;            // q and v of the start
     std::string rung = "fe";  // for people
+    bool deforms = true;      // there is stress to tell of
   };
 
   SolidBody(std::string name, Parts parts, const std::vector<PortNodes>& ports);

@@ -40,6 +40,28 @@ void summarise(const std::vector<double>& field, int dim, std::vector<double>& o
   }
 }
 
+/// Means over the quadrature points of Cauchy and von Mises stress, and the largest of the latter.
+void add_stress(FeModel& model, const SolidState& state, std::vector<double>& out) {
+  Matrix3 sum = Matrix3::Zero();
+  double mises = 0.0, most = 0.0;
+  std::int64_t points = 0;
+  const bool admissible =
+      model.visit(state.q, state.history, [&](const FeModel::PointState& point) {
+        const Matrix3 stress = cauchy_stress(model.material(), point.stress, point.deformation);
+        sum += stress;
+        mises += von_mises(stress);
+        most = std::max(most, von_mises(stress));
+        ++points;
+      });
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const double each = admissible ? 1.0 / static_cast<double>(points) : nothing;
+  for (int k = 0; k < stress_count(model.mesh().dim); ++k) {
+    const StressEntry& entry = stress_entries[static_cast<std::size_t>(k)];
+    out.push_back(sum(entry.row, entry.column) * each);
+  }
+  out.insert(out.end(), {mises * each, admissible ? most : nothing});
+}
+
 }  // namespace
 
 std::vector<double> angular_momentum(const Mesh& mesh, const std::vector<double>& u,
@@ -59,7 +81,8 @@ std::vector<double> angular_momentum(const Mesh& mesh, const std::vector<double>
   return {sum(0), sum(1), sum(2)};
 }
 
-std::vector<std::string> solid_measure_names(int dim, const std::vector<NamedNodes>& ports) {
+std::vector<std::string> solid_measure_names(int dim, bool deforms,
+                                             const std::vector<NamedNodes>& ports) {
   std::vector<std::string> names;
   for (const char* field : {"displacement", "velocity"}) {
     for (int i = 0; i < dim; ++i) {
@@ -67,11 +90,12 @@ std::vector<std::string> solid_measure_names(int dim, const std::vector<NamedNod
         names.push_back(fmt::format("{}.{}.{}", field, axes[static_cast<std::size_t>(i)], what));
     }
   }
-  for (int k = 0; k < stress_count(dim); ++k)
+  for (int k = 0; k < stress_count(dim) && deforms; ++k)
     names.push_back(
         fmt::format("stress.{}.mean", stress_entries[static_cast<std::size_t>(k)].name));
-  names.insert(names.end(), {"von_mises.mean", "von_mises.max", "energy.kinetic", "energy.stored",
-                             "energy.dissipated", "energy.external_work"});
+  if (deforms) names.insert(names.end(), {"von_mises.mean", "von_mises.max"});
+  names.insert(names.end(),
+               {"energy.kinetic", "energy.stored", "energy.dissipated", "energy.external_work"});
   for (int i = 0; i < dim; ++i)
     names.push_back(fmt::format("momentum.{}", axes[static_cast<std::size_t>(i)]));
   for (int i = dim == 3 ? 0 : 2; i < 3; ++i)
@@ -105,25 +129,8 @@ std::vector<double> solid_measures(FeModel& model, const SolidState& state,
   model.to_space(u);
   summarise(u, dim, out);
   summarise(v, dim, out);
-  Matrix3 sum = Matrix3::Zero();
-  double mises = 0.0, most = 0.0;
-  std::int64_t points = 0;
-  const bool admissible =
-      model.visit(state.q, state.history, [&](const FeModel::PointState& point) {
-        const Matrix3 stress = cauchy_stress(model.material(), point.stress, point.deformation);
-        sum += stress;
-        mises += von_mises(stress);
-        most = std::max(most, von_mises(stress));
-        ++points;
-      });
-  const double nothing = std::numeric_limits<double>::quiet_NaN();
-  const double each = admissible ? 1.0 / static_cast<double>(points) : nothing;
-  for (int k = 0; k < stress_count(dim); ++k) {
-    const StressEntry& entry = stress_entries[static_cast<std::size_t>(k)];
-    out.push_back(sum(entry.row, entry.column) * each);
-  }
-  out.insert(out.end(), {mises * each, admissible ? most : nothing, energy.kinetic, energy.stored,
-                         energy.dissipated, energy.external_work});
+  if (state.deforms) add_stress(model, state, out);
+  out.insert(out.end(), {energy.kinetic, energy.stored, energy.dissipated, energy.external_work});
   for (int i = 0; i < dim; ++i)
     out.push_back(state.nodal_momentum(Eigen::seqN(i, model.mesh().node_count(), dim)).sum());
   const std::vector<double> angular = angular_momentum(model.mesh(), u, state.nodal_momentum);

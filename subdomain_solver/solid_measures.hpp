@@ -17,11 +17,14 @@ struct NamedNodes {
 
 /// Names of what a solid tells of its state, in the order of solid_measures: displacement.x.min,
 /// velocity.y.mean, stress.xx.mean, von_mises.max, energy.stored, angular_momentum.z, and of every
-/// port its mean displacement and velocity, tip.displacement.x (docs/OUTPUT.md).
-std::vector<std::string> solid_measure_names(int dim, const std::vector<NamedNodes>& ports);
+/// port its mean displacement and velocity, tip.displacement.x (docs/OUTPUT.md). Without stress
+/// where the body cannot deform.
+std::vector<std::string> solid_measure_names(int dim, bool deforms,
+                                             const std::vector<NamedNodes>& ports);
 
 /// What a solid's measures are taken of.
 struct SolidState {
+  bool deforms = true;
   std::span<const double> q;     // [m] coordinates of the mesh's model
   std::vector<double> velocity;  // [m/s] (nodes, dim) along the axes of space, as below
   std::span<const double> history;

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "subdomain_solver/rigid/rigid_model.hpp"
+#include "subdomain_solver/time/integrator.hpp"
+
+namespace abut {
+
+/// Kick - free motion - kick [M.61]: second order under loads, exact without them, symmetric in
+/// time. Loads are those at both ends of the step, so that the impulse that a body takes over a
+/// window is that of the forces imposed in it.
+class RigidMotion final : public Integrator {
+ public:
+  /// The problem's model is `body`.
+  RigidMotion(const Problem& problem, const RigidModel& body) : problem_(problem), body_(body) {}
+  [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
+  [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
+  double kinetic(const Motion& motion) const override { return body_.kinetic(motion.q, motion.v); }
+
+ private:
+  void load(Motion& motion, double time) const;
+  void kick(Motion& motion, double time) const;
+
+  const Problem& problem_;
+  const RigidModel& body_;
+  Motion next_;
+};
+
+}  // namespace abut
