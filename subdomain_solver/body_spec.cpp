@@ -1,6 +1,7 @@
 #include "subdomain_solver/body_spec.hpp"
 
 #include <cmath>
+#include <cstdlib>
 
 #include <fmt/format.h>
 
@@ -32,7 +33,7 @@ void SolidShapeSpec::fields(Fields& f) {
           "Leave plane out.");
 }
 
-void FeModelSpec::fields(Fields& f) {
+void FiniteElementsSpec::fields(Fields& f) {
   SolidShapeSpec::fields(f);
   f.word("formulation", formulation, {"full", "mean_dilatation", "one_point"},
          "integration of an element: full; with one volume change for all of it (B-bar, F-bar), "
@@ -40,10 +41,29 @@ void FeModelSpec::fields(Fields& f) {
          "explicit steps");
   f.optional("hourglass", hourglass, "", "coefficient of the hourglass stiffness of one_point",
              between(0.0, 1.0));
-  f.optional("threads", threads, "", "number of threads of an explicit body", between(1, 256));
   f.check(plane != Plane::stress || formulation != Formulation::mean_dilatation, "formulation",
           "mean_dilatation does not apply to plane stress, which cannot lock",
           "Leave formulation out.");
+}
+
+void FeModelSpec::fields(Fields& f) {
+  FiniteElementsSpec::fields(f);
+  f.optional("threads", threads, "", "number of threads of an explicit body", between(1, 256));
+}
+
+void ModalModelSpec::fields(Fields& f) {
+  FiniteElementsSpec::fields(f);
+  f.optional("modes", modes, "",
+             "number of modes with fixed ports, the lowest ones, beside the static shapes of the "
+             "ports and rigid motions",
+             at_least(0));
+  f.optional("below", below, "Hz", "frequency below which all modes with fixed ports are kept",
+             positive);
+  f.check(!modes || *modes == std::floor(*modes), "modes", "is not a whole number",
+          "Give a whole number of modes.");
+  f.check(modes.has_value() != below.has_value(), "modes",
+          modes ? "stands beside below" : "is missing, and so is below",
+          "Give the number of modes, or the frequency below which all are kept.");
 }
 
 void RigidModelSpec::fields(Fields& f) {
@@ -144,6 +164,7 @@ void BodySpec::fields(Fields& f) {
   const bool pair = std::holds_alternative<BarPairSpec>(model);
   const bool rigid = std::holds_alternative<RigidModelSpec>(model);
   if (rigid) check_rigid(f);
+  if (std::holds_alternative<ModalModelSpec>(model)) check_modal(f);
   const std::string words(std::visit([](const auto& m) { return m.name; }, model));
   f.check(wall || material.has_value(), "model", words + " needs a material",
           "Add material: {linear_elastic: {youngs_modulus: ..., density: ...}} to the body.");
@@ -239,6 +260,28 @@ void BodySpec::check_solid(Fields& f) const {
             "Leave bulk_viscosity out.");
     f.check(s->tchamwa == 1.0, "integrator.central_difference.tchamwa", "is for bars",
             "Leave tchamwa out.");
+  }
+}
+
+void BodySpec::check_modal(Fields& f) const {
+  f.check(!material || std::holds_alternative<LinearElasticSpec>(*material), "material",
+          "is nonlinear, but modes are of a linear body", "Use linear_elastic, or model fe.");
+  for (const auto& [name, load] : loads) {
+    f.check(!load.follows, "loads." + name + ".follows",
+            "is true, but modes are of small displacements", "Leave follows out, or use model fe.");
+  }
+  const auto zero = [](const std::string& text) {
+    char* end = nullptr;
+    return std::strtod(text.c_str(), &end) == 0.0 && end == text.c_str() + text.size();
+  };
+  for (const auto& [name, constraint] : constraints) {
+    for (const auto& [text, key] : {std::pair(&constraint.x, ".x"),
+                                    {&constraint.y, ".y"},
+                                    {&constraint.z, ".z"},
+                                    {&constraint.value, ".value"}}) {
+      f.check(zero(*text), "constraints." + name + key, "is not 0, but modes have supports at rest",
+              "Give 0, or use model fe.");
+    }
   }
 }
 

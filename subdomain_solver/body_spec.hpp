@@ -37,11 +37,20 @@ struct SolidShapeSpec {
   double thickness = 1.0;  // [m]
   void fields(Fields& f);
 };
-struct FeModelSpec : SolidShapeSpec {
-  static constexpr std::string_view name = "fe";
+/// Finite elements on it.
+struct FiniteElementsSpec : SolidShapeSpec {
   Formulation formulation = Formulation::full;
   double hourglass = 0.05;
+  void fields(Fields& f);
+};
+struct FeModelSpec : FiniteElementsSpec {
+  static constexpr std::string_view name = "fe";
   int threads = 1;
+  void fields(Fields& f);
+};
+struct ModalModelSpec : FiniteElementsSpec {
+  static constexpr std::string_view name = "modal";
+  std::optional<double> modes, below;  // how many with fixed ports, or all below [Hz]
   void fields(Fields& f);
 };
 struct RigidModelSpec : SolidShapeSpec {
@@ -114,7 +123,7 @@ struct BodySpec {
       std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec, GeneralizedAlphaSpec,
                    QuasiStaticSpec, RigidMotionSpec, BackwardEulerSpec>;
 
-  std::variant<FeModelSpec, RigidModelSpec, RigidWallSpec, BarPairSpec> model;
+  std::variant<FeModelSpec, ModalModelSpec, RigidModelSpec, RigidWallSpec, BarPairSpec> model;
   std::optional<MaterialSpec> material;
   std::optional<Integrator> integrator;
   std::variant<MasslessSpec, KickSpec, MassiveSpec> contact_layer;
@@ -141,6 +150,7 @@ struct BodySpec {
   void check_dimensions(Fields& f) const;
   void check_bar(Fields& f) const;
   void check_solid(Fields& f) const;
+  void check_modal(Fields& f) const;
   void check_rigid(Fields& f) const;
 };
 

@@ -191,6 +191,8 @@ std::unique_ptr<Subdomain> make_body(const Document& document, const std::string
   const std::string name = path.substr(path.rfind('.') + 1);
   if (std::holds_alternative<BarPairSpec>(spec.model))
     return make_pair_body(spec, document, path, std::move(progress));
+  if (std::holds_alternative<ModalModelSpec>(spec.model))
+    return make_modal_body(spec, document, path, std::move(progress));
   if (std::holds_alternative<RigidModelSpec>(spec.model))
     return make_rigid_body(spec, document, path, std::move(progress));
   if (spec.is_solid()) return make_solid_body(spec, document, path, std::move(progress));

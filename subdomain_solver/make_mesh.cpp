@@ -177,4 +177,14 @@ Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, 
   return mesh;
 }
 
+void check_formulation(const FiniteElementsSpec& spec, const Mesh& mesh, const Place& place,
+                       const std::string& model) {
+  for (const CellBlock& block : mesh.blocks) {
+    if (spec.formulation != Formulation::one_point || block.element->order == 1) continue;
+    throw InputError(fmt::format("one_point does not fit {}", block.element->name),
+                     place.where(model + ".formulation"),
+                     "Use quad4 or hex8 with it, or formulation: full.");
+  }
+}
+
 }  // namespace abut

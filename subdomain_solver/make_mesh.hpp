@@ -17,4 +17,8 @@ Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, 
 /// is.
 void name_points(const BodySpec& spec, const Place& place, Mesh& mesh);
 
+/// Throws InputError when the mesh has cells that the formulation has no form for.
+void check_formulation(const FiniteElementsSpec& spec, const Mesh& mesh, const Place& place,
+                       const std::string& model);
+
 }  // namespace abut

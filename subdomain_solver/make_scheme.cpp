@@ -86,6 +86,14 @@ std::vector<SolidBody::PortNodes> make_ports(const BodySpec& spec, const Place& 
   return ports;
 }
 
+MassForm mass_form(const BodySpec::Integrator& integrator) {
+  const auto find = [](const auto& scheme) {
+    if constexpr (requires { scheme.mass; }) return scheme.mass;
+    return MassForm::lumped;
+  };
+  return std::visit(find, integrator);
+}
+
 SolidBody::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
                               const std::function<double()>& stable_limit) {
   return std::visit(SchemeMaker{spec, place, problem, stable_limit}, *spec.integrator);

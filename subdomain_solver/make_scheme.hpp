@@ -12,6 +12,9 @@ namespace abut {
 std::vector<SolidBody::PortNodes> make_ports(const BodySpec& spec, const Place& place,
                                              const Mesh& mesh);
 
+/// The mass matrix that a scheme takes.
+MassForm mass_form(const BodySpec::Integrator& integrator);
+
 /// The scheme that a scene gives a solid. `stable_limit` tells the stable step [s] of central
 /// differences from the start's coordinates, not a number where these are inadmissible; it is
 /// asked of no other scheme. The problem must outlive the scheme. Throws InputError.

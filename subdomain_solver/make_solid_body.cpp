@@ -12,20 +12,6 @@
 
 namespace abut {
 
-namespace {
-
-/// Cells that the formulation has a form for.
-void check_formulation(const FeModelSpec& fe, const Mesh& mesh, const Place& place) {
-  for (const CellBlock& block : mesh.blocks) {
-    if (fe.formulation != Formulation::one_point || block.element->order == 1) continue;
-    throw InputError(fmt::format("one_point does not fit {}", block.element->name),
-                     place.where("model.fe.formulation"),
-                     "Use quad4 or hex8 with it, or formulation: full.");
-  }
-}
-
-}  // namespace
-
 std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document& document,
                                            const std::string& path,
                                            std::function<void()> progress) {
@@ -35,7 +21,7 @@ std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document&
   name_points(spec, place, mesh);
   const std::vector<SolidBody::PortNodes> ports = make_ports(spec, place, mesh);
   Constraints constraints = make_constraints(spec, place, mesh);
-  check_formulation(fe, mesh, place);
+  check_formulation(fe, mesh, place, "model.fe");
   const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
   SolidBody::Parts parts;
   parts.model = std::make_unique<FeModel>(

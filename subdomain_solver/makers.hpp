@@ -10,6 +10,8 @@ namespace abut {
 /// Of finite elements in two and three dimensions.
 std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document& document,
                                            const std::string& path, std::function<void()> progress);
+std::unique_ptr<Subdomain> make_modal_body(const BodySpec& spec, const Document& document,
+                                           const std::string& path, std::function<void()> progress);
 std::unique_ptr<Subdomain> make_rigid_body(const BodySpec& spec, const Document& document,
                                            const std::string& path, std::function<void()> progress);
 std::unique_ptr<Subdomain> make_pair_body(const BodySpec& spec, const Document& document,
