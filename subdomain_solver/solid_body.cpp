@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "subdomain_solver/fe/loads.hpp"
 #include "subdomain_solver/saved_state.hpp"
+#include "subdomain_solver/solid_fields.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -91,6 +92,7 @@ void SolidBody::describe(std::string name, const std::vector<PortNodes>& ports) 
     description_.ports.push_back(port_of(p, ports_.back().nodes));
   }
   description_.measures = solid_measure_names(mesh.dim, parts_.deforms, ports_);
+  description_.fields = solid_fields(parts_.model->material(), parts_.deforms);
   lower_.resize(ports.size());
   upper_.resize(ports.size());
 }
@@ -322,6 +324,15 @@ std::vector<double> SolidBody::measure() {
       *parts_.model,
       {parts_.deforms, u, velocity(), state_.motion.history, energy(), momentum_of_nodes()},
       ports_);
+}
+
+Grid SolidBody::grid() { return grid_of(parts_.model->mesh()); }
+
+std::vector<FieldValues> SolidBody::fields() {
+  std::vector<double> q(nodal_values());
+  parts_.map->displacement(state_.motion.q, q);
+  const std::vector<double> u = displacement(), v = velocity();
+  return solid_field_values(*parts_.model, {q, u, v, state_.motion.history}, parts_.deforms);
 }
 
 Energy SolidBody::energy() const {

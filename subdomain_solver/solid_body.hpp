@@ -52,6 +52,8 @@ class SolidBody final : public Subdomain {
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override { return hash_state(state_); }
   std::vector<double> measure() override;
+  Grid grid() override;
+  std::vector<FieldValues> fields() override;
 
   void set_progress(std::function<void()> hook) { progress_ = std::move(hook); }
 

@@ -407,8 +407,11 @@ bool FeModel::visit(std::span<const double> q, std::span<const double> history,
       gather(cells, c, q, u_);
       if (!kernel_.evaluate(cell, u_, before, after, abut::Want::stress, local_)) return false;
       for (int p = 0; p < cell.points; ++p) {
-        see({static_cast<int>(k), c, p, cell.volume[index(p)], kernel_.deformation(p),
-             kernel_.stress(p), before.subspan(index(p) * per_point, per_point)});
+        const std::span<const double> own =
+            std::span<const double>(after).subspan(index(p) * per_point, per_point);
+        see({static_cast<int>(k), c, p, cell.volume[index(p)],
+             material_->completed(kernel_.deformation(p), own), kernel_.stress(p),
+             before.subspan(index(p) * per_point, per_point)});
       }
     }
   }

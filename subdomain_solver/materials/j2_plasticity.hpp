@@ -39,6 +39,9 @@ class J2Plasticity final : public IsotropicMaterial {
   J2Plasticity(const Moduli& moduli, const Hardening& hardening, double density);
 
   int history_size() const override { return 7; }
+  std::vector<NamedHistory> named_history() const override {
+    return {{"equivalent_plastic_strain", 6}};
+  }
   [[nodiscard]] bool evaluate(const Matrix3& f, std::span<const double> before,
                               std::span<double> after, Want want,
                               PointResponse& out) const override;

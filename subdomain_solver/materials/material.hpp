@@ -1,6 +1,8 @@
 #pragma once
 
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -20,6 +22,12 @@ struct PointResponse {
   Tangent tangent;           // [Pa] dP/dF, only when wanted
 };
 
+/// A number of the history that people want to see: its name and its place at a point.
+struct NamedHistory {
+  std::string_view name;
+  int index = 0;
+};
+
 enum class Want { stress, tangent };
 
 /// A material law in three dimensions, in terms of the deformation gradient F. Plane strain, plane
@@ -33,6 +41,14 @@ class Material {
   virtual bool is_linear() const { return false; }
   /// Numbers per point that change with the deformation; all zero at the start.
   virtual int history_size() const { return 0; }
+  /// Those among them that are told as fields; below history_size().
+  virtual std::vector<NamedHistory> named_history() const { return {}; }
+  /// F as the law had it, where it finds entries itself (plane stress), from the history at the
+  /// step's end.
+  virtual Matrix3 completed(const Matrix3& f, std::span<const double> after) const {
+    (void)after;
+    return f;
+  }
   /// Response at F; reads the history at the step's begin and writes that at its end (both of
   /// history_size()). False: F is inadmissible (det F <= 0 for finite-strain laws, numbers that
   /// are not finite, no local convergence) and out and after are undefined.

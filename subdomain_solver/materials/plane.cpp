@@ -56,6 +56,12 @@ bool PlaneStress::find_normal(Matrix3& f, std::span<const double> before, std::s
   return false;
 }
 
+Matrix3 PlaneStress::completed(const Matrix3& f, std::span<const double> after) const {
+  Matrix3 whole = f;
+  if (!is_linear()) whole(2, 2) = 1.0 + after.back();
+  return whole;
+}
+
 bool PlaneStress::evaluate(const Matrix3& f, std::span<const double> before,
                            std::span<double> after, Want want, PointResponse& out) const {
   const auto size = static_cast<std::size_t>(law_->history_size());

@@ -34,6 +34,8 @@ class PlaneStress final : public Material {
   Moduli moduli() const override { return law_->moduli(); }  // of space: a bound on wave speeds
   bool is_linear() const override { return law_->is_linear(); }
   int history_size() const override { return law_->history_size() + (is_linear() ? 0 : 1); }
+  std::vector<NamedHistory> named_history() const override { return law_->named_history(); }
+  Matrix3 completed(const Matrix3& f, std::span<const double> after) const override;
   [[nodiscard]] bool evaluate(const Matrix3& f, std::span<const double> before,
                               std::span<double> after, Want want,
                               PointResponse& out) const override;
