@@ -27,8 +27,11 @@ LiftedLoad::LiftedLoad(std::unique_ptr<const Load> load, const NodalMap& map, st
     : load_(std::move(load)), map_(map), nodal_(nodal) {}
 
 void LiftedLoad::add(double time, std::span<const double> q, Vector& force) const {
-  std::vector<double> u(nodal_);
-  map_.displacement(q, u);
+  std::vector<double> u;
+  if (load_->follows()) {
+    u.resize(nodal_);
+    map_.displacement(q, u);
+  }
   Vector on_nodes = Vector::Zero(static_cast<Eigen::Index>(nodal_));
   load_->add(time, u, on_nodes);
   map_.lift(q, {on_nodes.data(), nodal_}, force);

@@ -39,6 +39,7 @@ class BodyForce final : public Load {
  public:
   BodyForce(const FeModel& model, VectorField acceleration);
   void add(double time, std::span<const double> q, Vector& force) const override;
+  bool follows() const override { return false; }
 
  private:
   const FeModel& model_;
@@ -50,6 +51,7 @@ class Traction final : public Load {
  public:
   Traction(const FeModel& model, const std::string& side, VectorField traction);
   void add(double time, std::span<const double> q, Vector& force) const override;
+  bool follows() const override { return false; }
 
  private:
   const FeModel& model_;
@@ -64,6 +66,7 @@ class Pressure final : public Load {
  public:
   Pressure(const FeModel& model, const std::string& side, ScalarField pressure, bool follows);
   void add(double time, std::span<const double> q, Vector& force) const override;
+  bool follows() const override { return follows_; }
   void add_tangent(double time, std::span<const double> q, SparseMatrix& tangent) const override;
 
  private:

@@ -41,8 +41,8 @@ Eigen::MatrixXd rigid_motions(const FeModel& model) {
 Eigen::MatrixXd vanishing_on(const std::vector<int>& rows, const Eigen::MatrixXd& motions) {
   const Eigen::Index count = motions.cols();
   if (rows.empty() || count == 0) return motions;
-  const Eigen::MatrixXd scaled =
-      motions * motions.cwiseAbs().colwise().maxCoeff().cwiseInverse().asDiagonal();
+  const Vector sizes = motions.cwiseAbs().colwise().maxCoeff();
+  const Eigen::MatrixXd scaled = motions * sizes.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd there = scaled(rows, Eigen::all);
   const Eigen::JacobiSVD<Eigen::MatrixXd> parts(there, Eigen::ComputeFullV);
   const double largest = std::sqrt(static_cast<double>(rows.size()));

@@ -83,12 +83,8 @@ class FixedPorts {
   Columns flexibility(Columns b) const {
     b -= mass_ * (free_ * (free_.transpose() * b).eval());
     const Columns held = held_.transpose() * b;
-    Columns x(held.rows(), held.cols());
-    Vector one;
-    for (Eigen::Index k = 0; k < b.cols(); ++k) {
-      if (!solver_->solve(held.col(k), one)) refuse_singular(where_);
-      x.col(k) = one;
-    }
+    Columns x;
+    if (!solver_->solve_columns(held, x)) refuse_singular(where_);
     Columns out = held_ * x;
     remove_components(free_, mass_, out);
     return out;
@@ -135,7 +131,9 @@ void diagonalise(const SparseMatrix& stiffness, const SparseMatrix& mass, const 
     scale(elastic, mass);
     elastic = orthonormal(std::move(elastic), mass, 0.0);
     const Columns force = stiffness * elastic;
-    const Eigen::SelfAdjointEigenSolver<Columns> eigen(elastic.transpose() * force);
+    Columns reduced(elastic.cols(), elastic.cols());
+    reduced.triangularView<Eigen::Lower>() = elastic.transpose() * force;  // the half looked at
+    const Eigen::SelfAdjointEigenSolver<Columns> eigen(reduced);
     // Where a frequency is round-off of the highest one, the motion has no stiffness.
     const double highest = stiffness.diagonal().cwiseQuotient(mass.diagonal()).maxCoeff();
     if (!(eigen.eigenvalues()(0) > stiffless * highest)) refuse_singular(where);

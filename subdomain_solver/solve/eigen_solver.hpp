@@ -18,6 +18,10 @@ class EigenSolver : public LinearSolver {
     x = solver_.solve(b);
     return x.allFinite();
   }
+  [[nodiscard]] bool solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) override {
+    x = solver_.solve(b);
+    return x.allFinite();
+  }
 
  protected:
   Solver solver_;

@@ -24,6 +24,9 @@ class FirstThatFactors final : public LinearSolver {
   [[nodiscard]] bool solve(const Vector& b, Vector& x) override {
     return definite_ ? quick_->solve(b, x) : general_.solve(b, x);
   }
+  [[nodiscard]] bool solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) override {
+    return definite_ ? quick_->solve_columns(b, x) : general_.solve_columns(b, x);
+  }
 
  private:
   std::unique_ptr<LinearSolver> quick_;
@@ -32,6 +35,16 @@ class FirstThatFactors final : public LinearSolver {
 };
 
 }  // namespace
+
+bool LinearSolver::solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
+  x.resize(b.rows(), b.cols());
+  Vector one;
+  for (Eigen::Index k = 0; k < b.cols(); ++k) {
+    if (!solve(b.col(k), one)) return false;
+    x.col(k) = one;
+  }
+  return true;
+}
 
 std::unique_ptr<LinearSolver> make_direct_solver() {
   if (std::unique_ptr<LinearSolver> quick = make_cholmod_solver(); quick != nullptr)

@@ -15,6 +15,8 @@ class LinearSolver {
   [[nodiscard]] virtual bool factor(const SparseMatrix& matrix) = 0;
   /// False: not solved to the solver's own tolerance. x is of the size of b.
   [[nodiscard]] virtual bool solve(const Vector& b, Vector& x) = 0;
+  /// The same for every column of B; direct solvers pass their factor once for all.
+  [[nodiscard]] virtual bool solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x);
 };
 
 /// Direct: CHOLMOD when the build has it (docs/adr/0007), Eigen's own LDL^T otherwise and for

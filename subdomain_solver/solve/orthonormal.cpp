@@ -18,7 +18,8 @@ Eigen::MatrixXd orthonormal(Eigen::MatrixXd x, const SparseMatrix& mass, double 
   // that are orthonormal to what it lost, and leaves round-off.
   for (int pass = 0; pass < 2 && x.cols() > 0; ++pass) {
     const Eigen::MatrixXd momentum = mass * x;
-    const Eigen::MatrixXd gram = x.transpose() * momentum;
+    Eigen::MatrixXd gram(x.cols(), x.cols());
+    gram.triangularView<Eigen::Lower>() = x.transpose() * momentum;  // the half that is looked at
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
     const Vector& squares = eigen.eigenvalues();  // ascending
     const double roundoff =

@@ -14,6 +14,8 @@ class Load {
   virtual ~Load() = default;
   /// Adds the nodal forces [N] (dofs) at a time and coordinates q.
   virtual void add(double time, std::span<const double> q, Vector& force) const = 0;
+  /// Whether the forces depend on q; dead ones do not look at it.
+  virtual bool follows() const { return true; }
   /// Adds -df/dq to the tangent, for loads that follow the body. Its pattern is the model's.
   virtual void add_tangent(double, std::span<const double>, SparseMatrix&) const {}
 };
