@@ -25,17 +25,14 @@ struct Twist {
 
 /// A body that does not deform [M.60]: M v' = f, without internal force. In one dimension and in
 /// the plane v is q', as of any model; in space, where an attitude is no vector, RigidMotion tells
-/// how q follows from v. About the axes of space:
+/// how q follows from v. About the axes of space, moments and angular momentum about the centre:
 ///
-///   dim  q                                      v                            f
-///   1    displacement of the centre [m]         its rate                     force [N]
-///   2    displacement (2), angle [rad]          their rates                  force (2), moment [N
-///   m] 3    displacement (3), attitude as a unit   velocity (3), angular        force (3), moment
-///   (3)
-///        quaternion w, x, y, z (4)              momentum [kg m^2/s] (3)
+///  - 1D: q displacement of the centre [m]; v its rate; f force [N]
+///  - 2D: q displacement (2) and angle [rad]; v their rates; f force (2) and moment [N m]
+///  - 3D: q displacement (3) and attitude as a unit quaternion w, x, y, z (4); v velocity (3) and
+///    angular momentum [kg m^2/s] (3); f force (3) and moment (3)
 ///
-/// Moments and angular momentum are about the centre. Angular momentum is a number of its own so
-/// that round-off cannot change it.
+/// Angular momentum is a number of its own so that round-off cannot change it.
 class RigidModel final : public Model {
  public:
   /// Mass, centre and inertia of a mesh by its mass matrix: rigid motions then have the momenta and
