@@ -33,6 +33,9 @@ std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place&
                                               const FeModel& model) {
   std::vector<std::unique_ptr<Load>> loads;
   const int dim = model.mesh().dim;
+  const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+  const BodyForce::Mass mass =
+      explicit_in_time ? BodyForce::Mass::lumped : BodyForce::Mass::consistent;
   for (const auto& [name, load] : spec.loads) {
     const std::string key = "loads." + name;
     named(place, key + ".on", [&] {
@@ -47,7 +50,7 @@ std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place&
           model, load.on, expression(load.pressure, place.where(key + ".pressure")), load.follows));
     } else {
       loads.push_back(std::make_unique<BodyForce>(
-          model, field_of(load.acceleration, dim, place.where(key + ".acceleration"))));
+          model, field_of(load.acceleration, dim, place.where(key + ".acceleration")), mass));
     }
   }
   if (spec.body_force.size() != index(dim)) return loads;
@@ -56,7 +59,7 @@ std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place&
     uniform[index(i)] = [b = spec.body_force[index(i)]](const std::array<double, 3>&, double) {
       return b;
     };
-  loads.push_back(std::make_unique<BodyForce>(model, std::move(uniform)));
+  loads.push_back(std::make_unique<BodyForce>(model, std::move(uniform), mass));
   return loads;
 }
 

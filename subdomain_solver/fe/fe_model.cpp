@@ -384,11 +384,7 @@ bool FeModel::cell_matrices(int block, int cell, std::span<const double> q,
 }
 
 double FeModel::volume() const {
-  double sum = 0.0;
-  for (const CellMeasures& cells : assembly().measures) {
-    for (double v : cells.volume) sum += v;
-  }
-  return sum;
+  return lumped_(Eigen::seqN(0, mesh_.node_count(), mesh_.dim)).sum() / material_->density();
 }
 
 bool FeModel::visit(std::span<const double> q, std::span<const double> history,
@@ -397,13 +393,20 @@ bool FeModel::visit(std::span<const double> q, std::span<const double> history,
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const CellBlock& cells = mesh_.blocks[k];
     const std::size_t per_point = index(kernel_.history_size());
-    const CellMeasures& measures = assembly().measures[k];
-    const std::size_t each = index(measures.points) * per_point;
-    after.resize(each);
+    // Bodies of forces alone need no geometry that is kept: it is measured cell by cell.
+    CellMeasures one;
     for (int c = 0; c < cells.count(); ++c) {
+      if (!assembly_) {
+        one = {};
+        measure_cell(mesh_, cells, c, blocks_[k].table, options_, material_->moduli().p_wave(),
+                     one);
+      }
+      const CellMeasures& measures = assembly_ ? assembly_->measures[k] : one;
+      const std::size_t each = index(measures.points) * per_point;
+      after.resize(each);
       const std::span<const double> before =
           history.subspan(blocks_[k].history + index(c) * each, each);
-      const CellGeometry cell = measures.of(c);
+      const CellGeometry cell = measures.of(assembly_ ? c : 0);
       gather(cells, c, q, u_);
       if (!kernel_.evaluate(cell, u_, before, after, abut::Want::stress, local_)) return false;
       for (int p = 0; p < cell.points; ++p) {

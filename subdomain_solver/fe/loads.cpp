@@ -79,8 +79,8 @@ double SidePoints::area() const {
   return sum;
 }
 
-BodyForce::BodyForce(const FeModel& model, VectorField acceleration)
-    : model_(model), acceleration_(std::move(acceleration)) {}
+BodyForce::BodyForce(const FeModel& model, VectorField acceleration, Mass mass)
+    : model_(model), acceleration_(std::move(acceleration)), mass_(mass) {}
 
 /// The acceleration is interpolated between the nodes: f = M b, exact where b is uniform.
 void BodyForce::add(double time, std::span<const double>, Vector& force) const {
@@ -93,7 +93,11 @@ void BodyForce::add(double time, std::span<const double>, Vector& force) const {
     for (int i = 0; i < dim; ++i) b(node * dim + i) = value(acceleration_[index(i)], at, time);
   }
   model_.to_frames({b.data(), index(b.size())});
-  force += model_.mass() * b;
+  if (mass_ == Mass::lumped) {
+    force += model_.lumped_mass().cwiseProduct(b);
+  } else {
+    force += model_.mass() * b;
+  }
 }
 
 Traction::Traction(const FeModel& model, const std::string& side, VectorField traction)

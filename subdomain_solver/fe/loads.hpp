@@ -34,16 +34,20 @@ struct SidePoints {
   double area() const;  // [m^2] reference
 };
 
-/// Force per reference volume: density x acceleration, e.g. gravity [m/s^2].
+/// Force per reference volume: density x acceleration, e.g. gravity [m/s^2]. With lumped mass the
+/// force on a node is that of its own mass: a free body then falls as one, and no other mass is
+/// made.
 class BodyForce final : public Load {
  public:
-  BodyForce(const FeModel& model, VectorField acceleration);
+  enum class Mass { consistent, lumped };
+  BodyForce(const FeModel& model, VectorField acceleration, Mass mass = Mass::consistent);
   void add(double time, std::span<const double> q, Vector& force) const override;
   bool follows() const override { return false; }
 
  private:
   const FeModel& model_;
   VectorField acceleration_;
+  Mass mass_;
 };
 
 /// Dead traction on a side: force per reference area [Pa], in the axes of space.

@@ -14,6 +14,19 @@ from support import ABUT, CONNECTED, ROOT, SOLVER, SystemTest, free_port, main, 
 
 TWO_BARS = ROOT / "configs" / "two_bars.yaml"
 RESIDENT_LIMIT = 40 * 1024  # [KiB] the goal for a solver of 200 elements
+CELL_LIMIT = 1500  # [B] the goal for an explicit hex8
+EXPLICIT_CUBE = """\
+meta: {{title: A cube falls and turns}}
+time: {{begin: 0.0, end: 4.0e-6, window: 2.0e-6}}
+bodies:
+  cube:
+    model:
+      fe: {{dimension: 3, mesh: {{box: {{lengths: [1, 1, 1], elements: [{n}, {n}, {n}]}}}}}}
+    material: {{neo_hookean: {{youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000.0}}}}
+    integrator: {{central_difference: {{step: 1.0e-6}}}}
+    initial: {{velocity_field: ["-100 * y", "100 * x", "0"]}}
+    body_force: [0, 0, -9.81]
+"""
 
 
 class Placements(SystemTest):
@@ -107,6 +120,23 @@ class Placements(SystemTest):
         startup = self.summary(folder)["timing"]["startup_s"]
         self.assertGreater(startup, 0.0)
         self.assertLess(startup, 10.0)  # the figure is bench's; here it only must be sane
+
+    def test_an_explicit_solid_takes_its_cells_and_no_matrix(self):
+        """Peak of the whole program, measures at the end included, by cells of a cube."""
+        peaks = {}
+        for n in (10, 40):
+            scene = self.folder / f"cube{n}.yaml"
+            scene.write_text(EXPLICIT_CUBE.format(n=n), encoding="utf-8")
+            process = self.start(ABUT, "run", scene, "--local", "--out", self.folder / f"cube{n}")
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            process.communicate()
+            self.assertEqual(process.returncode, 0)
+            peaks[n] = usage.ru_maxrss * 1024
+        per_cell = (peaks[40] - peaks[10]) / (40**3 - 10**3)
+        print(f"memory of an explicit hex8: {per_cell:.0f} B")
+        self.assertGreater(per_cell, 100)  # it was measured
+        self.assertLess(per_cell, CELL_LIMIT)
 
 
 class Expectations(SystemTest):
