@@ -8,6 +8,7 @@
 #include "subdomain_solver/time/explicit_dynamics.hpp"
 #include "subdomain_solver/time/implicit_dynamics.hpp"
 #include "subdomain_solver/time/quasi_static.hpp"
+#include "subdomain_solver/time/stable_steps.hpp"
 
 namespace abut {
 
@@ -21,6 +22,7 @@ struct SchemeMaker {
   const Place& place;
   const Problem& problem;
   const std::function<double()>& stable_limit;
+  const MakeWatch& watch;
 
   SolidBody::Scheme operator()(const CentralDifferenceSpec& s) const {
     const double limit = stable_limit();
@@ -36,7 +38,13 @@ struct SchemeMaker {
                        "integrator such as newmark.");
     }
     const double step = s.step > limit ? clamped * limit : s.step;
-    return {std::make_unique<ExplicitDynamics>(problem), step, limit, MassForm::lumped,
+    std::unique_ptr<Integrator> steps;
+    if (watch && std::isfinite(limit))
+      steps = std::make_unique<StableSteps>(problem, watch(),
+                                            StableSteps::Options{step, limit, s.clamp});
+    else
+      steps = std::make_unique<ExplicitDynamics>(problem);
+    return {std::move(steps), step, limit, MassForm::lumped,
             fmt::format("central difference, step {:.4g} s, stable limit {:.4g} s{}", step, limit,
                         step < s.step ? " (clamped)" : "")};
   }
@@ -95,8 +103,8 @@ MassForm mass_form(const BodySpec::Integrator& integrator) {
 }
 
 SolidBody::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
-                              const std::function<double()>& stable_limit) {
-  return std::visit(SchemeMaker{spec, place, problem, stable_limit}, *spec.integrator);
+                              const std::function<double()>& stable_limit, const MakeWatch& watch) {
+  return std::visit(SchemeMaker{spec, place, problem, stable_limit, watch}, *spec.integrator);
 }
 
 }  // namespace abut

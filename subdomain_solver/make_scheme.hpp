@@ -5,6 +5,7 @@
 #include "subdomain_solver/body_spec.hpp"
 #include "subdomain_solver/place.hpp"
 #include "subdomain_solver/solid_body.hpp"
+#include "subdomain_solver/time/frequency_watch.hpp"
 
 namespace abut {
 
@@ -17,8 +18,11 @@ MassForm mass_form(const BodySpec::Integrator& integrator);
 
 /// The scheme that a scene gives a solid. `stable_limit` tells the stable step [s] of central
 /// differences from the start's coordinates, not a number where these are inadmissible; it is
-/// asked of no other scheme. The problem must outlive the scheme. Throws InputError.
+/// asked of no other scheme. `watch` makes what holds them below their limit while the body
+/// deforms; none: the limit stays. The problem must outlive the scheme. Throws InputError.
+using MakeWatch = std::function<std::unique_ptr<FrequencyWatch>()>;
 SolidBody::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
-                              const std::function<double()>& stable_limit);
+                              const std::function<double()>& stable_limit,
+                              const MakeWatch& watch = {});
 
 }  // namespace abut

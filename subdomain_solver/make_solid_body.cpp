@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "subdomain_solver/fe/highest_frequency.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
 #include "subdomain_solver/make_constraints.hpp"
 #include "subdomain_solver/make_fields.hpp"
@@ -35,9 +36,12 @@ std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document&
   parts.problem->supports = std::move(constraints.supports);
   parts.problem->loads = make_loads(spec, place, model);
   parts.motion = initial_motion(spec, place, model);
-  parts.scheme = make_scheme(spec, place, *parts.problem, [&] {
+  const auto limit = [&] {
     return stable_step(model, parts.motion.q, std::vector<double>(model.history_size(), 0.0));
-  });
+  };
+  MakeWatch watch;  // the tangent of linear bodies stays
+  if (!model.is_linear()) watch = [&] { return std::make_unique<HighestFrequency>(model); };
+  parts.scheme = make_scheme(spec, place, *parts.problem, limit, watch);
   const std::string name = path.substr(path.rfind('.') + 1);
   std::unique_ptr<SolidBody> body = std::make_unique<SolidBody>(name, std::move(parts), ports);
   body->set_progress(std::move(progress));

@@ -22,6 +22,7 @@ struct Motion {
   double stored = 0.0;          // [J]
   double external_work = 0.0;   // [J] done on the body by loads and prescribed motion
   double dissipated = 0.0;      // [J] by the material
+  std::vector<double> control;  // what the integrator keeps from step to step
 
   void state(Archive& archive) {
     archive.field("q", q);
@@ -32,6 +33,7 @@ struct Motion {
     archive.field("stored", stored);
     archive.field("external_work", external_work);
     archive.field("dissipated", dissipated);
+    archive.field("control", control);
   }
 };
 

@@ -92,6 +92,8 @@ void SolidBody::describe(std::string name, const std::vector<PortNodes>& ports) 
     description_.ports.push_back(port_of(p, ports_.back().nodes));
   }
   description_.measures = solid_measure_names(mesh.dim, parts_.deforms, ports_);
+  for (const std::string& measure : parts_.scheme.integrator->measure_names())
+    description_.measures.push_back(measure);
   description_.fields = solid_fields(parts_.model->material(), parts_.deforms);
   lower_.resize(ports.size());
   upper_.resize(ports.size());
@@ -320,10 +322,13 @@ std::optional<Failed> SolidBody::record(double time, Response& response) {
 std::vector<double> SolidBody::measure() {
   std::vector<double> u(nodal_values());
   parts_.map->displacement(state_.motion.q, u);
-  return solid_measures(
+  std::vector<double> out = solid_measures(
       *parts_.model,
       {parts_.deforms, u, velocity(), state_.motion.history, energy(), momentum_of_nodes()},
       ports_);
+  const std::vector<double> more = parts_.scheme.integrator->measure(state_.motion);
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
 }
 
 Grid SolidBody::grid() { return grid_of(parts_.model->mesh()); }

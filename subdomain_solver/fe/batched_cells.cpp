@@ -75,8 +75,11 @@ BatchedCells::BatchedCells(const Mesh& mesh, const Material& material,
                   options.thickness},
       threads_(options.threads) {
   ABUT_ASSERT(can(mesh, material));
-  for (const CellBlock& block : mesh.blocks)
-    kernels_.push_back(table_.of(*cell_of(*block.element, options.one_point), *law_of(material)));
+  for (const CellBlock& block : mesh.blocks) {
+    const BatchedCell cell = *cell_of(*block.element, options.one_point);
+    kernels_.push_back(table_.of(cell, *law_of(material)));
+    frequencies_.push_back(table_.frequency_of(cell, *law_of(material)));
+  }
   copies_.resize(index(threads_.count()));
   for (Copies& c : copies_) {
     c.displacement.resize(4 * patches_.most_copies());
@@ -87,19 +90,24 @@ BatchedCells::BatchedCells(const Mesh& mesh, const Material& material,
   answers_.resize(patches_.list().size());
 }
 
-void BatchedCells::evaluate(std::size_t p, Copies& copies, std::span<const double> q,
-                            std::span<double> force) {
-  const CellPatch& patch = patches_.list()[p];
-  const std::size_t rest = 4 * patch.nodes.size(), end = patch.reference.size();
+void BatchedCells::copy_displacement(const CellPatch& patch, Copies& copies,
+                                     std::span<const double> q) const {
   double* u = copies.displacement.data();
   if (dim_ == 3)
     copy_in<3>(patch.nodes, q.data(), u);
   else
     copy_in<2>(patch.nodes, q.data(), u);
-  std::fill(u + rest, u + end, 0.0);
-  std::fill_n(copies.force.begin(), end, 0.0);
-  PatchView view{
-      patch.batches, patch.places.data(), patch.reference.data(), u, copies.force.data(), {}};
+  std::fill(u + 4 * patch.nodes.size(), u + patch.reference.size(), 0.0);
+}
+
+void BatchedCells::evaluate(std::size_t p, Copies& copies, std::span<const double> q,
+                            std::span<double> force) {
+  const CellPatch& patch = patches_.list()[p];
+  copy_displacement(patch, copies, q);
+  std::fill_n(copies.force.begin(), patch.reference.size(), 0.0);
+  PatchView view{patch.batches,          patch.places.data(),
+                 patch.reference.data(), copies.displacement.data(),
+                 copies.force.data(),    {}};
   answers_[p] = kernels_[index(patch.block)](view, parameters_);
   stored_[p] = 0.0;
   for (const double energy : view.stored) stored_[p] += energy;
@@ -133,6 +141,54 @@ bool BatchedCells::evaluate(std::span<const double> q, std::span<double> force, 
   stored = 0.0;
   for (const double energy : stored_) stored += energy;
   return std::isfinite(stored) && std::find(answers_.begin(), answers_.end(), 0) == answers_.end();
+}
+
+/// Answers the questions of all patches.
+void BatchedCells::ask_all(std::span<const double> q, std::span<const double> scales) {
+  const std::vector<CellPatch>& list = patches_.list();
+  const double* scale = scales.data();
+  for (std::size_t p = 0; p < list.size(); ++p) {
+    questions_[p].scale = scale;
+    questions_[p].cells = static_cast<int>(list[p].cells.size());
+    scale += list[p].batches * batch_lanes;
+  }
+  ABUT_ASSERT(scale == scales.data() + scales.size());
+  threads_.run(list.size(), [this, q](std::size_t p, int worker) {
+    const CellPatch& patch = patches_.list()[p];
+    Copies& copies = copies_[index(worker)];
+    copy_displacement(patch, copies, q);
+    const PatchView view{patch.batches,
+                         patch.places.data(),
+                         patch.reference.data(),
+                         copies.displacement.data(),
+                         nullptr,
+                         {}};
+    frequencies_[index(patch.block)](view, parameters_, questions_[p]);
+  });
+}
+
+double BatchedCells::bound_frequencies(std::span<const double> q, double from,
+                                       std::span<const double> scales) {
+  questions_.assign(patches_.list().size(), {nullptr, 0, from, nullptr, 0});
+  ask_all(q, scales);
+  double most = from;
+  for (const FrequencyQuestion& question : questions_) most = std::max(most, question.square);
+  return most;
+}
+
+void BatchedCells::find_fast(std::span<const double> q, double square,
+                             std::span<const double> scales, std::vector<Place>& out) {
+  const std::vector<CellPatch>& list = patches_.list();
+  questions_.assign(list.size(), {nullptr, 0, square, nullptr, 0});
+  fast_.resize(list.size());
+  for (std::size_t p = 0; p < list.size(); ++p) {
+    fast_[p].resize(list[p].cells.size());
+    questions_[p].fast = fast_[p].data();
+  }
+  ask_all(q, scales);
+  for (std::size_t p = 0; p < list.size(); ++p)
+    for (int k = 0; k < questions_[p].found; ++k)
+      out.push_back({list[p].block, list[p].cells[index(fast_[p][index(k)])]});
 }
 
 std::size_t BatchedCells::bytes() const {

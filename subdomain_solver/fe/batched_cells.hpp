@@ -36,6 +36,18 @@ class BatchedCells {
   /// or a number is not finite, and both results are undefined.
   [[nodiscard]] bool evaluate(std::span<const double> q, std::span<double> force, double& stored);
 
+  /// An upper bound [1/s^2] of at least `from` on the square of all cells' frequencies at q, to a
+  /// hundredth of what [M.58] gives. scales: [Pa s^2/m^2] (patches, batches, 8) moduli per metric
+  /// and square. Infinite: a cell has no answer.
+  double bound_frequencies(std::span<const double> q, double from, std::span<const double> scales);
+  /// Adds the cells that are not shown to be slower than a limit, in the order of the patches.
+  struct Place {
+    int block = 0, cell = 0;
+  };
+  void find_fast(std::span<const double> q, double square, std::span<const double> scales,
+                 std::vector<Place>& out);
+
+  const CellPatches& patches() const { return patches_; }
   WorkerThreads& threads() { return threads_; }
   const char* instructions() const { return table_.instructions; }
   std::size_t bytes() const;  // [B] of memory that this object holds
@@ -46,16 +58,21 @@ class BatchedCells {
   };
   void evaluate(std::size_t patch, Copies& copies, std::span<const double> q,
                 std::span<double> force);
+  void ask_all(std::span<const double> q, std::span<const double> scales);
+  void copy_displacement(const CellPatch& patch, Copies& copies, std::span<const double> q) const;
 
   int dim_;
   CellPatches patches_;
   const KernelTable& table_;
   BatchedParameters parameters_;
-  std::vector<PatchKernel> kernels_;    // (blocks)
-  std::vector<Copies> copies_;          // (threads)
-  std::vector<double> shared_;          // [N] (shared copies, dim)
-  std::vector<double> stored_;          // [J] (patches)
-  std::vector<unsigned char> answers_;  // (patches)
+  std::vector<PatchKernel> kernels_;             // (blocks)
+  std::vector<FrequencyKernel> frequencies_;     // (blocks)
+  std::vector<Copies> copies_;                   // (threads)
+  std::vector<double> shared_;                   // [N] (shared copies, dim)
+  std::vector<double> stored_;                   // [J] (patches)
+  std::vector<unsigned char> answers_;           // (patches)
+  std::vector<FrequencyQuestion> questions_;     // (patches)
+  std::vector<std::vector<std::int32_t>> fast_;  // (patches) places in the patch
   WorkerThreads threads_;
 };
 

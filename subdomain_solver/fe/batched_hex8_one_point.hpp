@@ -38,6 +38,24 @@ struct HexMeanGradients {
       ABUT_UNROLLED (i, 0, 3) at[product[d]][i] = (1.0 / 3.0) * twice[i];
     }
   }
+
+  /// 64 V, by V = sum x_a V db_a/dx.
+  [[gnu::always_inline]] Real volume(const Real (&x)[3][8]) const {
+    Real sum = x[0][1] * at[1][0];
+    ABUT_UNROLLED (m, 2, 7) sum = fused(x[0][m], at[m][0], sum);
+    return sum;
+  }
+  /// The mean displacement gradient, entries i + 3 j; `inverse` of volume().
+  template <int N>
+  [[gnu::always_inline]] void gradient(const Real (&u)[3][8], const Real& inverse,
+                                       TensorLanes<N>& h) const {
+    ABUT_UNROLLED (i, 0, 3)
+      ABUT_UNROLLED (j, 0, 3) {
+        Real sum = u[i][1] * at[1][j];
+        ABUT_UNROLLED (m, 2, 7) sum = fused(u[i][m], at[m][j], sum);
+        h.entry[i + 3 * j] = sum * inverse;
+      }
+  }
 };
 
 /// One point with the mean gradient of the cell, and a stiffness against the four hourglass fields
@@ -57,16 +75,9 @@ struct Hex8OnePoint {
     load_hex_modes<N>(nodal_x, x);
     load_hex_modes<N>(nodal_u, u);
     const HexMeanGradients<Real> mean(x);
-    Real scaled = x[0][1] * mean.at[1][0];  // 64 V, by V = sum x_a V db_a/dx
-    ABUT_UNROLLED (m, 2, 7) scaled = fused(x[0][m], mean.at[m][0], scaled);
-    const Real inverse = 1.0 / scaled, volume = (1.0 / 64.0) * scaled;
+    const Real scaled = mean.volume(x), inverse = 1.0 / scaled, volume = (1.0 / 64.0) * scaled;
     TensorLanes<N> h;
-    ABUT_UNROLLED (i, 0, 3)
-      ABUT_UNROLLED (j, 0, 3) {
-        Real sum = u[i][1] * mean.at[1][j];
-        ABUT_UNROLLED (m, 2, 7) sum = fused(u[i][m], mean.at[m][j], sum);
-        h.entry[i + 3 * j] = sum * inverse;
-      }
+    mean.template gradient<N>(u, inverse, h);
     LaneResponse<N> response;
     law(h, response);
     valid &= response.valid > 0.0;

@@ -29,6 +29,19 @@ struct BatchedParameters {
 /// Internal force and stored energy of a patch. False: a point has no answer.
 using PatchKernel = bool (*)(PatchView&, const BatchedParameters&);
 
+/// Which cells of a patch have frequencies above a limit [M.58].
+struct FrequencyQuestion {
+  const double* scale = nullptr;  // (batches, 8) moduli per metric and square [Pa s^2/m^2]
+  int cells = 0;                  // of the patch; later lanes hold none
+  double square = 0.0;            // [1/s^2] of the limit
+  /// Null: the limit rises, by a hundredth at a time, until all cells are shown to be below it; it
+  /// becomes infinite at a cell without an answer. Else room (cells) for those that are not shown
+  /// to be below the limit, places in the patch, ascending.
+  std::int32_t* fast = nullptr;
+  int found = 0;  // of these
+};
+using FrequencyKernel = void (*)(const PatchView&, const BatchedParameters&, FrequencyQuestion&);
+
 enum class BatchedLaw { linear_elastic, saint_venant_kirchhoff, neo_hookean, count };
 enum class BatchedCell { hex8, hex8_one_point, quad4, quad4_one_point, tet4, count };
 
@@ -38,7 +51,13 @@ struct KernelTable {
   std::array<std::array<PatchKernel, static_cast<int>(BatchedLaw::count)>,
              static_cast<int>(BatchedCell::count)>
       kernels{};
+  std::array<std::array<FrequencyKernel, static_cast<int>(BatchedLaw::count)>,
+             static_cast<int>(BatchedCell::count)>
+      frequencies{};
 
+  FrequencyKernel frequency_of(BatchedCell cell, BatchedLaw law) const {
+    return frequencies[static_cast<std::size_t>(cell)][static_cast<std::size_t>(law)];
+  }
   PatchKernel of(BatchedCell cell, BatchedLaw law) const {
     return kernels[static_cast<std::size_t>(cell)][static_cast<std::size_t>(law)];
   }

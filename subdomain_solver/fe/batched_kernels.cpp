@@ -4,6 +4,7 @@
 #include "subdomain_solver/fe/batched_hex8.hpp"
 #include "subdomain_solver/fe/batched_hex8_one_point.hpp"
 #include "subdomain_solver/fe/batched_kernel.hpp"
+#include "subdomain_solver/fe/batched_points.hpp"
 
 namespace abut {
 
@@ -86,6 +87,68 @@ bool run_patch(PatchView& patch, const BatchedParameters& parameters) {
   return true;
 }
 
+/// Cells of a batch (x, u: nodal values) that are slower than a limit, one bit each.
+template <class Points, class Tangent>
+unsigned slower_cells(const double* x, const double* u, const double* scale, double square,
+                      const Tangent& tangent) {
+  constexpr int lanes = ABUT_LANES, dim = Points::dim;
+  using Real = Lanes<lanes>::Real;
+  using Bits = Lanes<lanes>::Bits;
+  unsigned slower = 0;
+  for (int slice = 0; slice < batch_lanes; slice += lanes) {
+    const Real limit = load<lanes>(scale + slice) * square;
+    Bits below = ~Bits{};
+    Real metric[dim][dim];
+    Points::template run<lanes>(x + slice, u + slice, metric,
+                                [&](const TensorLanes<lanes>& h) ABUT_INLINED {
+                                  ElasticityLanes<lanes> moduli;
+                                  Real valid, scaled[dim][dim];
+                                  tangent(h, moduli, valid);
+                                  below &= valid > 0.0;
+                                  ABUT_UNROLLED (j, 0, dim)
+                                    ABUT_UNROLLED (l, 0, dim) scaled[j][l] = limit * metric[j][l];
+                                  MetricTest<dim, lanes>::run(scaled, moduli, below);
+                                });
+    ABUT_UNROLLED (l, 0, lanes)
+      if (below[l] != 0) slower |= 1u << (slice + l);
+  }
+  return slower;
+}
+
+template <class Points, class Tangent>
+void ask_patch(const PatchView& patch, const BatchedParameters& parameters,
+               FrequencyQuestion& question) {
+  constexpr int size = Points::nodes * 3 * batch_lanes;
+  constexpr double most = 1.0e12;  // rises of the limit, for cells without an answer
+  alignas(64) double x[size], u[size];
+  const Tangent tangent{parameters.moduli};
+  const double end = question.square * most;
+  for (int b = 0; b < patch.batches; ++b) {
+    const std::int32_t* list = patch.nodes + b * Points::nodes * batch_lanes;
+    gather<Points::nodes>(patch.reference, list, x);
+    gather<Points::nodes>(patch.displacement, list, u);
+    const int first = b * batch_lanes, rest = question.cells - first;
+    const unsigned all = rest < batch_lanes ? (1u << rest) - 1 : (1u << batch_lanes) - 1;
+    unsigned fast = 0;
+    for (;;) {
+      fast = all & ~slower_cells<Points>(x, u, question.scale + first, question.square, tangent);
+      if (fast == 0 || question.fast != nullptr) break;
+      question.square *= 1.01;
+      if (question.square < end) continue;
+      question.square = __builtin_inf();
+      return;
+    }
+    for (int l = 0; l < batch_lanes; ++l)
+      if ((fast >> l & 1u) != 0) question.fast[question.found++] = first + l;
+  }
+}
+
+template <class Points>
+constexpr std::array<FrequencyKernel, static_cast<int>(BatchedLaw::count)> frequency_row() {
+  return {ask_patch<Points, LinearElasticTangent>, ask_patch<Points, SaintVenantKirchhoffTangent>,
+          ask_patch<Points, NeoHookeanTangent>};
+}
+
 template <class Cell>
 constexpr std::array<PatchKernel, static_cast<int>(BatchedLaw::count)> row() {
   return {run_patch<Cell, LinearElasticResponse>, run_patch<Cell, SaintVenantKirchhoffResponse>,
@@ -94,7 +157,9 @@ constexpr std::array<PatchKernel, static_cast<int>(BatchedLaw::count)> row() {
 
 constexpr KernelTable table = {
     ABUT_INSTRUCTIONS,
-    {row<Hex8>(), row<Hex8OnePoint>(), row<Quad4>(), row<Quad4OnePoint>(), row<Tet4>()}};
+    {row<Hex8>(), row<Hex8OnePoint>(), row<Quad4>(), row<Quad4OnePoint>(), row<Tet4>()},
+    {frequency_row<Hex8Points>(), frequency_row<Hex8MeanPoint>(), frequency_row<Quad4Points>(),
+     frequency_row<Quad4MeanPoint>(), frequency_row<Tet4Point>()}};
 
 }  // namespace
 

@@ -44,17 +44,6 @@ std::span<const std::int32_t> cell_nodes(const CellBlock& block, Index cell) {
   return std::span(block.nodes).subspan(cell * nodes, nodes);
 }
 
-std::string cell_text(const Mesh& mesh, Index block, Index cell) {
-  const CellBlock& cells = mesh.blocks[block];
-  std::vector<double> centre(static_cast<Index>(mesh.dim), 0.0);
-  for (std::int32_t node : cell_nodes(cells, cell))
-    for (Index d = 0; d < centre.size(); ++d)
-      centre[d] += point(mesh, static_cast<Index>(node))[d] / cells.element->nodes;
-  Index number = cell + 1;
-  for (Index b = 0; b < block; ++b) number += static_cast<Index>(mesh.blocks[b].count());
-  return fmt::format("cell {} ({} around {})", number, cells.element->name, position(centre));
-}
-
 double determinant(const std::array<double, 9>& j, int dim) {
   if (dim == 1) return j[0];
   if (dim == 2) return j[0] * j[3] - j[1] * j[2];
@@ -202,6 +191,17 @@ void check_nodes(const Mesh& mesh, const std::string& where) {
 }
 
 }  // namespace
+
+std::string cell_text(const Mesh& mesh, std::size_t block, std::size_t cell) {
+  const CellBlock& cells = mesh.blocks[block];
+  std::vector<double> centre(static_cast<Index>(mesh.dim), 0.0);
+  for (std::int32_t node : cell_nodes(cells, cell))
+    for (Index d = 0; d < centre.size(); ++d)
+      centre[d] += point(mesh, static_cast<Index>(node))[d] / cells.element->nodes;
+  Index number = cell + 1;
+  for (Index b = 0; b < block; ++b) number += static_cast<Index>(mesh.blocks[b].count());
+  return fmt::format("cell {} ({} around {})", number, cells.element->name, position(centre));
+}
 
 void check_mesh(const Mesh& mesh, const std::string& where) {
   check_shape_of_arrays(mesh, where);

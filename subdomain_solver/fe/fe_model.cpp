@@ -152,8 +152,8 @@ Eigen::MatrixXd FeModel::nodal_mass(std::size_t block, int cell) const {
 
 /// The diagonal scaled to the cell's mass (Hinton, Rock, Zienkiewicz 1976), which equals the row
 /// sum for linear elements on parallelepipeds and is positive for all.
-Vector FeModel::lumped_mass(std::size_t block, int cell) const {
-  const Eigen::MatrixXd nodal = nodal_mass(block, cell);
+Vector FeModel::cell_mass(int block, int cell) const {
+  const Eigen::MatrixXd nodal = nodal_mass(index(block), cell);
   return nodal.sum() / nodal.trace() * nodal.diagonal();
 }
 
@@ -163,7 +163,7 @@ void FeModel::lump_mass() {
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const CellBlock& cells = mesh_.blocks[k];
     for (int c = 0; c < cells.count(); ++c) {
-      const Vector nodal = lumped_mass(k, c);
+      const Vector nodal = cell_mass(static_cast<int>(k), c);
       int a = 0;
       for (std::int32_t node : nodes_of(cells, c)) {
         lumped_.segment(node * dim, dim).array() += nodal(a);
@@ -364,20 +364,24 @@ void FeModel::add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::Matr
   }
 }
 
-bool FeModel::cell_matrices(int block, int cell, std::span<const double> q,
-                            std::span<const double> history, Eigen::MatrixXd& tangent,
-                            Vector& mass) {
-  const CellBlock& cells = mesh_.blocks[index(block)];
-  mass = lumped_mass(index(block), cell);
+CellMeasures FeModel::cell_measures(int block, int cell) const {
   CellMeasures measures;
-  measure_cell(mesh_, cells, cell, blocks_[index(block)].table, options_,
+  measure_cell(mesh_, mesh_.blocks[index(block)], cell, blocks_[index(block)].table, options_,
                material_->moduli().p_wave(), measures);
-  const std::size_t each = index(measures.points * kernel_.history_size());
+  return measures;
+}
+
+bool FeModel::cell_tangent(int block, int cell, std::span<const double> q,
+                           std::span<const double> history, Eigen::MatrixXd& tangent) {
+  CellMeasures own;
+  if (!assembly_) own = cell_measures(block, cell);
+  const CellGeometry geometry = assembly_ ? assembly_->measures[index(block)].of(cell) : own.of(0);
+  const std::size_t each = index(geometry.points * kernel_.history_size());
   const std::size_t first = blocks_[index(block)].history + index(cell) * each;
-  std::vector<double> after(each);
-  gather(cells, cell, q, u_);
-  if (!kernel_.evaluate(measures.of(0), u_, history.subspan(first, each), after,
-                        abut::Want::tangent, local_))
+  after_.resize(each);
+  gather(mesh_.blocks[index(block)], cell, q, u_);
+  if (!kernel_.evaluate(geometry, u_, history.subspan(first, each), after_, abut::Want::tangent,
+                        local_))
     return false;
   tangent = local_.tangent;
   return true;

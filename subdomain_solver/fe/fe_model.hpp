@@ -44,6 +44,7 @@ class FeModel final : public Model {
   const FeOptions& options() const { return options_; }
   bool round() const { return mesh_.dim == 2 && options_.plane == Plane::axisymmetric; }
   double volume() const;  // [m^3] reference
+  bool has_frames() const { return !frames_.empty(); }
   /// From the nodes' own frames to the axes of space and back, in place: (nodes, dim).
   void to_space(std::span<double> values) const { rotate(values, false); }
   void to_frames(std::span<double> values) const { rotate(values, true); }
@@ -52,11 +53,15 @@ class FeModel final : public Model {
   void add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::MatrixXd local,
                       SparseMatrix& tangent) const;
 
-  /// Tangent of one cell at q (nodes x dim), in the axes of space, and its share of the lumped
-  /// mass [kg] (nodes). False: inadmissible.
-  [[nodiscard]] bool cell_matrices(int block, int cell, std::span<const double> q,
-                                   std::span<const double> history, Eigen::MatrixXd& tangent,
-                                   Vector& mass);
+  /// Tangent of one cell at q (nodes x dim), in the axes of space. False: inadmissible.
+  [[nodiscard]] bool cell_tangent(int block, int cell, std::span<const double> q,
+                                  std::span<const double> history, Eigen::MatrixXd& tangent);
+  /// Its share of the lumped mass [kg] (nodes).
+  Vector cell_mass(int block, int cell) const;
+  /// Its reference geometry, as that of one cell.
+  CellMeasures cell_measures(int block, int cell) const;
+  /// Null: forces are found cell by cell.
+  BatchedCells* batched() { return batched_.get(); }
 
   /// State of one quadrature point.
   struct PointState {
@@ -92,7 +97,6 @@ class FeModel final : public Model {
   void find_pattern(Assembly& out) const;
   void assemble_mass(SparseMatrix& out) const;
   void lump_mass();
-  Vector lumped_mass(std::size_t block, int cell) const;
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
   [[nodiscard]] bool batched_force(std::span<const double> q, ModelResponse& out);
   void gather(const CellBlock& cells, int cell, std::span<const double> q,
@@ -118,6 +122,7 @@ class FeModel final : public Model {
   CellKernel kernel_;
   CellResponse local_;
   std::vector<double> u_;
+  std::vector<double> after_;  // history that nobody asked for
 };
 
 }  // namespace abut

@@ -51,4 +51,7 @@ struct Mesh {
 /// order, and its position. `where` names the mesh: a key or a file.
 void check_mesh(const Mesh& mesh, const std::string& where);
 
+/// A cell for people: "cell 7 (hex8 around (0.1, 0.2, 0) m)", counted as there.
+std::string cell_text(const Mesh& mesh, std::size_t block, std::size_t cell);
+
 }  // namespace abut

@@ -17,4 +17,7 @@ double stable_step(FeModel& model, std::span<const double> q, std::span<const do
 /// The same at rest.
 double stable_step(FeModel& model);
 
+/// Largest eigenvalue of M^-1 K, [1/s^2] for a stiffness [N/m] (nodes x dim) and one mass [kg] per
+/// node.
+double highest_square(Eigen::MatrixXd stiffness, const Vector& mass);
 }  // namespace abut

@@ -7,6 +7,9 @@
 #define ABUT_UNROLLED(i, first, end) \
   _Pragma("GCC unroll 16") for (int i = (first); i < static_cast<int>(end); ++i)
 
+/// Behind the parameters of a lambda over lanes: it becomes part of the kernel that calls it.
+#define ABUT_INLINED __attribute__((always_inline))
+
 namespace abut {
 
 /// N doubles that go through one computation together (GCC vector extension): + - * / act lane by

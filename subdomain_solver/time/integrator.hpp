@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "contract/outcome.hpp"
 #include "subdomain_solver/time/problem.hpp"
@@ -18,6 +20,9 @@ class Integrator {
   /// [J] in the form that the scheme conserves where it conserves one.
   virtual double kinetic(const Motion& motion) const = 0;
   double stored(const Motion& motion) const { return motion.stored; }
+  /// Numbers that sum up how the steps went, beside those of the body; SI units.
+  virtual std::vector<std::string> measure_names() const { return {}; }
+  virtual std::vector<double> measure(const Motion&) const { return {}; }
   /// Newton iterations of all steps so far, for people.
   int iterations() const { return iterations_; }
 

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "subdomain_solver/materials/batched_laws.hpp"
+#include "subdomain_solver/materials/batched_tangents.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -71,6 +71,39 @@ TEST(BatchedLaws, AreTheScalarLaws) {
   expect_agreement<8>(BatchedSaintVenantKirchhoff{test_moduli}, kirchhoff);
   expect_agreement<4>(BatchedNeoHookean{test_moduli}, rubber);
   expect_agreement<8>(BatchedNeoHookean{test_moduli}, rubber);
+}
+
+template <int N, class Batched>
+void expect_equal_tangents(const Batched& batched, const Material& law) {
+  const std::vector<Matrix3> f = many_deformations();
+  for (std::size_t i = 0; i < f.size(); i += N) {
+    ElasticityLanes<N> moduli;
+    typename Lanes<N>::Real valid;
+    batched(minus_identity(gather<N>(f, i)), moduli, valid);
+    EXPECT_TRUE(all_positive(valid));
+    for (int lane = 0; lane < N; ++lane) {
+      History none;
+      const Tangent t = answer(law, f[i + static_cast<std::size_t>(lane)], none).tangent;
+      const double scale = t.cwiseAbs().maxCoeff();
+      for (int j = 0; j < 3; ++j)
+        for (int l = j; l < 3; ++l)
+          for (int r = 0; r < 9; ++r)  // rounding as that of stresses
+            EXPECT_NEAR(moduli.at[j][l][r / 3][r % 3][lane], t(r / 3 + 3 * j, r % 3 + 3 * l),
+                        1.0e-13 * scale);
+    }
+  }
+}
+
+TEST(BatchedLaws, HaveTheTangentsOfTheScalarLaws) {
+  const LinearElastic linear(test_moduli, 1.0);
+  const SaintVenantKirchhoff kirchhoff(test_moduli, 1.0);
+  const NeoHookean rubber(test_moduli, 1.0);
+  expect_equal_tangents<4>(LinearElasticTangent{test_moduli}, linear);
+  expect_equal_tangents<8>(LinearElasticTangent{test_moduli}, linear);
+  expect_equal_tangents<4>(SaintVenantKirchhoffTangent{test_moduli}, kirchhoff);
+  expect_equal_tangents<8>(SaintVenantKirchhoffTangent{test_moduli}, kirchhoff);
+  expect_equal_tangents<4>(NeoHookeanTangent{test_moduli}, rubber);
+  expect_equal_tangents<8>(NeoHookeanTangent{test_moduli}, rubber);
 }
 
 TEST(BatchedLaws, InverseCubeRootErrsByTwoRoundings) {
