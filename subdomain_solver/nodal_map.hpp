@@ -24,6 +24,10 @@ class NodalMap {
   /// Adds the generalised force P(q)^T f of nodal forces f [N], P = du/dq.
   virtual void lift(std::span<const double> q, std::span<const double> nodal,
                     Vector& force) const = 0;
+
+  /// The map to a few of its nodal values, in the order of the list, for those who look at ports in
+  /// every step. By default it goes by way of all `nodal` values. It refers to this map.
+  virtual std::unique_ptr<NodalMap> on(const std::vector<int>& values, std::size_t nodal) const;
 };
 
 /// fe: the coordinates are the nodal displacements.
@@ -35,6 +39,7 @@ class IdentityMap final : public NodalMap {
   void acceleration(std::span<const double> q, std::span<const double> v, std::span<const double> a,
                     std::span<double> out) const override;
   void lift(std::span<const double> q, std::span<const double> nodal, Vector& force) const override;
+  std::unique_ptr<NodalMap> on(const std::vector<int>& values, std::size_t nodal) const override;
 };
 
 /// A load on the mesh as the coordinates of a reduced rung see it. Its stiffness does not join a

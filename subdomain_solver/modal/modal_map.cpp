@@ -28,4 +28,8 @@ void ModalMap::lift(std::span<const double>, std::span<const double> nodal, Vect
   force.noalias() += shapes_.transpose() * view(nodal);
 }
 
+std::unique_ptr<NodalMap> ModalMap::on(const std::vector<int>& values, std::size_t) const {
+  return std::make_unique<ModalMap>(shapes_(values, Eigen::all));
+}
+
 }  // namespace abut

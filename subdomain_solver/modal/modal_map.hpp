@@ -18,6 +18,7 @@ class ModalMap final : public NodalMap {
   void acceleration(std::span<const double> q, std::span<const double> v, std::span<const double> a,
                     std::span<double> out) const override;
   void lift(std::span<const double> q, std::span<const double> nodal, Vector& force) const override;
+  std::unique_ptr<NodalMap> on(const std::vector<int>& values, std::size_t nodal) const override;
 
  private:
   Eigen::MatrixXd shapes_;

@@ -54,6 +54,19 @@ TEST(DirectSolver, SaysThatAMatrixIsNotANumber) {
   EXPECT_FALSE(solver->factor(k) && solver->solve(Vector::Ones(4), x));
 }
 
+TEST(LinearSolvers, SolveManyRightHandSidesAtOnce) {
+  const SparseMatrix k = chain(50, 0.0);
+  Eigen::MatrixXd b(50, 3);
+  b << Vector::Ones(50), Vector::LinSpaced(50, -1.0, 2.0), Vector::Unit(50, 7);
+  for (const bool direct : {true, false}) {
+    const std::unique_ptr<LinearSolver> solver =
+        direct ? make_direct_solver() : make_conjugate_gradients(1.0e-13);
+    Eigen::MatrixXd x;
+    ASSERT_TRUE(solver->factor(k) && solver->solve_columns(b, x));
+    EXPECT_LT((k * x - b).norm(), 1.0e-12 * b.norm());  // round-off as above; the iteration's 1e-13
+  }
+}
+
 TEST(ConjugateGradients, SolveToTheirTolerance) {
   const std::unique_ptr<LinearSolver> solver = make_conjugate_gradients(1.0e-10);
   expect_solution(*solver, chain(200, 0.0), 1.0e-9);  // recurred and true residual drift apart

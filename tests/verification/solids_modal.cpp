@@ -278,6 +278,53 @@ TEST(Modes, OfACantileverAddUpToItsDeflection) {
   }
 }
 
+/// Largest difference between the tips of a cantilever by modes and by finite elements under an end
+/// force that grows from zero, relative to the largest deflection.
+double tip_error(int modes) {
+  FeOptions stress;
+  stress.plane = Plane::stress;
+  Solid s(slender(), elastic(1.0, 0.0), stress);
+  s.fix("left", 0);
+  s.fix("left", 1);
+  ModalSolid modal(s, "", MassForm::consistent, lowest(modes));
+  const auto force = [&s] {
+    return std::make_unique<Traction>(
+        s.model, "right",
+        VectorField{ScalarField(),
+                    [](const std::array<double, 3>&, double t) { return 1.0e-9 * t; },
+                    ScalarField()});
+  };
+  s.problem.loads.push_back(force());
+  modal.take(force());
+  const AlphaWeights newmark = AlphaWeights::newmark(0.25, 0.5);
+  ImplicitDynamics one(s.problem, {newmark, MassForm::consistent, {}}, make_direct_solver());
+  ImplicitDynamics other(modal.problem, {newmark, MassForm::lumped, {}}, make_direct_solver());
+  EXPECT_FALSE(one.begin(s.motion, 0.0) || other.begin(modal.motion, 0.0));
+  const double dt = 20.0;  // 500 of them are the longest period, 2 pi 1600 sqrt(12)/1.8751^2
+  double error = 0.0, size = 0.0;
+  for (int k = 0; k < 500; ++k) {
+    EXPECT_FALSE(one.step(s.motion, k * dt, dt) || other.step(modal.motion, k * dt, dt));
+    const double tip = s.mean_displacement("right").y();
+    const std::vector<double> kept = s.motion.q;
+    s.motion.q = modal.nodal(modal.motion.q);
+    error = std::max(error, std::abs(s.mean_displacement("right").y() - tip));
+    s.motion.q = kept;
+    size = std::max(size, std::abs(tip));
+  }
+  return error / size;
+}
+
+TEST(Modes, OfACantileverTendToItsMotion) {
+  // What the left-out modes take of the deflection, 12/beta_i^4 with beta_i = (i - 1/2) pi, twice
+  // as much while they vibrate: a sum that falls with the cube of the number of modes.
+  for (const int modes : {1, 2, 4, 8}) {
+    const double left_out = 12.0 / (3.0 * std::pow(std::numbers::pi, 4) * std::pow(modes, 3));
+    const double error = tip_error(modes);
+    EXPECT_LT(error, 2.0 * left_out) << modes;
+    EXPECT_GT(error, 0.2 * left_out) << modes;
+  }
+}
+
 Eigen::Vector3d momentum(const Solid& s, const SparseMatrix& mass, const std::vector<double>& v) {
   const Vector p = mass * view(v);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
