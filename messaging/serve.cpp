@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "base/life_signs.hpp"
 #include "messaging/codec.hpp"
 
 namespace abut {
@@ -226,7 +227,11 @@ void Server::configure(const v1::Configure& wire) {
   specification.text = wire.text();
   specification.overrides.assign(wire.overrides().begin(), wire.overrides().end());
   specification.path = wire.path();
+  // Large meshes and reductions take their time. The channel is this thread's again before it is
+  // used here: ZeroMQ allows sockets to change hands.
+  LifeSigns life([this] { show_progress(); }, deadlines_.progress);
   body_ = make_(specification, [this] { show_progress(); });
+  life.end();
   encode(body_->describe(), *reply_.mutable_configured()->mutable_description());
 }
 

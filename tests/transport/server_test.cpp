@@ -3,6 +3,7 @@
 // clock.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <limits>
@@ -41,6 +42,38 @@ TEST(Serve, TheBodyIsMadeFromTheSpecificationThatWasSent) {
   EXPECT_EQ(loop.specification.overrides, std::vector<std::string>{"a.b=1"});
   EXPECT_EQ(loop.specification.path, "bodies.fake");
   EXPECT_EQ(loop.body.describe().model, "point mass on a spring");
+}
+
+TEST(Serve, TheMakingOfABodyShowsThatItGoesOn) {
+  MemoryLink link;  // with real threads and the real clock
+  AlwaysAlive alive;
+  Deadlines deadlines;
+  deadlines.progress = Milliseconds(5);
+  std::atomic<bool> seen = false;  // a sign of life, by the coordinator
+  Server server(
+      "fake",
+      [&seen](const Specification&, const ProgressHook&) {
+        while (!seen) std::this_thread::sleep_for(Milliseconds(1));  // a large mesh
+        return std::unique_ptr<Subdomain>(std::make_unique<FakeSubdomain>());
+      },
+      link.far(), alive, Limits{}, deadlines);
+  std::thread solver([&server] { server.step(Milliseconds(60'000)); });
+  v1::Request request;
+  request.set_number(1);
+  request.mutable_configure()->set_path("bodies.fake");
+  Frame frame;
+  frame.seal(request);
+  link.near().send(frame.bytes());
+  v1::Reply reply;
+  for (int frames = 0; !reply.has_configured() && frames < 10'000; ++frames) {
+    const std::optional<Bytes> got = link.near().receive(Milliseconds(60'000));
+    ASSERT_TRUE(got && parse_into(reply, *open_frame(*got)));
+    EXPECT_EQ(reply.number(), 1u);
+    seen = seen || reply.has_progress();
+  }
+  solver.join();
+  EXPECT_TRUE(seen);
+  EXPECT_TRUE(reply.has_configured());
 }
 
 TEST(Serve, RepeatedRequestRunsOnce) {
