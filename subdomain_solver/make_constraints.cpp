@@ -5,6 +5,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "subdomain_solver/expression.hpp"
 #include "subdomain_solver/make_fields.hpp"
@@ -14,6 +15,9 @@ namespace abut {
 namespace {
 
 std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+/// Of a plane side, relative to its size: mesh files have coordinates of ten digits or more.
+constexpr double flatness = 1.0e-8;
 
 /// An orthonormal frame whose first axis is along a direction.
 Matrix3 frame_along(const std::vector<double>& direction) {
@@ -34,6 +38,45 @@ Matrix3 frame_along(const std::vector<double>& direction) {
                               first(0) * second(1) - first(1) * second(0));
   axes << first, second, third;
   return axes;
+}
+
+Eigen::Vector3d point(const Mesh& mesh, std::int32_t node) {
+  const std::array<double, 3> at = position_of(mesh, node);
+  return {at[0], at[1], at[2]};
+}
+
+/// Unit normal of a plane side. Throws InputError, told of nothing, where it is not plane.
+Eigen::Vector3d plane_normal(const Mesh& mesh, const std::string& side) {
+  const std::vector<std::int32_t> first = mesh.nodes_of(mesh.side(side).front());
+  const Eigen::Vector3d origin = point(mesh, first[0]);
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // of the end of a bar
+  if (mesh.dim > 1) normal = point(mesh, first[1]) - origin;
+  const double size = normal.norm();
+  if (mesh.dim == 2) normal = {normal(1), -normal(0), 0.0};
+  if (mesh.dim == 3) normal = normal.cross(Eigen::Vector3d(point(mesh, first[2]) - origin));
+  normal.normalize();
+  for (std::int32_t node : mesh.nodes_of(side)) {
+    const Eigen::Vector3d arm = point(mesh, node) - origin;
+    if (std::abs(normal.dot(arm)) > flatness * std::max(size, arm.norm()))
+      throw InputError(fmt::format("is not plane: node {} lies {:g} m beside it", node + 1,
+                                   std::abs(normal.dot(arm))),
+                       "", "Give each plane part a side of its own, or use x, y, z.");
+  }
+  return normal;
+}
+
+/// The same constraint in terms of its direction: a component where the side lies along axes, which
+/// may share nodes with others.
+ConstraintSpec mirrored(const Mesh& mesh, ConstraintSpec spec) {
+  const Eigen::Vector3d normal = plane_normal(mesh, spec.on);
+  spec.symmetry = false;
+  Eigen::Index axis = 0;
+  if (normal.cwiseAbs().maxCoeff(&axis) >= 1.0 - flatness * flatness) {
+    (axis == 0 ? spec.x : axis == 1 ? spec.y : spec.z) = "0";
+  } else {
+    spec.direction.assign(normal.data(), normal.data() + mesh.dim);
+  }
+  return spec;
 }
 
 class ConstraintMaker {
@@ -120,12 +163,22 @@ class ConstraintMaker {
 
 Constraints make_constraints(const BodySpec& spec, const Place& place, const Mesh& mesh) {
   ConstraintMaker constraints(mesh, place);
-  for (const auto& [name, constraint] : spec.constraints) {  // frames come last: they refuse others
-    if (constraint.direction.empty()) constraints.add(name, constraint);
+  ConstraintSpec held;  // an end of a bar
+  held.fixed = true;
+  for (const auto& [side, is_fixed] :
+       {std::pair("left", spec.supports.left_fixed), {"right", spec.supports.right_fixed}}) {
+    held.on = side;
+    if (is_fixed) constraints.add(side, held);
   }
-  for (const auto& [name, constraint] : spec.constraints) {
-    if (!constraint.direction.empty()) constraints.add(name, constraint);
+  std::vector<std::pair<std::string, ConstraintSpec>> all = spec.constraints;
+  for (auto& [name, constraint] : all) {
+    const auto turn = [&mesh, &told = constraint] { return mirrored(mesh, told); };
+    if (constraint.symmetry) constraint = named(place, "constraints." + name + ".on", turn);
   }
+  std::stable_partition(all.begin(), all.end(), [](const auto& c) {
+    return c.second.direction.empty();  // frames come last: they refuse others
+  });
+  for (const auto& [name, constraint] : all) constraints.add(name, constraint);
   return constraints.take();
 }
 

@@ -126,10 +126,11 @@ void ConstraintSpec::fields(Fields& f) {
              "direction along which value is prescribed (an inclined roller), one number per "
              "dimension");
   f.optional("value", value, "m", "displacement along direction, an expression");
-  const int ways =
-      (fixed ? 1 : 0) + (x.empty() && y.empty() && z.empty() ? 0 : 1) + (direction.empty() ? 0 : 1);
+  f.optional("symmetry", symmetry, "", "no displacement normal to the side, which must be plane");
+  const int ways = (fixed ? 1 : 0) + (x.empty() && y.empty() && z.empty() ? 0 : 1) +
+                   (direction.empty() ? 0 : 1) + (symmetry ? 1 : 0);
   f.check(ways == 1, "on", ways == 0 ? "prescribes nothing" : "is prescribed in more than one way",
-          "Give one of: fixed: true; x, y, z; direction with value.");
+          "Give one of: fixed: true; x, y, z; direction with value; symmetry: true.");
 }
 
 void LoadSpec::fields(Fields& f) {

@@ -108,6 +108,7 @@ struct ConstraintSpec {
   std::string x, y, z;  // [m]; empty: free
   std::vector<double> direction;
   std::string value = "0";  // [m] along the direction
+  bool symmetry = false;    // no displacement normal to a plane side
   void fields(Fields& f);
 };
 
