@@ -47,7 +47,7 @@ struct Row {
 void add_bars(const BodySpec& spec, Row& row) {
   if (std::holds_alternative<BarPairSpec>(spec.model)) {
     for (const BarProperties& bar : pair_properties(spec)) row.bars.push_back(bar_of(bar));
-  } else if (spec.is_bar()) {
+  } else if (spec.is_uniform_bar()) {
     row.bars.push_back(bar_of(fe_bar_properties(spec)));
   } else {
     row.bars.push_back(wall_of(spec));
@@ -76,7 +76,7 @@ Row row_of(const Scene& scene, const Document& document) {
   Row row;
   for (const auto& [name, entry] : scene.bodies) {
     const BodySpec spec = read<BodySpec>(document, path_of(name));
-    if (spec.is_solid()) {
+    if (spec.is_solid() && !spec.is_uniform_bar()) {
       throw InputError(fmt::format("describes bars and walls, but the body {} is neither", name),
                        document.where("meta.closed_form"),
                        "Leave out meta.closed_form and the expectations that need it.");

@@ -7,10 +7,24 @@
 
 namespace abut {
 
+namespace {
+
+/// What the bar's own core knows and the model of solids does not.
+constexpr const char* of_bars =
+    "for bars of linear_elastic material without points, constraints, loads, fields and grading";
+
+}  // namespace
+
 void BarMeshSpec::fields(Fields& f) {
   f.required("length", length, "m", "length of the bar", positive);
   f.required("area", area, "m^2", "cross section", positive);
-  f.required("elements", elements, "", "number of equal two-node elements", at_least(1));
+  f.required("elements", elements, "", "number of two-node elements", at_least(1));
+  f.optional("grading", grading, "", "length of the last element over the first", positive);
+}
+
+double SolidShapeSpec::area() const {
+  const BarMeshSpec* bar = std::get_if<BarMeshSpec>(&mesh);
+  return bar != nullptr ? bar->area : 1.0;
 }
 
 void SolidShapeSpec::fields(Fields& f) {
@@ -41,8 +55,9 @@ void FiniteElementsSpec::fields(Fields& f) {
          "explicit steps");
   f.optional("hourglass", hourglass, "", "coefficient of the hourglass stiffness of one_point",
              between(0.0, 1.0));
-  f.check(plane != Plane::stress || formulation != Formulation::mean_dilatation, "formulation",
-          "mean_dilatation does not apply to plane stress, which cannot lock",
+  const bool locks = plane != Plane::stress && dimension > 1;
+  f.check(locks || formulation != Formulation::mean_dilatation, "formulation",
+          "mean_dilatation does not apply to plane and uniaxial stress, which cannot lock",
           "Leave formulation out.");
 }
 
@@ -158,7 +173,6 @@ void BodySpec::fields(Fields& f) {
   f.map("loads", loads, "forces on a solid", Presence::optional);
   f.defaulted("equations", equations, "solution of the equations of an implicit or static solid");
   check_dimensions(f);
-  if (is_bar()) check_bar(f);
   if (is_solid()) check_solid(f);
   const bool wall = std::holds_alternative<RigidWallSpec>(model);
   const bool pair = std::holds_alternative<BarPairSpec>(model);
@@ -201,9 +215,20 @@ const SolidShapeSpec* BodySpec::shape() const {
   return std::visit(find, model);
 }
 
-bool BodySpec::is_bar() const {
+bool BodySpec::is_uniform_bar() const {
   const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
-  return fe != nullptr && std::holds_alternative<BarMeshSpec>(fe->mesh);
+  const LinearElasticSpec* elastic =
+      material ? std::get_if<LinearElasticSpec>(&*material) : nullptr;
+  const bool known = fe != nullptr && std::holds_alternative<BarMeshSpec>(fe->mesh) &&
+                     elastic != nullptr && elastic->youngs_modulus && integrator &&
+                     !std::holds_alternative<QuasiStaticSpec>(*integrator);
+  return known && points.empty() && constraints.empty() && loads.empty() &&
+         initial.displacement_field.empty() && initial.velocity_field.empty();
+}
+
+bool BodySpec::is_bar() const {
+  return is_uniform_bar() &&
+         std::get<BarMeshSpec>(std::get<FeModelSpec>(model).mesh).grading == 1.0;
 }
 
 bool BodySpec::is_solid() const { return shape() != nullptr && !is_bar(); }
@@ -228,38 +253,25 @@ void BodySpec::check_dimensions(Fields& f) const {
   }
 }
 
-void BodySpec::check_bar(Fields& f) const {
-  const LinearElasticSpec* elastic =
-      material ? std::get_if<LinearElasticSpec>(&*material) : nullptr;
-  f.check(!material || elastic != nullptr, "material", "is not offered to a bar",
-          "Use linear_elastic: the bar is a model of small strain.");
-  f.check(elastic == nullptr || elastic->youngs_modulus.has_value(),
-          "material.linear_elastic.youngs_modulus", "is missing",
-          "Give the Young's modulus in Pa, greater than 0.");
-  f.check(points.empty(), "points", "are for solids", "Use the sides left and right.");
-  f.check(constraints.empty(), "constraints", "are for solids", "Use supports.");
-  f.check(loads.empty(), "loads", "are for solids", "Use body_force.");
-  f.check(initial.displacement_field.empty() && initial.velocity_field.empty(), "initial",
-          "has a field, which is for solids", "Use velocity.");
-}
-
 void BodySpec::check_solid(Fields& f) const {
-  f.check(!supports.left_fixed && !supports.right_fixed, "supports", "are for bars",
+  const bool flat = shape()->dimension > 1;
+  f.check(!flat || (!supports.left_fixed && !supports.right_fixed), "supports", "are for bars",
           "Use constraints, e.g. {clamp: {on: left, fixed: true}}.");
   f.check(std::holds_alternative<MasslessSpec>(contact_layer), "contact_layer",
-          "is for bodies that may touch; contact of solids is not offered yet",
-          "Leave contact_layer out.");
+          std::string("is ") + of_bars, "Leave contact_layer out.");
+  for (const auto& [key, port] : ports)
+    f.check(!port.tied, "ports." + key + ".tied", std::string("is ") + of_bars, "Leave tied out.");
   if (!integrator) return;
   f.check(!std::holds_alternative<BackwardEulerSpec>(*integrator), "integrator",
           "backward_euler is offered to bar_pair only",
           "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");
   if (const auto* s = std::get_if<CentralDifferenceSpec>(&*integrator)) {
     f.check(s->dispersion_terms == 1, "integrator.central_difference.dispersion_terms",
-            "are for bars", "Leave dispersion_terms out.");
-    f.check(s->bulk_viscosity == 0.0, "integrator.central_difference.bulk_viscosity", "is for bars",
-            "Leave bulk_viscosity out.");
-    f.check(s->tchamwa == 1.0, "integrator.central_difference.tchamwa", "is for bars",
-            "Leave tchamwa out.");
+            std::string("are ") + of_bars, "Leave dispersion_terms out.");
+    f.check(s->bulk_viscosity == 0.0, "integrator.central_difference.bulk_viscosity",
+            std::string("is ") + of_bars, "Leave bulk_viscosity out.");
+    f.check(s->tchamwa == 1.0, "integrator.central_difference.tchamwa",
+            std::string("is ") + of_bars, "Leave tchamwa out.");
   }
 }
 
@@ -286,6 +298,8 @@ void BodySpec::check_modal(Fields& f) const {
 }
 
 void BodySpec::check_rigid(Fields& f) const {
+  f.check(!supports.left_fixed && !supports.right_fixed, "supports", "hold a rigid body as a whole",
+          "Leave supports out, or use a rigid_wall.");
   f.check(constraints.empty(), "constraints",
           "prescribe displacements of single nodes, which a rigid body does not have",
           "Leave constraints out, or use model fe.");

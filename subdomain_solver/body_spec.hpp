@@ -25,6 +25,7 @@ struct BarMeshSpec {
   static constexpr std::string_view name = "bar";
   double length = 0.0, area = 0.0;  // [m] [m^2]
   int elements = 0;
+  double grading = 1.0;
   void fields(Fields& f);
 };
 /// The mesh of a body and how it lies in space: of every rung of the fidelity ladder.
@@ -36,6 +37,7 @@ struct SolidShapeSpec {
   Plane plane = Plane::strain;
   double thickness = 1.0;  // [m]
   void fields(Fields& f);
+  double area() const;  // [m^2] cross section of a bar; 1 of other meshes
 };
 /// Finite elements on it.
 struct FiniteElementsSpec : SolidShapeSpec {
@@ -141,14 +143,18 @@ struct BodySpec {
   /// Mesh files that are named relative to the scene file are named with its folder ("" or "a/b/").
   void place_files(const std::string& folder);
 
-  bool is_bar() const;    // fe in one dimension
-  bool is_solid() const;  // fe in two or three, and every other rung of the fidelity ladder
+  /// fe in one dimension, linear_elastic with Young's modulus, integrated in time, without points,
+  /// constraints, loads and fields: what exact solutions are of.
+  bool is_uniform_bar() const;
+  /// The same of equal elements: for the bars' own core, which knows no more.
+  bool is_bar() const;
+  /// Any other body with a mesh: fe in one to three dimensions, other rungs of the fidelity ladder.
+  bool is_solid() const;
   /// Of the rungs of the fidelity ladder; null: the body is something else.
   const SolidShapeSpec* shape() const;
 
  private:
   void check_dimensions(Fields& f) const;
-  void check_bar(Fields& f) const;
   void check_solid(Fields& f) const;
   void check_modal(Fields& f) const;
   void check_rigid(Fields& f) const;

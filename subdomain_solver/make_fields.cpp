@@ -1,5 +1,7 @@
 #include "subdomain_solver/make_fields.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "subdomain_solver/expression.hpp"
@@ -46,14 +48,18 @@ std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place&
       loads.push_back(std::make_unique<Traction>(
           model, load.on, field_of(load.traction, dim, place.where(key + ".traction"))));
     } else if (!load.pressure.empty()) {
-      loads.push_back(std::make_unique<Pressure>(
-          model, load.on, expression(load.pressure, place.where(key + ".pressure")), load.follows));
+      const ScalarField pressure = expression(load.pressure, place.where(key + ".pressure"));
+      loads.push_back(named(place, key + ".follows", [&] {
+        return std::make_unique<Pressure>(model, load.on, pressure, load.follows);
+      }));
     } else {
       loads.push_back(std::make_unique<BodyForce>(
           model, field_of(load.acceleration, dim, place.where(key + ".acceleration")), mass));
     }
   }
-  if (spec.body_force.size() != index(dim)) return loads;
+  const bool weightless = std::all_of(spec.body_force.begin(), spec.body_force.end(),
+                                      [](double b) { return b == 0.0; });
+  if (weightless) return loads;
   VectorField uniform;
   for (int i = 0; i < dim; ++i)
     uniform[index(i)] = [b = spec.body_force[index(i)]](const std::array<double, 3>&, double) {

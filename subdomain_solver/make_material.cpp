@@ -17,6 +17,15 @@ Moduli moduli_of(const ElasticSpec& s) {
                                     s.lame_modulus, s.shear_modulus});
 }
 
+/// Under uniaxial stress and small strain Young's modulus is all that matters: where it stands
+/// alone, any Poisson's ratio will do.
+LinearElasticSpec of_a_bar(LinearElasticSpec s) {
+  const bool alone = s.youngs_modulus && !s.poissons_ratio && !s.bulk_modulus && !s.lame_modulus &&
+                     !s.shear_modulus;
+  if (alone) s.poissons_ratio = 0.0;
+  return s;
+}
+
 struct LawMaker {
   using Law = std::unique_ptr<const Material>;
 
@@ -48,8 +57,10 @@ struct LawMaker {
 }  // namespace
 
 std::unique_ptr<const Material> make_material(const MaterialSpec& spec, const Document& document,
-                                              const std::string& path) {
+                                              const std::string& path, int dimension) {
   try {
+    const LinearElasticSpec* elastic = std::get_if<LinearElasticSpec>(&spec);
+    if (dimension == 1 && elastic != nullptr) return LawMaker{}(of_a_bar(*elastic));
     return std::visit(LawMaker{}, spec);
   } catch (const InputError& error) {  // `where` is the constant's name
     const std::string law = std::visit([](const auto& s) { return std::string(s.name); }, spec);

@@ -40,7 +40,9 @@ struct MeshMaker {
   const Place& place;
   const std::string& model;
 
-  Mesh operator()(const BarMeshSpec&) const { return {}; }  // a bar is no solid
+  Mesh operator()(const BarMeshSpec& s) const {
+    return generate(BarMesh{0.0, s.length, s.elements, s.grading}, where("mesh.bar"));
+  }
   Mesh operator()(const RectangleSpec& s) const {
     return generate(RectangleMesh{{},
                                   origin_of(s.centred),

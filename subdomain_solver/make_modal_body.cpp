@@ -103,8 +103,12 @@ std::unique_ptr<Subdomain> make_modal_body(const BodySpec& spec, const Document&
   check_formulation(modal, mesh, place, "model.modal");
   SolidBody::Parts parts;
   parts.model = std::make_unique<FeModel>(
-      std::move(mesh), make_material(*spec.material, document, path + ".material"),
-      FeOptions{modal.plane, modal.formulation, modal.thickness, modal.hourglass},
+      std::move(mesh), make_material(*spec.material, document, path + ".material", modal.dimension),
+      FeOptions{.plane = modal.plane,
+                .formulation = modal.formulation,
+                .thickness = modal.thickness,
+                .hourglass = modal.hourglass,
+                .area = modal.area()},
       constraints.frames);
   FeModel& nodes = *parts.model;
   std::vector<int> supports;

@@ -68,8 +68,10 @@ std::unique_ptr<Subdomain> make_rigid_body(const BodySpec& spec, const Document&
   FeOptions options;
   options.plane = model.plane;
   options.thickness = model.thickness;
+  options.area = model.area();
   parts.model = std::make_unique<FeModel>(
-      std::move(mesh), make_material(*spec.material, document, path + ".material"), options);
+      std::move(mesh), make_material(*spec.material, document, path + ".material", model.dimension),
+      options);
   const FeModel& nodes = *parts.model;
   std::unique_ptr<RigidModel> body = std::make_unique<RigidModel>(nodes, integrator.mass);
   parts.map = std::make_unique<RigidMap>(*body, nodes.mesh());

@@ -26,8 +26,9 @@ std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document&
   const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
   SolidBody::Parts parts;
   parts.model = std::make_unique<FeModel>(
-      std::move(mesh), make_material(*spec.material, document, path + ".material"),
-      FeOptions{fe.plane, fe.formulation, fe.thickness, fe.hourglass, explicit_in_time, fe.threads},
+      std::move(mesh), make_material(*spec.material, document, path + ".material", fe.dimension),
+      FeOptions{fe.plane, fe.formulation, fe.thickness, fe.hourglass, explicit_in_time, fe.threads,
+                fe.area()},
       constraints.frames);
   FeModel& model = *parts.model;
   parts.map = std::make_unique<IdentityMap>();

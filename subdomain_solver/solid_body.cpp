@@ -9,6 +9,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/life_signs.hpp"
 #include "subdomain_solver/fe/loads.hpp"
 #include "subdomain_solver/saved_state.hpp"
 #include "subdomain_solver/solid_fields.hpp"
@@ -21,54 +22,23 @@ namespace {
 /// Cell-steps between two signs of life: about 10 ms of work.
 constexpr double progress_work = 1.0e3;
 
+/// Degrees of freedom from which on a factorisation may take more than a moment.
+constexpr std::int64_t long_factorisation = 30'000;
+constexpr std::chrono::milliseconds life_interval{250};
+
 std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
-
-/// Forces imposed on the ports, linear in time between the imposed instants.
-class SolidBody::PortForces final : public Load {
- public:
-  explicit PortForces(const SolidBody& body) : body_(body) {}
-
-  void impose(const Advance* request) { request_ = request; }
-
-  void add(double time, std::span<const double> q, Vector& force) const override {
-    if (request_ == nullptr) return;
-    for (std::size_t p = 0; p < body_.ports_.size(); ++p) {
-      const std::vector<double> values = at(p, time);
-      if (values.empty()) continue;
-      const std::size_t dim = index(body_.description_.dim);
-      Vector nodal = Vector::Zero(static_cast<Eigen::Index>(body_.nodal_values()));
-      for (std::size_t k = 0; k < values.size(); ++k)
-        nodal(static_cast<Eigen::Index>(index(body_.ports_[p].nodes[k / dim]) * dim + k % dim)) +=
-            values[k];
-      body_.parts_.model->to_frames({nodal.data(), index(nodal.size())});
-      body_.parts_.map->lift(q, {nodal.data(), index(nodal.size())}, force);
-    }
-  }
-
-  /// (n, dim) forces on a port at a time; empty: none imposed.
-  std::vector<double> at(std::size_t port, double time) const {
-    if (request_ == nullptr || request_->boundary.size() <= port) return {};
-    const Waveform& imposed = request_->boundary[port].force;
-    if (imposed.empty()) return {};
-    std::vector<double> values(index(imposed.width));
-    imposed.force_at(time, values);
-    return values;
-  }
-
- private:
-  const SolidBody& body_;
-  const Advance* request_ = nullptr;
-};
 
 SolidBody::SolidBody(std::string name, Parts parts, const std::vector<PortNodes>& ports)
     : parts_(std::move(parts)), mass_(mass_matrix(*parts_.model, parts_.scheme.mass)) {
   state_.motion = std::move(parts_.motion);
   describe(std::move(name), ports);
   if (!ports_.empty()) {
-    std::unique_ptr<PortForces> forces = std::make_unique<PortForces>(*this);
+    std::unique_ptr<PortForces> forces =
+        std::make_unique<PortForces>(*parts_.model, *parts_.map, ports_);
     port_forces_ = forces.get();
+    state_.port_force.assign(forces->values(), 0.0);
     parts_.problem->loads.push_back(std::move(forces));
   }
 }
@@ -87,6 +57,8 @@ void SolidBody::describe(std::string name, const std::vector<PortNodes>& ports) 
   description_.step = parts_.scheme.step;
   description_.stable_step = parts_.scheme.stable_step;
   description_.can.force = true;
+  const bool answers = mesh.dim == 1 && parts_.problem->model->is_linear() && !ports.empty();
+  description_.can.kernel = description_.can.complete = answers;  // as the side that takes forces
   for (const PortNodes& p : ports) {
     ports_.push_back({p.name, mesh.nodes_of(p.side)});
     description_.ports.push_back(port_of(p, ports_.back().nodes));
@@ -99,7 +71,8 @@ void SolidBody::describe(std::string name, const std::vector<PortNodes>& ports) 
   upper_.resize(ports.size());
 }
 
-/// Points, facets and area-averaged normals of a side; a node set has no normals.
+/// Points, facets and area-averaged normals of a side; a node set has no normals, the end of a bar
+/// no facets.
 Port SolidBody::port_of(const PortNodes& nodes, const std::vector<std::int32_t>& list) const {
   const Mesh& mesh = parts_.model->mesh();
   const std::size_t dim = index(mesh.dim);
@@ -134,6 +107,15 @@ Port SolidBody::port_of(const PortNodes& nodes, const std::vector<std::int32_t>&
     for (std::size_t i = 0; i < dim; ++i) length = std::hypot(length, normals[k + i]);
     for (std::size_t i = 0; i < dim && length > 0.0; ++i) normals[k + i] /= length;
   }
+  if (dim == 1) {
+    port.geometry.facets.clear();
+    port.geometry.offsets.clear();
+    const Facet& end = mesh.side(nodes.side).front();
+    const CellBlock& cells = mesh.blocks[index(end.block)];
+    const std::int32_t* cell = cells.nodes.data() + end.cell * cells.element->nodes;
+    port.geometry.spacing = mesh.points[index(cell[1])] - mesh.points[index(cell[0])];
+    return port;
+  }
   const double facets = static_cast<double>(std::max<std::size_t>(1, side.facets.size()));
   port.geometry.spacing =
       std::pow(area / facets, 1.0 / std::max(1.0, static_cast<double>(dim) - 1.0));
@@ -165,11 +147,10 @@ Outcome SolidBody::finish(Response& response) {
   response.records.resize(index(std::max(1, request.records)));
   response.ports.resize(ports_.size());
   recorded_ = 0;
-  if (port_forces_ != nullptr) port_forces_->impose(&request);
   const Substeps grid =
       Substeps::divide(request.window.begin, request.window.end, parts_.scheme.step);
+  if (port_forces_ != nullptr) port_forces_->impose(request.boundary, grid);
   std::optional<Failed> failed = advance(request, grid, response);
-  if (port_forces_ != nullptr) port_forces_->impose(nullptr);
   if (failed) return *failed;
   response.steps = grid.count;
   response.compute_seconds =
@@ -180,8 +161,12 @@ Outcome SolidBody::finish(Response& response) {
 std::optional<Failed> SolidBody::advance(const Advance& request, const Substeps& grid,
                                          Response& response) {
   Integrator& integrator = *parts_.scheme.integrator;
+  meet_port_forces(request.window.begin);
   if (!state_.begun) {
-    if (std::optional<Failed> failed = integrator.begin(state_.motion, request.window.begin))
+    parts_.problem->set_rates(request.window.begin, parts_.scheme.step, state_.motion);
+    const double begin = request.window.begin;
+    if (std::optional<Failed> failed =
+            patiently([&] { return integrator.begin(state_.motion, begin); }))
       return failed;
     state_.begun = true;
   }
@@ -194,14 +179,16 @@ std::optional<Failed> SolidBody::advance(const Advance& request, const Substeps&
     // Nothing is known of how fast a port may come: the coordinator goes window by window.
     port.approach_bound = std::numeric_limits<double>::infinity();
   }
+  see_ports();
   push_traces(request.window.begin, response);
   begin_sweep();
   RecordClock clock(request, grid.count);
   for (int i = 1; i <= grid.count; ++i) {
     const double before = i == 1 ? grid.begin : grid.time(i - 1);
-    if (std::optional<Failed> failed = integrator.step(state_.motion, before, grid.length(i)))
+    if (std::optional<Failed> failed =
+            patiently([&] { return integrator.step(state_.motion, before, grid.length(i)); }))
       return failed;
-    widen_sweep();
+    follow_ports(grid.time(i));
     report_progress();
     const bool due = i == clock.substep();
     if (request.sampling == Sampling::substeps)
@@ -243,22 +230,64 @@ std::vector<double> SolidBody::acceleration() const {
 void SolidBody::push_traces(double time, Response& response) const {
   if (ports_.empty()) return;
   const std::size_t dim = index(description_.dim);
-  const std::vector<double> u = displacement(), v = velocity(), a = acceleration();
+  const std::vector<double> v = velocity(), a = acceleration(), f = port_forces_->at(time);
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     Waveform& trace = response.ports[p].trace;
     trace.width = static_cast<int>(ports_[p].nodes.size() * dim);
     trace.time.push_back(time);
+    const auto first = static_cast<std::ptrdiff_t>(port_forces_->first(p));
+    const auto last = first + trace.width;
+    trace.u.insert(trace.u.end(), port_displacement_.begin() + first,
+                   port_displacement_.begin() + last);
+    trace.f.insert(trace.f.end(), f.begin() + first, f.begin() + last);
     for (std::int32_t node : ports_[p].nodes) {
       const auto from = static_cast<std::ptrdiff_t>(index(node) * dim);
       const auto to = from + static_cast<std::ptrdiff_t>(dim);
-      trace.u.insert(trace.u.end(), u.begin() + from, u.begin() + to);
       trace.v.insert(trace.v.end(), v.begin() + from, v.begin() + to);
       trace.a.insert(trace.a.end(), a.begin() + from, a.begin() + to);
     }
-    std::vector<double> f = port_forces_->at(p, time);
-    f.resize(index(trace.width), 0.0);
-    trace.f.insert(trace.f.end(), f.begin(), f.end());
   }
+}
+
+/// Forces on ports begin and end between windows: accelerations follow at once.
+void SolidBody::meet_port_forces(double time) {
+  if (port_forces_ == nullptr) return;
+  std::vector<double> now = port_forces_->at(time);
+  if (state_.begun && now != state_.port_force) {
+    std::vector<double> change = now;
+    for (std::size_t k = 0; k < change.size(); ++k) change[k] -= state_.port_force[k];
+    Vector force = Vector::Zero(parts_.problem->model->dofs());
+    port_forces_->lift(state_.motion.q, change, force);
+    parts_.scheme.integrator->jump(state_.motion, force);
+  }
+  state_.port_force = std::move(now);
+}
+
+void SolidBody::see_ports() {
+  if (ports_.empty()) return;
+  const std::size_t dim = index(description_.dim);
+  const std::vector<double> u = displacement();
+  port_displacement_.clear();
+  for (const NamedNodes& port : ports_) {
+    for (std::int32_t node : port.nodes) {
+      const auto from = u.begin() + static_cast<std::ptrdiff_t>(index(node) * dim);
+      port_displacement_.insert(port_displacement_.end(), from,
+                                from + static_cast<std::ptrdiff_t>(dim));
+    }
+  }
+}
+
+/// After a substep: where the ports are, and the work that the forces on them have done.
+void SolidBody::follow_ports(double time) {
+  if (ports_.empty()) return;
+  const std::vector<double> before = port_displacement_;
+  see_ports();
+  widen_sweep();
+  if (!port_forces_->acts()) return;
+  const std::vector<double> now = port_forces_->at(time);
+  for (std::size_t k = 0; k < now.size(); ++k)
+    state_.port_work += 0.5 * (state_.port_force[k] + now[k]) * (port_displacement_[k] - before[k]);
+  state_.port_force = now;
 }
 
 void SolidBody::begin_sweep() {
@@ -270,15 +299,12 @@ void SolidBody::begin_sweep() {
 }
 
 void SolidBody::widen_sweep() {
-  if (ports_.empty()) return;
   const std::size_t dim = index(description_.dim);
-  const std::vector<double> u = displacement();
   for (std::size_t p = 0; p < ports_.size(); ++p) {
-    for (std::int32_t node : ports_[p].nodes) {
-      for (std::size_t i = 0; i < dim; ++i) {
-        lower_[p][i] = std::min(lower_[p][i], u[index(node) * dim + i]);
-        upper_[p][i] = std::max(upper_[p][i], u[index(node) * dim + i]);
-      }
+    const double* u = port_displacement_.data() + port_forces_->first(p);
+    for (std::size_t k = 0; k < ports_[p].nodes.size() * dim; ++k) {
+      lower_[p][k % dim] = std::min(lower_[p][k % dim], u[k]);
+      upper_[p][k % dim] = std::max(upper_[p][k % dim], u[k]);
     }
   }
 }
@@ -343,12 +369,67 @@ std::vector<FieldValues> SolidBody::fields() {
 Energy SolidBody::energy() const {
   const Motion& motion = state_.motion;
   return {parts_.scheme.integrator->kinetic(motion), motion.stored, motion.dissipated,
-          motion.external_work};
+          motion.external_work - state_.port_work};  // partners account for what ports exchange
 }
 
-PortKernel SolidBody::kernel(int, double, int) {
-  throw RunError("has no port kernel", fmt::format("body '{}'", description_.name),
-                 "Ask for kernels of bodies that offer them.");
+/// Outward displacement of a port at the ends of substeps under one force at the begin and one at
+/// the end of the first of them, from rest [m].
+std::vector<double> SolidBody::respond_from_rest(std::size_t port, double at_begin, double in_first,
+                                                 const Substeps& grid) {
+  const double outward = description_.ports[port].geometry.normals[0];
+  std::vector<double> first(port_forces_->values(), 0.0), second = first;
+  first[port_forces_->first(port)] = outward * at_begin;
+  second[port_forces_->first(port)] = outward * in_first;
+  port_forces_->impose(std::move(first), std::move(second), grid);
+  Integrator& integrator = *parts_.scheme.integrator;
+  Motion& motion = state_.motion;
+  const std::size_t coordinates = motion.q.size(), rates = motion.v.size();
+  motion = Motion{};
+  motion.q.assign(coordinates, 0.0);
+  motion.v.assign(rates, 0.0);
+  std::vector<double> displacement;
+  std::optional<Failed> failed = integrator.begin(motion, 0.0);
+  for (int i = 1; i <= grid.count && !failed; ++i) {
+    failed = integrator.step(motion, grid.time(i - 1), grid.step);
+    see_ports();
+    displacement.push_back(outward * port_displacement_[port_forces_->first(port)]);
+  }
+  if (!failed) return displacement;
+  throw RunError("has no port kernel: " + failed->detail,
+                 fmt::format("body '{}'", description_.name),
+                 "Give the body inertia or supports that hold it.");
+}
+
+PortKernel SolidBody::kernel(int port, double step, int count) {
+  ABUT_ASSERT(description_.can.kernel && port >= 0 && index(port) < ports_.size() && step > 0.0);
+  const State kept = state_;
+  Problem& problem = *parts_.problem;
+  Problem alone{problem.model, problem.supports, {}};  // with supports at rest, no other loads
+  for (Prescribed& support : alone.supports) support.value = [](double) { return 0.0; };
+  alone.loads.push_back(std::move(problem.loads.back()));
+  problem.loads.pop_back();
+  std::swap(problem, alone);
+  const Substeps grid{0.0, count * step, step, step, count};
+  PortKernel kernel;
+  kernel.step = step;
+  kernel.support = ForceSupport::nodal;
+  kernel.displacement = respond_from_rest(index(port), 0.0, 1.0, grid);
+  kernel.begin = respond_from_rest(index(port), 1.0, 0.0, grid);
+  std::swap(problem, alone);
+  problem.loads.push_back(std::move(alone.loads.back()));
+  state_ = kept;
+  return kernel;
+}
+
+/// What may factor a large matrix, with signs of life meanwhile.
+std::optional<Failed> SolidBody::patiently(
+    const std::function<std::optional<Failed>()>& call) const {
+  const bool factors = std::isinf(description_.stable_step);
+  if (!progress_ || !factors || description_.dofs < long_factorisation) return call();
+  LifeSigns life(progress_, life_interval);
+  std::optional<Failed> outcome = call();
+  life.end();
+  return outcome;
 }
 
 void SolidBody::report_progress() {

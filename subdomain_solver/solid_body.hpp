@@ -8,15 +8,17 @@
 #include "contract/subdomain.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/nodal_map.hpp"
+#include "subdomain_solver/port_forces.hpp"
 #include "subdomain_solver/solid_measures.hpp"
 #include "subdomain_solver/substeps.hpp"
 #include "subdomain_solver/time/integrator.hpp"
 
 namespace abut {
 
-/// Our subdomain in two and three dimensions: a mesh, the rung of the fidelity ladder whose
+/// Our subdomain in one, two and three dimensions: a mesh, the rung of the fidelity ladder whose
 /// coordinates move it, what acts on it, an integrator, and ports, which are sides or node sets of
-/// the mesh.
+/// the mesh. Ports take forces; linear bodies in one dimension answer for their port kernels too,
+/// so that they can meet a body that finds the contact force. An end node keeps its mass.
 class SolidBody final : public Subdomain {
  public:
   struct PortNodes {
@@ -58,13 +60,16 @@ class SolidBody final : public Subdomain {
   void set_progress(std::function<void()> hook) { progress_ = std::move(hook); }
 
  private:
-  class PortForces;
   struct State {
     Motion motion;
-    bool begun = false;  // accelerations and forces of the start are there
+    bool begun = false;              // accelerations and forces of the start are there
+    std::vector<double> port_force;  // [N] (port values) that acts now
+    double port_work = 0.0;          // [J] done by forces on the ports
     void state(Archive& archive) {
       motion.state(archive);
       archive.field("begun", begun);
+      archive.field("port_force", port_force);
+      archive.field("port_work", port_work);
     }
   };
 
@@ -76,19 +81,26 @@ class SolidBody final : public Subdomain {
   std::vector<double> displacement() const;
   std::vector<double> velocity() const;
   std::vector<double> acceleration() const;
+  void meet_port_forces(double time);
+  void see_ports();
+  void follow_ports(double time);
+  std::vector<double> respond_from_rest(std::size_t port, double at_begin, double in_first,
+                                        const Substeps& grid);
   void push_traces(double time, Response& response) const;
   void widen_sweep();
   void begin_sweep();
   void end_sweep(Response& response) const;
   std::optional<Failed> record(double time, Response& response);
   Vector momentum_of_nodes() const;
+  std::optional<Failed> patiently(const std::function<std::optional<Failed>()>& call) const;
   void report_progress();
 
   Parts parts_;
   SparseMatrix mass_;  // [kg] of the nodes, in the form of the scheme
   Description description_;
   std::vector<NamedNodes> ports_;
-  PortForces* port_forces_ = nullptr;  // owned by the problem
+  PortForces* port_forces_ = nullptr;      // owned by the problem, the last of its loads
+  std::vector<double> port_displacement_;  // [m] (port values) now
   State state_;
   const Advance* request_ = nullptr;
   std::vector<std::byte> saved_;

@@ -23,8 +23,11 @@ struct StressEntry {
 constexpr std::array<StressEntry, 6> stress_entries = {
     {{"xx", 0, 0}, {"yy", 1, 1}, {"zz", 2, 2}, {"xy", 0, 1}, {"yz", 1, 2}, {"zx", 2, 0}}};
 
-/// Entries that a body of this dimension has: no shear out of the plane.
-int stress_count(int dim) { return dim == 3 ? 6 : 4; }
+/// Entries that a body of this dimension has: no shear out of the plane, and a bar has one.
+int stress_count(int dim) { return dim == 3 ? 6 : dim == 2 ? 4 : 1; }
+
+/// First component of angular momentum that it has; 3: none.
+int first_spin(int dim) { return dim == 3 ? 0 : dim == 2 ? 2 : 3; }
 
 /// Smallest, largest and mean value of each component of a nodal field (nodes, dim).
 void summarise(const std::vector<double>& field, int dim, std::vector<double>& out) {
@@ -98,7 +101,7 @@ std::vector<std::string> solid_measure_names(int dim, bool deforms,
                {"energy.kinetic", "energy.stored", "energy.dissipated", "energy.external_work"});
   for (int i = 0; i < dim; ++i)
     names.push_back(fmt::format("momentum.{}", axes[static_cast<std::size_t>(i)]));
-  for (int i = dim == 3 ? 0 : 2; i < 3; ++i)
+  for (int i = first_spin(dim); i < 3; ++i)
     names.push_back(fmt::format("angular_momentum.{}", axes[static_cast<std::size_t>(i)]));
   for (const NamedNodes& port : ports) {
     for (const char* field : {"displacement", "velocity"}) {

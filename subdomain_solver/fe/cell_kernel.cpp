@@ -58,7 +58,8 @@ bool CellKernel::evaluate_points(const CellGeometry& cell, std::span<const doubl
 }
 
 /// Displacements along a direction i change F_i1, F_i2, F_i3 in space; in the plane the third is
-/// F33, by the hoop strain of radial ones. Rows and columns of tensors as Eigen stores them.
+/// F33, by the hoop strain of radial ones, and along a line only the first changes: B is zero in
+/// the other columns. Rows and columns of tensors as Eigen stores them.
 int CellKernel::entry(int direction, int column) const {
   return dim_ == 3 || column < 2 ? direction + 3 * column : 8;
 }
@@ -73,7 +74,7 @@ void CellKernel::fill_operators(const CellGeometry& cell) {
   points_.resize(static_cast<std::size_t>(cell.points));
   for (int p = 0; p < cell.points; ++p)
     points_[static_cast<std::size_t>(p)].volume = cell.volume[static_cast<std::size_t>(p)];
-  for (std::size_t i = 0; i < (dim_ == 3 ? 1 : 2); ++i) {
+  for (std::size_t i = 0; i < (dim_ == 2 ? 2 : 1); ++i) {
     b_[i].setZero(nodes_, 3 * cell.points);
     for (int p = 0; p < cell.points; ++p) {
       const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(p) * nodes_;

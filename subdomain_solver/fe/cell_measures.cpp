@@ -45,6 +45,12 @@ void average(const CellBlock& cells, const Eigen::MatrixXd& x, double stiffness,
 
 }  // namespace
 
+double FeOptions::depth(int dim, double radius) const {
+  if (dim == 3) return 1.0;
+  if (dim == 1) return area;
+  return plane == Plane::axisymmetric ? 2.0 * std::numbers::pi * radius : thickness;
+}
+
 int law_points(const Element& element, const Tabulation& table, Formulation formulation) {
   const bool one = formulation == Formulation::one_point && has_hourglasses(element);
   return one ? 1 : table.points;
@@ -77,10 +83,7 @@ void measure_cell(const Mesh& mesh, const CellBlock& cells, int cell, const Tabu
     const Eigen::Map<const Eigen::VectorXd> n(t.n.data() + index(p * t.nodes), t.nodes);
     const Eigen::MatrixXd jacobian = x.transpose() * dn;  // dX/dxi
     const double radius = round ? n.dot(x.col(0)) : 0.0;
-    const double depth = round      ? 2.0 * std::numbers::pi * radius
-                         : dim == 2 ? options.thickness
-                                    : 1.0;
-    out.volume.push_back(t.weight[index(p)] * jacobian.determinant() * depth);
+    out.volume.push_back(t.weight[index(p)] * jacobian.determinant() * options.depth(dim, radius));
     const Rows gradient = dn * jacobian.inverse();
     out.gradient.insert(out.gradient.end(), gradient.data(), gradient.data() + gradient.size());
     if (!round) continue;

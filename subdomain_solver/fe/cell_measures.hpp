@@ -15,6 +15,11 @@ struct FeOptions {
   double hourglass = 0.05;  // coefficient of the hourglass stiffness of one_point
   bool batched = false;     // forces alone by batches of cells (explicit steps) where they can be
   int threads = 1;          // of batched cells
+  double area = 1.0;        // [m^2] cross section of bars
+
+  /// What a cell of this dimension has beside its own extent: area [m^2], thickness [m], 2 pi times
+  /// the radius [m], or 1.
+  double depth(int dim, double radius) const;
 };
 
 /// Reference geometry of consecutive cells of one element, as CellGeometry shows it cell by cell.

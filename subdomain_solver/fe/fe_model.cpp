@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "base/assert.hpp"
+#include "base/error.hpp"
+#include "subdomain_solver/materials/stress_free.hpp"
 
 namespace abut {
 
@@ -19,9 +21,14 @@ std::span<const std::int32_t> nodes_of(const CellBlock& cells, int cell) {
 }
 
 std::unique_ptr<const Material> in_its_space(std::unique_ptr<const Material> law, int dim,
-                                             Plane plane) {
-  if (dim == 3 || plane != Plane::stress) return law;
-  return std::make_unique<PlaneStress>(std::move(law));
+                                             const FeOptions& options) {
+  const bool sheet = dim == 2 && options.plane == Plane::stress;
+  if (dim != 1 && !sheet) return law;
+  if (options.formulation == Formulation::mean_dilatation)
+    throw InputError("mean_dilatation does not apply where the volume is free to change across",
+                     "formulation", "Use full: plane and uniaxial stress cannot lock.");
+  if (sheet) return std::make_unique<PlaneStress>(std::move(law));
+  return std::make_unique<UniaxialStress>(std::move(law));
 }
 
 }  // namespace
@@ -29,11 +36,11 @@ std::unique_ptr<const Material> in_its_space(std::unique_ptr<const Material> law
 FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOptions& options,
                  const std::vector<NodeFrame>& frames)
     : mesh_(std::move(mesh)),
-      material_(in_its_space(std::move(material), mesh_.dim, options.plane)),
+      material_(in_its_space(std::move(material), mesh_.dim, options)),
       options_(options),
       frames_(frames),
       kernel_(*material_, options.formulation) {
-  ABUT_ASSERT(mesh_.dim == 2 || mesh_.dim == 3);
+  ABUT_ASSERT(mesh_.dim >= 1 && mesh_.dim <= 3);
   std::sort(frames_.begin(), frames_.end(),
             [](const NodeFrame& a, const NodeFrame& b) { return a.node < b.node; });
   for (const CellBlock& cells : mesh_.blocks) {
@@ -212,13 +219,37 @@ bool FeModel::evaluate(std::span<const double> q, std::span<const double> histor
     ABUT_ASSERT(admissible);
     stiffness = out.tangent;
   }
-  const Eigen::Map<const Vector> u(q.data(), dofs());
-  out.force.noalias() = stiffness * u;
-  if (want == Want::tangent) out.tangent = stiffness;
-  out.stored = 0.5 * u.dot(out.force);
   out.dissipation = 0.0;
   out.history.clear();
+  if (want == Want::tangent) out.tangent = stiffness;
+  if (mesh_.dim == 1 && frames_.empty() && mesh_.blocks.front().element->nodes == 2) {
+    spring_force(q, out);
+    return true;
+  }
+  const Eigen::Map<const Vector> u(q.data(), dofs());
+  out.force.noalias() = stiffness * u;
+  out.stored = 0.5 * u.dot(out.force);
   return true;
+}
+
+/// Forces of a linear bar cancel exactly in pairs, and a translation makes none: they come from
+/// differences of displacements.
+void FeModel::spring_force(std::span<const double> q, ModelResponse& out) const {
+  const CellBlock& cells = mesh_.blocks.front();
+  std::vector<double>& springs = assembly().springs;
+  if (springs.empty()) {
+    for (int c = 0; c < cells.count(); ++c)
+      springs.push_back(-assembly().stiffness.coeff(nodes_of(cells, c)[0], nodes_of(cells, c)[1]));
+  }
+  out.force.setZero(dofs());
+  out.stored = 0.0;
+  for (std::size_t c = 0; c < springs.size(); ++c) {
+    const std::int32_t left = cells.nodes[2 * c], right = cells.nodes[2 * c + 1];
+    const double stretch = q[index(right)] - q[index(left)], tension = springs[c] * stretch;
+    out.force(left) -= tension;
+    out.force(right) += tension;
+    out.stored += 0.5 * tension * stretch;
+  }
 }
 
 bool FeModel::batched_force(std::span<const double> q, ModelResponse& out) {

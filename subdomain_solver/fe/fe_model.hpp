@@ -20,12 +20,14 @@ struct NodeFrame {
   Matrix3 axes = Matrix3::Identity();
 };
 
-/// Finite elements in two or three dimensions, total Lagrangian [M.41]: q holds the nodal
+/// Finite elements in one, two or three dimensions, total Lagrangian [M.41]: q holds the nodal
 /// displacements (nodes, dim), in the node's own frame where it has one. What only tangents need
 /// (geometry at all points, pattern, consistent mass) is made when first asked for: forces by
 /// batched cells need none of it.
 class FeModel final : public Model {
  public:
+  /// A mesh in one dimension is a bar of the options' area, under uniaxial stress. Throws
+  /// InputError for mean_dilatation under plane or uniaxial stress.
   FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOptions& options,
           const std::vector<NodeFrame>& frames = {});
 
@@ -85,6 +87,7 @@ class FeModel final : public Model {
                                                       // entry in the tangent
     SparseMatrix pattern;                             // zeros where the tangent has entries
     SparseMatrix stiffness;                           // of linear models, which need no other
+    std::vector<double> springs;                      // [N/m] (cells) of linear bars
     SparseMatrix mass;
     double force_unit = 0.0;     // [N] largest force of a cell at unit strain
     double gradient_unit = 0.0;  // [1/m] largest gradient of a shape function
@@ -98,6 +101,7 @@ class FeModel final : public Model {
   void assemble_mass(SparseMatrix& out) const;
   void lump_mass();
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
+  void spring_force(std::span<const double> q, ModelResponse& out) const;
   [[nodiscard]] bool batched_force(std::span<const double> q, ModelResponse& out);
   void gather(const CellBlock& cells, int cell, std::span<const double> q,
               std::vector<double>& u) const;

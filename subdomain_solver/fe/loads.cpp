@@ -1,8 +1,8 @@
 #include "subdomain_solver/fe/loads.hpp"
 
-#include <numbers>
-
 #include <Eigen/Geometry>
+
+#include "base/error.hpp"
 
 namespace abut {
 
@@ -24,11 +24,8 @@ double value(const ScalarField& field, const std::array<double, 3>& at, double t
   return field ? field(at, time) : 0.0;
 }
 
-/// Depth of a plane or axisymmetric model at a radius.
 double depth(const FeModel& model, double radius) {
-  if (model.mesh().dim == 3) return 1.0;
-  if (model.options().plane == Plane::axisymmetric) return 2.0 * std::numbers::pi * radius;
-  return model.options().thickness;
+  return model.options().depth(model.mesh().dim, radius);
 }
 
 /// Adds forces on nodes given in the axes of space.
@@ -60,8 +57,9 @@ SidePoints SidePoints::of(const FeModel& model, const std::string& side) {
       point.weight = table.weight[index(p)];
       const Eigen::Vector3d position = x * Eigen::Map<const Vector>(n, table.nodes);
       point.position = {position(0), position(1), position(2)};
+      const Eigen::Vector3d end(facet.local == 0 ? -1.0 : 1.0, 0.0, 0.0);  // of a line
       const Eigen::Vector3d area =
-          directed_area(x * Eigen::Map<const Rows>(dn, table.nodes, table.dim));
+          dim == 1 ? end : directed_area(x * Eigen::Map<const Rows>(dn, table.nodes, table.dim));
       point.area = area.norm() * point.weight * depth(model, position(0));
       point.normal = area.normalized();
       f.points.push_back(std::move(point));
@@ -123,7 +121,11 @@ Pressure::Pressure(const FeModel& model, const std::string& side, ScalarField pr
     : model_(model),
       side_(SidePoints::of(model, side)),
       pressure_(std::move(pressure)),
-      follows_(follows) {}
+      follows_(follows) {
+  if (follows && model.mesh().dim == 1)
+    throw InputError("follows the body, but the ends of a bar keep their area", side,
+                     "Leave follows out: the pressure acts on the reference area.");
+}
 
 /// Present positions of a facet's nodes (3, nodes).
 Eigen::MatrixXd Pressure::present(const SidePoints::FacetPoints& facet,

@@ -65,7 +65,8 @@ class Traction final : public Load {
 
 /// Pressure on a side [Pa], positive towards the body. Dead: along the reference normal, per
 /// reference area. Follower: along the present normal, per present area; its stiffness, made
-/// symmetric, joins the tangent [M.47].
+/// symmetric, joins the tangent [M.47]. Throws InputError for a follower on a bar, whose
+/// present area its nodes do not know.
 class Pressure final : public Load {
  public:
   Pressure(const FeModel& model, const std::string& side, ScalarField pressure, bool follows);

@@ -116,6 +116,10 @@ std::optional<Failed> ExplicitDynamics::step(Motion& motion, double time, double
   return std::nullopt;
 }
 
+void ExplicitDynamics::jump(Motion& motion, const Vector& change) {
+  view(motion.a) += inverse_mass_.cwiseProduct(change);
+}
+
 double ExplicitDynamics::kinetic(const Motion& motion) const {
   const auto v = view(motion.v);
   return 0.5 * v.dot(problem_.model->lumped_mass().cwiseProduct(v));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/assert.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -102,6 +103,27 @@ ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& option
 
 Vector ImplicitDynamics::times_mass(const Vector& x) const { return mass_ * x; }
 
+/// Adds the solution of M a = f on the free coordinates.
+bool ImplicitDynamics::solve_mass(const Vector& force, std::vector<double>& acceleration) {
+  if (!mass_solver_) {
+    SparseMatrix free_mass;
+    FreeCoordinates(problem_.model->dofs(), problem_.supports).extract(mass_, free_mass);
+    mass_solver_ = make_direct_solver();
+    if (!mass_solver_->factor(free_mass)) return false;
+  }
+  Vector a;
+  if (!mass_solver_->solve(free_.pick(force), a)) return false;
+  Vector all = view(acceleration);
+  free_.add(a, all);
+  store(all, acceleration);
+  return true;
+}
+
+void ImplicitDynamics::jump(Motion& motion, const Vector& change) {
+  const bool solved = solve_mass(change, motion.a);
+  ABUT_ASSERT(solved);  // as at the begin
+}
+
 /// Accelerations from the balance at the begin: M a = f - r on the free coordinates.
 std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
   Model& model = *problem_.model;
@@ -112,16 +134,8 @@ std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
     motion.q[static_cast<std::size_t>(p.dof)] = p.value(time);
   if (!model.evaluate(motion.q, motion.history, Model::Want::force, response))
     return failed_newton({NewtonReport::End::inadmissible}, time);
-  const Vector r = free_.pick(problem_.external_force(time, motion.q) - response.force);
-  SparseMatrix free_mass;
-  FreeCoordinates(model.dofs(), problem_.supports).extract(mass_, free_mass);
-  std::unique_ptr<LinearSolver> solver = make_direct_solver();
-  Vector a;
-  if (!solver->factor(free_mass) || !solver->solve(r, a))
+  if (!solve_mass(problem_.external_force(time, motion.q) - response.force, motion.a))
     return Failed{Failed::Cause::no_convergence, time, "the mass matrix is singular"};
-  Vector all = Vector::Zero(model.dofs());
-  free_.add(a, all);
-  store(all, motion.a);
   store(response.force, motion.force);
   motion.stored = response.stored;
   return std::nullopt;

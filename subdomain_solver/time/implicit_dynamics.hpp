@@ -24,12 +24,14 @@ class ImplicitDynamics final : public Integrator {
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
+  void jump(Motion& motion, const Vector& change) override;
   double kinetic(const Motion& motion) const override;
 
  private:
   class Balance;
 
   Vector times_mass(const Vector& x) const;
+  [[nodiscard]] bool solve_mass(const Vector& force, std::vector<double>& acceleration);
 
   const Problem& problem_;
   Options options_;
@@ -38,6 +40,7 @@ class ImplicitDynamics final : public Integrator {
   SparseMatrix mass_;
   SparseMatrix matrix_;    // of the free coordinates
   double factored_dt_ = 0.0;
+  std::unique_ptr<LinearSolver> mass_solver_;  // of the free coordinates; made when first needed
 };
 
 }  // namespace abut

@@ -17,6 +17,9 @@ class Integrator {
   [[nodiscard]] virtual std::optional<Failed> begin(Motion& motion, double time) = 0;
   /// From `time` to `time + dt`. When it fails, the motion is as before.
   [[nodiscard]] virtual std::optional<Failed> step(Motion& motion, double time, double dt) = 0;
+  /// A load sets in or ends at the present time and changes the force by this much [N] (dofs):
+  /// accelerations follow at once. Schemes that keep none have nothing to do.
+  virtual void jump(Motion&, const Vector&) {}
   /// [J] in the form that the scheme conserves where it conserves one.
   virtual double kinetic(const Motion& motion) const = 0;
   double stored(const Motion& motion) const { return motion.stored; }

@@ -8,6 +8,14 @@ Vector Problem::external_force(double time, std::span<const double> q) const {
   return force;
 }
 
+void Problem::set_rates(double time, double step, Motion& motion) const {
+  const double h = 1.0e-3 * step;
+  for (const Prescribed& p : supports) {
+    const double at = p.value(time), next = p.value(time + h), last = p.value(time + 2.0 * h);
+    motion.v[static_cast<std::size_t>(p.dof)] = (4.0 * (next - at) - (last - at)) / (2.0 * h);
+  }
+}
+
 FreeCoordinates::FreeCoordinates(int dofs, const std::vector<Prescribed>& supports)
     : place_(static_cast<std::size_t>(dofs), 0) {
   for (const Prescribed& p : supports) place_[static_cast<std::size_t>(p.dof)] = -1;

@@ -33,6 +33,9 @@ struct Problem {
   std::vector<std::unique_ptr<Load>> loads;
 
   Vector external_force(double time, std::span<const double> q) const;
+  /// Velocities of prescribed coordinates at the start, by differences of second order over
+  /// thousandths of a step [s]: others would make an implicit scheme ring.
+  void set_rates(double time, double step, Motion& motion) const;
 };
 
 /// Free and prescribed coordinates, and the rows and columns of a matrix that belong to free ones.

@@ -29,6 +29,23 @@ struct Law {
 /// What GoogleTest prints for the parameter.
 inline void PrintTo(const Law& law, std::ostream* out) { *out << law.name; }
 
+/// The law of a test case inside another law; the case keeps its own.
+class Borrowed final : public Material {
+ public:
+  explicit Borrowed(const Material& law) : law_(law) {}
+  double density() const override { return law_.density(); }
+  Moduli moduli() const override { return law_.moduli(); }
+  bool is_linear() const override { return law_.is_linear(); }
+  int history_size() const override { return law_.history_size(); }
+  bool evaluate(const Matrix3& f, std::span<const double> before, std::span<double> after,
+                Want want, PointResponse& out) const override {
+    return law_.evaluate(f, before, after, want, out);
+  }
+
+ private:
+  const Material& law_;
+};
+
 inline const Moduli test_moduli{1.25, 0.5};
 
 /// Yields at a strain of 2 %; both parts of the hardening act.

@@ -36,6 +36,7 @@ struct BarText {
   std::vector<std::string> sides = {"right"};
   std::string fixed;  // side held at rest, or empty
   std::string tied;   // sides among them that are joints
+  bool solid = false;  // by the model of solids: its velocity is a field
 
   std::string text() const {
     std::string ports;
@@ -51,8 +52,8 @@ struct BarText {
         "    integrator: {{{}}}\n    contact_layer: {{{}}}\n",
         number(length), elements, number(area), number(modulus), number(density), integrator,
         layer);
-    out += fmt::format("    initial: {{position: [{}], velocity: [{}]}}\n", number(position),
-                       number(velocity));
+    out += fmt::format("    initial: {{position: [{}], {}: [{}]}}\n", number(position),
+                       solid ? "velocity_field" : "velocity", number(velocity));
     if (body_force != 0.0) out += fmt::format("    body_force: [{}]\n", number(body_force));
     if (!fixed.empty()) out += fmt::format("    supports: {{{}: fixed}}\n", fixed);
     if (!sides.empty()) out += fmt::format("    ports: {{{}}}\n", ports);

@@ -11,8 +11,9 @@
 
 namespace abut {
 
-/// A square or cube of side 1 with its corner at the origin, n elements along each edge.
+/// A line, square or cube of side 1 with its corner at the origin, n elements along each edge.
 inline Mesh unit_mesh(const std::string& element, int n) {
+  if (element_named(element).dim == 1) return generate(BarMesh{0.0, 1.0, n}, "test");
   if (element_named(element).dim == 2) {
     RectangleMesh m;
     m.lengths = {1.0, 1.0};
@@ -70,6 +71,13 @@ inline std::vector<std::string> solid_elements() {
   for (const Element& e : all_elements()) {
     if (e.dim >= 2) names.emplace_back(e.name);
   }
+  return names;
+}
+
+/// The same and the element of bars.
+inline std::vector<std::string> fe_elements() {
+  std::vector<std::string> names = solid_elements();
+  names.emplace_back("bar2");
   return names;
 }
 

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
+#include "base/error.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
@@ -34,11 +36,13 @@ std::unique_ptr<const Material> law_named(const std::string& name) {
 
 std::vector<Case> cases(const std::vector<std::string>& laws) {
   std::vector<Case> out;
-  for (const std::string& element : solid_elements()) {
-    const bool flat = element_named(element).dim == 2, linear = element_named(element).order == 1;
+  for (const std::string& element : fe_elements()) {
+    const int dim = element_named(element).dim;
+    const bool flat = dim == 2, linear = element_named(element).order == 1;
     for (Formulation formulation :
          {Formulation::full, Formulation::mean_dilatation, Formulation::one_point}) {
       if (formulation == Formulation::one_point && !linear) continue;
+      if (formulation == Formulation::mean_dilatation && dim == 1) continue;
       for (Plane plane : {Plane::strain, Plane::stress, Plane::axisymmetric}) {
         if (!flat && plane != Plane::strain) continue;
         if (plane == Plane::stress && formulation == Formulation::mean_dilatation) continue;
@@ -54,7 +58,9 @@ FeModel one_cell(const Case& c) {
   Mesh mesh = unit_mesh(c.element, 1);
   Draw draw;
   for (double& x : mesh.points) x += 1.0 + 0.05 * draw.between(-1.0, 1.0);
-  return FeModel(std::move(mesh), law_named(c.law), {c.plane, c.formulation, 0.7});
+  FeOptions options{c.plane, c.formulation, 0.7};
+  options.area = 0.6;
+  return FeModel(std::move(mesh), law_named(c.law), options);
 }
 
 std::vector<double> displaced(const FeModel& model, double size) {
@@ -135,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(Plastic, Cells, testing::ValuesIn(cases({"j2_plasticity
 INSTANTIATE_TEST_SUITE_P(Elastic, ElasticCells, testing::ValuesIn(cases(elastic)));
 
 TEST(FeModel, MassesAreThoseOfTheVolume) {
-  for (const std::string& element : solid_elements()) {
+  for (const std::string& element : fe_elements()) {
     Mesh mesh = unit_mesh(element, 3);
     distort(mesh, 0.05);
     const FeModel model(std::move(mesh), std::make_unique<NeoHookean>(test_moduli, 2.0), {});
@@ -167,6 +173,45 @@ TEST(FeModel, RotationCostsNothingAtFiniteStrain) {
       EXPECT_LT(response.force.cwiseAbs().maxCoeff(), roundoff(1000.0, 1.0)) << element;
       EXPECT_LT(response.stored, roundoff(1000.0, 1.0)) << element;
     }
+  }
+}
+
+TEST(FeModel, RefusesOneVolumeChangePerCellWhereVolumeIsFree) {
+  for (const std::string element : {"quad4", "bar2"}) {
+    const FeOptions options{Plane::stress, Formulation::mean_dilatation};
+    EXPECT_THROW(FeModel(unit_mesh(element, 1), law_named("neo_hookean"), options), InputError)
+        << element;
+  }
+}
+
+/// Mean of P F^T / J over the points.
+Matrix3 mean_stress(FeModel& model, const std::vector<double>& q,
+                    const std::vector<double>& history) {
+  Matrix3 sum = Matrix3::Zero();
+  int points = 0;
+  EXPECT_TRUE(model.visit(q, history, [&](const FeModel::PointState& point) {
+    sum += point.stress * point.deformation.transpose() / point.deformation.determinant();
+    ++points;
+  }));
+  return sum / points;
+}
+
+TEST(FeModel, TellsTheStressOfThePresentAreaWhereCellsThin) {
+  // Hencky's law under uniaxial stress: tau = E ln s, J = s^(1 - 2 nu), sigma = tau / J.
+  const double s = 1.3, e = test_moduli.youngs(), nu = test_moduli.poissons_ratio();
+  const double exact = e * std::log(s) / std::pow(s, 1.0 - 2.0 * nu);
+  for (const std::string element : {"quad4", "bar2"}) {
+    FeModel model(unit_mesh(element, 1), std::make_unique<Hencky>(test_moduli, 1.0),
+                  {Plane::stress, Formulation::full});
+    const std::size_t dim = static_cast<std::size_t>(model.mesh().dim);
+    std::vector<double> q = model.mesh().points;
+    for (std::size_t k = 0; k < q.size(); ++k)
+      q[k] *= k % dim == 0 ? s - 1.0 : std::pow(s, -nu) - 1.0;
+    ModelResponse response;
+    const std::vector<double> start(model.history_size(), 0.0);
+    ASSERT_TRUE(model.evaluate(q, start, Model::Want::force, response));
+    // What the search across the thickness leaves: 1e-13 of the strain, times moduli of order 1.
+    EXPECT_NEAR(mean_stress(model, q, response.history)(0, 0), exact, 1.0e-12) << element;
   }
 }
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "subdomain_solver/materials/plane.hpp"
+#include "subdomain_solver/materials/stress_free.hpp"
 #include "tests/support/material_gradients.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
@@ -18,23 +19,6 @@ namespace abut {
 namespace {
 
 constexpr std::array<int, 4> sheet_entries = {0, 1, 3, 4};
-
-/// The law of a test case under plane stress; the case keeps its own.
-class Borrowed final : public Material {
- public:
-  explicit Borrowed(const Material& law) : law_(law) {}
-  double density() const override { return law_.density(); }
-  Moduli moduli() const override { return law_.moduli(); }
-  bool is_linear() const override { return law_.is_linear(); }
-  int history_size() const override { return law_.history_size(); }
-  bool evaluate(const Matrix3& f, std::span<const double> before, std::span<double> after,
-                Want want, PointResponse& out) const override {
-    return law_.evaluate(f, before, after, want, out);
-  }
-
- private:
-  const Material& law_;
-};
 
 PlaneStress sheet_of(const Material& law) {
   return PlaneStress(std::make_unique<const Borrowed>(law));

@@ -29,7 +29,11 @@ void PrintTo(const Case& c, std::ostream* out) {
 
 std::vector<Case> cases() {
   std::vector<Case> out;
-  for (const std::string& element : solid_elements()) {
+  for (const std::string& element : fe_elements()) {
+    if (element_named(element).dim == 1) {
+      out.push_back({element, Formulation::full, Plane::strain});
+      continue;
+    }
     for (Formulation formulation : {Formulation::full, Formulation::mean_dilatation}) {
       out.push_back({element, formulation, Plane::strain});
       if (element_named(element).dim == 3) continue;
@@ -63,7 +67,8 @@ Matrix3 gradient(const Case& c, double size) {
 Matrix3 deformation(const Case& c, const Matrix3& h) {
   if (element_named(c.element).dim == 3) return Matrix3::Identity() + h;
   Matrix3 f = Matrix3::Identity();
-  f.topLeftCorner<2, 2>() += h.topLeftCorner<2, 2>();
+  const int dim = element_named(c.element).dim;
+  f.topLeftCorner(dim, dim) += h.topLeftCorner(dim, dim);
   if (c.plane == Plane::axisymmetric) f(2, 2) += h(2, 2);
   return f;
 }
@@ -120,10 +125,12 @@ TEST_P(Patch, UniformTractionMakesUniformStress) {
   Solid s(patch(c), std::make_unique<LinearElastic>(isotropic(young, nu), 1.0),
           {c.plane, c.formulation, 0.7});
   const int dim = s.model.mesh().dim;
-  // Along the second axis, which is the axis of revolution of an axisymmetric body.
-  s.pull("top", {ScalarField(), [pull](const auto&, double) { return pull; }, ScalarField()});
+  // Along the second axis, which is the axis of revolution of an axisymmetric body; a bar has one.
+  const auto uniform = [pull](const auto&, double) { return pull; };
+  if (dim == 1) s.pull("right", {uniform, ScalarField(), ScalarField()});
+  if (dim > 1) s.pull("top", {ScalarField(), uniform, ScalarField()});
   s.fix("left", 0);
-  s.fix("bottom", 1);
+  if (dim > 1) s.fix("bottom", 1);
   if (dim == 3) s.fix("back", 2);
   s.settle();
   const bool strain = dim == 2 && c.plane == Plane::strain;
@@ -131,7 +138,8 @@ TEST_P(Patch, UniformTractionMakesUniformStress) {
   const double across = -pull / young * (strain ? nu * (1.0 + nu) : nu);
   for (int node = 0; node < s.model.mesh().node_count(); ++node) {
     const Position x = position(s.model.mesh(), node);
-    const Position exact(across * x.x(), along * x.y(), across * x.z());
+    Position exact(across * x.x(), along * x.y(), across * x.z());
+    if (dim == 1) exact.x() = along * x.x();
     EXPECT_LT((s.displacement(node) - exact).norm(), roundoff(1.0e4, along)) << "node " << node;
   }
 }
