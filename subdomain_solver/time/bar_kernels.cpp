@@ -1,5 +1,7 @@
 #include "subdomain_solver/time/bar_kernels.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 // One binary for all machines: the loader picks the widest variant. Sanitizers do not support this.
@@ -22,6 +24,20 @@ inline __attribute__((always_inline)) void load(Pack& to, const double* from) {
 }
 inline __attribute__((always_inline)) void store(double* to, const Pack& from) {
   std::memcpy(to, &from, sizeof from);
+}
+
+/// How many doubles a place lies behind the begin of a pack's own space.
+inline __attribute__((always_inline)) std::size_t place_in_pack(const double* at) {
+  return reinterpret_cast<std::uintptr_t>(at) / sizeof(double) % pack;
+}
+
+/// First of the nodes [first, last) at which an array is aligned to packs. The heap begins arrays
+/// at any 16 bytes, and stores across cache lines would cost a tenth of a pass.
+inline __attribute__((always_inline)) std::size_t aligned_node(const double* array,
+                                                               std::size_t first,
+                                                               std::size_t last) {
+  const std::size_t beyond = place_in_pack(array + first);
+  return std::min(last, beyond == 0 ? first : first + pack - beyond);
 }
 
 }  // namespace
@@ -60,23 +76,37 @@ void kick_drift_nodes(double* __restrict u, double* __restrict v, std::size_t fi
 ABUT_VECTORISED
 void kick_nodes(const double* __restrict s, double* __restrict v, std::size_t first,
                 std::size_t last, double g, double shift) {
-  for (std::size_t i = first; i < last; ++i) {
+  const auto kick = [=](std::size_t i) {
     v[i] += g * ((s[i + 1] - s[i]) - (s[i] - s[i - 1])) + shift;
-  }
+  };
+  const std::size_t aligned = aligned_node(v, first, last);
+  for (std::size_t i = first; i < aligned; ++i) kick(i);
+  for (std::size_t i = aligned; i < last; ++i) kick(i);
 }
 
 ABUT_VECTORISED
 void drift_nodes(double* __restrict u, const double* __restrict v, std::size_t first,
                  std::size_t last, double dt) {
-  for (std::size_t i = first; i < last; ++i) u[i] += dt * v[i];
+  const std::size_t aligned = aligned_node(u, first, last);
+  for (std::size_t i = first; i < aligned; ++i) u[i] += dt * v[i];
+  for (std::size_t i = aligned; i < last; ++i) u[i] += dt * v[i];
 }
 
 ABUT_VECTORISED
 void smooth_nodes(const double* __restrict u, const double* __restrict t, double* __restrict out,
                   std::size_t first, std::size_t last, double ratio) {
-  for (std::size_t i = first; i < last; ++i) {
+  const auto smooth = [=](std::size_t i) {
     out[i] = u[i] + ratio * ((t[i] - t[i - 1]) - (t[i + 1] - t[i]));
-  }
+  };
+  const std::size_t aligned = aligned_node(out, first, last);
+  for (std::size_t i = first; i < aligned; ++i) smooth(i);
+  for (std::size_t i = aligned; i < last; ++i) smooth(i);
+}
+
+double* placed_like(const double* other, std::size_t n, std::vector<double>& buffer) {
+  if (buffer.size() < n + pack) buffer.resize(n + pack);
+  const std::size_t shift = place_in_pack(other) + pack - place_in_pack(buffer.data());
+  return buffer.data() + shift % pack;
 }
 
 }  // namespace abut

@@ -6,7 +6,7 @@
 
 namespace abut {
 
-double CentralDifference::Row::force(const std::vector<double>& x) const {
+double CentralDifference::Row::force(const double* x) const {
   double force = 0.0;
   if (left > 0.0) force += left * (x[node] - x[node - 1]);
   if (right > 0.0) force -= right * (x[node + 1] - x[node]);
@@ -47,14 +47,14 @@ void CentralDifference::smooth(const BarState& state, const std::vector<double>&
                                std::vector<double>& s) const {
   const std::size_t n = u.size();
   const double cell = bar_.spacing() / bar_.data().wave_speed();
-  const std::vector<double>* t = &u;
-  work_a_.resize(n);
-  work_b_.resize(n);
+  const double* t = u.data();
+  double* const a = placed_like(u.data(), n, work_a_);
+  double* const b = placed_like(u.data(), n, work_b_);
   for (std::size_t pass = ratio_.size(); pass-- > 0;) {
-    std::vector<double>& out = t == &work_a_ ? work_b_ : work_a_;
-    if (n > 4) smooth_nodes(u.data(), t->data(), out.data(), 2, n - 2, ratio_[pass]);
+    double* const out = t == a ? b : a;
+    if (n > 4) smooth_nodes(u.data(), t, out, 2, n - 2, ratio_[pass]);
     for (const Row& row : outer_) {
-      const double d = cell * cell * row.inverse_mass * row.force(*t);
+      const double d = cell * cell * row.inverse_mass * row.force(t);
       out[row.node] = u[row.node] + ratio_[pass] * d;
     }
     for (int end : {0, 1}) {
@@ -67,15 +67,15 @@ void CentralDifference::smooth(const BarState& state, const std::vector<double>&
       if (!is(end, ContactLayer::massless) || closed) continue;
       out[node] = out[static_cast<std::size_t>(bar_.inner_of(end))];
     }
-    t = &out;
+    t = out;
   }
-  s = *t;
+  s.assign(t, t + n);
 }
 
 void CentralDifference::kick_end_nodes(BarState& state, const std::vector<double>& s, double kick) {
   for (const Row& row : outer_) {
     if (row.inverse_mass == 0.0) continue;
-    state.v[row.node] += kick * (bar_.data().body_force - row.inverse_mass * row.force(s));
+    state.v[row.node] += kick * (bar_.data().body_force - row.inverse_mass * row.force(s.data()));
   }
   for (int end : {0, 1}) {
     if (!is(end, ContactLayer::massive)) continue;

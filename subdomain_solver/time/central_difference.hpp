@@ -44,7 +44,7 @@ class CentralDifference final : public BarIntegrator {
     double left = 0.0, right = 0.0;  // stiffness of the elements beside it [N/m]
     double inverse_mass = 0.0;       // [1/kg]
 
-    double force(const std::vector<double>& x) const;  // of K x [N]
+    double force(const double* x) const;  // of K x [N]
   };
 
   void kick_drift(BarState& state, double kick, double dt);
