@@ -14,19 +14,10 @@ std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-PortForces::PortForces(const FeModel& model, const NodalMap& map,
-                       const std::vector<NamedNodes>& ports)
-    : model_(model), map_(map), ports_(ports) {
-  for (const NamedNodes& port : ports) {
-    first_.push_back(values_);
-    values_ += port.nodes.size() * index(model.mesh().dim);
-  }
-}
-
 void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substeps& grid) {
   grid_ = grid;
   forces_.clear();
-  for (std::size_t p = 0; p < std::min(boundary.size(), ports_.size()); ++p) {
+  for (std::size_t p = 0; p < std::min(boundary.size(), map_.ports()); ++p) {
     if (!boundary[p].force.empty()) sample(boundary[p].force, p);
   }
 }
@@ -36,16 +27,16 @@ void PortForces::impose(std::vector<double> at_begin, std::vector<double> in_fir
   grid_ = grid;
   forces_ = std::move(at_begin);
   forces_.insert(forces_.end(), in_first.begin(), in_first.end());
-  forces_.resize(index(grid.count + 1) * values_, 0.0);
+  forces_.resize(index(grid.count + 1) * map_.values(), 0.0);
 }
 
 void PortForces::sample(const Waveform& imposed, std::size_t port) {
-  forces_.resize(index(grid_.count + 1) * values_, 0.0);
+  forces_.resize(index(grid_.count + 1) * map_.values(), 0.0);
   const std::size_t width = index(imposed.width);
   const bool same = imposed.support == ForceSupport::nodal && grid_.matches(imposed.time);
   for (int i = 0; i <= grid_.count; ++i) {
     const std::span<double> to =
-        std::span(forces_).subspan(index(i) * values_ + first_[port], width);
+        std::span(forces_).subspan(index(i) * map_.values() + map_.first(port), width);
     if (same) {  // the common case, and exact: no averaging at all
       std::copy_n(imposed.f.begin() + static_cast<std::ptrdiff_t>(index(i) * width), width,
                   to.begin());
@@ -65,43 +56,27 @@ void PortForces::sample(const Waveform& imposed, std::size_t port) {
 }
 
 std::vector<double> PortForces::at(double time) const {
-  std::vector<double> out(values_, 0.0);
+  std::vector<double> out(map_.values(), 0.0);
   if (forces_.empty()) return out;
   const double place = grid_.count > 0 ? (time - grid_.begin) / grid_.step : 0.0;
   const int near = std::clamp(static_cast<int>(std::lround(place)), 0, grid_.count);
   const double length = std::max(grid_.step, 0.0);
-  const auto row = [this](int i) { return forces_.data() + index(i) * values_; };
+  const auto row = [this](int i) { return forces_.data() + index(i) * map_.values(); };
   const auto instant = [this](int i) { return i == 0 ? grid_.begin : grid_.time(i); };
   if (grid_.count == 0 || std::abs(time - instant(near)) <= rounding * length) {
-    std::copy_n(row(near), values_, out.begin());
+    std::copy_n(row(near), map_.values(), out.begin());
     return out;
   }
   const int after = std::clamp(static_cast<int>(std::ceil(place)), 1, grid_.count);
   const double share =
       std::clamp((time - instant(after - 1)) / (instant(after) - instant(after - 1)), 0.0, 1.0);
-  for (std::size_t k = 0; k < values_; ++k)
+  for (std::size_t k = 0; k < map_.values(); ++k)
     out[k] = (1.0 - share) * row(after - 1)[k] + share * row(after)[k];
   return out;
 }
 
-void PortForces::lift(std::span<const double> q, std::span<const double> forces,
-                      Vector& force) const {
-  const std::size_t dim = index(model_.mesh().dim);
-  Vector nodal = Vector::Zero(model_.dofs());
-  std::size_t k = 0;
-  for (const NamedNodes& port : ports_) {
-    for (std::int32_t node : port.nodes) {
-      for (std::size_t i = 0; i < dim; ++i)
-        nodal(static_cast<Eigen::Index>(index(node) * dim + i)) += forces[k++];
-    }
-  }
-  const std::span<double> values(nodal.data(), index(nodal.size()));
-  model_.to_frames(values);
-  map_.lift(q, values, force);
-}
-
 void PortForces::add(double time, std::span<const double> q, Vector& force) const {
-  if (!forces_.empty()) lift(q, at(time), force);
+  if (!forces_.empty()) map_.lift(q, at(time), force);
 }
 
 }  // namespace abut

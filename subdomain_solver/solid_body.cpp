@@ -35,10 +35,10 @@ SolidBody::SolidBody(std::string name, Parts parts, const std::vector<PortNodes>
   state_.motion = std::move(parts_.motion);
   describe(std::move(name), ports);
   if (!ports_.empty()) {
-    std::unique_ptr<PortForces> forces =
-        std::make_unique<PortForces>(*parts_.model, *parts_.map, ports_);
+    port_map_ = std::make_unique<PortMap>(*parts_.model, *parts_.map, ports_);
+    std::unique_ptr<PortForces> forces = std::make_unique<PortForces>(*port_map_);
     port_forces_ = forces.get();
-    state_.port_force.assign(forces->values(), 0.0);
+    state_.port_force.assign(port_map_->values(), 0.0);
     parts_.problem->loads.push_back(std::move(forces));
   }
 }
@@ -220,32 +220,26 @@ std::vector<double> SolidBody::velocity() const {
   return v;
 }
 
-std::vector<double> SolidBody::acceleration() const {
-  std::vector<double> a(nodal_values());
-  parts_.map->acceleration(state_.motion.q, state_.motion.v, state_.motion.a, a);
-  parts_.model->to_space(a);
-  return a;
-}
-
 void SolidBody::push_traces(double time, Response& response) const {
   if (ports_.empty()) return;
-  const std::size_t dim = index(description_.dim);
-  const std::vector<double> v = velocity(), a = acceleration(), f = port_forces_->at(time);
+  const Motion& motion = state_.motion;
+  std::vector<double> v, a;
+  port_map_->velocity(motion.q, motion.v, v);
+  port_map_->acceleration(motion.q, motion.v, motion.a, a);
+  const std::vector<double> f = port_forces_->at(time);
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     Waveform& trace = response.ports[p].trace;
-    trace.width = static_cast<int>(ports_[p].nodes.size() * dim);
+    trace.width = static_cast<int>(ports_[p].nodes.size()) * description_.dim;
     trace.time.push_back(time);
-    const auto first = static_cast<std::ptrdiff_t>(port_forces_->first(p));
-    const auto last = first + trace.width;
-    trace.u.insert(trace.u.end(), port_displacement_.begin() + first,
-                   port_displacement_.begin() + last);
-    trace.f.insert(trace.f.end(), f.begin() + first, f.begin() + last);
-    for (std::int32_t node : ports_[p].nodes) {
-      const auto from = static_cast<std::ptrdiff_t>(index(node) * dim);
-      const auto to = from + static_cast<std::ptrdiff_t>(dim);
-      trace.v.insert(trace.v.end(), v.begin() + from, v.begin() + to);
-      trace.a.insert(trace.a.end(), a.begin() + from, a.begin() + to);
-    }
+    const auto first = static_cast<std::ptrdiff_t>(port_map_->first(p));
+    const auto add = [first, width = trace.width](const std::vector<double>& from,
+                                                  std::vector<double>& to) {
+      to.insert(to.end(), from.begin() + first, from.begin() + first + width);
+    };
+    add(port_displacement_, trace.u);
+    add(v, trace.v);
+    add(a, trace.a);
+    add(f, trace.f);
   }
 }
 
@@ -257,24 +251,14 @@ void SolidBody::meet_port_forces(double time) {
     std::vector<double> change = now;
     for (std::size_t k = 0; k < change.size(); ++k) change[k] -= state_.port_force[k];
     Vector force = Vector::Zero(parts_.problem->model->dofs());
-    port_forces_->lift(state_.motion.q, change, force);
+    port_map_->lift(state_.motion.q, change, force);
     parts_.scheme.integrator->jump(state_.motion, force);
   }
   state_.port_force = std::move(now);
 }
 
 void SolidBody::see_ports() {
-  if (ports_.empty()) return;
-  const std::size_t dim = index(description_.dim);
-  const std::vector<double> u = displacement();
-  port_displacement_.clear();
-  for (const NamedNodes& port : ports_) {
-    for (std::int32_t node : port.nodes) {
-      const auto from = u.begin() + static_cast<std::ptrdiff_t>(index(node) * dim);
-      port_displacement_.insert(port_displacement_.end(), from,
-                                from + static_cast<std::ptrdiff_t>(dim));
-    }
-  }
+  if (!ports_.empty()) port_map_->displacement(state_.motion.q, port_displacement_);
 }
 
 /// After a substep: where the ports are, and the work that the forces on them have done.
@@ -301,7 +285,7 @@ void SolidBody::begin_sweep() {
 void SolidBody::widen_sweep() {
   const std::size_t dim = index(description_.dim);
   for (std::size_t p = 0; p < ports_.size(); ++p) {
-    const double* u = port_displacement_.data() + port_forces_->first(p);
+    const double* u = port_displacement_.data() + port_map_->first(p);
     for (std::size_t k = 0; k < ports_[p].nodes.size() * dim; ++k) {
       lower_[p][k % dim] = std::min(lower_[p][k % dim], u[k]);
       upper_[p][k % dim] = std::max(upper_[p][k % dim], u[k]);
@@ -377,9 +361,9 @@ Energy SolidBody::energy() const {
 std::vector<double> SolidBody::respond_from_rest(std::size_t port, double at_begin, double in_first,
                                                  const Substeps& grid) {
   const double outward = description_.ports[port].geometry.normals[0];
-  std::vector<double> first(port_forces_->values(), 0.0), second = first;
-  first[port_forces_->first(port)] = outward * at_begin;
-  second[port_forces_->first(port)] = outward * in_first;
+  std::vector<double> first(port_map_->values(), 0.0), second = first;
+  first[port_map_->first(port)] = outward * at_begin;
+  second[port_map_->first(port)] = outward * in_first;
   port_forces_->impose(std::move(first), std::move(second), grid);
   Integrator& integrator = *parts_.scheme.integrator;
   Motion& motion = state_.motion;
@@ -392,7 +376,7 @@ std::vector<double> SolidBody::respond_from_rest(std::size_t port, double at_beg
   for (int i = 1; i <= grid.count && !failed; ++i) {
     failed = integrator.step(motion, grid.time(i - 1), grid.step);
     see_ports();
-    displacement.push_back(outward * port_displacement_[port_forces_->first(port)]);
+    displacement.push_back(outward * port_displacement_[port_map_->first(port)]);
   }
   if (!failed) return displacement;
   throw RunError("has no port kernel: " + failed->detail,

@@ -80,7 +80,6 @@ class SolidBody final : public Subdomain {
   std::size_t nodal_values() const { return static_cast<std::size_t>(parts_.model->dofs()); }
   std::vector<double> displacement() const;
   std::vector<double> velocity() const;
-  std::vector<double> acceleration() const;
   void meet_port_forces(double time);
   void see_ports();
   void follow_ports(double time);
@@ -99,6 +98,7 @@ class SolidBody final : public Subdomain {
   SparseMatrix mass_;  // [kg] of the nodes, in the form of the scheme
   Description description_;
   std::vector<NamedNodes> ports_;
+  std::unique_ptr<PortMap> port_map_;      // null: no ports
   PortForces* port_forces_ = nullptr;      // owned by the problem, the last of its loads
   std::vector<double> port_displacement_;  // [m] (port values) now
   State state_;

@@ -47,6 +47,8 @@ class FeModel final : public Model {
   bool round() const { return mesh_.dim == 2 && options_.plane == Plane::axisymmetric; }
   double volume() const;  // [m^3] reference
   bool has_frames() const { return !frames_.empty(); }
+  /// A node's own frame; null: the axes of space.
+  const Matrix3* frame(std::int32_t node) const;
   /// From the nodes' own frames to the axes of space and back, in place: (nodes, dim).
   void to_space(std::span<double> values) const { rotate(values, false); }
   void to_frames(std::span<double> values) const { rotate(values, true); }
@@ -109,7 +111,6 @@ class FeModel final : public Model {
                ModelResponse& out) const;
   void add_matrix(std::size_t block, int cell, const Assembly& assembly,
                   const Eigen::MatrixXd& local, SparseMatrix& out) const;
-  const Matrix3* frame(std::int32_t node) const;
   void rotate(std::span<double> values, bool into_frames) const;
   void turn(std::span<const std::int32_t> nodes, Eigen::VectorXd* force,
             Eigen::MatrixXd* matrix) const;

@@ -5,7 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/modal/modal_map.hpp"
+#include "subdomain_solver/port_map.hpp"
+#include "tests/support/solids.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
@@ -70,6 +74,42 @@ TEST(NodalMapOfAFewValues, IsThatOfTheWhole) {
   expect_that_of_the_whole(IdentityMap(), nodal);
   expect_that_of_the_whole(ModalMap(Eigen::MatrixXd::Random(8, 3)), 3);
   expect_that_of_the_whole(Curved(), nodal);
+}
+
+/// A node of both ports has a frame of its own, in which the coordinates are.
+TEST(PortMap, SeesAndPushesNodesAlongTheAxesOfSpace) {
+  Matrix3 axes = Matrix3::Identity();
+  axes.topLeftCorner<2, 2>() << 0.6, -0.8, 0.8, 0.6;
+  const FeModel model(unit_mesh("quad4", 2), std::make_unique<LinearElastic>(Moduli{1.0, 1.0}, 1.0),
+                      {}, {{8, axes}});
+  const IdentityMap map;
+  const std::vector<NamedNodes> ports = {{"right", {2, 5, 8}}, {"corner", {8}}};
+  const PortMap seen(model, map, ports);
+  ASSERT_EQ(seen.values(), 8u);
+  EXPECT_EQ(seen.first(1), 6u);
+  std::vector<double> q(18);
+  for (std::size_t k = 0; k < q.size(); ++k) q[k] = std::sin(double(k));
+  std::vector<double> space = q, u, v, a;
+  model.to_space(space);
+  seen.displacement(q, u);
+  seen.velocity({}, q, v);
+  seen.acceleration({}, {}, q, a);
+  const std::vector<double> expected = {space[4],  space[5],  space[10], space[11],
+                                        space[16], space[17], space[16], space[17]};
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_DOUBLE_EQ(u[k], expected[k]);
+    EXPECT_DOUBLE_EQ(v[k], expected[k]);
+    EXPECT_DOUBLE_EQ(a[k], expected[k]);
+  }
+  // Work is the same in both: f . u = Q . q.
+  const std::vector<double> forces = {1.0, 2.0, -1.0, 0.5, 3.0, -2.0, 0.25, 4.0};
+  Vector lifted = Vector::Zero(18);
+  seen.lift(q, forces, lifted);
+  double work = 0.0, generalised = 0.0;
+  for (std::size_t k = 0; k < forces.size(); ++k) work += forces[k] * u[k];
+  for (std::size_t k = 0; k < q.size(); ++k)
+    generalised += lifted(static_cast<Eigen::Index>(k)) * q[k];
+  EXPECT_NEAR(work, generalised, roundoff(50.0, 10.0));
 }
 
 }  // namespace
