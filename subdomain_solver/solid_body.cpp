@@ -325,8 +325,7 @@ std::optional<Failed> SolidBody::record(double time, Response& response) {
   for (double p : r.momentum) sum += p;
   for (double p : r.angular_momentum) sum += p;
   if (std::isfinite(sum)) return std::nullopt;
-  return Failed{Failed::Cause::non_finite, time,
-                "the state is not a number any more: take a smaller step"};
+  return not_finite(time);
 }
 
 std::vector<double> SolidBody::measure() {

@@ -1,6 +1,7 @@
 #include "subdomain_solver/time/explicit_dynamics.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "subdomain_solver/time/motion_views.hpp"
 
@@ -84,15 +85,17 @@ double ExplicitDynamics::correct(Motion& motion, double dt, Range range) const {
   return work;
 }
 
-/// Prescribed coordinates move from value to value; their reaction does work. The velocity of the
-/// half step is that of the whole one.
+/// Prescribed coordinates move from value to value; their reaction does work, on the body and on
+/// their own mass. The velocity of the half step is that of the whole one.
 double ExplicitDynamics::correct_supports(Motion& motion, double dt) const {
   double work = 0.0;
   for (const Prescribed& p : problem_.supports) {
     const std::size_t i = static_cast<std::size_t>(p.dof);
-    const double moved = next_[i] - motion.q[i];
+    const double moved = next_[i] - motion.q[i], before = motion.v[i];
     motion.v[i] = moved / dt;
-    work += 0.5 * (motion.force[i] + response_.force(p.dof)) * moved;
+    work +=
+        0.5 * (motion.force[i] + response_.force(p.dof)) * moved +
+        0.5 * problem_.model->lumped_mass()(p.dof) * (motion.v[i] * motion.v[i] - before * before);
   }
   return work;
 }
@@ -100,8 +103,11 @@ double ExplicitDynamics::correct_supports(Motion& motion, double dt) const {
 std::optional<Failed> ExplicitDynamics::step(Motion& motion, double time, double dt) {
   next_.resize(motion.q.size());
   update_all(motion.q.size(), [&](std::size_t, Range range) { predict(motion, dt, range); });
-  for (const Prescribed& p : problem_.supports)
-    next_[static_cast<std::size_t>(p.dof)] = p.value(time + dt);
+  for (const Prescribed& p : problem_.supports) {
+    const double value = p.value(time + dt);
+    if (!std::isfinite(value)) return not_finite(time + dt);
+    next_[static_cast<std::size_t>(p.dof)] = value;
+  }
   if (!problem_.model->evaluate(next_, motion.history, Model::Want::force, response_))
     return failed_newton({NewtonReport::End::inadmissible}, time + dt);
   find_loads(time + dt, next_);

@@ -20,8 +20,10 @@ class ImplicitDynamics::Balance final : public Equations {
     for (const Prescribed& p : o_.problem_.supports)
       a_(p.dof) = (p.value(end_) - q_start_(p.dof)) / (w_.beta * dt * dt);
     past_ = w_.alpha_m * o_.times_mass(a);
-    if (w_.alpha_f > 0.0)
-      past_ += w_.alpha_f * (view(motion.force) - o_.problem_.external_force(time, motion.q));
+    if (!w_.is_newmark()) {
+      external_start_ = o_.problem_.external_force(time, motion.q);
+      past_ += w_.alpha_f * (view(motion.force) - external_start_);
+    }
   }
 
   Vector first_guess() const { return o_.free_.pick(a_); }
@@ -69,10 +71,7 @@ class ImplicitDynamics::Balance final : public Equations {
 
   void finish(Motion& motion) const {
     const Vector v = v_start_ + w_.gamma * dt_ * a_;
-    // Loads and supports do the work that the other forces take.
-    const Vector now = response.force + o_.times_mass(a_);
-    const Vector before = view(motion.force) + o_.times_mass(view(motion.a));
-    motion.external_work += 0.5 * (now + before).dot(q_ - view(motion.q));
+    motion.external_work += external_work();
     motion.dissipated += response.dissipation;
     motion.stored = response.stored;
     motion.history = response.history;
@@ -85,11 +84,29 @@ class ImplicitDynamics::Balance final : public Equations {
   ModelResponse response;
 
  private:
+  /// [J] of the step, by loads and supports: what inertia and internal force take. With other
+  /// weights than Newmark's these take damping too, and accelerations lag by (alpha_f - alpha_m)
+  /// dt, so free coordinates are worked on by the loads, and supports see the lag made good.
+  double external_work() const {
+    const Vector moved = q_ - view(motion_.q);
+    const Vector a = view(motion_.a);
+    if (w_.is_newmark()) {
+      const Vector now = response.force + o_.times_mass(a_);
+      const Vector before = view(motion_.force) + o_.times_mass(a);
+      return 0.5 * (now + before).dot(moved);
+    }
+    const double late = 0.5 - w_.alpha_m + w_.alpha_f;
+    Vector mean =
+        0.5 * (response.force + view(motion_.force)) + o_.times_mass(late * a_ + (1.0 - late) * a);
+    for (int i : o_.free_.list()) mean(i) = 0.5 * (external_(i) + external_start_(i));
+    return mean.dot(moved);
+  }
+
   ImplicitDynamics& o_;
   const AlphaWeights& w_;
   const Motion& motion_;
   double end_, dt_;
-  Vector q_start_, v_start_, a_, q_, past_, external_;
+  Vector q_start_, v_start_, a_, q_, past_, external_, external_start_;
 };
 
 ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& options,
@@ -134,7 +151,9 @@ std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
     motion.q[static_cast<std::size_t>(p.dof)] = p.value(time);
   if (!model.evaluate(motion.q, motion.history, Model::Want::force, response))
     return failed_newton({NewtonReport::End::inadmissible}, time);
-  if (!solve_mass(problem_.external_force(time, motion.q) - response.force, motion.a))
+  const Vector r = problem_.external_force(time, motion.q) - response.force;
+  if (!r.allFinite()) return not_finite(time);
+  if (!solve_mass(r, motion.a))
     return Failed{Failed::Cause::no_convergence, time, "the mass matrix is singular"};
   store(response.force, motion.force);
   motion.stored = response.stored;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,13 @@ inline void store(const Vector& from, std::vector<double>& to) {
   to.assign(from.data(), from.data() + from.size());
 }
 
+/// A time at which something has no value, for people.
+inline Failed not_finite(double time) {
+  return {Failed::Cause::non_finite, time,
+          "a force or a motion is not finite: look at the expressions of loads and constraints "
+          "at this time, then at the step"};
+}
+
 /// A Newton solve without an answer, for people.
 inline Failed failed_newton(const NewtonReport& report, double time) {
   using End = NewtonReport::End;
@@ -38,6 +46,7 @@ inline Failed failed_newton(const NewtonReport& report, double time) {
       return {Failed::Cause::no_convergence, time,
               "the tangent is singular: the body may lack a support, or it buckles"};
     default:
+      if (!std::isfinite(report.residual)) return not_finite(time);
       return {Failed::Cause::no_convergence, time,
               fmt::format("Newton's method has not converged after {} iterations, relative "
                           "residual {:.2g}: take a smaller step",

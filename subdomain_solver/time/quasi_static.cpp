@@ -24,6 +24,7 @@ class QuasiStatic::Balance final : public Equations {
   }
 
   Vector first_guess() const { return o_.free_.pick(q_); }
+  bool finite() const { return q_.allFinite(); }
 
   /// The change of the prescribed coordinates drags the body along linearly, from the tangent at
   /// the begin: else the elements beside them would take all of it at once.
@@ -113,6 +114,7 @@ std::optional<Failed> QuasiStatic::begin(Motion& motion, double time) {
 
 NewtonReport QuasiStatic::part(Motion& motion, double end) {
   Balance balance(*this, motion, end);
+  if (!balance.finite()) return {.residual = std::numeric_limits<double>::infinity()};
   Vector x = balance.first_guess();
   if (!balance.drag(x)) return {NewtonReport::End::singular};
   const NewtonReport report = solve_newton(balance, x, options_.newton);
