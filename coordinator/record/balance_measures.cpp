@@ -10,6 +10,15 @@
 namespace abut {
 namespace {
 
+/// Part of the largest energy below which an energy of the begin is as good as none.
+constexpr double as_none = 1.0e-6;
+
+/// [J] that errors are relative to. A run that begins with nothing is measured by what it comes to.
+double scale_of(double begin, double peak) {
+  if (begin > as_none * peak) return begin;
+  return peak > 0.0 ? peak : 1.0;
+}
+
 double own_energy(const Energy& energy) { return energy.total() - energy.external_work; }
 
 /// About the axes of space; zero where a body tells none.
@@ -82,7 +91,8 @@ void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
     const std::vector<double>& momentum = recorded_[b].momentum(now);
     const double expected = body.bar >= 0 ? exact_->row.total(body.bar, now.time) : body.first;
     const double held = body.bar >= 0 ? energy.total() : own_energy(energy);
-    body.error = body.reference > 0.0 ? (held - expected) / body.reference : held - expected;
+    body.error = held - expected;
+    body.peak = std::max(body.peak, std::abs(energy.total()));
     body.error_max = std::max(body.error_max, std::abs(body.error));
     double square = 0.0;
     for (std::size_t k = 0; k < momentum.size(); ++k) {
@@ -93,7 +103,10 @@ void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
     body.momentum_max = std::max(body.momentum_max, std::sqrt(square));
   }
   const double total = total_energy(report, record);
-  drift_ = total_first_ != 0.0 ? (total - total_first_) / total_first_ : total;
+  drift_ = total - total_first_;
+  double held = 0.0;
+  for (const Response& response : report.responses) held += response.records[record].energy.total();
+  total_peak_ = std::max(total_peak_, std::abs(held));
   drift_max_ = std::max(drift_max_, std::abs(drift_));
   double square = 0.0;
   for (std::size_t k = 0; k < sum.size(); ++k)
@@ -135,8 +148,9 @@ void BalanceMeasures::write(Measures& out) const {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const RecordedBody& recorded = recorded_[b];
     const Body& body = bodies_[b];
-    out.set(fmt::format("energy.{}.relative_error_max", recorded.name), body.error_max);
-    out.set(fmt::format("energy.{}.relative_error_end", recorded.name), body.error);
+    const double energy = scale_of(body.reference, body.peak);
+    out.set(fmt::format("energy.{}.relative_error_max", recorded.name), body.error_max / energy);
+    out.set(fmt::format("energy.{}.relative_error_end", recorded.name), body.error / energy);
     for (int axis = 0; axis < out.scope.dim; ++axis) {
       const char* ending = axis_ending(out.scope.dim, axis);
       out.set(fmt::format("momentum.{}.end{}", recorded.name, ending), body.momentum[axis]);
@@ -146,8 +160,9 @@ void BalanceMeasures::write(Measures& out) const {
     scale += body.momentum_max;
   }
   out.set("energy.total.begin", total_first_);
-  out.set("energy.total.relative_drift_max", drift_max_);
-  out.set("energy.total.relative_drift_end", drift_);
+  const double energy = scale_of(std::abs(total_first_), total_peak_);
+  out.set("energy.total.relative_drift_max", drift_max_ / energy);
+  out.set("energy.total.relative_drift_end", drift_ / energy);
   if (immovable_) {
     out.none("momentum.total", "an immovable body takes momentum and does not keep it");
   } else {

@@ -25,10 +25,11 @@ class BalanceMeasures {
  private:
   using Vector = std::array<double, 3>;
   struct Body {
-    double first = 0.0;      // [J] energy minus external work
-    double reference = 0.0;  // [J] that the error is relative to
-    double error = 0.0, error_max = 0.0;
-    Vector momentum{};  // [kg m/s]
+    double first = 0.0;                   // [J] energy minus external work
+    double reference = 0.0;               // [J] that the error is relative to
+    double peak = 0.0;                    // [J] largest kinetic plus stored energy at a record
+    double error = 0.0, error_max = 0.0;  // [J]
+    Vector momentum{};                    // [kg m/s]
     double momentum_max = 0.0;
     Vector angular{};  // [kg m^2/s] about the origin
     double angular_max = 0.0;
@@ -47,8 +48,9 @@ class BalanceMeasures {
   std::vector<Body> bodies_;  // as recorded
   bool begun_ = false;
   bool immovable_ = false;
-  double total_first_ = 0.0;  // [J]
-  double drift_ = 0.0, drift_max_ = 0.0;
+  double total_first_ = 0.0;              // [J]
+  double total_peak_ = 0.0;               // [J] as of a body
+  double drift_ = 0.0, drift_max_ = 0.0;  // [J]
   Vector momentum_first_{};
   double momentum_change_ = 0.0;
   Vector angular_first_{};

@@ -209,6 +209,23 @@ TEST(Measures, EnergyDriftKeepsItsSignAtTheEnd) {
   EXPECT_NEAR(measure(recorder, "energy.left.relative_error_end"), -0.1 / 0.75, roundoff);
 }
 
+TEST(Measures, EnergyErrorOfARunThatBeginsWithNoneIsRelativeToTheLargest) {
+  for (const double begin : {0.0, 1.0e-20}) {  // none, and the round-off of none
+    HandMadeRun run;
+    MeasureRecorder recorder(nullptr);
+    run.stored = [](int, double) { return 0.0; };
+    run.kinetic = [begin](int side, double time) {
+      const double peak = side == 0 ? 5.0 : 0.0;
+      return time < 0.15 ? begin : (time < 2.0 ? peak : 0.2 * peak);
+    };
+    run.play(recorder);
+    EXPECT_NEAR(measure(recorder, "energy.left.relative_error_max"), 1.0, roundoff);
+    EXPECT_NEAR(measure(recorder, "energy.left.relative_error_end"), 0.2, roundoff);
+    EXPECT_NEAR(measure(recorder, "energy.total.relative_drift_max"), 1.0, roundoff);
+    EXPECT_NEAR(measure(recorder, "energy.total.relative_drift_end"), 0.2, roundoff);
+  }
+}
+
 TEST(Measures, MomentumDeviationIsRelativeToWhatTheBodiesCarry) {
   HandMadeRun run;
   MeasureRecorder recorder(nullptr);
