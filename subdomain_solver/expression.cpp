@@ -1,5 +1,6 @@
 #include "subdomain_solver/expression.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -31,10 +32,25 @@ struct Formula {
   double x = 0.0, y = 0.0, z = 0.0, t = 0.0;
 };
 
+/// Whether a formula sets a variable: the parser's '=', where people mean '=='.
+bool assigns(const std::string& text) {
+  for (std::size_t i = text.find('='); i != std::string::npos; i = text.find('=', i)) {
+    const std::size_t end = std::min(text.find_first_not_of('=', i), text.size());
+    const bool alone = end == i + 1;
+    if (alone && (i == 0 || std::string("<>!").find(text[i - 1]) == std::string::npos)) return true;
+    i = end;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::function<double(const std::array<double, 3>&, double)> expression(const std::string& text,
                                                                        const std::string& where) {
+  if (assigns(text)) {
+    throw InputError(fmt::format("'{}' sets a variable", text), where,
+                     "Compare with ==, or leave the = out.");
+  }
   try {
     std::shared_ptr<Formula> formula = std::make_shared<Formula>(text);  // std::function copies
     return [formula](const std::array<double, 3>& at, double time) {
@@ -47,8 +63,7 @@ std::function<double(const std::array<double, 3>&, double)> expression(const std
   } catch (const mu::Parser::exception_type& error) {
     std::string why = error.GetMsg();
     while (why.ends_with('.')) why.pop_back();
-    throw InputError(fmt::format("'{}' cannot be read as an expression: {}", text, why),
-                     where,
+    throw InputError(fmt::format("'{}' cannot be read as an expression: {}", text, why), where,
                      "Write it with numbers, x, y, z, t, pi, + - * / ^ and functions such as sin.");
   }
 }

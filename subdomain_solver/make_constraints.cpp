@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "subdomain_solver/expression.hpp"
+#include "subdomain_solver/fe/rigid_motions.hpp"
 #include "subdomain_solver/make_fields.hpp"
 
 namespace abut {
@@ -81,7 +82,9 @@ ConstraintSpec mirrored(const Mesh& mesh, ConstraintSpec spec) {
 
 class ConstraintMaker {
  public:
-  ConstraintMaker(const Mesh& mesh, const Place& place) : mesh_(mesh), place_(place) {}
+  /// step [s]: that of the integrator.
+  ConstraintMaker(const Mesh& mesh, const Place& place, double step)
+      : mesh_(mesh), place_(place), step_(step) {}
 
   void add(const std::string& name, const ConstraintSpec& spec) {
     const std::string key = "constraints." + name;
@@ -115,15 +118,26 @@ class ConstraintMaker {
     const std::array<double, 3> at = position_of(mesh_, node);
     const auto [place, fresh] = by_dof_.emplace(dof, made_.supports.size());
     if (!fresh) {
-      // Sides that meet share nodes: what both prescribe must agree, and is kept once.
-      const double before = made_.supports[place->second].value(0.0), now = value(at, 0.0);
-      if (std::abs(before - now) <= 1.0e-12 * std::max(std::abs(before), std::abs(now))) return;
-      throw InputError(
-          fmt::format("prescribes {:g} m where another constraint prescribes {:g} m, at node {}",
-                      now, before, node + 1),
-          place_.where(key), "Let constraints of sides that meet agree where they meet.");
+      agree(
+          made_.supports[place->second].value, [&](double t) { return value(at, t); }, node, key);
+      return;
     }
     made_.supports.push_back({dof, [at, value](double time) { return value(at, time); }});
+  }
+
+  /// Sides that meet share nodes: what both prescribe must agree, and is kept once. Looked at for a
+  /// few times, in steps, that no formula has been made for.
+  void agree(const std::function<double(double)>& first, const std::function<double(double)>& other,
+             std::int32_t node, const std::string& key) const {
+    for (const double steps : {0.0, 0.37, 11.3, 177.7}) {
+      const double before = first(steps * step_), now = other(steps * step_);
+      if (!(std::abs(before - now) > 1.0e-12 * std::max(std::abs(before), std::abs(now)))) continue;
+      throw InputError(
+          fmt::format("prescribes {:g} m where another constraint prescribes {:g} m, at node {} "
+                      "and {:g} s",
+                      now, before, node + 1, steps * step_),
+          place_.where(key), "Let constraints of sides that meet agree where they meet.");
+    }
   }
 
   void add_inclined(const ConstraintSpec& spec, const std::string& key,
@@ -154,6 +168,7 @@ class ConstraintMaker {
 
   const Mesh& mesh_;
   const Place& place_;
+  const double step_;
   const std::string zero_ = "0";
   std::map<int, std::size_t> by_dof_;
   Constraints made_;
@@ -162,7 +177,8 @@ class ConstraintMaker {
 }  // namespace
 
 Constraints make_constraints(const BodySpec& spec, const Place& place, const Mesh& mesh) {
-  ConstraintMaker constraints(mesh, place);
+  const auto step_of = [](const auto& scheme) { return scheme.step; };
+  ConstraintMaker constraints(mesh, place, std::visit(step_of, *spec.integrator));
   ConstraintSpec held;  // an end of a bar
   held.fixed = true;
   for (const auto& [side, is_fixed] :
@@ -180,6 +196,21 @@ Constraints make_constraints(const BodySpec& spec, const Place& place, const Mes
   });
   for (const auto& [name, constraint] : all) constraints.add(name, constraint);
   return constraints.take();
+}
+
+void check_statics(const BodySpec& spec, const Place& place, const FeModel& model,
+                   const std::vector<Prescribed>& supports) {
+  if (!std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return;
+  std::vector<int> held;
+  for (const Prescribed& p : supports) held.push_back(p.dof);
+  const Eigen::Index loose = vanishing_on(held, rigid_motions(model)).cols();
+  if (loose == 0) return;
+  throw InputError(
+      fmt::format("has no answer: the constraints leave the body free to move or turn as a whole "
+                  "({} rigid motion{})",
+                  loose, loose == 1 ? "" : "s"),
+      place.where("integrator.quasi_static"),
+      "Hold it by constraints, of points where sides do not suffice, or use newmark.");
 }
 
 }  // namespace abut

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/place.hpp"
 #include "subdomain_solver/time/problem.hpp"
 
@@ -16,5 +17,9 @@ struct Constraints {
 
 /// What a scene's constraints prescribe on a mesh. Throws InputError.
 Constraints make_constraints(const BodySpec& spec, const Place& place, const Mesh& mesh);
+
+/// Throws InputError for a quasi-static body that its supports leave a rigid motion.
+void check_statics(const BodySpec& spec, const Place& place, const FeModel& model,
+                   const std::vector<Prescribed>& supports);
 
 }  // namespace abut

@@ -111,6 +111,7 @@ std::unique_ptr<Subdomain> make_modal_body(const BodySpec& spec, const Document&
                 .area = modal.area()},
       constraints.frames);
   FeModel& nodes = *parts.model;
+  check_statics(spec, place, nodes, constraints.supports);
   std::vector<int> supports;
   for (const Prescribed& p : constraints.supports) supports.push_back(p.dof);
   const MassForm form = mass_form(*spec.integrator);

@@ -31,6 +31,7 @@ std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document&
                 fe.area()},
       constraints.frames);
   FeModel& model = *parts.model;
+  check_statics(spec, place, model, constraints.supports);
   parts.map = std::make_unique<IdentityMap>();
   parts.problem = std::make_unique<Problem>();
   parts.problem->model = &model;

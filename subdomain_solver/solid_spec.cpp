@@ -144,6 +144,8 @@ void LoadSpec::fields(Fields& f) {
       (traction.empty() ? 0 : 1) + (pressure.empty() ? 0 : 1) + (acceleration.empty() ? 0 : 1);
   f.check(ways == 1, "on", ways == 0 ? "carries no load" : "carries more than one load",
           "Give one of traction, pressure and acceleration; let others be loads of their own.");
+  f.check(!follows || !pressure.empty(), "follows", "belongs to a pressure",
+          "Leave follows out, or give a pressure in place of the traction.");
   f.check(acceleration.empty() == !on.empty() || ways != 1, "on",
           on.empty() ? "is missing" : "does not belong to an acceleration",
           "Give the side of a traction or pressure; an acceleration acts on the whole body.");

@@ -72,5 +72,16 @@ TEST(ConjugateGradients, SolveToTheirTolerance) {
   expect_solution(*solver, chain(200, 0.0), 1.0e-9);  // recurred and true residual drift apart
 }
 
+TEST(LinearSolvers, AnswerNoEquationsWithNothing) {  // a body all of whose coordinates are given
+  for (const bool direct : {true, false}) {
+    const std::unique_ptr<LinearSolver> solver =
+        direct ? make_direct_solver() : make_conjugate_gradients(1.0e-10);
+    Vector x = Vector::Ones(1);
+    ASSERT_TRUE(solver->factor(SparseMatrix(0, 0)));
+    ASSERT_TRUE(solver->solve(Vector(), x));
+    EXPECT_EQ(x.size(), 0);
+  }
+}
+
 }  // namespace
 }  // namespace abut
