@@ -82,7 +82,7 @@ ConstraintSpec mirrored(const Mesh& mesh, ConstraintSpec spec) {
 
 class ConstraintMaker {
  public:
-  /// step [s]: that of the integrator.
+  /// step [s]: that of the integrator, or any without one.
   ConstraintMaker(const Mesh& mesh, const Place& place, double step)
       : mesh_(mesh), place_(place), step_(step) {}
 
@@ -178,7 +178,8 @@ class ConstraintMaker {
 
 Constraints make_constraints(const BodySpec& spec, const Place& place, const Mesh& mesh) {
   const auto step_of = [](const auto& scheme) { return scheme.step; };
-  ConstraintMaker constraints(mesh, place, std::visit(step_of, *spec.integrator));
+  const double step = spec.integrator ? std::visit(step_of, *spec.integrator) : 1.0;
+  ConstraintMaker constraints(mesh, place, step);
   ConstraintSpec held;  // an end of a bar
   held.fixed = true;
   for (const auto& [side, is_fixed] :
@@ -200,7 +201,7 @@ Constraints make_constraints(const BodySpec& spec, const Place& place, const Mes
 
 void check_statics(const BodySpec& spec, const Place& place, const FeModel& model,
                    const std::vector<Prescribed>& supports) {
-  if (!std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return;
+  if (!spec.integrator || !std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return;
   std::vector<int> held;
   for (const Prescribed& p : supports) held.push_back(p.dof);
   const Eigen::Index loose = vanishing_on(held, rigid_motions(model)).cols();

@@ -125,7 +125,9 @@ TEST(GeneralBar, IsWhatTheCoreDoesNotKnow) {
   EXPECT_TRUE(is_solid(with(text, ", area", ", grading: 1.01, area")));
   EXPECT_TRUE(is_solid(text + "    constraints: {wall: {on: left, fixed: true}}\n"));
   EXPECT_TRUE(is_solid(text + "    loads: {pull: {on: right, traction: ['0.1 * t']}}\n"));
-  EXPECT_TRUE(is_solid(with(text, explicit_scheme(0.6), "quasi_static: {step: 0.6}")));
+  const std::string held = text + "    supports: {left: fixed}\n";  // statics needs it
+  EXPECT_FALSE(is_solid(held));
+  EXPECT_TRUE(is_solid(with(held, explicit_scheme(0.6), "quasi_static: {step: 0.6}")));
 }
 
 std::string refusal(const std::string& body) {
