@@ -34,7 +34,7 @@ void CentralDifferenceSpec::fields(Fields& f) {
   f.word(
       "above_limit", clamp, {"refuse", "clamp"},
       "answer to a step of a solid above its stable limit, at the begin or once strain has lowered "
-      "it: refuse, or take 0.95 of the limit, later as equal parts of the step");
+      "it: refuse, or take equal parts of it of at most 0.95 of the limit");
   f.check(tchamwa == 1.0 || (dispersion_terms == 1 && bulk_viscosity == 0.0), "tchamwa",
           fmt::format("is {:g} beside dispersion terms or bulk viscosity", tchamwa),
           "Choose one of them: what they do together has no known stable step.");

@@ -14,7 +14,8 @@ namespace abut {
 
 namespace {
 
-/// Of the stable limit, where a step is clamped: finite strain may lower the limit a little.
+/// Of the stable limit, that a clamped step takes at most: finite strain may lower the limit a
+/// little.
 constexpr double clamped = 0.95;
 
 struct SchemeMaker {
@@ -37,7 +38,9 @@ struct SchemeMaker {
                        "Give a step of at most the limit, above_limit: clamp, or an implicit "
                        "integrator such as newmark.");
     }
-    const double step = s.step > limit ? clamped * limit : s.step;
+    // A whole number of parts, so that they divide windows as the step does.
+    const double parts = s.step > limit ? std::ceil(s.step / (clamped * limit)) : 1.0;
+    const double step = s.step / parts;
     std::unique_ptr<Integrator> steps;
     if (watch && std::isfinite(limit))
       steps = std::make_unique<StableSteps>(problem, watch(),
@@ -46,7 +49,7 @@ struct SchemeMaker {
       steps = std::make_unique<ExplicitDynamics>(problem);
     return {std::move(steps), step, limit, MassForm::lumped,
             fmt::format("central difference, step {:.4g} s, stable limit {:.4g} s{}", step, limit,
-                        step < s.step ? " (clamped)" : "")};
+                        parts > 1.0 ? fmt::format(" ({:.10g} to one of the scene)", parts) : "")};
   }
   SolidBody::Scheme operator()(const NewmarkSpec& s) const {
     return implicit(AlphaWeights::newmark(s.beta, s.gamma), s.step, s.mass, "newmark");

@@ -138,6 +138,22 @@ class Placements(SystemTest):
         self.assertGreater(per_cell, 100)  # it was measured
         self.assertLess(per_cell, CELL_LIMIT)
 
+    def test_a_clamped_step_is_taken_in_whole_parts_that_fit_into_the_windows(self):
+        scene = self.folder / "cube.yaml"
+        scene.write_text(EXPLICIT_CUBE.format(n=4), encoding="utf-8")
+        long = ("--set", "time.end=2.0e-3", "--set", "time.window=1.0e-3",
+                "--set", "bodies.cube.integrator.central_difference.step=1.0e-3")
+        refused = self.abut("run", scene, "--local", "--out", self.out, *long)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("above_limit: clamp", refused.stderr)
+        folder = self.run_in("clamped", scene, *long, "--set",
+                             "bodies.cube.integrator.central_difference.above_limit=clamp")
+        body = self.summary(folder)["bodies"][0]
+        parts = 1.0e-3 / body["step"]
+        self.assertGreater(parts, 1.5)
+        self.assertAlmostEqual(parts, round(parts), delta=1.0e-9)
+        self.assertIn(f"({round(parts)} to one of the scene)", body["model"])
+
 
 class Expectations(SystemTest):
     def test_a_missed_expectation_ends_with_1_and_a_table_that_says_which(self):
