@@ -46,8 +46,13 @@ struct Rebound {
   double node_mobility = 0.0;    // [1/kg] G0: velocity of the contact node per unit impulse on it
   // [1/kg] G1: velocity of its neighbour per unit impulse on the contact node
   double inner_mobility = 0.0;
-  // [J] work that contact has taken from the body since the port closed, W; 0 where that is unknown
-  double captured = 0.0;
+};
+
+/// What an impulse on a port would do to the body now: it changes the velocity of what it hits,
+/// which is the port's node or, behind a massless layer, its inner node.
+struct Recoil {
+  double velocity = 0.0;  // [m/s] of what it hits, along the outward normal
+  double mobility = 0.0;  // [1/kg] change of that velocity per unit impulse; 0: immovable
 };
 
 /// One port's reply to a window.
@@ -58,6 +63,10 @@ struct PortResponse {
   double approach_bound = 0.0;
   double approach_acceleration = 0.0;  // [m/s^2] by which body forces may raise that bound
   std::optional<Rebound> rebound;  // only bodies with massive contact nodes
+  std::optional<Recoil> recoil;    // only bodies that take impulses
+  // [J] done on the body through the port over the window, impulses included: the change of the
+  // energy that its integrator conserves [M.23]
+  double work = 0.0;
 };
 
 /// A body's reply to a window. Reused between windows: buffers keep their memory.

@@ -107,7 +107,7 @@ void Controller::observe_start() {
 bool Controller::fly_free() {
   const bool waits =
       std::any_of(coupling_.interfaces.begin(), coupling_.interfaces.end(),
-                  [](const Interface& i) { return i.closed || i.release_impulse != 0.0; });
+                  [](const Interface& i) { return i.closed || i.impulse != 0.0; });
   if (waits || std::exchange(grounded_, false)) return false;
   const double window = scene_.time.window;
   const double horizon = free_flight_horizon(coupling_.interfaces, bodies_);
@@ -149,54 +149,35 @@ void Controller::step_window() {
   apply_criteria_at_start(window);
   bodies_.save_all();
   while (running()) {
-    const Attempt& attempt = advance(window);
-    if (attempt.failed || !attempt.converged()) {
-      if (!attempt.failed && shorten_loose(window)) {
-        bodies_.restore_all();
-        continue;
-      }
-      if (!handle_trouble(attempt, window)) return;
-      if (attempt.failed || scene_.schwarz.on_nonconvergence != "accept") continue;
-    }
-    const std::vector<Event> events = first_events(window);
-    if (events.empty()) return accept(window, attempt);
-    if (loosen_grazing()) {
-      bodies_.restore_all();
-      continue;
-    }
-    if (++events_here_ > most_events) {
-      loosen_chattering(window);
-      bodies_.restore_all();
-      continue;
-    }
-    const double cut = events.front().state;
-    if (cut >= window.end) {  // a touch at the very end changes nothing before it
-      accept(window, attempt);
-      for (const Event& event : events) apply(event);
-      return;
-    }
+    const Verdict verdict = judge(window);
+    if (verdict == Verdict::stop) return;
+    if (verdict == Verdict::accept) return accept(window, attempt_);
     bodies_.restore_all();
-    if (cut - window.begin >= event_tolerance * shortest_step()) {
-      TimeWindow part{window.index, window.begin, cut};
-      const Attempt& shorter = advance(part);
-      if (shorter.failed || !shorter.converged()) {
-        if (!shorter.failed && shorten_loose(part)) {
-          window = part;
-          bodies_.restore_all();
-          continue;
-        }
-        if (!handle_trouble(shorter, part)) return;
-        if (shorter.failed || scene_.schwarz.on_nonconvergence != "accept") {
-          window = part;  // halved
-          continue;
-        }
-      }
-      accept(part, shorter);
-      for (const Event& event : events) apply(event);
-      return;
-    }
-    for (const Event& event : events) apply(event);
   }
+}
+
+/// Tries the window and says what becomes of it; it may end earlier the next time.
+Controller::Verdict Controller::judge(TimeWindow& window) {
+  const Attempt& attempt = advance(window);
+  if (attempt.failed || !attempt.converged()) {
+    if (!attempt.failed && shorten(window)) return Verdict::again;
+    if (!handle_trouble(attempt, window)) return Verdict::stop;
+    if (attempt.failed || scene_.schwarz.on_nonconvergence != "accept") return Verdict::again;
+  }
+  if (const std::optional<double> touch = engage_touching()) {
+    window.end = common_end(window, *touch);
+    return Verdict::again;
+  }
+  if (events_here_ >= most_events) return Verdict::accept;  // what they move is owed meanwhile
+  const std::optional<double> event = first_event(window);
+  if (!event || *event >= window.end) return Verdict::accept;
+  ++events_here_;
+  if (*event > window.begin) {
+    window.end = *event;
+  } else {
+    release_kicks(window);
+  }
+  return Verdict::again;
 }
 
 const Controller::Partition& Controller::partition() {
@@ -224,7 +205,7 @@ const Controller::Partition& Controller::partition() {
 const Controller::Attempt& Controller::advance(const TimeWindow& window) {
   attempt_.failed.reset();
   attempt_.reports.clear();
-  prepare(window, is_whole(window) ? scene_.output.records_per_window : 1, Sampling::substeps);
+  prepare(window, records_in(window), Sampling::substeps);
   for (const Island& island : partition().islands) {
     std::variant<SchwarzReport, Failed> result = schwarz_.solve(window, island, joints_, bodies_);
     if (Failed* failed = std::get_if<Failed>(&result); failed != nullptr) {
@@ -235,6 +216,12 @@ const Controller::Attempt& Controller::advance(const TimeWindow& window) {
   }
   attempt_.failed = bodies_.advance(partition_.free);
   return attempt_;
+}
+
+/// A window that was cut keeps the distance of its records, about.
+int Controller::records_in(const TimeWindow& window) const {
+  const double share = std::min(1.0, window.length() / scene_.time.window);
+  return std::max(1, static_cast<int>(std::lround(scene_.output.records_per_window * share)));
 }
 
 double Controller::longest_step() const {
@@ -273,7 +260,6 @@ bool Controller::handle_trouble(const Attempt& attempt, TimeWindow& window) {
     ++halvings_;
     window.end = window.begin + 0.5 * window.length();
     emit(RunEvent::Kind::warning, window.begin, "", text + "; the window is halved");
-    bodies_.restore_all();
     return true;
   }
   constexpr const char* remedy = "; raise schwarz.max_iterations or choose another accelerator";
@@ -286,11 +272,9 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
   fill_reports(&attempt);
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     Interface& interface = coupling_.interfaces[i];
-    interface.release_impulse = 0.0;
-    if (!interface.closed) continue;
+    interface.impulse = 0.0;
+    if (!interface.closed || coupling_.rules[i].unilateral()) continue;
     interface.force_scale = std::max(interface.force_scale, peak_force(interface, bodies_));
-    if (coupling_.rules[i].tied) continue;  // never released
-    interface.rebound_impulse = release_impulse(interface, bodies_);
   }
   ++end_.windows;
   for (Observer* observer : observers_)
@@ -350,11 +334,11 @@ double Controller::shortest_step() const {
 void Controller::prepare(const TimeWindow& window, int records, Sampling sampling) {
   bodies_.prepare(window, records, sampling);
   for (const Interface& interface : coupling_.interfaces) {
-    if (interface.release_impulse == 0.0) continue;
+    if (interface.impulse == 0.0) continue;
     for (int s : {0, 1}) {
       const Side& side = interface.sides[static_cast<std::size_t>(s)];
       bodies_.request(side.body).boundary[static_cast<std::size_t>(side.port)].impulse = {
-          -interface.normal_of(s) * interface.release_impulse};
+          -interface.normal_of(s) * interface.impulse};
     }
   }
 }
@@ -364,7 +348,8 @@ void Controller::prepare(const TimeWindow& window, int records, Sampling samplin
 void Controller::fill_reports(const Attempt* attempt) {
   for (std::size_t i = 0; i < reports_.size(); ++i) {
     const Interface& interface = coupling_.interfaces[i];
-    const bool silent = interface.loose() && peak_force(interface, bodies_) == 0.0;
+    const bool silent = coupling_.rules[i].unilateral() && interface.closed &&
+                        peak_force(interface, bodies_) == 0.0;
     reports_[i] = {interface.closed && !silent, interface.kinematic};
   }
   if (attempt == nullptr) return;

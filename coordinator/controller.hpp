@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "coordinator/couple.hpp"
+#include "coordinator/coupling/contact.hpp"
 #include "coordinator/energy_guard.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/scene.hpp"
@@ -20,9 +21,7 @@ namespace abut {
 ///
 ///   run           observe the start, then fly free or step until the end
 ///   fly_free      nothing can touch before the horizon: several windows in one request per body,
-///   no iteration step_window   one window: closed interfaces by Schwarz, other bodies free; cut
-///   short at the first event advance       Schwarz for every island of closed interfaces, one
-///   advance for every other body
+///   step_window   one window: tried, judged, and accepted or tried again
 class Controller {
  public:
   /// The bodies must outlive the controller. `interrupted` may be null.
@@ -34,13 +33,6 @@ class Controller {
   RunEnd run();
 
  private:
-  struct Event {
-    int interface = 0;
-    bool closes = false;
-    double state = 0.0;    // [s] where the window is cut
-    double located = 0.0;  // [s] where gap or force cross zero
-    double speed = 0.0;    // [m/s] of closing
-  };
   struct Partition {         // of the bodies by the closed interfaces; kept while those stay
     std::vector<int> roles;  // by interface: kinematic side, or -1 when open
     std::vector<Island> islands;
@@ -56,16 +48,24 @@ class Controller {
   void give_up(const RunError& error, bool interrupted, double wall_seconds);
   bool fly_free();
   void step_window();
+  enum class Verdict { accept, again, stop };
+  Verdict judge(TimeWindow& window);
   const Attempt& advance(const TimeWindow& window);  // valid until the next one
   const Partition& partition();
   bool handle_trouble(const Attempt& attempt, TimeWindow& window);
   void accept(const TimeWindow& window, const Attempt& attempt);
-  void loosen(int interface, double speed);
-  bool loosen_grazing();
-  void loosen_chattering(const TimeWindow& window);
-  bool shorten_loose(TimeWindow& window) const;
+  std::optional<double> engage_touching();
+  void engage(int interface, double speed);
+  std::optional<double> first_event(const TimeWindow& window);
+  double common_end(const TimeWindow& window, double time) const;
+  void release_kicks(const TimeWindow& window);
+  bool shorten(TimeWindow& window) const;
   void settle(const TimeWindow& window);
-  void tell_closed(const Interface& interface, double time);
+  void pay(Interface& interface);
+  void narrate(Interface& interface);
+  void disengage(Interface& interface, const TimeWindow& window);
+  double least_force(const Interface& interface) const;
+  void tell_closed(const Interface& interface, double time, double speed);
   void tell_opened(const Interface& interface, double time);
 
   TimeWindow next_window() const;
@@ -73,13 +73,11 @@ class Controller {
   void tie();
   void choose_roles(int interface);
   void apply_criteria_at_start(const TimeWindow& window);
-  std::vector<Event> first_events(const TimeWindow& window) const;
-  void apply(const Event& event);
-  void close(int interface, double time, double speed);
   void prepare(const TimeWindow& window, int records, Sampling sampling);
   void fill_reports(const Attempt* attempt);  // null: all flew free
   void watch_internal();
   bool is_whole(const TimeWindow& window) const;
+  int records_in(const TimeWindow& window) const;
   int windows_to_fields() const;  // fields are asked for between flights
   double shortest_step() const;
   double longest_step() const;
@@ -105,13 +103,11 @@ class Controller {
   double anchor_;           // [s]
   std::int64_t since_ = 0;  // whole windows since the anchor
   double time_;             // [s]
-  int events_here_ = 0;     // since the last whole window: a bound on chatter
+  int events_here_ = 0;     // that windows were cut for since the last whole one
   int halvings_ = 0;
-  double fastest_closing_ = 0.0;  // [m/s] of all first touches
+  double fastest_touch_ = 0.0;    // [m/s] of all first touches
   double force_reference_ = 0.0;  // [N] largest contact force of the run
-  // of a substep: an event so near to the window's begin is there
-  static constexpr double event_tolerance = 1.0e-4;
-  static constexpr int most_events = 8;              // per window; more is chatter
+  static constexpr int most_events = 8;              // that a window is cut for
   static constexpr int most_windows_at_once = 1000;  // of free flight: bounds the size of one reply
   int flight_limit_ = most_windows_at_once;
   bool grounded_ = false;  // free flight came too near: step once
@@ -120,6 +116,7 @@ class Controller {
   Attempt attempt_;
   std::vector<InterfaceReport> reports_;
   EnergyGuard energy_guard_;
+  ContactHistory history_;
 };
 
 }  // namespace abut

@@ -13,12 +13,16 @@ namespace abut {
 namespace {
 
 constexpr double force_floor = 1.0e-9;  // of the largest contact force: less is no compression
-// Of the fastest first touch: what meets more slowly is not located. The overlap of a substep at
-// that speed holds its square, 1e-4, of the energy that a cell brings along.
+// Of the fastest first touch: what meets more slowly only grazes, until it presses.
 constexpr double grazing_share = 1.0e-2;
-// Of the largest contact force of the run: what presses less only touches. Forerunners of a front
-// reach a few per cent.
+// Of the largest contact force of the run: what grazes and presses less only touches. Forerunners
+// of a front reach a few per cent.
 constexpr double pressing_share = 0.05;
+// Of the fastest first touch: slower ones are no motion. Numerical forerunners begin at 1e-300.
+constexpr double still_share = 1.0e-12;
+// Of the largest energy of the run: what an event must move for a window to end there, and what is
+// owed for it to be paid.
+constexpr double notable_share = 1.0e-9, payable_share = 1.0e-13;
 
 }  // namespace
 
@@ -29,48 +33,21 @@ void Controller::apply_criteria_at_start(const TimeWindow& window) {
     const Waveform& t0 = trace_of(bodies_, interface.sides[0]);
     const Waveform& t1 = trace_of(bodies_, interface.sides[1]);
     if (!interface.closed) {
-      if (interface.gap(t0.u.back(), t1.u.back()) < 0.0) {
-        close(static_cast<int>(i), window.begin, std::abs(t0.v.back() - t1.v.back()));
-      }
+      if (interface.gap(t0.u.back(), t1.u.back()) >= 0.0) continue;
+      const double speed = std::abs(t0.v.back() - t1.v.back());
+      engage(static_cast<int>(i), speed);
+      if (coupling_.rules[i].projection)
+        interface.impulse = std::max(0.0, closing_impulse(interface, bodies_));
+      tell_closed(interface, window.begin, speed);
       continue;
     }
     // Persistence: a closed interface stays closed while the force handed over compresses.
     const int side = coupling_.rules[i].swap ? 1 - interface.kinematic : interface.kinematic;
     const Waveform& trace = side == 0 ? t0 : t1;
     if (-interface.normal_of(side) * trace.f.back() > 0.0) continue;
-    apply({static_cast<int>(i), false, window.begin, window.begin, 0.0});
+    interface.closed = false;
+    tell_opened(interface, window.begin);
   }
-}
-
-std::vector<Controller::Event> Controller::first_events(const TimeWindow& window) const {
-  std::vector<Event> events;
-  // what the iteration leaves open is no force
-  const double floor = std::max(force_floor, scene_.schwarz.tolerance);
-  for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
-    if (!coupling_.rules[i].located()) continue;
-    const Interface& interface = coupling_.interfaces[i];
-    if (!interface.closed) {
-      if (const std::optional<Closing> c = overlap_criterion(interface, bodies_)) {
-        events.push_back({static_cast<int>(i), true, c->time, c->time, c->speed});
-      }
-      continue;
-    }
-    if (interface.loose()) continue;
-    const double scale = std::max(interface.force_scale, peak_force(interface, bodies_));
-    if (const std::optional<Opening> o = compression_criterion(interface, bodies_, floor * scale)) {
-      events.push_back({static_cast<int>(i), false, o->state, o->crossing, 0.0});
-    }
-  }
-  std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
-    return a.state != b.state ? a.state < b.state : a.interface < b.interface;
-  });
-  const double together = event_tolerance * shortest_step();
-  while (!events.empty() && events.back().state > events.front().state + together)
-    events.pop_back();
-  if (!events.empty() && events.front().closes && window.end - events.front().state < together) {
-    events.front().state = window.end;
-  }
-  return events;
 }
 
 /// Tied interfaces are closed before the first window and for the whole run.
@@ -79,7 +56,7 @@ void Controller::tie() {
     if (!coupling_.rules[i].tied) continue;
     Interface& interface = coupling_.interfaces[i];
     interface.closed = true;
-    interface.release_impulse = closing_impulse(interface, bodies_);  // the node has one velocity
+    interface.impulse = closing_impulse(interface, bodies_);  // the node has one velocity
     choose_roles(static_cast<int>(i));
   }
 }
@@ -94,132 +71,180 @@ void Controller::choose_roles(int index) {
   rule.role_fixed = true;  // roles do not change during a run
 }
 
-void Controller::close(int index, double time, double speed) {
-  Interface& interface = coupling_.interfaces[static_cast<std::size_t>(index)];
-  interface.closed = true;
-  interface.closing_speed = speed;
-  interface.force_scale = 0.0;
-  if (coupling_.rules[static_cast<std::size_t>(index)].projection)
-    interface.release_impulse = std::max(0.0, closing_impulse(interface, bodies_));
-  choose_roles(index);
-  fastest_closing_ = std::max(fastest_closing_, speed);
-  interface.pressed = true;
-  tell_closed(interface, time);
-}
+// ---- in a window that was tried -----------------------------------------------------------------
 
-void Controller::tell_closed(const Interface& interface, double time) {
-  emit(RunEvent::Kind::contact_closed, time, interface.name,
-       fmt::format("contact closes at {:.6g} m/s; kinematic side: {}", interface.closing_speed,
-                   bodies_.describe(interface.kinematic_side().body).name),
-       {{"closing_speed", interface.closing_speed}});
-}
-
-void Controller::tell_opened(const Interface& interface, double time) {
-  emit(RunEvent::Kind::contact_opened, time, interface.name, "contact opens",
-       {{"release_impulse", interface.release_impulse}});
-}
-
-void Controller::apply(const Event& event) {
-  if (event.closes) return close(event.interface, event.located, event.speed);
-  Interface& interface = coupling_.interfaces[static_cast<std::size_t>(event.interface)];
-  interface.closed = false;
-  interface.opened_at = event.state;
-  interface.release_impulse = interface.rebound_impulse;
-  interface.rebound_impulse = 0.0;
-  interface.pressed = false;
-  tell_opened(interface, event.located);
-}
-
-// ---- loose contact: touching, or coming and going faster than windows can be cut ----------------
-
-void Controller::loosen(int index, double speed) {
-  Interface& interface = coupling_.interfaces[static_cast<std::size_t>(index)];
-  if (!interface.closed) {
-    interface.closed = true;
-    interface.closing_speed = speed;
-    interface.force_scale = 0.0;
-    choose_roles(index);
-  }
-  interface.bilateral = false;
-}
-
-/// Sides that meet so slowly that not locating it costs nothing: forerunners of a numerical front
-/// at faces that touch, faces that graze.
-bool Controller::loosen_grazing() {
-  bool loosened = false;
+/// Sides that were free and met: from now on they are iterated.
+std::optional<double> Controller::engage_touching() {
+  std::optional<double> first;
+  const double still = still_share * fastest_touch_;
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     const Interface& interface = coupling_.interfaces[i];
-    if (!coupling_.rules[i].located() || interface.closed) continue;
-    const std::optional<Closing> closing = overlap_criterion(interface, bodies_);
-    if (!closing || closing->speed > grazing_share * fastest_closing_) continue;
-    loosen(static_cast<int>(i), closing->speed);
-    loosened = true;
+    if (!coupling_.rules[i].unilateral() || interface.closed) continue;
+    const std::optional<Touch> touch = first_overlap(interface, bodies_, still * shortest_step());
+    if (!touch) continue;
+    engage(static_cast<int>(i), touch->speed);
+    first = std::min(first.value_or(touch->state), touch->state);
   }
-  return loosened;
+  return first;
 }
 
-/// No more events are located, every substep decides for itself. Leaving the sides free instead
-/// would let them overlap, and closing an overlap later would make energy out of nothing.
-void Controller::loosen_chattering(const TimeWindow& window) {
-  std::string first;
+void Controller::engage(int index, double speed) {
+  Interface& interface = coupling_.interfaces[static_cast<std::size_t>(index)];
+  fastest_touch_ = std::max(fastest_touch_, speed);
+  interface.closed = true;
+  interface.closing_speed = std::max(speed, still_share * fastest_touch_);
+  interface.force_scale = 0.0;
+  choose_roles(index);
+}
+
+double Controller::least_force(const Interface& interface) const {
+  // what the iteration leaves open is no force
+  return std::max(force_floor, scene_.schwarz.tolerance) * interface.force_scale;
+}
+
+/// Where the window must end so that contact is paid what an event in it has moved, before more
+/// happens: at the first common end of substeps. A release of kick layers gives its impulse at the
+/// end of the last kick.
+std::optional<double> Controller::first_event(const TimeWindow& window) {
+  std::optional<double> first;
+  const double notable = notable_share * energy_guard_.most();
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     Interface& interface = coupling_.interfaces[i];
-    if (!coupling_.rules[i].located() || interface.loose()) continue;
-    if (!interface.closed) {
-      const std::optional<Closing> closing = overlap_criterion(interface, bodies_);
-      if (!closing) continue;
-      close(static_cast<int>(i), window.begin, closing->speed);
+    if (!coupling_.rules[i].unilateral() || !interface.closed) continue;
+    history_.read(interface, bodies_);
+    const double floor =
+        std::max(force_floor, scene_.schwarz.tolerance) *
+        std::max(interface.force_scale, history_.peak());
+    for (std::size_t k = 1; k < history_.size(); ++k) {
+      const ContactLevel& before = history_[k - 1];
+      const bool gone = before.force > floor && history_[k].force <= floor;
+      if (history_.kicks() ? !gone : std::abs(history_.energy(k)) <= notable) continue;
+      const double at = history_.kicks() ? before.time : history_[k].time;
+      const double end = at > window.begin ? common_end(window, at) : at;
+      first = std::min(first.value_or(end), end);
+      break;
     }
-    loosen(static_cast<int>(i), interface.closing_speed);
-    if (first.empty()) first = interface.name;
   }
-  events_here_ = 0;
-  emit(RunEvent::Kind::warning, window.begin, first,
-       fmt::format("contact changed more than {} times within a window: every substep decides for "
-                   "itself until it is quiet",
-                   most_events));
+  return first;
+}
+
+/// First time in the window, from `time` on, at which substeps of all bodies end.
+double Controller::common_end(const TimeWindow& window, double time) const {
+  constexpr double rounding = 1.0e-6;  // of a substep
+  const double coarsest = longest_step();
+  const double last = std::round(window.length() / coarsest);
+  for (double k = std::ceil((time - window.begin) / coarsest - rounding); k < last; k += 1.0) {
+    bool common = true;
+    for (int b = 0; b < bodies_.count() && common; ++b) {
+      const double step = bodies_.describe(b).step;
+      if (step <= 0.0) continue;
+      const double count = k * coarsest / step;
+      common = std::abs(count - std::round(count)) <= rounding;
+    }
+    if (common) return window.begin + k * coarsest;
+  }
+  return window.end;
+}
+
+/// Kick layers that end their contact at the window's begin part with what they were owed.
+void Controller::release_kicks(const TimeWindow& window) {
+  for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
+    Interface& interface = coupling_.interfaces[i];
+    if (!coupling_.rules[i].unilateral() || !interface.closed) continue;
+    history_.read(interface, bodies_);
+    if (!history_.kicks() || history_.size() < 2) continue;
+    const double floor = least_force(interface);
+    if (history_[0].force <= floor || history_[1].force > floor) continue;
+    interface.impulse = std::exchange(interface.rebound_impulse, 0.0);
+    interface.opened_at = window.begin;
+    if (std::exchange(interface.pressed, false)) tell_opened(interface, history_.release(1));
+  }
 }
 
 /// Fewer substeps at once, fewer kinks in the map that is iterated.
-bool Controller::shorten_loose(TimeWindow& window) const {
-  const bool loose = std::ranges::any_of(coupling_.interfaces, &Interface::loose);
-  const double fewer = std::floor(0.5 * window.length() / longest_step() + 0.25) * longest_step();
-  if (!loose || fewer <= 0.0 || fewer >= 0.75 * window.length()) return false;
-  window.end = window.begin + fewer;
+bool Controller::shorten(TimeWindow& window) const {
+  const bool unilateral = std::ranges::any_of(
+      coupling_.interfaces, [](const Interface& i) { return i.closed && !i.bilateral; });
+  const bool kinks = std::ranges::any_of(joints_, [](const Joint& joint) {
+    return joint.interface->closed && joint.transmission->projects();
+  });
+  if (!unilateral || !kinks) return false;
+  const double half = common_end(window, window.begin + 0.5 * window.length());
+  if (half >= window.end) return false;
+  window.end = half;
   return true;
 }
 
-/// What an accepted window says of loose contact: it presses, it is quiet, or its sides have
-/// parted.
+// ---- in a window that was accepted --------------------------------------------------------------
+
+/// What contact did in the window: its account, the impulse that pays it, and what is told of it.
 void Controller::settle(const TimeWindow& window) {
-  for (const Interface& interface : coupling_.interfaces) {
-    if (interface.closed) force_reference_ = std::max(force_reference_, interface.force_scale);
+  for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
+    Interface& interface = coupling_.interfaces[i];
+    if (!coupling_.rules[i].unilateral() || !interface.closed) continue;
+    history_.read(interface, bodies_);
+    interface.force_scale = std::max(interface.force_scale, history_.peak());
+    force_reference_ = std::max(force_reference_, history_.peak());
+    interface.debt -= contact_work(interface, bodies_);
+    pay(interface);
+    narrate(interface);
+    disengage(interface, window);
   }
-  for (Interface& interface : coupling_.interfaces) {
-    if (!interface.loose()) continue;
-    const Waveform& trace = trace_of(bodies_, interface.kinematic_side());
-    const double inward = -interface.normal_of(interface.kinematic);
-    const double bound = pressing_share * force_reference_;
-    const bool presses = inward * trace.f.back() > bound;
-    std::size_t at = trace.size() - 1;  // first of the substeps that are as the last one is
-    while (at > 0 && (inward * trace.f[at - 1] > bound) == presses) --at;
-    if (presses) {
-      interface.bilateral = true;
-      if (!std::exchange(interface.pressed, true)) tell_closed(interface, trace.time[at]);
-      continue;
+}
+
+void Controller::pay(Interface& interface) {
+  interface.rebound_impulse = release_impulse(interface, bodies_);
+  const std::size_t last = history_.size() - 1;
+  const bool active = history_[last].force > 0.0 || (last > 0 && history_[last - 1].force > 0.0);
+  if (history_.kicks() || !active) return;  // bodies that are apart give each other nothing
+  if (std::abs(interface.debt) <= payable_share * energy_guard_.most()) return;
+  interface.impulse = paying_impulse(interface, bodies_);
+}
+
+/// Tells of the pushes that begin and end in the window.
+void Controller::narrate(Interface& interface) {
+  const double floor = least_force(interface);
+  const double bound = std::max(floor, pressing_share * force_reference_);
+  for (std::size_t k = 1; k < history_.size(); ++k) {
+    const ContactLevel& before = history_[k - 1];
+    const ContactLevel& now = history_[k];
+    if (now.force > floor && before.force <= floor) {
+      const Touch touch = history_.touch(k);
+      interface.touched_at = touch.time;
+      interface.touch_speed = touch.speed;
+      fastest_touch_ = std::max(fastest_touch_, touch.speed);
     }
-    if (std::exchange(interface.pressed, false)) {
-      interface.release_impulse = std::exchange(interface.rebound_impulse, 0.0);
-      tell_opened(interface, trace.time[at]);
+    const bool fast = interface.touch_speed > grazing_share * fastest_touch_;
+    if (!interface.pressed && now.force > floor && (fast || now.force > bound)) {
+      interface.pressed = true;
+      const double begin = fast ? interface.touched_at : history_.crossing(k, bound);
+      interface.closing_speed = std::max(interface.touch_speed, still_share * fastest_touch_);
+      tell_closed(interface, begin, interface.touch_speed);
+    } else if (interface.pressed && now.force <= floor) {
+      interface.pressed = false;
+      tell_opened(interface, history_.release(k));
     }
-    const double u0 = trace_of(bodies_, interface.sides[0]).u.back();
-    const double u1 = trace_of(bodies_, interface.sides[1]).u.back();
-    const bool apart = interface.gap(u0, u1) > grazing_share * fastest_closing_ * window.length();
-    if (!apart || peak_force(interface, bodies_) > 0.0) continue;
-    interface.closed = false;
-    interface.bilateral = true;
-    interface.opened_at = window.end;
   }
+}
+
+/// Sides that have parted are free again.
+void Controller::disengage(Interface& interface, const TimeWindow& window) {
+  const double gap = history_[history_.size() - 1].gap;
+  const bool apart = gap > grazing_share * fastest_touch_ * window.length();
+  if (!apart || peak_force(interface, bodies_) > 0.0 || interface.pressed) return;
+  interface.closed = false;
+}
+
+void Controller::tell_closed(const Interface& interface, double time, double speed) {
+  emit(RunEvent::Kind::contact_closed, time, interface.name,
+       fmt::format("contact '{}' closes at {:.6g} m/s; kinematic side: {}", interface.name, speed,
+                   bodies_.describe(interface.kinematic_side().body).name),
+       {{"closing_speed", speed}});
+}
+
+void Controller::tell_opened(const Interface& interface, double time) {
+  emit(RunEvent::Kind::contact_opened, time, interface.name,
+       fmt::format("contact '{}' opens", interface.name), {{"release_impulse", interface.impulse}});
 }
 
 }  // namespace abut

@@ -213,7 +213,7 @@ Coupling make_coupling(const Scene& scene, const Bodies& bodies) {
       add_published(spec, std::get<DirichletNeumannTransmission>(spec.transmission), scene.schwarz,
                     interface, bodies, coupling);
     }
-    coupling.rules.back().tied = spec.tied.has_value();
+    coupling.rules.back().tied = interface.bilateral = spec.tied.has_value();
     coupling.interfaces.push_back(std::move(interface));
   }
   return coupling;
@@ -244,7 +244,8 @@ Schwarz make_schwarz(const SchwarzSpec& spec) {
       return std::make_unique<QuasiNewton>(inverse, s.reuse, s.filter, 1);
     }
   };
-  const Schwarz::Options options{spec.max_iterations, spec.tolerance};
+  const Schwarz::Options options{spec.max_iterations, spec.tolerance,
+                                 std::holds_alternative<KernelAcceleration>(spec.accelerator)};
   return Schwarz(options,
                  [accelerator = spec.accelerator](ApplyInverse inverse, ApplyInverse probe) {
                    return std::visit(Maker{std::move(inverse), std::move(probe)}, accelerator);

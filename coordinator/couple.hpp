@@ -12,15 +12,15 @@ namespace abut {
 /// bodies.
 struct Coupling {
   struct Rule {               // per interface, constant during a run
-    bool published = false;   // dirichlet_neumann: decided at window starts, no event location
+    bool published = false;   // dirichlet_neumann: decided at window starts
     bool internal = false;    // contact inside a body: watched, never iterated
     bool tied = false;        // closed from the start to the end: no criterion, no events
     bool swap = false;        // published form: roles swap after every window in contact
     bool role_fixed = true;   // false: by probe at first touch
     bool projection = false;  // published form: plastic impact of the contact nodes at first touch
 
-    /// Whether first touch and release are located inside windows.
-    bool located() const { return !published && !internal && !tied; }
+    /// Whether every substep decides for itself if contact pushes.
+    bool unilateral() const { return !published && !internal && !tied; }
   };
 
   std::vector<Interface> interfaces;

@@ -19,6 +19,7 @@ class EnergyGuard {
   /// Looks at the last record of every body. Warns once, at half the share.
   Verdict look(std::span<const Response> responses);
   double growth() const { return growth_; }  // as a fraction, at the last look
+  double most() const { return most_; }      // [J] largest kinetic and stored energy so far
 
  private:
   double share_;

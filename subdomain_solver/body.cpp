@@ -115,6 +115,7 @@ Outcome Body::finish(Response& response) {
   response.records.resize(static_cast<std::size_t>(std::max(1, request.records)));
   recorded_ = 0;
   begin_traces(request, response);
+  for (EndState& e : state_.end) e.work = 0.0;
   apply_impulses(request);
   begin_sweep();
   const Substeps grid = Substeps::divide(request.window.begin, request.window.end, scheme_.step);
@@ -135,11 +136,14 @@ std::optional<Failed> Body::advance_window(const Advance& request, const Substep
                                   [](const BoundaryData& data) { return data.closed(); });
   EndActions actions;
   set_actions(request, grid, 0, actions);
+  EndPlaces places = end_places();
   if (grid.count > 0) integrator.open(state_, grid.length(1), actions);
+  if (driven) add_work(places);
   RecordClock clock(request, grid.count);
   for (int i = 1; i <= grid.count; ++i) {
     if (driven) set_actions(request, grid, i, actions);
     integrator.substep(state_, grid.length(i), actions);
+    if (driven) add_work(places);
     const bool due = i == clock.substep();
     if (due) integrator.close(state_, grid.length(i));  // u, v and a of one time
     if (request.sampling == Sampling::substeps) {
@@ -159,6 +163,28 @@ std::optional<Failed> Body::advance_window(const Advance& request, const Substep
     if (std::optional<Failed> failed = record(clock.time(), response)) return failed;
   }
   return std::nullopt;
+}
+
+Body::EndPlaces Body::end_places() const {
+  EndPlaces places{};
+  for (int end : end_of_port_) {
+    const std::size_t e = static_cast<std::size_t>(end);
+    places[e] = {Bar::outward(end) * state_.u[static_cast<std::size_t>(bar_->node_of(end))],
+                 state_.end[e].dynamic};
+  }
+  return places;
+}
+
+/// Of the ends' forces since `before`, which moves on  [M.23]. Kicks keep their own account.
+void Body::add_work(EndPlaces& before) {
+  const EndPlaces now = end_places();
+  for (int end : end_of_port_) {
+    if (support_[end] == ForceSupport::step) continue;
+    const std::size_t e = static_cast<std::size_t>(end);
+    state_.end[e].work -=
+        0.5 * (before[e].force + now[e].force) * (now[e].outward - before[e].outward);
+  }
+  before = now;
 }
 
 void Body::find_same_grids(const Advance& request, const Substeps& grid) {
@@ -240,11 +266,7 @@ void Body::fill_force(const BoundaryData& data, const Substeps& grid, int i, std
 void Body::apply_impulses(const Advance& request) {
   for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
     if (request.boundary[p].impulse.empty()) continue;
-    const int end = end_of_port_[p];
-    const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));
-    const std::size_t hit =
-        bar_->inverse_mass()[node] > 0.0 ? node : static_cast<std::size_t>(bar_->inner_of(end));
-    state_.v[hit] += bar_->inverse_mass()[hit] * request.boundary[p].impulse[0];
+    scheme_.integrator->strike(state_, end_of_port_[p], request.boundary[p].impulse[0]);
   }
 }
 
@@ -333,7 +355,7 @@ std::optional<Failed> Body::record(double time, Response& response) {
   r.energy.stored = scheme_.integrator->stored(state_);
   const double body_force = bar_->data().body_force;
   if (body_force != 0.0) r.energy.external_work = body_force * bar_->momentum(state_.u);  // f . u
-  r.momentum.assign(1, bar_->momentum(state_.v));
+  r.momentum.assign(1, bar_->momentum(state_.v) + scheme_.integrator->momentum_lag(state_));
   return check_finite(r);
 }
 
@@ -342,7 +364,9 @@ void Body::finish_ports(Response& response) {
     const int end = end_of_port_[p];
     const EndState& e = state_.end[static_cast<std::size_t>(end)];
     PortResponse& port = response.ports[p];
-    if (!e.closed) approach(end, port);
+    port.work = e.work;
+    port.recoil = scheme_.integrator->recoil(state_, end);
+    if (e.force == 0.0) approach(end, port);
     if (bar_->data().layer[static_cast<std::size_t>(end)] == ContactLayer::massless) continue;
     const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));
     const std::size_t inner = static_cast<std::size_t>(bar_->inner_of(end));
@@ -351,9 +375,7 @@ void Body::finish_ports(Response& response) {
     port.rebound = Rebound{n * (state_.v[node] + half * state_.a[node]),
                            n * state_.v[node],
                            n * (state_.v[inner] + half * state_.a[inner]),
-                           bar_->inverse_mass()[node],
-                           0.0,
-                           e.captured};
+                           bar_->inverse_mass()[node], 0.0};
   }
 }
 

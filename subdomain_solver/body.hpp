@@ -57,6 +57,13 @@ class Body final : public Subdomain {
   void resist(const Impedance& impedance, const Substeps& grid, int i, int end,
               EndAction& action) const;
   void apply_impulses(const Advance& request);
+  struct EndPlace {
+    double outward = 0.0;  // [m] displacement of the end's node along its normal
+    double force = 0.0;    // [N] compressive, that moves the body
+  };
+  using EndPlaces = std::array<EndPlace, 2>;
+  EndPlaces end_places() const;
+  void add_work(EndPlaces& before);
   void begin_traces(const Advance& request, Response& response);
   void push_traces(const Advance& request, double time, Response& response);
   void begin_sweep();

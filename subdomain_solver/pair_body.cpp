@@ -117,6 +117,8 @@ Outcome PairBody::finish(Response& response) {
     port.lower.clear();
     port.upper.clear();
     port.rebound.reset();
+    port.recoil.reset();
+    port.work = 0.0;
     // Contact inside the body asks nobody: no flight is free.
     port.approach_bound = std::numeric_limits<double>::infinity();
     port.approach_acceleration = 0.0;

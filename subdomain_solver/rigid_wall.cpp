@@ -66,6 +66,8 @@ Outcome RigidWall::finish(Response& response) {
   port.upper = port.lower;
   port.approach_bound = port.approach_acceleration = 0.0;
   port.rebound.reset();
+  port.recoil = Recoil{};  // gives way to nothing
+  port.work = 0.0;
   response.steps = request.window.length() > 0.0 ? 1 : 0;
   response.compute_seconds = 0.0;
   return Advanced{};

@@ -174,6 +174,8 @@ std::optional<Failed> SolidBody::advance(const Advance& request, const Substeps&
     port.trace.clear();
     port.trace.support = ForceSupport::nodal;
     port.rebound.reset();
+    port.recoil.reset();
+    port.work = 0.0;
     port.lower.clear();
     port.upper.clear();
     // Nothing is known of how fast a port may come: the coordinator goes window by window.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -8,42 +9,75 @@
 
 namespace abut {
 
-/// A first touch inside a window.
-struct Closing {
+/// Sides that meet in a window that they were free in.
+struct Touch {
   double time = 0.0;   // [s] where the gap crosses zero
   double speed = 0.0;  // [m/s] at which it does
+  double state = 0.0;  // [s] end of the substep in which it does
 };
 
-/// Overlap criterion: an open interface closes where its gap becomes zero or less. Looks at every
-/// substep of both bodies after the window's begin, with motion linear between substeps. Within one
-/// of the coarser side's substeps after a release it stays open: the release itself was judged no
-/// finer than that.
-std::optional<Closing> overlap_criterion(const Interface& interface, const Bodies& bodies);
+/// Where an open interface overlaps by more than `negligible` [m] for the first time. Looks at
+/// every substep of both bodies after the window's begin, with motion linear between substeps.
+std::optional<Touch> first_overlap(const Interface& interface, const Bodies& bodies,
+                                   double negligible);
 
-/// A release inside a window.
-struct Opening {
-  double crossing = 0.0;  // [s] where the contact force crosses zero
-  // [s] end of the last substep that is still in contact: both bodies stop there
-  double state = 0.0;
+/// One level of time of an interface in contact.
+struct ContactLevel {
+  double time = 0.0;   // [s]
+  double force = 0.0;  // [N] compressive; on substeps of unlike length the mean over the coarser one
+  double gap = 0.0;    // [m]
 };
 
-/// Compression criterion with persistence: a closed interface stays closed as long as the contact
-/// force compresses. Judged on the coarser side's force, mean over its own substeps: single values
-/// of the finer side spike.
-/// `floor` [N]: forces below it count as none.
-std::optional<Opening> compression_criterion(const Interface& interface, const Bodies& bodies,
-                                             double floor);
+/// What an interface showed in a window, at the substeps of its coarser side, the window's begin
+/// first. Judged there, because single values of the finer side spike.
+class ContactHistory {
+ public:
+  /// Reads the latest responses. Reuse it: levels keep their memory.
+  void read(const Interface& interface, Bodies& bodies);
+
+  std::size_t size() const { return levels_.size(); }
+  const ContactLevel& operator[](std::size_t i) const { return levels_[i]; }
+  bool kicks() const { return kicks_; }  // a force acts over the substep that ends at its level
+  double peak() const;                   // [N] largest force
+
+  /// [J] that contact gives to the bodies in substep i: gaps and forces alone tell it  [M.25].
+  double energy(std::size_t i) const {
+    const ContactLevel& a = levels_[i - 1];
+    const ContactLevel& b = levels_[i];
+    return 0.5 * (a.force * b.gap - b.force * a.gap);
+  }
+  /// [s] where the gap of free sides crosses zero in substep i, in which they began to push, and
+  /// the speed [m/s] at which it does.
+  Touch touch(std::size_t i) const;
+  /// [s] where the force crosses zero in substep i, in which it went.
+  double release(std::size_t i) const;
+  /// [s] where the force crosses a bound in substep i, linearly.
+  double crossing(std::size_t i, double bound) const;
+
+ private:
+  std::vector<ContactLevel> levels_;
+  bool kicks_ = false;
+  double compliance_ = 0.0;  // [m/N] of both sides over a substep
+};
 
 /// Largest contact force [N] on the kinematic side in the latest responses.
 double peak_force(const Interface& interface, const Bodies& bodies);
+
+/// [J] that contact did on both bodies in the latest responses  [M.23].
+double contact_work(const Interface& interface, const Bodies& bodies);
 
 /// Impulse [N s] that gives massive contact nodes a common velocity: a plastic impact of the nodes
 /// alone, exact in momentum; negative where they part. 0 when a side does not tell its node's mass.
 double closing_impulse(const Interface& interface, const Bodies& bodies);
 
 /// Release impulse [N s] after contact of massive contact nodes that take kicks: gives back what
-/// contact captured, as far as the nodes' neighbours can take it [M.13]. 0 when a
-/// side does not keep that account.
+/// contact has taken, as far as the nodes' neighbours can take it [M.13]. 0 when a side has no such
+/// node.
 double release_impulse(const Interface& interface, const Bodies& bodies);
+
+/// Impulse [N s] between the sides, positive where it pushes them apart, that pays what contact
+/// owes the bodies  [M.26]. 0 where a side takes no impulses, or where their velocity of approach
+/// is too small to pay with: the debt waits.
+double paying_impulse(const Interface& interface, const Bodies& bodies);
 
 }  // namespace abut

@@ -19,7 +19,7 @@ void DirichletNeumann::begin(const TimeWindow& window, const Interface& interfac
   const PortResponse& port = bodies.response(n.body).ports[static_cast<std::size_t>(n.port)];
   if (port.rebound) {
     v_begin_ -= interface.normal_of(1 - interface.kinematic) * port.rebound->node_mobility *
-                interface.release_impulse;
+                interface.impulse;
   }
   scale_.step = grid_.step;
   scale_.velocity = interface.closing_speed;

@@ -12,14 +12,16 @@ namespace abut {
 
 void Interface::state(Archive& archive) {
   archive.field("closed", closed);
-  archive.field("bilateral", bilateral);
   archive.field("pressed", pressed);
   archive.field("touching", touching);
   archive.field("opened_at", opened_at);
+  archive.field("touched_at", touched_at);
+  archive.field("touch_speed", touch_speed);
   archive.field("closing_speed", closing_speed);
   archive.field("force_scale", force_scale);
+  archive.field("debt", debt);
   archive.field("rebound_impulse", rebound_impulse);
-  archive.field("release_impulse", release_impulse);
+  archive.field("impulse", impulse);
 }
 
 Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodies& bodies) {
@@ -27,11 +29,13 @@ Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodi
   interface.name = std::move(name);
   interface.sides = sides;
   std::array<double, 2> place = {0.0, 0.0};
+  double spacing = 0.0;
   for (std::size_t s : {0u, 1u}) {
     const Port& port =
         bodies.describe(sides[s].body).ports[static_cast<std::size_t>(sides[s].port)];
     interface.normal[s] = port.geometry.normals[0];
     place[s] = port.geometry.points[0];
+    spacing = std::max(spacing, port.geometry.spacing);
   }
   const std::string where = "interfaces." + interface.name;
   if (interface.normal[0] + interface.normal[1] != 0.0) {
@@ -39,7 +43,9 @@ Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodi
                      "Join a right end with a left end.");
   }
   interface.reference_gap = interface.normal[0] * (place[1] - place[0]);
-  const double rounding = place_rounding * std::max(std::abs(place[0]), std::abs(place[1]));
+  const double rounding =
+      std::max(place_rounding * std::max(std::abs(place[0]), std::abs(place[1])),
+               place_tolerance * spacing);
   if (interface.reference_gap < -rounding) {
     throw InputError(
         fmt::format("its sides overlap by {:g} m at the start", -interface.reference_gap), where,

@@ -21,22 +21,23 @@ struct Interface {
   std::array<Side, 2> sides;
   std::array<double, 2> normal = {0.0, 0.0};  // outward, +1 or -1
   double reference_gap = 0.0;                 // [m] along the normal of side 0, reference positions
+  bool bilateral = false;                     // tied: holds in tension too
   int kinematic = 0;                          // index of the kinematic (Dirichlet) side
   // What contact carries from window to window:
-  bool closed = false;
-  // False: closed, but loosely. Contact may come and go, and every substep decides for itself.
-  bool bilateral = true;
+  bool closed = false;    // iterated: its sides are so near that they may press
   bool pressed = false;   // told of as closed, and not of as open since
   bool touching = false;  // contact inside a body presses: nothing is iterated
-  double opened_at = -std::numeric_limits<double>::infinity();  // [s] last release
-  double closing_speed = 0.0;                                   // [m/s] at the last first touch
+  double opened_at = -std::numeric_limits<double>::infinity();  // [s] last release of a kick layer
+  // Where the push that goes on began [s], and how fast its sides met [m/s].
+  double touched_at = 0.0, touch_speed = 0.0;
+  double closing_speed = 0.0;    // [m/s] against which the iteration is measured
   double force_scale = 0.0;      // [N] largest contact force since it closed
+  double debt = 0.0;             // [J] that contact has taken from the bodies and owes them  [M.25]
   double rebound_impulse = 0.0;  // [N s] that a release now would give back
-  double release_impulse = 0.0;  // [N s] of impact or release, for the next window's begin
+  double impulse = 0.0;          // [N s] pushing the sides apart, at the next window's begin
 
   void state(Archive& archive);
 
-  bool loose() const { return closed && !bilateral; }
   const Side& kinematic_side() const { return sides[static_cast<std::size_t>(kinematic)]; }
   const Side& neumann_side() const { return sides[static_cast<std::size_t>(1 - kinematic)]; }
   double normal_of(int side) const { return normal[static_cast<std::size_t>(side)]; }
@@ -48,6 +49,8 @@ struct Interface {
 
 /// Ends of bars are sums of what scenes say: an overlap of this share of a coordinate is no gap.
 constexpr double place_rounding = 4.0 * std::numeric_limits<double>::epsilon();
+/// Of the coarser mesh: an overlap at the start below it is none.
+constexpr double place_tolerance = 1.0e-9;
 
 /// Builds an interface of two ports. Throws InputError when they do not face each other or overlap
 /// at the start.

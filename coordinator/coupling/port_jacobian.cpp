@@ -106,6 +106,33 @@ Eigen::MatrixXd neumann_map(const PortKernel& kernel, const TimeGrid& here, cons
   return map;
 }
 
+ContactMaps contact_maps(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
+                         const PortKernel& neumann, const TimeGrid& neumann_grid) {
+  ContactMaps maps;
+  maps.motion = neumann_map(neumann, neumann_grid, kinematic_grid, kinematic.support);
+  maps.seen = interpolation(kinematic_grid, neumann_grid);
+  maps.overlap = toeplitz(kinematic.displacement, kinematic_grid.count) + maps.seen * maps.motion;
+  return maps;
+}
+
+Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::VectorXd& overlap,
+                                      const Eigen::VectorXd& force) {
+  constexpr int most_passes = 200;
+  constexpr double settled = 1.0e-13;  // of the largest change
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(force.size());
+  for (int pass = 0; pass < most_passes; ++pass) {
+    double moved = 0.0;
+    for (Eigen::Index i = 0; i < force.size(); ++i) {
+      const double left = overlap[i] - a.row(i).dot(change);
+      const double next = std::max(-force[i], change[i] + left / a(i, i));
+      moved = std::max(moved, std::abs(next - change[i]));
+      change[i] = next;
+    }
+    if (moved <= settled * change.lpNorm<Eigen::Infinity>()) break;
+  }
+  return change;
+}
+
 Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
                                     const PortKernel& neumann, const TimeGrid& neumann_grid) {
   const Eigen::MatrixXd pushed =

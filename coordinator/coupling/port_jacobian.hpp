@@ -46,6 +46,22 @@ Eigen::VectorXd solve_unilateral(const std::vector<double>& kinematic,
                                  const Eigen::VectorXd& r, const Eigen::VectorXd& overlap,
                                  const Eigen::VectorXd& force);
 
+/// What forces on the kinematic side's substeps do to an interface whose sides step unlike, at
+/// those substeps.
+struct ContactMaps {
+  Eigen::MatrixXd overlap;  // [m/N] (n_K, n_K) overlap removed there
+  Eigen::MatrixXd motion;   // [m/N] (n_N, n_K) motion of the Neumann side along the push
+  Eigen::MatrixXd seen;     // (n_K, n_N) its motion, as the kinematic side's substeps see it
+};
+ContactMaps contact_maps(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
+                         const PortKernel& neumann, const TimeGrid& neumann_grid);
+
+/// Change d of the contact forces f >= 0 that makes forces and gaps complementary  [M.20]:
+///   0 <= f + d,   overlap - A d <= 0,   and one of both is zero at every substep.
+/// A is lower triangular but for substeps of unlike length, so passes through time settle it.
+Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::VectorXd& overlap,
+                                      const Eigen::VectorXd& force);
+
 /// x with T x = r for the lower triangular Toeplitz matrix T of a first column.
 Eigen::VectorXd solve_toeplitz(const std::vector<double>& column, const Eigen::VectorXd& r);
 

@@ -71,12 +71,13 @@ const KernelInverse::Entry* KernelInverse::add(Entry entry) {
   return entries_.back().get();
 }
 
-const KernelInverse::Entry* KernelInverse::store(double length, const Eigen::MatrixXd& jacobian) {
-  return add({length, {}, jacobian.partialPivLu()});
+const KernelInverse::Entry* KernelInverse::store(double length, const Eigen::MatrixXd& jacobian,
+                                                 ContactMaps maps) {
+  return add({length, {}, jacobian.partialPivLu(), std::move(maps)});
 }
 
 const KernelInverse::Entry* KernelInverse::store(double length, std::vector<double> column) {
-  return add({length, std::move(column), {}});
+  return add({length, std::move(column), {}, {}});
 }
 
 // ---- unilateral, alternating --------------------------------------------------------------------
@@ -105,19 +106,22 @@ void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bod
   scale_.velocity = reference_velocity(interface, kinematic_compliance_, step);
   scale_.force = interface.force_scale;
   first_factor_ = 1.0 / (1.0 + neumann_compliance_ / kinematic_compliance_);
-  const bool alike = kinematic_grid_.same_as(neumann_grid_) && kernel_k.support == kernel_n.support;
-  projects_ = interface.loose() && alike;
+  alike_ = kinematic_grid_.same_as(neumann_grid_) && kernel_k.support == kernel_n.support;
+  projects_ = false;
   kernel_k_ = &kernel_k;
   kernel_n_ = &kernel_n;
   outward_n_ = interface.normal_of(1 - interface.kinematic);
+  inverse_ = nullptr;
+  if (moved == 0.0) return;  // a side that does not give way leaves nothing to iterate
   inverse_ = inverses_.find(window.length());
   if (inverse_ != nullptr) return;
-  if (alike) {
+  if (alike_) {
     inverse_ = inverses_.store(window.length(),
                                unilateral_jacobian_column(kernel_k, kernel_n, neumann_grid_.count));
   } else if (std::max(kinematic_grid_.count, neumann_grid_.count) <= KernelInverse::largest) {
     inverse_ = inverses_.store(
-        window.length(), unilateral_jacobian(kernel_k, kinematic_grid_, kernel_n, neumann_grid_));
+        window.length(), unilateral_jacobian(kernel_k, kinematic_grid_, kernel_n, neumann_grid_),
+        contact_maps(kernel_k, kinematic_grid_, kernel_n, neumann_grid_));
   }
 }
 
@@ -148,7 +152,6 @@ void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
     motion.u.push_back(x[i - 1]);
   }
   data.obstacle.offset.assign(1, interface.offset(side));
-  // the coordinator locates the release and splits the window there
   data.obstacle.bilateral = interface.bilateral;
   guess_.time = motion.time;
   guess_.u = motion.u;
@@ -165,25 +168,30 @@ void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interfa
       trace.interpolate(trace.u, neumann_grid_.time(i), {&g[i - 1], 1});
     }
   }
-  if (projects_) {
-    const Waveform& reply = trace_of(bodies, interface.kinematic_side());
-    overlap_.resize(g.size());
-    force_.resize(g.size());
-    for (Eigen::Index i = 0; i < g.size(); ++i) {
-      const std::size_t at = static_cast<std::size_t>(i) + 1;
-      double u[2];
-      u[interface.kinematic] = reply.u[at];
-      u[1 - interface.kinematic] = x[i];
-      overlap_[i] = -interface.gap(u[0], u[1]);
-      force_[i] = -interface.normal_of(interface.kinematic) * reply.f[at];
-    }
-  }
+  if (!interface.bilateral && inverse_ != nullptr) see_contact(interface, bodies);
   scale_.force = std::max(interface.force_scale, 0.0);
   for (double f : trace_of(bodies, interface.kinematic_side()).f)
     scale_.force = std::max(scale_.force, std::abs(f));
   scale_.velocity =
       std::max(scale_.velocity, scale_.force * kinematic_compliance_ / scale_.step * 1.0e-3);
   scale_.roundoff = roundoff_gain_ * roundoff_of(u_begin_, g[neumann_grid_.count - 1]);
+}
+
+/// Overlap and force at K's substeps, against the iterate that it was given.
+void Unilateral::see_contact(const Interface& interface, const Bodies& bodies) {
+  const Waveform& reply = trace_of(bodies, interface.kinematic_side());
+  overlap_.resize(kinematic_grid_.count);
+  force_.resize(kinematic_grid_.count);
+  for (Eigen::Index i = 0; i < force_.size(); ++i) {
+    const std::size_t at = static_cast<std::size_t>(i) + 1;
+    double u[2];
+    u[interface.kinematic] = reply.u[at];
+    guess_.interpolate(guess_.u, kinematic_grid_.time(static_cast<int>(at)),
+                       {&u[1 - interface.kinematic], 1});
+    overlap_[i] = -interface.gap(u[0], u[1]);
+    force_[i] = -interface.normal_of(interface.kinematic) * reply.f[at];
+  }
+  projects_ = force_.minCoeff() <= 0.0;
 }
 
 FieldResiduals Unilateral::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
@@ -203,9 +211,14 @@ void Unilateral::scales(Eigen::Ref<Eigen::VectorXd> s) const {
 }
 
 Eigen::VectorXd Unilateral::apply_inverse(const Eigen::VectorXd& r) const {
-  if (projects_) {
+  if (projects_ && alike_) {
     return solve_unilateral(kernel_k_->displacement, kernel_n_->displacement, outward_n_, r,
                             overlap_, force_);
+  }
+  if (projects_) {
+    const ContactMaps& maps = inverse_->maps;
+    const Eigen::VectorXd left = overlap_ + outward_n_ * (maps.seen * r);
+    return r - outward_n_ * (maps.motion * solve_complementarity(maps.overlap, left, force_));
   }
   if (inverse_ != nullptr) return inverse_->solve(r);
   return first_factor_ * r;
@@ -217,6 +230,7 @@ void ParallelForce::begin(const TimeWindow& window, const Interface& interface, 
   std::vector<TimeGrid> grids;
   std::vector<const PortKernel*> kernels;
   compliance_ = 0.0;
+  projects_ = false;
   for (const Side& side : interface.sides) {
     grids.push_back(grid_of(bodies, side, window));
     kernels.push_back(&kernel_of(bodies, side, grids.back().count));
@@ -235,8 +249,9 @@ void ParallelForce::begin(const TimeWindow& window, const Interface& interface, 
   inverse_ = inverses_.find(window.length());
   if (inverse_ != nullptr) return;
   if (std::max(grids[0].count, grids[1].count) > KernelInverse::largest) return;
-  inverse_ = inverses_.store(
-      window.length(), parallel_jacobian(kernels, grids, force_grid_, support_) / compliance_);
+  ContactMaps maps;
+  maps.overlap = parallel_jacobian(kernels, grids, force_grid_, support_);
+  inverse_ = inverses_.store(window.length(), maps.overlap / compliance_, maps);
 }
 
 void ParallelForce::predict(Eigen::Ref<Eigen::VectorXd> x) const {
@@ -268,6 +283,7 @@ void ParallelForce::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
 void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
                           const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
   double travelled = 0.0;
+  overlap_.resize(force_grid_.count);
   for (int i = 1; i <= force_grid_.count; ++i) {
     double u[2] = {0.0, 0.0};
     for (std::size_t s : {0u, 1u}) {
@@ -275,9 +291,12 @@ void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Inte
       trace.interpolate(trace.u, force_grid_.time(i), {&u[s], 1});
       travelled = std::max(travelled, std::abs(u[s]));
     }
-    g[i - 1] = x[i - 1] - interface.gap(u[0], u[1]) / compliance_;
+    overlap_[i - 1] = -interface.gap(u[0], u[1]);
+    g[i - 1] = x[i - 1] + overlap_[i - 1] / compliance_;
     if (!interface.bilateral) g[i - 1] = std::max(0.0, g[i - 1]);
   }
+  force_ = x;
+  projects_ = !interface.bilateral && inverse_ != nullptr && g.minCoeff() <= 0.0;
   scale_.force = std::max(interface.force_scale, x.lpNorm<Eigen::Infinity>());
   scale_.velocity = std::max(scale_.velocity, scale_.force * compliance_ / scale_.step * 1.0e-3);
   scale_.roundoff = roundoff_of(travelled, interface.reference_gap);
@@ -298,6 +317,7 @@ void ParallelForce::scales(Eigen::Ref<Eigen::VectorXd> s) const {
 }
 
 Eigen::VectorXd ParallelForce::apply_inverse(const Eigen::VectorXd& r) const {
+  if (projects_) return solve_complementarity(inverse_->maps.overlap, overlap_, force_);
   return inverse_ != nullptr ? inverse_->solve(r) : r;
 }
 

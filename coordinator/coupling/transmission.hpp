@@ -40,26 +40,27 @@ class Transmission {
   /// over that of both, each the inverse of its port kernel's first coefficient. 1 where one is not
   /// needed: what is iterated is scaled by the probe already, or the form is the published one.
   virtual double first_factor() const { return 1.0; }
-  /// True when apply_inverse answers contact that comes and goes within the window exactly, for
-  /// linear bodies: secants of other substeps in contact would spoil it.
+  /// True when contact came or went within the window at the last image, and apply_inverse answers
+  /// that exactly for linear bodies: secants of other substeps in contact would spoil it.
   virtual bool projects() const { return false; }
   /// True when the sides must be advanced one after the other, the kinematic one first.
   virtual bool ordered() const = 0;
 };
 
 /// Inverse interface Jacobians by window length: a Toeplitz column where both bodies take the same
-/// substeps, factors otherwise.
+/// substeps, factors otherwise, and with them the maps of contact that comes and goes.
 class KernelInverse {
  public:
   struct Entry {
     double length = 0.0;  // [s] of the window
     std::vector<double> column;
     Eigen::PartialPivLU<Eigen::MatrixXd> factors;
+    ContactMaps maps;  // where the substeps are unlike; of the parallel form overlap alone
 
     Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
   };
   const Entry* find(double length) const;  // null: not there yet
-  const Entry* store(double length, const Eigen::MatrixXd& jacobian);
+  const Entry* store(double length, const Eigen::MatrixXd& jacobian, ContactMaps maps);
   const Entry* store(double length, std::vector<double> column);
 
   static constexpr int largest = 1200;  // rows of a dense Jacobian: 11 MiB, factored once in 0.3 s
@@ -98,8 +99,11 @@ class Unilateral final : public Transmission {
   double kinematic_compliance_ = 0.0, neumann_compliance_ = 0.0;  // [m/N] over one substep
   double roundoff_gain_ = 1.0;  // of displacements, through the reaction
   double first_factor_ = 1.0;
-  // of a loose window: kernels, and what the last sweep left on K's side at the substeps
+  void see_contact(const Interface& interface, const Bodies& bodies);
+
+  // of contact: kernels, and what the last sweep left on K's side at its substeps
   bool projects_ = false;
+  bool alike_ = false;  // both sides take the same substeps
   const PortKernel* kernel_k_ = nullptr;
   const PortKernel* kernel_n_ = nullptr;
   double outward_n_ = 1.0;
@@ -123,10 +127,13 @@ class ParallelForce final : public Transmission {
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
   Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override;
+  bool projects() const override { return projects_; }
   bool ordered() const override { return false; }
 
  private:
   TimeGrid force_grid_;
+  bool projects_ = false;
+  Eigen::VectorXd overlap_, force_;  // [m] [N] of the last image
   ForceSupport support_ = ForceSupport::nodal;
   double force_begin_ = 0.0;  // [N] compressive, known at the window's begin
   Waveform guess_;

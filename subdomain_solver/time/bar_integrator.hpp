@@ -5,16 +5,18 @@
 #include <vector>
 
 #include "base/archive.hpp"
+#include "contract/outcome.hpp"
 #include "subdomain_solver/fe/bar.hpp"
 
 namespace abut {
 
 /// What one end of a bar carries through time. Forces are compressive: they push the end inwards.
 struct EndState {
-  bool closed = false;    // an obstacle or a force acted in the last substep
+  // An obstacle or a force acted in the last substep; of a kick layer: it pushed.
+  bool closed = false;
   double force = 0.0;     // [N] contact force at the present time, as exchanged
   double dynamic = 0.0;   // [N] the force that moves the body: its mean over the dual cell
-  double captured = 0.0;  // [J] work that contact has taken since the port closed (kick layer)
+  double work = 0.0;  // [J] done on the bar by this end's force since the window began
   double swept_low = 0.0, swept_high = 0.0;  // [m] range of the port, reset for every part
 
   void state(Archive& archive);
@@ -63,8 +65,17 @@ class BarIntegrator {
   virtual double port_displacement(const BarState& state, int end) const = 0;
   /// Quasi-static compliance of an end [m/N]; 0 where the contact node has mass.
   virtual double static_compliance(int end) const = 0;
+  /// An impulse [N s] along x on an end. It hits the end's node or, where that has no mass, its
+  /// inner node; its work goes to EndState::work.
+  void strike(BarState& state, int end, double impulse) const;
+  /// What an impulse on an end would meet.
+  Recoil recoil(const BarState& state, int end) const;
   /// Internal force of an end node [N], along x.
   double internal_force(const BarState& state, int end) const;
+
+  /// What is to be added to M v so that it changes by the impulse of the mean force over every
+  /// substep, whatever the scheme's own weights [kg m/s]  [M.24].
+  virtual double momentum_lag(const BarState&) const { return 0.0; }
 
   /// Energies that the scheme conserves [J].
   virtual double kinetic(const BarState& state) const = 0;
@@ -80,10 +91,18 @@ class BarIntegrator {
     if (bar_.data().stabilised && closed && is(end, ContactLayer::massive))
       state.a[static_cast<std::size_t>(bar_.node_of(end))] = 0.0;
   }
+  /// Node that an impulse on an end hits.
+  std::size_t struck(int end) const;
+  /// Velocities that a unit impulse on an end gives [1/kg], by node; empty: of the struck node
+  /// alone, its inverse mass.
+  virtual const std::vector<double>& blow(int) const { return no_blow_; }
   /// Records role changes; true when an end opened or closed since the last substep.
   bool update_closed(BarState& state, const EndActions& actions) const;
 
   const Bar& bar_;
+
+ private:
+  const std::vector<double> no_blow_;
 };
 
 /// Compressive force that keeps x_free - C lambda at or inside the target: the unilateral problem

@@ -63,9 +63,6 @@ void CentralDifference::smooth(const BarState& state, const std::vector<double>&
       // a contact node is held by its partner: its row alone, without the contact force, is not
       // what moves it
       if (is(end, ContactLayer::kick) && closed) out[node] = u[node];
-      // an open massless port moves with its inner node
-      if (!is(end, ContactLayer::massless) || closed) continue;
-      out[node] = out[static_cast<std::size_t>(bar_.inner_of(end))];
     }
     t = out;
   }
@@ -174,6 +171,8 @@ void CentralDifference::place_massless(BarState& state, int end, const EndAction
   const double free_position = before + line.compliance * reaction_of(state, end);
   if (action.kind == EndAction::Kind::obstacle) {
     e.force = e.dynamic = end_reaction(free_position, line.compliance, action);
+  } else if (action.kind == EndAction::Kind::open) {
+    e.force = e.dynamic = 0.0;
   } else {
     e.force = action.force;
     e.dynamic = action.dynamic;
@@ -210,14 +209,11 @@ void CentralDifference::resolve_massless(BarState& state, const EndActions& acti
   if (!any) return;
   for (int end : {0, 1}) {
     const EndAction& action = actions[static_cast<std::size_t>(end)];
-    if (is(end, ContactLayer::massless) && action.kind != EndAction::Kind::open) {
-      place_massless(state, end, action, dt);
-    }
+    if (is(end, ContactLayer::massless)) place_massless(state, end, action, dt);
   }
 }
 
 void CentralDifference::resolve_kick(BarState& state, int end, const EndAction& action, double dt) {
-  if (action.kind == EndAction::Kind::open) return;
   EndState& e = state.end[static_cast<std::size_t>(end)];
   const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
   const double n = Bar::outward(end);
@@ -225,24 +221,48 @@ void CentralDifference::resolve_kick(BarState& state, int end, const EndAction& 
   if (action.kind == EndAction::Kind::obstacle) {
     e.force = end_reaction(n * state.u[node], dt * dt * inverse, action);
   } else {
-    e.force = action.dynamic;
+    e.force = action.kind == EndAction::Kind::force ? action.dynamic : 0.0;
   }
   e.dynamic = e.force;
   state.v[node] -= n * dt * inverse * e.force;
   state.u[node] -= n * dt * dt * inverse * e.force;
   const double before = ends_[static_cast<std::size_t>(end)].velocity_before;
-  e.captured += dt * e.force * 0.5 * (before + n * state.v[node]);
+  e.work -= dt * e.force * 0.5 * (before + n * state.v[node]);
+  const bool held = e.force != 0.0;
+  if (held == e.closed) return;
+  e.work += simple() ? 0.0 : work_of_switch(state, end, dt);
+  e.closed = held;
+}
+
+/// [J] by which [M.4] changes because a contact node comes to be held, or is no longer: its row
+/// then smooths otherwise. With u before the substep and K d the change of the force after it,
+/// 1/2 u K d.
+double CentralDifference::work_of_switch(BarState& state, int end, double dt) const {
+  EndState& e = state.end[static_cast<std::size_t>(end)];
+  std::vector<double> was, is;
+  smooth(state, state.u, was);
+  e.closed = !e.closed;
+  smooth(state, state.u, is);
+  e.closed = !e.closed;
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < is.size(); ++i) {
+    const double stretch = (state.u[i + 1] - state.u[i]) - dt * (state.v[i + 1] - state.v[i]);
+    sum += bar_.stiffness()[i] * stretch * ((is[i + 1] - was[i + 1]) - (is[i] - was[i]));
+  }
+  return 0.5 * sum;
 }
 
 void CentralDifference::open(BarState& state, double dt, const EndActions& opening) {
-  bool refresh = update_closed(state, opening);
+  // Contact that comes or goes moves nothing by itself: a massless port that is free stands where
+  // its force is zero. A force that sets in moves the port at once.
+  bool refresh = false;
   for (int end : {0, 1}) {
     const EndAction& action = opening[static_cast<std::size_t>(end)];
-    const EndState& e = state.end[static_cast<std::size_t>(end)];
-    if (is(end, ContactLayer::massless) && action.kind == EndAction::Kind::force) {
-      refresh = refresh || action.dynamic != e.dynamic;
-    }
+    if (!is(end, ContactLayer::massless) || action.kind == EndAction::Kind::obstacle) continue;
+    const double force = action.kind == EndAction::Kind::force ? action.dynamic : 0.0;
+    refresh = refresh || force != state.end[static_cast<std::size_t>(end)].dynamic;
   }
+  update_closed(state, opening);
   if (refresh) {
     EndActions held = opening;
     // an obstacle's reaction at this instant is the one already known

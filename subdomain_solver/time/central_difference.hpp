@@ -59,6 +59,7 @@ class CentralDifference final : public BarIntegrator {
   void resolve_massless(BarState& state, const EndActions& actions, double dt);
   void resolve_massive(BarState& state, int end, const EndAction& action);
   void resolve_kick(BarState& state, int end, const EndAction& action, double dt);
+  double work_of_switch(BarState& state, int end, double dt) const;
   double reaction_of(const BarState& state, int end) const;
   bool simple() const { return terms_ == 1; }
   bool forward() const { return bar_.data().tchamwa > 1.0; }

@@ -98,20 +98,23 @@ void GeneralizedAlpha::open(BarState& state, double, const EndActions& opening) 
     if (!is(end, ContactLayer::massless) && !is(end, ContactLayer::shared)) continue;
     const std::size_t e = static_cast<std::size_t>(end);
     const std::size_t node = static_cast<std::size_t>(bar_.node_of(end));
-    const std::size_t inner = static_cast<std::size_t>(bar_.inner_of(end));
     EndState& s = state.end[e];
-    if (opening[e].kind == EndAction::Kind::force && opening[e].dynamic != s.dynamic) {
-      const double jump = -Bar::outward(end) * (opening[e].dynamic - s.dynamic);
+    if (opening[e].kind == EndAction::Kind::obstacle) continue;
+    const bool pushed = opening[e].kind == EndAction::Kind::force;
+    const double force = pushed ? opening[e].dynamic : 0.0;
+    if (force != s.dynamic) {
+      const double jump = -Bar::outward(end) * (force - s.dynamic);
       for (std::size_t i = 0; i < state.a.size(); ++i) state.a[i] += jump * mass_column_[e][i];
       state.u[node] += jump * static_compliance(end);
-      s.force = opening[e].force;
-      s.dynamic = opening[e].dynamic;
     }
-    const bool follows = is(end, ContactLayer::massless);
-    if (follows && changed && opening[e].kind == EndAction::Kind::open)
-      state.u[node] = state.u[inner];
+    s.force = pushed ? opening[e].force : 0.0;
+    s.dynamic = force;
   }
-  if (changed) initial_acceleration(state);
+  // Contact on a massless end comes and goes without a jump; accelerations are memory of the scheme
+  // and stay.
+  const bool massless = !is(0, ContactLayer::massive) && !is(1, ContactLayer::massive) &&
+                        !is(0, ContactLayer::shared) && !is(1, ContactLayer::shared);
+  if (changed && !massless) initial_acceleration(state);
 }
 
 void GeneralizedAlpha::right_hand_side(const BarState& state, double dt,
@@ -182,7 +185,20 @@ void GeneralizedAlpha::apply_reactions(const EndActions& actions, BarState& stat
       s.force = actions[e].force;
       s.dynamic = actions[e].dynamic;
     }
+    if (actions[e].kind == EndAction::Kind::open) s.force = s.dynamic = 0.0;
   }
+}
+
+double GeneralizedAlpha::momentum_lag(const BarState& state) const {
+  // Nodes that are held take part of the forces; massive contact nodes weigh theirs otherwise.
+  for (int end : {0, 1}) {
+    const bool fixed = bar_.data().fixed[static_cast<std::size_t>(end)];
+    if (fixed || is(end, ContactLayer::massive)) return 0.0;
+  }
+  double unbalanced = bar_.momentum(state.a) - bar_.data().body_force * bar_.data().mass_total();
+  for (int end : {0, 1})
+    unbalanced += Bar::outward(end) * state.end[static_cast<std::size_t>(end)].dynamic;
+  return (0.5 - w_.alpha_f) * factored_dt_ * unbalanced;
 }
 
 void GeneralizedAlpha::advance_rates(BarState& state, double dt, const EndActions& actions) {

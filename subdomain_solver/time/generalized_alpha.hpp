@@ -21,6 +21,12 @@ class GeneralizedAlpha final : public BarIntegrator {
   double static_compliance(int end) const override;
   double kinetic(const BarState& state) const override { return bar_.kinetic(state.v); }
   double stored(const BarState& state) const override { return bar_.stored(state.u); }
+  double momentum_lag(const BarState& state) const override;
+
+ protected:
+  const std::vector<double>& blow(int end) const override {
+    return mass_column_[static_cast<std::size_t>(end)];
+  }
 
  private:
   void factor(double dt, const EndActions& actions);

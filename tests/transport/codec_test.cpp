@@ -76,7 +76,9 @@ Response full_response() {
   response.ports[0].upper = {2.0};
   response.ports[0].approach_bound = 3.5;
   response.ports[0].approach_acceleration = 9.81;
-  response.ports[0].rebound = Rebound{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
+  response.ports[0].rebound = Rebound{1.0, 2.0, 3.0, 4.0, 5.0};
+  response.ports[0].recoil = Recoil{6.0, 7.0};
+  response.ports[0].work = -8.0;
   response.ports[1].trace = wave(1, 0.5);
   response.records.push_back(BodyRecord{0.25, Energy{1.0, 2.0, 3.0, 4.0}, {5.0}});
   response.records[0].members = {{Energy{0.1, 0.2, 0.3, 0.4}, {0.5}},
@@ -183,7 +185,11 @@ TEST(Codec, ResponseKeepsEveryField) {
   EXPECT_EQ(rebound.inner_velocity, 3.0);
   EXPECT_EQ(rebound.node_mobility, 4.0);
   EXPECT_EQ(rebound.inner_mobility, 5.0);
-  EXPECT_EQ(rebound.captured, 6.0);
+  ASSERT_TRUE(got.ports[0].recoil.has_value());
+  EXPECT_EQ(got.ports[0].recoil->velocity, 6.0);
+  EXPECT_EQ(got.ports[0].recoil->mobility, 7.0);
+  EXPECT_EQ(got.ports[0].work, -8.0);
+  EXPECT_FALSE(got.ports[1].recoil.has_value());
   EXPECT_FALSE(got.ports[1].rebound.has_value());
   ASSERT_EQ(got.records.size(), 1U);
   EXPECT_EQ(got.records[0].time, 0.25);
