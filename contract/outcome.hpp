@@ -36,18 +36,6 @@ struct BodyRecord {
   std::vector<MemberRecord> members{};  // in the order of Description::members
 };
 
-/// What a body with a massive contact node knows about impulses on it (docs/METHOD.md): the
-/// coordinator forms the impulses of a pair at impact and release from the data of both sides. All
-/// along the outward normal.
-struct Rebound {
-  double node_velocity = 0.0;    // [m/s] force-free half-step velocity of the contact node, w0*
-  double nodal_velocity = 0.0;   // [m/s] its velocity at the present time, between the half steps
-  double inner_velocity = 0.0;   // [m/s] force-free half-step velocity of its neighbour, w1*
-  double node_mobility = 0.0;    // [1/kg] G0: velocity of the contact node per unit impulse on it
-  // [1/kg] G1: velocity of its neighbour per unit impulse on the contact node
-  double inner_mobility = 0.0;
-};
-
 /// What an impulse on a port would do to the body now: it changes the velocity of what it hits,
 /// which is the port's node or, behind a massless layer, its inner node.
 struct Recoil {
@@ -62,8 +50,7 @@ struct PortResponse {
   std::vector<double> upper;       // substeps of each record's part of the window
   double approach_bound = 0.0;
   double approach_acceleration = 0.0;  // [m/s^2] by which body forces may raise that bound
-  std::optional<Rebound> rebound;  // only bodies with massive contact nodes
-  std::optional<Recoil> recoil;    // only bodies that take impulses
+  std::optional<Recoil> recoil;  // only bodies that take impulses
   // [J] done on the body through the port over the window, impulses included: the change of the
   // energy that its integrator conserves [M.23]
   double work = 0.0;

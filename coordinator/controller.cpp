@@ -139,7 +139,6 @@ bool Controller::fly_free() {
   since_ += windows;
   time_ = flight.end;
   watch_energy(time_);
-  events_here_ = 0;
   flight_limit_ = std::min(most_windows_at_once, 2 * flight_limit_);
   return true;
 }
@@ -168,10 +167,8 @@ Controller::Verdict Controller::judge(TimeWindow& window) {
     window.end = common_end(window, *touch);
     return Verdict::again;
   }
-  if (events_here_ >= most_events) return Verdict::accept;  // what they move is owed meanwhile
   const std::optional<double> event = first_event(window);
   if (!event || *event >= window.end) return Verdict::accept;
-  ++events_here_;
   if (*event > window.begin) {
     window.end = *event;
   } else {
@@ -277,14 +274,12 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
     interface.force_scale = std::max(interface.force_scale, peak_force(interface, bodies_));
   }
   ++end_.windows;
+  settle(window);
   for (Observer* observer : observers_)
     observer->on_window({window, bodies_.responses(), reports_, end_.windows});
   if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
-  const bool whole = is_whole(window);
-  advance_clock(window.end, whole);
-  if (whole) events_here_ = 0;
+  advance_clock(window.end, is_whole(window));
   halvings_ = 0;
-  settle(window);
   watch_energy(window.end);
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     Interface& interface = coupling_.interfaces[i];

@@ -103,11 +103,9 @@ class Controller {
   double anchor_;           // [s]
   std::int64_t since_ = 0;  // whole windows since the anchor
   double time_;             // [s]
-  int events_here_ = 0;     // that windows were cut for since the last whole one
   int halvings_ = 0;
   double fastest_touch_ = 0.0;    // [m/s] of all first touches
   double force_reference_ = 0.0;  // [N] largest contact force of the run
-  static constexpr int most_events = 8;              // that a window is cut for
   static constexpr int most_windows_at_once = 1000;  // of free flight: bounds the size of one reply
   int flight_limit_ = most_windows_at_once;
   bool grounded_ = false;  // free flight came too near: step once

@@ -22,7 +22,14 @@ constexpr double pressing_share = 0.05;
 constexpr double still_share = 1.0e-12;
 // Of the largest energy of the run: what an event must move for a window to end there, and what is
 // owed for it to be paid.
-constexpr double notable_share = 1.0e-9, payable_share = 1.0e-13;
+constexpr double notable_share = 1.0e-6, payable_share = 1.0e-13;
+
+bool has_shared_node(const Interface& interface, const Bodies& bodies) {
+  return std::ranges::all_of(interface.sides, [&bodies](const Side& side) {
+    const Description& body = bodies.describe(side.body);
+    return std::isinf(body.mass) || body.ports[static_cast<std::size_t>(side.port)].tied;
+  });
+}
 
 }  // namespace
 
@@ -56,7 +63,8 @@ void Controller::tie() {
     if (!coupling_.rules[i].tied) continue;
     Interface& interface = coupling_.interfaces[i];
     interface.closed = true;
-    interface.impulse = closing_impulse(interface, bodies_);  // the node has one velocity
+    if (has_shared_node(interface, bodies_))  // which has one velocity
+      interface.impulse = closing_impulse(interface, bodies_);
     choose_roles(static_cast<int>(i));
   }
 }
@@ -199,6 +207,7 @@ void Controller::pay(Interface& interface) {
   if (history_.kicks() || !active) return;  // bodies that are apart give each other nothing
   if (std::abs(interface.debt) <= payable_share * energy_guard_.most()) return;
   interface.impulse = paying_impulse(interface, bodies_);
+  for (const Side& side : interface.sides) bodies_.strike_record(side, interface.impulse);
 }
 
 /// Tells of the pushes that begin and end in the window.

@@ -23,11 +23,9 @@ static_assert(sizeof(BodyRecord) ==
 static_assert(sizeof(MemberRecord) == sizeof(Energy) + sizeof(std::vector<double>));
 static_assert(sizeof(Member) ==
               sizeof(std::string) + sizeof(double) + sizeof(std::vector<std::int32_t>));
-static_assert(sizeof(Rebound) == 5 * sizeof(double));
 static_assert(sizeof(Recoil) == 2 * sizeof(double));
 static_assert(sizeof(PortResponse) == sizeof(Waveform) + 2 * sizeof(std::vector<double>) +
-                                          3 * sizeof(double) + sizeof(std::optional<Rebound>) +
-                                          sizeof(std::optional<Recoil>));
+                                          3 * sizeof(double) + sizeof(std::optional<Recoil>));
 static_assert(sizeof(Capabilities) == 7 * sizeof(bool));
 static_assert(sizeof(PortKernel) == 3 * sizeof(double) + 2 * sizeof(std::vector<double>));
 static_assert(sizeof(Obstacle) == sizeof(Waveform) + sizeof(std::vector<double>) + sizeof(double));
@@ -132,20 +130,10 @@ void decode(const v1::PortResponse& from, const Port& port, std::size_t records,
                                     FieldPath{&path, "approach_acceleration"}, Allow::infinite);
   to.work = number(from.work(), FieldPath{&path, "work"});
   to.recoil.reset();
-  if (from.has_recoil()) {
-    const FieldPath at{&path, "recoil"};
-    to.recoil = Recoil{.velocity = number(from.recoil().velocity(), at),
-                       .mobility = number(from.recoil().mobility(), at)};
-  }
-  to.rebound.reset();
-  if (!from.has_rebound()) return;
-  const v1::Rebound& rebound = from.rebound();
-  const FieldPath at{&path, "rebound"};
-  to.rebound = Rebound{.node_velocity = number(rebound.node_velocity(), at),
-                       .nodal_velocity = number(rebound.nodal_velocity(), at),
-                       .inner_velocity = number(rebound.inner_velocity(), at),
-                       .node_mobility = number(rebound.node_mobility(), at),
-                       .inner_mobility = number(rebound.inner_mobility(), at)};
+  if (!from.has_recoil()) return;
+  const FieldPath at{&path, "recoil"};
+  to.recoil = Recoil{.velocity = number(from.recoil().velocity(), at),
+                     .mobility = number(from.recoil().mobility(), at)};
 }
 
 /// Of a body's record or a member's: both have the same fields.
@@ -266,17 +254,9 @@ void encode(const Response& from, v1::Advanced& to) {
     wire.set_approach_acceleration(port.approach_acceleration);
     wire.set_work(port.work);
     wire.clear_recoil();
-    if (port.recoil) {
-      wire.mutable_recoil()->set_velocity(port.recoil->velocity);
-      wire.mutable_recoil()->set_mobility(port.recoil->mobility);
-    }
-    wire.clear_rebound();
-    if (!port.rebound) continue;
-    wire.mutable_rebound()->set_node_velocity(port.rebound->node_velocity);
-    wire.mutable_rebound()->set_nodal_velocity(port.rebound->nodal_velocity);
-    wire.mutable_rebound()->set_inner_velocity(port.rebound->inner_velocity);
-    wire.mutable_rebound()->set_node_mobility(port.rebound->node_mobility);
-    wire.mutable_rebound()->set_inner_mobility(port.rebound->inner_mobility);
+    if (!port.recoil) continue;
+    wire.mutable_recoil()->set_velocity(port.recoil->velocity);
+    wire.mutable_recoil()->set_mobility(port.recoil->mobility);
   }
   resize(*to.mutable_records(), from.records.size());
   for (std::size_t i = 0; i < from.records.size(); ++i) {

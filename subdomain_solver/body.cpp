@@ -291,7 +291,6 @@ void Body::begin_traces(const Advance& request, Response& response) {
   for (std::size_t p = 0; p < response.ports.size(); ++p) {
     response.ports[p].trace.clear();
     response.ports[p].trace.support = support_[end_of_port_[p]];
-    response.ports[p].rebound.reset();
     response.ports[p].lower.clear();
     response.ports[p].upper.clear();
   }
@@ -367,15 +366,6 @@ void Body::finish_ports(Response& response) {
     port.work = e.work;
     port.recoil = scheme_.integrator->recoil(state_, end);
     if (e.force == 0.0) approach(end, port);
-    if (bar_->data().layer[static_cast<std::size_t>(end)] == ContactLayer::massless) continue;
-    const std::size_t node = static_cast<std::size_t>(bar_->node_of(end));
-    const std::size_t inner = static_cast<std::size_t>(bar_->inner_of(end));
-    const double half = 0.5 * scheme_.step;
-    const double n = Bar::outward(end);
-    port.rebound = Rebound{n * (state_.v[node] + half * state_.a[node]),
-                           n * state_.v[node],
-                           n * (state_.v[inner] + half * state_.a[inner]),
-                           bar_->inverse_mass()[node], 0.0};
   }
 }
 

@@ -116,7 +116,6 @@ Outcome PairBody::finish(Response& response) {
     port.trace.support = ForceSupport::nodal;
     port.lower.clear();
     port.upper.clear();
-    port.rebound.reset();
     port.recoil.reset();
     port.work = 0.0;
     // Contact inside the body asks nobody: no flight is free.

@@ -65,7 +65,6 @@ Outcome RigidWall::finish(Response& response) {
   port.lower.assign(static_cast<std::size_t>(parts), 0.0);
   port.upper = port.lower;
   port.approach_bound = port.approach_acceleration = 0.0;
-  port.rebound.reset();
   port.recoil = Recoil{};  // gives way to nothing
   port.work = 0.0;
   response.steps = request.window.length() > 0.0 ? 1 : 0;

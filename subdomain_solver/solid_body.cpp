@@ -173,7 +173,6 @@ std::optional<Failed> SolidBody::advance(const Advance& request, const Substeps&
   for (PortResponse& port : response.ports) {
     port.trace.clear();
     port.trace.support = ForceSupport::nodal;
-    port.rebound.reset();
     port.recoil.reset();
     port.work = 0.0;
     port.lower.clear();

@@ -67,6 +67,18 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
 
 std::optional<Failed> Bodies::advance_all() { return advance(everybody_); }
 
+void Bodies::strike_record(const Side& side, double impulse) {
+  Response& response = responses_[static_cast<std::size_t>(side.body)];
+  PortResponse& port = response.ports[static_cast<std::size_t>(side.port)];
+  if (impulse == 0.0 || !port.recoil) return;
+  BodyRecord& record = response.records.back();
+  const double before = port.recoil->velocity;
+  port.recoil->velocity -= impulse * port.recoil->mobility;
+  record.energy.kinetic -= impulse * 0.5 * (before + port.recoil->velocity);
+  const Port& described = describe(side.body).ports[static_cast<std::size_t>(side.port)];
+  if (port.recoil->mobility > 0.0) record.momentum[0] -= impulse * described.geometry.normals[0];
+}
+
 const PortKernel& Bodies::kernel(int body, int port, int count) {
   auto same = [body, port](const CachedKernel& k) { return k.body == body && k.port == port; };
   auto found = std::find_if(kernels_.begin(), kernels_.end(), same);

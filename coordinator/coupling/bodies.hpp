@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contract/subdomain.hpp"
+#include "coordinator/coupling/side.hpp"
 
 namespace abut {
 
@@ -33,6 +34,10 @@ class Bodies {
   /// nothing.
   [[nodiscard]] std::optional<Failed> advance(std::span<const int> bodies);
   [[nodiscard]] std::optional<Failed> advance_all();
+
+  /// An impulse [N s] into a port at the end of the last window, with which the next one begins:
+  /// its body's last record tells of the state after it.
+  void strike_record(const Side& side, double impulse);
 
   const PortKernel& kernel(int body, int port, int count);
 

@@ -113,57 +113,44 @@ double peak_force(const Interface& interface, const Bodies& bodies) {
   return peak;
 }
 
-double closing_impulse(const Interface& interface, const Bodies& bodies) {
-  double approach = 0.0;  // sum of w0
-  double mobility = 0.0;  // sum of G0
+namespace {
+
+/// Of both sides: how fast they approach each other, and what an impulse between them changes.
+std::optional<Recoil> joint_recoil(const Interface& interface, const Bodies& bodies) {
+  Recoil sum;
   for (const Side& side : interface.sides) {
-    if (std::isinf(bodies.describe(side.body).mass)) continue;
-    const PortResponse& port = port_of(bodies, side);
-    if (!port.rebound) return 0.0;
-    approach += port.rebound->nodal_velocity;
-    mobility += port.rebound->node_mobility;
+    const std::optional<Recoil>& recoil = port_of(bodies, side).recoil;
+    if (!recoil) return std::nullopt;
+    sum.velocity += recoil->velocity;
+    sum.mobility += recoil->mobility;
   }
-  return mobility > 0.0 ? approach / mobility : 0.0;
+  return sum.mobility > 0.0 ? std::optional<Recoil>(sum) : std::nullopt;
+}
+
+}  // namespace
+
+double closing_impulse(const Interface& interface, const Bodies& bodies) {
+  const std::optional<Recoil> recoil = joint_recoil(interface, bodies);
+  return recoil ? recoil->velocity / recoil->mobility : 0.0;
 }
 
 double release_impulse(const Interface& interface, const Bodies& bodies) {
-  double approach = 0.0;  // sum of w0* - w1*
-  double mobility = 0.0;  // sum of G0 - G1
-  double node_mobility = 0.0;
-  double mean_velocity = 0.0;
-  const double captured = interface.debt;
-  for (const Side& side : interface.sides) {
-    if (std::isinf(bodies.describe(side.body).mass)) continue;
-    const PortResponse& port = port_of(bodies, side);
-    if (!port.rebound) return 0.0;
-    const Rebound& r = *port.rebound;
-    approach += r.node_velocity - r.inner_velocity;
-    mobility += r.node_mobility - r.inner_mobility;
-    node_mobility += r.node_mobility;
-    mean_velocity += r.nodal_velocity;  // mean of the half-step velocities around it
-  }
-  if (mobility <= 0.0 || captured <= 0.0) return 0.0;
-  const double discriminant = mean_velocity * mean_velocity + 2.0 * node_mobility * captured;
-  const double passive = (mean_velocity + std::sqrt(discriminant)) / node_mobility;
-  return std::clamp(approach / mobility, 0.0, std::max(0.0, passive));
+  const std::optional<Recoil> recoil = joint_recoil(interface, bodies);
+  if (!recoil || interface.debt <= 0.0) return 0.0;
+  const double w = recoil->velocity;
+  return (w + std::sqrt(w * w + 2.0 * recoil->mobility * interface.debt)) / recoil->mobility;
 }
 
 double paying_impulse(const Interface& interface, const Bodies& bodies) {
-  // Of the root's two terms: a debt below this share of the energy of approach is paid by the
-  // impulse's first order, and stirs up little beside.
+  // Of the energy of approach: what is owed below that is paid by little more than the first order
+  // of the impulse, which stirs up nothing beside.
   constexpr double payable = 0.5;
-  double approach = 0.0, mobility = 0.0;
-  for (const Side& side : interface.sides) {
-    const std::optional<Recoil>& recoil = port_of(bodies, side).recoil;
-    if (!recoil) return 0.0;
-    approach += recoil->velocity;
-    mobility += recoil->mobility;
-  }
-  // -J approach + 1/2 J^2 mobility = debt, the smaller root
-  const double energy = approach * approach;
-  if (2.0 * mobility * std::abs(interface.debt) > payable * energy) return 0.0;
-  const double root = std::sqrt(energy + 2.0 * mobility * interface.debt);
-  return approach == 0.0 ? 0.0 : -2.0 * interface.debt / (approach + std::copysign(root, approach));
+  const std::optional<Recoil> recoil = joint_recoil(interface, bodies);
+  if (!recoil) return 0.0;
+  const double w = recoil->velocity;
+  const double owed = 2.0 * recoil->mobility * interface.debt;
+  if (w == 0.0 || std::abs(owed) > payable * w * w) return 0.0;
+  return -2.0 * interface.debt / (w + std::copysign(std::sqrt(w * w + owed), w));
 }
 
 }  // namespace abut

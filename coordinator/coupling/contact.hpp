@@ -66,18 +66,18 @@ double peak_force(const Interface& interface, const Bodies& bodies);
 /// [J] that contact did on both bodies in the latest responses  [M.23].
 double contact_work(const Interface& interface, const Bodies& bodies);
 
-/// Impulse [N s] that gives massive contact nodes a common velocity: a plastic impact of the nodes
-/// alone, exact in momentum; negative where they part. 0 when a side does not tell its node's mass.
+/// Impulse [N s] that gives what impulses hit on both sides a common velocity: a plastic impact of
+/// massive contact nodes alone, exact in momentum; negative where they part. 0 when a side takes no
+/// impulses.
 double closing_impulse(const Interface& interface, const Bodies& bodies);
 
-/// Release impulse [N s] after contact of massive contact nodes that take kicks: gives back what
-/// contact has taken, as far as the nodes' neighbours can take it [M.13]. 0 when a side has no such
-/// node.
+/// Impulse [N s] that gives back, when massive contact nodes part that took kicks, what contact has
+/// taken from the bodies [M.13]. 0 when a side takes no impulses.
 double release_impulse(const Interface& interface, const Bodies& bodies);
 
-/// Impulse [N s] between the sides, positive where it pushes them apart, that pays what contact
-/// owes the bodies  [M.26]. 0 where a side takes no impulses, or where their velocity of approach
-/// is too small to pay with: the debt waits.
+/// Impulse [N s] between sides in contact, positive where it pushes them apart, that pays what
+/// contact owes the bodies  [M.26]. 0 where a side takes no impulses, or where their velocity of
+/// approach is too small to pay with: the debt waits.
 double paying_impulse(const Interface& interface, const Bodies& bodies);
 
 }  // namespace abut

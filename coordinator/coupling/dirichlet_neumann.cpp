@@ -17,8 +17,8 @@ void DirichletNeumann::begin(const TimeWindow& window, const Interface& interfac
   f_begin_ = trace.f[now];
   // the guess holds the velocity after the impulse that this window begins with
   const PortResponse& port = bodies.response(n.body).ports[static_cast<std::size_t>(n.port)];
-  if (port.rebound) {
-    v_begin_ -= interface.normal_of(1 - interface.kinematic) * port.rebound->node_mobility *
+  if (port.recoil) {
+    v_begin_ -= interface.normal_of(1 - interface.kinematic) * port.recoil->mobility *
                 interface.impulse;
   }
   scale_.step = grid_.step;

@@ -7,13 +7,9 @@
 #include "base/archive.hpp"
 #include "contract/subdomain.hpp"
 #include "coordinator/coupling/bodies.hpp"
+#include "coordinator/coupling/side.hpp"
 
 namespace abut {
-
-/// One end of an interface.
-struct Side {
-  int body = 0, port = 0;
-};
 
 /// Two joined ports and the state of what joins them. One point on each side: the bodies are bars.
 struct Interface {

@@ -82,7 +82,6 @@ class FakeSubdomain : public Subdomain {
     PortResponse& port = response.ports[0];
     port.trace.clear();
     port.trace.width = 1;
-    port.rebound.reset();
     port.lower.assign(1, u_);
     port.upper.assign(1, u_);
     sample(window.begin, port.trace);

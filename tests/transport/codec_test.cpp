@@ -76,7 +76,6 @@ Response full_response() {
   response.ports[0].upper = {2.0};
   response.ports[0].approach_bound = 3.5;
   response.ports[0].approach_acceleration = 9.81;
-  response.ports[0].rebound = Rebound{1.0, 2.0, 3.0, 4.0, 5.0};
   response.ports[0].recoil = Recoil{6.0, 7.0};
   response.ports[0].work = -8.0;
   response.ports[1].trace = wave(1, 0.5);
@@ -178,19 +177,11 @@ TEST(Codec, ResponseKeepsEveryField) {
   EXPECT_EQ(got.ports[0].upper, sent.ports[0].upper);
   EXPECT_EQ(got.ports[0].approach_bound, 3.5);
   EXPECT_EQ(got.ports[0].approach_acceleration, 9.81);
-  ASSERT_TRUE(got.ports[0].rebound.has_value());
-  const Rebound& rebound = *got.ports[0].rebound;
-  EXPECT_EQ(rebound.node_velocity, 1.0);
-  EXPECT_EQ(rebound.nodal_velocity, 2.0);
-  EXPECT_EQ(rebound.inner_velocity, 3.0);
-  EXPECT_EQ(rebound.node_mobility, 4.0);
-  EXPECT_EQ(rebound.inner_mobility, 5.0);
   ASSERT_TRUE(got.ports[0].recoil.has_value());
   EXPECT_EQ(got.ports[0].recoil->velocity, 6.0);
   EXPECT_EQ(got.ports[0].recoil->mobility, 7.0);
   EXPECT_EQ(got.ports[0].work, -8.0);
   EXPECT_FALSE(got.ports[1].recoil.has_value());
-  EXPECT_FALSE(got.ports[1].rebound.has_value());
   ASSERT_EQ(got.records.size(), 1U);
   EXPECT_EQ(got.records[0].time, 0.25);
   EXPECT_EQ(got.records[0].energy.kinetic, 1.0);
@@ -220,7 +211,7 @@ TEST(Codec, ParsingIntoAUsedReplyEqualsParsingIntoAFreshOne) {
   std::string bytes = wire.SerializeAsString();
   ASSERT_TRUE(parse_into(used, std::as_bytes(std::span<const char>(bytes))));
   Response small = full_response();
-  small.ports[0].rebound.reset();
+  small.ports[0].recoil.reset();
   small.ports[1].trace.clear();
   small.records.clear();
   encode(small, *wire.mutable_advanced());
