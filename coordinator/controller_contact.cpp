@@ -20,9 +20,11 @@ constexpr double grazing_share = 1.0e-2;
 constexpr double pressing_share = 0.05;
 // Of the fastest first touch: slower ones are no motion. Numerical forerunners begin at 1e-300.
 constexpr double still_share = 1.0e-12;
-// Of the largest energy of the run: what an event must move for a window to end there, and what is
-// owed for it to be paid.
-constexpr double notable_share = 1.0e-6, payable_share = 1.0e-13;
+// Of the largest energy of the run: what an event must move for a window to end there.
+constexpr double notable_share = 1.0e-6;
+// The same: what is owed for it to be paid after an event. Between events only what is notable is
+// paid: to pay what the iteration leaves open would disturb more than it mends.
+constexpr double payable_share = 1.0e-13;
 
 bool has_shared_node(const Interface& interface, const Bodies& bodies) {
   return std::ranges::all_of(interface.sides, [&bodies](const Side& side) {
@@ -205,7 +207,11 @@ void Controller::pay(Interface& interface) {
   const std::size_t last = history_.size() - 1;
   const bool active = history_[last].force > 0.0 || (last > 0 && history_[last - 1].force > 0.0);
   if (history_.kicks() || !active) return;  // bodies that are apart give each other nothing
-  if (std::abs(interface.debt) <= payable_share * energy_guard_.most()) return;
+  bool changed = false;
+  for (std::size_t k = 1; k <= last && !changed; ++k)
+    changed = (history_[k - 1].force > 0.0) != (history_[k].force > 0.0);
+  const double least = (changed ? payable_share : notable_share) * energy_guard_.most();
+  if (std::abs(interface.debt) <= least) return;
   interface.impulse = paying_impulse(interface, bodies_);
   for (const Side& side : interface.sides) bodies_.strike_record(side, interface.impulse);
 }

@@ -52,6 +52,9 @@ void ContactHistory::read(const Interface& interface, Bodies& bodies) {
   const std::vector<double>& t = coarser ? trace_of(bodies, there).time : own.time;
   const double inward = -interface.normal_of(interface.kinematic);
   kicks_ = own.support == ForceSupport::step;
+  finer_.clear();
+  for (std::size_t i = 0; coarser && i < own.size(); ++i)
+    finer_.push_back({own.time[i], inward * own.f[i], gap_at(interface, bodies, own.time[i])});
   levels_.resize(t.size());
   for (std::size_t i = 0; i < t.size(); ++i) {
     double force = own.f[i > 0 && coarser ? 0 : i];
@@ -77,22 +80,39 @@ double ContactHistory::peak() const {
 }
 
 Touch ContactHistory::touch(std::size_t i) const {
-  const double before = std::max(0.0, levels_[i - 1].gap);
-  const double overlap = compliance_ * levels_[i].force - std::min(0.0, levels_[i].gap);
-  const double length = levels_[i].time - levels_[i - 1].time;
-  const double moved = before + overlap;
-  const double share = moved > 0.0 ? before / moved : 0.0;
-  return {levels_[i - 1].time + share * length, moved / length, levels_[i].time};
+  // The first push of the finer side that the mean over the coarser one holds.
+  for (std::size_t k = 1; k < finer_.size(); ++k) {
+    if (finer_[k].time > levels_[i - 1].time && finer_[k].force > 0.0)
+      return touch_between(finer_[k - 1], finer_[k]);
+  }
+  return touch_between(levels_[i - 1], levels_[i]);
+}
+
+Touch ContactHistory::touch_between(const ContactLevel& before, const ContactLevel& after) const {
+  const double gap = std::max(0.0, before.gap);
+  const double overlap = compliance_ * after.force - std::min(0.0, after.gap);
+  const double length = after.time - before.time;
+  const double moved = gap + overlap;
+  const double share = moved > 0.0 ? gap / moved : 0.0;
+  return {before.time + share * length, moved / length, after.time};
 }
 
 double ContactHistory::release(std::size_t i) const {
-  const double before = levels_[i - 1].force;
-  const double pull = levels_[i].gap > 0.0 && compliance_ > 0.0 ? levels_[i].gap / compliance_
-                                                                : -levels_[i].force;
-  const double length = levels_[i].time - levels_[i - 1].time;
-  const double end = levels_[i].time - (kicks_ ? length : 0.0);  // a kick acts at its begin
-  if (before + pull <= 0.0) return end;
-  return end - length + length * std::min(1.0, before / (before + pull));
+  for (std::size_t k = finer_.size(); k-- > 1;) {
+    if (finer_[k].time <= levels_[i].time && finer_[k - 1].force > 0.0)
+      return release_between(finer_[k - 1], finer_[k]);
+  }
+  return release_between(levels_[i - 1], levels_[i]);
+}
+
+double ContactHistory::release_between(const ContactLevel& before,
+                                       const ContactLevel& after) const {
+  const double pull =
+      after.gap > 0.0 && compliance_ > 0.0 ? after.gap / compliance_ : -after.force;
+  const double length = after.time - before.time;
+  const double end = after.time - (kicks_ ? length : 0.0);  // a kick acts at its begin
+  if (before.force + pull <= 0.0) return end;
+  return end - length + length * std::min(1.0, before.force / (before.force + pull));
 }
 
 double ContactHistory::crossing(std::size_t i, double bound) const {
@@ -142,14 +162,14 @@ double release_impulse(const Interface& interface, const Bodies& bodies) {
 }
 
 double paying_impulse(const Interface& interface, const Bodies& bodies) {
-  // Of the energy of approach: what is owed below that is paid by little more than the first order
-  // of the impulse, which stirs up nothing beside.
-  constexpr double payable = 0.5;
+  // Of the energy of approach: a larger debt waits, its impulse would stir up more than it finds.
+  constexpr double most = 3.0;
   const std::optional<Recoil> recoil = joint_recoil(interface, bodies);
   if (!recoil) return 0.0;
   const double w = recoil->velocity;
   const double owed = 2.0 * recoil->mobility * interface.debt;
-  if (w == 0.0 || std::abs(owed) > payable * w * w) return 0.0;
+  if (w == 0.0 || owed > most * w * w) return 0.0;
+  if (owed < -w * w) return w / recoil->mobility;  // all that can be taken back this way
   return -2.0 * interface.debt / (w + std::copysign(std::sqrt(w * w + owed), w));
 }
 

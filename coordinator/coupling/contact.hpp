@@ -46,16 +46,20 @@ class ContactHistory {
     const ContactLevel& b = levels_[i];
     return 0.5 * (a.force * b.gap - b.force * a.gap);
   }
-  /// [s] where the gap of free sides crosses zero in substep i, in which they began to push, and
-  /// the speed [m/s] at which it does.
+  /// [s] where the gap of free sides crosses zero before level i, at which they push and did not at
+  /// the level before, and the speed [m/s] at which it does.
   Touch touch(std::size_t i) const;
-  /// [s] where the force crosses zero in substep i, in which it went.
+  /// [s] where the force crosses zero before level i, at which it is gone.
   double release(std::size_t i) const;
   /// [s] where the force crosses a bound in substep i, linearly.
   double crossing(std::size_t i, double bound) const;
 
  private:
+  Touch touch_between(const ContactLevel& before, const ContactLevel& after) const;
+  double release_between(const ContactLevel& before, const ContactLevel& after) const;
+
   std::vector<ContactLevel> levels_;
+  std::vector<ContactLevel> finer_;  // of the kinematic side, where its substeps are shorter
   bool kicks_ = false;
   double compliance_ = 0.0;  // [m/N] of both sides over a substep
 };

@@ -157,7 +157,7 @@ void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
   guess_.u = motion.u;
 }
 
-void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Interface& interface,
                        const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
   const Waveform& trace = trace_of(bodies, interface.neumann_side());
   const bool same = static_cast<int>(trace.size()) == neumann_grid_.count + 1;
