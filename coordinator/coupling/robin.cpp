@@ -145,6 +145,7 @@ void Robin::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& i
   for (double f : trace_of(bodies, interface.kinematic_side()).f)
     scale_.force = std::max(scale_.force, std::abs(f));
   scale_.velocity = std::max(scale_.velocity, scale_.force / impedance_sum_ * 1.0e-3);
+  scale_.force = std::max(scale_.force, scale_.velocity * impedance_sum_ * 1.0e-3);
 }
 
 FieldResiduals Robin::measure(const Eigen::Ref<const Eigen::VectorXd>& x,

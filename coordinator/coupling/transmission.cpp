@@ -45,6 +45,15 @@ double reference_velocity(const Interface& interface, double compliance, double 
   return std::max(interface.closing_speed, interface.force_scale * compliance / step);
 }
 
+/// Velocity and force that go with each other: neither is measured against less than a thousandth of
+/// what the other one causes in a step, or the first touch of a window would be asked for digits
+/// that it does not have.
+void balance(ReferenceScales& scale, double compliance) {
+  constexpr double share = 1.0e-3;
+  scale.velocity = std::max(scale.velocity, share * scale.force * compliance / scale.step);
+  scale.force = std::max(scale.force, share * scale.velocity * scale.step / compliance);
+}
+
 /// A window that was cut short starts from the iterate of the longer one.
 bool covers(const Waveform& guess, const TimeGrid& grid) {
   return !guess.empty() && guess.time.front() == grid.begin && guess.time.back() >= grid.end;
@@ -172,8 +181,7 @@ void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Interface
   scale_.force = std::max(interface.force_scale, 0.0);
   for (double f : trace_of(bodies, interface.kinematic_side()).f)
     scale_.force = std::max(scale_.force, std::abs(f));
-  scale_.velocity =
-      std::max(scale_.velocity, scale_.force * kinematic_compliance_ / scale_.step * 1.0e-3);
+  balance(scale_, kinematic_compliance_);
   scale_.roundoff = roundoff_gain_ * roundoff_of(u_begin_, g[neumann_grid_.count - 1]);
 }
 
@@ -298,7 +306,7 @@ void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Inte
   force_ = x;
   projects_ = !interface.bilateral && inverse_ != nullptr && g.minCoeff() <= 0.0;
   scale_.force = std::max(interface.force_scale, x.lpNorm<Eigen::Infinity>());
-  scale_.velocity = std::max(scale_.velocity, scale_.force * compliance_ / scale_.step * 1.0e-3);
+  balance(scale_, compliance_);
   scale_.roundoff = roundoff_of(travelled, interface.reference_gap);
 }
 
