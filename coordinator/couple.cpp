@@ -244,8 +244,7 @@ Schwarz make_schwarz(const SchwarzSpec& spec) {
       return std::make_unique<QuasiNewton>(inverse, s.reuse, s.filter, 1);
     }
   };
-  const Schwarz::Options options{spec.max_iterations, spec.tolerance,
-                                 std::holds_alternative<KernelAcceleration>(spec.accelerator)};
+  const Schwarz::Options options{spec.max_iterations, spec.tolerance};
   return Schwarz(options,
                  [accelerator = spec.accelerator](ApplyInverse inverse, ApplyInverse probe) {
                    return std::visit(Maker{std::move(inverse), std::move(probe)}, accelerator);

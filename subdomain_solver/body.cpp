@@ -202,6 +202,7 @@ void Body::set_actions(const Advance& request, const Substeps& grid, int i, EndA
   for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
     const BoundaryData& data = request.boundary[p];
     EndAction& action = actions[static_cast<std::size_t>(end_of_port_[p])];
+    action.held = description_.ports[p].tied;
     if (!data.obstacle.empty()) {
       const Waveform& motion = data.obstacle.motion;
       double u = 0.0;
@@ -417,9 +418,14 @@ std::vector<double> Body::respond_from_rest(int end, double step, int count, dou
   state_.u.assign(n, 0.0);
   state_.v.assign(n, 0.0);
   state_.a.assign(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (bar_->inverse_mass()[i] > 0.0) state_.a[i] = bar_->data().body_force;
+  }
+  state_.end[static_cast<std::size_t>(end)].closed = true;
   EndActions actions;
   EndAction& action = actions[static_cast<std::size_t>(end)];
   action.kind = EndAction::Kind::force;
+  action.held = true;
   action.force = action.dynamic = -at_begin;
   scheme_.integrator->open(state_, step, actions);
   std::vector<double> displacement;

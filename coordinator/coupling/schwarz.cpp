@@ -112,7 +112,10 @@ Accelerator& Schwarz::accelerator_of(const Island& island, std::span<const Joint
         for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
           const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
           const Transmission& t = *joints[static_cast<std::size_t>(layout_.joints[i])].transmission;
-          out.segment(layout_.first[i], count) = apply(t, r.segment(layout_.first[i], count));
+          // accelerators see scaled values; contact does not scale, its gaps and forces are given
+          const auto unit = s_.segment(layout_.first[i], count);
+          const Eigen::VectorXd plain = r.segment(layout_.first[i], count).cwiseQuotient(unit);
+          out.segment(layout_.first[i], count) = apply(t, plain).cwiseProduct(unit);
         }
         return out;
       };
@@ -185,7 +188,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     }
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
-    if (options_.kernels && std::ranges::any_of(island.joints, [&joints](int j) {
+    if (std::ranges::any_of(island.joints, [&joints](int j) {
           return joints[static_cast<std::size_t>(j)].transmission->projects();
         })) {
       x_ += apply_inverses(g_ - x_, joints);

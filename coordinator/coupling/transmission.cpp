@@ -80,9 +80,12 @@ const KernelInverse::Entry* KernelInverse::add(Entry entry) {
   return entries_.back().get();
 }
 
-const KernelInverse::Entry* KernelInverse::store(double length, const Eigen::MatrixXd& jacobian,
-                                                 ContactMaps maps) {
-  return add({length, {}, jacobian.partialPivLu(), std::move(maps)});
+const KernelInverse::Entry* KernelInverse::store(double length, const Eigen::MatrixXd& jacobian) {
+  return add({length, {}, jacobian.partialPivLu(), {}});
+}
+
+const KernelInverse::Entry* KernelInverse::store(double length, ContactMaps maps) {
+  return add({length, {}, {}, std::move(maps)});
 }
 
 const KernelInverse::Entry* KernelInverse::store(double length, std::vector<double> column) {
@@ -117,6 +120,7 @@ void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bod
   first_factor_ = 1.0 / (1.0 + neumann_compliance_ / kinematic_compliance_);
   alike_ = kinematic_grid_.same_as(neumann_grid_) && kernel_k.support == kernel_n.support;
   projects_ = false;
+  unilateral_ = !interface.bilateral;
   kernel_k_ = &kernel_k;
   kernel_n_ = &kernel_n;
   outward_n_ = interface.normal_of(1 - interface.kinematic);
@@ -124,13 +128,17 @@ void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bod
   if (moved == 0.0) return;  // a side that does not give way leaves nothing to iterate
   inverse_ = inverses_.find(window.length());
   if (inverse_ != nullptr) return;
+  const bool small =
+      std::max(kinematic_grid_.count, neumann_grid_.count) <= KernelInverse::largest;
   if (alike_) {
     inverse_ = inverses_.store(window.length(),
                                unilateral_jacobian_column(kernel_k, kernel_n, neumann_grid_.count));
-  } else if (std::max(kinematic_grid_.count, neumann_grid_.count) <= KernelInverse::largest) {
+  } else if (small && interface.bilateral) {
     inverse_ = inverses_.store(
-        window.length(), unilateral_jacobian(kernel_k, kinematic_grid_, kernel_n, neumann_grid_),
-        contact_maps(kernel_k, kinematic_grid_, kernel_n, neumann_grid_));
+        window.length(), unilateral_jacobian(kernel_k, kinematic_grid_, kernel_n, neumann_grid_));
+  } else if (small) {
+    inverse_ = inverses_.store(window.length(),
+                               contact_maps(kernel_k, kinematic_grid_, kernel_n, neumann_grid_));
   }
 }
 
@@ -177,7 +185,7 @@ void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Interface
       trace.interpolate(trace.u, neumann_grid_.time(i), {&g[i - 1], 1});
     }
   }
-  if (!interface.bilateral && inverse_ != nullptr) see_contact(interface, bodies);
+  if (unilateral_ && inverse_ != nullptr) see_contact(interface, bodies);
   scale_.force = std::max(interface.force_scale, 0.0);
   for (double f : trace_of(bodies, interface.kinematic_side()).f)
     scale_.force = std::max(scale_.force, std::abs(f));
@@ -219,17 +227,15 @@ void Unilateral::scales(Eigen::Ref<Eigen::VectorXd> s) const {
 }
 
 Eigen::VectorXd Unilateral::apply_inverse(const Eigen::VectorXd& r) const {
-  if (projects_ && alike_) {
+  if (inverse_ == nullptr) return first_factor_ * r;
+  if (!unilateral_) return inverse_->solve(r);
+  if (alike_) {
     return solve_unilateral(kernel_k_->displacement, kernel_n_->displacement, outward_n_, r,
                             overlap_, force_);
   }
-  if (projects_) {
-    const ContactMaps& maps = inverse_->maps;
-    const Eigen::VectorXd left = overlap_ + outward_n_ * (maps.seen * r);
-    return r - outward_n_ * (maps.motion * solve_complementarity(maps.overlap, left, force_));
-  }
-  if (inverse_ != nullptr) return inverse_->solve(r);
-  return first_factor_ * r;
+  const ContactMaps& maps = inverse_->maps;
+  const Eigen::VectorXd left = overlap_ + outward_n_ * (maps.seen * r);
+  return r - outward_n_ * (maps.motion * solve_complementarity(maps.overlap, left, force_));
 }
 
 // ---- parallel -----------------------------------------------------------------------------------
@@ -239,6 +245,7 @@ void ParallelForce::begin(const TimeWindow& window, const Interface& interface, 
   std::vector<const PortKernel*> kernels;
   compliance_ = 0.0;
   projects_ = false;
+  unilateral_ = !interface.bilateral;
   for (const Side& side : interface.sides) {
     grids.push_back(grid_of(bodies, side, window));
     kernels.push_back(&kernel_of(bodies, side, grids.back().count));
@@ -257,9 +264,9 @@ void ParallelForce::begin(const TimeWindow& window, const Interface& interface, 
   inverse_ = inverses_.find(window.length());
   if (inverse_ != nullptr) return;
   if (std::max(grids[0].count, grids[1].count) > KernelInverse::largest) return;
-  ContactMaps maps;
-  maps.overlap = parallel_jacobian(kernels, grids, force_grid_, support_);
-  inverse_ = inverses_.store(window.length(), maps.overlap / compliance_, maps);
+  Eigen::MatrixXd jacobian = parallel_jacobian(kernels, grids, force_grid_, support_);
+  inverse_ = unilateral_ ? inverses_.store(window.length(), ContactMaps{std::move(jacobian), {}, {}})
+                         : inverses_.store(window.length(), jacobian / compliance_);
 }
 
 void ParallelForce::predict(Eigen::Ref<Eigen::VectorXd> x) const {
@@ -301,10 +308,10 @@ void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Inte
     }
     overlap_[i - 1] = -interface.gap(u[0], u[1]);
     g[i - 1] = x[i - 1] + overlap_[i - 1] / compliance_;
-    if (!interface.bilateral) g[i - 1] = std::max(0.0, g[i - 1]);
+    if (unilateral_) g[i - 1] = std::max(0.0, g[i - 1]);
   }
   force_ = x;
-  projects_ = !interface.bilateral && inverse_ != nullptr && g.minCoeff() <= 0.0;
+  projects_ = unilateral_ && inverse_ != nullptr && g.minCoeff() <= 0.0;
   scale_.force = std::max(interface.force_scale, x.lpNorm<Eigen::Infinity>());
   balance(scale_, compliance_);
   scale_.roundoff = roundoff_of(travelled, interface.reference_gap);
@@ -325,8 +332,9 @@ void ParallelForce::scales(Eigen::Ref<Eigen::VectorXd> s) const {
 }
 
 Eigen::VectorXd ParallelForce::apply_inverse(const Eigen::VectorXd& r) const {
-  if (projects_) return solve_complementarity(inverse_->maps.overlap, overlap_, force_);
-  return inverse_ != nullptr ? inverse_->solve(r) : r;
+  if (inverse_ == nullptr) return r;
+  if (!unilateral_) return inverse_->solve(r);
+  return solve_complementarity(inverse_->maps.overlap, overlap_, force_);
 }
 
 }  // namespace abut

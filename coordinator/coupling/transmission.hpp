@@ -60,7 +60,8 @@ class KernelInverse {
     Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
   };
   const Entry* find(double length) const;  // null: not there yet
-  const Entry* store(double length, const Eigen::MatrixXd& jacobian, ContactMaps maps);
+  const Entry* store(double length, const Eigen::MatrixXd& jacobian);
+  const Entry* store(double length, ContactMaps maps);
   const Entry* store(double length, std::vector<double> column);
 
   static constexpr int largest = 1200;  // rows of a dense Jacobian: 11 MiB, factored once in 0.3 s
@@ -102,6 +103,7 @@ class Unilateral final : public Transmission {
   void see_contact(const Interface& interface, const Bodies& bodies);
 
   // of contact: kernels, and what the last sweep left on K's side at its substeps
+  bool unilateral_ = true;  // contact: every substep decides for itself
   bool projects_ = false;
   bool alike_ = false;  // both sides take the same substeps
   const PortKernel* kernel_k_ = nullptr;
@@ -132,6 +134,7 @@ class ParallelForce final : public Transmission {
 
  private:
   TimeGrid force_grid_;
+  bool unilateral_ = true;  // contact: every substep decides for itself
   bool projects_ = false;
   Eigen::VectorXd overlap_, force_;  // [m] [N] of the last image
   ForceSupport support_ = ForceSupport::nodal;

@@ -11,7 +11,7 @@ namespace abut {
 namespace {
 
 /// Part of the largest energy below which an energy of the begin is as good as none.
-constexpr double as_none = 1.0e-6;
+constexpr double as_none = 1.0e-2;
 
 /// [J] that errors are relative to. A run that begins with nothing is measured by what it comes to.
 double scale_of(double begin, double peak) {

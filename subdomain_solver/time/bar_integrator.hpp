@@ -38,6 +38,8 @@ struct EndAction {
   double dynamic = 0.0;    // [N] mean over the dual cell, or over the substep for kicks (force)
   double target = 0.0;     // [m] outward displacement of the obstacle's surface (obstacle)
   bool bilateral = false;  // keep contact in tension (obstacle)
+  // Of a kick layer: the node counts as held even where no force acts (ties, probes).
+  bool held = false;
   double yield = 0.0;  // [N/m] of the surface; 0: it does not give way (obstacle)
   double u = 0.0, v = 0.0, a = 0.0;  // prescribed (motion)
 };

@@ -228,7 +228,7 @@ void CentralDifference::resolve_kick(BarState& state, int end, const EndAction& 
   state.u[node] -= n * dt * dt * inverse * e.force;
   const double before = ends_[static_cast<std::size_t>(end)].velocity_before;
   e.work -= dt * e.force * 0.5 * (before + n * state.v[node]);
-  const bool held = e.force != 0.0;
+  const bool held = action.held || e.force != 0.0;
   if (held == e.closed) return;
   e.work += simple() ? 0.0 : work_of_switch(state, end, dt);
   e.closed = held;

@@ -70,7 +70,7 @@ class Pieces {
       const int left = static_cast<int>(i);
       interfaces_[i] = make_interface("i", {Side{left, 1}, Side{left + 1, 0}}, *bodies_);
       interfaces_[i].kinematic = kinematic[i];
-      interfaces_[i].closed = true;
+      interfaces_[i].closed = interfaces_[i].bilateral = true;
       interfaces_[i].closing_speed = blow;
       if (parallel) {
         transmissions_.push_back(std::make_unique<ParallelForce>());

@@ -48,12 +48,18 @@ class Scripted : public Subdomain {
     response = reply;
     return Advanced{};
   }
-  PortKernel kernel(int, double, int) override { return {}; }
+  PortKernel kernel(int, double step, int count) override {
+    PortKernel kernel;
+    kernel.step = step;
+    kernel.displacement.assign(static_cast<std::size_t>(count), compliance);
+    return kernel;
+  }
   std::vector<std::byte> checkpoint() override { return {}; }
   void resume(std::span<const std::byte>) override {}
   std::uint64_t state_hash() override { return 0; }
 
   Response reply;
+  double compliance = 0.0;  // [m/N]
 
  private:
   Description description_;
@@ -97,99 +103,165 @@ TEST(Interface, RefusesSidesThatOverlapAtTheStart) {
   }
 }
 
-TEST(OverlapCriterion, LocatesTheTouchOnTheFinerSide) {
+TEST(FirstOverlap, LocatesTheTouchOnTheFinerSide) {
   Meeting m;
   m.left.trace({0, 1, 2, 3, 4}, {0.0, 0.25, 0.5, 0.75, 1.0});
   m.right.trace({0, 4}, {0.0, -1.0});  // closing at 0.5 m/s: the gap of 1 m is gone at 2
   m.reply();
-  const std::optional<Closing> closing = overlap_criterion(m.interface, m.bodies);
-  ASSERT_TRUE(closing);
-  EXPECT_EQ(closing->time, 2.0);
-  EXPECT_EQ(closing->speed, 0.5);
+  const std::optional<Touch> touch = first_overlap(m.interface, m.bodies, 0.0);
+  ASSERT_TRUE(touch);
+  EXPECT_EQ(touch->time, 2.0);
+  EXPECT_EQ(touch->speed, 0.5);
+  EXPECT_EQ(touch->state, 3.0);  // the first substep that overlaps ends there
 }
 
-TEST(OverlapCriterion, InterpolatesWithinASubstep) {
+TEST(FirstOverlap, InterpolatesWithinASubstep) {
   Meeting m;
   m.left.trace({0, 1, 2}, {0.0, 0.8, 1.6});
   m.right.trace({0, 2}, {0.0, 0.0});
   m.reply();
-  const std::optional<Closing> closing = overlap_criterion(m.interface, m.bodies);
-  ASSERT_TRUE(closing);
-  EXPECT_NEAR(closing->time, 1.25, roundoff(8, 2.0));
-  EXPECT_NEAR(closing->speed, 0.8, roundoff(8, 2.0));
+  const std::optional<Touch> touch = first_overlap(m.interface, m.bodies, 0.0);
+  ASSERT_TRUE(touch);
+  EXPECT_NEAR(touch->time, 1.25, roundoff(8, 2.0));
+  EXPECT_NEAR(touch->speed, 0.8, roundoff(8, 2.0));
 }
 
-TEST(OverlapCriterion, AGapThatStaysOpenIsNoTouch) {
+TEST(FirstOverlap, SidesThatOnlyMeetAreNotApartAndDoNotOverlap) {
   Meeting m;
-  m.left.trace({0, 1}, {0.0, 0.999});
+  m.left.trace({0, 1}, {0.0, 1.0});
   m.right.trace({0, 1}, {0.0, 0.0});
   m.reply();
-  EXPECT_FALSE(overlap_criterion(m.interface, m.bodies));
+  EXPECT_FALSE(first_overlap(m.interface, m.bodies, 0.0));
 }
 
-TEST(OverlapCriterion, AnOverlapThatGetsSmallerIsARelease) {
+TEST(FirstOverlap, WhatIsNegligibleIsNone) {
+  Meeting m;
+  m.left.trace({0, 1}, {0.0, 1.0 + 1e-13});  // numerical forerunners
+  m.right.trace({0, 1}, {0.0, 0.0});
+  m.reply();
+  EXPECT_TRUE(first_overlap(m.interface, m.bodies, 0.0));
+  EXPECT_FALSE(first_overlap(m.interface, m.bodies, 1e-12));
+}
+
+TEST(FirstOverlap, AnOverlapThatGetsSmallerIsARelease) {
   Meeting m;
   m.left.trace({0, 1, 2}, {1.01, 1.005, 0.99});
   m.right.trace({0, 2}, {0.0, 0.0});
   m.reply();
-  EXPECT_FALSE(overlap_criterion(m.interface, m.bodies));
+  EXPECT_FALSE(first_overlap(m.interface, m.bodies, 0.0));
 }
 
-TEST(OverlapCriterion, DoesNotCloseWithinACoarseStepOfTheRelease) {
-  Meeting m(1.0, 1.0);
-  m.left.trace({0, 1, 2}, {1.0, 1.1, 1.2});
-  m.right.trace({0, 2}, {0.0, 0.0});
+/// What the interface of two scripted bodies shows. Both give way by half a metre per newton.
+ContactHistory history(Meeting& m) {
+  m.left.compliance = m.right.compliance = 0.5;
   m.reply();
-  EXPECT_EQ(overlap_criterion(m.interface, m.bodies)->time, 0.0);
-  m.interface.opened_at = 0.0;
-  EXPECT_EQ(overlap_criterion(m.interface, m.bodies)->time, 1.0);
+  ContactHistory h;
+  h.read(m.interface, m.bodies);
+  return h;
 }
 
-TEST(CompressionCriterion, StaysClosedWhileTheForcePushes) {
+TEST(ContactHistory, ReadsForcesAndGapsAtTheSubsteps) {
   Meeting m;
-  m.left.trace({0, 1, 2}, {0, 0, 0}, {-5, -3, -1});  // pushed to the left
-  m.right.trace({0, 1, 2}, {0, 0, 0});
-  m.reply();
-  EXPECT_FALSE(compression_criterion(m.interface, m.bodies, 1e-9));
+  m.left.trace({0, 1, 2}, {0.5, 1.0, 0.75}, {0, -3, 0});  // pushed to the left
+  m.right.trace({0, 1, 2}, {0, 0, 0.25});
+  const ContactHistory h = history(m);
+  ASSERT_EQ(h.size(), 3u);
+  EXPECT_EQ(h[0].gap, 0.5);
+  EXPECT_EQ(h[1].force, 3.0);
+  EXPECT_EQ(h[1].gap, 0.0);
+  EXPECT_EQ(h[2].gap, 0.5);
+  EXPECT_EQ(h.peak(), 3.0);
 }
 
-TEST(CompressionCriterion, FindsTheZeroOfTheForceAndTheLastCompressedState) {
+TEST(ContactHistory, EventsAreWhereGapAndForceOfTheFreeAndTheHeldSidesCrossZero) {
   Meeting m;
-  m.left.trace({0, 1, 2}, {0, 0, 0}, {-5, -3, 1});
-  m.right.trace({0, 1, 2}, {0, 0, 0});
-  m.reply();
-  const std::optional<Opening> opening = compression_criterion(m.interface, m.bodies, 1e-9);
-  ASSERT_TRUE(opening);
-  EXPECT_EQ(opening->state, 1.0);
-  EXPECT_EQ(opening->crossing, 1.75);
+  m.left.trace({0, 1, 2}, {0.5, 1.0, 0.75}, {0, -3, 0});
+  m.right.trace({0, 1, 2}, {0, 0, 0.25});
+  const ContactHistory h = history(m);
+  // Free, the sides would overlap by 3 N x 1 m/N at 1: a gap of 0.5 m is gone after a seventh.
+  EXPECT_NEAR(h.touch(1).time, 0.5 / 3.5, roundoff(8, 1.0));
+  EXPECT_NEAR(h.touch(1).speed, 3.5, roundoff(8, 3.5));
+  // Held, they would be pulled by 0.5 N at 2: the force of 3 N is gone after six sevenths.
+  EXPECT_NEAR(h.release(2), 1.0 + 3.0 / 3.5, roundoff(8, 2.0));
 }
 
-TEST(CompressionCriterion, AForceOfKicksActsAtTheBeginOfItsSubstep) {
+TEST(ContactHistory, KnowsTheEnergyOfEventsFromGapsAndForcesAlone) {
+  // Goal: [M.25]. Oracle: a spring of 1 N/m that a surface loads, its energy and the work on it.
+  Meeting m;
+  m.left.trace({0, 1, 2, 3}, {0.5, 1.0, 1.0, 0.75}, {0, -3, -2, 0});
+  m.right.trace({0, 1, 2, 3}, {0, 0, 0, 0.25});
+  const ContactHistory h = history(m);
+  EXPECT_EQ(h.energy(1), -0.5 * 3.0 * 0.5);  // closing takes
+  EXPECT_EQ(h.energy(2), 0.0);               // closed, contact does no work
+  EXPECT_EQ(h.energy(3), 0.5 * 2.0 * 0.5);   // opening gives
+}
+
+TEST(ContactHistory, AForceOfKicksActsAtTheBeginOfItsSubstep) {
   Meeting m;
   m.left.reply.ports[0].trace.support = ForceSupport::step;
-  m.left.trace({0, 1, 2, 3}, {0, 0, 0, 0}, {0, -3, -3, 1});
+  m.left.trace({0, 1, 2, 3}, {1, 1, 1, 0}, {0, -3, -3, 0});
   m.right.trace({0, 1, 2, 3}, {0, 0, 0, 0});
-  m.interface.kinematic = 0;
-  m.reply();
-  const std::optional<Opening> opening = compression_criterion(m.interface, m.bodies, 1e-9);
-  ASSERT_TRUE(opening);
-  EXPECT_EQ(opening->state, 2.0);      // the last state that a push has made
-  EXPECT_EQ(opening->crossing, 1.75);  // -3 acts at 1, +1 at 2
+  const ContactHistory h = history(m);
+  EXPECT_TRUE(h.kicks());
+  EXPECT_EQ(h.release(3), 1.0 + 3.0 / 4.0);  // 3 N act at 1, held sides would be pulled by 1 N at 2
 }
 
-TEST(CompressionCriterion, JudgesTheImpulsesOfTheCoarserSide) {
-  Meeting m(0.5, 2.0);  // a spike of the finer, kinematic side is none of the coarser one
-  m.left.trace({0, .5, 1, 1.5, 2, 2.5, 3, 3.5, 4}, {0, 0, 0, 0, 0, 0, 0, 0, 0},
-               {-4, -4, 1, -4, -4, -4, -4, -4, -4});
+TEST(ContactHistory, JudgesTheMeansOverTheCoarserSide) {
+  Meeting m(0.5, 2.0);  // a hole in the force of the finer, kinematic side is none of the coarser
+  m.left.trace({0, .5, 1, 1.5, 2, 2.5, 3, 3.5, 4}, {1, 1, 1, 1, 1, 1, 1, 1, 1},
+               {-4, -4, 0, -4, -4, -4, -4, -4, -4});
   m.right.trace({0, 2, 4}, {0, 0, 0});
+  ContactHistory h = history(m);
+  ASSERT_EQ(h.size(), 3u);
+  EXPECT_GT(h[1].force, 0.0);
+  EXPECT_GT(h[2].force, 0.0);
+  m.left.trace({0, .5, 1, 1.5, 2, 2.5, 3, 3.5, 4}, {1, 1, 1, 1, 1, .75, .5, .25, 0},
+               {-4, -4, -4, -4, -1, 0, 0, 0, 0});
+  h = history(m);
+  EXPECT_EQ(h[2].force, 0.0);
+  // located on the finer side: 1 N at 2, a pull of 0.25 N at 2.5
+  EXPECT_NEAR(h.release(2), 2.0 + 0.5 * 0.8, roundoff(8, 4.0));
+}
+
+TEST(PayingImpulse, GivesExactlyWhatIsOwed) {
+  // Goal: [M.26]. Oracle: the energy of two masses before and after the impulse.
+  for (double debt : {0.3, -0.3, 1e-9}) {
+    for (double approach : {2.0, -2.0}) {
+      Meeting m;
+      m.left.reply.ports[0].recoil = Recoil{approach, 1.0 / 2.0};
+      m.right.reply.ports[0].recoil = Recoil{0.0, 1.0 / 3.0};
+      m.reply();
+      m.interface.debt = debt;
+      const double j = paying_impulse(m.interface, m.bodies);
+      const auto energy = [](double mass, double v) { return 0.5 * mass * v * v; };
+      const double left = approach - j / 2.0, right = -j / 3.0;
+      EXPECT_NEAR(energy(2.0, left) + energy(3.0, right) - energy(2.0, approach), debt,
+                  roundoff(16, 4.0));
+      EXPECT_LT(std::abs(j), 2.0);  // the smaller root
+    }
+  }
+}
+
+TEST(PayingImpulse, TakesBackNoMoreThanThereIsAndWaitsWhereItWouldStirUpMore) {
+  Meeting m;
+  m.left.reply.ports[0].recoil = Recoil{2.0, 0.5};
+  m.right.reply.ports[0].recoil = Recoil{};  // a wall
   m.reply();
-  EXPECT_FALSE(compression_criterion(m.interface, m.bodies, 1e-9));
-  m.left.trace({0, .5, 1, 1.5, 2, 2.5, 3, 3.5, 4}, {0, 0, 0, 0, 0, 0, 0, 0, 0},
-               {-4, -4, -4, -4, -4, 1, 1, 1, 1});
+  m.interface.debt = -100.0;
+  EXPECT_EQ(paying_impulse(m.interface, m.bodies), 4.0);  // stops it: 4 J of the 100
+  m.interface.debt = 100.0;
+  EXPECT_EQ(paying_impulse(m.interface, m.bodies), 0.0);
+}
+
+TEST(ReleaseImpulse, GivesBackAllThatContactTook) {
+  Meeting m;
+  m.left.reply.ports[0].recoil = Recoil{0.5, 0.5};
+  m.right.reply.ports[0].recoil = Recoil{};
   m.reply();
-  const std::optional<Opening> opening = compression_criterion(m.interface, m.bodies, 1e-9);
-  ASSERT_TRUE(opening);
-  EXPECT_EQ(opening->state, 2.0);  // a substep's end of the coarser side
+  m.interface.debt = 2.0;
+  const double j = release_impulse(m.interface, m.bodies);
+  EXPECT_NEAR(0.5 * 2.0 * std::pow(0.5 - j / 2.0, 2) - 0.5 * 2.0 * 0.25, 2.0, roundoff(16, 2.0));
+  EXPECT_GT(j, 0.0);  // apart
 }
 
 TEST(Horizon, IsTheGapOverTheBoundOfTheClosingSpeedAndAMargin) {
