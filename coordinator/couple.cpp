@@ -244,7 +244,15 @@ Schwarz make_schwarz(const SchwarzSpec& spec) {
       return std::make_unique<QuasiNewton>(inverse, s.reuse, s.filter, 1);
     }
   };
-  const Schwarz::Options options{spec.max_iterations, spec.tolerance};
+  struct UsesKernels {
+    bool operator()(const NoAcceleration&) const { return false; }
+    bool operator()(const FixedRelaxation& s) const { return s.factor.probed(); }
+    bool operator()(const AitkenAcceleration& s) const { return s.initial.probed(); }
+    bool operator()(const AndersonAcceleration& s) const { return s.initial.probed(); }
+    bool operator()(const KernelAcceleration&) const { return true; }
+  };
+  const Schwarz::Options options{spec.max_iterations, spec.tolerance,
+                                 std::visit(UsesKernels{}, spec.accelerator)};
   return Schwarz(options,
                  [accelerator = spec.accelerator](ApplyInverse inverse, ApplyInverse probe) {
                    return std::visit(Maker{std::move(inverse), std::move(probe)}, accelerator);

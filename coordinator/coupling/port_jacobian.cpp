@@ -168,12 +168,21 @@ Eigen::VectorXd solve_unilateral(const std::vector<double>& kinematic,
   const Eigen::Map<const Eigen::VectorXd> cn(neumann.data(), n);
   const double both = ck[0] + cn[0];
   Eigen::VectorXd left = overlap + normal * r;  // overlap that is left to be removed
-  Eigen::VectorXd motion = r;
+  Eigen::VectorXd given = Eigen::VectorXd::Zero(n);   // way that the kinematic side gives
+  Eigen::VectorXd pushed = Eigen::VectorXd::Zero(n);  // way that the Neumann side is pushed
+  Eigen::VectorXd motion(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double change = std::max(left[i] / both, -force[i]);
-    if (change == 0.0) continue;
-    left.tail(n - i) -= change * (ck + cn).head(n - i);
-    motion.tail(n - i) -= normal * change * cn.head(n - i);
+    const bool closed = change > -force[i];
+    if (change != 0.0) {
+      left.tail(n - i) -= change * (ck + cn).head(n - i);
+      given.tail(n - i) += change * ck.head(n - i);
+      pushed.tail(n - i) += change * cn.head(n - i);
+    }
+    // Where the sides touch both differences are the same; the one of the stiffer side keeps its
+    // digits when the residual is as large as the other one's compliance makes it.
+    motion[i] = closed && ck[0] < cn[0] ? normal * (given[i] - overlap[i])
+                                        : r[i] - normal * pushed[i];
   }
   return motion;
 }

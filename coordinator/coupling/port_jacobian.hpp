@@ -58,7 +58,9 @@ ContactMaps contact_maps(const PortKernel& kinematic, const TimeGrid& kinematic_
 
 /// Change d of the contact forces f >= 0 that makes forces and gaps complementary  [M.20]:
 ///   0 <= f + d,   overlap - A d <= 0,   and one of both is zero at every substep.
-/// A is lower triangular but for substeps of unlike length, so passes through time settle it.
+/// A is lower triangular but for substeps of unlike length, so passes through time settle it. They
+/// creep where a coarse Neumann side gives way to many kicks at once: to 1e-3 then, and the next
+/// iteration goes on from there.
 Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::VectorXd& overlap,
                                       const Eigen::VectorXd& force);
 

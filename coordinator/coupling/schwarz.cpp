@@ -188,7 +188,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     }
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
-    if (std::ranges::any_of(island.joints, [&joints](int j) {
+    if (options_.kernels && std::ranges::any_of(island.joints, [&joints](int j) {
           return joints[static_cast<std::size_t>(j)].transmission->projects();
         })) {
       x_ += apply_inverses(g_ - x_, joints);

@@ -157,7 +157,8 @@ TEST(SolidAndBar, CollideAsTwoBars) {
 /// Places of the second bar's end before contact ends, at the ends of windows; the first bar is in
 /// modes. 0: by the model of solids.
 std::vector<double> places(int modes) {
-  const SceneText scene = solid_and_bar(explicit_scheme(1.0e-7), explicit_scheme(1.0e-7, 6), true);
+  SceneText scene = solid_and_bar(explicit_scheme(1.0e-7), explicit_scheme(1.0e-7, 6), true);
+  scene.bars[1].position += 5.0e-6;  // so that no rounding decides in which step they touch
   std::string text = scene.text();
   if (modes > 0) {
     const std::size_t at = text.find("fe: {"), end = text.find("}}", at);
