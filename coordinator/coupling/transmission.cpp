@@ -125,7 +125,8 @@ void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bod
   kernel_n_ = &kernel_n;
   outward_n_ = interface.normal_of(1 - interface.kinematic);
   inverse_ = nullptr;
-  if (moved == 0.0) return;  // a side that does not give way leaves nothing to iterate
+  // a side that does not give way leaves nothing to iterate
+  if (std::isinf(bodies.describe(n.body).mass)) return;
   inverse_ = inverses_.find(window.length());
   if (inverse_ != nullptr) return;
   const bool small =
