@@ -17,6 +17,8 @@ struct PortGeometry {
   std::vector<std::int32_t> offsets;  // of the facets; empty in 1D
   // [m] typical distance of mesh nodes behind the port; 0: rigid
   double spacing = 0.0;
+  // [s] time in which the fastest wave crosses `spacing`; 0: rigid or unknown
+  double transit = 0.0;
 
   int count() const { return dim > 0 ? static_cast<int>(points.size()) / dim : 0; }
 };

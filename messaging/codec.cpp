@@ -32,7 +32,7 @@ static_assert(sizeof(Obstacle) == sizeof(Waveform) + sizeof(std::vector<double>)
 static_assert(sizeof(Impedance) == 2 * sizeof(double));
 static_assert(sizeof(BoundaryData) == 2 * sizeof(Waveform) + sizeof(Obstacle) + sizeof(Impedance) +
                                           sizeof(std::vector<double>));
-static_assert(sizeof(PortGeometry) == 4 * sizeof(std::vector<double>) + 2 * sizeof(double));
+static_assert(sizeof(PortGeometry) == 4 * sizeof(std::vector<double>) + 3 * sizeof(double));
 static_assert(sizeof(Port) == sizeof(std::string) + sizeof(PortGeometry) + sizeof(double));
 
 constexpr std::array<std::pair<Failed::Cause, v1::FailureCause>, 4> causes{{
@@ -191,6 +191,7 @@ void decode(const v1::Port& from, const FieldPath& path, Port& to) {
     FieldPath{&path, "facets"}.fail(fmt::format("names point {}", point));
   }
   geometry.spacing = number(from.spacing(), FieldPath{&path, "spacing"});
+  geometry.transit = number(from.transit(), FieldPath{&path, "transit"});
   to.tied = from.tied();
 }
 
@@ -359,6 +360,7 @@ void encode(const Description& from, v1::Description& to) {
     wire.mutable_facets()->Add(port.geometry.facets.begin(), port.geometry.facets.end());
     wire.mutable_offsets()->Add(port.geometry.offsets.begin(), port.geometry.offsets.end());
     wire.set_spacing(port.geometry.spacing);
+    wire.set_transit(port.geometry.transit);
     wire.set_tied(port.tied);
   }
   v1::Capabilities& can = *to.mutable_can();

@@ -68,6 +68,7 @@ void Body::describe_ports(const std::vector<BodyPort>& ports) {
     port.geometry.points = {bar_->data().position + (p.end == 0 ? 0.0 : bar_->data().length)};
     port.geometry.normals = {Bar::outward(p.end)};
     port.geometry.spacing = bar_->spacing();
+    port.geometry.transit = bar_->spacing() / bar_->data().wave_speed();
     description_.ports.push_back(std::move(port));
   }
 }

@@ -56,6 +56,7 @@ void PairBody::describe_members(const Parameters& parameters) {
     port.geometry.points = {m == 0 ? bar.position + bar.length : bar.position};
     port.geometry.normals = {m == 0 ? 1.0 : -1.0};
     port.geometry.spacing = pair_.bar(m).spacing();
+    port.geometry.transit = port.geometry.spacing / bar.wave_speed();
     description_.ports.push_back(std::move(port));
   }
 }

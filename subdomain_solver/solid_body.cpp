@@ -28,6 +28,13 @@ constexpr std::chrono::milliseconds life_interval{250};
 
 std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
+/// Speed [m/s] of the fastest wave at the undeformed state: of dilatation, or along a bar.
+double fastest_wave(const FeModel& model) {
+  const Moduli moduli = model.material().moduli();
+  const double stiffness = model.mesh().dim == 1 ? moduli.youngs() : moduli.p_wave();
+  return std::sqrt(stiffness / model.material().density());
+}
+
 }  // namespace
 
 SolidBody::SolidBody(std::string name, Parts parts, const std::vector<PortNodes>& ports)
@@ -61,7 +68,9 @@ void SolidBody::describe(std::string name, const std::vector<PortNodes>& ports) 
   description_.can.kernel = description_.can.complete = answers;  // as the side that takes forces
   for (const PortNodes& p : ports) {
     ports_.push_back({p.name, mesh.nodes_of(p.side)});
-    description_.ports.push_back(port_of(p, ports_.back().nodes));
+    Port port = port_of(p, ports_.back().nodes);
+    if (parts_.deforms) port.geometry.transit = port.geometry.spacing / fastest_wave(*parts_.model);
+    description_.ports.push_back(std::move(port));
   }
   description_.measures = solid_measure_names(mesh.dim, parts_.deforms, ports_);
   for (const std::string& measure : parts_.scheme.integrator->measure_names())

@@ -227,6 +227,7 @@ TEST(Codec, DescriptionKeepsEveryFieldAndInfinity) {
   sent.step = 1.0e-7;
   sent.can.complete = true;
   sent.ports[1].geometry.spacing = 0.00125;
+  sent.ports[1].geometry.transit = 1.25e-6;
   Description got;
   decode(through_bytes<Description, v1::Description>(sent), got);
   EXPECT_EQ(got.name, sent.name);
@@ -241,6 +242,7 @@ TEST(Codec, DescriptionKeepsEveryFieldAndInfinity) {
   EXPECT_EQ(got.ports[1].geometry.points, sent.ports[1].geometry.points);
   EXPECT_EQ(got.ports[1].geometry.normals, sent.ports[1].geometry.normals);
   EXPECT_EQ(got.ports[1].geometry.spacing, 0.00125);
+  EXPECT_EQ(got.ports[1].geometry.transit, 1.25e-6);
   EXPECT_TRUE(got.can.force && got.can.impulse && got.can.kernel && got.can.complete);
   EXPECT_FALSE(got.can.motion || got.can.obstacle);
   EXPECT_EQ(got.measures, (std::vector<std::string>{"displacement.x.max", "energy.stored"}));

@@ -203,6 +203,7 @@ TEST_P(Pair, IsDescribedByItsMembersAndOffersNothing) {
   EXPECT_EQ(d.members[1].mass, 30.0);
   EXPECT_EQ(d.members[1].ports, std::vector<std::int32_t>{1});
   EXPECT_EQ(d.ports[1].name, "right_tip");
+  EXPECT_EQ(d.ports[1].geometry.transit, 1.0);  // h / c
   EXPECT_EQ(d.mass, 50.0);
   EXPECT_FALSE(d.can.force || d.can.motion || d.can.obstacle || d.can.impulse || d.can.kernel);
   EXPECT_THROW(pair->kernel(0, pair_step, 3), RunError);

@@ -1,7 +1,9 @@
 // Goal: the port line and the port kernel say how a contact force moves a port, exactly.
 // Oracles: the reaction to an obstacle, handed back as a force, reproduces the obstacle's motion;
-// the reaction is the solution of the kernel's triangular system.
+// the reaction is the solution of the kernel's triangular system; wave speeds of closed form.
 
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -127,6 +129,45 @@ TEST_P(PortLine, ReactionPushesInwards) {
   for (double f : response.ports[0].trace.f) EXPECT_LE(f * n, 0.0);
   // Z v for 12 s; the first front and the dispersion of 20 steps leave a few per cent
   EXPECT_NEAR((response.records[0].momentum[0] - 40.0 * velocity) * n, -0.12, 0.12 * 0.1);
+}
+
+/// Modulus 200, Poisson's ratio 0.25 and density 3: speeds of sqrt(240 / 3) in the bulk and of
+/// sqrt(200 / 3) along a bar.
+std::string solid_text(const std::string& model, const std::string& integrator) {
+  return fmt::format(
+      "bodies:\n  solid:\n    model: {{{}}}\n    material: {{neo_hookean: {{youngs_modulus: 200.0, "
+      "poissons_ratio: 0.25, density: 3.0}}}}\n    integrator: {{{}}}\n"
+      "    ports: {{end: {{side: right}}}}\n",
+      model, integrator);
+}
+
+double transit_of(const std::string& text) {
+  return make_body(Document::from_text("test", text), "bodies.solid")
+      ->describe()
+      .ports.at(0)
+      .geometry.transit;
+}
+
+TEST(PortGeometry, TransitIsTheTimeOfAWaveThroughTheSpacing) {
+  const double few = roundoff(10.0, 1.0);
+  for (const SolverCase& c : complete_cases(0.5 * case_step)) {
+    BarText bar = case_bar(c);
+    bar.modulus = 4.0;  // twice as fast as the cases' bar, whose h / c is 1
+    const std::unique_ptr<Subdomain> body = build(bar);
+    for (const Port& port : body->describe().ports)
+      EXPECT_NEAR(port.geometry.transit, 0.5, few) << c.name;
+  }
+  const std::string newmark = "newmark: {step: 0.1}";
+  const std::string along = "{dimension: 1, mesh: {bar: {length: 6.0, elements: 3, area: 1.0}}";
+  const std::string bulk =
+      "{dimension: 3, mesh: {box: {lengths: [6.0, 2.0, 2.0], elements: [3, 1, 1]}}";
+  EXPECT_NEAR(transit_of(solid_text("fe: " + along + "}", newmark)), 2.0 / std::sqrt(200.0 / 3.0),
+              few);
+  EXPECT_NEAR(transit_of(solid_text("fe: " + bulk + "}", newmark)), 2.0 / std::sqrt(240.0 / 3.0),
+              few);
+  for (const std::string& mesh : {along, bulk})  // infinitely fast
+    EXPECT_EQ(transit_of(solid_text("rigid: " + mesh + "}", "rigid_motion: {step: 0.1}")), 0.0);
+  EXPECT_EQ(build_wall(0.5, "left")->describe().ports[0].geometry.transit, 0.0);
 }
 
 TEST(RigidWall, TakesAnyForceAndStays) {
