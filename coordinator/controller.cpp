@@ -85,11 +85,13 @@ bool Controller::running() const {
 void Controller::observe_start() {
   RunStart start{scene_.time.begin, scene_.time.end, {}, {}};
   for (int b = 0; b < bodies_.count(); ++b) start.bodies.push_back(&bodies_.describe(b));
-  for (const Interface& i : coupling_.interfaces) {
+  for (std::size_t k = 0; k < coupling_.interfaces.size(); ++k) {
+    const Interface& i = coupling_.interfaces[k];
     start.interfaces.push_back({i.name,
                                 {i.sides[0].body, i.sides[1].body},
                                 {i.sides[0].port, i.sides[1].port},
-                                i.reference_gap});
+                                i.reference_gap,
+                                coupling_.rules[k].tied});
   }
   for (Observer* observer : observers_) observer->on_start(start);
   const TimeWindow instant{0, time_, time_};

@@ -89,6 +89,7 @@ void validate_expectations(const Scene& scene, const std::vector<const Descripti
     scope.interfaces.push_back(name);
     scope.ports.insert(scope.ports.end(), interface.sides.begin(), interface.sides.end());
   }
+  scope.filtered = scene.output.force_filter.has_value();
   scope.exact = exact_interfaces(scene);
   scope.told = told_measures(bodies);
   for (std::size_t i = 0; i < scene.meta.expect.size(); ++i) {
@@ -207,7 +208,7 @@ int run_verb(const RunCommand& command) {
   clear_run_directory(directory);
   write_whole(directory / "scene.resolved.yaml", resolved_text(scene, document));
   const ClosedForm* form = valid.form ? &*valid.form : nullptr;
-  MeasureRecorder recorder(form);
+  MeasureRecorder recorder(form, scene.output.force_filter);
   CsvHistory history(directory, form);
   EventLog events(directory);
   Summary summary(directory,

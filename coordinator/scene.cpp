@@ -148,6 +148,9 @@ void OutputSpec::fields(Fields& f) {
   f.optional_section("fields", field_output,
                      "fields of all bodies for ParaView (fields.pvd): at the begin, after every so "
                      "many windows and at the end; bodies fly free no further than that at once");
+  f.choice("force_filter", force_filter,
+           "filter behind which the largest contact force is the measure "
+           "contact.INTERFACE.force_peak_filtered");
 }
 
 void NetworkSpec::fields(Fields& f) {
@@ -233,6 +236,33 @@ void validate_interface(const Scene& scene, const InterfaceSpec& interface,
   if (const auto* d = std::get_if<DirichletNeumannTransmission>(&interface.transmission))
     require_side(interface, d->dirichlet, path + ".transmission.dirichlet_neumann.dirichlet",
                  document);
+}
+
+/// A filter that would see nothing of the run, or would take the run's time many times over.
+void validate_force_filter(const Scene& scene, const Document& document) {
+  if (!scene.output.force_filter) return;
+  const std::string path = "output.force_filter";
+  if (scene.interfaces.empty())
+    throw InputError("has no effect: there is no interface whose force it could filter",
+                     document.where(path), "Leave it out, or declare an interface.");
+  const double run = scene.time.end - scene.time.begin;
+  if (const MeanForceSpec* mean = std::get_if<MeanForceSpec>(&*scene.output.force_filter)) {
+    const double least = 1.0e-9 * run;  // the round-off of times that sums of substeps have
+    if (mean->time < least || mean->time > run)
+      throw InputError(fmt::format("is {:g} s in a run of {:g} s", mean->time, run),
+                       document.where(path + ".mean.time"),
+                       fmt::format("Give a time from {:g} to {:g} s.", least, run));
+    return;
+  }
+  const int of_class = std::get<ChannelClassSpec>(*scene.output.force_filter).channel_class;
+  constexpr double most_samples = 1.0e9;  // some seconds of filtering
+  const double longest = most_samples / (1000.0 * of_class);
+  if (run > longest)
+    throw InputError(
+        fmt::format("is {}, which is for runs of up to {:g} s, but this one lasts {:g} s", of_class,
+                    longest, run),
+        document.where(path + ".cfc.class"),
+        "Give a lower class, or {mean: {time: ...}}, whose cost does not grow.");
 }
 
 void validate_ports_used_once(const Scene& scene, const Document& document) {
@@ -370,6 +400,7 @@ void validate(const Scene& scene, const Document& document) {
   for (const auto& [name, interface] : scene.interfaces)
     validate_interface(scene, interface, document);
   validate_ports_used_once(scene, document);
+  validate_force_filter(scene, document);
   if (scene.meta.closed_form) {
     for (const std::string& name : exact_interfaces(scene))
       if (!has_name(scene.interfaces, name))

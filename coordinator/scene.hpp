@@ -13,6 +13,7 @@
 #include "base/fields.hpp"
 #include "base/yaml_document.hpp"
 #include "contract/subdomain.hpp"
+#include "coordinator/force_filter_spec.hpp"
 #include "coordinator/scene_meta.hpp"
 
 namespace abut {
@@ -142,6 +143,7 @@ struct FieldOutputSpec {
 struct OutputSpec {
   int records_per_window = 1;  // rows of history.csv per controller window
   std::optional<FieldOutputSpec> field_output;  // key fields; absent: no body is asked
+  std::optional<ForceFilterSpec> force_filter;  // absent: no measure of filtered forces
   void fields(Fields& f);
 };
 

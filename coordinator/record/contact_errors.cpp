@@ -1,5 +1,6 @@
 #include "coordinator/record/contact_errors.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -36,21 +37,20 @@ void ContactErrors::add_velocity(int side, double from, double to, double v_from
 }
 
 void ContactErrors::follow(double time, double force) {
-  if (exact_.ever() && last_.known) {
+  if (!exact_.ever()) return;
+  if (last_.known) {
+    const double step = time - last_.time;
+    if (step <= 0.0) return;
     const double half = 0.5 * exact_.stretches.back().force;
     if (last_.force >= half && force < half) {
-      const double part = (last_.force - half) / (last_.force - force);
-      half_force_time_ = last_.time + part * (time - last_.time);
+      // In free flight bodies tell their records alone: the force is gone within a substep.
+      const double gone = force == 0.0 && step_ > 0.0 ? std::min(step, step_) : step;
+      half_force_time_ = last_.time + (last_.force - half) / (last_.force - force) * gone;
       half_force_seen_ = true;
     }
+    step_ = step;
   }
   last_ = {time, force, true};
-}
-
-void ContactErrors::vanish(double substep) {
-  if (!last_.known) return;
-  follow(last_.time + substep, 0.0);
-  last_.known = false;
 }
 
 void ContactErrors::write(const std::string& interface, const SeenContact& seen, double run_end,

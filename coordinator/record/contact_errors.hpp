@@ -28,12 +28,9 @@ class ContactErrors {
   void add_force(double from, double to, double force_from, double force_to);
   /// The same with the velocities of the kinematic side, 0 or 1, along x [m/s].
   void add_velocity(int side, double from, double to, double v_from, double v_to);
-  /// The contact force at one time; times come in their order.
+  /// The contact force at one time; times come in their order, and one that came before is left
+  /// out: windows tell the state at their begin again.
   void follow(double time, double force);
-  /// Whether `follow` has been called since the force was last gone.
-  bool following() const { return last_.known; }
-  /// The force is gone a substep [s] after the last time.
-  void vanish(double substep);
   /// `interface`: name in the run.
   void write(const std::string& interface, const SeenContact& seen, double run_end,
              Measures& out) const;
@@ -50,6 +47,7 @@ class ContactErrors {
   std::array<double, 2> velocity_jump_;  // [m/s] of each side that the largest force makes
   StepError force_, force_tail_, velocity_;
   Sample last_;
+  double step_ = 0.0;  // [s] between the last two samples
   double half_force_time_ = 0.0;
   bool half_force_seen_ = false;
 };

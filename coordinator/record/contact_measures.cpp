@@ -9,15 +9,36 @@
 
 namespace abut {
 
+namespace {
+
+const Port& port_of(const RunStart& start, const InterfaceInfo& interface, int side) {
+  return start.bodies[interface.body[side]]->ports[interface.port[side]];
+}
+
+/// [s] between a release and a touch that belong to one contact: of the port that sees less.
+double together(const RunStart& start, const InterfaceInfo& interface) {
+  return transits_of_one_contact * std::max(port_of(start, interface, 0).geometry.transit,
+                                            port_of(start, interface, 1).geometry.transit);
+}
+
+}  // namespace
+
 ContactMeasures::ContactMeasures(const RunStart& start, int interface,
-                                 std::optional<ContactErrors> errors)
+                                 std::optional<ContactErrors> errors,
+                                 std::unique_ptr<ForceFilter> filter)
     : start_(start),
       index_(interface),
       info_(start.interfaces[interface]),
-      readers_{PortReader(start.bodies[info_.body[0]]->ports[info_.port[0]]),
-               PortReader(start.bodies[info_.body[1]]->ports[info_.port[1]])},
+      readers_{PortReader(port_of(start, info_, 0)), PortReader(port_of(start, info_, 1))},
+      times_(together(start, info_)),
+      velocity_(together(start, info_)),
       gap_min_(std::numeric_limits<double>::infinity()),
-      errors_(std::move(errors)) {}
+      errors_(std::move(errors)),
+      filter_(std::move(filter)) {
+  if (!info_.tied) return;
+  times_.join(start.begin);
+  velocity_.join(start.begin);
+}
 
 std::string ContactMeasures::name(const char* what) const {
   return fmt::format("contact.{}.{}", info_.name, what);
@@ -25,107 +46,105 @@ std::string ContactMeasures::name(const char* what) const {
 
 void ContactMeasures::on_event(const RunEvent& event) {
   if (event.subject != info_.name) return;
-  if (event.kind == RunEvent::Kind::contact_closed) {
-    if (seen_.count == 0) seen_.begin = event.time;
-    ++seen_.count;
-    seen_.open = false;
-    closed_since_ = event.time;
-  } else if (event.kind == RunEvent::Kind::contact_opened) {
-    seen_.end = event.time;
-    seen_.open = true;
-    closed_time_ += event.time - closed_since_;
-  }
+  const bool closes = event.kind == RunEvent::Kind::contact_closed;
+  if (!closes && event.kind != RunEvent::Kind::contact_opened) return;
+  closes ? times_.close(event.time) : times_.open(event.time);
+  velocity_.change(closes, event.time);
 }
 
 void ContactMeasures::on_window(const WindowReport& report) {
-  const Waveform* traces[2];
-  for (const int side : {0, 1})
+  std::array<const Waveform*, 2> traces;
+  for (const std::size_t side : {0u, 1u})
     traces[side] = &report.responses[info_.body[side]].ports[info_.port[side]].trace;
   if (traces[0]->empty() || traces[1]->empty()) return;
-  if (readers_[0].port().geometry.dim == 1) {
-    for (const BodyRecord& record : report.responses[info_.body[0]].records) {
-      const double u0 = readers_[0].at(*traces[0], record.time).u[0];
-      const double u1 = readers_[1].at(*traces[1], record.time).u[0];
-      gap_min_ = std::min(gap_min_, gap_of(info_, start_, u0, u1));
-    }
-  }
+  if (readers_[0].port().geometry.dim == 1) read_gap(report, traces);
   const InterfaceReport& mine = report.interfaces[index_];
-  if (!mine.closed) {
-    if (errors_) errors_->vanish(last_step_);
-    return;
-  }
-  joined_time_ += report.window.length();
-  add_closed(*traces[mine.kinematic], mine.kinematic);
+  const std::size_t kinematic = static_cast<std::size_t>(mine.kinematic);
+  velocity_.on_window(readers_, traces, mine.kinematic, mine.closed, errors_ ? &*errors_ : nullptr);
+  read_force(*traces[kinematic], readers_[kinematic]);
 }
 
-void ContactMeasures::add_closed(const Waveform& trace, int side) {
+void ContactMeasures::read_gap(const WindowReport& report,
+                               const std::array<const Waveform*, 2>& traces) {
+  for (const BodyRecord& record : report.responses[info_.body[0]].records) {
+    const double u0 = readers_[0].at(*traces[0], record.time).u[0];
+    const double u1 = readers_[1].at(*traces[1], record.time).u[0];
+    gap_min_ = std::min(gap_min_, gap_of(info_, start_, u0, u1));
+  }
+}
+
+/// Of every window: bodies that nothing touches tell no force.
+void ContactMeasures::read_force(const Waveform& trace, const PortReader& reader) {
   if (trace.f.empty()) return;
   const bool nodal = trace.support == ForceSupport::nodal;
-  const PortReader& reader = readers_[side];
   double before = reader.compression(trace, 0);
-  if (nodal && errors_ && !errors_->following()) errors_->follow(trace.time[0], before);
-  if (nodal) peak_ = std::max(peak_, before);
+  if (nodal) {
+    peak_ = std::max(peak_, before);
+    if (errors_) errors_->follow(trace.time[0], before);
+  }
   for (std::size_t i = 1; i < trace.size(); ++i) {
     const double from = trace.time[i - 1];
     const double to = trace.time[i];
     const double now = reader.compression(trace, i);
-    add_force(from, to, nodal ? before : now, now);
-    add_velocity(trace, side, i);
-    last_step_ = to - from;
-    if (errors_) errors_->follow(nodal ? to : 0.5 * (from + to), now);
+    if (!nodal) before = now;
+    impulse_ += 0.5 * (before + now) * (to - from);
+    peak_ = std::max(peak_, now);
+    if (filter_) filter_->add(from, to, before, now);
+    if (errors_) {
+      errors_->add_force(from, to, before, now);
+      errors_->follow(nodal ? to : 0.5 * (from + to), now);
+    }
     before = now;
   }
 }
 
-void ContactMeasures::add_force(double from, double to, double force_from, double force_to) {
-  seen_.impulse += 0.5 * (force_from + force_to) * (to - from);
-  peak_ = std::max(peak_, force_to);
-  if (errors_) errors_->add_force(from, to, force_from, force_to);
-}
-
-void ContactMeasures::add_velocity(const Waveform& trace, int side, std::size_t i) {
-  if (trace.v.empty()) return;
-  const double from = readers_[side].along_x(trace, trace.v, i - 1);
-  const double to = readers_[side].along_x(trace, trace.v, i);
-  velocity_.add(trace.time[i - 1], trace.time[i], from, to);
-  if (errors_) errors_->add_velocity(side, trace.time[i - 1], trace.time[i], from, to);
-}
-
-void ContactMeasures::write(double run_end, Measures& out) const {
-  write_plain(run_end, out);
-  if (errors_) errors_->write(info_.name, seen_, run_end, out);
-}
-
-void ContactMeasures::write_plain(double run_end, Measures& out) const {
-  const std::string never = "the interface never closed";
-  out.set(name("count"), seen_.count);
-  out.set(name("impulse"), seen_.impulse);
-  out.set(name("force_peak"), peak_);
+void ContactMeasures::write(double run_end, Measures& out) {
+  velocity_.finish(errors_ ? &*errors_ : nullptr);
+  write_force(times_.closed(run_end), out);
+  write_times(out);
   if (std::isfinite(gap_min_)) {
     out.set(name("gap_min"), gap_min_);
   } else {
     out.none(name("gap_min"), "a gap is known between single points in one dimension only");
   }
-  const bool at_end = seen_.count > 0 && !seen_.open;
-  const double last = at_end ? run_end - closed_since_ : 0.0;
-  const double closed = seen_.count > 0 ? closed_time_ + last : joined_time_;
-  if (closed > 0.0 && velocity_.covered() > 0.0) {
-    out.set(name("force_mean"), seen_.impulse / closed);
-    out.set(name("velocity_rms"), std::sqrt(velocity_.sum() / velocity_.covered()));
+  if (!errors_) return;
+  const SeenContact seen{times_.begin(), times_.end(), times_.count(), times_.is_open(), impulse_};
+  errors_->write(info_.name, seen, run_end, out);
+}
+
+void ContactMeasures::write_force(double closed, Measures& out) {
+  out.set(name("impulse"), impulse_);
+  out.set(name("force_peak"), peak_);
+  if (filter_) out.set(name("force_peak_filtered"), filter_->peak());
+  const std::string never = "the interface never closed";
+  if (closed > 0.0) {
+    out.set(name("force_mean"), impulse_ / closed);
   } else {
     out.none(name("force_mean"), never);
-    out.none(name("velocity_rms"), never);
   }
-  if (seen_.count > 0) {
-    out.set(name("begin"), seen_.begin);
+  const double velocity = velocity_.rms();
+  if (!std::isnan(velocity)) {
+    out.set(name("velocity_rms"), velocity);
+  } else {
+    out.none(name("velocity_rms"), closed > 0.0 ? "the port tells no velocity" : never);
+  }
+}
+
+void ContactMeasures::write_times(Measures& out) const {
+  const std::string never = "the interface never closed";
+  out.set(name("count"), times_.count());
+  out.set(name("closings"), times_.closings());
+  if (times_.count() > 0) {
+    out.set(name("begin"), times_.begin());
   } else {
     out.none(name("begin"), never);
   }
-  if (seen_.count > 0 && seen_.open) {
-    out.set(name("end"), seen_.end);
-    out.set(name("duration"), seen_.end - seen_.begin);
+  if (times_.count() > 0 && times_.is_open()) {
+    out.set(name("end"), times_.end());
+    out.set(name("duration"), times_.end() - times_.begin());
   } else {
-    const std::string why = seen_.count > 0 ? "the interface was closed when the run ended" : never;
+    const std::string why =
+        times_.count() > 0 ? "the interface was closed when the run ended" : never;
     out.none(name("end"), why);
     out.none(name("duration"), why);
   }

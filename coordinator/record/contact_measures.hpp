@@ -1,34 +1,39 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "coordinator/record/closed_velocity.hpp"
 #include "coordinator/record/contact_errors.hpp"
+#include "coordinator/record/contact_times.hpp"
+#include "coordinator/record/force_filter.hpp"
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/port_reader.hpp"
-#include "coordinator/record/square_integral.hpp"
 
 namespace abut {
 
 /// Measures of one interface: when it was closed, and the force and motion of its contact as the
-/// kinematic side reports them at every substep. Time that the interface is closed counts by whole
-/// windows; begin and end of contact are those of the events, which are located inside windows.
+/// kinematic side reports them at every substep. Times are those of the events, forces those of the
+/// traces: how windows lie, and in which of them the interface was iterated, makes no difference.
 class ContactMeasures {
  public:
-  /// `start` must outlive this.
-  ContactMeasures(const RunStart& start, int interface, std::optional<ContactErrors> errors);
+  /// `start` must outlive this; `filter` may be null.
+  ContactMeasures(const RunStart& start, int interface, std::optional<ContactErrors> errors,
+                  std::unique_ptr<ForceFilter> filter);
 
   void on_window(const WindowReport& report);
   void on_event(const RunEvent& event);
-  void write(double run_end, Measures& out) const;
+  /// Once, at the end.
+  void write(double run_end, Measures& out);
 
  private:
-  void add_closed(const Waveform& trace, int side);
-  void add_force(double from, double to, double force_from, double force_to);
-  void add_velocity(const Waveform& trace, int side, std::size_t i);
-  void write_plain(double run_end, Measures& out) const;
+  void read_gap(const WindowReport& report, const std::array<const Waveform*, 2>& traces);
+  void read_force(const Waveform& trace, const PortReader& reader);
+  void write_force(double closed, Measures& out);
+  void write_times(Measures& out) const;
   std::string name(const char* what) const;
 
   const RunStart& start_;
@@ -36,17 +41,13 @@ class ContactMeasures {
   InterfaceInfo info_;
   std::array<PortReader, 2> readers_;
 
-  SeenContact seen_;
-  // [s] between contact's begins and ends (touching without force is no contact), and in all
-  // windows: ties have no events
-  double closed_time_ = 0.0;
-  double joined_time_ = 0.0;
-  double closed_since_ = 0.0;
-  double peak_ = 0.0;
-  double gap_min_;
-  SquareIntegral velocity_;
-  double last_step_ = 0.0;
+  ContactTimes times_;
+  ClosedVelocity velocity_;
+  double impulse_ = 0.0;  // [N s]
+  double peak_ = 0.0;     // [N]
+  double gap_min_;        // [m]
   std::optional<ContactErrors> errors_;
+  std::unique_ptr<ForceFilter> filter_;
 };
 
 }  // namespace abut

@@ -18,6 +18,11 @@ bool contains(const std::vector<std::string>& sorted, const std::string& name) {
   return std::binary_search(sorted.begin(), sorted.end(), name);
 }
 
+bool needs_filter(const std::string& measure, MeasureScope scope) {
+  scope.filtered = true;
+  return contains(known_measures(scope), measure);
+}
+
 bool needs_closed_form(const std::string& measure, MeasureScope scope) {
   scope.exact = scope.interfaces;
   return contains(known_measures(scope), measure);
@@ -68,9 +73,10 @@ std::vector<std::string> known_measures(const MeasureScope& scope) {
                                     "contact_windows"};
   if (scope.dim > 1) names.push_back("angular_momentum.total");
   for (const std::string& interface : scope.interfaces) {
-    for (const char* what : {"begin", "end", "duration", "count", "impulse", "force_mean",
-                             "force_peak", "velocity_rms", "gap_min"})
+    for (const char* what : {"begin", "end", "duration", "count", "closings", "impulse",
+                             "force_mean", "force_peak", "velocity_rms", "gap_min"})
       names.push_back(fmt::format("contact.{}.{}", interface, what));
+    if (scope.filtered) names.push_back(fmt::format("contact.{}.force_peak_filtered", interface));
   }
   for (const std::string& interface : scope.exact)
     for (const char* what : contact_errors)
@@ -101,6 +107,11 @@ void require_measure(const std::string& measure, const MeasureScope& scope) {
     throw InputError(
         fmt::format("measure '{}' compares with a closed form, which is not named", measure),
         "meta.expect", "Name meta.closed_form for this interface, or leave the expectation out.");
+  if (needs_filter(measure, scope))
+    throw InputError(
+        fmt::format("measure '{}' is of filtered forces, and no filter is named", measure),
+        "meta.expect",
+        "Name output.force_filter, for example {cfc: {class: 600}}, or leave the expectation out.");
   std::vector<std::string> near = known;
   std::stable_sort(near.begin(), near.end(),
                    [&measure](const std::string& a, const std::string& b) {

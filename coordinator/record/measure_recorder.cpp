@@ -17,13 +17,15 @@ void MeasureRecorder::on_start(const RunStart& start) {
   last_time_ = start.begin;
   measures_.scope =
       measure_scope(start_, form_ != nullptr ? form_->interfaces : std::vector<std::string>());
+  measures_.scope.filtered = filter_.has_value();
   for (std::size_t i = 0; i < start_.interfaces.size(); ++i) {
     const InterfaceInfo& info = start_.interfaces[i];
     const int exact = form_ != nullptr ? form_->interface_index(info.name) : -1;
     std::optional<ContactErrors> errors;
     if (exact >= 0)
       errors.emplace(form_->row, form_->row.contacts()[static_cast<std::size_t>(exact)]);
-    contacts_.emplace_back(start_, static_cast<int>(i), std::move(errors));
+    contacts_.emplace_back(start_, static_cast<int>(i), std::move(errors),
+                           filter_ ? make_force_filter(*filter_) : nullptr);
     for (const int side : {0, 1}) {
       const int dim = start_.bodies[info.body[side]]->ports[info.port[side]].geometry.dim;
       positions_.push_back({info.body[side], info.port[side],
@@ -123,7 +125,7 @@ void MeasureRecorder::write_told(const RunEnd& end) {
 }
 
 void MeasureRecorder::on_end(const RunEnd& end) {
-  for (const ContactMeasures& contact : contacts_) contact.write(last_time_, measures_);
+  for (ContactMeasures& contact : contacts_) contact.write(last_time_, measures_);
   if (balance_) balance_->write(measures_);
   write_positions();
   write_told(end);

@@ -18,8 +18,9 @@ namespace abut {
 /// after on_end, so it is told of the end before those who read it.
 class MeasureRecorder : public Observer {
  public:
-  /// `form` may be null; else it must outlive this.
-  explicit MeasureRecorder(const ClosedForm* form) : form_(form) {}
+  /// `form` may be null; else it must outlive this. `filter`: of contact forces.
+  explicit MeasureRecorder(const ClosedForm* form, std::optional<ForceFilterSpec> filter = {})
+      : form_(form), filter_(filter) {}
 
   void on_start(const RunStart& start) override;
   void on_window(const WindowReport& report) override;
@@ -43,6 +44,7 @@ class MeasureRecorder : public Observer {
   void write_told(const RunEnd& end);
 
   const ClosedForm* form_;
+  std::optional<ForceFilterSpec> filter_;
   RunStart start_;
   std::vector<ContactMeasures> contacts_;
   std::optional<BalanceMeasures> balance_;

@@ -17,6 +17,7 @@ struct InterfaceInfo {
   int body[2] = {0, 0};      // index into RunStart::bodies
   int port[2] = {0, 0};      // index into Description::ports
   double initial_gap = 0.0;  // [m] 1D: normal distance of the reference positions
+  bool tied = false;         // joined from the start, for the whole run
 };
 
 struct RunStart {
@@ -27,7 +28,7 @@ struct RunStart {
 
 /// One interface in one accepted window.
 struct InterfaceReport {
-  bool closed = false;    // closed during this window
+  bool closed = false;    // iterated in this window; contact may have come and gone in it
   int kinematic = 0;      // which side (0 or 1) is kinematic; meaningful when closed
   int iterations = 0;     // Schwarz iterations of its island; 0: advanced free
   double residual = 0.0;  // largest scaled residual over the exchanged fields when accepted
@@ -46,7 +47,7 @@ struct WindowReport {
 struct RunEvent {
   enum class Kind { contact_closed, contact_opened, failure, warning, checkpoint };
   Kind kind = Kind::warning;
-  double time = 0.0;                     // [s]; for contact: located inside the window
+  double time = 0.0;                     // [s]; for contact: located inside a window
   std::string subject;                   // interface or body name
   std::string text;                      // one sentence for people
   std::map<std::string, double> values;  // e.g. velocity_jump, window
@@ -76,6 +77,7 @@ class Observer {
   virtual ~Observer() = default;
   virtual void on_start(const RunStart&) {}
   virtual void on_window(const WindowReport&) {}
+  /// Events of a window come before it or after it, and before the next one.
   virtual void on_event(const RunEvent&) {}
   virtual void on_end(const RunEnd&) {}
 };

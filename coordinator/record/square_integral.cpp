@@ -17,6 +17,12 @@ void SquareIntegral::add(double begin, double end, double at_begin, double at_en
   largest_ = std::max({largest_, std::abs(first), std::abs(last)});
 }
 
+void SquareIntegral::take(const SquareIntegral& other) {
+  sum_ += other.sum_;
+  covered_ += other.covered_;
+  largest_ = std::max(largest_, other.largest_);
+}
+
 double SquareIntegral::bare() const {
   const double length = to_ - from_;
   // Thousands of stretches leave rounding between them, whose root would be far above round-off.

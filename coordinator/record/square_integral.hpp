@@ -14,6 +14,8 @@ class SquareIntegral {
 
   /// Adds a stretch of time with the values at its ends, by the trapezoid rule on the square.
   void add(double begin, double end, double at_begin, double at_end);
+  /// Adds what another one holds; both have all of time as their interval.
+  void take(const SquareIntegral& other);
   double begin() const { return from_; }
   double end() const { return to_; }
   double sum() const { return sum_; }

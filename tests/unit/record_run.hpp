@@ -12,8 +12,8 @@
 namespace abut {
 
 /// A hand-made run of two bars of length, impedance and wave speed 1 that meet at (+-)1 m/s: gap
-/// 0.2 m from time 0 on, contact from 0.1 to 2.1 s with force 1 N. Windows hold two equal substeps
-/// and one record.
+/// 0.2 m from time 0 on, contact from 0.1 to 2.1 s with force 1 N. Windows hold equal substeps, two
+/// unless told otherwise, and one record.
 class HandMadeRun {
  public:
   using Field = std::function<double(int side, double time)>;
@@ -63,7 +63,7 @@ class HandMadeRun {
 
   void window(Observer& observer, double begin, double end, bool closed, int iterations = 0) {
     for (const int side : {0, 1}) fill(side, begin, end);
-    interfaces[0] = {closed, 0, iterations, 0.0};
+    interfaces[0] = {closed, kinematic, iterations, 0.0};
     observer.on_window({{index++, begin, end}, responses, interfaces});
   }
 
@@ -101,6 +101,8 @@ class HandMadeRun {
   RunStart start;
   Field u, v, f, kinetic, stored, momentum;
   ForceSupport support = ForceSupport::step;
+  int substeps = 2;   // in a window
+  int kinematic = 0;  // side
   std::vector<Response> responses;
   std::vector<InterfaceReport> interfaces;
   std::int64_t index = 0;
@@ -112,12 +114,14 @@ class HandMadeRun {
     trace.clear();
     trace.support = support;
     double most = -std::numeric_limits<double>::infinity();
-    for (const double time : {begin, 0.5 * (begin + end), end}) {
+    const double length = (end - begin) / substeps;
+    for (int k = 0; k <= substeps; ++k) {
+      const double time = k == substeps ? end : begin + k * length;
       trace.time.push_back(time);
       trace.u.push_back(u(side, time));
       trace.v.push_back(v(side, time));
       // A force that is constant over a substep is that of the substep's middle.
-      const double shift = support == ForceSupport::step ? 0.25 * (end - begin) : 0.0;
+      const double shift = support == ForceSupport::step ? 0.5 * length : 0.0;
       trace.f.push_back(f(side, time - shift));
       most = std::max(most, trace.u.back());
     }

@@ -101,6 +101,7 @@ TEST(Measures, TimeWithoutContactCountsAsWholeForceError) {
   run.event(recorder, RunEvent::Kind::contact_closed, 0.1);
   run.window(recorder, 0.1, 1.1, true, 2);
   run.event(recorder, RunEvent::Kind::contact_opened, 1.1);
+  run.f = [](int, double) { return 0.0; };
   run.window(recorder, 1.1, 3.0, false);
   recorder.on_end(run.end());
   // Half of [0.2, 2.0] lacks all of the force.
@@ -141,6 +142,10 @@ TEST(Measures, ForceCutAtFullHeightFallsThroughHalfWithinTheNextSubstep) {
 TEST(Measures, SecondContactIsCountedAndEndsTheContact) {
   HandMadeRun run;
   MeasureRecorder recorder(nullptr);
+  run.f = [](int side, double time) {
+    const double p = time < 0.3 || (time > 0.4 && time < 0.6) ? 1.0 : 0.0;
+    return side == 0 ? -p : p;
+  };
   recorder.on_start(run.start);
   run.event(recorder, RunEvent::Kind::contact_closed, 0.1);
   run.window(recorder, 0.1, 0.3, true, 2);
