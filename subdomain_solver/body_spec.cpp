@@ -50,9 +50,9 @@ void SolidShapeSpec::fields(Fields& f) {
 void FiniteElementsSpec::fields(Fields& f) {
   SolidShapeSpec::fields(f);
   f.word("formulation", formulation, {"full", "mean_dilatation", "one_point"},
-         "integration of an element: full; with one volume change for all of it (B-bar, F-bar), "
-         "which does not lock when nearly incompressible; or one point with hourglass control, for "
-         "explicit steps");
+         "integration of an element: full; with one volume change for all of it, a linear field "
+         "of it where the element is quadratic (B-bar, F-bar), which does not lock when nearly "
+         "incompressible; or one point with hourglass control, for explicit steps");
   f.optional("hourglass", hourglass, "", "coefficient of the hourglass stiffness of one_point",
              between(0.0, 1.0));
   const bool locks = plane != Plane::stress && dimension > 1;

@@ -181,12 +181,27 @@ Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, 
 
 void check_formulation(const FiniteElementsSpec& spec, const Mesh& mesh, const Place& place,
                        const std::string& model) {
+  const std::string key = place.where(model + ".formulation");
+  bool simplices = true;
   for (const CellBlock& block : mesh.blocks) {
+    const Shape shape = block.element->shape;
+    simplices = simplices && shape != Shape::quadrilateral && shape != Shape::hexahedron;
     if (spec.formulation != Formulation::one_point || block.element->order == 1) continue;
-    throw InputError(fmt::format("one_point does not fit {}", block.element->name),
-                     place.where(model + ".formulation"),
+    throw InputError(fmt::format("one_point does not fit {}", block.element->name), key,
                      "Use quad4 or hex8 with it, or formulation: full.");
   }
+  if (!simplices || mesh.dim == 1 || spec.formulation == Formulation::full) return;
+  const Element& element = *mesh.blocks.front().element;
+  const bool mean = spec.formulation == Formulation::mean_dilatation;
+  const char* linear = mesh.dim == 2 ? "Use tri6" : "Use tet10";
+  throw InputError(
+      fmt::format("{} makes no difference to {}", mean ? "mean_dilatation" : "one_point",
+                  element.name),
+      key,
+      fmt::format("{} with formulation: full, or {} with mean_dilatation where the material is "
+                  "nearly incompressible.",
+                  element.order == 1 ? linear : "Use it",
+                  mesh.dim == 2 ? "quad4 or quad8" : "hex8 or hex20"));
 }
 
 }  // namespace abut

@@ -18,42 +18,41 @@ bool CellKernel::evaluate(const CellGeometry& cell, std::span<const double> u,
   return true;
 }
 
-/// Every component of u on its own.
+/// Every component of u on its own, with one stiffness for all or one for each.
 void CellKernel::add_hourglass(const CellGeometry& cell, std::span<const double> u, Want want,
                                CellResponse& out) {
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Eigen::Map<const Rows> k(cell.hourglass.data(), cell.nodes, cell.nodes);
-  const Eigen::Map<const Rows> moved(u.data(), cell.nodes, cell.dim);
-  const Rows force = k * moved;
-  out.stored += 0.5 * force.cwiseProduct(moved).sum();
-  out.force += force.reshaped<Eigen::RowMajor>();
-  if (want != Want::tangent) return;
-  for (int a = 0; a < cell.nodes; ++a) {
-    for (int b = 0; b < cell.nodes; ++b)
-      out.tangent.block(a * cell.dim, b * cell.dim, cell.dim, cell.dim).diagonal().array() +=
-          k(a, b);
+  const std::size_t n = static_cast<std::size_t>(cell.nodes);
+  const bool alike = cell.hourglass.size() == n * n;
+  const Eigen::Map<const Eigen::MatrixXd> moved(u.data(), cell.dim, cell.nodes);
+  Eigen::Map<Eigen::MatrixXd> force(out.force.data(), cell.dim, cell.nodes);
+  for (int i = 0; i < cell.dim; ++i) {
+    const double* first = cell.hourglass.data() + (alike ? 0 : static_cast<std::size_t>(i) * n * n);
+    const Eigen::Map<const Eigen::MatrixXd> k(first, cell.nodes, cell.nodes);
+    const Eigen::RowVectorXd own = moved.row(i) * k;
+    out.stored += 0.5 * own.dot(moved.row(i));
+    force.row(i) += own;
+    if (want != Want::tangent) continue;
+    for (int a = 0; a < cell.nodes; ++a)
+      for (int b = 0; b < cell.nodes; ++b)
+        out.tangent(a * cell.dim + i, b * cell.dim + i) += k(a, b);
   }
 }
 
 bool CellKernel::evaluate_points(const CellGeometry& cell, std::span<const double> u,
                                  std::span<const double> before, std::span<double> after, Want want,
                                  CellResponse& out) {
-  const bool average = formulation_ == Formulation::mean_dilatation;
+  fields_ = cell.dilatation;
   fill_operators(cell);
   deform(u);
-  if (average && !average_volume()) return false;
+  if (!fields_.empty() && !average_volume()) return false;
   if (!respond(before, after, want, out)) return false;
-  const double on_mean = average ? split_force() : 0.0;
-  integrate(&Point::force, out.force);
-  if (average) out.force += on_mean * mean_gradient_;
+  if (!fields_.empty()) split_force();
+  out.force.resize(nodes_ * dim_);
+  integrate(&Point::force, {}, out.force);
   if (want == Want::stress) return true;
-  const double of_mean = average ? split_moduli(on_mean) : 0.0;
+  if (!fields_.empty()) split_moduli();
   integrate_moduli(out.tangent);
-  if (!average) return true;
-  integrate(&Point::coupling, coupling_);
-  coupling_ += 0.5 * of_mean * mean_gradient_;
-  out.tangent.noalias() += coupling_ * mean_gradient_.transpose();
-  out.tangent.noalias() += mean_gradient_ * coupling_.transpose();
+  if (!fields_.empty()) couple_fields(out.tangent);
   return true;
 }
 
@@ -101,31 +100,45 @@ void CellKernel::deform(std::span<const double> u) {
   }
 }
 
-/// One volume change for the whole cell: the mean of det F (of the trace, when linear) [M.44].
+/// A field with these amounts of the cell's fields, at a point.
+double CellKernel::in_fields(std::size_t point, const Eigen::VectorXd& amounts) const {
+  double sum = 0.0;
+  for (Eigen::Index k = 0; k < amounts.size(); ++k)
+    sum += amounts(k) * fields_[static_cast<std::size_t>(k) * points_.size() + point];
+  return sum;
+}
+
+/// The part of det F (of the trace, when linear) that the cell's fields hold, in place of it
+/// [M.44].
 bool CellKernel::average_volume() {
   const bool linear = material_.is_linear();
-  volume_ = dilatation_ = 0.0;
+  volume_ = 0.0;
   for (Point& point : points_) {
-    if (!linear) {
-      point.jacobian = point.f.determinant();
-      if (!(point.jacobian > 0.0)) return false;
-      point.inverse = point.f.inverse().transpose();
-    }
     volume_ += point.volume;
-    dilatation_ += point.volume * (linear ? point.f.trace() - 3.0 : point.jacobian);
+    if (linear) continue;
+    point.jacobian = point.f.determinant();
+    if (!(point.jacobian > 0.0)) return false;
+    point.inverse = point.f.inverse().transpose();
   }
-  dilatation_ /= volume_;
-  for (Point& point : points_) {
-    point.swell = point.volume / volume_ * point.jacobian * point.inverse;
+  amounts_.setZero(static_cast<Eigen::Index>(fields_.size() / points_.size()));
+  for (std::size_t k = 0; k < fields_.size(); ++k) {
+    const Point& point = points_[k % points_.size()];
+    amounts_(static_cast<Eigen::Index>(k / points_.size())) +=
+        point.volume / volume_ * fields_[k] * (linear ? point.f.trace() - 3.0 : point.jacobian);
+  }
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    Point& point = points_[p];
+    const double change = in_fields(p, amounts_);
     if (linear) {
-      point.f.diagonal().array() += (dilatation_ - (point.f.trace() - 3.0)) / 3.0;
-    } else {
-      point.stretch = std::cbrt(dilatation_ / point.jacobian);
-      point.f *= point.stretch;
-      point.carrier = point.f;
+      point.f.diagonal().array() += (change - (point.f.trace() - 3.0)) / 3.0;
+      continue;
     }
+    if (!(change > 0.0)) return false;
+    point.dilatation = change;
+    point.stretch = std::cbrt(change / point.jacobian);
+    point.f *= point.stretch;
+    point.carrier = point.f;
   }
-  integrate(&Point::swell, mean_gradient_);
   return true;
 }
 
@@ -148,31 +161,38 @@ bool CellKernel::respond(std::span<const double> before, std::span<double> after
 
 /// Turns P at Fbar = s F, s = (theta / J)^(1/3), into S of F. With Y = F^-T and w = P : Fbar,
 ///   dFbar = s dF + Fbar d/3,   d = dtheta / theta - Y : dF;   linear: dF + I (dtheta - tr dF)/3.
-/// Returns the force that works on theta, the same change of volume at all points.
-double CellKernel::split_force() {
-  double on_mean = 0.0;
-  for (Point& point : points_) {
-    const Matrix3& p = point.response.stress;
-    const double third = p.cwiseProduct(point.carrier).sum() / 3.0;  // w/3
-    point.force = point.volume * (point.stretch * p - third * point.inverse);
-    on_mean += point.volume * third;
+/// w / (3 theta) works on theta; the projection that makes theta of J is its own adjoint, so that
+/// the same projection of w / (3 theta) works on J.
+void CellKernel::split_force() {
+  amounts_.setZero();
+  for (std::size_t k = 0; k < fields_.size(); ++k) {
+    const Point& point = points_[k % points_.size()];
+    const double work = point.response.stress.cwiseProduct(point.carrier).sum();
+    amounts_(static_cast<Eigen::Index>(k / points_.size())) +=
+        point.volume / volume_ * fields_[k] * work / (3.0 * point.dilatation);
   }
-  return on_mean / mean_scale();
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    Point& point = points_[p];
+    const Matrix3& stress = point.response.stress;
+    const double third = stress.cwiseProduct(point.carrier).sum() / 3.0;  // w/3
+    point.pressure = in_fields(p, amounts_) * point.jacobian;
+    point.force =
+        point.volume * (point.stretch * stress + (point.pressure - third) * point.inverse);
+  }
 }
 
 /// The same of A, with the second variation of Fbar at constant P where there is one:
 ///   s/3 (P:dF d' + P:dF' d) + w/9 d d' + w/3 (Y dF^T Y : dF' - dtheta dtheta' / theta^2)
 ///   + w/3 d2(theta) / theta.
-/// Returns the stiffness of theta; what theta and F have in common becomes the points' coupling.
-double CellKernel::split_moduli(double on_mean) {
-  const double theta = mean_scale();
+/// What theta and F have in common becomes the points' coupling.
+void CellKernel::split_moduli() {
   const double geometric = material_.is_linear() ? 0.0 : 1.0;
-  double of_mean = 0.0;
   for (Point& point : points_) {
+    const double theta = point.dilatation;
     const Matrix3& y = point.inverse;
     const Matrix3 p = geometric * point.response.stress;
     const double third = p.cwiseProduct(point.carrier).sum() / 3.0;
-    const double swelling = geometric * on_mean * point.jacobian / volume_;
+    const double swelling = geometric * point.pressure;
     Matrix3 t;
     t.reshaped() = point.response.tangent * point.carrier.reshaped();
     const double c = (t.cwiseProduct(point.carrier).sum() + 3.0 * third) / 9.0;
@@ -181,19 +201,45 @@ double CellKernel::split_moduli(double on_mean) {
                                    outer(t, y) - outer(y, t) + (c + swelling) * outer(y, y) +
                                    (third - swelling) * crossed(y, y));
     point.coupling = point.volume / theta * (t - c * y);
-    of_mean += point.volume * (c - third) / (theta * theta);
+    point.stiffness = point.volume * (c - third) / (theta * theta);
+    point.swell = point.volume * point.jacobian * y;
   }
-  return of_mean;
 }
 
-/// Sum over the points of B^T S.
-void CellKernel::integrate(Matrix3 Point::*field, Eigen::VectorXd& out) {
-  out.resize(nodes_ * dim_);
+/// Adds the sum over the fields k of g_k m_k^T + m_k g_k^T: m_k is the derivative of what there is
+/// of a field by displacement, g_k couples it to F and has half of the fields' own stiffness.
+void CellKernel::couple_fields(Eigen::MatrixXd& tangent) {
+  const Eigen::Index count = amounts_.size(), points = static_cast<Eigen::Index>(points_.size());
+  swelling_.resize(tangent.rows(), count);
+  coupling_.resize(tangent.rows(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const std::span<const double> field =
+        fields_.subspan(static_cast<std::size_t>(k * points), points_.size());
+    integrate(&Point::swell, field, swelling_.col(k));
+    integrate(&Point::coupling, field, coupling_.col(k));
+  }
+  swelling_ /= volume_;
+  const Eigen::Map<const Eigen::MatrixXd> fields(fields_.data(), points, count);
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index p = 0; p < points; ++p) {
+    const double own = points_[static_cast<std::size_t>(p)].stiffness;
+    stiffness += own * fields.row(p).transpose() * fields.row(p);
+  }
+  coupling_ += 0.5 * swelling_ * stiffness;
+  tangent.noalias() += coupling_ * swelling_.transpose();
+  tangent.noalias() += swelling_ * coupling_.transpose();
+}
+
+/// Sum over the points of B^T S, times their weights where there are some.
+void CellKernel::integrate(Matrix3 Point::*field, std::span<const double> weights,
+                           Eigen::Ref<Eigen::VectorXd> out) {
   entries_.resize(3 * static_cast<Eigen::Index>(points_.size()));
   for (int i = 0; i < dim_; ++i) {
     int column = 0;
-    for (const Point& point : points_) {
-      for (int j = 0; j < 3; ++j) entries_(column++) = (point.*field).data()[entry(i, j)];
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      const double weight = weights.empty() ? 1.0 : weights[p];
+      for (int j = 0; j < 3; ++j)
+        entries_(column++) = weight * (points_[p].*field).data()[entry(i, j)];
     }
     Eigen::Map<Eigen::VectorXd, 0, Eigen::InnerStride<>>(
         out.data() + i, nodes_, Eigen::InnerStride<>(dim_)) = along(i).lazyProduct(entries_);

@@ -13,8 +13,10 @@ namespace abut {
 /// Treatment of volume change inside a cell [M.44].
 enum class Formulation {
   full,             // pointwise
-  mean_dilatation,  // one volume change per cell: no locking when nearly incompressible (B-bar when
-                    // the material is linear, F-bar from an energy when it is not)
+  mean_dilatation,  // one volume change per cell, a linear field of it per quadratic cell: no
+                    // locking when nearly incompressible (B-bar when the material is linear, F-bar
+                    // from an energy when it is not); simplices have no more points than that and
+                    // stay as they are
   one_point         // the mean gradient of the cell and an hourglass stiffness [M.51, M.52]; cells
                     // of one point are as they are, quadratic ones have no such form
 };
@@ -25,8 +27,11 @@ struct CellGeometry {
   std::span<const double> volume;     // [m^3] (points) weight x Jacobian x thickness
   std::span<const double> gradient;   // [1/m] (points, nodes, dim) dN/dX
   std::span<const double> hoop;       // [1/m] (points, nodes) N/R of axisymmetric cells; else empty
-  std::span<const double> hourglass;  // [N/m] (nodes, nodes) stiffness, the same for every
-                                      // component; else empty
+  std::span<const double> hourglass;  // [N/m] (1 or dim, nodes, nodes) stiffness of all
+                                      // components alike, or of each its own; else empty
+  /// (fields, points) what the volume change of mean dilatation is made of, orthonormal in the mean
+  /// over the cell's volume, 1 the first; empty: pointwise.
+  std::span<const double> dilatation;
 };
 
 /// One cell's answer. Buffers are reused from cell to cell.
@@ -38,11 +43,11 @@ struct CellResponse {
 
 /// Internal force and tangent of a cell, total Lagrangian: f = sum_p B^T S [M.42] and
 /// K = sum_p B^T D B [M.43]. B maps nodal displacements to dF; S and D are stress and moduli of a
-/// point times its volume. Mean dilatation changes S and D, and adds a term of rank two [M.45].
+/// point times its volume. Mean dilatation changes S and D, and adds a term of rank two to K for
+/// every field of volume change [M.45].
 class CellKernel {
  public:
-  CellKernel(const Material& material, Formulation formulation)
-      : material_(material), formulation_(formulation) {}
+  explicit CellKernel(const Material& material) : material_(material) {}
 
   /// Numbers of history per quadrature point.
   int history_size() const;
@@ -65,9 +70,12 @@ class CellKernel {
     Tangent moduli;  // D [J]
     // Of mean dilatation, where Fbar = s F; identities and ones where the law is linear.
     double jacobian = 1.0, stretch = 1.0;   // det F; s
+    double dilatation = 1.0;                // theta
+    double pressure = 0.0;                  // [Pa] that works on theta, times J
     Matrix3 inverse = Matrix3::Identity();  // F^-T
     Matrix3 carrier = Matrix3::Identity();  // what d/3 multiplies in dFbar: Fbar
-    Matrix3 swell, coupling;                // dtheta/dF; mixed second derivative by theta and F
+    Matrix3 swell, coupling;  // [m^3] V dJ/dF; [J] mixed second derivative by theta and F
+    double stiffness = 0.0;   // [J] second derivative by theta
   };
 
   [[nodiscard]] bool evaluate_points(const CellGeometry& cell, std::span<const double> u,
@@ -80,28 +88,31 @@ class CellKernel {
   void fill_operators(const CellGeometry& cell);
   void deform(std::span<const double> u);
   bool average_volume();
+  double in_fields(std::size_t point, const Eigen::VectorXd& amounts) const;
   bool respond(std::span<const double> before, std::span<double> after, Want want,
                CellResponse& out);
-  double split_force();
-  double split_moduli(double on_mean);
-  double mean_scale() const { return material_.is_linear() ? 1.0 : dilatation_; }
-  void integrate(Matrix3 Point::*field, Eigen::VectorXd& out);
+  void split_force();
+  void split_moduli();
+  void couple_fields(Eigen::MatrixXd& tangent);
+  void integrate(Matrix3 Point::*field, std::span<const double> weights,
+                 Eigen::Ref<Eigen::VectorXd> out);
   void integrate_moduli(Eigen::MatrixXd& out);
 
   const Material& material_;
-  Formulation formulation_;
   std::vector<Point> points_;
   int dim_ = 3, nodes_ = 0;
   /// (nodes, 3 x points) B: derivatives of three entries of F at a point by the displacements along
   /// one direction. In space the first matrix serves all directions.
   std::array<Eigen::MatrixXd, 2> b_;
-  double volume_ = 0.0;            // [m^3] of the cell
-  double dilatation_ = 1.0;        // theta: mean det F of the cell; linear: mean trace of grad u
-  Eigen::VectorXd mean_gradient_;  // m = d theta / du (nodes x dim)
-  Eigen::VectorXd coupling_;       // work space (nodes x dim)
-  Eigen::VectorXd entries_;        // work space (3 x points)
-  Eigen::MatrixXd scaled_;         // work space (nodes, 3 x points)
-  Eigen::MatrixXd part_;           // work space (nodes, nodes)
+  double volume_ = 0.0;  // [m^3] of the cell
+  std::span<const double>
+      fields_;                // (fields, points) of the cell's volume change; empty: pointwise
+  Eigen::VectorXd amounts_;   // (fields) what of each there is
+  Eigen::MatrixXd swelling_;  // (nodes x dim, fields) their derivatives by displacement
+  Eigen::MatrixXd coupling_;  // work space (nodes x dim, fields)
+  Eigen::VectorXd entries_;   // work space (3 x points)
+  Eigen::MatrixXd scaled_;    // work space (nodes, 3 x points)
+  Eigen::MatrixXd part_;      // work space (nodes, nodes)
 };
 
 }  // namespace abut

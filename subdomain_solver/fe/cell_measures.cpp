@@ -1,5 +1,6 @@
 #include "subdomain_solver/fe/cell_measures.hpp"
 
+#include <cmath>
 #include <numbers>
 
 #include <Eigen/LU>
@@ -14,9 +15,11 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 
 std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
-/// The points of the last cell become one, with their mean gradient.
-void average(const CellBlock& cells, const Eigen::MatrixXd& x, double stiffness, int points,
-             CellMeasures& out) {
+/// The points of the last cell become one, with their mean gradient. A ring that turns in its
+/// section has a mean hoop strain of none and no hourglass: Young's modulus holds what the hoop
+/// strain is beside its mean, as uniaxial stress does, by a stiffness of radial displacements.
+void average(const CellBlock& cells, const Eigen::MatrixXd& x, double stiffness, double young,
+             int points, CellMeasures& out) {
   const std::size_t n = index(points), size = index(out.nodes * out.dim);
   double* volume = out.volume.data() + out.volume.size() - n;
   double* gradient = out.gradient.data() + out.gradient.size() - n * size;
@@ -27,20 +30,47 @@ void average(const CellBlock& cells, const Eigen::MatrixXd& x, double stiffness,
     mean += volume[p] * Eigen::Map<const Rows>(gradient + p * size, out.nodes, out.dim);
   }
   mean /= total;
-  volume[0] = total;
-  Eigen::Map<Rows>(gradient, out.nodes, out.dim) = mean;
+  Eigen::MatrixXd beside;
   if (!out.hoop.empty()) {  // N/R, averaged over the volume too
     double* hoop = out.hoop.data() + out.hoop.size() - n * index(out.nodes);
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(out.nodes);
-    for (std::size_t p = 0; p < n; ++p)
-      sum += volume[p] * Eigen::Map<const Eigen::VectorXd>(hoop + p * index(out.nodes), out.nodes);
-    Eigen::Map<Eigen::VectorXd>(hoop, out.nodes) = sum / total;
+    Eigen::Map<Eigen::MatrixXd> at_points(hoop, out.nodes, points);
+    const Eigen::Map<const Eigen::VectorXd> share(volume, points);
+    const Eigen::VectorXd average = at_points * share / total;
+    at_points.colwise() -= average;
+    beside = young * at_points * share.asDiagonal() * at_points.transpose();
+    at_points.col(0) = average;
     out.hoop.resize(out.hoop.size() - (n - 1) * index(out.nodes));
   }
+  volume[0] = total;  // the points' own volumes have weighted all means
+  Eigen::Map<Rows>(gradient, out.nodes, out.dim) = mean;
   out.volume.resize(out.volume.size() - (n - 1));
   out.gradient.resize(out.gradient.size() - (n - 1) * size);
-  const Rows k = hourglass_stiffness(*cells.element, x, mean, total, stiffness);
+  const Eigen::MatrixXd k = hourglass_stiffness(*cells.element, x, mean, total, stiffness);
+  if (beside.size() > 0) {
+    beside += k;
+    out.hourglass.insert(out.hourglass.end(), beside.data(), beside.data() + beside.size());
+  }
   out.hourglass.insert(out.hourglass.end(), k.data(), k.data() + k.size());
+}
+
+/// Orthonormal fields over the last cell in which its volume change is told: 1, and of quadratic
+/// cells the coordinates of space too [M.44].
+void add_dilatation(const Eigen::MatrixXd& x, const Tabulation& t, int fields, CellMeasures& out) {
+  const Eigen::Map<const Eigen::VectorXd> volume(
+      out.volume.data() + out.volume.size() - index(t.points), t.points);
+  const Eigen::VectorXd share = volume / volume.sum();
+  const Eigen::Map<const Rows> n(t.n.data(), t.points, t.nodes);
+  const Eigen::MatrixXd place = n * x;
+  Eigen::MatrixXd made = Eigen::MatrixXd::Ones(t.points, fields);
+  for (int k = 1; k < fields; ++k) {
+    Eigen::VectorXd field = place.col(k - 1);
+    for (int pass = 0; pass < 2; ++pass) {  // the second removes what rounding left to the first
+      for (int l = 0; l < k; ++l) field -= made.col(l).cwiseProduct(share).dot(field) * made.col(l);
+    }
+    made.col(k) = field / std::sqrt(field.cwiseProduct(share).dot(field));
+  }
+  out.fields = fields;
+  out.dilatation.insert(out.dilatation.end(), made.data(), made.data() + made.size());
 }
 
 }  // namespace
@@ -58,16 +88,19 @@ int law_points(const Element& element, const Tabulation& table, Formulation form
 
 CellGeometry CellMeasures::of(int cell) const {
   const std::size_t p = index(points), n = index(nodes), d = index(dim), c = index(cell);
-  CellGeometry g{nodes, points, dim, {}, {}, {}, {}};
+  CellGeometry g{nodes, points, dim, {}, {}, {}, {}, {}};
   g.volume = std::span(volume).subspan(c * p, p);
   g.gradient = std::span(gradient).subspan(c * p * n * d, p * n * d);
   if (!hoop.empty()) g.hoop = std::span(hoop).subspan(c * p * n, p * n);
-  if (!hourglass.empty()) g.hourglass = std::span(hourglass).subspan(c * n * n, n * n);
+  const std::size_t stiffnesses = (hoop.empty() ? 1 : d) * n * n;
+  if (!hourglass.empty()) g.hourglass = std::span(hourglass).subspan(c * stiffnesses, stiffnesses);
+  const std::size_t f = index(fields) * p;
+  if (!dilatation.empty()) g.dilatation = std::span(dilatation).subspan(c * f, f);
   return g;
 }
 
 void measure_cell(const Mesh& mesh, const CellBlock& cells, int cell, const Tabulation& t,
-                  const FeOptions& options, double p_wave, CellMeasures& out) {
+                  const FeOptions& options, const Moduli& moduli, CellMeasures& out) {
   const int dim = mesh.dim;
   const bool round = options.plane == Plane::axisymmetric && dim == 2;
   out.nodes = t.nodes;
@@ -90,7 +123,9 @@ void measure_cell(const Mesh& mesh, const CellBlock& cells, int cell, const Tabu
     for (int a = 0; a < t.nodes; ++a) out.hoop.push_back(n(a) / radius);
   }
   if (options.formulation == Formulation::one_point && has_hourglasses(*cells.element))
-    average(cells, x, options.hourglass * p_wave, t.points, out);
+    average(cells, x, options.hourglass * moduli.p_wave(), moduli.youngs(), t.points, out);
+  if (options.formulation == Formulation::mean_dilatation)
+    add_dilatation(x, t, cells.element->order == 1 ? 1 : 1 + dim, out);
 }
 
 }  // namespace abut

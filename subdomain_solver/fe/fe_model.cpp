@@ -31,6 +31,12 @@ std::unique_ptr<const Material> in_its_space(std::unique_ptr<const Material> law
   return std::make_unique<UniaxialStress>(std::move(law));
 }
 
+/// Degrees that the radius adds: one as the factor of the volume. At the one point of a triangle
+/// the hoop strain of a ring that turns in its section would vanish, and its energy with it.
+int ring_degrees(const Element& element) {
+  return element.shape == Shape::triangle && element.order == 1 ? 2 : 1;
+}
+
 }  // namespace
 
 FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOptions& options,
@@ -39,7 +45,7 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
       material_(in_its_space(std::move(material), mesh_.dim, options)),
       options_(options),
       frames_(frames),
-      kernel_(*material_, options.formulation) {
+      kernel_(*material_) {
   ABUT_ASSERT(mesh_.dim >= 1 && mesh_.dim <= 3);
   std::sort(frames_.begin(), frames_.end(),
             [](const NodeFrame& a, const NodeFrame& b) { return a.node < b.node; });
@@ -47,7 +53,7 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
     const Element& element = *cells.element;
     ABUT_ASSERT(options.formulation != Formulation::one_point || element.order == 1);
     Block block;
-    const int degree = stiffness_degree(element) + (round() ? 1 : 0);
+    const int degree = stiffness_degree(element) + (round() ? ring_degrees(element) : 0);
     block.table = tabulate(element, quadrature(element.shape, degree));
     block.mass_table = tabulate(element, quadrature(element.shape, mass_degree(element)));
     block.history = history_size_;
@@ -68,11 +74,11 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
 FeModel::Assembly& FeModel::assembly() const {
   if (assembly_) return *assembly_;
   assembly_ = std::make_unique<Assembly>();
-  const double p_wave = material_->moduli().p_wave();
+  const Moduli moduli = material_->moduli();
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     CellMeasures measures;
     for (int c = 0; c < mesh_.blocks[k].count(); ++c)
-      measure_cell(mesh_, mesh_.blocks[k], c, blocks_[k].table, options_, p_wave, measures);
+      measure_cell(mesh_, mesh_.blocks[k], c, blocks_[k].table, options_, moduli, measures);
     measures.volume.shrink_to_fit();
     measures.gradient.shrink_to_fit();
     find_units(measures, *assembly_);
@@ -148,7 +154,7 @@ Eigen::MatrixXd FeModel::nodal_mass(std::size_t block, int cell) const {
   FeOptions every_point = options_;
   every_point.formulation = Formulation::full;
   CellMeasures measures;
-  measure_cell(mesh_, mesh_.blocks[block], cell, t, every_point, 0.0, measures);
+  measure_cell(mesh_, mesh_.blocks[block], cell, t, every_point, material_->moduli(), measures);
   Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(t.nodes, t.nodes);
   for (int p = 0; p < t.points; ++p) {
     const Eigen::Map<const Vector> n(t.n.data() + index(p * t.nodes), t.nodes);
@@ -265,11 +271,15 @@ bool FeModel::batched_force(std::span<const double> q, ModelResponse& out) {
   return admissible;
 }
 
+/// Strains are differences of displacements over a node distance: a body that has travelled loses
+/// what its displacement has more digits than that distance. Other laws than linear ones also round
+/// F, which is about 1.
 double FeModel::roundoff(std::span<const double> q) const {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const Assembly& units = assembly();
   const Eigen::Map<const Vector> u(q.data(), dofs());
-  const double strain = is_linear() ? u.lpNorm<Eigen::Infinity>() * units.gradient_unit : 1.0;
+  const double travel = u.lpNorm<Eigen::Infinity>() * units.gradient_unit;
+  const double strain = is_linear() ? travel : std::max(1.0, travel);
   return epsilon * units.force_unit * strain * std::sqrt(static_cast<double>(dofs()));
 }
 
@@ -398,7 +408,7 @@ void FeModel::add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::Matr
 CellMeasures FeModel::cell_measures(int block, int cell) const {
   CellMeasures measures;
   measure_cell(mesh_, mesh_.blocks[index(block)], cell, blocks_[index(block)].table, options_,
-               material_->moduli().p_wave(), measures);
+               material_->moduli(), measures);
   return measures;
 }
 
@@ -433,8 +443,7 @@ bool FeModel::visit(std::span<const double> q, std::span<const double> history,
     for (int c = 0; c < cells.count(); ++c) {
       if (!assembly_) {
         one = {};
-        measure_cell(mesh_, cells, c, blocks_[k].table, options_, material_->moduli().p_wave(),
-                     one);
+        measure_cell(mesh_, cells, c, blocks_[k].table, options_, material_->moduli(), one);
       }
       const CellMeasures& measures = assembly_ ? assembly_->measures[k] : one;
       const std::size_t each = index(measures.points) * per_point;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <ostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -79,6 +80,44 @@ inline std::vector<std::string> fe_elements() {
   std::vector<std::string> names = solid_elements();
   names.emplace_back("bar2");
   return names;
+}
+
+/// An element under a formulation, in a plane where it has two dimensions.
+struct ElementCase {
+  std::string element;
+  Formulation formulation = Formulation::full;
+  Plane plane = Plane::strain;
+};
+
+inline const char* name_of(Formulation formulation) {
+  constexpr const char* names[] = {"full", "mean_dilatation", "one_point"};
+  return names[static_cast<int>(formulation)];
+}
+inline const char* name_of(Plane plane) {
+  constexpr const char* names[] = {"strain", "stress", "axisymmetric"};
+  return names[static_cast<int>(plane)];
+}
+inline void PrintTo(const ElementCase& c, std::ostream* out) {
+  *out << c.element << " " << name_of(c.formulation) << " " << name_of(c.plane);
+}
+
+/// Every element with every formulation and plane that a model takes.
+inline std::vector<ElementCase> element_cases() {
+  std::vector<ElementCase> out;
+  for (const std::string& name : fe_elements()) {
+    const Element& element = element_named(name);
+    for (Formulation formulation :
+         {Formulation::full, Formulation::mean_dilatation, Formulation::one_point}) {
+      const bool mean = formulation == Formulation::mean_dilatation;
+      if (formulation == Formulation::one_point && element.order > 1) continue;
+      for (Plane plane : {Plane::strain, Plane::stress, Plane::axisymmetric}) {
+        if (plane != Plane::strain && element.dim != 2) continue;
+        if (mean && (plane == Plane::stress || element.dim == 1)) continue;
+        out.push_back({name, formulation, plane});
+      }
+    }
+  }
+  return out;
 }
 
 }  // namespace abut

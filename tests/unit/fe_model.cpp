@@ -15,17 +15,13 @@
 namespace abut {
 namespace {
 
-struct Case {
-  std::string element;
-  Formulation formulation;
-  Plane plane;
+struct Case : ElementCase {
   std::string law;
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
-  const char* names[] = {" full ", " mean_dilatation ", " one_point "};
-  *out << c.element << names[static_cast<int>(c.formulation)] << static_cast<int>(c.plane) << " "
-       << c.law;
+  PrintTo(static_cast<const ElementCase&>(c), out);
+  *out << " " << c.law;
 }
 
 std::unique_ptr<const Material> law_named(const std::string& name) {
@@ -36,19 +32,8 @@ std::unique_ptr<const Material> law_named(const std::string& name) {
 
 std::vector<Case> cases(const std::vector<std::string>& laws) {
   std::vector<Case> out;
-  for (const std::string& element : fe_elements()) {
-    const int dim = element_named(element).dim;
-    const bool flat = dim == 2, linear = element_named(element).order == 1;
-    for (Formulation formulation :
-         {Formulation::full, Formulation::mean_dilatation, Formulation::one_point}) {
-      if (formulation == Formulation::one_point && !linear) continue;
-      if (formulation == Formulation::mean_dilatation && dim == 1) continue;
-      for (Plane plane : {Plane::strain, Plane::stress, Plane::axisymmetric}) {
-        if (!flat && plane != Plane::strain) continue;
-        if (plane == Plane::stress && formulation == Formulation::mean_dilatation) continue;
-        for (const std::string& law : laws) out.push_back({element, formulation, plane, law});
-      }
-    }
+  for (const ElementCase& c : element_cases()) {
+    for (const std::string& law : laws) out.push_back({c, law});
   }
   return out;
 }

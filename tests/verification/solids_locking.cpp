@@ -32,13 +32,23 @@ Mesh unit_square(const std::string& element, int across, int along) {
   return generate(m, "test");
 }
 
-/// A quarter ring: left becomes the bore, bottom lies on the x axis, top on the y axis.
+/// A quarter ring, one cell thick in space: left becomes the bore, bottom lies on the x axis, top
+/// on the y axis.
 Mesh quarter(const std::string& element, int n) {
-  Mesh mesh = unit_square(element, n, 2 * n);
+  Mesh mesh;
+  if (element_named(element).dim == 2) {
+    mesh = unit_square(element, n, 2 * n);
+  } else {
+    BoxMesh m;
+    m.lengths = {1.0, 1.0, 1.0 / n};
+    m.elements = {n, 2 * n, 1};
+    m.element = element;
+    mesh = generate(m, "test");
+  }
   move(mesh, [](const Position& x) {
     const double r = inner + (outer_radius - inner) * x.x();
     const double angle = 0.5 * std::numbers::pi * x.y();
-    return Position(r * std::cos(angle), r * std::sin(angle), 0.0);
+    return Position(r * std::cos(angle), r * std::sin(angle), x.z());
   });
   return mesh;
 }
@@ -61,12 +71,15 @@ double error(Body body, const std::string& element, Formulation formulation, dou
           {revolved ? Plane::axisymmetric : Plane::strain, formulation, 1.0});
   s.fix("bottom", 1);
   s.fix("top", body == Body::cylinder_of_revolution ? 1 : 0);  // axis: r = 0
+  for (const char* side : {"back", "front"})
+    if (s.model.mesh().dim == 3) s.fix(side, 2);
   s.press(
       "left", [](const auto&, double) { return 1.0; }, false);
   s.settle();
   double sum = 0.0;
   for (int node = 0; node < s.model.mesh().node_count(); ++node) {
-    const Position x = position(s.model.mesh(), node);
+    Position x = position(s.model.mesh(), node);
+    x.z() = 0.0;
     const double r = body == Body::cylinder_of_revolution ? x.x() : x.norm();
     const double exact = body == Body::sphere_of_revolution ? sphere(r, nu) : cylinder(r, nu);
     const Position direction =
@@ -77,26 +90,54 @@ double error(Body body, const std::string& element, Formulation formulation, dou
          (body == Body::sphere_of_revolution ? sphere(inner, nu) : cylinder(inner, nu));
 }
 
+/// Every element and formulation that a body can have.
+std::vector<ElementCase> cases_of(Body body) {
+  const bool revolved = body != Body::cylinder_in_the_plane;
+  std::vector<ElementCase> out;
+  for (const ElementCase& c : element_cases()) {
+    const int dim = element_named(c.element).dim;
+    if (dim == 1 || (dim == 3 && revolved)) continue;
+    if (c.plane == (revolved ? Plane::axisymmetric : Plane::strain)) out.push_back(c);
+  }
+  return out;
+}
+
 class Pressurised : public testing::TestWithParam<Body> {};
 
 TEST_P(Pressurised, ConvergesAtTheOrderOfTheElement) {
-  for (const std::string element : {"tri3", "quad4", "tri6", "quad8"}) {
-    const int order = element_named(element).order;
-    const double coarse = error(GetParam(), element, Formulation::full, 0.3, 8);
-    const double fine = error(GetParam(), element, Formulation::full, 0.3, 16);
-    // Displacements converge at p + 1; a tenth for terms of next order, a sixteenth of the wall.
-    EXPECT_GT(observed_order(coarse, fine), order + 0.9) << element;
+  for (const ElementCase& c : cases_of(GetParam())) {
+    const int order = element_named(c.element).order;
+    const int n = element_named(c.element).dim == 2 ? 8 : 4;
+    const double coarse = error(GetParam(), c.element, c.formulation, 0.3, n);
+    const double fine = error(GetParam(), c.element, c.formulation, 0.3, 2 * n);
+    if (fine < 1.0e-12) continue;  // exact at the nodes
+    // Displacements converge at p + 1; a tenth for terms of next order, a sixteenth of the wall;
+    // two tenths in space, where they are an eighth of it.
+    EXPECT_GT(observed_order(coarse, fine), order + (n == 8 ? 0.9 : 0.8))
+        << testing::PrintToString(c) << " " << coarse << " " << fine;
   }
 }
 
 TEST_P(Pressurised, LocksPointwiseAndNotUnderMeanDilatation) {
   const double nu = 0.4999;
-  const double locked = error(GetParam(), "quad4", Formulation::full, nu, 8);
-  const double cured = error(GetParam(), "quad4", Formulation::mean_dilatation, nu, 8);
-  const double ordinary = error(GetParam(), "quad4", Formulation::full, 0.3, 8);
-  EXPECT_GT(locked, 0.3);
-  // Cured: the error is that of an ordinary material, within a factor that the other field excuses.
-  EXPECT_LT(cured, 2.0 * ordinary);
+  for (const ElementCase& c : cases_of(GetParam())) {
+    const Element& element = element_named(c.element);
+    const bool cube = element.shape == Shape::quadrilateral || element.shape == Shape::hexahedron;
+    const int n = element.dim == 2 ? 8 : 4;
+    const double nearly = error(GetParam(), c.element, c.formulation, nu, n);
+    const double ordinary = error(GetParam(), c.element, c.formulation, 0.3, n);
+    const std::string words = testing::PrintToString(c);
+    // Cured: the error is that of an ordinary material, within a factor that the other field
+    // excuses.
+    const bool cured = cube && c.formulation == Formulation::mean_dilatation;
+    if (cured) EXPECT_LT(nearly, 2.5 * ordinary) << words;
+    // Quadratic cells without a cure: what the guide to solids says of them.
+    if (element.order == 2) EXPECT_LT(nearly, 0.1) << words;
+    // All other linear cells lock; one layer of triangles has more freedom than constraints, and
+    // rings of one point have the exact mean of their hoop strain.
+    if (element.order == 1 && !cured && GetParam() != Body::cylinder_of_revolution)
+      EXPECT_GT(nearly, 0.2) << words;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Pressurised,

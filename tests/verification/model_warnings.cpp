@@ -1,0 +1,96 @@
+// Goal: a run ends with a warning where a model does not fit what its body did, and without one
+// where it does. Oracles: straight ways of nodes that turn without stress; a beam of one cell over
+// its height, which bends by hourglasses alone.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/runs.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace abut {
+namespace {
+
+/// A square turns freely, by 2 rad where nothing slows it.
+std::unique_ptr<RunResult> turned(const std::string& model, const std::string& law,
+                                  const std::string& integrator) {
+  return run_document(Document::from_text(
+      "test",
+      "meta: {title: test}\ntime: {begin: 0.0, end: 2.0e-3, window: 2.0e-4}\nbodies:\n  square:\n"
+      "    model: {" +
+          model +
+          "mesh: {rectangle: {lengths: [0.2, 0.2], elements: [4, 4], origin: centre}}}}\n"
+          "    material: {" +
+          law +
+          ": {youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000.0}}\n"
+          "    integrator: {" +
+          integrator + "}\n    initial: {velocity_field: [\"-1000 * y\", \"1000 * x\"]}\n"));
+}
+
+std::vector<std::string> warnings(const RunResult& run) {
+  std::vector<std::string> out;
+  for (const RunEvent& event : run.events)
+    if (event.kind == RunEvent::Kind::warning) out.push_back(event.text);
+  return out;
+}
+
+TEST(ModelWarnings, TellOfALinearLawThatHasTurned) {
+  const std::string explicit_steps = "central_difference: {step: 2.0e-6}";
+  const std::string implicit_steps = "newmark: {step: 1.0e-5}";
+  const std::pair<std::string, std::string> cases[] = {
+      {"fe: {dimension: 2, ", explicit_steps},
+      {"fe: {dimension: 2, ", implicit_steps},
+      {"modal: {dimension: 2, modes: 4, ", implicit_steps}};
+  for (const auto& [model, integrator] : cases) {
+    const std::unique_ptr<RunResult> run = turned(model, "linear_elastic", integrator);
+    ASSERT_TRUE(run->completed()) << model;
+    // Nodes fly straight: u = w t x X, without strain; sums of a thousand steps.
+    EXPECT_NEAR(run->measure("body.square.rotation.max"), 2.0, roundoff(1.0e5, 2.0)) << model;
+    EXPECT_NEAR(run->measure("body.square.displacement.x.max"), 0.2, roundoff(1.0e5, 0.2)) << model;
+    ASSERT_EQ(warnings(*run).size(), 1u) << model;
+    EXPECT_NE(warnings(*run)[0].find("square has turned by 2 rad"), std::string::npos)
+        << warnings(*run)[0];
+  }
+}
+
+TEST(ModelWarnings, AreNoneOfModelsThatMayTurn) {
+  const std::unique_ptr<RunResult> finite =
+      turned("fe: {dimension: 2, ", "saint_venant_kirchhoff", "central_difference: {step: 2.0e-6}");
+  ASSERT_TRUE(finite->completed());
+  EXPECT_TRUE(warnings(*finite).empty()) << warnings(*finite)[0];
+  const std::unique_ptr<RunResult> rigid =
+      turned("rigid: {dimension: 2, ", "linear_elastic", "rigid_motion: {step: 1.0e-5}");
+  ASSERT_TRUE(rigid->completed());
+  EXPECT_TRUE(warnings(*rigid).empty()) << warnings(*rigid)[0];
+}
+
+/// A beam of n cells of one point over its height, bent by a pull across its end.
+std::unique_ptr<RunResult> bent(int n) {
+  return run_document(Document::from_text(
+      "test", fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: 1.0, window: 1.0}}\n"
+                          "bodies:\n  beam:\n    model: {{fe: {{dimension: 2, plane: strain, "
+                          "formulation: one_point, mesh: {{rectangle: {{lengths: [1.0, 0.1], "
+                          "elements: [{}, {}]}}}}}}}}\n"
+                          "    material: {{linear_elastic: {{youngs_modulus: 1.0e9, "
+                          "poissons_ratio: 0.3, density: 1000.0}}}}\n"
+                          "    integrator: {{quasi_static: {{step: 1.0}}}}\n"
+                          "    constraints: {{wall: {{on: left, fixed: true}}}}\n"
+                          "    loads: {{pull: {{on: right, traction: [\"0\", \"1.0e3 * t\"]}}}}\n",
+                          10 * n, n)));
+}
+
+TEST(ModelWarnings, TellOfBendingByHourglasses) {
+  const std::unique_ptr<RunResult> coarse = bent(1), fine = bent(8);
+  ASSERT_TRUE(coarse->completed() && fine->completed());
+  // What one mean gradient over the height does not see is the moment: only shear is left.
+  EXPECT_GT(coarse->measure("body.beam.energy.hourglass_share"), 0.9);
+  ASSERT_EQ(warnings(*coarse).size(), 1u);
+  EXPECT_NE(warnings(*coarse)[0].find("in hourglasses"), std::string::npos) << warnings(*coarse)[0];
+  // Steps of strain leave 1/8^2 of the moment to the hourglasses, whose stiffness is a twentieth.
+  EXPECT_LT(fine->measure("body.beam.energy.hourglass_share"), 0.01);
+  EXPECT_TRUE(warnings(*fine).empty()) << warnings(*fine)[0];
+}
+
+}  // namespace
+}  // namespace abut
