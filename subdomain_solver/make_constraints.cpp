@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "subdomain_solver/expression.hpp"
+#include "subdomain_solver/fe/hourglass.hpp"
 #include "subdomain_solver/fe/rigid_motions.hpp"
 #include "subdomain_solver/make_fields.hpp"
 
@@ -199,19 +200,59 @@ Constraints make_constraints(const BodySpec& spec, const Place& place, const Mes
   return constraints.take();
 }
 
+namespace {
+
+/// The first cell of one of the pieces of a mesh.
+std::string cell_of_piece(const Mesh& mesh, int piece) {
+  const std::int32_t first = connected_pieces(mesh)[index(piece)].front();
+  for (std::size_t block = 0; block < mesh.blocks.size(); ++block) {
+    const CellBlock& cells = mesh.blocks[block];
+    const auto found = std::find(cells.nodes.begin(), cells.nodes.end(), first);
+    if (found == cells.nodes.end()) continue;
+    return cell_text(mesh, block, index(found - cells.nodes.begin()) / index(cells.element->nodes));
+  }
+  return fmt::format("node {}", first + 1);
+}
+
+/// Statics has nothing but stiffness to hold a cell by.
+void check_hourglasses(const FeModel& model, const Place& place) {
+  const FeOptions& options = model.options();
+  if (options.formulation != Formulation::one_point || options.hourglass > 0.0) return;
+  for (const CellBlock& cells : model.mesh().blocks) {
+    if (!has_hourglasses(*cells.element)) continue;
+    throw InputError(fmt::format("has no answer: hourglass is 0, and nothing else holds {} of one "
+                                 "point against hourglasses",
+                                 cells.element->name),
+                     place.where("integrator.quasi_static"),
+                     "Leave hourglass out, or use formulation: full or mean_dilatation.");
+  }
+}
+
+}  // namespace
+
 void check_statics(const BodySpec& spec, const Place& place, const FeModel& model,
                    const std::vector<Prescribed>& supports) {
   if (!spec.integrator || !std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return;
   std::vector<int> held;
   for (const Prescribed& p : supports) held.push_back(p.dof);
-  const Eigen::Index loose = vanishing_on(held, rigid_motions(model)).cols();
-  if (loose == 0) return;
+  const std::optional<LoosePiece> loose = find_loose_piece(model, held);
+  if (!loose) return check_hourglasses(model, place);
+  const std::string motions =
+      fmt::format("{} rigid motion{}", loose->motions, loose->motions == 1 ? "" : "s");
+  if (loose->pieces == 1) {
+    throw InputError(
+        fmt::format("has no answer: the constraints leave the body free to move or turn as a whole "
+                    "({})",
+                    motions),
+        place.where("integrator.quasi_static"),
+        "Hold it by constraints, of points where sides do not suffice, or use newmark.");
+  }
   throw InputError(
-      fmt::format("has no answer: the constraints leave the body free to move or turn as a whole "
-                  "({} rigid motion{})",
-                  loose, loose == 1 ? "" : "s"),
+      fmt::format("has no answer: the mesh is of {} pieces that share no node, and the constraints "
+                  "leave that with {} free to move or turn ({})",
+                  loose->pieces, cell_of_piece(model.mesh(), loose->piece), motions),
       place.where("integrator.quasi_static"),
-      "Hold it by constraints, of points where sides do not suffice, or use newmark.");
+      "Join the pieces in the mesh, hold every one of them, or make bodies of them.");
 }
 
 }  // namespace abut

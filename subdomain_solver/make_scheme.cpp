@@ -63,7 +63,7 @@ struct SchemeMaker {
   }
   SolidBody::Scheme operator()(const QuasiStaticSpec& s) const {
     return {std::make_unique<QuasiStatic>(problem, QuasiStatic::Options{newton(), s.halvings},
-                                          linear()),
+                                          linear(Pivots::with_digits)),
             s.step, std::numeric_limits<double>::infinity(), MassForm::lumped,
             fmt::format("quasi-static, step {:g} s", s.step)};
   }
@@ -73,15 +73,15 @@ struct SchemeMaker {
   SolidBody::Scheme implicit(const AlphaWeights& weights, double step, MassForm mass,
                              const char* words) const {
     return {std::make_unique<ImplicitDynamics>(
-                problem, ImplicitDynamics::Options{weights, mass, newton()}, linear()),
+                problem, ImplicitDynamics::Options{weights, mass, newton()}, linear(Pivots::every)),
             step, std::numeric_limits<double>::infinity(), mass,
             fmt::format("{}, step {:g} s", words, step)};
   }
   NewtonOptions newton() const { return {spec.equations.tolerance, spec.equations.max_iterations}; }
-  std::unique_ptr<LinearSolver> linear() const {
+  std::unique_ptr<LinearSolver> linear(Pivots pivots) const {
     if (const auto* cg = std::get_if<ConjugateGradientsSpec>(&spec.equations.linear))
       return make_conjugate_gradients(cg->tolerance);
-    return make_direct_solver();
+    return make_direct_solver(pivots);
   }
 };
 

@@ -1,6 +1,8 @@
 #include "subdomain_solver/fe/rigid_motions.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/SVD>
 
@@ -8,8 +10,28 @@ namespace abut {
 
 namespace {
 
+std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
+
 /// Part of a motion's size below which a component of it is round-off.
 constexpr double nothing = 1.0e-10;
+
+/// Of values of motions at some coordinates.
+Eigen::Index rank_of(const Eigen::JacobiSVD<Eigen::MatrixXd>& parts) {
+  const double largest = std::sqrt(static_cast<double>(parts.rows()));
+  Eigen::Index rank = 0;
+  while (rank < parts.singularValues().size() && parts.singularValues()(rank) > nothing * largest)
+    ++rank;
+  return rank;
+}
+
+/// Root of the tree that a node hangs in; shortens the way to it.
+std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t node) {
+  while (parent[index(node)] != node) {
+    parent[index(node)] = parent[index(parent[index(node)])];
+    node = parent[index(node)];
+  }
+  return node;
+}
 
 }  // namespace
 
@@ -45,13 +67,53 @@ Eigen::MatrixXd vanishing_on(const std::vector<int>& rows, const Eigen::MatrixXd
   const Eigen::MatrixXd scaled = motions * sizes.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd there = scaled(rows, Eigen::all);
   const Eigen::JacobiSVD<Eigen::MatrixXd> parts(there, Eigen::ComputeFullV);
-  const double largest = std::sqrt(static_cast<double>(rows.size()));
-  Eigen::Index rank = 0;
-  while (rank < parts.singularValues().size() && parts.singularValues()(rank) > nothing * largest)
-    ++rank;
-  Eigen::MatrixXd out = scaled * parts.matrixV().rightCols(count - rank);
+  Eigen::MatrixXd out = scaled * parts.matrixV().rightCols(count - rank_of(parts));
   for (int row : rows) out.row(row).setZero();
   return out;
+}
+
+std::vector<std::vector<std::int32_t>> connected_pieces(const Mesh& mesh) {
+  std::vector<std::int32_t> parent(index(mesh.node_count()));
+  std::iota(parent.begin(), parent.end(), 0);
+  for (const CellBlock& cells : mesh.blocks) {
+    const std::size_t each = index(cells.element->nodes);
+    for (std::size_t k = 0; k < cells.nodes.size(); ++k) {
+      const std::int32_t a = root_of(parent, cells.nodes[k - k % each]);
+      const std::int32_t b = root_of(parent, cells.nodes[k]);
+      parent[index(std::max(a, b))] = std::min(a, b);  // roots are the first of their nodes
+    }
+  }
+  std::vector<std::vector<std::int32_t>> pieces;
+  std::vector<std::size_t> place(parent.size());
+  for (std::int32_t node = 0; node < mesh.node_count(); ++node) {
+    const std::int32_t root = root_of(parent, node);
+    if (root == node) {
+      place[index(node)] = pieces.size();
+      pieces.emplace_back();
+    }
+    pieces[place[index(root)]].push_back(node);
+  }
+  return pieces;
+}
+
+std::optional<LoosePiece> find_loose_piece(const FeModel& model, const std::vector<int>& held) {
+  const Eigen::MatrixXd motions = rigid_motions(model);
+  const std::vector<std::vector<std::int32_t>> pieces = connected_pieces(model.mesh());
+  const int dim = model.mesh().dim, count = static_cast<int>(motions.cols());
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    std::vector<int> rows;
+    for (std::int32_t node : pieces[k]) {
+      for (int i = node * dim; i < (node + 1) * dim; ++i)
+        if (std::binary_search(held.begin(), held.end(), i)) rows.push_back(i);
+    }
+    int rank = 0;
+    if (!rows.empty() && count > 0)
+      rank =
+          static_cast<int>(rank_of(Eigen::JacobiSVD<Eigen::MatrixXd>(motions(rows, Eigen::all))));
+    if (rank < count)
+      return LoosePiece{static_cast<int>(k), static_cast<int>(pieces.size()), count - rank};
+  }
+  return std::nullopt;
 }
 
 }  // namespace abut

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "subdomain_solver/fe/fe_model.hpp"
 
 namespace abut {
@@ -12,5 +15,17 @@ Eigen::MatrixXd rigid_motions(const FeModel& model);
 /// Combinations of motions (n, k) that vanish on some rows: (n, at most k). Sizes are relative to
 /// the largest component of each motion.
 Eigen::MatrixXd vanishing_on(const std::vector<int>& rows, const Eigen::MatrixXd& motions);
+
+/// Nodes of each part of a mesh that shares no node with the others, sorted, in the order of their
+/// first nodes.
+std::vector<std::vector<std::int32_t>> connected_pieces(const Mesh& mesh);
+
+/// A piece that may move as a whole although some coordinates are held.
+struct LoosePiece {
+  int piece = 0, pieces = 1;  // which of connected_pieces
+  int motions = 0;            // rigid ones that nothing prevents
+};
+/// The first one; held: sorted coordinates.
+std::optional<LoosePiece> find_loose_piece(const FeModel& model, const std::vector<int>& held);
 
 }  // namespace abut

@@ -9,13 +9,26 @@ namespace abut {
 
 namespace {
 
-using Ldlt = EigenSolver<Eigen::SimplicialLDLT<SparseMatrix>>;
+class Ldlt final : public EigenSolver<Eigen::SimplicialLDLT<SparseMatrix>> {
+ public:
+  using EigenSolver::EigenSolver;
+
+ private:
+  bool pivots_hold(const Vector& diagonal) const override {
+    const Vector pivots = solver_.vectorD();
+    const auto& place = solver_.permutationP().indices();
+    for (Eigen::Index i = 0; i < diagonal.size(); ++i)
+      if (!pivot_holds(pivots(place(i)), diagonal(i), diagonal.size())) return false;
+    return true;
+  }
+};
 
 /// Supernodal factors while the matrix is positive definite; past a buckling load, for instance,
 /// it is not, and the simplicial LDL^T takes over.
 class FirstThatFactors final : public LinearSolver {
  public:
-  explicit FirstThatFactors(std::unique_ptr<LinearSolver> quick) : quick_(std::move(quick)) {}
+  FirstThatFactors(std::unique_ptr<LinearSolver> quick, Pivots pivots)
+      : quick_(std::move(quick)), general_(pivots) {}
 
   [[nodiscard]] bool factor(const SparseMatrix& matrix) override {
     definite_ = quick_->factor(matrix);
@@ -46,10 +59,10 @@ bool LinearSolver::solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
   return true;
 }
 
-std::unique_ptr<LinearSolver> make_direct_solver() {
-  if (std::unique_ptr<LinearSolver> quick = make_cholmod_solver(); quick != nullptr)
-    return std::make_unique<FirstThatFactors>(std::move(quick));
-  return std::make_unique<Ldlt>();
+std::unique_ptr<LinearSolver> make_direct_solver(Pivots pivots) {
+  if (std::unique_ptr<LinearSolver> quick = make_cholmod_solver(pivots); quick != nullptr)
+    return std::make_unique<FirstThatFactors>(std::move(quick), pivots);
+  return std::make_unique<Ldlt>(pivots);
 }
 
 }  // namespace abut

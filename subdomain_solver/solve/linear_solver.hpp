@@ -19,9 +19,14 @@ class LinearSolver {
   [[nodiscard]] virtual bool solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x);
 };
 
+/// Which pivots a direct solver takes: of stiffness alone those that are more than round-off, as a
+/// body that nothing holds would move without bounds; with inertia any, as it may be many digits
+/// less than the stiffness and yet holds the body.
+enum class Pivots { with_digits, every };
+
 /// Direct: CHOLMOD when the build has it (docs/adr/0007), Eigen's own LDL^T otherwise and for
 /// matrices that are not positive definite.
-std::unique_ptr<LinearSolver> make_direct_solver();
+std::unique_ptr<LinearSolver> make_direct_solver(Pivots pivots = Pivots::with_digits);
 /// Conjugate gradients with incomplete Cholesky factors; for positive definite matrices too large
 /// to factor. `tolerance` is of the residual relative to the right-hand side.
 std::unique_ptr<LinearSolver> make_conjugate_gradients(double tolerance);

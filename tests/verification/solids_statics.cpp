@@ -147,5 +147,73 @@ TEST(QuasiStatic, HalvesAStepThatIsTooLong) {
   EXPECT_LT(largest_difference(whole.motion.q, fine.motion.q), 1.0e-10);
 }
 
+/// Two unit cells in a row that share one corner alone.
+Mesh hinged(const std::string& element) {
+  const Mesh one = unit_mesh(element, 1);
+  const std::size_t dim = static_cast<std::size_t>(one.dim);
+  Mesh both = one;
+  std::int32_t joint = 0;  // the corner farthest from the origin, which the second begins at
+  const auto sum = [&one, dim](std::int32_t node) {
+    double total = 0.0;
+    for (std::size_t i = 0; i < dim; ++i)
+      total += one.points[static_cast<std::size_t>(node) * dim + i];
+    return total;
+  };
+  for (std::int32_t node = 1; node < one.node_count(); ++node)
+    if (sum(node) > sum(joint)) joint = node;
+  std::vector<std::int32_t> number;  // of the second cell's nodes
+  for (std::int32_t node = 0; node < one.node_count(); ++node) {
+    number.push_back(sum(node) == 0.0 ? joint : both.node_count());
+    if (number.back() == joint) continue;
+    for (std::size_t i = 0; i < dim; ++i)
+      both.points.push_back(one.points[static_cast<std::size_t>(node) * dim + i] + 1.0);
+  }
+  for (std::int32_t node : one.blocks[0].nodes)
+    both.blocks[0].nodes.push_back(number[static_cast<std::size_t>(node)]);
+  return both;
+}
+
+/// A body that is pulled along its second axis and has no answer.
+void expect_singular(Solid& s, const std::string& words) {
+  s.problem.loads.push_back(std::make_unique<BodyForce>(
+      s.model,
+      VectorField{[](const auto&, double time) { return 0.3 * time; },
+                  [](const auto& x, double time) { return time * (1.0 + x[0]); }, ScalarField()}));
+  QuasiStatic run(s.problem, {{}, 4}, make_direct_solver());
+  ASSERT_FALSE(run.begin(s.motion, 0.0)) << words;
+  const std::optional<Failed> failed = run.step(s.motion, 0.0, 1.0);
+  ASSERT_TRUE(failed) << words << ": moved by " << view(s.motion.q).lpNorm<Eigen::Infinity>();
+  EXPECT_NE(failed->detail.find("singular"), std::string::npos) << words << failed->detail;
+}
+
+TEST(QuasiStatic, SaysThatAHingeHasNoAnswer) {
+  for (const std::string& element : solid_elements()) {
+    for (const bool linear : {true, false}) {
+      std::unique_ptr<const Material> law =
+          std::make_unique<LinearElastic>(isotropic(1.0, 0.3), 1.0);
+      if (!linear) law = std::make_unique<NeoHookean>(isotropic(1.0, 0.3), 1.0);
+      Solid s(hinged(element), std::move(law));
+      for (int i = 0; i < s.model.mesh().dim; ++i) s.fix("left", i);
+      expect_singular(s, element + (linear ? " linear " : " neo-Hookean "));
+    }
+  }
+}
+
+TEST(QuasiStatic, SaysThatHourglassesWithoutStiffnessHaveNoAnswer) {
+  for (const std::string element : {"quad4", "hex8"}) {
+    for (const int n : {2, 5, 8}) {
+      FeOptions options;
+      options.formulation = Formulation::one_point;
+      options.hourglass = 0.0;
+      Solid s(unit_mesh(element, n), std::make_unique<LinearElastic>(isotropic(1.0, 0.3), 1.0),
+              options);
+      s.fix("left", 0);
+      s.fix("bottom", 1);
+      if (s.model.mesh().dim == 3) s.fix("back", 2);
+      expect_singular(s, element + " " + std::to_string(n) + " ");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace abut
