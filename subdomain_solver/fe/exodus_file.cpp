@@ -66,6 +66,7 @@ class Reader {
       file_.refuse(fmt::format("has {} nodes", nodes_), "Make the mesh coarser.");
     read_blocks();
     read_points();
+    refuse_repeated_cells(mesh_, path_);
     read_sides();
     read_node_sets();
     settle_names(mesh_, path_);

@@ -40,6 +40,7 @@ class Builder {
     check_names();
     add_points();
     add_cells();
+    refuse_repeated_cells(mesh_, data_.name);
     const FacetIndex facets(mesh_);
     for (const GmshData::Elements& block : data_.elements) {
       for (const std::string& group : groups_of(block)) {

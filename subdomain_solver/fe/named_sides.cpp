@@ -1,6 +1,7 @@
 #include "subdomain_solver/fe/named_sides.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <span>
 #include <tuple>
@@ -34,12 +35,45 @@ bool inside(const Mesh& mesh, const FacetIndex& facets, const std::vector<Facet>
     if (facets.find(std::span(nodes).first(corners)).size() > 1) ++shared;
   }
   if (shared > 0 && shared < side.size())
-    throw InputError("has the side '" + name + "' both on the boundary and between cells", where,
-                     "Make two groups of it.");
+    throw InputError("has the side '" + name +
+                         "' partly on the boundary, and partly lies inside "
+                         "the body, between cells",
+                     where, "Make two groups of it.");
   return shared > 0;
 }
 
 }  // namespace
+
+void refuse_repeated_cells(const Mesh& mesh, const std::string& where) {
+  struct Place {
+    std::array<std::int32_t, 8> corners;  // sorted, -1 in front where there are fewer
+    std::size_t block = 0, cell = 0;
+  };
+  std::vector<Place> cells;
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const CellBlock& block = mesh.blocks[b];
+    const auto nodes = static_cast<std::size_t>(block.element->nodes);
+    const auto corners = static_cast<std::size_t>(block.element->corner_count());
+    for (std::size_t c = 0; c < static_cast<std::size_t>(block.count()); ++c) {
+      Place& place = cells.emplace_back(Place{{}, b, c});
+      place.corners.fill(-1);
+      std::copy_n(&block.nodes[c * nodes], corners, place.corners.begin());
+      std::sort(place.corners.begin(), place.corners.end());
+    }
+  }
+  std::sort(cells.begin(), cells.end(), [](const Place& a, const Place& b) {
+    return std::tie(a.corners, a.block, a.cell) < std::tie(b.corners, b.block, b.cell);
+  });
+  const auto twice =
+      std::adjacent_find(cells.begin(), cells.end(),
+                         [](const Place& a, const Place& b) { return a.corners == b.corners; });
+  if (twice == cells.end()) return;
+  throw InputError("has a cell twice: " + cell_text(mesh, twice->block, twice->cell) + " and " +
+                       cell_text(mesh, twice[1].block, twice[1].cell) + " have the same corners",
+                   where,
+                   "Remove one of them: what overlaps counts twice (Gmsh: BooleanFragments of "
+                   "volumes that overlap, then mesh again).");
+}
 
 void settle_names(Mesh& mesh, const std::string& where) {
   const FacetIndex facets(mesh);

@@ -6,6 +6,10 @@
 
 namespace abut {
 
+/// Throws InputError with the numbers and places of two cells that have the same corners: the body
+/// would have twice the stiffness and mass there. `where` is the file.
+void refuse_repeated_cells(const Mesh& mesh, const std::string& where);
+
 /// Settles what a file's groups of facets are: those between cells become node sets, as a side has
 /// one cell at each facet; those on the boundary stay sides. Also sorts the node sets and drops
 /// those that repeat a side of the same name. Throws InputError naming the group when its facets

@@ -9,6 +9,7 @@
 #include <random>
 #include <sstream>
 #include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -211,6 +212,27 @@ TEST(GmshFile, AGroupOfFacetsBetweenCellsIsANodeSet) {
   const Mesh mesh = gmsh_mesh(with("2 1 2\n1 2 1 1", "2 1 3\n1 2 1 1"), "part.msh");
   EXPECT_FALSE(mesh.sides.contains("below"));
   EXPECT_EQ(mesh.nodes_of("below"), (std::vector<std::int32_t>{0, 2}));
+}
+
+TEST(GmshFile, AGroupInsideTheBodyTakesNoLoadAndSaysWhy) {
+  const Mesh mesh = gmsh_mesh(with("2 1 2\n1 2 1 1", "2 1 3\n1 2 1 1"), "part.msh");
+  expect_words(refusal([&mesh]() { std::ignore = mesh.side("below"); }),
+               {"'below'", "lies inside the body", "constraints, ports and points"});
+}
+
+TEST(GmshFile, ASidePartlyInsideTheBodyIsRefused) {
+  // the diagonal in the group of the lower side too
+  std::string text = with("2 1 2\n1 2 1 1\n3 1 3\n", "2 1 2\n1 2 1 2\n3 1 3\n6 1 2\n");
+  text.replace(text.find("4 5 1 5"), 7, "4 6 1 6");
+  expect_words(refusal_of(text), {"'below'", "partly on the boundary", "lies inside"});
+}
+
+TEST(GmshFile, ACellListedTwiceIsRefusedWithBothNumbers) {
+  // the second triangle again, from another corner on
+  std::string text = with("2 1 2 2\n4 1 2 3\n5 1 3 4\n", "2 1 2 3\n4 1 2 3\n5 1 3 4\n6 3 4 1\n");
+  text.replace(text.find("4 5 1 5"), 7, "4 6 1 6");
+  expect_words(refusal_of(text),
+               {"part.msh", "a cell twice", "cell 2 (tri3", "cell 3 (tri3", "Remove one"});
 }
 
 TEST(GmshFile, OtherVersionsPartitionsAndElementsAreRefusedWithARemedy) {
