@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/horizon.hpp"
+#include "coordinator/record/validity_notes.hpp"
 
 namespace abut {
 
@@ -416,7 +417,11 @@ RunEnd Controller::finish(double wall_seconds) {
   end_.compute_seconds = bodies_.compute_seconds();
   end_.overhead_median_seconds = bodies_.overhead_median();
   end_.state_hash = state_hash();
-  for (int b = 0; b < bodies_.count(); ++b) end_.body_measures.push_back(bodies_[b].measure());
+  for (int b = 0; b < bodies_.count(); ++b) {
+    end_.body_measures.push_back(bodies_[b].measure());
+    for (const std::string& note : validity_notes(bodies_.describe(b), end_.body_measures.back()))
+      emit(RunEvent::Kind::warning, time_, bodies_.describe(b).name, note);
+  }
   for (Observer* observer : observers_) observer->on_end(end_);
   return end_;
 }

@@ -14,6 +14,7 @@
 #include "subdomain_solver/saved_state.hpp"
 #include "subdomain_solver/solid_fields.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
+#include "subdomain_solver/validity_measures.hpp"
 
 namespace abut {
 
@@ -74,6 +75,8 @@ void SolidBody::describe(std::string name, const std::vector<PortNodes>& ports) 
   }
   description_.measures = solid_measure_names(mesh.dim, parts_.deforms, ports_);
   for (const std::string& measure : parts_.scheme.integrator->measure_names())
+    description_.measures.push_back(measure);
+  for (const std::string& measure : validity_measure_names(*parts_.model, parts_.deforms))
     description_.measures.push_back(measure);
   description_.fields = solid_fields(parts_.model->material(), parts_.deforms);
   lower_.resize(ports.size());
@@ -327,10 +330,12 @@ std::optional<Failed> SolidBody::record(double time, Response& response) {
   r.time = time;
   r.energy = energy();
   const Vector momentum = momentum_of_nodes();
+  const std::vector<double> u = displacement();
+  state_.turned = std::max(state_.turned, rotation_on_the_way(*parts_.model, parts_.deforms, u));
   r.momentum.assign(index(description_.dim), 0.0);
   for (Eigen::Index k = 0; k < momentum.size(); ++k)
     r.momentum[index(k) % r.momentum.size()] += momentum(k);
-  r.angular_momentum = angular_momentum(parts_.model->mesh(), displacement(), momentum);
+  r.angular_momentum = angular_momentum(parts_.model->mesh(), u, momentum);
   double sum = r.energy.total() + r.energy.external_work;
   for (double p : r.momentum) sum += p;
   for (double p : r.angular_momentum) sum += p;
@@ -347,6 +352,9 @@ std::vector<double> SolidBody::measure() {
       ports_);
   const std::vector<double> more = parts_.scheme.integrator->measure(state_.motion);
   out.insert(out.end(), more.begin(), more.end());
+  const std::vector<double> fit = validity_measures(*parts_.model, parts_.deforms, displacement(),
+                                                    state_.motion.stored, state_.turned);
+  out.insert(out.end(), fit.begin(), fit.end());
   return out;
 }
 

@@ -65,11 +65,13 @@ class SolidBody final : public Subdomain {
     bool begun = false;              // accelerations and forces of the start are there
     std::vector<double> port_force;  // [N] (port values) that acts now
     double port_work = 0.0;          // [J] done by forces on the ports
+    double turned = 0.0;             // [rad] largest rotation at records, where the law is linear
     void state(Archive& archive) {
       motion.state(archive);
       archive.field("begun", begun);
       archive.field("port_force", port_force);
       archive.field("port_work", port_work);
+      archive.field("turned", turned);
     }
   };
 

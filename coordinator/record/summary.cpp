@@ -11,6 +11,7 @@
 #include "coordinator/record/expectations.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 #include "coordinator/record/text_file.hpp"
+#include "coordinator/record/validity_notes.hpp"
 
 namespace abut {
 namespace {
@@ -184,6 +185,9 @@ std::string Summary::text(const RunEnd& end) const {
   summary["ports"] = ports_object(start_);
   summary["interfaces"] = interfaces_object(start_);
   summary["versions"] = heading_.versions;
+  for (std::size_t b = 0; b < std::min(start_.bodies.size(), end.body_measures.size()); ++b)
+    for (const std::string& note : validity_notes(*start_.bodies[b], end.body_measures[b]))
+      notes.push_back(note);
   summary["notes"] = notes;
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

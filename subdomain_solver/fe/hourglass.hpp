@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include <Eigen/Core>
 
 #include "subdomain_solver/fe/element.hpp"
@@ -15,5 +17,10 @@ bool has_hourglasses(const Element& element);
 /// [Pa] coefficient x P-wave modulus. Linear fields have no force.
 Eigen::MatrixXd hourglass_stiffness(const Element& element, const Eigen::MatrixXd& x,
                                     const Eigen::MatrixXd& b, double volume, double stiffness);
+
+class FeModel;
+/// [J] of all cells of a model in their hourglasses [M.52], a part of what it stores; u: [m]
+/// (nodes, dim) along the axes of space. 0 under other formulations.
+double hourglass_energy(const FeModel& model, std::span<const double> u);
 
 }  // namespace abut

@@ -1,0 +1,50 @@
+#include "coordinator/record/validity_notes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace abut {
+
+namespace {
+
+/// Of length: what tables are read to.
+constexpr double lengthened = 0.01;
+/// Of the stored energy: the usual bound for cells of one point.
+constexpr double in_hourglasses = 0.1;
+/// Of the kinetic and stored energy: what a body stores below this is vibration of no interest.
+constexpr double worth_a_look = 1.0e-6;
+
+/// 0: the body does not tell it.
+double told(const Description& body, std::span<const double> values, const std::string& name) {
+  const auto found = std::find(body.measures.begin(), body.measures.end(), name);
+  const auto at = static_cast<std::size_t>(found - body.measures.begin());
+  return at < values.size() ? values[at] : 0.0;
+}
+
+}  // namespace
+
+std::vector<std::string> validity_notes(const Description& body, std::span<const double> values) {
+  std::vector<std::string> notes;
+  const double turned = told(body, values, "rotation.max");
+  const double longer = std::hypot(1.0, turned) - 1.0;  // a law of small rotations sees no strain
+  if (longer > lengthened) {
+    notes.push_back(fmt::format(
+        "{} has turned by {:.2g} rad under a law for small rotations, which makes it {:.2g} % "
+        "longer: use a law of finite strain, saint_venant_kirchhoff for instance, or model: rigid",
+        body.name, turned, 100.0 * longer));
+  }
+  const double share = told(body, values, "energy.hourglass_share");
+  const double stored = told(body, values, "energy.stored");
+  const double all = stored + told(body, values, "energy.kinetic");
+  if (share > in_hourglasses && stored > worth_a_look * all) {
+    notes.push_back(
+        fmt::format("{} has {:.2g} % of its stored energy in hourglasses at the end: use a finer "
+                    "mesh, or formulation: full or mean_dilatation",
+                    body.name, 100.0 * share));
+  }
+  return notes;
+}
+
+}  // namespace abut

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "contract/subdomain.hpp"
+
+namespace abut {
+
+/// What a body's own measures at the end of a run say against its model, one sentence each: a law
+/// of small rotations that has turned far enough to lengthen the body by 1 % (rotation.max), a
+/// tenth of the stored energy in hourglasses (energy.hourglass_share). values: in the order of
+/// body.measures, or none.
+std::vector<std::string> validity_notes(const Description& body, std::span<const double> values);
+
+}  // namespace abut
