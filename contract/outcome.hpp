@@ -34,6 +34,7 @@ struct BodyRecord {
   // none, or not told
   std::vector<double> angular_momentum{};
   std::vector<MemberRecord> members{};  // in the order of Description::members
+  std::vector<double> columns{};        // in the order of Description::columns
 };
 
 /// What an impulse on a port would do to the body now: it changes the velocity of what it hits,

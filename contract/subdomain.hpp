@@ -45,6 +45,9 @@ struct Description {
   std::vector<Member> members;  // empty: the body is one solid
   std::vector<std::string> measures;  // names of what measure() tells, in its order
   std::vector<FieldInfo> fields;      // what fields() tells, in its order; empty: has none
+  // what every record tells beside energies and momenta, with its unit: "clamp.reaction_x [N]"
+  std::vector<std::string> columns;
+  std::vector<double> frequencies;    // [Hz] of a body that moves in modes, ascending
 };
 
 /// Which traces a response holds.

@@ -19,7 +19,7 @@ constexpr int most_members = 4096;
 static_assert(sizeof(TimeWindow) == 3 * sizeof(double));
 static_assert(sizeof(Energy) == 4 * sizeof(double));
 static_assert(sizeof(BodyRecord) ==
-              sizeof(Energy) + sizeof(double) + 3 * sizeof(std::vector<double>));
+              sizeof(Energy) + sizeof(double) + 4 * sizeof(std::vector<double>));
 static_assert(sizeof(MemberRecord) == sizeof(Energy) + sizeof(std::vector<double>));
 static_assert(sizeof(Member) ==
               sizeof(std::string) + sizeof(double) + sizeof(std::vector<std::int32_t>));
@@ -159,8 +159,9 @@ void decode(const v1::BodyRecord& from, const Description& body, const FieldPath
   to.time = number(from.time(), FieldPath{&path, "time"});
   to.energy = decode_energy(from, path);
   take(from.momentum(), dim, true, FieldPath{&path, "momentum"}, to.momentum);
-  take(from.angular_momentum(), dim < 3 ? dim - 1 : dim, true,
-       FieldPath{&path, "angular_momentum"}, to.angular_momentum);
+  take(from.angular_momentum(), dim < 3 ? dim - 1 : dim, true, FieldPath{&path, "angular_momentum"},
+       to.angular_momentum);
+  take(from.columns(), body.columns.size(), false, FieldPath{&path, "columns"}, to.columns);
   if (static_cast<std::size_t>(from.members_size()) != body.members.size()) {
     FieldPath{&path, "members"}.fail(
         fmt::format("has {} entries for {} members", from.members_size(), body.members.size()));
@@ -193,6 +194,12 @@ void decode(const v1::Port& from, const FieldPath& path, Port& to) {
   geometry.spacing = number(from.spacing(), FieldPath{&path, "spacing"});
   geometry.transit = number(from.transit(), FieldPath{&path, "transit"});
   to.tied = from.tied();
+}
+
+void decode_names(const google::protobuf::RepeatedPtrField<std::string>& from,
+                  const FieldPath& path, std::vector<std::string>& to) {
+  if (from.size() > most_members) path.fail("has too many entries");
+  to.assign(from.begin(), from.end());
 }
 
 }  // namespace
@@ -267,6 +274,7 @@ void encode(const Response& from, v1::Advanced& to) {
     encode_energy(record.energy, wire);
     copy(record.momentum, *wire.mutable_momentum());
     copy(record.angular_momentum, *wire.mutable_angular_momentum());
+    copy(record.columns, *wire.mutable_columns());
     resize(*wire.mutable_members(), record.members.size());
     for (std::size_t m = 0; m < record.members.size(); ++m) {
       v1::MemberRecord& member = *wire.mutable_members(static_cast<int>(m));
@@ -372,6 +380,8 @@ void encode(const Description& from, v1::Description& to) {
   can.set_impedance(from.can.impedance);
   can.set_complete(from.can.complete);
   to.mutable_measures()->Assign(from.measures.begin(), from.measures.end());
+  to.mutable_columns()->Assign(from.columns.begin(), from.columns.end());
+  copy(from.frequencies, *to.mutable_frequencies());
   encode(from.fields, to);
   for (const Member& member : from.members) {
     v1::Member& wire = *to.add_members();
@@ -404,9 +414,9 @@ void decode(const v1::Description& from, Description& to) {
                         .kernel = can.kernel(),
                         .impedance = can.impedance(),
                         .complete = can.complete()};
-  if (from.measures_size() > most_members)
-    FieldPath{&path, "measures"}.fail("has too many entries");
-  to.measures.assign(from.measures().begin(), from.measures().end());
+  decode_names(from.measures(), FieldPath{&path, "measures"}, to.measures);
+  decode_names(from.columns(), FieldPath{&path, "columns"}, to.columns);
+  take(from.frequencies(), FieldPath{&path, "frequencies"}, to.frequencies);
   decode(from, path, to.fields);
   if (from.members_size() > most_members) FieldPath{&path, "members"}.fail("has too many entries");
   to.members.resize(static_cast<std::size_t>(from.members_size()));

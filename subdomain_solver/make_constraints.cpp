@@ -89,6 +89,7 @@ class ConstraintMaker {
 
   void add(const std::string& name, const ConstraintSpec& spec) {
     const std::string key = "constraints." + name;
+    begin(name);
     const std::vector<std::int32_t> nodes =
         named(place_, key + ".on", [&] { return mesh_.nodes_of(spec.on); });
     if (!spec.direction.empty()) return add_inclined(spec, key, nodes);
@@ -113,6 +114,14 @@ class ConstraintMaker {
   }
 
  private:
+  /// A support and a constraint may have one name: they are told as one.
+  void begin(const std::string& name) {
+    const auto same = [&name](const HeldCoordinates& h) { return h.name == name; };
+    const auto at = std::find_if(made_.held.begin(), made_.held.end(), same);
+    now_ = index(at - made_.held.begin());
+    if (at == made_.held.end()) made_.held.push_back({name, {}});
+  }
+
   void prescribe(std::int32_t node, int direction, const ScalarField& value,
                  const std::string& key) {
     const int dof = node * mesh_.dim + direction;
@@ -123,6 +132,7 @@ class ConstraintMaker {
           made_.supports[place->second].value, [&](double t) { return value(at, t); }, node, key);
       return;
     }
+    made_.held[now_].dofs.push_back(dof);
     made_.supports.push_back({dof, [at, value](double time) { return value(at, time); }});
   }
 
@@ -172,6 +182,7 @@ class ConstraintMaker {
   const double step_;
   const std::string zero_ = "0";
   std::map<int, std::size_t> by_dof_;
+  std::size_t now_ = 0;  // of the constraints, the one being made
   Constraints made_;
 };
 

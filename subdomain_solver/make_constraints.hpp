@@ -5,14 +5,17 @@
 #include "subdomain_solver/body_spec.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/place.hpp"
+#include "subdomain_solver/reactions.hpp"
 #include "subdomain_solver/time/problem.hpp"
 
 namespace abut {
 
-/// Prescribed coordinates, sorted, and the frames that inclined ones need.
+/// Prescribed coordinates, sorted, the frames that inclined ones need, and what is held by which
+/// constraint: the scene's, and in one dimension `left` and `right` of its supports.
 struct Constraints {
   std::vector<Prescribed> supports;
   std::vector<NodeFrame> frames;
+  std::vector<HeldCoordinates> held;
 };
 
 /// What a scene's constraints prescribe on a mesh. Throws InputError.

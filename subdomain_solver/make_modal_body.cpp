@@ -12,6 +12,7 @@
 #include "subdomain_solver/modal/modal_basis.hpp"
 #include "subdomain_solver/modal/modal_map.hpp"
 #include "subdomain_solver/modal/modal_model.hpp"
+#include "subdomain_solver/modal/modal_reactions.hpp"
 #include "subdomain_solver/solid_body.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
@@ -121,20 +122,28 @@ std::unique_ptr<Subdomain> make_modal_body(const BodySpec& spec, const Document&
     throw InputError("leaves no coordinate in which the body could move",
                      place.where("model.modal"), "Give more modes.");
   }
+  for (const double omega : basis.frequencies) parts.frequencies.push_back(hertz(omega));
   std::unique_ptr<ModalModel> model = std::make_unique<ModalModel>(basis.frequencies);
-  parts.map = std::make_unique<ModalMap>(basis.shapes);
+  std::unique_ptr<ModalMap> map = std::make_unique<ModalMap>(basis.shapes);
   parts.problem = std::make_unique<Problem>();
   parts.problem->model = model.get();
   const std::size_t nodal = static_cast<std::size_t>(nodes.dofs());
   for (std::unique_ptr<Load>& load : make_loads(spec, place, nodes))
-    parts.problem->loads.push_back(
-        std::make_unique<LiftedLoad>(std::move(load), *parts.map, nodal));
+    parts.problem->loads.push_back(std::make_unique<LiftedLoad>(std::move(load), *map, nodal));
   parts.rung = words_of(basis);
   parts.motion = modal_start(initial_motion(spec, place, nodes), constraints.supports,
                              mass_matrix(nodes, form), basis, nodes, *model, parts.rung);
   parts.scheme =
       make_scheme(spec, place, *parts.problem, [&model] { return model->stable_step(); });
   parts.reduced = std::move(model);
+  if (!constraints.held.empty()) {
+    parts.reactions = std::make_unique<ModalReactions>(
+        ModalReactions::Body{nodes, *map, *parts.scheme.integrator, mass_matrix(nodes, form),
+                             parts.scheme.step, make_loads(spec, place, nodes)},
+        supports, constraints.held, place.where("model.modal"));
+    parts.constraints = constraints.held;
+  }
+  parts.map = std::move(map);
   const std::string name = path.substr(path.rfind('.') + 1);
   std::unique_ptr<SolidBody> body = std::make_unique<SolidBody>(name, std::move(parts), ports);
   body->set_progress(std::move(progress));

@@ -44,6 +44,12 @@ std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document&
   MakeWatch watch;  // the tangent of linear bodies stays
   if (!model.is_linear()) watch = [&] { return std::make_unique<HighestFrequency>(model); };
   parts.scheme = make_scheme(spec, place, *parts.problem, limit, watch);
+  if (!constraints.held.empty()) {
+    parts.reactions = std::make_unique<NodalReactions>(
+        model, *parts.problem, *parts.scheme.integrator, mass_matrix(model, parts.scheme.mass),
+        parts.scheme.step, constraints.held);
+    parts.constraints = std::move(constraints.held);
+  }
   const std::string name = path.substr(path.rfind('.') + 1);
   std::unique_ptr<SolidBody> body = std::make_unique<SolidBody>(name, std::move(parts), ports);
   body->set_progress(std::move(progress));

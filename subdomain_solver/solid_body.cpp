@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -74,11 +75,16 @@ void SolidBody::describe(std::string name, const std::vector<PortNodes>& ports) 
     description_.ports.push_back(std::move(port));
   }
   description_.measures = solid_measure_names(mesh.dim, parts_.deforms, ports_);
-  for (const std::string& measure : parts_.scheme.integrator->measure_names())
-    description_.measures.push_back(measure);
-  for (const std::string& measure : validity_measure_names(*parts_.model, parts_.deforms))
-    description_.measures.push_back(measure);
+  const auto also = [this](const std::vector<std::string>& names) {
+    description_.measures.insert(description_.measures.end(), names.begin(), names.end());
+  };
+  also(reaction_measure_names(mesh.dim, parts_.constraints));
+  also(parts_.scheme.integrator->measure_names());
+  also(validity_measure_names(*parts_.model, parts_.deforms));
+  description_.columns = reaction_columns(mesh.dim, parts_.constraints);
+  description_.frequencies = parts_.frequencies;
   description_.fields = solid_fields(parts_.model->material(), parts_.deforms);
+  if (parts_.reactions) description_.fields.push_back({"reaction", FieldPlace::nodes, 3});
   lower_.resize(ports.size());
   upper_.resize(ports.size());
 }
@@ -181,6 +187,7 @@ std::optional<Failed> SolidBody::advance(const Advance& request, const Substeps&
             patiently([&] { return integrator.begin(state_.motion, begin); }))
       return failed;
     state_.begun = true;
+    state_.time = begin;
   }
   for (PortResponse& port : response.ports) {
     port.trace.clear();
@@ -201,7 +208,8 @@ std::optional<Failed> SolidBody::advance(const Advance& request, const Substeps&
     if (std::optional<Failed> failed =
             patiently([&] { return integrator.step(state_.motion, before, grid.length(i)); }))
       return failed;
-    follow_ports(grid.time(i));
+    state_.time = grid.time(i);
+    follow_ports(state_.time);
     report_progress();
     const bool due = i == clock.substep();
     if (request.sampling == Sampling::substeps)
@@ -336,11 +344,34 @@ std::optional<Failed> SolidBody::record(double time, Response& response) {
   for (Eigen::Index k = 0; k < momentum.size(); ++k)
     r.momentum[index(k) % r.momentum.size()] += momentum(k);
   r.angular_momentum = angular_momentum(parts_.model->mesh(), u, momentum);
+  r.columns = reactions();
   double sum = r.energy.total() + r.energy.external_work;
-  for (double p : r.momentum) sum += p;
-  for (double p : r.angular_momentum) sum += p;
+  for (const std::vector<double>* told : {&r.momentum, &r.angular_momentum, &r.columns})
+    sum = std::accumulate(told->begin(), told->end(), sum);
   if (std::isfinite(sum)) return std::nullopt;
   return not_finite(time);
+}
+
+/// Forces on ports now, as those of nodes (nodes, dim) in their own frames [N].
+Vector SolidBody::forces_on_ports() const {
+  Vector all = Vector::Zero(static_cast<Eigen::Index>(nodal_values()));
+  if (port_forces_ == nullptr || !port_forces_->acts()) return all;
+  const std::vector<double> values = port_forces_->at(state_.time);
+  std::size_t k = 0;
+  for (const NamedNodes& port : ports_) {
+    for (std::int32_t node : port.nodes) {
+      for (int i = 0; i < description_.dim; ++i) all(node * description_.dim + i) += values[k++];
+    }
+  }
+  parts_.model->to_frames({all.data(), nodal_values()});
+  return all;
+}
+
+/// [N] (constraints, dim) along the axes of space; none before the begin.
+std::vector<double> SolidBody::reactions() const {
+  if (!parts_.reactions) return {};
+  if (!state_.begun) return std::vector<double>(description_.columns.size(), 0.0);
+  return parts_.reactions->sums(state_.motion, state_.time, forces_on_ports());
 }
 
 std::vector<double> SolidBody::measure() {
@@ -350,11 +381,12 @@ std::vector<double> SolidBody::measure() {
       *parts_.model,
       {parts_.deforms, u, velocity(), state_.motion.history, energy(), momentum_of_nodes()},
       ports_);
-  const std::vector<double> more = parts_.scheme.integrator->measure(state_.motion);
-  out.insert(out.end(), more.begin(), more.end());
-  const std::vector<double> fit = validity_measures(*parts_.model, parts_.deforms, displacement(),
-                                                    state_.motion.stored, state_.turned);
-  out.insert(out.end(), fit.begin(), fit.end());
+  for (const std::vector<double>& more :
+       {reaction_measures(description_.dim, reactions()),
+        parts_.scheme.integrator->measure(state_.motion),
+        validity_measures(*parts_.model, parts_.deforms, displacement(), state_.motion.stored,
+                          state_.turned)})
+    out.insert(out.end(), more.begin(), more.end());
   return out;
 }
 
@@ -364,7 +396,15 @@ std::vector<FieldValues> SolidBody::fields() {
   std::vector<double> q(nodal_values());
   parts_.map->displacement(state_.motion.q, q);
   const std::vector<double> u = displacement(), v = velocity();
-  return solid_field_values(*parts_.model, {q, u, v, state_.motion.history}, parts_.deforms);
+  std::vector<FieldValues> values =
+      solid_field_values(*parts_.model, {q, u, v, state_.motion.history}, parts_.deforms);
+  if (!parts_.reactions) return values;
+  Vector forces = Vector::Zero(static_cast<Eigen::Index>(nodal_values()));
+  if (state_.begun)
+    forces = parts_.reactions->forces(state_.motion, state_.time, forces_on_ports());
+  parts_.model->to_space({forces.data(), nodal_values()});
+  values.push_back(in_space(span_of(forces), description_.dim));
+  return values;
 }
 
 Energy SolidBody::energy() const {

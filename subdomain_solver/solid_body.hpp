@@ -9,6 +9,7 @@
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/nodal_map.hpp"
 #include "subdomain_solver/port_forces.hpp"
+#include "subdomain_solver/reactions.hpp"
 #include "subdomain_solver/solid_measures.hpp"
 #include "subdomain_solver/substeps.hpp"
 #include "subdomain_solver/time/integrator.hpp"
@@ -37,9 +38,12 @@ class SolidBody final : public Subdomain {
     std::unique_ptr<NodalMap> map;   // from the problem's coordinates to the nodes
     std::unique_ptr<Problem> problem;
     Scheme scheme;
-    Motion motion;            // q and v of the start
-    std::string rung = "fe";  // for people
-    bool deforms = true;      // there is stress to tell of
+    Motion motion;  // q and v of the start
+    std::vector<HeldCoordinates> constraints;
+    std::unique_ptr<Reactions> reactions;  // null: no constraints
+    std::vector<double> frequencies;       // [Hz] of modal bodies, ascending
+    std::string rung = "fe";               // for people
+    bool deforms = true;                   // there is stress to tell of
   };
 
   SolidBody(std::string name, Parts parts, const std::vector<PortNodes>& ports);
@@ -61,12 +65,14 @@ class SolidBody final : public Subdomain {
 
  private:
   struct State {
+    double time = 0.0;  // [s]
     Motion motion;
     bool begun = false;              // accelerations and forces of the start are there
     std::vector<double> port_force;  // [N] (port values) that acts now
     double port_work = 0.0;          // [J] done by forces on the ports
     double turned = 0.0;             // [rad] largest rotation at records, where the law is linear
     void state(Archive& archive) {
+      archive.field("time", time);
       motion.state(archive);
       archive.field("begun", begun);
       archive.field("port_force", port_force);
@@ -93,6 +99,8 @@ class SolidBody final : public Subdomain {
   void end_sweep(Response& response) const;
   std::optional<Failed> record(double time, Response& response);
   Vector momentum_of_nodes() const;
+  Vector forces_on_ports() const;
+  std::vector<double> reactions() const;
   std::optional<Failed> patiently(const std::function<std::optional<Failed>()>& call) const;
   void report_progress();
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "subdomain_solver/fe/vtk_cells.hpp"
+#include "subdomain_solver/nodal_stress.hpp"
 #include "subdomain_solver/solid_measures.hpp"
 
 namespace abut {
@@ -13,14 +14,6 @@ namespace abut {
 namespace {
 
 std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
-
-/// (n, dim) as (n, 3).
-std::vector<double> in_space(std::span<const double> values, int dim) {
-  const std::size_t d = index(dim);
-  std::vector<double> out(values.size() / d * 3, 0.0);
-  for (std::size_t i = 0; i < values.size(); ++i) out[i / d * 3 + i % d] = values[i];
-  return out;
-}
 
 /// Sums over the points of the cells, to become means.
 struct CellSums {
@@ -66,7 +59,7 @@ std::vector<FieldValues> cell_values(FeModel& model, const SolidFieldState& stat
       model.visit(state.q, state.history, [&](const FeModel::PointState& point) {
         const std::size_t cell = first[index(point.block)] + index(point.cell);
         const Matrix3 s = cauchy_stress(material, point.stress, point.deformation);
-        const double entries[] = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
+        const StressEntries entries = entries_of(s);
         const double mises = von_mises(s);
         sums.volume[cell] += point.volume;
         sums.add(cell, point.volume, 0, entries);
@@ -78,6 +71,13 @@ std::vector<FieldValues> cell_values(FeModel& model, const SolidFieldState& stat
 }
 
 }  // namespace
+
+std::vector<double> in_space(std::span<const double> values, int dim) {
+  const std::size_t d = index(dim);
+  std::vector<double> out(values.size() / d * 3, 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i) out[i / d * 3 + i % d] = values[i];
+  return out;
+}
 
 Grid grid_of(const Mesh& mesh) {
   Grid grid;
@@ -101,6 +101,8 @@ std::vector<FieldInfo> solid_fields(const Material& material, bool deforms) {
   if (!deforms) return fields;
   const std::vector<FieldInfo> of_cells = cell_fields(material);
   fields.insert(fields.end(), of_cells.begin(), of_cells.end());
+  fields.push_back({"nodal_stress", FieldPlace::nodes, 6});
+  fields.push_back({"nodal_von_mises", FieldPlace::nodes, 1});
   return fields;
 }
 
@@ -110,6 +112,13 @@ std::vector<FieldValues> solid_field_values(FeModel& model, const SolidFieldStat
   std::vector<FieldValues> values{in_space(state.displacement, dim), in_space(state.velocity, dim)};
   if (!deforms) return values;
   for (FieldValues& field : cell_values(model, state)) values.push_back(std::move(field));
+  FieldValues stress, mises;
+  for (const StressEntries& node : nodal_stress(model, state.q, state.history)) {
+    stress.insert(stress.end(), node.begin(), node.end());
+    mises.push_back(von_mises(stress_of(node)));
+  }
+  values.push_back(std::move(stress));
+  values.push_back(std::move(mises));
   return values;
 }
 

@@ -10,21 +10,18 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "subdomain_solver/nodal_stress.hpp"
+
 namespace abut {
 
 namespace {
 
 constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
 
-struct StressEntry {
-  const char* name;
-  int row, column;
-};
-constexpr std::array<StressEntry, 6> stress_entries = {
-    {{"xx", 0, 0}, {"yy", 1, 1}, {"zz", 2, 2}, {"xy", 0, 1}, {"yz", 1, 2}, {"zx", 2, 0}}};
+constexpr std::array<const char*, 6> stress_names = {"xx", "yy", "zz", "xy", "yz", "zx"};
 
 /// Entries that a body of this dimension has: no shear out of the plane, and a bar has one.
-int stress_count(int dim) { return dim == 3 ? 6 : dim == 2 ? 4 : 1; }
+std::size_t stress_count(int dim) { return dim == 3 ? 6 : dim == 2 ? 4 : 1; }
 
 /// First component of angular momentum that it has; 3: none.
 int first_spin(int dim) { return dim == 3 ? 0 : dim == 2 ? 2 : 3; }
@@ -43,26 +40,55 @@ void summarise(const std::vector<double>& field, int dim, std::vector<double>& o
   }
 }
 
-/// Means over the quadrature points of Cauchy and von Mises stress, and the largest of the latter.
+/// Means over the body's reference volume of Cauchy and von Mises stress, and the largest of the
+/// latter at a quadrature point.
 void add_stress(FeModel& model, const SolidState& state, std::vector<double>& out) {
-  Matrix3 sum = Matrix3::Zero();
-  double mises = 0.0, most = 0.0;
-  std::int64_t points = 0;
+  StressEntries sum{};
+  double mises = 0.0, most = 0.0, volume = 0.0;
   const bool admissible =
       model.visit(state.q, state.history, [&](const FeModel::PointState& point) {
         const Matrix3 stress = cauchy_stress(model.material(), point.stress, point.deformation);
-        sum += stress;
-        mises += von_mises(stress);
+        const StressEntries entries = entries_of(stress);
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += point.volume * entries[k];
+        mises += point.volume * von_mises(stress);
         most = std::max(most, von_mises(stress));
-        ++points;
+        volume += point.volume;
       });
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  const double each = admissible ? 1.0 / static_cast<double>(points) : nothing;
-  for (int k = 0; k < stress_count(model.mesh().dim); ++k) {
-    const StressEntry& entry = stress_entries[static_cast<std::size_t>(k)];
-    out.push_back(sum(entry.row, entry.column) * each);
-  }
+  const double each = admissible ? 1.0 / volume : nothing;
+  for (std::size_t k = 0; k < stress_count(model.mesh().dim); ++k) out.push_back(sum[k] * each);
   out.insert(out.end(), {mises * each, admissible ? most : nothing});
+}
+
+/// Smallest and largest entries at a node, and the largest von Mises stress.
+void add_nodal_stress(int dim, const std::vector<StressEntries>& nodes, std::vector<double>& out) {
+  for (std::size_t k = 0; k < stress_count(dim); ++k) {
+    const auto [low, high] = std::minmax_element(
+        nodes.begin(), nodes.end(),
+        [k](const StressEntries& a, const StressEntries& b) { return a[k] < b[k]; });
+    out.insert(out.end(), {(*low)[k], (*high)[k]});
+  }
+  double most = 0.0;
+  for (const StressEntries& node : nodes) {
+    const double mises = von_mises(stress_of(node));
+    most = mises > most || std::isnan(mises) ? mises : most;
+  }
+  out.push_back(most);
+}
+
+/// Means over the nodes of a port.
+void add_stress_at(const NamedNodes& port, int dim, const std::vector<StressEntries>& nodes,
+                   std::vector<double>& out) {
+  const double each = 1.0 / static_cast<double>(port.nodes.size());
+  for (std::size_t k = 0; k < stress_count(dim); ++k) {
+    double sum = 0.0;
+    for (std::int32_t node : port.nodes) sum += nodes[static_cast<std::size_t>(node)][k];
+    out.push_back(sum * each);
+  }
+  double mises = 0.0;
+  for (std::int32_t node : port.nodes)
+    mises += von_mises(stress_of(nodes[static_cast<std::size_t>(node)]));
+  out.push_back(mises * each);
 }
 
 }  // namespace
@@ -93,10 +119,15 @@ std::vector<std::string> solid_measure_names(int dim, bool deforms,
         names.push_back(fmt::format("{}.{}.{}", field, axes[static_cast<std::size_t>(i)], what));
     }
   }
-  for (int k = 0; k < stress_count(dim) && deforms; ++k)
-    names.push_back(
-        fmt::format("stress.{}.mean", stress_entries[static_cast<std::size_t>(k)].name));
+  const std::size_t entries = deforms ? stress_count(dim) : 0;
+  for (std::size_t k = 0; k < entries; ++k)
+    names.push_back(fmt::format("stress.{}.mean", stress_names[k]));
   if (deforms) names.insert(names.end(), {"von_mises.mean", "von_mises.max"});
+  for (std::size_t k = 0; k < entries; ++k) {
+    for (const char* what : {"min", "max"})
+      names.push_back(fmt::format("nodal_stress.{}.{}", stress_names[k], what));
+  }
+  if (deforms) names.emplace_back("nodal_von_mises.max");
   names.insert(names.end(),
                {"energy.kinetic", "energy.stored", "energy.dissipated", "energy.external_work"});
   for (int i = 0; i < dim; ++i)
@@ -109,6 +140,9 @@ std::vector<std::string> solid_measure_names(int dim, bool deforms,
         names.push_back(
             fmt::format("{}.{}.{}", port.name, field, axes[static_cast<std::size_t>(i)]));
     }
+    for (std::size_t k = 0; k < entries; ++k)
+      names.push_back(fmt::format("{}.stress.{}", port.name, stress_names[k]));
+    if (deforms) names.push_back(fmt::format("{}.von_mises", port.name));
   }
   return names;
 }
@@ -132,7 +166,12 @@ std::vector<double> solid_measures(FeModel& model, const SolidState& state,
   model.to_space(u);
   summarise(u, dim, out);
   summarise(v, dim, out);
-  if (state.deforms) add_stress(model, state, out);
+  std::vector<StressEntries> nodes;
+  if (state.deforms) {
+    nodes = nodal_stress(model, state.q, state.history);
+    add_stress(model, state, out);
+    add_nodal_stress(dim, nodes, out);
+  }
   out.insert(out.end(), {energy.kinetic, energy.stored, energy.dissipated, energy.external_work});
   for (int i = 0; i < dim; ++i)
     out.push_back(state.nodal_momentum(Eigen::seqN(i, model.mesh().node_count(), dim)).sum());
@@ -147,6 +186,7 @@ std::vector<double> solid_measures(FeModel& model, const SolidState& state,
         out.push_back(total / static_cast<double>(port.nodes.size()));
       }
     }
+    if (state.deforms) add_stress_at(port, dim, nodes, out);
   }
   return out;
 }

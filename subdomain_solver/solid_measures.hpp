@@ -16,9 +16,9 @@ struct NamedNodes {
 };
 
 /// Names of what a solid tells of its state, in the order of solid_measures: displacement.x.min,
-/// velocity.y.mean, stress.xx.mean, von_mises.max, energy.stored, angular_momentum.z, and of every
-/// port its mean displacement and velocity, tip.displacement.x (docs/OUTPUT.md). Without stress
-/// where the body cannot deform.
+/// velocity.y.mean, stress.xx.mean, von_mises.max, nodal_stress.xx.max, energy.stored,
+/// angular_momentum.z, and of every port its mean displacement, velocity and stress,
+/// tip.displacement.x (docs/OUTPUT.md). Without stress where the body cannot deform.
 std::vector<std::string> solid_measure_names(int dim, bool deforms,
                                              const std::vector<NamedNodes>& ports);
 
@@ -32,9 +32,9 @@ struct SolidState {
   Vector nodal_momentum;  // [kg m/s] (nodes, dim)
 };
 
-/// Their values. Means are over nodes (displacement, velocity) and over quadrature points (Cauchy
-/// stress [Pa]); angular momentum is about the origin of space [kg m^2/s]. Not a number where the
-/// state is inadmissible.
+/// Their values. Means are over nodes (displacement, velocity; of ports also stress) and over the
+/// reference volume (Cauchy stress [Pa]); angular momentum is about the origin of space
+/// [kg m^2/s]. Not a number where the state is inadmissible.
 std::vector<double> solid_measures(FeModel& model, const SolidState& state,
                                    const std::vector<NamedNodes>& ports);
 

@@ -79,6 +79,7 @@ std::string CsvHistory::header() const {
         add_body_names(text, recorded);
         add_balance_names(text, recorded);
       }
+    for (const std::string& column : body.columns) text += fmt::format(",{}.{}", body.name, column);
   }
   for (const InterfaceColumn& interface : interfaces_) {
     if (interface.has_gap) text += fmt::format(",{}.gap [m]", interface.info.name);
@@ -124,6 +125,9 @@ void CsvHistory::write_row(const WindowReport& report, std::size_t record) {
     }
     for (const RecordedBody& recorded : recorded_)
       if (recorded.body == static_cast<int>(b)) write_body(recorded, response.records[record]);
+    const std::vector<double>& told = response.records[record].columns;
+    for (std::size_t k = 0; k < start_.bodies[b]->columns.size(); ++k)
+      number(k < told.size() ? told[k] : nothing);
   }
   for (std::size_t i = 0; i < interfaces_.size(); ++i) {
     const InterfaceColumn& column = interfaces_[i];

@@ -88,6 +88,7 @@ Json bodies_array(const RunStart& start) {
                   {"mass", number(body->mass)},
                   {"step", number(body->step)}};
     if (std::isinf(body->mass)) entry["immovable"] = true;
+    for (const double hertz : body->frequencies) entry["frequencies_hz"].push_back(number(hertz));
     for (const Member& member : body->members)
       entry["members"].push_back({{"name", member.name}, {"mass", number(member.mass)}});
     array.push_back(entry);

@@ -64,6 +64,8 @@ class FeModel final : public Model {
   Vector cell_mass(int block, int cell) const;
   /// Its reference geometry, as that of one cell.
   CellMeasures cell_measures(int block, int cell) const;
+  /// The rule at which a block's cells are integrated.
+  const Tabulation& rule(int block) const { return blocks_[static_cast<std::size_t>(block)].table; }
   /// Null: forces are found cell by cell.
   BatchedCells* batched() { return batched_.get(); }
 

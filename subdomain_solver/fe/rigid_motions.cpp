@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <Eigen/QR>
 #include <Eigen/SVD>
 
 namespace abut {
@@ -114,6 +115,15 @@ std::optional<LoosePiece> find_loose_piece(const FeModel& model, const std::vect
       return LoosePiece{static_cast<int>(k), static_cast<int>(pieces.size()), count - rank};
   }
   return std::nullopt;
+}
+
+std::vector<int> determining_rows(const Eigen::MatrixXd& motions, Eigen::Index rank) {
+  if (rank == 0) return {};
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(motions.transpose());
+  const Eigen::VectorXi& order = qr.colsPermutation().indices();
+  std::vector<int> out(order.data(), order.data() + rank);
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 }  // namespace abut

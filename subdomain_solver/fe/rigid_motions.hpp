@@ -28,4 +28,7 @@ struct LoosePiece {
 /// The first one; held: sorted coordinates.
 std::optional<LoosePiece> find_loose_piece(const FeModel& model, const std::vector<int>& held);
 
+/// Rows of motions (n, k), as many as their rank, that determine the others best; sorted.
+std::vector<int> determining_rows(const Eigen::MatrixXd& motions, Eigen::Index rank);
+
 }  // namespace abut

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
@@ -42,16 +41,6 @@ std::vector<int> others(int count, const std::vector<int>& list) {
   for (int i = 0; i < count; ++i) {
     if (!std::binary_search(list.begin(), list.end(), i)) out.push_back(i);
   }
-  return out;
-}
-
-/// Rows of x (n, k), as many as its rank, that determine the others best; sorted.
-std::vector<int> determining_rows(const Columns& x, Eigen::Index rank) {
-  if (rank == 0) return {};
-  const Eigen::ColPivHouseholderQR<Columns> qr(x.transpose());
-  const Eigen::VectorXi& order = qr.colsPermutation().indices();
-  std::vector<int> out(order.data(), order.data() + rank);
-  std::sort(out.begin(), out.end());
   return out;
 }
 

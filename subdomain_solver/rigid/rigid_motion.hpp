@@ -2,6 +2,7 @@
 
 #include "subdomain_solver/rigid/rigid_model.hpp"
 #include "subdomain_solver/time/integrator.hpp"
+#include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
 
@@ -14,6 +15,9 @@ class RigidMotion final : public Integrator {
   RigidMotion(const Problem& problem, const RigidModel& body) : problem_(problem), body_(body) {}
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
+  Vector acceleration(const Motion& motion, double, double) const override {
+    return view(motion.a);
+  }
   double kinetic(const Motion& motion) const override { return body_.kinetic(motion.q, motion.v); }
 
  private:

@@ -126,6 +126,13 @@ void ExplicitDynamics::jump(Motion& motion, const Vector& change) {
   view(motion.a) += inverse_mass_.cwiseProduct(change);
 }
 
+/// Steps keep none of prescribed coordinates: they move from value to value.
+Vector ExplicitDynamics::acceleration(const Motion& motion, double time, double step) const {
+  Vector a = view(motion.a);
+  problem_.set_accelerations(time, step, a);
+  return a;
+}
+
 double ExplicitDynamics::kinetic(const Motion& motion) const {
   const auto v = view(motion.v);
   return 0.5 * v.dot(problem_.model->lumped_mass().cwiseProduct(v));

@@ -121,7 +121,7 @@ ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& option
 Vector ImplicitDynamics::times_mass(const Vector& x) const { return mass_ * x; }
 
 /// Adds the solution of M a = f on the free coordinates.
-bool ImplicitDynamics::solve_mass(const Vector& force, std::vector<double>& acceleration) {
+bool ImplicitDynamics::solve_mass(const Vector& force, Vector& acceleration) const {
   if (!mass_solver_) {
     SparseMatrix free_mass;
     FreeCoordinates(problem_.model->dofs(), problem_.supports).extract(mass_, free_mass);
@@ -130,31 +130,48 @@ bool ImplicitDynamics::solve_mass(const Vector& force, std::vector<double>& acce
   }
   Vector a;
   if (!mass_solver_->solve(free_.pick(force), a)) return false;
-  Vector all = view(acceleration);
-  free_.add(a, all);
-  store(all, acceleration);
+  free_.add(a, acceleration);
   return true;
 }
 
 void ImplicitDynamics::jump(Motion& motion, const Vector& change) {
-  const bool solved = solve_mass(change, motion.a);
+  Vector a = view(motion.a);
+  const bool solved = solve_mass(change, a);
   ABUT_ASSERT(solved);  // as at the begin
+  store(a, motion.a);
 }
 
-/// Accelerations from the balance at the begin: M a = f - r on the free coordinates.
+/// Newmark's are those of the balance at every step's end. With other weights they lag: the balance
+/// is solved for them.
+Vector ImplicitDynamics::acceleration(const Motion& motion, double time, double step) const {
+  if (options_.weights.is_newmark()) return view(motion.a);
+  Vector a = Vector::Zero(static_cast<Eigen::Index>(motion.q.size()));
+  problem_.set_accelerations(time, step, a);
+  const Vector rest = problem_.external_force(time, motion.q) - view(motion.force) - times_mass(a);
+  const bool solved = solve_mass(rest, a);
+  ABUT_ASSERT(solved);  // as at the begin
+  return a;
+}
+
+/// Accelerations from the balance at the begin: M a = f - r on the free coordinates. Those of
+/// prescribed ones are the motion's own; none are given: zero.
 std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
   Model& model = *problem_.model;
   ModelResponse response;
   motion.history.resize(model.history_size(), 0.0);
-  motion.a.assign(motion.q.size(), 0.0);
-  for (const Prescribed& p : problem_.supports)
+  motion.a.resize(motion.q.size(), 0.0);
+  Vector a = Vector::Zero(model.dofs());
+  for (const Prescribed& p : problem_.supports) {
     motion.q[static_cast<std::size_t>(p.dof)] = p.value(time);
+    a(p.dof) = motion.a[static_cast<std::size_t>(p.dof)];
+  }
   if (!model.evaluate(motion.q, motion.history, Model::Want::force, response))
     return failed_newton({NewtonReport::End::inadmissible}, time);
-  const Vector r = problem_.external_force(time, motion.q) - response.force;
+  const Vector r = problem_.external_force(time, motion.q) - response.force - times_mass(a);
   if (!r.allFinite()) return not_finite(time);
-  if (!solve_mass(r, motion.a))
+  if (!solve_mass(r, a))
     return Failed{Failed::Cause::no_convergence, time, "the mass matrix is singular"};
+  store(a, motion.a);
   store(response.force, motion.force);
   motion.stored = response.stored;
   return std::nullopt;

@@ -25,22 +25,23 @@ class ImplicitDynamics final : public Integrator {
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
   void jump(Motion& motion, const Vector& change) override;
+  Vector acceleration(const Motion& motion, double time, double step) const override;
   double kinetic(const Motion& motion) const override;
 
  private:
   class Balance;
 
   Vector times_mass(const Vector& x) const;
-  [[nodiscard]] bool solve_mass(const Vector& force, std::vector<double>& acceleration);
+  [[nodiscard]] bool solve_mass(const Vector& force, Vector& acceleration) const;
 
   const Problem& problem_;
   Options options_;
   std::unique_ptr<LinearSolver> solver_;
   FreeCoordinates free_;
   SparseMatrix mass_;
-  SparseMatrix matrix_;    // of the free coordinates
+  SparseMatrix matrix_;  // of the free coordinates
   double factored_dt_ = 0.0;
-  std::unique_ptr<LinearSolver> mass_solver_;  // of the free coordinates; made when first needed
+  mutable std::unique_ptr<LinearSolver> mass_solver_;  // of the free coordinates, when needed
 };
 
 }  // namespace abut

@@ -20,6 +20,9 @@ class Integrator {
   /// A load sets in or ends at the present time and changes the force by this much [N] (dofs):
   /// accelerations follow at once. Schemes that keep none have nothing to do.
   virtual void jump(Motion&, const Vector&) {}
+  /// [m/s^2] (dofs) at a time of the motion, prescribed coordinates included, as the balance of
+  /// forces at this time has them; step [s]: of the scheme.
+  virtual Vector acceleration(const Motion& motion, double time, double step) const = 0;
   /// [J] in the form that the scheme conserves where it conserves one.
   virtual double kinetic(const Motion& motion) const = 0;
   double stored(const Motion& motion) const { return motion.stored; }

@@ -10,9 +10,21 @@ Vector Problem::external_force(double time, std::span<const double> q) const {
 
 void Problem::set_rates(double time, double step, Motion& motion) const {
   const double h = 1.0e-3 * step;
+  motion.a.resize(motion.q.size(), 0.0);
   for (const Prescribed& p : supports) {
     const double at = p.value(time), next = p.value(time + h), last = p.value(time + 2.0 * h);
     motion.v[static_cast<std::size_t>(p.dof)] = (4.0 * (next - at) - (last - at)) / (2.0 * h);
+    const double one = p.value(time + step) - at, two = p.value(time + 2.0 * step) - at,
+                 three = p.value(time + 3.0 * step) - at;
+    motion.a[static_cast<std::size_t>(p.dof)] = (4.0 * two - 5.0 * one - three) / (step * step);
+  }
+}
+
+void Problem::set_accelerations(double time, double step, Vector& acceleration) const {
+  for (const Prescribed& p : supports) {
+    const double at = p.value(time);
+    acceleration(p.dof) =
+        ((p.value(time + step) - at) - (at - p.value(time - step))) / (step * step);
   }
 }
 

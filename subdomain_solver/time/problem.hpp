@@ -33,9 +33,13 @@ struct Problem {
   std::vector<std::unique_ptr<Load>> loads;
 
   Vector external_force(double time, std::span<const double> q) const;
-  /// Velocities of prescribed coordinates at the start, by differences of second order over
-  /// thousandths of a step [s]: others would make an implicit scheme ring.
+  /// Velocities and accelerations of prescribed coordinates at the start, by differences of second
+  /// order over thousandths of a step [s] and over steps: others would make an implicit scheme
+  /// ring.
   void set_rates(double time, double step, Motion& motion) const;
+  /// Accelerations of prescribed coordinates by differences over a step [s] to both sides of the
+  /// time: those of central differences.
+  void set_accelerations(double time, double step, Vector& acceleration) const;
 };
 
 /// Free and prescribed coordinates, and the rows and columns of a matrix that belong to free ones.

@@ -20,6 +20,9 @@ class QuasiStatic final : public Integrator {
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
+  Vector acceleration(const Motion& motion, double, double) const override {
+    return Vector::Zero(static_cast<Eigen::Index>(motion.q.size()));
+  }
   double kinetic(const Motion&) const override { return 0.0; }
 
  private:

@@ -65,6 +65,8 @@ Description two_ports() {
   body.members = {{"front", 1.5, {0}}, {"rear", 2.5, {1}}};
   body.measures = {"displacement.x.max", "energy.stored"};
   body.fields.push_back({"stress", FieldPlace::cells, 6});
+  body.columns = {"clamp.reaction [N]"};
+  body.frequencies = {0.0, 12.5};
   return body;
 }
 
@@ -82,6 +84,7 @@ Response full_response() {
   response.records.push_back(BodyRecord{0.25, Energy{1.0, 2.0, 3.0, 4.0}, {5.0}});
   response.records[0].members = {{Energy{0.1, 0.2, 0.3, 0.4}, {0.5}},
                                  {Energy{1.1, 1.2, 1.3, 1.4}, {1.5}}};
+  response.records[0].columns = {-7.5};
   response.steps = 100;
   response.compute_seconds = 0.125;
   return response;
@@ -246,6 +249,8 @@ TEST(Codec, DescriptionKeepsEveryFieldAndInfinity) {
   EXPECT_TRUE(got.can.force && got.can.impulse && got.can.kernel && got.can.complete);
   EXPECT_FALSE(got.can.motion || got.can.obstacle);
   EXPECT_EQ(got.measures, (std::vector<std::string>{"displacement.x.max", "energy.stored"}));
+  EXPECT_EQ(got.columns, std::vector<std::string>{"clamp.reaction [N]"});
+  EXPECT_EQ(got.frequencies, (std::vector<double>{0.0, 12.5}));
   ASSERT_EQ(got.fields.size(), 2U);
   EXPECT_EQ(got.fields[0].name, "displacement");
   EXPECT_EQ(got.fields[0].place, FieldPlace::nodes);

@@ -100,6 +100,8 @@ class HandMadeRun {
   Description bodies[2];
   RunStart start;
   Field u, v, f, kinetic, stored, momentum;
+  Field dissipated = [](int, double) { return 0.0; };
+  Field told = [](int, double time) { return time; };  // in every column of the body's own
   ForceSupport support = ForceSupport::step;
   int substeps = 2;   // in a window
   int kinematic = 0;  // side
@@ -130,7 +132,9 @@ class HandMadeRun {
     record.time = end;
     record.energy.kinetic = kinetic(side, end);
     record.energy.stored = stored(side, end);
+    record.energy.dissipated = dissipated(side, end);
     record.momentum = {momentum(side, end)};
+    record.columns.assign(bodies[side].columns.size(), told(side, end));
     responses[side].records = {record};
   }
 };

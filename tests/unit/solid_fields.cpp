@@ -157,8 +157,9 @@ TEST(SolidFields, HomogeneousStressIsThatOfTheLawInEveryCellOfEveryElement) {
     std::vector<double> v = u;
     for (double& value : v) value *= 3.0;
     std::map<std::string, FieldValues> fields = told(model, u, v);
-    EXPECT_EQ(fields.size(), 4U);
+    EXPECT_EQ(fields.size(), 6U);
     expect_stress(fields["stress"], fields["von_mises"], exact);
+    expect_stress(fields["nodal_stress"], fields["nodal_von_mises"], exact);
     const std::size_t dim = static_cast<std::size_t>(model.mesh().dim);
     for (std::size_t k = 0; k < fields["displacement"].size(); ++k) {
       const bool there = k % 3 < dim;
@@ -237,7 +238,8 @@ TEST(SolidFields, AnInadmissibleStateHasNoStressButAPlace) {
   const std::vector<double> u = homogeneous(mesh, f);
   FeModel model(std::move(mesh), std::make_unique<NeoHookean>(test_moduli, 1.0), {});
   std::map<std::string, FieldValues> fields = told(model, u, u);
-  for (const double value : fields["stress"]) EXPECT_TRUE(std::isnan(value));
+  for (const char* name : {"stress", "nodal_stress", "nodal_von_mises"})
+    for (const double value : fields[name]) EXPECT_TRUE(std::isnan(value)) << name;
   for (const double value : fields["displacement"]) EXPECT_TRUE(std::isfinite(value));
 }
 

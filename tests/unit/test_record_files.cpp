@@ -96,6 +96,23 @@ TEST_F(RecordFiles, HistoryHasUnitsInItsHeaderAndOneRowPerRecord) {
   EXPECT_FALSE(std::filesystem::exists(directory_ / "closed_form.csv"));
 }
 
+TEST_F(RecordFiles, HistoryHasTheColumnsThatABodyTellsAfterItsOwn) {
+  HandMadeRun run;
+  run.bodies[0].columns = {"clamp.reaction [N]", "wall.reaction [N]"};
+  run.told = [](int, double time) { return 7.0 * time; };
+  CsvHistory history(directory_, nullptr);
+  run.play(history);
+  const std::vector<std::vector<std::string>> rows = table("history.csv");
+  EXPECT_EQ(rows[0][10], "left.external_work [J]");
+  EXPECT_EQ(rows[0][11], "left.clamp.reaction [N]");
+  EXPECT_EQ(rows[0][12], "left.wall.reaction [N]");
+  EXPECT_EQ(rows[0][13], "right.tip.u [m]");
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    EXPECT_EQ(rows[r].size(), rows[0].size());
+    EXPECT_EQ(std::stod(rows[r][12]), 7.0 * std::stod(rows[r][0]));
+  }
+}
+
 TEST_F(RecordFiles, HistoryNumbersReadBackExactly) {
   HandMadeRun run;
   run.u = [](int side, double time) { return (side + 1) / 3.0 * time; };
@@ -202,6 +219,19 @@ TEST_F(RecordFiles, SummaryHoldsMeasuresTimingHashAndClosedForm) {
   EXPECT_EQ(json["expectations"][0]["pass"], true);
   EXPECT_EQ(json["expectations"][0]["expected"], "at most 2");
   EXPECT_FALSE(std::filesystem::exists(directory_ / "summary.json.tmp"));
+}
+
+TEST_F(RecordFiles, SummaryHoldsTheFrequenciesOfBodiesThatMoveInModes) {
+  HandMadeRun run;
+  run.bodies[1].frequencies = {0.0, 12.5, 1.0 / 3.0};
+  MeasureRecorder recorder(nullptr);
+  Summary summary_file(directory_, {"", {}, {}}, recorder, nullptr);
+  run.play(recorder);
+  run.index = 0;
+  run.play(summary_file);
+  const nlohmann::json bodies = summary()["bodies"];
+  EXPECT_FALSE(bodies[0].contains("frequencies_hz"));
+  EXPECT_EQ(bodies[1]["frequencies_hz"].get<std::vector<double>>(), run.bodies[1].frequencies);
 }
 
 TEST_F(RecordFiles, SummaryTurnsMissingValuesIntoNullsWithNotes) {

@@ -1,0 +1,94 @@
+#include "subdomain_solver/modal/modal_reactions.hpp"
+
+#include <utility>
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "subdomain_solver/fe/rigid_motions.hpp"
+#include "subdomain_solver/time/motion_views.hpp"
+
+namespace abut {
+
+namespace {
+
+/// The supports, and as many more coordinates as they leave rigid motions: what is in balance does
+/// not pull at these.
+FreeCoordinates holding(const FeModel& mesh, std::vector<int> supports) {
+  const Eigen::MatrixXd loose = vanishing_on(supports, rigid_motions(mesh));
+  const std::vector<int> more = determining_rows(loose, loose.cols());
+  supports.insert(supports.end(), more.begin(), more.end());
+  std::vector<Prescribed> all;
+  for (const int dof : supports) all.push_back({dof, {}});
+  return {mesh.dofs(), all};
+}
+
+}  // namespace
+
+ModalReactions::ModalReactions(Body body, const std::vector<int>& supports,
+                               const std::vector<HeldCoordinates>& constraints,
+                               const std::string& where)
+    : body_(std::move(body)),
+      supports_(supports),
+      held_(holding(body_.mesh, supports)),
+      solver_(make_direct_solver()) {
+  const std::vector<double> zero(static_cast<std::size_t>(body_.mesh.dofs()), 0.0);
+  ModelResponse rest;
+  const bool admissible = body_.mesh.evaluate(zero, {}, Model::Want::tangent, rest);
+  ABUT_ASSERT(admissible);
+  stiffness_ = std::move(rest.tangent);
+  SparseMatrix inner;
+  held_.extract(stiffness_, inner);
+  if (held_.count() > 0 && !solver_->factor(inner)) {
+    throw InputError(
+        "has reactions without an answer: its stiffness is singular beyond rigid motions", where,
+        "Join the parts of the mesh, or hold each of them.");
+  }
+  const int dim = body_.mesh.mesh().dim;
+  shapes_.resize(body_.mesh.dofs(), static_cast<Eigen::Index>(constraints.size()) * dim);
+  Eigen::Index column = 0;
+  for (const HeldCoordinates& constraint : constraints) {
+    for (int i = 0; i < dim; ++i, ++column) {
+      Vector unit = Vector::Zero(body_.mesh.dofs());
+      for (const int dof : constraint.dofs) unit(dof) = direction_of(body_.mesh, dof)(i);
+      shapes_.col(column) = unit - at_rest(stiffness_ * unit);
+    }
+  }
+}
+
+/// Displacements of the mesh under forces, supports at rest [m] (dofs).
+Vector ModalReactions::at_rest(const Vector& force) const {
+  Vector u = Vector::Zero(force.size());
+  if (held_.count() == 0) return u;
+  Vector free;
+  const bool solved = solver_->solve(held_.pick(force), free);
+  ABUT_ASSERT(solved);  // it has been factored
+  held_.add(free, u);
+  return u;
+}
+
+/// What the stiffness carries to the supports: loads less inertia [N] (dofs).
+Vector ModalReactions::carried(const Motion& motion, double time, const Vector& on_ports) const {
+  Vector force = on_ports;
+  for (const std::unique_ptr<Load>& load : body_.loads) load->add(time, {}, force);
+  const Vector rates = body_.integrator.acceleration(motion, time, body_.step);
+  std::vector<double> acceleration(static_cast<std::size_t>(force.size()));
+  body_.map.acceleration(motion.q, motion.v, span_of(rates), acceleration);
+  return force - body_.mass * view(acceleration);
+}
+
+Vector ModalReactions::forces(const Motion& motion, double time, const Vector& on_ports) const {
+  const Vector force = carried(motion, time, on_ports);
+  const Vector whole = stiffness_ * at_rest(force) - force;
+  Vector forces = Vector::Zero(force.size());
+  for (const int dof : supports_) forces(dof) = whole(dof);
+  return forces;
+}
+
+/// By Betti's theorem: no solve, for records in every window.
+std::vector<double> ModalReactions::sums(const Motion& motion, double time,
+                                         const Vector& on_ports) const {
+  const Vector sums = -(shapes_.transpose() * carried(motion, time, on_ports));
+  return {sums.data(), sums.data() + sums.size()};
+}
+
+}  // namespace abut

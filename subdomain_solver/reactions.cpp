@@ -1,0 +1,95 @@
+#include "subdomain_solver/reactions.hpp"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace abut {
+
+namespace {
+
+constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
+
+std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+Eigen::Vector3d direction_of(const FeModel& model, int dof) {
+  const int dim = model.mesh().dim;
+  const Matrix3* frame = model.frame(dof / dim);
+  if (frame == nullptr) return Eigen::Vector3d::Unit(dof % dim);
+  return frame->col(dof % dim);
+}
+
+NodalReactions::NodalReactions(const FeModel& model, const Problem& problem,
+                               const Integrator& integrator, const SparseMatrix& mass, double step,
+                               std::vector<HeldCoordinates> constraints)
+    : model_(model),
+      problem_(problem),
+      integrator_(integrator),
+      step_(step),
+      constraints_(std::move(constraints)) {
+  const int supports = static_cast<int>(problem.supports.size());
+  SparseMatrix columns(mass.cols(), supports);  // those of the symmetric matrix that are held
+  for (int k = 0; k < supports; ++k) columns.col(k) = mass.col(problem.supports[index(k)].dof);
+  mass_ = columns.transpose();
+}
+
+/// Forces on ports are among the problem's loads.
+Vector NodalReactions::forces(const Motion& motion, double time, const Vector&) const {
+  const Vector external = problem_.external_force(time, motion.q);
+  const Vector inertia = mass_ * integrator_.acceleration(motion, time, step_);
+  Vector forces = Vector::Zero(external.size());
+  int k = 0;
+  for (const Prescribed& p : problem_.supports)
+    forces(p.dof) = inertia(k++) + motion.force[index(p.dof)] - external(p.dof);
+  return forces;
+}
+
+std::vector<double> NodalReactions::sums(const Motion& motion, double time,
+                                         const Vector& on_ports) const {
+  const Vector forces = this->forces(motion, time, on_ports);
+  std::vector<double> sums;
+  for (const HeldCoordinates& constraint : constraints_) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const int dof : constraint.dofs) sum += forces(dof) * direction_of(model_, dof);
+    sums.insert(sums.end(), sum.data(), sum.data() + model_.mesh().dim);
+  }
+  return sums;
+}
+
+std::vector<std::string> reaction_columns(int dim,
+                                          const std::vector<HeldCoordinates>& constraints) {
+  std::vector<std::string> names;
+  for (const HeldCoordinates& constraint : constraints) {
+    for (int i = 0; i < dim; ++i) {
+      const std::string ending = dim == 1 ? "" : fmt::format("_{}", axes[index(i)]);
+      names.push_back(fmt::format("{}.reaction{} [N]", constraint.name, ending));
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> reaction_measure_names(int dim,
+                                                const std::vector<HeldCoordinates>& constraints) {
+  std::vector<std::string> names;
+  if (constraints.empty()) return names;
+  for (const HeldCoordinates& constraint : constraints) {
+    for (int i = 0; i < dim; ++i)
+      names.push_back(fmt::format("{}.reaction.{}", constraint.name, axes[index(i)]));
+  }
+  for (int i = 0; i < dim; ++i) names.push_back(fmt::format("reaction.{}", axes[index(i)]));
+  return names;
+}
+
+std::vector<double> reaction_measures(int dim, const std::vector<double>& sums) {
+  std::vector<double> values = sums;
+  if (sums.empty()) return values;
+  std::vector<double> total(index(dim), 0.0);
+  for (std::size_t k = 0; k < sums.size(); ++k) total[k % index(dim)] += sums[k];
+  values.insert(values.end(), total.begin(), total.end());
+  return values;
+}
+
+}  // namespace abut
