@@ -19,7 +19,10 @@ double scale_of(double begin, double peak) {
   return peak > 0.0 ? peak : 1.0;
 }
 
-double own_energy(const Energy& energy) { return energy.total() - energy.external_work; }
+/// [J] that a body has or has turned into heat.
+double held_energy(const Energy& energy) { return energy.total() + energy.dissipated; }
+/// Without what was done on it: stays, whatever loads and material do.
+double own_energy(const Energy& energy) { return held_energy(energy) - energy.external_work; }
 
 /// About the axes of space; zero where a body tells none.
 std::array<double, 3> angular_momentum(const BodyRecord& record) {
@@ -92,7 +95,7 @@ void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
     const double expected = body.bar >= 0 ? exact_->row.total(body.bar, now.time) : body.first;
     const double held = body.bar >= 0 ? energy.total() : own_energy(energy);
     body.error = held - expected;
-    body.peak = std::max(body.peak, std::abs(energy.total()));
+    body.peak = std::max(body.peak, std::abs(held_energy(energy)));
     body.error_max = std::max(body.error_max, std::abs(body.error));
     double square = 0.0;
     for (std::size_t k = 0; k < momentum.size(); ++k) {
@@ -105,7 +108,8 @@ void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
   const double total = total_energy(report, record);
   drift_ = total - total_first_;
   double held = 0.0;
-  for (const Response& response : report.responses) held += response.records[record].energy.total();
+  for (const Response& response : report.responses)
+    held += held_energy(response.records[record].energy);
   total_peak_ = std::max(total_peak_, std::abs(held));
   drift_max_ = std::max(drift_max_, std::abs(drift_));
   double square = 0.0;

@@ -25,9 +25,9 @@ class BalanceMeasures {
  private:
   using Vector = std::array<double, 3>;
   struct Body {
-    double first = 0.0;                   // [J] energy minus external work
-    double reference = 0.0;               // [J] that the error is relative to
-    double peak = 0.0;                    // [J] largest kinetic plus stored energy at a record
+    double first = 0.0;      // [J] energy, dissipated too, minus external work
+    double reference = 0.0;  // [J] that the error is relative to
+    double peak = 0.0;       // [J] largest kinetic plus stored plus dissipated energy at a record
     double error = 0.0, error_max = 0.0;  // [J]
     Vector momentum{};                    // [kg m/s]
     double momentum_max = 0.0;

@@ -13,6 +13,11 @@ namespace {
 /// A part solved in fewer iterations may be followed by one of twice its length.
 constexpr int few_iterations = 5;
 
+/// Of a step's work, in parts of its largest force times its way; and halvings of the step in which
+/// a kink of the force, where material begins to yield, is closed in on.
+constexpr double work_accuracy = 1.0e-6;
+constexpr int most_bisections = 12;
+
 }  // namespace
 
 /// Balance of forces at a time, with the free coordinates as unknowns.
@@ -71,14 +76,17 @@ class QuasiStatic::Balance final : public Equations {
     return 4.0 * std::numeric_limits<double>::epsilon() * x.lpNorm<Eigen::Infinity>();
   }
 
-  void finish(Motion& motion) const {
-    const Vector now = response.force, before = view(motion.force);
-    motion.external_work += 0.5 * (now + before).dot(q_ - view(motion.q));
+  /// False: the work of the step has no value.
+  [[nodiscard]] bool finish(Motion& motion) {
+    double work = 0.0;
+    if (!work_of_step(work)) return false;
+    motion.external_work += work;
     motion.dissipated += response.dissipation;
     motion.stored = response.stored;
     motion.history = response.history;
     store(q_, motion.q);
     store(response.force, motion.force);
+    return true;
   }
 
   ModelResponse response;
@@ -90,10 +98,63 @@ class QuasiStatic::Balance final : public Equations {
     return o_.factored_;
   }
 
+  /// [J] that loads and supports do in the step: the integral [M.70] of the internal force along
+  /// the straight way. False: an element is inverted on it.
+  [[nodiscard]] bool work_of_step(double& work) {
+    moved_ = q_ - view(motion_.q);
+    const Part whole{0.0, 1.0, view(motion_.force).dot(moved_), response.force.dot(moved_)};
+    work = 0.5 * (whole.at_begin + whole.at_end);
+    if (o_.problem_.model->is_linear()) return true;
+    work = 0.0;
+    double middle = 0.0;
+    if (!power(0.5, middle)) return false;
+    const double scale =
+        std::max({std::abs(whole.at_begin), std::abs(middle), std::abs(whole.at_end)});
+    return add_work(whole, middle, work_accuracy * scale, most_bisections, work);
+  }
+
+  struct Part {  // of the way, from 0 to 1
+    double begin, end;
+    double at_begin, at_end;  // [J] force times the whole way
+    double simpson(double middle) const {
+      return (end - begin) / 6.0 * (at_begin + 4.0 * middle + at_end);
+    }
+  };
+
+  /// Simpson's rule on a part and on its halves, until they agree (G. F. Kuncir, 1962).
+  [[nodiscard]] bool add_work(const Part& part, double middle, double accuracy, int bisections,
+                              double& work) {
+    const double centre = 0.5 * (part.begin + part.end);
+    const Part first{part.begin, centre, part.at_begin, middle},
+        second{centre, part.end, middle, part.at_end};
+    double in_first = 0.0, in_second = 0.0;
+    if (!power(0.5 * (part.begin + centre), in_first)) return false;
+    if (!power(0.5 * (centre + part.end), in_second)) return false;
+    const double halves = first.simpson(in_first) + second.simpson(in_second);
+    const double change = halves - part.simpson(middle);
+    if (std::abs(change) <= accuracy || bisections == 0) {
+      work += halves + change / 15.0;
+      return true;
+    }
+    return add_work(first, in_first, accuracy, bisections - 1, work) &&
+           add_work(second, in_second, accuracy, bisections - 1, work);
+  }
+
+  /// [J] internal force at a part of the way, times the whole way.
+  [[nodiscard]] bool power(double part, double& value) {
+    const Vector q = view(motion_.q) + part * moved_;
+    if (!o_.problem_.model->evaluate(span_of(q), motion_.history, Model::Want::force, between_))
+      return false;
+    value = between_.force.dot(moved_);
+    return true;
+  }
+
   QuasiStatic& o_;
   const Motion& motion_;
   double time_;
   Vector q_;
+  Vector moved_;           // of the step
+  ModelResponse between_;  // on its way
 };
 
 QuasiStatic::QuasiStatic(const Problem& problem, const Options& options,
@@ -119,7 +180,7 @@ NewtonReport QuasiStatic::part(Motion& motion, double end) {
   if (!balance.drag(x)) return {NewtonReport::End::singular};
   const NewtonReport report = solve_newton(balance, x, options_.newton);
   iterations_ += report.iterations;
-  if (report.converged()) balance.finish(motion);
+  if (report.converged() && !balance.finish(motion)) return {NewtonReport::End::inadmissible};
   return report;
 }
 

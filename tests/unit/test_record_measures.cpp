@@ -214,6 +214,21 @@ TEST(Measures, EnergyDriftKeepsItsSignAtTheEnd) {
   EXPECT_NEAR(measure(recorder, "energy.left.relative_error_end"), -0.1 / 0.75, roundoff);
 }
 
+TEST(Measures, EnergyThatBecameHeatIsNoDrift) {
+  HandMadeRun run;
+  MeasureRecorder recorder(nullptr);
+  // 0.2 J of 1 J become heat, and 0.01 J are lost.
+  run.kinetic = [](int side, double) { return side == 0 ? 0.5 : 0.25; };
+  run.stored = [](int side, double time) { return side == 0 && time > 1.0 ? 0.04 : 0.25; };
+  run.dissipated = [](int side, double time) { return side == 0 && time > 1.0 ? 0.2 : 0.0; };
+  run.play(recorder);
+  EXPECT_NEAR(measure(recorder, "energy.total.begin"), 1.25, roundoff);
+  EXPECT_NEAR(measure(recorder, "energy.total.relative_drift_max"), 0.01 / 1.25, roundoff);
+  EXPECT_NEAR(measure(recorder, "energy.total.relative_drift_end"), -0.01 / 1.25, roundoff);
+  EXPECT_NEAR(measure(recorder, "energy.left.relative_error_end"), -0.01 / 0.75, roundoff);
+  EXPECT_NEAR(measure(recorder, "energy.right.relative_error_max"), 0.0, roundoff);
+}
+
 TEST(Measures, EnergyErrorOfARunThatBeginsWithNoneIsRelativeToTheLargest) {
   for (const double begin : {0.0, 1.0e-20}) {  // none, and the round-off of none
     HandMadeRun run;
