@@ -1,5 +1,6 @@
 #include "subdomain_solver/nodal_stress.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include <Eigen/Cholesky>
@@ -58,14 +59,15 @@ MatrixXd extrapolation(const Element& element, const Tabulation& rule, int point
   return at_nodes * (weighted * at_points).ldlt().solve(weighted);
 }
 
-std::vector<StressEntries> nodal_stress(FeModel& model, std::span<const double> q,
-                                        std::span<const double> history) {
+NodalStress nodal_stress(FeModel& model, std::span<const double> q,
+                         std::span<const double> history) {
   const Mesh& mesh = model.mesh();
   const std::size_t nodes = index(mesh.node_count());
   MatrixXd sum = MatrixXd::Zero(6, mesh.node_count());
   std::vector<int> cells(nodes, 0);
   MatrixXd to_nodes, here;  // (nodes, points) of the present block; (6, points) of the cell
   int block = -1;
+  NodalStress out;
   const bool admissible = model.visit(q, history, [&](const FeModel::PointState& point) {
     const CellBlock& all = mesh.blocks[index(point.block)];
     if (point.block != block) {
@@ -80,16 +82,22 @@ std::vector<StressEntries> nodal_stress(FeModel& model, std::span<const double> 
     if (point.point + 1 < here.cols()) return;
     for (int a = 0; a < all.element->nodes; ++a) {
       const std::int32_t node = all.nodes[index(point.cell * all.element->nodes + a)];
-      sum.col(node) += here * to_nodes.row(a).transpose();
+      StressEntries said{};
+      Eigen::Map<Vector> entries(said.data(), 6);
+      entries = here * to_nodes.row(a).transpose();
+      out.most_of_cells = std::max(out.most_of_cells, von_mises(stress_of(said)));
+      sum.col(node) += entries;
       ++cells[index(node)];
     }
   });
-  std::vector<StressEntries> out(nodes);
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  out.nodes.resize(nodes);
   for (std::size_t node = 0; node < nodes; ++node) {
     for (std::size_t k = 0; k < 6; ++k)
-      out[node][k] = admissible ? sum(static_cast<int>(k), static_cast<int>(node)) / cells[node]
-                                : std::numeric_limits<double>::quiet_NaN();
+      out.nodes[node][k] =
+          admissible ? sum(static_cast<int>(k), static_cast<int>(node)) / cells[node] : nothing;
   }
+  if (!admissible) out.most_of_cells = nothing;
   return out;
 }
 

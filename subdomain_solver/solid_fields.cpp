@@ -113,7 +113,7 @@ std::vector<FieldValues> solid_field_values(FeModel& model, const SolidFieldStat
   if (!deforms) return values;
   for (FieldValues& field : cell_values(model, state)) values.push_back(std::move(field));
   FieldValues stress, mises;
-  for (const StressEntries& node : nodal_stress(model, state.q, state.history)) {
+  for (const StressEntries& node : nodal_stress(model, state.q, state.history).nodes) {
     stress.insert(stress.end(), node.begin(), node.end());
     mises.push_back(von_mises(stress_of(node)));
   }

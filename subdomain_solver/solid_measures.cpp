@@ -60,8 +60,10 @@ void add_stress(FeModel& model, const SolidState& state, std::vector<double>& ou
   out.insert(out.end(), {mises * each, admissible ? most : nothing});
 }
 
-/// Smallest and largest entries at a node, and the largest von Mises stress.
-void add_nodal_stress(int dim, const std::vector<StressEntries>& nodes, std::vector<double>& out) {
+/// Smallest and largest entries at a node, and the largest von Mises stress: of the nodes' means,
+/// and that one cell alone says.
+void add_nodal_stress(int dim, const NodalStress& stress, std::vector<double>& out) {
+  const std::vector<StressEntries>& nodes = stress.nodes;
   for (std::size_t k = 0; k < stress_count(dim); ++k) {
     const auto [low, high] = std::minmax_element(
         nodes.begin(), nodes.end(),
@@ -73,7 +75,7 @@ void add_nodal_stress(int dim, const std::vector<StressEntries>& nodes, std::vec
     const double mises = von_mises(stress_of(node));
     most = mises > most || std::isnan(mises) ? mises : most;
   }
-  out.push_back(most);
+  out.insert(out.end(), {most, stress.most_of_cells});
 }
 
 /// Means over the nodes of a port.
@@ -127,7 +129,7 @@ std::vector<std::string> solid_measure_names(int dim, bool deforms,
     for (const char* what : {"min", "max"})
       names.push_back(fmt::format("nodal_stress.{}.{}", stress_names[k], what));
   }
-  if (deforms) names.emplace_back("nodal_von_mises.max");
+  if (deforms) names.insert(names.end(), {"nodal_von_mises.max", "nodal_von_mises.max_of_cells"});
   names.insert(names.end(),
                {"energy.kinetic", "energy.stored", "energy.dissipated", "energy.external_work"});
   for (int i = 0; i < dim; ++i)
@@ -166,11 +168,11 @@ std::vector<double> solid_measures(FeModel& model, const SolidState& state,
   model.to_space(u);
   summarise(u, dim, out);
   summarise(v, dim, out);
-  std::vector<StressEntries> nodes;
+  NodalStress stress;
   if (state.deforms) {
-    nodes = nodal_stress(model, state.q, state.history);
+    stress = nodal_stress(model, state.q, state.history);
     add_stress(model, state, out);
-    add_nodal_stress(dim, nodes, out);
+    add_nodal_stress(dim, stress, out);
   }
   out.insert(out.end(), {energy.kinetic, energy.stored, energy.dissipated, energy.external_work});
   for (int i = 0; i < dim; ++i)
@@ -186,7 +188,7 @@ std::vector<double> solid_measures(FeModel& model, const SolidState& state,
         out.push_back(total / static_cast<double>(port.nodes.size()));
       }
     }
-    if (state.deforms) add_stress_at(port, dim, nodes, out);
+    if (state.deforms) add_stress_at(port, dim, stress.nodes, out);
   }
   return out;
 }

@@ -1,6 +1,19 @@
 #include "subdomain_solver/time/problem.hpp"
 
+#include <cmath>
+
 namespace abut {
+
+namespace {
+
+/// Of second order, from the value now and after three steps [s].
+double one_sided_acceleration(const Prescribed& p, double time, double step) {
+  const double at = p.value(time), one = p.value(time + step) - at,
+               two = p.value(time + 2.0 * step) - at, three = p.value(time + 3.0 * step) - at;
+  return (4.0 * two - 5.0 * one - three) / (step * step);
+}
+
+}  // namespace
 
 Vector Problem::external_force(double time, std::span<const double> q) const {
   Vector force = Vector::Zero(model->dofs());
@@ -12,19 +25,21 @@ void Problem::set_rates(double time, double step, Motion& motion) const {
   const double h = 1.0e-3 * step;
   motion.a.resize(motion.q.size(), 0.0);
   for (const Prescribed& p : supports) {
+    const std::size_t i = static_cast<std::size_t>(p.dof);
     const double at = p.value(time), next = p.value(time + h), last = p.value(time + 2.0 * h);
-    motion.v[static_cast<std::size_t>(p.dof)] = (4.0 * (next - at) - (last - at)) / (2.0 * h);
-    const double one = p.value(time + step) - at, two = p.value(time + 2.0 * step) - at,
-                 three = p.value(time + 3.0 * step) - at;
-    motion.a[static_cast<std::size_t>(p.dof)] = (4.0 * two - 5.0 * one - three) / (step * step);
+    motion.v[i] = (4.0 * (next - at) - (last - at)) / (2.0 * h);
+    const double a = one_sided_acceleration(p, time, step);
+    motion.a[i] = std::isfinite(a) ? a : 0.0;  // it may have no value some steps later
   }
 }
 
 void Problem::set_accelerations(double time, double step, Vector& acceleration) const {
   for (const Prescribed& p : supports) {
-    const double at = p.value(time);
-    acceleration(p.dof) =
-        ((p.value(time + step) - at) - (at - p.value(time - step))) / (step * step);
+    const double at = p.value(time), next = p.value(time + step), last = p.value(time - step);
+    double a = ((next - at) - (at - last)) / (step * step);
+    if (!std::isfinite(a)) a = one_sided_acceleration(p, time, step);  // none before the begin
+    if (!std::isfinite(a)) a = one_sided_acceleration(p, time, -step);
+    acceleration(p.dof) = std::isfinite(a) ? a : 0.0;
   }
 }
 

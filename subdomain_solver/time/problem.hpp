@@ -38,7 +38,7 @@ struct Problem {
   /// ring.
   void set_rates(double time, double step, Motion& motion) const;
   /// Accelerations of prescribed coordinates by differences over a step [s] to both sides of the
-  /// time: those of central differences.
+  /// time: those of central differences. To one side where an expression has no value on the other.
   void set_accelerations(double time, double step, Vector& acceleration) const;
 };
 
