@@ -40,6 +40,8 @@ struct Description {
   double mass = 0.0;            // [kg]; infinity: immovable
   double step = 0.0;            // [s] nominal substep; 0: any window is one step
   double stable_step = 0.0;     // [s] limit of the nominal step; infinity: none
+  // Its energy changes by port and external work alone, as its records tell: no damping, no heat.
+  bool conserves = false;
   std::vector<Port> ports;
   Capabilities can;
   std::vector<Member> members;  // empty: the body is one solid

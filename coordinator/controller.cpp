@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/archive.hpp"
+#include "base/denormals.hpp"
 #include "base/error.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/horizon.hpp"
@@ -33,12 +34,13 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       schwarz_(make_schwarz(scene.schwarz)),
       anchor_(scene.time.begin),
       time_(scene.time.begin),
-      energy_guard_(scene.schwarz.energy_guard) {
+      energy_guard_(scene.schwarz.energy_guard, conserving_bodies()) {
   end_.status = "completed";
   reports_.resize(coupling_.interfaces.size());
 }
 
 RunEnd Controller::run() {
+  const FlushedDenormals flushed;
   const auto began = std::chrono::steady_clock::now();
   auto wall = [began] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -101,7 +103,7 @@ void Controller::observe_start() {
   if (std::optional<Failed> failed = bodies_.advance_all())
     return fail(failed->time, failed->detail);
   tie();
-  watch_energy(time_);
+  watch_energy(time_, energy_guard_.look(bodies_.responses()));
   fill_reports(nullptr);
   for (Observer* observer : observers_)
     observer->on_window({instant, bodies_.responses(), reports_});
@@ -141,7 +143,7 @@ bool Controller::fly_free() {
     observer->on_window({flight, bodies_.responses(), reports_, end_.windows});
   since_ += windows;
   time_ = flight.end;
-  watch_energy(time_);
+  watch_energy(time_, energy_guard_.look(bodies_.responses()));
   flight_limit_ = std::min(most_windows_at_once, 2 * flight_limit_);
   return true;
 }
@@ -277,13 +279,14 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
     interface.force_scale = std::max(interface.force_scale, peak_force(interface, bodies_));
   }
   ++end_.windows;
+  const EnergyGuard::Verdict energy = energy_guard_.look(bodies_.responses());
   settle(window);
   for (Observer* observer : observers_)
     observer->on_window({window, bodies_.responses(), reports_, end_.windows});
   if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
   advance_clock(window.end, is_whole(window));
   halvings_ = 0;
-  watch_energy(window.end);
+  watch_energy(window.end, energy);
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     Interface& interface = coupling_.interfaces[i];
     if (interface.closed && coupling_.rules[i].swap) interface.kinematic = 1 - interface.kinematic;
@@ -360,24 +363,42 @@ void Controller::fill_reports(const Attempt* attempt) {
   }
 }
 
-/// Contact is passive: energy that appears says that steps or windows are unstable here.
-void Controller::watch_energy(double time) {
-  const bool ours = std::ranges::any_of(coupling_.rules, [](const Coupling::Rule& rule) {
-    return !rule.internal;  // contact inside a body is that body's own affair
-  });
-  if (!ours) return;
-  const EnergyGuard::Verdict verdict = energy_guard_.look(bodies_.responses());
-  if (verdict == EnergyGuard::Verdict::fine) return;
-  const std::string text = fmt::format(
-      "energy has grown by {:.2g} % of the most there was in motion, and contact makes none; give "
-      "smaller steps, or contact_layer: massless",
-      100.0 * energy_guard_.growth());
+/// Contact is passive, and so are supports: energy that appears says that steps or windows are
+/// unstable here. Contact inside a body is that body's own affair.
+void Controller::watch_energy(double time, EnergyGuard::Verdict verdict) {
+  const bool internal = std::ranges::any_of(coupling_.rules, &Coupling::Rule::internal);
+  if (verdict == EnergyGuard::Verdict::fine || internal) return;
+  const double growth = energy_guard_.growth();
+  const int body = energy_guard_.culprit();
+  const std::string whose =
+      body < 0 ? "" : fmt::format(" of body '{}'", bodies_.describe(body).name);
+  const std::string text =
+      growth < 0.0
+          ? fmt::format("energy{} has fallen by {:.2g} % of the most there was in motion, and "
+                        "nothing in this scene takes any; give smaller steps",
+                        whose, -100.0 * growth)
+          : fmt::format("energy{} has grown by {:.2g} % of the most there was in motion, and contact "
+                        "makes none; give smaller steps, or contact_layer: massless",
+                        whose, 100.0 * growth);
   if (verdict == EnergyGuard::Verdict::warn) {
-    emit(RunEvent::Kind::warning, time, "", text, {{"growth", energy_guard_.growth()}});
+    emit(RunEvent::Kind::warning, time, "", text, {{"growth", growth}});
   } else if (end_.status == "completed") {
     fail(time, text + fmt::format("; the bound of {:g} % is schwarz.energy_guard",
                                   100.0 * scene_.schwarz.energy_guard));
   }
+}
+
+/// Bodies whose every exchange of energy is told. The published form overwrites motion, which does
+/// work that nobody knows.
+std::vector<bool> Controller::conserving_bodies() const {
+  std::vector<bool> conserves;
+  for (int b = 0; b < bodies_.count(); ++b) conserves.push_back(bodies_.describe(b).conserves);
+  for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
+    if (!coupling_.rules[i].published && !coupling_.rules[i].internal) continue;
+    for (const Side& side : coupling_.interfaces[i].sides)
+      conserves[static_cast<std::size_t>(side.body)] = false;
+  }
+  return conserves;
 }
 
 void Controller::emit(RunEvent::Kind kind, double time, const std::string& subject,

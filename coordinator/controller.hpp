@@ -85,7 +85,8 @@ class Controller {
   void fail(double time, const std::string& text);
   void tell(const RunEvent& event);
   std::string blamed(const std::string& text) const;  // the body that a text names, or empty
-  void watch_energy(double time);
+  void watch_energy(double time, EnergyGuard::Verdict verdict);
+  std::vector<bool> conserving_bodies() const;
   void emit(RunEvent::Kind kind, double time, const std::string& subject, const std::string& text,
             std::map<std::string, double> values = {});
   std::uint64_t state_hash();

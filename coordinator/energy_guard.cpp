@@ -1,26 +1,51 @@
 #include "coordinator/energy_guard.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace abut {
 
+EnergyGuard::EnergyGuard(double share, std::vector<bool> conserves)
+    : share_(share),
+      conserves_(std::move(conserves)),
+      all_conserve_(std::ranges::all_of(conserves_, [](bool yes) { return yes; })),
+      bodies_(conserves_.size()) {}
+
 EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses) {
   double own = 0.0, motion = 0.0;
-  for (const Response& response : responses) {
-    const Energy& energy = response.records.back().energy;
-    own += energy.total() - energy.external_work;
+  for (std::size_t b = 0; b < responses.size(); ++b) {
+    const Energy& energy = responses[b].records.back().energy;
+    const double here = energy.total() + energy.dissipated - energy.external_work;
+    own += here;
     motion += energy.kinetic + energy.stored;
+    Account& account = bodies_[b];
+    if (!begun_) account.first = here;
+    if (begun_) {
+      for (const PortResponse& port : responses[b].ports) account.ports += port.work;
+    }
+    account.change = here - account.first - account.ports;
   }
-  if (!begun_) {
-    begun_ = true;
-    first_ = own;
-  }
+  if (!std::exchange(begun_, true)) first_ = own;
   most_ = std::max(most_, motion);
-  growth_ = most_ > 0.0 ? (own - first_) / most_ : 0.0;
-  if (growth_ > share_) return Verdict::fail;
-  if (growth_ <= 0.5 * share_ || std::exchange(warned_, true)) return Verdict::fine;
-  return Verdict::warn;
+  if (most_ <= 0.0) return Verdict::fine;
+  culprit_ = -1;
+  Verdict worst = verdict((own - first_) / most_, share_, all_conserve_);
+  for (std::size_t b = 0; b < bodies_.size() && worst != Verdict::fail; ++b) {
+    if (!conserves_[b]) continue;
+    const double change = bodies_[b].change / most_;
+    if (std::abs(change) <= share_) continue;
+    culprit_ = static_cast<int>(b);
+    worst = verdict(change, share_, true);
+  }
+  return worst;
+}
+
+EnergyGuard::Verdict EnergyGuard::verdict(double change, double share, bool losses) {
+  growth_ = change;
+  if (change > share) return Verdict::fail;
+  const bool notable = change > 0.5 * share || (losses && change < -share);
+  return notable && !std::exchange(warned_, true) ? Verdict::warn : Verdict::fine;
 }
 
 }  // namespace abut

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "contract/subdomain.hpp"
 
@@ -8,25 +9,41 @@ namespace abut {
 
 /// Watches the bodies' energy less the work of external loads. Supports, ties and contact make
 /// none, so it must not grow; that it does is how an unstable step or window shows itself before
-/// its numbers overflow  [M.21].
+/// its numbers overflow  [M.21]. A body that says that it conserves energy is watched by itself:
+/// what its ports did is known, so it may neither gain nor lose.
 class EnergyGuard {
  public:
   enum class Verdict { fine, warn, fail };
 
-  /// `share`: growth, as a fraction of the largest kinetic and stored energy so far, that fails.
-  explicit EnergyGuard(double share) : share_(share) {}
+  /// `share`: change, as a fraction of the largest kinetic and stored energy so far, that fails.
+  /// `conserves`: by body, whether it is watched by itself; all: whether losses are wrong too.
+  EnergyGuard(double share, std::vector<bool> conserves);
 
-  /// Looks at the last record of every body. Warns once, at half the share.
+  /// Looks at the last record of every body, once for every accepted window. Warns once, at half
+  /// the share of growth; of losses at the share itself.
   Verdict look(std::span<const Response> responses);
   double growth() const { return growth_; }  // as a fraction, at the last look
   double most() const { return most_; }      // [J] largest kinetic and stored energy so far
+  int culprit() const { return culprit_; }   // body that a verdict is about; -1: all together
 
  private:
+  struct Account {
+    double first = 0.0;   // [J] its own energy at the first look
+    double ports = 0.0;   // [J] done on it through its ports since
+    double change = 0.0;  // [J] that nothing explains
+  };
+
+  Verdict verdict(double change, double share, bool losses);
+
   double share_;
+  std::vector<bool> conserves_;
+  bool all_conserve_;
   bool begun_ = false, warned_ = false;
+  std::vector<Account> bodies_;
   double first_ = 0.0;  // [J] at the first look
   double most_ = 0.0;   // [J] largest kinetic and stored energy so far
   double growth_ = 0.0;
+  int culprit_ = -1;
 };
 
 }  // namespace abut

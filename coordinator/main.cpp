@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "base/denormals.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/yaml_fields.hpp"
@@ -272,6 +273,7 @@ int fail(const std::exception& error, int code) {
 }  // namespace abut
 
 int main(int argc, char** argv) {
+  const abut::FlushedDenormals flushed;  // also of threads that bodies start
   try {
     return std::visit(abut::Verbs{}, abut::parse_command_line(argc, argv));
   } catch (const abut::InputError& error) {

@@ -359,6 +359,7 @@ void encode(const Description& from, v1::Description& to) {
   to.set_mass(from.mass);
   to.set_step(from.step);
   to.set_stable_step(from.stable_step);
+  to.set_conserves(from.conserves);
   for (const Port& port : from.ports) {
     v1::Port& wire = *to.add_ports();
     wire.set_name(port.name);
@@ -399,6 +400,7 @@ void decode(const v1::Description& from, Description& to) {
   to.dofs = from.dofs();
   to.mass = number(from.mass(), FieldPath{&path, "mass"}, Allow::infinite);
   to.step = number(from.step(), FieldPath{&path, "step"});
+  to.conserves = from.conserves();
   to.stable_step = number(from.stable_step(), FieldPath{&path, "stable_step"}, Allow::infinite);
   if (from.ports_size() > most_ports) FieldPath{&path, "ports"}.fail("has too many entries");
   to.ports.resize(static_cast<std::size_t>(from.ports_size()));

@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "base/denormals.hpp"
 #include "base/life_signs.hpp"
 #include "messaging/codec.hpp"
 
@@ -266,6 +267,7 @@ void Server::show_progress() {
 }
 
 void serve(Server& server, Milliseconds patience) {
+  const FlushedDenormals flushed;  // as in the coordinator: equal bits in every placement
   server.greet(patience);
   while (server.step(Milliseconds(100))) {
   }

@@ -45,6 +45,10 @@ Body::Body(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
   description_.step = scheme_.step;
   description_.stable_step =
       scheme_.explicit_in_time ? bar_->stable_step() : std::numeric_limits<double>::infinity();
+  const BarProperties& data = bar_->data();
+  description_.conserves = scheme_.conserves && data.bulk_viscosity == 0.0 && data.tchamwa <= 1.0 &&
+                           data.layer[0] != ContactLayer::massive &&
+                           data.layer[1] != ContactLayer::massive;
   description_.fields = bar_fields();
   describe_ports(ports);
 }

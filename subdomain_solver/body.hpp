@@ -25,6 +25,7 @@ class Body final : public Subdomain {
     double step = 0.0;  // [s]
     bool explicit_in_time = true;
     std::string words;  // for people
+    bool conserves = true;  // the energies that its integrator tells
   };
 
   Body(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,

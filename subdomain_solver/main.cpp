@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "base/denormals.hpp"
 #include "base/error.hpp"
 #include "messaging/liveness.hpp"
 #include "messaging/serve.hpp"
@@ -36,6 +37,7 @@ void serve_body(const std::string& endpoint, const std::string& name, double pat
 }  // namespace
 
 int main(int argc, char** argv) {
+  const abut::FlushedDenormals flushed;  // also of threads that bodies start
   CLI::App app("One body of an abut scene; started by abut, or by hand for `launch: connect`.",
                "abut-solver");
   std::string endpoint;

@@ -104,7 +104,8 @@ struct SchemeMaker {
   }
   Body::Scheme implicit(const AlphaWeights& weights, double step, const char* words) const {
     return {std::make_unique<GeneralizedAlpha>(bar, weights), step, false,
-            fmt::format("{}, step {:g} s", words, step)};
+            fmt::format("{}, step {:g} s", words, step),
+            weights.is_newmark() && weights.beta == 0.25 && weights.gamma == 0.5};
   }
 };
 

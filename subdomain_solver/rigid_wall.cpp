@@ -12,6 +12,7 @@ RigidWall::RigidWall(std::string name, double position, std::string port, double
   description_.model = "rigid wall";
   description_.mass = std::numeric_limits<double>::infinity();
   description_.stable_step = std::numeric_limits<double>::infinity();
+  description_.conserves = true;
   description_.can = {.motion = false,
                       .force = true,
                       .obstacle = false,

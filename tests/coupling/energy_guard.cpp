@@ -22,7 +22,7 @@ Response holding(double kinetic, double stored, double work = 0.0) {
 }
 
 TEST(EnergyGuard, CountsWhatExternalWorkDoesNotExplain) {
-  EnergyGuard guard(0.01);
+  EnergyGuard guard(0.01, {false});
   EXPECT_EQ(guard.look(std::vector{holding(0.0, 0.0)}), Verdict::fine);
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 10.0, 100.0)}), Verdict::fine);
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 10.4, 100.0)}), Verdict::fine);
@@ -33,9 +33,44 @@ TEST(EnergyGuard, CountsWhatExternalWorkDoesNotExplain) {
 }
 
 TEST(EnergyGuard, TakesLossForNoFault) {
-  EnergyGuard guard(0.01);
+  EnergyGuard guard(0.01, {false});
   for (double left : {100.0, 50.0, 99.0, 0.0, 100.4})
     EXPECT_EQ(guard.look(std::vector{holding(left, 0.0)}), Verdict::fine);
+}
+
+TEST(EnergyGuard, TellsOfALossWhereNothingDissipates) {
+  EnergyGuard guard(0.01, {true});
+  EXPECT_EQ(guard.look(std::vector{holding(100.0, 0.0)}), Verdict::fine);
+  EXPECT_EQ(guard.look(std::vector{holding(98.0, 1.1)}), Verdict::fine);
+  EXPECT_EQ(guard.look(std::vector{holding(98.0, 0.9)}), Verdict::warn);
+  EXPECT_NEAR(guard.growth(), -0.011, 1e-15);
+}
+
+TEST(EnergyGuard, HeatIsNoLoss) {
+  EnergyGuard guard(0.01, {true});
+  Response warm = holding(50.0, 10.0);
+  warm.records[0].energy.dissipated = 40.0;
+  EXPECT_EQ(guard.look(std::vector{holding(100.0, 0.0)}), Verdict::fine);
+  EXPECT_EQ(guard.look(std::vector{warm}), Verdict::fine);
+}
+
+TEST(EnergyGuard, HoldsEveryBodyAgainstTheWorkOfItsPorts) {
+  // Two bodies that together keep the energy, and one of them has more than its port gave it.
+  EnergyGuard guard(0.01, {true, true});
+  std::vector<Response> bodies = {holding(50.0, 0.0), holding(50.0, 0.0)};
+  for (Response& r : bodies) r.ports.resize(1);
+  EXPECT_EQ(guard.look(bodies), Verdict::fine);
+  bodies[0].records[0].energy.kinetic = 60.0;
+  bodies[1].records[0].energy.kinetic = 40.0;
+  bodies[0].ports[0].work = 10.0;
+  bodies[1].ports[0].work = -10.0;
+  EXPECT_EQ(guard.look(bodies), Verdict::fine);
+  bodies[0].records[0].energy.kinetic = 71.0;
+  bodies[1].records[0].energy.kinetic = 29.0;
+  bodies[0].ports[0].work = 9.0;  // 2 J of 100 come from nowhere
+  bodies[1].ports[0].work = -9.0;
+  EXPECT_EQ(guard.look(bodies), Verdict::fail);
+  EXPECT_EQ(guard.culprit(), 0);
 }
 
 /// The published form with consistent mass: the force handed over lacks the contact node's inertia,
