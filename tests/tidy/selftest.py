@@ -10,6 +10,7 @@ import glossary
 import headers
 import layers
 import lengths
+import packages
 import words
 from findings import Finding
 
@@ -106,7 +107,7 @@ class Words(unittest.TestCase):
         self.assertEqual(findings(words.check, base__a_dot_cpp=good), [])
 
 
-class HeadersAndDocs(unittest.TestCase):
+class HeadersPackagesAndDocs(unittest.TestCase):
     def test_header_without_pragma_once_or_with_using_namespace(self) -> None:
         self.assertEqual(len(findings(headers.check, base__a_dot_hpp="int x;\n")), 1)
         self.assertEqual(findings(headers.check, base__a_dot_hpp="// Why.\n#pragma once\n"), [])
@@ -126,6 +127,14 @@ class HeadersAndDocs(unittest.TestCase):
             (root / "good.hpp").write_text("#pragma once\ninline int n = 0;\n")
             found = headers.compile_alone(root, ["bad.hpp", "good.hpp"], "c++")
         self.assertEqual([finding.path for finding in found], ["bad.hpp"])
+
+    def test_module_of_a_package_that_is_not_listed(self) -> None:
+        text = "import json\nimport a\nimport yaml.nodes\n"
+        without = findings(packages.check, a_dot_py=text, scripts__packages_dot_txt="build make\n")
+        self.assertEqual([finding.line for finding in without], [3])
+        listed = "build python3-yaml  scenes\n"
+        with_it = findings(packages.check, a_dot_py=text, scripts__packages_dot_txt=listed)
+        self.assertEqual(with_it, [])
 
     def test_dead_links_and_headings(self) -> None:
         text = "# A b\n[x](gone.md) [y](#a-b) [z](#c) [w](https://example.org)\n`[v](gone.md)`\n"
