@@ -5,6 +5,7 @@ WORKDIR /abut
 COPY scripts scripts
 RUN scripts/install_dependencies.sh build
 COPY . .
+# Without optional libraries: what the image holds may be passed on under the BSD licence.
 RUN make build
 
 FROM debian:bookworm-slim

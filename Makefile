@@ -3,7 +3,8 @@
 .PHONY: help demo build test bench results extremes clean dependencies-build dependencies-test dependencies-bench
 
 PRESET ?= release
-export PRESET
+WITH ?=
+export PRESET WITH
 BIN := build/$(PRESET)/bin
 
 help:
@@ -14,14 +15,15 @@ help:
 	@echo "make results   docs/RESULTS.md, measured anew (minutes)"
 	@echo "make extremes  docs/EXTREMES.md, measured anew"
 	@echo "make clean   removes build/ (runs/ is yours and stays)"
+	@echo "Optional libraries are used when they are named: make build WITH=\"cholmod exodus\""
 	@echo "Missing Debian packages are installed first, with sudo when you are not root."
 
 dependencies-build:
-	@sh scripts/install_dependencies.sh build
+	@sh scripts/install_dependencies.sh build $(WITH)
 dependencies-test:
-	@sh scripts/install_dependencies.sh build test
+	@sh scripts/install_dependencies.sh build test $(WITH)
 dependencies-bench:
-	@sh scripts/install_dependencies.sh build bench
+	@sh scripts/install_dependencies.sh build bench $(WITH)
 
 build: dependencies-build
 	@sh scripts/build.sh programs
@@ -33,7 +35,7 @@ demo: build
 
 test: dependencies-test
 	@sh scripts/build.sh tests
-	ctest --preset $(PRESET) --parallel 2
+	ctest --preset $(PRESET) --parallel 2 $(TESTS)
 
 bench: dependencies-bench
 	@sh scripts/build.sh bench

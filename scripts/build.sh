@@ -1,7 +1,8 @@
 #!/bin/sh
 # Configures a preset when needed and builds some of it.
 #   usage: scripts/build.sh programs|tests|bench
-#   environment: PRESET (release), JOBS (all cores)
+#   environment: PRESET (release), JOBS (all cores), WITH (optional libraries by name; none)
+# A build directory that was made with other libraries than WITH names is configured again.
 # The build directory starts with the programs alone, so that a demo needs neither GoogleTest nor
 # Google Benchmark; asking for tests or bench adds them for good.
 set -eu
@@ -25,8 +26,13 @@ configure() {
   rm -f "$log"
 }
 
+made_with() {  # is this what WITH named when the build directory was configured
+  grep -qxF "ABUT_WITH:STRING=${WITH:-}" "$directory/CMakeCache.txt" 2>/dev/null
+}
+
 # build.ninja is written last: its absence means that the directory was never configured to the end.
 [ -f "$directory/build.ninja" ] || configure -DABUT_TESTS=OFF -DABUT_BENCH=OFF
+made_with || configure
 
 case "${1:-}" in
   programs) target=programs ;;

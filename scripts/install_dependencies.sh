@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs the Debian packages of the named groups of packages.txt that are missing, and only those.
 #   usage: scripts/install_dependencies.sh GROUP...
-#   groups: build, test, bench, optional, runtime
+#   groups: build, test, bench, runtime; cholmod, exodus (options of WITH)
 # DEPENDENCIES=installed skips the check: for systems without apt, once the list was installed by
 # hand.
 set -eu
@@ -17,7 +17,11 @@ packages_of() {  # names of the packages of one group
 wanted=""
 for group in "$@"; do
   names=$(packages_of "$group")
-  [ -n "$names" ] || { echo "$0: no group named '$group' in $list" >&2; exit 2; }
+  if [ -z "$names" ]; then
+    known=$(awk '!/^#/ && NF { print $1 }' "$list" | sort -u | tr '\n' ' ')
+    echo "$0: no group named '$group' in $list; there are: $known" >&2
+    exit 2
+  fi
   wanted="$wanted $names"
 done
 

@@ -16,7 +16,7 @@ TEST(ExodusFile, IsRefusedWithARemedyWithoutNetcdf) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(error.where, "part.exo");
-    EXPECT_NE(error.remedy.find("libnetcdf-dev"), std::string::npos);
+    EXPECT_NE(error.remedy.find("make build WITH=exodus"), std::string::npos);
   }
 }
 

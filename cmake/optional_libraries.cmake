@@ -1,0 +1,30 @@
+# Libraries that abut can do without. One is used when ABUT_WITH names it, and never because it
+# happens to be there: what is built depends on the command alone. A named one that is missing is an
+# error. Each gives a target abut_with_<name> and ABUT_<name>_INCLUDE, which only the files that see
+# it get, so that a change of mind compiles no more than those.
+set(ABUT_WITH "" CACHE STRING "Optional libraries to use, by name: cholmod, exodus")
+
+set(ABUT_OPTIONAL_cholmod cholmod cholmod.h suitesparse libsuitesparse-dev)  # GPL: docs/adr/0007
+set(ABUT_OPTIONAL_exodus netcdf netcdf.h "" libnetcdf-dev)
+
+string(REGEX MATCHALL "[^ ,;]+" abut_with "${ABUT_WITH}")
+list(REMOVE_DUPLICATES abut_with)
+foreach(name IN LISTS abut_with)
+  if(NOT DEFINED ABUT_OPTIONAL_${name})
+    message(FATAL_ERROR "There is no optional library '${name}' to build with; there are: "
+      "cholmod, exodus.")
+  endif()
+  list(GET ABUT_OPTIONAL_${name} 0 library)
+  list(GET ABUT_OPTIONAL_${name} 1 header)
+  list(GET ABUT_OPTIONAL_${name} 2 folder)
+  list(GET ABUT_OPTIONAL_${name} 3 package)
+  find_library(ABUT_${name}_LIBRARY ${library})
+  find_path(ABUT_${name}_INCLUDE ${header} PATH_SUFFIXES ${folder})
+  mark_as_advanced(ABUT_${name}_LIBRARY ABUT_${name}_INCLUDE)
+  if(NOT ABUT_${name}_LIBRARY OR NOT ABUT_${name}_INCLUDE)
+    message(FATAL_ERROR "'${name}' was asked for, and ${header} or lib${library} is missing. "
+      "Install Debian's ${package}, or build without: leave '${name}' out of WITH (of ABUT_WITH).")
+  endif()
+  add_library(abut_with_${name} INTERFACE)
+  target_link_libraries(abut_with_${name} INTERFACE ${ABUT_${name}_LIBRARY})
+endforeach()
