@@ -160,7 +160,7 @@ std::string join_path(std::string_view parent, std::string_view child) {
 Document Document::load(const std::string& path, std::vector<std::string> overrides) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
-  if (file) text << file.rdbuf();
+  if (file && file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
   if (!file || !text) throw InputError("cannot be read", path, "Give the path of a scene file.");
   return Document(path, text.str(), std::move(overrides));
 }
@@ -189,7 +189,10 @@ Document::Document(std::string name, std::string text, std::vector<std::string> 
   if (documents.size() > 1)
     throw InputError("holds a second document", at_line(name_, documents[1].Mark()),
                      "Write one scene per file, without --- lines between its parts.");
-  if (documents.empty() || !documents[0].IsMap())
+  if (documents.empty() || documents[0].IsNull())
+    throw InputError("is empty", name_,
+                     "Write a scene as key: value lines, beginning with meta:, time:, bodies:.");
+  if (!documents[0].IsMap())
     throw InputError("is not a map of keys", name_,
                      "Write a scene as key: value lines, beginning with meta:, time:, bodies:.");
   FormCheck(name_).visit(documents[0], "", 0);

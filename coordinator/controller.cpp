@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/horizon.hpp"
+#include "coordinator/flight_work.hpp"
 #include "coordinator/record/validity_notes.hpp"
 
 namespace abut {
@@ -37,6 +38,9 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       energy_guard_(scene.schwarz.energy_guard, conserving_bodies()) {
   end_.status = "completed";
   reports_.resize(coupling_.interfaces.size());
+  std::vector<const Description*> descriptions;
+  for (int b = 0; b < bodies_.count(); ++b) descriptions.push_back(&bodies_.describe(b));
+  longest_flight_ = flight_limit_ = windows_at_once(scene.time.window, descriptions);
 }
 
 RunEnd Controller::run() {
@@ -128,7 +132,12 @@ bool Controller::fly_free() {
   bodies_.save_all();
   prepare(flight, windows * scene_.output.records_per_window, Sampling::records);
   if (std::optional<Failed> failed = bodies_.advance_all()) {
-    fail(failed->time, failed->detail);
+    if (windows == 1) {
+      fail(failed->time, failed->detail);
+    } else {  // again in shorter flights, so that what was before the failure is told
+      bodies_.restore_all();
+      flight_limit_ = windows / 2;
+    }
     return true;
   }
   if (!stayed_apart(coupling_.interfaces, bodies_)) {
@@ -144,7 +153,7 @@ bool Controller::fly_free() {
   since_ += windows;
   time_ = flight.end;
   watch_energy(time_, energy_guard_.look(bodies_.responses()));
-  flight_limit_ = std::min(most_windows_at_once, 2 * flight_limit_);
+  flight_limit_ = std::min(longest_flight_, 2 * flight_limit_);
   return true;
 }
 
@@ -319,7 +328,7 @@ bool Controller::is_whole(const TimeWindow& window) const {
 }
 
 int Controller::windows_to_fields() const {
-  if (!scene_.output.field_output) return most_windows_at_once;
+  if (!scene_.output.field_output) return longest_flight_;
   const int every = scene_.output.field_output->every;
   return every - static_cast<int>(end_.windows % every);
 }

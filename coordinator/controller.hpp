@@ -107,8 +107,8 @@ class Controller {
   int halvings_ = 0;
   double fastest_touch_ = 0.0;    // [m/s] of all first touches
   double force_reference_ = 0.0;  // [N] largest contact force of the run
-  static constexpr int most_windows_at_once = 1000;  // of free flight: bounds the size of one reply
-  int flight_limit_ = most_windows_at_once;
+  int longest_flight_ = 1;  // windows in one request (flight_work.hpp)
+  int flight_limit_ = 1;    // the same at present
   bool grounded_ = false;  // free flight came too near: step once
   RunEnd end_;
   Partition partition_;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <variant>
 
+#include "coordinator/flight_work.hpp"
+
 namespace abut {
 
 namespace {
@@ -98,7 +100,12 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
   e.exchanges_high =
       start + count * (flights + sweeps * e.contact_windows_high + 2 * per_event * joints);
   e.exchanges_high += e.exchanges_high / 20;  // contact that lasts a little longer, chatter
-  if (joints == 0) e.exchanges_high = e.exchanges_low;
+  if (joints == 0) {  // the begin, and free flight as far as one request goes
+    std::int64_t windows = windows_at_once(scene.time.window, bodies);
+    if (scene.output.field_output)
+      windows = std::min<std::int64_t>(windows, scene.output.field_output->every);
+    e.exchanges_low = e.exchanges_high = count * (1 + (e.windows + windows - 1) / windows);
+  }
   if (watched_only(scene)) e.exchanges_low = e.exchanges_high = count * (1 + e.windows);
   list_features(scene, e);
   return e;

@@ -15,15 +15,24 @@ void on_signal(int signal) {
   interrupted.store(true);
 }
 
+/// What somebody chose to ignore, as nohup does, stays ignored.
+void watch(int signal, int flags) {
+  struct sigaction action {}, present {};
+  if (sigaction(signal, nullptr, &present) == 0 && present.sa_handler == SIG_IGN) return;
+  action.sa_handler = on_signal;
+  action.sa_flags = flags;
+  sigaction(signal, &action, nullptr);
+}
+
 }  // namespace
 
 const std::atomic<bool>& watch_for_interrupts() {
-  struct sigaction action {};
-  action.sa_handler = on_signal;
   // The handler serves once, then the system's own comes back; waits return early.
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  watch(SIGINT, static_cast<int>(SA_RESETHAND));
+  watch(SIGTERM, static_cast<int>(SA_RESETHAND));
+  watch(SIGHUP, static_cast<int>(SA_RESETHAND));
+  // Whoever reads our output is gone; the next lines for them must not end the program either.
+  watch(SIGPIPE, 0);
   return interrupted;
 }
 

@@ -16,6 +16,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "messaging/codec.hpp"
+#include "messaging/descriptors.hpp"
 #include "messaging/liveness.hpp"
 #include "messaging/remote_subdomain.hpp"
 #include "messaging/zmq_channel.hpp"
@@ -27,6 +28,9 @@ namespace {
 constexpr Milliseconds time_to_finish{2'000};     // from Finish to the end of the process
 constexpr Milliseconds time_to_die{500};          // from SIGTERM to SIGKILL
 constexpr std::size_t longest_socket_path = 100;  // the kernel allows 107 bytes
+// Measured: the hub has 16 open, the files of a run and pipes of a start come on top.
+constexpr int descriptors_of_a_run = 32;
+constexpr int descriptors_of_a_body = 4;
 
 Milliseconds milliseconds(double seconds) {
   return Milliseconds(static_cast<Milliseconds::rep>(seconds * 1000.0));
@@ -76,6 +80,8 @@ Launch::Launch(const Scene& scene, const Specification& scene_text, const Launch
     : options_(options) {
   options_.deadlines.request = milliseconds(scene.network.request_deadline);
   if (options_.solver.empty()) options_.solver = solver_beside_this_program();
+  const int bodies = static_cast<int>(scene.bodies.size());
+  require_descriptors(descriptors_of_a_run + descriptors_of_a_body * bodies);
   hub_ = std::make_unique<ZmqHub>(options_.limits);
   try {
     add_members(scene);

@@ -1,5 +1,8 @@
 #include <atomic>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <map>
@@ -33,6 +36,7 @@
 #include "coordinator/record/summary.hpp"
 #include "coordinator/record/vtk_fields.hpp"
 #include "coordinator/run_directory.hpp"
+#include "coordinator/same_body.hpp"
 #include "coordinator/scene.hpp"
 
 namespace abut {
@@ -116,17 +120,32 @@ void validate_coupling(const Scene& scene, const Placement& placement, const Doc
 struct Validated {
   std::optional<ClosedForm> form;
   Estimate estimate;
+  std::vector<Description> bodies;  // as they are here
 };
+
+/// Bodies that made themselves elsewhere are those of this scene and of these files.
+void validate_placed(const std::vector<Description>& own, const Placement& placement,
+                     const Document& document) {
+  const std::vector<const Description*> theirs = placement.descriptions();
+  for (std::size_t b = 0; b < own.size(); ++b) {
+    const std::string difference = difference_of(own[b], *theirs[b]);
+    if (difference.empty()) continue;
+    throw InputError(fmt::format("its solver has made another body: {}", difference),
+                     document.where("bodies." + own[b].name),
+                     "Give the solver the files that lie beside the scene, and the same build.");
+  }
+}
 
 Validated validate_all(const Scene& scene, const Document& document) {
   const Placement here{nullptr, launch_local(scene, document)};
   validate_bodies(scene, here.descriptions(), document);
   validate_coupling(scene, here, document);
   validate_expectations(scene, here.descriptions(), document);
-  Validated valid{make_closed_form(scene, document), {}};
+  Validated valid{make_closed_form(scene, document), {}, {}};
   std::optional<double> contact;
   if (valid.form) contact = valid.form->contact_time();
   valid.estimate = estimate(scene, here.descriptions(), contact);
+  for (const Description* body : here.descriptions()) valid.bodies.push_back(*body);
   return valid;
 }
 
@@ -191,22 +210,25 @@ int run_verb(const RunCommand& command) {
   const Document document = Document::load(command.scene, command.overrides);
   const Scene scene = read_scene(document);
   const Validated valid = validate_all(scene, document);
-  const fs::path directory =
-      command.out.empty() ? default_run_directory(command.scene) : fs::path(command.out);
-  const bool fresh = make_run_directory(directory, command.force);
+  // Held until the last file is written.
+  RunDirectory held(
+      command.out.empty() ? default_run_directory(command.scene) : fs::path(command.out),
+      command.force);
+  const fs::path& directory = held.path();
 
   Placement placement;
   try {
     placement = place(scene, document, command.local, interrupted);
     validate_bodies(scene, placement.descriptions(), document);
+    validate_placed(valid.bodies, placement, document);
   } catch (...) {  // a run that never begins leaves nothing behind
-    if (fresh) remove_run_directory(directory);
+    held.abandon();
     throw;
   }
   for (const Description* body : placement.descriptions())
     log_info(fmt::format("{}: {}", body->name, body->model));
 
-  clear_run_directory(directory);
+  held.clear();
   write_whole(directory / "scene.resolved.yaml", resolved_text(scene, document));
   const ClosedForm* form = valid.form ? &*valid.form : nullptr;
   MeasureRecorder recorder(form, scene.output.force_filter);
@@ -265,8 +287,18 @@ struct Verbs {
 };
 
 int fail(const std::exception& error, int code) {
-  fmt::print(stderr, "error: {}\n", error.what());
+  // Not fmt::print, which throws where nobody takes the message.
+  std::fputs(fmt::format("error: {}\n", error.what()).c_str(), stderr);
   return interrupt_exit_code() != 0 ? interrupt_exit_code() : code;
+}
+
+/// What was printed has arrived: a full disk tells so here at the latest.
+int delivered(int code) {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  const char* why = errno != 0 ? std::strerror(errno) : "nobody takes it";
+  throw RunError(fmt::format("cannot be written: {}", why), "standard output",
+                 "Check that the output goes to a file or program that takes it.");
 }
 
 }  // namespace
@@ -274,8 +306,9 @@ int fail(const std::exception& error, int code) {
 
 int main(int argc, char** argv) {
   const abut::FlushedDenormals flushed;  // also of threads that bodies start
+  std::signal(SIGXFSZ, SIG_IGN);  // a file at the limit of its size is an error of writing
   try {
-    return std::visit(abut::Verbs{}, abut::parse_command_line(argc, argv));
+    return abut::delivered(std::visit(abut::Verbs{}, abut::parse_command_line(argc, argv)));
   } catch (const abut::InputError& error) {
     return abut::fail(error, abut::exit_input);
   } catch (const std::exception& error) {  // RunError, and what the library throws: memory, files

@@ -1,37 +1,53 @@
 #include "coordinator/run_directory.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <regex>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 
 namespace abut {
 namespace {
 
 namespace fs = std::filesystem;
 
-// The first two say that a directory holds a run.
-constexpr std::array<const char*, 7> run_files{"scene.resolved.yaml", "summary.json", "history.csv",
-                                               "closed_form.csv",     "events.jsonl", "report.html",
-                                               "fields.pvd"};
+constexpr const char* scene_file = "scene.resolved.yaml";  // written first, removed last;
+constexpr const char* summary_file = "summary.json";       // either tells of a run
+constexpr const char* list_of_fields = "fields.pvd";
+constexpr std::array<const char*, 7> run_files{
+    summary_file,  "history.csv",  "closed_form.csv", "events.jsonl",
+    "report.html", list_of_fields, scene_file};
 
-bool is_there(const fs::path& path) {
+fs::file_status status_of(const fs::path& path) {
   std::error_code ignored;
-  return fs::exists(fs::symlink_status(path, ignored));
+  return fs::symlink_status(path, ignored);
 }
 
-/// Takes out the states of an earlier run; the folder stays where it holds something else.
-void clear_fields(const fs::path& folder) {
-  std::error_code error;
+bool is_there(const fs::path& path) { return fs::exists(status_of(path)); }
+
+/// The states that fields.pvd of an earlier run lists: what that run wrote, and nothing else.
+std::vector<fs::path> listed_states(const fs::path& directory) {
   std::vector<fs::path> states;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".vtu") states.push_back(entry.path());
-  for (const fs::path& state : states) fs::remove(state, error);
-  fs::remove(folder, error);
+  if (!fs::is_directory(status_of(directory / "fields"))) return states;
+  std::ifstream file(directory / list_of_fields);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::regex state(R"re(file="(fields/[^"/]+\.vtu)")re");
+  for (std::sregex_iterator found(text.begin(), text.end(), state), end; found != end; ++found)
+    states.push_back(directory / found->str(1));
+  return states;
 }
 
 /// The deepest part of the path that is there: its permissions decide.
@@ -46,39 +62,88 @@ fs::path existing_part(fs::path path) {
   throw InputError(what, directory.string(), "Give another directory with --out.");
 }
 
+/// Descriptor of the locked directory; -1 where it went away meanwhile.
+int lock(const fs::path& directory) {
+  const int descriptor = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0 && errno == ENOENT) return -1;
+  if (descriptor < 0) refuse(directory, fmt::format("cannot be opened: {}", std::strerror(errno)));
+  if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK) {
+      close(descriptor);
+      throw InputError("is in use by another run", directory.string(),
+                       "Wait for that run's end, or give another directory with --out.");
+    }
+    // Some network file systems lock no directories; a run alone there is as good as ever.
+    log_warning(fmt::format("{}: cannot be locked ({}): see to it that no other run writes there",
+                            directory.string(), std::strerror(errno)));
+  }
+  struct stat held {}, named {};
+  const bool same = fstat(descriptor, &held) == 0 && stat(directory.c_str(), &named) == 0 &&
+                    held.st_dev == named.st_dev && held.st_ino == named.st_ino;
+  if (same) return descriptor;
+  close(descriptor);  // a run that never began has taken it away
+  return -1;
+}
+
 }  // namespace
 
 fs::path default_run_directory(const std::string& scene_path) {
   return fs::path("runs") / fs::path(scene_path).stem();
 }
 
-bool make_run_directory(const fs::path& directory, bool force) {
-  const fs::path there = existing_part(directory);
+RunDirectory::RunDirectory(fs::path directory, bool force) : path_(std::move(directory)) {
+  const fs::path there = existing_part(path_);
   std::error_code error;
   if (!fs::is_directory(there, error))
-    refuse(directory, fmt::format("cannot be a run directory: {} is a file", there.string()));
+    refuse(path_, fmt::format("cannot be a run directory: {} is a file", there.string()));
   if (access(there.c_str(), W_OK | X_OK) != 0)
-    refuse(directory, fmt::format("cannot be written: no permission in {}", there.string()));
-  if (!force && (is_there(directory / run_files[0]) || is_there(directory / run_files[1])))
-    throw InputError("holds a run already", directory.string(),
-                     "Give another directory with --out, or --force to replace that run.");
-  const bool fresh = fs::create_directories(directory, error);
-  if (error) refuse(directory, "cannot be made: " + error.message());
-  return fresh;
-}
-
-void remove_run_directory(const fs::path& directory) {
-  std::error_code not_empty;
-  fs::remove(directory, not_empty);
-}
-
-void clear_run_directory(const fs::path& directory) {
-  for (const char* name : run_files) {
-    std::error_code error;
-    fs::remove(directory / name, error);
-    if (error) refuse(directory, fmt::format("cannot lose {}: {}", name, error.message()));
+    refuse(path_, fmt::format("cannot be written: no permission in {}", there.string()));
+  while (lock_ < 0) {
+    fresh_ = fs::create_directories(path_, error);
+    if (error) refuse(path_, "cannot be made: " + error.message());
+    lock_ = lock(path_);
   }
-  clear_fields(directory / "fields");
+  try {
+    refuse_what_stays(force);
+  } catch (const InputError&) {
+    close(lock_);
+    throw;
+  }
+}
+
+RunDirectory::~RunDirectory() { close(lock_); }
+
+void RunDirectory::refuse_what_stays(bool force) const {
+  const bool holds_run = is_there(path_ / scene_file) || is_there(path_ / summary_file);
+  if (holds_run && !force)
+    throw InputError("holds a run already", path_.string(),
+                     "Give another directory with --out, or --force to replace that run.");
+  for (const char* name : run_files) {
+    const fs::file_status status = status_of(path_ / name);
+    if (!fs::exists(status)) continue;
+    if (!fs::is_regular_file(status))
+      refuse(path_, fmt::format("holds {}, which is no file of a run{}", name,
+                                fs::is_symlink(status) ? " but a symbolic link" : ""));
+    if (!holds_run) refuse(path_, fmt::format("holds {}, and no run that could own it", name));
+  }
+}
+
+void RunDirectory::clear() {
+  std::error_code error;
+  for (const fs::path& state : listed_states(path_)) {
+    if (fs::is_regular_file(status_of(state))) fs::remove(state, error);
+  }
+  if (fs::is_directory(status_of(path_ / "fields")))
+    fs::remove(path_ / "fields", error);  // stays where it holds something else
+  for (const char* name : run_files) {
+    fs::remove(path_ / name, error);
+    if (error) refuse(path_, fmt::format("cannot lose {}: {}", name, error.message()));
+  }
+}
+
+void RunDirectory::abandon() {
+  std::error_code not_empty;
+  if (fresh_) fs::remove(path_, not_empty);
 }
 
 }  // namespace abut

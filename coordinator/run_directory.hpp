@@ -8,15 +8,32 @@ namespace abut {
 /// Where the files of a run go when the command line does not say: runs/<scene name>.
 std::filesystem::path default_run_directory(const std::string& scene_path);
 
-/// Makes the directory and its parents. Throws InputError when it holds a run already (unless
-/// `force`) or cannot be written; then nothing has been made. True when it was not there before.
-bool make_run_directory(const std::filesystem::path& directory, bool force);
+/// The directory of one run, which no other run uses while this object lives. The lock is on the
+/// directory itself and goes with the process, however that ends: nothing stale can be left.
+/// Symbolic links in the directory are never followed, and nothing but what a run wrote is removed.
+class RunDirectory {
+ public:
+  /// Makes the directory and its parents. Throws InputError when it holds a run already (unless
+  /// `force`) or files of a run's names that are no run's, when another run uses it, or when it
+  /// cannot be written; then nothing has been changed.
+  RunDirectory(std::filesystem::path directory, bool force);
+  ~RunDirectory();
+  RunDirectory(const RunDirectory&) = delete;
+  RunDirectory& operator=(const RunDirectory&) = delete;
 
-/// Takes away an empty run directory; one that holds something stays.
-void remove_run_directory(const std::filesystem::path& directory);
+  const std::filesystem::path& path() const { return path_; }
+  /// Takes out the files of an earlier run, so that none is taken for the new one's. Throws
+  /// InputError.
+  void clear();
+  /// The run never begins: takes the directory away again if it was made here and is empty.
+  void abandon();
 
-/// Takes out the files of an earlier run, so that none is taken for the new one's. Throws
-/// InputError.
-void clear_run_directory(const std::filesystem::path& directory);
+ private:
+  void refuse_what_stays(bool force) const;
+
+  std::filesystem::path path_;
+  int lock_ = -1;  // descriptor of the directory
+  bool fresh_ = false;
+};
 
 }  // namespace abut

@@ -1,6 +1,7 @@
 #include "messaging/zmq_channel.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -52,6 +53,19 @@ bool receive_part(zmq::socket_t& socket, zmq::message_t& part) {
 /// False when the transport cannot take the part now (no such peer, full queue, signal).
 bool send_part(zmq::socket_t& socket, const void* data, std::size_t size, int flags) {
   return zmq_send(socket.handle(), data, size, flags | ZMQ_DONTWAIT) >= 0;
+}
+
+/// libzmq removes whatever lies where its socket is to be: a file of somebody else.
+void refuse_existing_file(const std::string& endpoint) {
+  constexpr std::string_view local = "ipc://";
+  if (!endpoint.starts_with(local)) return;
+  const std::string path = endpoint.substr(local.size());
+  struct stat there {};
+  if (path.starts_with('@') || lstat(path.c_str(), &there) != 0) return;  // @: a name, no file
+  throw InputError(fmt::format("cannot listen at {}: this file exists", endpoint),
+                   "network.endpoint",
+                   "name a path that is not there; a socket that a killed run has left can be "
+                   "removed by hand");
 }
 
 Bytes bytes_of(const zmq::message_t& message) {
@@ -108,6 +122,7 @@ ZmqHub::ZmqHub(const Limits& limits) : context_(1), socket_(context_, zmq::socke
 ZmqHub::~ZmqHub() = default;
 
 std::string ZmqHub::bind(const std::string& endpoint) {
+  refuse_existing_file(endpoint);
   try {
     socket_.bind(endpoint);
   } catch (const zmq::error_t& error) {

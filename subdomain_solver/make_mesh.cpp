@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "subdomain_solver/fe/exodus_file.hpp"
+#include "subdomain_solver/fe/file_digest.hpp"
 #include "subdomain_solver/fe/gmsh_file.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
 
@@ -156,6 +157,17 @@ void name_points(const BodySpec& spec, const Place& place, Mesh& mesh) {
     }
     mesh.node_sets[name] = {node};
   }
+}
+
+std::string on_file(const SolidShapeSpec& spec) {
+  return std::visit(
+      [](const auto& mesh) -> std::string {
+        if constexpr (!requires { mesh.file; }) return "";
+        else
+          return fmt::format(" on {} (digest {:016x})",
+                             mesh.file.substr(mesh.file.rfind('/') + 1), digest_of_file(mesh.file));
+      },
+      spec.mesh);
 }
 
 Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,

@@ -130,7 +130,7 @@ std::unique_ptr<Subdomain> make_modal_body(const BodySpec& spec, const Document&
   const std::size_t nodal = static_cast<std::size_t>(nodes.dofs());
   for (std::unique_ptr<Load>& load : make_loads(spec, place, nodes))
     parts.problem->loads.push_back(std::make_unique<LiftedLoad>(std::move(load), *map, nodal));
-  parts.rung = words_of(basis);
+  parts.rung = words_of(basis) + on_file(modal);
   parts.motion = modal_start(initial_motion(spec, place, nodes), constraints.supports,
                              mass_matrix(nodes, form), basis, nodes, *model, parts.rung);
   parts.scheme =

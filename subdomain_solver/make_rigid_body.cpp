@@ -87,7 +87,7 @@ std::unique_ptr<Subdomain> make_rigid_body(const BodySpec& spec, const Document&
                   std::numeric_limits<double>::infinity(), integrator.mass,
                   fmt::format("exact free motion, step {:g} s", integrator.step)};
   parts.reduced = std::move(body);
-  parts.rung = "rigid";
+  parts.rung = "rigid" + on_file(model);
   parts.deforms = false;
   const std::string name = path.substr(path.rfind('.') + 1);
   std::unique_ptr<SolidBody> made = std::make_unique<SolidBody>(name, std::move(parts), ports);

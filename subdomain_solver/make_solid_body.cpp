@@ -41,6 +41,7 @@ std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document&
   const auto limit = [&] {
     return stable_step(model, parts.motion.q, std::vector<double>(model.history_size(), 0.0));
   };
+  parts.rung += on_file(fe);
   MakeWatch watch;  // the tangent of linear bodies stays
   if (!model.is_linear()) watch = [&] { return std::make_unique<HighestFrequency>(model); };
   parts.scheme = make_scheme(spec, place, *parts.problem, limit, watch);

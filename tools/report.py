@@ -15,8 +15,9 @@ from pathlib import Path
 
 from abut_tools.page import (CHART_LIBRARY, canvas_of, filled, fitting_page, script_json, section,
                              table_of, write_whole)
-from abut_tools.tables import (COLOURS, Figure, Table, ToolError, colour_of, plus, read_json,
-                               read_table, scaled_unit, shown, sum_of, with_jumps)
+from abut_tools.tables import (COLOURS, Figure, Table, ToolError, colour_of, less, plus,
+                               read_json, read_table, scaled_unit, shown, since_begin, sum_of,
+                               with_jumps)
 
 TEMPLATE = Path(__file__).resolve().with_suffix(".html")
 CURVE_POINTS = 2000     # more than a screen has columns
@@ -120,24 +121,30 @@ def body_figures(run: Run) -> list[Figure]:
     return [mean] + energies
 
 
+def own_energy(run: Run, body: str) -> list:
+    """Kinetic and stored, less what loads have put in."""
+    return less(run.history[f"{body}.total"], run.history[f"{body}.external_work"])
+
+
 def energy_error_figure(run: Run) -> Figure:
+    """What the measures energy.*.relative_* are the largest and last values of, in per cent: only
+    where there is something to compare with, relative to the run's own scales."""
     figure = Figure("energy_error", "Energy error", "error", "%")
+    scales = run.summary.get("energy_scales", {})
     times = run.history["time"]
-    totals = {body: run.history[f"{body}.total"] for body in run.bodies()}
-    for body, values in totals.items():
-        if run.exact is None or f"{body}.total" not in run.exact:
-            continue
-        exact = run.exact[f"{body}.total"]
-        largest = max((abs(v) for v in exact if v is not None), default=0.0)
-        if largest > 0.0:
-            error = [None if v is None or e is None else 100.0 * (v - e) / largest
-                     for v, e in zip(values, exact)]
-            figure.add(body, colour_of(run.bodies(), body), times, error)
-    together = sum_of(list(totals.values())) if totals else []
-    first = next((v for v in together if v is not None), 0.0)
-    if first:
-        error = [None if v is None else 100.0 * (v - first) / first for v in together]
-        figure.add("all bodies", COLOURS[2], times, error)
+    for body, scale in scales.get("bodies", {}).items():
+        exact = run.exact is not None and f"{body}.total" in run.exact
+        error = (less(run.history[f"{body}.total"], run.exact[f"{body}.total"]) if exact
+                 else since_begin(own_energy(run, body)))
+        if scale and any(error):
+            figure.add(body, colour_of(run.bodies(), body), times, plus(error, 0.0, 100.0 / scale))
+    members = {member["name"] for body in run.summary.get("bodies", [])
+               for member in body.get("members", [])}
+    held = [own_energy(run, body) for body in run.bodies() if body not in members]
+    held += [run.history[match[0]] for match in run.history.matching(r"(.+)\.whole")]
+    if scales.get("total") and held:
+        drift = since_begin(sum_of(held))
+        figure.add("all bodies", COLOURS[2], times, plus(drift, 0.0, 100.0 / scales["total"]))
     return figure
 
 
@@ -257,6 +264,20 @@ def status_of(run: Run) -> tuple[str, str]:
     return "completed", "ok"
 
 
+def reason_of(run: Run) -> str:
+    """Why a run is no success: what ended it, or else what it missed."""
+    if status_of(run)[1] == "ok":
+        return ""
+    failures = [event for event in run.events if event.get("kind") == "failure"]
+    lines = [f"{shown(event.get('time'))} s: {event.get('text', '')}" for event in failures[-1:]]
+    if run.summary.get("status") != "completed":
+        lines += [note for note in run.summary.get("notes", []) if "finite" in note or not lines]
+    lines += [f"{result['measure']} is {shown(result['got'])}, expected {result['expected']}"
+              for result in run.summary.get("expectations", [])
+              if not result["pass"] and run.summary.get("status") == "completed"]
+    return "".join(f'<p class="reason">{html.escape(line)}</p>' for line in lines)
+
+
 def page_of(run: Run, library: str, limit: int) -> str:
     figures = figures_of(run)
     times = [abs(t) for t in run.history["time"] if t is not None]
@@ -270,7 +291,8 @@ def page_of(run: Run, library: str, limit: int) -> str:
     return filled(
         TEMPLATE, library,
         title=html.escape(title), status=html.escape(status), kind=kind,
-        summary=section("Expectations", expectations_table(run)) +
+        summary=section("Why this is no success", reason_of(run)) +
+        section("Expectations", expectations_table(run)) +
         section("Against the closed form", closed_form_table(run)),
         figures=section("Figures", dashes + f'<div class="figures">{plots}</div>') if plots else "",
         details=details(run), notes=section("Notes", f"<ul>{notes}</ul>") if notes else "",

@@ -34,12 +34,15 @@ class BalanceMeasures {
     Vector angular{};  // [kg m^2/s] about the origin
     double angular_max = 0.0;
     int bar = -1;  // of the closed form; -1: not described by it, or a wall
+    bool exchanged = false;  // energy, through an interface that was closed
   };
 
   void begin(const WindowReport& report);
+  void follow_exchange(const WindowReport& report);
   double total_energy(const WindowReport& report, std::size_t record) const;  // [J]
   void add(const WindowReport& report, std::size_t record);
   void add_angular(const WindowReport& report, std::size_t record);
+  void write_energy(const RecordedBody& recorded, const Body& body, Measures& out) const;
   void write_angular(Measures& out) const;
 
   const RunStart& start_;

@@ -20,6 +20,7 @@ class ClosedFormCsv {
   ClosedFormCsv(const std::filesystem::path& file, const ClosedForm& form, const RunStart& start);
 
   void write_row(double time);
+  void flush() { file_.flush(); }
   void close() { file_.close(); }
 
  private:

@@ -1,5 +1,6 @@
 #include "coordinator/record/csv_history.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -80,6 +81,7 @@ std::string CsvHistory::header() const {
         add_balance_names(text, recorded);
       }
     for (const std::string& column : body.columns) text += fmt::format(",{}.{}", body.name, column);
+    if (!body.members.empty()) text += fmt::format(",{}.whole [J]", body.name);
   }
   for (const InterfaceColumn& interface : interfaces_) {
     if (interface.has_gap) text += fmt::format(",{}.gap [m]", interface.info.name);
@@ -95,6 +97,11 @@ void CsvHistory::on_window(const WindowReport& report) {
     write_row(report, r);
     if (exact_) exact_->write_row(records[r].time);
   }
+  // What is on the disk is what a run that is killed leaves.
+  if (clock_.now() < next_flush_) return;
+  next_flush_ = clock_.now() + std::chrono::milliseconds(500);
+  history_->flush();
+  if (exact_) exact_->flush();
 }
 
 void CsvHistory::number(double value) {
@@ -128,6 +135,8 @@ void CsvHistory::write_row(const WindowReport& report, std::size_t record) {
     const std::vector<double>& told = response.records[record].columns;
     for (std::size_t k = 0; k < start_.bodies[b]->columns.size(); ++k)
       number(k < told.size() ? told[k] : nothing);
+    const Energy& whole = response.records[record].energy;
+    if (!start_.bodies[b]->members.empty()) number(whole.total() - whole.external_work);
   }
   for (std::size_t i = 0; i < interfaces_.size(); ++i) {
     const InterfaceColumn& column = interfaces_[i];

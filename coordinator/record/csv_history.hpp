@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/clock.hpp"
 #include "coordinator/closed_form.hpp"
 #include "coordinator/record/closed_form_csv.hpp"
 #include "coordinator/record/observer.hpp"
@@ -17,8 +18,9 @@
 namespace abut {
 
 /// history.csv: one row per record, numbers in their shortest exact form, units in the header.
-/// Where a closed form is named also closed_form.csv at the same times. A number that is not finite
-/// leaves its cell empty (Measures reports it).
+/// Twice a second what there is reaches the files. Where a closed form is named also
+/// closed_form.csv at the same times. A number that is not finite leaves its cell empty
+/// (Measures reports it).
 class CsvHistory : public Observer {
  public:
   /// `form` may be null; else it must outlive the history.
@@ -55,6 +57,8 @@ class CsvHistory : public Observer {
   std::optional<TextFile> history_;
   std::optional<ClosedFormCsv> exact_;
   fmt::memory_buffer row_;
+  SystemClock clock_;
+  Clock::Time next_flush_{};
 };
 
 /// Names of the columns of a port and of a body, each with a comma before it.

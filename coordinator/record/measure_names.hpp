@@ -47,6 +47,9 @@ struct Measures {
   MeasureScope scope;
   std::map<std::string, double> values;
   std::map<std::string, std::string> notes;  // by measure: why there is no value
+  // [J] that errors of the energy are relative to: by body where there is an oracle, and in all
+  std::map<std::string, double> energy_scales;
+  double total_energy_scale = 0.0;
 
   void set(const std::string& name, double value) { values[name] = value; }
   void none(const std::string& name, const std::string& why);

@@ -41,7 +41,10 @@ std::string ProgressLine::text(const WindowReport& report) const {
 void ProgressLine::on_event(const RunEvent& event) {
   erase();
   if (event.thrown) return;
-  const std::string line = fmt::format("{:.6e} s: {}", event.time, event.text);
+  const bool named = event.subject.empty() ||
+                     event.text.find("'" + event.subject + "'") != std::string::npos;
+  const std::string line = fmt::format("{:.6e} s: {}{}", event.time,
+                                       named ? "" : event.subject + ": ", event.text);
   if (event.kind == RunEvent::Kind::failure)
     log_error(line);
   else if (event.kind == RunEvent::Kind::warning)

@@ -126,6 +126,13 @@ Json interfaces_object(const RunStart& start) {
   return object;
 }
 
+/// [J] that the errors of energies are relative to; for pages of curves.
+Json energy_scales_object(const Measures& measures) {
+  Json object = {{"total", number(measures.total_energy_scale)}, {"bodies", Json::object()}};
+  for (const auto& [body, scale] : measures.energy_scales) object["bodies"][body] = number(scale);
+  return object;
+}
+
 Json timing_object(const RunEnd& end, const RunStart& start) {
   Json timing = {{"wall_s", number(end.wall_seconds)}, {"compute_s", Json::object()}};
   for (std::size_t b = 0; b < std::min(start.bodies.size(), end.compute_seconds.size()); ++b)
@@ -173,6 +180,7 @@ std::string Summary::text(const RunEnd& end) const {
   summary["time"] = {{"begin", start_.begin}, {"end", start_.end}, {"reached", number(end.time)}};
   summary["measures"] = measures_object(recorder_.measures(), notes);
   summary["expectations"] = expectations_array(heading_.expectations, recorder_.measures(), notes);
+  summary["energy_scales"] = energy_scales_object(recorder_.measures());
   if (form_ != nullptr) summary["closed_form"] = closed_form_object(*form_);
   summary["state_hash"] =
       end.state_hash ? Json(fmt::format("{:016x}", *end.state_hash)) : Json(nullptr);

@@ -1,5 +1,8 @@
 #include "coordinator/record/text_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -14,11 +17,19 @@ namespace {
 
 constexpr std::size_t piece = std::size_t{1} << 17;  // bytes: few system calls, little to lose
 
+/// Never an existing file, and never the target of a symbolic link.
+std::FILE* create(const std::filesystem::path& path) {
+  const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) return nullptr;
+  std::FILE* file = fdopen(descriptor, "wb");
+  if (file == nullptr) close(descriptor);
+  return file;
+}
+
 }  // namespace
 
-TextFile::TextFile(std::filesystem::path path)
-    : path_(std::move(path)), file_(std::fopen(path_.c_str(), "wb")) {
-  if (!file_) fail("opened");
+TextFile::TextFile(std::filesystem::path path) : path_(std::move(path)), file_(create(path_)) {
+  if (!file_) fail("made");
   if (std::setvbuf(file_.get(), nullptr, _IOFBF, piece) != 0) fail("buffered");
 }
 
@@ -50,10 +61,11 @@ void TextFile::fail(const char* doing) const {
 void write_whole(const std::filesystem::path& path, std::string_view text) {
   std::filesystem::path temporary = path;
   temporary += ".tmp";
+  std::error_code error;
+  std::filesystem::remove(temporary, error);  // what a run that was killed has left
   TextFile file(temporary);
   file.append(text);
   file.close();
-  std::error_code error;
   std::filesystem::rename(temporary, path, error);
   if (error)
     throw RunError(fmt::format("cannot be renamed to {}: {}", path.string(), error.message()),

@@ -8,7 +8,8 @@
 
 namespace abut {
 
-/// A file that grows during a run, written in large pieces. Every failure to write is a RunError.
+/// A file that grows during a run, written in large pieces. It is made new: one that exists, or a
+/// symbolic link of its name, is never written to. Every failure to write is a RunError.
 class TextFile {
  public:
   explicit TextFile(std::filesystem::path path);

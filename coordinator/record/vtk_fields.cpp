@@ -29,10 +29,12 @@ void VtkFields::on_start(const RunStart&) {
     if (body->describe().fields.empty()) continue;
     shown_.push_back({body, VtuFile(body->grid(), body->describe().fields)});
   }
-  std::error_code error;
+  std::error_code error, ignored;
   std::filesystem::create_directory(directory_ / folder, error);
-  if (error)
-    throw RunError(fmt::format("cannot be made: {}", error.message()),
+  const bool made = std::filesystem::is_directory(
+      std::filesystem::symlink_status(directory_ / folder, ignored));
+  if (error || !made)
+    throw RunError(fmt::format("cannot be made: {}", error ? error.message() : "it is no folder"),
                    (directory_ / folder).string(),
                    "Check that the folder above is writable and has space left.");
   list_.emplace(directory_ / "fields.pvd");

@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -163,6 +164,29 @@ class SystemTest(unittest.TestCase):
         if len(columns) == 2:
             self.assertEqual(columns[0][0], columns[1][0], "both tables have the same times")
             self.assertLessEqual(set(columns[1][1]), set(columns[0][1]), "and the same names")
+
+
+    def assert_page_tells_the_measures(self, folder: Path):
+        """The curves of the energy errors on a run's page, held against the run's own measures."""
+        self.succeed(self.abut("report", folder))
+        page = (folder / "report.html").read_text(encoding="utf-8")
+        data = re.search(r"<script>const figures = (.*?);</script>", page, re.DOTALL)
+        drawn = {curve["label"]: curve["y"] for figure in json.loads(data[1])
+                 if figure["name"] == "energy_error" for curve in figure["curves"]}
+        measures = self.summary(folder)["measures"]
+        told = {match[1]: name for name in measures
+                if (match := re.fullmatch(r"energy\.(.+)\.relative_(error|drift)_max", name))}
+        self.assertIn("total", told)
+        for body, name in told.items():
+            of = "all bodies" if body == "total" else body
+            percent = [abs(value) for value in drawn.get(of, [])]
+            if measures[name] is None:
+                self.assertEqual(percent, [], f"{name} has no value, so {of} has no curve")
+            elif percent or measures[name] > 1e-15:
+                # Cells of the history are exact; pages round to seven digits, differences of
+                # energies to an eps of the energy itself.
+                self.assertAlmostEqual(max(percent), 100.0 * measures[name],
+                                       delta=1e-6 * 100.0 * measures[name] + 1e-12, msg=name)
 
 
 def main(arguments: int = 2):

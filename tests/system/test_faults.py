@@ -6,7 +6,9 @@ usage: test_faults.py ABUT ROOT FAKE_SOLVER [CLASS]
 
 import os
 import resource
+import shutil
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -19,9 +21,8 @@ TWO_BARS = ROOT / "configs" / "two_bars.yaml"
 BUSY = ["--set", "time.window=1.0e-8", "--set", "output.records_per_window=1",
         "--set", "bodies.left.integrator.central_difference.step=1.0e-8",
         "--set", "bodies.right.integrator.central_difference.step=1.0e-8"]
-# The bars fly apart: a thousand windows of ten thousand steps in one request, which takes a second
-# or more.
-LONG = ["--set", "time={begin: 0.0, end: 1.0, window: 1.0e-5}",
+# The bars fly apart: a window of ten million steps is a request that takes a second or more.
+LONG = ["--set", "time={begin: 0.0, end: 1.0, window: 1.0e-2}",
         "--set", "bodies.left.initial.velocity=[-100.0]",
         "--set", "bodies.right.initial.velocity=[100.0]",
         "--set", "bodies.left.integrator.central_difference.step=1.0e-9",
@@ -29,6 +30,10 @@ LONG = ["--set", "time={begin: 0.0, end: 1.0, window: 1.0e-5}",
 DEADLINE = 1.0  # [s] of the scenes here
 # To end processes: 0.5 s to SIGKILL, and what a loaded machine takes on top.
 ENDING = 3.0
+
+
+def limit(what: int, count: int):
+    resource.setrlimit(what, (count, count))
 
 
 def launch(body: str, how: str) -> list:
@@ -110,7 +115,7 @@ class LostSolvers(FaultTest):
         self.assert_failure_is_written("body 'left' has not answered")
 
     def test_a_long_solve_shows_progress_and_outlives_the_deadline(self):
-        # One request of 1000 windows takes seconds, with signs of progress in between.
+        # The run's one window takes seconds, with signs of progress in between.
         deadline = 1.5
         self.succeed(self.end(self.run_in_background(
             *LONG, "--set", "time.end=1.0e-2", "--set", f"network.request_deadline={deadline}",
@@ -241,7 +246,7 @@ class Endings(FaultTest):
 
     def test_an_interrupted_run_is_whole_and_leaves_no_solver(self):
         placements = {"spawned": [], "local": ["--local"]}
-        for sent in (signal.SIGINT, signal.SIGTERM):
+        for sent in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE):
             for name, placement in placements.items():
                 for arguments in (BUSY, LONG):
                     with self.subTest(signal=sent, placement=name, arguments=arguments[1]):
@@ -281,17 +286,157 @@ class Endings(FaultTest):
         self.assertEqual({path: path.read_bytes() for path in self.out.iterdir()}, before)
 
     def test_a_full_disk_ends_the_run_with_the_file_that_did_not_fit(self):
-        limit = 20_000  # bytes per file: the summary fits, the table does not
-
-        def small_files():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing fails, as on a full disk
-            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-
+        # bytes per file: the summary fits, the table does not
         run = self.run_in_background("--set", "output.records_per_window=10",
-                                     preexec_fn=small_files, restore_signals=False)
+                                     preexec_fn=lambda: limit(resource.RLIMIT_FSIZE, 20_000))
         self.assert_fails(run, 5.0, "history.csv", "cannot be written", "space left")
         self.assertEqual(self.summary()["status"], "failed")
         self.assertIn("history.csv", self.events()[-1]["text"])
+
+    def test_what_is_printed_into_a_full_device_is_an_error(self):
+        placed = ["run", self.scene, "--out", self.out, "--force"]
+        for arguments in (["check", self.scene], ["reference"], ["--help"], placed,
+                          [*placed, "--local"]):
+            with self.subTest(arguments=arguments), open("/dev/full", "wb") as full:
+                result = self.end(subprocess.Popen(
+                    [ABUT, *arguments], stdout=full, stderr=subprocess.PIPE, text=True,
+                    env=self.environment, cwd=self.folder))
+                self.assertEqual(result.returncode, 3, result.stderr)
+                self.assertIn("No space left", result.stderr)
+        self.assertEqual(self.summary()["status"], "completed", "its files are elsewhere")
+
+    def test_printing_into_a_file_at_its_limit_is_an_error(self):
+        with (self.folder / "reference.md").open("wb") as file:
+            result = self.end(subprocess.Popen(
+                [ABUT, "reference"], stdout=file, stderr=subprocess.PIPE, text=True,
+                preexec_fn=lambda: limit(resource.RLIMIT_FSIZE, 5_000)))
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("File too large", result.stderr)
+
+    def test_few_descriptors_end_in_words_or_are_enough(self):
+        codes = set()
+        for placement in ([], ["--local"]):
+            for count in (8, 12, 16, 24, 32, 48, 256):
+                with self.subTest(count=count, placement=placement):
+                    result = self.abut("run", self.scene, "--out", self.out, "--force", *placement,
+                                       preexec_fn=lambda: limit(resource.RLIMIT_NOFILE, count))
+                    self.assertIn(result.returncode, (0, 3), result.stderr)
+                    if result.returncode == 3:
+                        self.assertIn("Too many open files", result.stderr)
+                    codes.add((count, result.returncode))
+        self.assertIn((16, 3), codes)
+        self.assertIn((256, 0), codes)
+        self.assertNotIn((256, 3), codes)
+
+    def test_a_reader_that_goes_away_leaves_a_whole_run(self):
+        for placement in ([], ["--local"]):
+            with self.subTest(placement=placement):
+                run = subprocess.Popen([ABUT, "run", self.scene, "--out", self.out, "--force",
+                                        *placement, *BUSY], stdout=subprocess.PIPE,
+                                       stderr=subprocess.STDOUT, env=self.environment,
+                                       cwd=self.folder)
+                run.stdout.readline()
+                run.stdout.close()
+                self.assertEqual(run.wait(60), 128 + signal.SIGPIPE)
+                self.assertEqual(self.summary()["status"], "interrupted")
+                self.assert_whole(self.out, rows=1)
+
+
+class LongSolids(FaultTest):
+    """A body that nothing touches could go from begin to end in one request; it must not."""
+
+    def start_column(self, *arguments: object):
+        return self.start(ABUT, "run", ROOT / "configs" / "solids" / "torsion_column.yaml",
+                          "--set", "time.end=1.0", "--out", self.out, "--force", *arguments)
+
+    def wait_for_rows(self, count: int) -> int:
+        until = time.monotonic() + 60.0
+        table = self.out / "history.csv"
+        while not table.is_file() or len(table.read_bytes().splitlines()) < count:
+            self.assertLess(time.monotonic(), until, "the records do not come")
+            time.sleep(0.05)
+
+    def test_an_interrupted_one_keeps_its_records(self):
+        for placement in ([], ["--local"]):
+            with self.subTest(placement=placement):
+                run = self.start_column(*placement)
+                self.wait_for_rows(20)
+                run.send_signal(signal.SIGINT)
+                self.assertEqual(self.end(run, 10.0).returncode, 128 + signal.SIGINT)
+                self.assertGreater(self.summary()["time"]["reached"], 15.0e-5)
+                self.assert_whole(self.out, rows=19)
+                shutil.rmtree(self.out)
+
+    def test_a_killed_one_keeps_what_was_flushed(self):
+        run = self.start_column("--local")
+        self.wait_for_rows(20)
+        run.kill()
+        self.end(run)
+        self.assertGreaterEqual(len((self.out / "history.csv").read_bytes().splitlines()), 20)
+
+    def test_a_failed_one_keeps_the_records_before(self):
+        # Twisted so fast that an element turns inside out after eleven windows of one request.
+        twist = 'bodies.column.initial.velocity_field=["-1.0e6 * y * z", "1.0e6 * x * z", "0"]'
+        result = self.end(self.start_column("--local", "--set", "time.window=1.0e-6",
+                                            "--set", twist))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(self.summary()["status"], "failed")
+        self.assert_whole(self.out, rows=3)
+
+
+class Directories(FaultTest):
+    def test_a_second_run_is_refused_while_the_first_one_writes(self):
+        run = self.run_in_background(*BUSY)
+        self.wait_for_windows()
+        for force in ([], ["--force"]):
+            second = self.abut("run", self.scene, "--local", "--out", self.out, *force)
+            self.assertEqual(second.returncode, 2, second.stderr)
+            self.assertIn("is in use by another run", second.stderr)
+        run.send_signal(signal.SIGINT)
+        self.assertEqual(self.end(run, ENDING).returncode, 128 + signal.SIGINT)
+        self.assert_whole(self.out)
+        self.succeed(self.abut("run", self.scene, "--local", "--force", "--out", self.out))
+
+    def test_a_killed_run_blocks_nobody(self):
+        run = self.run_in_background(*BUSY)
+        self.wait_for_windows()
+        run.kill()
+        self.end(run)
+        self.succeed(self.abut("run", self.scene, "--local", "--force", "--out", self.out))
+        self.assert_whole(self.out)
+
+    def test_an_ipc_endpoint_never_takes_the_place_of_a_file(self):
+        precious = self.folder / "precious"
+        precious.write_text("mine", encoding="utf-8")
+        result = self.abut("run", self.scene, "--out", self.out, *launch("left", "connect: {}"),
+                           "--set", f"network.endpoint=ipc://{precious}")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("this file exists", result.stderr)
+        self.assertEqual(precious.read_text(encoding="utf-8"), "mine")
+
+    def test_a_connected_body_of_another_mesh_is_refused(self):
+        """Same topology, same mass: only a digest can tell."""
+        text = (ROOT / "configs" / "solids" / "gmsh_part.yaml").read_text(encoding="utf-8")
+        mesh = (ROOT / "configs" / "meshes" / "block.msh").read_text(encoding="utf-8")
+        for place in ("here", "there"):
+            (self.folder / place).mkdir()
+            (self.folder / place / "block.msh").write_text(mesh, encoding="utf-8")
+        scene = self.folder / "here" / "scene.yaml"
+        scene.write_text(text.replace("../meshes/block.msh", "block.msh"), encoding="utf-8")
+        for change, code in (("", 0), ("\n", 2)):
+            (self.folder / "there" / "block.msh").write_text(mesh + change, encoding="utf-8")
+            endpoint = f"tcp://127.0.0.1:{free_port()}"
+            run = self.start("sh", "-c", f"cd here && exec {ABUT} run scene.yaml --force --out out "
+                             f"--set 'bodies.part.launch={{connect: {{}}}}' "
+                             f"--set network.endpoint={endpoint}")
+            solver = self.start("sh", "-c", f"cd there && exec {SOLVER} --connect {endpoint} "
+                                "--body part")
+            result = self.end(run)
+            self.assertEqual(result.returncode, code, result.stderr)
+            self.assertEqual(self.end(solver).returncode, 0 if code == 0 else 3)
+            if code != 0:
+                self.assertIn("its solver has made another body", result.stderr)
+                self.assertIn("bodies.part", result.stderr)
 
 
 if __name__ == "__main__":

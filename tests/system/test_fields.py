@@ -86,7 +86,8 @@ class Fields(SystemTest):
 
     def test_fields_change_no_bit_and_are_the_same_in_every_placement(self):
         for scene in (TWO_BARS, PAIR, WALL, SOLIDS / "torsion_column.yaml",
-                      SOLIDS / "clamped_wave.yaml", SOLIDS / "rigid_spinning_body.yaml"):
+                      SOLIDS / "clamped_wave.yaml", SOLIDS / "rigid_spinning_body.yaml",
+                      SOLIDS / "spinning_body.yaml", SOLIDS / "cantilever_modal.yaml"):
             with self.subTest(scene=scene.stem):
                 without = self.run_in(f"{scene.stem}_without", scene, "--local")
                 self.assertFalse((without / "fields.pvd").exists())

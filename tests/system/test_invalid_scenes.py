@@ -59,6 +59,15 @@ class InvalidScenes(unittest.TestCase):
         self.assertEqual(result.stdout, "")
         self.assertEqual(result.returncode, 2)
 
+    def test_an_empty_scene_is_said_to_be_empty(self):
+        for text in ("", "\n\n", "---\n", "# nothing\n", "null\n"):
+            with self.subTest(text=text):
+                scene = self.folder / "scene.yaml"
+                scene.write_text(text, encoding="utf-8")
+                self.assert_refused(abut("check", scene),
+                                    f"{scene}: is empty. Write a scene as key: value lines, "
+                                    "beginning with meta:, time:, bodies:.")
+
     def test_every_scene_is_refused_with_its_message_and_writes_nothing(self):
         scenes = sorted((ROOT / "configs" / "invalid").glob("*.yaml"))
         self.assertGreater(len(scenes), 30, "the scenes are found")

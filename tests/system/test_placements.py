@@ -51,6 +51,7 @@ class Placements(SystemTest):
                 self.assertIn("valid", self.succeed(self.abut("check", scene)).stdout)
                 local = self.run_in(f"{stem}_local", scene, "--local")
                 self.assertTrue(self.summary(local)["expectations"], "the scene expects something")
+                self.assert_page_tells_the_measures(local)
                 spawned = self.run_in(f"{stem}_spawned", scene)
                 self.assertEqual(self.bits(spawned), self.bits(local))
                 again = self.run_in(f"{stem}_again", local / "scene.resolved.yaml", "--local")

@@ -43,17 +43,18 @@ def bar_row(side: int, t: float) -> list[float]:
 def make_run(folder: Path, rows: int = 100, title: str = "Two bars <collide>") -> None:
     folder.mkdir(parents=True, exist_ok=True)
     names = HEADER[:1] + [n.format(b) for b in ("left", "right") for n in BODY] + HEADER[1:]
+    names += [f"{b}.external_work [J]" for b in ("left", "right")]
     with (folder / "history.csv").open("w", newline="") as history, \
             (folder / "closed_form.csv").open("w", newline="") as exact:
         writers = csv.writer(history), csv.writer(exact)
         writers[0].writerow(names)
-        writers[1].writerow(names[:-1])
+        writers[1].writerow(names[:-3])
         for k in range(1, rows + 1):
             t = -2e-4 + 1e-3 * k / rows
             closed = 0.0 <= t < 5e-4
             gap = 200.0 * max(-t, t - 5e-4, 0.0)
-            row = [t] + bar_row(0, t) + bar_row(1, t) + [gap, int(closed), 2 * closed]
-            writers[1].writerow(row[:-1])
+            row = [t] + bar_row(0, t) + bar_row(1, t) + [gap, int(closed), 2 * closed, 0.0, 0.0]
+            writers[1].writerow(row[:-3])
             ripple = 1.0 + 0.002 * math.sin(40.0 * k)
             row[3], row[11] = row[3] * ripple, row[11] * ripple
             row[6] += 1e-5 * closed
@@ -80,6 +81,7 @@ def summary_of(title: str) -> dict:
         "closed_form": {"name": "bar_impact", "interface": "impact", "begin": 0.0, "end": 5e-4,
                         "duration": 5e-4, "force": 100.0, "closing_speed": 200.0,
                         "bodies": bodies},
+        "energy_scales": {"total": 2.5, "bodies": {"left": 1.25, "right": 1.25}},
         "ports": {"left.tip": {"position": -0.02, "normal": 1.0},
                   "right.tip": {"position": 0.02, "normal": -1.0}},
         "interfaces": {"impact": {"sides": ["left.tip", "right.tip"]}},
@@ -176,6 +178,46 @@ class Report(unittest.TestCase):
         self.assertAlmostEqual(max(right["y"]), 100.2, delta=0.01)  # compression is positive
         error = next(c for c in curves["energy_error"] if c["label"] == "left")
         self.assertAlmostEqual(max(error["y"]), 100.0 * 1e-5 / 1.25, places=9)  # %
+
+    def test_energy_that_loads_put_in_is_no_error(self):
+        make_run(self.folder)
+        (self.folder / "closed_form.csv").unlink()
+        path = self.folder / "history.csv"
+        header, *lines = path.read_text().splitlines()
+        rows = [line.split(",") for line in lines]
+        for k, row in enumerate(rows):  # pulled from rest: all that it holds is work, and an error
+            row[6], row[19], row[20] = str(0.01 * k + 1e-4 * (k == 70)), "0", str(0.01 * k)
+            row[14] = "0"
+        path.write_text("\n".join([header, *(",".join(row) for row in rows)]) + "\n")
+        summary = summary_of("Loaded")
+        summary["energy_scales"] = {"total": 0.99, "bodies": {"left": 0.99}}
+        (self.folder / "summary.json").write_text(json.dumps(summary))
+        self.assertEqual(report(self.folder).returncode, 0)
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        curves = {curve["label"]: curve["y"] for curve in curves_of(page)["energy_error"]}
+        self.assertEqual(set(curves), {"left", "all bodies"}, "right has nothing to compare with")
+        for label, values in curves.items():
+            self.assertAlmostEqual(max(map(abs, values)), 100.0 * 1e-4 / 0.99, places=7, msg=label)
+
+    def test_page_of_a_failed_run_opens_with_the_reason(self):
+        make_run(self.folder)
+        summary = summary_of("Broken")
+        summary.update(status="failed", expectations=[])
+        (self.folder / "summary.json").write_text(json.dumps(summary))
+        with (self.folder / "events.jsonl").open("a") as events:
+            events.write(json.dumps({"time": 4e-4, "kind": "failure", "subject": "left",
+                                     "text": "body 'left': cell 7 is inverted & lost",
+                                     "values": {}}) + "\n")
+        self.assertEqual(report(self.folder).returncode, 0)
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        main = page[page.index("<main>") + len("<main>"):].lstrip()
+        self.assertTrue(main.startswith("<section><h2>Why this is no success</h2>"), main[:80])
+        self.assertIn("0.0004 s: body &#x27;left&#x27;: cell 7 is inverted &amp; lost", main[:300])
+
+    def test_page_of_a_run_that_missed_an_expectation_opens_with_it(self):
+        main = self.page().split("<main>")[1].lstrip()
+        self.assertTrue(main.startswith("<section><h2>Why this is no success</h2>"), main[:80])
+        self.assertIn("momentum.total is no value, expected at most 1e-12", main[:300])
 
     def test_round_off_below_zero_opens_no_space_below_the_axis(self):
         make_run(self.folder)

@@ -3,8 +3,11 @@
 // again).
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "base/yaml_document.hpp"
 #include "coordinator/estimate.hpp"
+#include "coordinator/flight_work.hpp"
 #include "coordinator/scene.hpp"
 
 namespace abut {
@@ -55,6 +58,47 @@ TEST(Estimate, KnowsNothingOfContactWithoutAClosedForm) {
   const Estimate e = estimate(two_bars(), bodies, std::nullopt);
   EXPECT_EQ(e.contact_windows_low, 0);
   EXPECT_EQ(e.contact_windows_high, 100);
+}
+
+int flight(double window, const Description& body) {
+  const Description* bodies[] = {&body};
+  return windows_at_once(window, bodies);
+}
+
+Description solid(std::int64_t dofs, double step, double stable_step) {
+  Description body;
+  body.dim = 3;
+  body.dofs = dofs;
+  body.step = step;
+  body.stable_step = stable_step;
+  return body;
+}
+
+TEST(Flight, TakesAsManyWindowsAsAreHalfASecondOfWork) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(flight(1.0e-5, bar(1.0e-7)), 1000);  // a bar of 200 elements: what a reply may hold
+  // torsion_column.yaml: 1107 unknowns at 3 us, and a little more, ten steps to the window
+  EXPECT_EQ(flight(1.0e-5, solid(1107, 1.0e-6, none)), 14);
+  EXPECT_EQ(flight(1.0e-5, solid(3'000'000, 1.0e-6, none)), 1);  // a step of it takes longer
+  EXPECT_EQ(flight(1.0e-5, solid(1'000'000, 1.0e-6, 2.0e-6)), 1);
+  EXPECT_EQ(flight(1.0e-5, solid(10'000, 1.0e-6, 2.0e-6)), 100);
+  EXPECT_EQ(flight(1.0, solid(0, 0.0, none)), 1000);  // a wall
+  const Description one = solid(10'000, 1.0e-6, 2.0e-6);
+  const Description* two[] = {&one, &one};
+  EXPECT_EQ(windows_at_once(1.0e-5, two), 50);
+}
+
+TEST(Estimate, CountsTheFlightsOfABodyThatNothingTouches) {
+  Description column = solid(1107, 1.0e-6, std::numeric_limits<double>::infinity());
+  const Description* bodies[] = {&column};
+  const Scene scene = read_scene(Document::from_text("estimate.yaml", R"(
+meta: {title: estimate}
+time: {begin: 0.0, end: 1.0e-3, window: 1.0e-5}
+bodies: {column: {}}
+)", {}));
+  const Estimate e = estimate(scene, bodies, std::nullopt);
+  EXPECT_EQ(e.exchanges_low, 1 + 8);  // the begin; 100 windows, 14 at once
+  EXPECT_EQ(e.exchanges_high, e.exchanges_low);
 }
 
 TEST(Estimate, EveryFeatureIsEitherInUseOrNotBuilt) {

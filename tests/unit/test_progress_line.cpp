@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/log.hpp"
 #include "coordinator/record/progress_line.hpp"
 
 namespace abut {
@@ -54,6 +55,17 @@ TEST_F(ProgressLineText, StaysAwayFromFiles) {
   ProgressLine line(clock, false);
   line.on_start(start);
   EXPECT_EQ(shown(line, 0.0), "");
+}
+
+TEST_F(ProgressLineText, SaysAtWhichInterfaceAnEventIs) {
+  start_log("test", LogLevel::info);
+  ProgressLine line(clock, false);
+  testing::internal::CaptureStderr();
+  line.on_event({RunEvent::Kind::contact_opened, 0.5, "impact", "contact opens", {}});
+  line.on_event({RunEvent::Kind::warning, 0.5, "left", "body 'left' is slow", {}});
+  const std::string text = testing::internal::GetCapturedStderr();
+  EXPECT_NE(text.find("5.000000e-01 s: impact: contact opens"), std::string::npos) << text;
+  EXPECT_NE(text.find("5.000000e-01 s: body 'left' is slow"), std::string::npos) << text;
 }
 
 TEST_F(ProgressLineText, LeavesNoTraceAtTheEnd) {

@@ -283,5 +283,23 @@ TEST_F(RecordFiles, FolderThatDoesNotExistIsTheWorldsError) {
   EXPECT_THROW(write_whole(missing / "summary.json", "{}"), RunError);
 }
 
+TEST_F(RecordFiles, NothingIsWrittenThroughASymbolicLinkOrOverAFile) {
+  const std::filesystem::path mine = directory_ / "mine.txt";
+  std::ofstream(mine) << "mine";
+  std::filesystem::create_symlink(mine, directory_ / "events.jsonl");
+  EXPECT_THROW(EventLog{directory_}, RunError);
+  EXPECT_THROW(TextFile{mine}, RunError);
+  for (const char* name : {"summary.json.tmp", "summary.json"}) {
+    std::filesystem::remove(directory_ / name);
+    std::filesystem::create_symlink(mine, directory_ / name);
+    write_whole(directory_ / "summary.json", "{}");  // takes the link's place
+  }
+  EXPECT_TRUE(std::filesystem::is_regular_file(
+      std::filesystem::symlink_status(directory_ / "summary.json")));
+  std::ifstream file(mine);
+  std::string text;
+  EXPECT_TRUE(std::getline(file, text) && text == "mine") << text;
+}
+
 }  // namespace
 }  // namespace abut

@@ -209,7 +209,7 @@ TEST(Measures, EnergyDriftKeepsItsSignAtTheEnd) {
   MeasureRecorder recorder(nullptr);
   run.stored = [](int, double time) { return time > 2.0 ? -0.1 : 0.0; };
   run.kinetic = [](int side, double) { return side == 0 ? 0.75 : 0.25; };
-  run.play(recorder);
+  run.play(recorder, false);
   EXPECT_NEAR(measure(recorder, "energy.total.relative_drift_end"), -0.2, roundoff);
   EXPECT_NEAR(measure(recorder, "energy.left.relative_error_end"), -0.1 / 0.75, roundoff);
 }
@@ -238,11 +238,27 @@ TEST(Measures, EnergyErrorOfARunThatBeginsWithNoneIsRelativeToTheLargest) {
       const double peak = side == 0 ? 5.0 : 0.0;
       return time < 0.15 ? begin : (time < 2.0 ? peak : 0.2 * peak);
     };
-    run.play(recorder);
+    run.play(recorder, false);
     EXPECT_NEAR(measure(recorder, "energy.left.relative_error_max"), 1.0, roundoff);
     EXPECT_NEAR(measure(recorder, "energy.left.relative_error_end"), 0.2, roundoff);
     EXPECT_NEAR(measure(recorder, "energy.total.relative_drift_max"), 1.0, roundoff);
     EXPECT_NEAR(measure(recorder, "energy.total.relative_drift_end"), 0.2, roundoff);
+  }
+}
+
+TEST(Measures, EnergyOfABodyThatPassedSomeOnHasNoErrorWithoutAForm) {
+  for (const bool contact : {false, true}) {
+    HandMadeRun run;
+    MeasureRecorder recorder(nullptr);
+    run.play(recorder, contact);
+    for (const char* name : {"energy.left.relative_error_max", "energy.right.relative_error_end"}) {
+      EXPECT_EQ(std::isnan(measure(recorder, name)), contact) << name;
+      EXPECT_EQ(recorder.measures().notes.contains(name), contact) << name;
+    }
+    // Curves of errors are drawn where there are errors, by the same scale: both bars have 0.5 J.
+    EXPECT_EQ(recorder.measures().energy_scales.size(), contact ? 0u : 2u);
+    EXPECT_NEAR(recorder.measures().total_energy_scale, 1.0, roundoff);
+    EXPECT_NEAR(measure(recorder, "energy.total.relative_drift_max"), 0.0, roundoff);
   }
 }
 

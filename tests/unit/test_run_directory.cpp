@@ -1,8 +1,12 @@
 // Goal: a run never overwrites what it was not told to. Oracle: the files themselves.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 #include "base/error.hpp"
@@ -13,17 +17,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class RunDirectory : public testing::Test {
+class RunFolder : public testing::Test {
  protected:
-  RunDirectory() { fs::remove_all(root); }
-  ~RunDirectory() override { fs::remove_all(root); }
-  static void put(const fs::path& path) {
+  RunFolder() { fs::remove_all(root); }
+  ~RunFolder() override { fs::remove_all(root); }
+  static void put(const fs::path& path, const char* text = "mine") {
     fs::create_directories(path.parent_path());
-    std::ofstream(path) << "mine";
+    std::ofstream(path) << text;
+  }
+  static std::string text_of(const fs::path& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   }
   std::string refusal(const fs::path& directory, bool force) {
     try {
-      make_run_directory(directory, force);
+      RunDirectory(directory, force);
     } catch (const InputError& error) {
       return error.what_is_wrong;
     }
@@ -35,12 +43,12 @@ class RunDirectory : public testing::Test {
                    testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
-TEST_F(RunDirectory, IsMadeWithItsParents) {
+TEST_F(RunFolder, IsMadeWithItsParents) {
   EXPECT_EQ(refusal(root / "a" / "b", false), "accepted");
   EXPECT_TRUE(fs::is_directory(root / "a" / "b"));
 }
 
-TEST_F(RunDirectory, ThatHoldsARunIsRefusedAndKept) {
+TEST_F(RunFolder, ThatHoldsARunIsRefusedAndKept) {
   for (const char* name : {"scene.resolved.yaml", "summary.json"}) {
     put(root / name / name);
     put(root / name / "history.csv");
@@ -50,34 +58,99 @@ TEST_F(RunDirectory, ThatHoldsARunIsRefusedAndKept) {
   }
 }
 
-TEST_F(RunDirectory, ForcedLosesTheFilesOfTheRunAndNoOther) {
-  for (const char* name : {"summary.json", "history.csv", "report.html", "notes.txt", "fields.pvd",
-                           "fields/bar_000010.vtu", "fields/notes.txt"})
+TEST_F(RunFolder, ForcedLosesTheFilesOfTheRunAndNoOther) {
+  for (const char* name : {"summary.json", "history.csv", "report.html", "notes.txt",
+                           "fields/bar_000010.vtu", "fields/mine_000010.vtu", "notes.vtu"})
     put(root / name);
+  // What a run has written is what its list names, and a list that was tampered with names no more.
+  put(root / "fields.pvd",
+      "<DataSet file=\"fields/bar_000010.vtu\"/><DataSet file=\"fields/../notes.vtu\"/>"
+      "<DataSet file=\"notes.txt\"/>");
   EXPECT_EQ(refusal(root, true), "accepted");
   EXPECT_TRUE(fs::exists(root / "summary.json")) << "until the new run has its bodies";
-  clear_run_directory(root);
+  RunDirectory(root, true).clear();
   EXPECT_FALSE(fs::exists(root / "summary.json") || fs::exists(root / "history.csv") ||
                fs::exists(root / "report.html"));
   EXPECT_FALSE(fs::exists(root / "fields.pvd") || fs::exists(root / "fields" / "bar_000010.vtu"));
-  EXPECT_TRUE(fs::exists(root / "notes.txt") && fs::exists(root / "fields" / "notes.txt"));
-  fs::remove(root / "fields" / "notes.txt");
-  clear_run_directory(root);
+  EXPECT_TRUE(fs::exists(root / "notes.txt") && fs::exists(root / "notes.vtu"));
+  EXPECT_TRUE(fs::exists(root / "fields" / "mine_000010.vtu"));
+  fs::remove(root / "fields" / "mine_000010.vtu");
+  RunDirectory(root, true).clear();
   EXPECT_FALSE(fs::exists(root / "fields"));
 }
 
-TEST_F(RunDirectory, WithOtherFilesIsNobodysRun) {
+TEST_F(RunFolder, WithFilesOfARunsNamesAndNoRunIsRefusedAndKept) {
+  for (const char* name : {"history.csv", "report.html", "events.jsonl"}) {
+    put(root / name / name);
+    for (const bool force : {false, true})
+      EXPECT_EQ(refusal(root / name, force),
+                std::string("holds ") + name + ", and no run that could own it");
+    EXPECT_EQ(text_of(root / name / name), "mine");
+  }
+}
+
+TEST_F(RunFolder, SymbolicLinksAreNeverFollowed) {
+  put(root / "mine.csv");
+  put(root / "elsewhere" / "bar_000010.vtu");
+  put(root / "run" / "summary.json");
+  fs::create_symlink(root / "mine.csv", root / "run" / "history.csv");
+  EXPECT_EQ(refusal(root / "run", true),
+            "holds history.csv, which is no file of a run but a symbolic link");
+  EXPECT_TRUE(fs::is_symlink(root / "run" / "history.csv"));
+  fs::remove(root / "run" / "history.csv");
+  put(root / "run" / "fields.pvd", "<DataSet file=\"fields/bar_000010.vtu\"/>");
+  fs::create_directory_symlink(root / "elsewhere", root / "run" / "fields");
+  RunDirectory(root / "run", true).clear();
+  EXPECT_EQ(text_of(root / "elsewhere" / "bar_000010.vtu"), "mine");
+  EXPECT_TRUE(fs::is_symlink(root / "run" / "fields")) << "no run has made it";
+}
+
+TEST_F(RunFolder, IsOfOneRunAtATime) {
+  for (const bool force : {false, true}) {
+    const RunDirectory first(root, true);
+    EXPECT_EQ(refusal(root, force), "is in use by another run");
+  }
+  EXPECT_EQ(refusal(root, false), "accepted") << "as soon as the first one is over";
+}
+
+TEST_F(RunFolder, OfAKilledRunIsFree) {
+  fs::create_directories(root);
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const RunDirectory mine(root, true);
+    (void)!write(ready[1], "x", 1);
+    pause();
+  }
+  char word = 0;
+  ASSERT_EQ(read(ready[0], &word, 1), 1);
+  EXPECT_EQ(refusal(root, true), "is in use by another run");
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_EQ(refusal(root, true), "accepted");
+}
+
+TEST_F(RunFolder, OfARunThatNeverBeginsGoesAwayUnlessItWasThere) {
+  RunDirectory(root / "new", false).abandon();
+  EXPECT_FALSE(fs::exists(root / "new"));
+  fs::create_directories(root / "old");
+  RunDirectory(root / "old", false).abandon();
+  EXPECT_TRUE(fs::exists(root / "old"));
+}
+
+TEST_F(RunFolder, WithOtherFilesIsNobodysRun) {
   put(root / "notes.txt");
   EXPECT_EQ(refusal(root, false), "accepted");
 }
 
-TEST_F(RunDirectory, BelowAFileIsRefused) {
+TEST_F(RunFolder, BelowAFileIsRefused) {
   put(root / "file");
   EXPECT_EQ(refusal(root / "file" / "run", true),
             "cannot be a run directory: " + (root / "file").string() + " is a file");
 }
 
-TEST_F(RunDirectory, WhereNobodyMayWriteIsRefused) {
+TEST_F(RunFolder, WhereNobodyMayWriteIsRefused) {
   // Not even root makes directories in /proc.
   EXPECT_NE(refusal("/proc/abut/run", true), "accepted");
 }

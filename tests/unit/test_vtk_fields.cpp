@@ -212,6 +212,7 @@ TEST_F(VtkFiles, TheListIsWholeAfterEveryState) {
 
 TEST_F(VtkFiles, TheEndOfAFailedRunAndOfLostBodiesIsNotAskedFor) {
   for (const bool lost : {false, true}) {
+    SetUp();  // a folder of its own
     FakeRun run(directory, 5);
     run.window(0, 2);
     run.end(lost ? "interrupted" : "failed", 2.0, !lost);

@@ -65,5 +65,7 @@ def fitting_page(make: Callable[[str, int], str], library_path: Path, points: in
 def write_whole(path: Path, text: str) -> None:
     """Nobody ever sees half a file."""
     temporary = path.with_name(path.name + ".tmp")
-    temporary.write_text(text, encoding="utf-8")
+    temporary.unlink(missing_ok=True)
+    with temporary.open("x", encoding="utf-8") as file:  # never through a symbolic link
+        file.write(text)
     os.replace(temporary, path)

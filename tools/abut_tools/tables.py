@@ -140,6 +140,15 @@ def plus(values: list, offset: float, factor: float = 1.0) -> list:
     return [None if v is None else factor * v + offset for v in values]
 
 
+def less(values: list, others: list) -> list:
+    return [None if v is None or w is None else v - w for v, w in zip(values, others)]
+
+
+def since_begin(values: list) -> list:
+    first = next((v for v in values if v is not None), 0.0)
+    return plus(values, -first)
+
+
 def sum_of(columns: list[list]) -> list:
     return [None if None in row else sum(row) for row in zip(*columns)]
 
