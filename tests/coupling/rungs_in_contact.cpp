@@ -109,8 +109,12 @@ TEST_P(ImpulseOnASolid, IsThatOfTheForcesOfAllWindows) {
     time += 6.0;
   }
   EXPECT_NEAR(response.records[0].momentum[0], impulse, roundoff(1000.0, impulse));
-  // Work on the port is the partner's to tell.
-  EXPECT_EQ(response.records[0].energy.external_work, 0.0);
+  // Work on the port is the partner's to tell. Implicit steps have it among the work of inertia
+  // and stress, from which it is taken again: round-off of 30 solves, each of the energy there is,
+  // in an order of sums that is the factorisation's own.
+  const Energy& energy = response.records[0].energy;
+  EXPECT_GT(energy.total(), 1.0);
+  EXPECT_NEAR(energy.external_work, 0.0, roundoff(30.0, energy.total()));
 }
 
 /// Two bars; the first by the model of solids, or by the bars' own core.
