@@ -10,7 +10,8 @@ import sys
 import unittest
 from pathlib import Path
 
-from support import ABUT, CONNECTED, ROOT, SOLVER, SystemTest, free_port, main, shipped
+from support import (ABUT, CONNECTED, ROOT, SOLVER, SystemTest, free_port, lacks_library, main,
+                     shipped)
 
 TWO_BARS = ROOT / "configs" / "two_bars.yaml"
 RESIDENT_LIMIT = 40 * 1024  # [KiB] the goal for a solver of 200 elements
@@ -156,6 +157,20 @@ class Placements(SystemTest):
         self.assertGreater(parts, 1.5)
         self.assertAlmostEqual(parts, round(parts), delta=1.0e-9)
         self.assertIn(f"({round(parts)} to one of the scene)", body["model"])
+
+
+class OptionalScenes(SystemTest):
+    def test_a_scene_of_an_optional_library_runs_or_says_how_to_build_with_it(self):
+        scenes = sorted((ROOT / "configs" / "optional").glob("*.yaml"))
+        self.assertTrue(scenes)
+        for scene in scenes:
+            with self.subTest(scene=scene.stem):
+                result = self.abut("run", scene, "--local", "--out", self.folder / scene.stem)
+                if lacks_library(scene):
+                    self.assertEqual(result.returncode, 2)
+                    self.assertIn("make build WITH=", result.stderr)
+                else:
+                    self.succeed(result)
 
 
 class Expectations(SystemTest):
