@@ -7,7 +7,7 @@
 
 namespace abut {
 
-/// Watches the bodies' energy less the work of external loads. Supports, ties and contact make
+/// Watches the bodies' energy, what became heat included, less the work of external loads. Supports, ties and contact make
 /// none, so it must not grow; that it does is how an unstable step or window shows itself before
 /// its numbers overflow  [M.21]. A body that says that it conserves energy is watched by itself:
 /// what its ports did is known, so it may neither gain nor lose.

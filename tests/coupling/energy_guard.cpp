@@ -14,10 +14,10 @@ namespace {
 
 using Verdict = EnergyGuard::Verdict;
 
-Response holding(double kinetic, double stored, double work = 0.0) {
+Response holding(double kinetic, double stored, double work = 0.0, double heat = 0.0) {
   Response response;
   response.records.resize(1);
-  response.records[0].energy = {kinetic, stored, 0.0, work};
+  response.records[0].energy = {kinetic, stored, heat, work};
   return response;
 }
 
@@ -30,6 +30,13 @@ TEST(EnergyGuard, CountsWhatExternalWorkDoesNotExplain) {
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 10.7, 100.0)}), Verdict::fine) << "told already";
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 11.1, 100.0)}), Verdict::fail);
   EXPECT_NEAR(guard.growth(), 1.1 / 101.1, 1e-15);
+}
+
+TEST(EnergyGuard, SeesAGainBehindWhatBecameHeat) {
+  EnergyGuard guard(0.01, {false});
+  EXPECT_EQ(guard.look(std::vector{holding(100.0, 0.0)}), Verdict::fine);
+  EXPECT_EQ(guard.look(std::vector{holding(40.0, 10.0, 0.0, 50.0)}), Verdict::fine);
+  EXPECT_EQ(guard.look(std::vector{holding(40.0, 12.0, 0.0, 50.0)}), Verdict::fail);
 }
 
 TEST(EnergyGuard, TakesLossForNoFault) {
