@@ -122,8 +122,9 @@ def body_figures(run: Run) -> list[Figure]:
 
 
 def own_energy(run: Run, body: str) -> list:
-    """Kinetic and stored, less what loads have put in."""
-    return less(run.history[f"{body}.total"], run.history[f"{body}.external_work"])
+    """Kinetic, stored and what became heat, less what loads have put in."""
+    held = sum_of([run.history[f"{body}.total"], run.history[f"{body}.dissipated"]])
+    return less(held, run.history[f"{body}.external_work"])
 
 
 def energy_error_figure(run: Run) -> Figure:
