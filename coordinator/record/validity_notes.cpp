@@ -20,7 +20,7 @@ constexpr double worth_a_look = 1.0e-6;
 double told(const Description& body, std::span<const double> values, const std::string& name) {
   const auto found = std::find(body.measures.begin(), body.measures.end(), name);
   const auto at = static_cast<std::size_t>(found - body.measures.begin());
-  return at < values.size() ? values[at] : 0.0;
+  return found != body.measures.end() && at < values.size() ? values[at] : 0.0;
 }
 
 }  // namespace
@@ -31,8 +31,10 @@ std::vector<std::string> validity_notes(const Description& body, std::span<const
   const double longer = std::hypot(1.0, turned) - 1.0;  // a law of small rotations sees no strain
   if (longer > lengthened) {
     notes.push_back(fmt::format(
-        "{} has turned by {:.2g} rad under a law for small rotations, which makes it {:.2g} % "
-        "longer: use a law of finite strain, saint_venant_kirchhoff for instance, or model: rigid",
+        "{} has turned by up to {:.2g} rad under a law for small rotations, which lengthens it "
+        "there "
+        "by {:.3g} %: use a law of finite strain, saint_venant_kirchhoff for instance, or model: "
+        "rigid",
         body.name, turned, 100.0 * longer));
   }
   const double share = told(body, values, "energy.hourglass_share");

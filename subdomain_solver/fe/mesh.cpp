@@ -57,14 +57,16 @@ std::vector<std::int32_t> Mesh::nodes_of(const std::string& name) const {
 const std::vector<Facet>& Mesh::side(const std::string& name) const {
   const auto found = sides.find(name);
   if (found != sides.end()) return found->second;
-  if (node_sets.contains(name)) {
-    throw InputError("'" + name +
-                         "' has no facets on the boundary: it lies inside the body, or is "
-                         "a set of points or lines",
-                     "mesh", "Loads need a side; constraints, ports and points take it as it is.");
-  }
   std::string names;
   append_names(sides, names);
+  if (node_sets.contains(name)) {
+    throw InputError("has no side called '" + name +
+                         "', but nodes of that name: it lies inside the "
+                         "body, or is of points or lines alone",
+                     "mesh",
+                     (names.empty() ? std::string() : "Choose one of " + names + ". ") +
+                         "Constraints, ports and points take nodes as they are.");
+  }
   refuse("side", name, names);
 }
 
