@@ -28,7 +28,7 @@ namespace {
 constexpr Milliseconds time_to_finish{2'000};     // from Finish to the end of the process
 constexpr Milliseconds time_to_die{500};          // from SIGTERM to SIGKILL
 constexpr std::size_t longest_socket_path = 100;  // the kernel allows 107 bytes
-// Measured: the hub has 16 open, the files of a run and pipes of a start come on top.
+// Measured: the hub opens 9 and a body 2; pipes of a start and files of a run come on top.
 constexpr int descriptors_of_a_run = 32;
 constexpr int descriptors_of_a_body = 4;
 
