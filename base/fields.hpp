@@ -74,7 +74,7 @@ class Fields {
     if (purpose_ == Purpose::read) value = std::move(sample);
   }
 
-  /// A list of maps; absent means empty.
+  /// Absent means empty.
   template <HasFields S>
   void list(std::string_view key, std::vector<S>& values, std::string_view help) {
     const std::size_t count = enter_list({key, "", help, Presence::optional}, values.size());
@@ -133,6 +133,9 @@ class Fields {
   void check(bool ok, std::string_view key, const std::string& what, const std::string& remedy) {
     if (purpose_ == Purpose::read && !ok) broken(key, what, remedy);
   }
+  /// Where `is_idle`, a key has no effect, whatever its value: a reader refuses it where it is
+  /// given, a writer leaves it out. `why` follows "has no effect: ".
+  virtual void idle(bool is_idle, std::string_view key, std::string_view why) = 0;
   /// This key belongs to another reader of the same map.
   virtual void ignore(std::string_view key) = 0;
   /// All keys not declared here belong to another reader of the same map.

@@ -40,6 +40,7 @@ class Documenter final : public Fields {
 
   void ignore(std::string_view) override {}
   void ignore_rest() override {}
+  void idle(bool, std::string_view, std::string_view) override {}
   void leave() override {
     ABUT_ASSERT(stack_.size() > 1);
     stack_.pop_back();

@@ -3,26 +3,20 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <optional>
-#include <set>
-#include <sstream>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
+#include "base/yaml_text.hpp"
 
 namespace abut {
 namespace {
 
-// An anchor that is repeated in itself grows without bound; no honest scene comes near these.
-constexpr int max_depth = 64;
-constexpr int max_nodes = 200'000;
 constexpr std::size_t max_bytes = 16'000'000;
-
-std::string at_line(const std::string& name, const YAML::Mark& mark) {
-  return mark.line < 0 ? name : fmt::format("{}:{}", name, mark.line + 1);
-}
+constexpr const char* scene_file = "Give the path of a scene file.";
 
 /// Position in a list from "[3]"; nothing when the step is a key.
 std::optional<std::size_t> list_index(std::string_view step) {
@@ -52,39 +46,6 @@ std::optional<Found> child(const YAML::Node& node, std::string_view step) {
   return std::nullopt;
 }
 
-/// Looks for what YAML allows and a scene does not: duplicate keys, keys that are no plain words.
-class FormCheck {
- public:
-  explicit FormCheck(const std::string& name) : name_(name) {}
-
-  void visit(const YAML::Node& node, const std::string& path, int depth) {
-    if (depth > max_depth || ++nodes_ > max_nodes)
-      throw InputError("holds too many values", name_, "Remove anchors that repeat themselves.");
-    if (node.IsSequence()) {
-      for (std::size_t i = 0; i < node.size(); ++i)
-        visit(node[i], fmt::format("{}[{}]", path, i), depth + 1);
-    }
-    if (node.IsMap()) visit_map(node, path, depth);
-  }
-
- private:
-  void visit_map(const YAML::Node& node, const std::string& path, int depth) {
-    std::set<std::string> seen;
-    for (const auto& pair : node) {
-      const std::string where = at_line(name_, pair.first.Mark());
-      if (!pair.first.IsScalar())
-        throw InputError("has a key that is not a word", where, "Write keys as plain words.");
-      const std::string key_path = join_path(path, pair.first.Scalar());
-      if (!seen.insert(pair.first.Scalar()).second)
-        throw InputError("is given twice", where + ": " + key_path, "Remove one of the two.");
-      visit(pair.second, key_path, depth + 1);
-    }
-  }
-
-  const std::string& name_;
-  int nodes_ = 0;
-};
-
 /// A map or list of the same entries, but for the one that is replaced or added.
 YAML::Node replaced(const YAML::Node& node, const std::string& step, const YAML::Node& value) {
   YAML::Node copy(node.Type());
@@ -101,8 +62,6 @@ YAML::Node replaced(const YAML::Node& node, const std::string& step, const YAML:
   return copy;
 }
 
-/// A map with one more entry, or with the entry replaced. Copies, because a YAML alias shares its
-/// map with the anchor and only one of the two is meant.
 /// The map without one of its keys.
 YAML::Node without(const YAML::Node& map, const std::string& key) {
   YAML::Node rest(YAML::NodeType::Map);
@@ -111,6 +70,8 @@ YAML::Node without(const YAML::Node& map, const std::string& key) {
   return rest;
 }
 
+/// A map with one more entry, or with the entry replaced. Copies, because a YAML alias shares its
+/// map with the anchor and only one of the two is meant.
 YAML::Node with_value(const YAML::Node& node, const std::vector<std::string>& steps, std::size_t at,
                       const YAML::Node& value, const std::string& where) {
   if (at == steps.size()) return value;
@@ -130,10 +91,6 @@ std::string override_path(const std::string& text) { return text.substr(0, text.
 bool is_at_or_below(const std::string& path, const std::string& ancestor) {
   const std::vector<std::string> a = split_path(path), b = split_path(ancestor);
   return b.size() <= a.size() && std::equal(b.begin(), b.end(), a.begin());
-}
-
-std::string syntax_words(const YAML::Exception& error) {
-  return "is not readable as YAML: " + error.msg;
 }
 
 }  // namespace
@@ -158,11 +115,7 @@ std::string join_path(std::string_view parent, std::string_view child) {
 }
 
 Document Document::load(const std::string& path, std::vector<std::string> overrides) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file && file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
-  if (!file || !text) throw InputError("cannot be read", path, "Give the path of a scene file.");
-  return Document(path, text.str(), std::move(overrides));
+  return Document(path, read_input_file(path, max_bytes, scene_file), std::move(overrides));
 }
 
 Document Document::from_text(std::string name, std::string text,
@@ -177,26 +130,13 @@ Document::~Document() = default;
 Document::Document(std::string name, std::string text, std::vector<std::string> overrides)
     : name_(std::move(name)), text_(std::move(text)), overrides_(std::move(overrides)) {
   if (text_.size() > max_bytes)
-    throw InputError(fmt::format("is larger than {} MB", max_bytes / 1'000'000), name_,
-                     "Give the path of a scene file.");
-  std::vector<YAML::Node> documents;
-  try {
-    documents = YAML::LoadAll(text_);
-  } catch (const YAML::Exception& error) {
-    throw InputError(syntax_words(error), at_line(name_, error.mark),
-                     "Correct the line; most often it is an indentation, a bracket or a colon.");
-  }
-  if (documents.size() > 1)
-    throw InputError("holds a second document", at_line(name_, documents[1].Mark()),
-                     "Write one scene per file, without --- lines between its parts.");
-  if (documents.empty() || documents[0].IsNull())
-    throw InputError("is empty", name_,
+    throw InputError(fmt::format("is larger than {} MB", max_bytes / 1'000'000), name_, scene_file);
+  root_ = std::make_unique<YAML::Node>(
+      parse_yaml(text_, name_, "",
+                 "Correct the line; most often it is an indentation, a bracket or a colon."));
+  if (!root_->IsMap())
+    throw InputError(root_->IsNull() ? "is empty" : "is not a map of keys", name_,
                      "Write a scene as key: value lines, beginning with meta:, time:, bodies:.");
-  if (!documents[0].IsMap())
-    throw InputError("is not a map of keys", name_,
-                     "Write a scene as key: value lines, beginning with meta:, time:, bodies:.");
-  FormCheck(name_).visit(documents[0], "", 0);
-  root_ = std::make_unique<YAML::Node>(documents[0]);
   for (const std::string& text_of_override : overrides_) put(text_of_override);
 }
 
@@ -206,13 +146,9 @@ void Document::put(const std::string& override_text) {
   if (override_text.find('=') == std::string::npos || steps.empty())
     throw InputError("is not of the form key.path=value", where,
                      "Write for example --set time.window=1e-6.");
-  YAML::Node value;
-  try {
-    value.reset(YAML::Load(override_text.substr(override_text.find('=') + 1)));
-  } catch (const YAML::Exception& error) {
-    throw InputError(syntax_words(error), where, "Give the value as in a scene file.");
-  }
-  FormCheck(where).visit(value, override_path(override_text), 0);
+  const YAML::Node value =
+      parse_yaml(override_text.substr(override_text.find('=') + 1), where,
+                 override_path(override_text), "Give the value as in a scene file.");
   root_ = std::make_unique<YAML::Node>(with_value(*root_, steps, 0, value, where));
 }
 
@@ -245,15 +181,18 @@ std::string Document::where(std::string_view path) const {
     if (is_at_or_below(text, override_path(*it)))
       return fmt::format("{}, from --set {}: {}", name_, *it, path);
   YAML::Node node(*root_);
+  std::string there;  // the part of the path that the document has
   int line = 0;
   for (const std::string& step : split_path(path)) {
     const std::optional<Found> found = child(node, step);
     if (!found) break;
+    there = join_path(there, step);
     if (found->line > 0) line = found->line;
-    if (found->line == 0) {  // not from the file: an override made it on the way to its own key
+    if (found->line == 0 && !list_index(step)) {  // an override made it on the way to its own key
       for (const std::string& override_text : overrides_)
-        if (is_at_or_below(override_path(override_text), text))
-          return fmt::format("{}, from --set {}: {}", name_, override_text, path);
+        if (is_at_or_below(override_path(override_text), there))
+          return fmt::format("{}, from --set {}{}: {}", name_, override_text,
+                             there == path ? "" : ", which adds " + there, path);
     }
     node.reset(found->node);
   }

@@ -4,80 +4,16 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "base/assert.hpp"
-#include "base/error.hpp"
+#include "base/input_errors.hpp"
+#include "base/yaml_values.hpp"
 
 namespace abut {
 namespace {
-
-/// What a message calls a value.
-std::string describe(const YAML::Node& node) {
-  if (node.IsMap()) return "a map";
-  if (node.IsSequence()) return "a list";
-  if (node.IsNull()) return "empty";
-  return node.Tag() == "!" ? '"' + node.Scalar() + '"' : node.Scalar();
-}
-
-/// A scalar that is not quoted: quotes say that text is meant.
-bool is_plain(const YAML::Node& node) { return node.IsScalar() && node.Tag() != "!"; }
-
-template <class T>
-std::optional<T> parse(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  T value{};
-  const char* end = text.data() + text.size();
-  const std::from_chars_result result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end || text.empty()) return std::nullopt;
-  return value;
-}
-
-/// YAML writes .nan and .inf; from_chars knows nan and inf as well.
-bool is_not_finite(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  if (text.starts_with('+') || text.starts_with('-')) text.erase(0, 1);
-  if (text.starts_with('.')) text.erase(0, 1);
-  return text == "nan" || text == "inf" || text == "infinity";
-}
-
-bool is_name(const std::string& text) {
-  const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
-  return !text.empty() && std::all_of(text.begin(), text.end(), allowed);
-}
-
-std::string with_unit(const std::string& text, std::string_view unit) {
-  return unit.empty() ? text : fmt::format("{} {}", text, unit);
-}
-
-template <class Strings>
-std::string one_of(const Strings& words) {
-  return fmt::format("{}", fmt::join(words, ", "));
-}
-
-/// Of the help only the noun itself fits into a sentence.
-std::string_view noun(const Key& key) { return key.help.substr(0, key.help.find_first_of(",;:")); }
-
-/// The sentence that says what to write.
-std::string remedy(const Key& key, std::string_view form, const Rule& rule = any) {
-  std::string text = fmt::format("Give the {}", noun(key));
-  if (!form.empty()) text += fmt::format(" as {}", form);
-  if (!key.unit.empty()) text += fmt::format(" in {}", key.unit);
-  const std::string range = rule.range();
-  if (!range.empty()) text += fmt::format(", {}", range);
-  return text + '.';
-}
-
-std::string suggestion(std::string_view word, std::span<const std::string> known,
-                       std::string_view lead) {
-  const std::string near = nearest(word, known);
-  const std::string hint = near.empty() ? "" : fmt::format("Did you mean {}? ", near);
-  return hint + fmt::format("{} {}.", lead, known.empty() ? "no key" : one_of(known));
-}
 
 class Reader final : public Fields {
  public:
@@ -88,8 +24,10 @@ class Reader final : public Fields {
 
   void ignore(std::string_view key) override { declare(key); }
   void ignore_rest() override { frames_.back().open = true; }
+  void idle(bool is_idle, std::string_view key, std::string_view why) override;
   void leave() override;
   bool done() const { return frames_.empty(); }
+  const InputErrors& errors() const { return errors_; }
 
  protected:
   void leaf(const Key& key, Slot slot, const Rule& rule) override;
@@ -107,18 +45,23 @@ class Reader final : public Fields {
   struct Frame {
     std::string path;
     YAML::Node node;
-    bool open = false;  // keys that are not declared belong to somebody else
+    bool open = false;        // keys that are not declared belong to somebody else
+    std::size_t earlier = 0;  // errors found before it was entered
     std::vector<std::string> declared;
-    // Kept until all keys are known, so that a misspelt key is not reported as a missing one.
-    std::optional<InputError> missing, broken;
+    // Kept until all keys are known: a misspelt key is not missing as well, and rules across keys
+    // say nothing of a map in which keys are wrong.
+    std::vector<std::pair<std::string, InputError>> missing, broken;  // by key
   };
 
   void push(std::string path, const YAML::Node& node, bool open) {
-    frames_.push_back(Frame{std::move(path), node, open, {}, {}, {}});
+    frames_.push_back(Frame{std::move(path), node, open, errors_.count(), {}, {}, {}});
   }
+  std::vector<std::string> refuse_unknown_keys(const Frame& frame);
   void declare(std::string_view key) { frames_.back().declared.emplace_back(key); }
   std::string path_of(std::string_view key) const { return join_path(frames_.back().path, key); }
   std::optional<YAML::Node> find(const Key& key, const std::string& form, const Rule& rule = any);
+  std::string chosen(const Key& key, const std::string& path, const YAML::Node& node,
+                     std::span<const std::string_view> names) const;
   [[noreturn]] void fail(const std::string& path, const std::string& what,
                          const std::string& remedy_text) const {
     throw InputError(what, document_.where(path), remedy_text);
@@ -156,6 +99,7 @@ class Reader final : public Fields {
 
   const Document& document_;
   std::vector<Frame> frames_;
+  InputErrors errors_;
 };
 
 const char* form_of(const double*) { return ""; }
@@ -174,9 +118,9 @@ std::optional<YAML::Node> Reader::find(const Key& key, const std::string& form, 
   Frame& frame = frames_.back();
   for (const auto& pair : frame.node)
     if (pair.first.Scalar() == key.name) return pair.second;
-  if (key.presence == Presence::required && !frame.missing) {
+  if (key.presence == Presence::required) {
     const std::string where = document_.where(path_of(key.name));
-    frame.missing.emplace("is missing", where, remedy(key, form, rule));
+    frame.missing.emplace_back(key.name, InputError("is missing", where, remedy(key, form, rule)));
   }
   return std::nullopt;
 }
@@ -185,7 +129,8 @@ void Reader::leaf(const Key& key, Slot slot, const Rule& rule) {
   std::visit(
       [this, &key, &rule](auto* value) {
         const std::optional<YAML::Node> node = find(key, form_of(value), rule);
-        if (node) fill(*value, key, path_of(key.name), *node, rule);
+        if (!node) return;
+        errors_.gather([&] { fill(*value, key, path_of(key.name), *node, rule); });
       },
       slot);
 }
@@ -195,50 +140,64 @@ void Reader::word_leaf(const Key& key, std::string& value,
   const std::optional<YAML::Node> node = find(key, "one of " + one_of(words));
   if (!node) return;
   const std::string path = path_of(key.name);
-  if (!node->IsScalar()) wrong_type(path, "a word", *node, remedy(key, "one of " + one_of(words)));
-  if (std::find(words.begin(), words.end(), node->Scalar()) == words.end()) {
-    const std::vector<std::string> known(words.begin(), words.end());
-    fail(path, fmt::format("is {}, which is not a known choice", node->Scalar()),
-         suggestion(node->Scalar(), known, "Choose one of"));
-  }
-  value = node->Scalar();
+  errors_.gather([&] {
+    if (!node->IsScalar())
+      wrong_type(path, "a word", *node, remedy(key, "one of " + one_of(words)));
+    if (std::find(words.begin(), words.end(), node->Scalar()) == words.end()) {
+      const std::vector<std::string> known(words.begin(), words.end());
+      fail(path, fmt::format("is {}, which is not a known choice", node->Scalar()),
+           suggestion(node->Scalar(), known, "Choose one of"));
+    }
+    value = node->Scalar();
+  });
 }
 
 bool Reader::enter(const Key& key, bool) {
   const std::optional<YAML::Node> node = find(key, "a map of keys");
   if (!node) return false;
   const std::string path = path_of(key.name);
-  if (!node->IsMap())
+  if (node->IsMap()) {
+    push(path, *node, false);
+    return true;
+  }
+  errors_.gather([&] {
     wrong_type(path, "a map of keys", *node,
                remedy(key, "a map of keys; {} stands for its defaults"));
-  push(path, *node, false);
-  return true;
+  });
+  return false;
 }
 
 std::size_t Reader::enter_list(const Key& key, std::size_t) {
   const std::optional<YAML::Node> node = find(key, "a list of maps");
   const std::string path = path_of(key.name);
-  if (node && !node->IsSequence())
-    wrong_type(path, "a list of maps", *node, remedy(key, "a list of maps"));
-  push(path, node ? *node : YAML::Node(YAML::NodeType::Sequence), true);
-  return node ? node->size() : 0;
+  const bool is_list = node && node->IsSequence();
+  if (node && !is_list) {
+    errors_.gather(
+        [&] { wrong_type(path, "a list of maps", *node, remedy(key, "a list of maps")); });
+  }
+  push(path, is_list ? *node : YAML::Node(YAML::NodeType::Sequence), true);
+  return is_list ? node->size() : 0;
 }
 
 void Reader::enter_map(const Key& key, std::vector<std::string>& names) {
   names.clear();
   const std::optional<YAML::Node> node = find(key, "a map from names to maps");
   const std::string path = path_of(key.name);
-  if (node && !node->IsMap())
-    wrong_type(path, "a map from names to maps", *node, remedy(key, "a map from names to maps"));
-  if (node) {
-    for (const auto& pair : *node) {
-      const std::string& name = pair.first.Scalar();
+  const bool is_map = node && node->IsMap();
+  if (node && !is_map) {
+    errors_.gather([&] {
+      wrong_type(path, "a map from names to maps", *node, remedy(key, "a map from names to maps"));
+    });
+  }
+  for (const auto& pair : is_map ? *node : YAML::Node(YAML::NodeType::Map)) {
+    const std::string& name = pair.first.Scalar();
+    errors_.gather([&] {
       if (!is_name(name))
         fail(join_path(path, name), "is not a name", "Use letters, digits, _ and - alone.");
       names.push_back(name);
-    }
+    });
   }
-  push(path, node ? *node : YAML::Node(YAML::NodeType::Map), true);
+  push(path, is_map ? *node : YAML::Node(YAML::NodeType::Map), true);
 }
 
 std::string Reader::enter_choice(const Key& key, std::span<const std::string_view> names,
@@ -246,24 +205,38 @@ std::string Reader::enter_choice(const Key& key, std::span<const std::string_vie
   const std::string choices = one_of(names);
   const std::optional<YAML::Node> node = find(key, "one of " + choices);
   if (!node) return {};
-  const std::string path = path_of(key.name);
-  const bool bare = is_plain(*node);
-  if (!bare && !(node->IsMap() && node->size() == 1)) {
-    const std::string is =
-        node->IsMap() ? fmt::format("a map of {}", node->size()) : describe(*node);
-    fail(path, fmt::format("must be a map with one key, the name of the choice, but is {}", is),
-         fmt::format("Give the {} as {{name: {{its keys}}}}, with one of {}.", noun(key), choices));
+  std::string name;
+  errors_.gather([&] { name = chosen(key, path_of(key.name), *node, names); });
+  if (name.empty()) return {};
+  YAML::Node map(YAML::NodeType::Map);
+  if (!node->IsMap()) map[name] = YAML::Node(YAML::NodeType::Map);
+  push(path_of(key.name), node->IsMap() ? *node : map, true);
+  return name;
+}
+
+std::string Reader::chosen(const Key& key, const std::string& path, const YAML::Node& node,
+                           std::span<const std::string_view> names) const {
+  const std::string form = fmt::format("Give the {} as {{name: {{its keys}}}}, with one of {}.",
+                                       noun(key), one_of(names));
+  const bool bare = is_plain(node);
+  if (node.IsMap() && node.size() > 1) {  // the last is the one that --set added, where it did
+    std::vector<std::string> given;
+    for (const auto& pair : node) given.push_back(pair.first.Scalar());
+    fail(join_path(path, given.back()),
+         fmt::format("stands beside {}, but only one can be chosen", given.front()), form);
   }
-  const std::string name = bare ? node->Scalar() : node->begin()->first.Scalar();
+  if (!bare && !(node.IsMap() && node.size() == 1)) {
+    const std::string is = node.IsMap() ? "a map of 0" : describe(node);
+    fail(path, fmt::format("must be a map with one key, the name of the choice, but is {}", is),
+         form);
+  }
+  const std::string name = bare ? node.Scalar() : node.begin()->first.Scalar();
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     const std::vector<std::string> known(names.begin(), names.end());
     fail(bare ? path : join_path(path, name),
          bare ? fmt::format("is {}, which is not a known choice", name) : "is not a known choice",
          suggestion(name, known, "Choose one of"));
   }
-  YAML::Node map(YAML::NodeType::Map);
-  if (bare) map[name] = YAML::Node(YAML::NodeType::Map);
-  push(path, bare ? map : *node, true);
   return name;
 }
 
@@ -275,31 +248,58 @@ void Reader::descend(std::string_view name) {
     node.reset(parent.node[static_cast<std::size_t>(std::stoul(std::string(name.substr(1))))]);
   else
     node.reset(parent.node[std::string(name)]);
-  if (!node.IsMap())
-    wrong_type(path, "a map of keys", node,
-               "Write its keys as {key: value}; {} stands for its defaults.");
+  const std::size_t earlier = errors_.count();
+  if (!node.IsMap()) {
+    errors_.gather([&] {
+      wrong_type(path, "a map of keys", node,
+                 "Write its keys as {key: value}; {} stands for its defaults.");
+    });
+    node.reset(YAML::Node(YAML::NodeType::Map));
+  }
   push(path, node, false);
+  frames_.back().earlier = earlier;
 }
 
 void Reader::broken(std::string_view key, const std::string& what, const std::string& remedy_text) {
-  Frame& frame = frames_.back();
-  if (!frame.broken) frame.broken.emplace(what, document_.where(path_of(key)), remedy_text);
+  auto& list = frames_.back().broken;
+  const auto same = [key](const auto& entry) { return entry.first == key; };
+  if (std::any_of(list.begin(), list.end(), same)) return;
+  list.emplace_back(key, InputError(what, document_.where(path_of(key)), remedy_text));
+}
+
+void Reader::idle(bool is_idle, std::string_view key, std::string_view why) {
+  if (!is_idle || !document_.has(path_of(key))) return;
+  broken(key, fmt::format("has no effect: {}", why),
+         fmt::format("Leave {} out.", split_path(key).back()));
+}
+
+/// Tells of keys that are not declared; what was likely meant by each.
+std::vector<std::string> Reader::refuse_unknown_keys(const Frame& frame) {
+  std::vector<std::string> meant;
+  if (frame.open) return meant;
+  const std::vector<std::string>& known = frame.declared;
+  for (const auto& pair : frame.node) {
+    const std::string& name = pair.first.Scalar();
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    meant.push_back(likely(name, known));
+    errors_.gather([&] {
+      fail(join_path(frame.path, name), "is not a known key",
+           suggestion(name, known, "Allowed here:"));
+    });
+  }
+  return meant;
 }
 
 void Reader::leave() {
   ABUT_ASSERT(!frames_.empty());
   const Frame frame = std::move(frames_.back());
   frames_.pop_back();
-  if (!frame.open) {
-    for (const auto& pair : frame.node) {
-      const std::string& name = pair.first.Scalar();
-      if (std::find(frame.declared.begin(), frame.declared.end(), name) == frame.declared.end())
-        fail(join_path(frame.path, name), "is not a known key",
-             suggestion(name, frame.declared, "Allowed here:"));
-    }
-  }
-  if (frame.missing) throw *frame.missing;
-  if (frame.broken) throw *frame.broken;
+  const bool misread = errors_.count() > frame.earlier && frame.node.size() == 0;
+  const std::vector<std::string> meant = refuse_unknown_keys(frame);
+  for (const auto& [key, error] : frame.missing)
+    if (!misread && std::find(meant.begin(), meant.end(), key) == meant.end()) errors_.add(error);
+  if (errors_.count() > frame.earlier) return;
+  for (const auto& [key, error] : frame.broken) errors_.add(error);
 }
 
 void Reader::check_range(const Key& key, const std::string& path, const YAML::Node& node,
@@ -419,6 +419,7 @@ void read_fields(const Document& document, std::string_view path,
   visit(reader);
   reader.leave();
   ABUT_ASSERT(reader.done());
+  reader.errors().raise();
 }
 
 }  // namespace abut

@@ -8,8 +8,9 @@
 
 namespace abut {
 
-/// Lets `visit` read the map at a path ("" is the whole document). Throws InputError for the first
-/// key that is unknown, missing, of the wrong type or out of range.
+/// Lets `visit` read the map at a path ("" is the whole document). Throws InputError for the
+/// keys that are unknown, missing, of the wrong type, out of range or without effect: an
+/// InputErrorList where there are several.
 void read_fields(const Document& document, std::string_view path,
                  const std::function<void(Fields&)>& visit);
 

@@ -18,9 +18,13 @@ struct ResolvedYaml::Node {
   std::string text, unit;
   std::vector<std::pair<std::string, std::unique_ptr<Node>>> children;
 
-  Node& child(std::string_view name) {
+  Node* find(std::string_view name) {
     for (auto& [key, node] : children)
-      if (key == name) return *node;
+      if (key == name) return node.get();
+    return nullptr;
+  }
+  Node& child(std::string_view name) {
+    if (Node* found = find(name)) return *found;
     children.emplace_back(std::string(name), std::make_unique<Node>());
     return *children.back().second;
   }
@@ -86,6 +90,18 @@ class Writer final : public Fields {
 
   void ignore(std::string_view) override {}
   void ignore_rest() override {}
+  void idle(bool is_idle, std::string_view key, std::string_view) override {
+    if (!is_idle) return;
+    Node* at = stack_.back();
+    std::vector<std::string> steps = split_path(key);
+    const std::string last = std::move(steps.back());
+    steps.pop_back();
+    for (const std::string& step : steps) {
+      at = at->find(step);
+      if (at == nullptr) return;
+    }
+    std::erase_if(at->children, [&last](const auto& entry) { return entry.first == last; });
+  }
   void leave() override {
     ABUT_ASSERT(stack_.size() > 1);
     stack_.pop_back();

@@ -5,8 +5,9 @@
 #include <limits>
 #include <string>
 
-#include "base/error.hpp"
 #include "base/fields_reference.hpp"
+#include "base/input_errors.hpp"
+#include "base/synonyms.hpp"
 #include "base/yaml_fields.hpp"
 #include "base/yaml_resolved.hpp"
 
@@ -265,9 +266,8 @@ INSTANTIATE_TEST_SUITE_P(
             "s.yaml:2: material.stel: is not a known choice. Did you mean steel? Choose one of "
             "steel, void."},
         Bad{"TwoChoices", "length: 2\nmaterial: {steel: {density: 1}, void: {}}\n",
-            "s.yaml:2: material: must be a map with one key, the name of the choice, but is a map "
-            "of "
-            "2. Give the material as {name: {its keys}}, with one of steel, void."},
+            "s.yaml:2: material.void: stands beside steel, but only one can be chosen. Give the "
+            "material as {name: {its keys}}, with one of steel, void."},
         Bad{"EmptySection", "length: 2\nmaterial: void\nspan:\n",
             "s.yaml:3: span: must be a map of keys, but is empty. Give the time span as a map of "
             "keys; {} stands for its defaults."},
@@ -282,18 +282,74 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"DuplicateKey", "length: 2\nmaterial: void\nspan: {begin: 0}\nlength: 3\n",
             "s.yaml:4: length: is given twice. Remove one of the two."},
         Bad{"TwoDocuments", "length: 2\n---\nlength: 3\n",
-            "s.yaml:3: holds a second document. Write one scene per file, without --- lines "
-            "between "
-            "its parts."},
+            "s.yaml:2: holds a second document. Write one scene per file, without --- lines "
+            "between its parts."},
         Bad{"NotAMap", "- a\n- b\n",
             "s.yaml: is not a map of keys. Write a scene as key: value lines, beginning with "
             "meta:, "
             "time:, bodies:."},
         Bad{"Empty", "",
-            "s.yaml: is not a map of keys. Write a scene as key: value lines, beginning with "
+            "s.yaml: is empty. Write a scene as key: value lines, beginning with "
             "meta:, "
             "time:, bodies:."}),
     [](const testing::TestParamInfo<Bad>& instance) { return std::string(instance.param.name); });
+
+TEST(YamlFields, AllErrorsAreTold) {
+  try {
+    parsed(
+        "length: -1\nwhole: 0.5\nmaterial: {stel: {}}\nspan: {begin: 2}\nlist: [{}, {count: 0}]\n"
+        "colour: blue\n");
+    ADD_FAILURE() << "accepted";
+  } catch (const InputErrorList& errors) {
+    std::string all;
+    for (const InputError& error : errors.all)
+      all += error.where + ": " + error.what_is_wrong + "\n";
+    EXPECT_EQ(all,
+              "s.yaml:1: length: must be positive, but is -1 m\n"
+              "s.yaml:2: whole: must be a whole number, but is 0.5\n"
+              "s.yaml:6: colour: is blue, which is not a known choice\n"
+              "s.yaml:4: span.end: is before begin\n"
+              "s.yaml:5: list[0].count: is missing\n"
+              "s.yaml:5: list[1].count: must be at least 1, but is 0\n"
+              "s.yaml:3: material.stel: is not a known choice\n");
+  }
+}
+
+TEST(YamlFields, AMisspeltKeyIsNotMissingAsWell) {
+  EXPECT_EQ(refusal("lenght: 2\nmaterial: void\n").substr(0, 66),
+            "s.yaml:1: lenght: is not a known key. Did you mean length? Allowed");
+}
+
+// Goal: other programs' words lead to ours. Oracle: the list of what people write.
+TEST(Synonyms, LeadToOurWords) {
+  const std::vector<std::string> known = {"youngs_modulus",     "density", "linear_elastic", "step",
+                                          "central_difference", "newmark", "traction",       "end"};
+  const std::pair<const char*, const char*> words[] = {{"E", "youngs_modulus"},
+                                                       {"young", "youngs_modulus"},
+                                                       {"rho", "density"},
+                                                       {"elastic", "linear_elastic"},
+                                                       {"dt", "step"},
+                                                       {"time-step", "step"},
+                                                       {"explicit", "central_difference"},
+                                                       {"implicit", "newmark"},
+                                                       {"Force", "traction"},
+                                                       {"t_end", "end"}};
+  for (const auto& [word, ours] : words) EXPECT_EQ(meant_by(word, known), ours) << word;
+  EXPECT_EQ(meant_by("E", {{"density"}}), "") << "only what is allowed there";
+  EXPECT_EQ(meant_by("wheel", known), "");
+}
+
+TEST(YamlFields, TagsAreRefused) {
+  for (const std::string tag : {"!km_per_h", "!!int", "!!str", "!<tag:x>"}) {
+    EXPECT_NE(refusal("length: " + tag + " 2\nmaterial: void\n").find("has the tag"),
+              std::string::npos)
+        << tag;
+    EXPECT_NE(refusal("length: 2\nmaterial: void\nnumbers: " + tag + " [1]\n").find("has the tag"),
+              std::string::npos)
+        << tag;
+  }
+  EXPECT_EQ(refusal("length: 2\nmaterial: void\ntext: \"quoted\"\n"), "accepted");
+}
 
 TEST(YamlFields, SyntaxErrorNamesItsLine) {
   const std::string message = refusal("length: 2\nmaterial: {steel: [}\n");

@@ -1,0 +1,50 @@
+#include "base/input_file.hpp"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+
+namespace abut {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse_size(const std::string& path, std::size_t most,
+                              const std::string& remedy) {
+  throw InputError(fmt::format("is larger than {} MB", most / 1'000'000), path, remedy);
+}
+
+}  // namespace
+
+void check_input_file(const std::string& path, std::size_t most, const std::string& remedy) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw InputError("cannot be opened", path, remedy);
+  if (fs::is_directory(status)) throw InputError("is a folder, not a file", path, remedy);
+  if (!fs::is_regular_file(status))
+    throw InputError("is a device or a pipe, not a file", path, remedy);
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) throw InputError("cannot be opened", path, remedy);
+  if (size > most) refuse_size(path, most, remedy);
+}
+
+std::string read_input_file(const std::string& path, std::size_t most, const std::string& remedy) {
+  std::error_code error;
+  if (!fs::is_fifo(fs::status(path, error))) check_input_file(path, most, remedy);
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError("cannot be opened", path, remedy);
+  std::string bytes;
+  std::array<char, 65536> part{};
+  while (file.read(part.data(), part.size()) || file.gcount() > 0) {
+    bytes.append(part.data(), static_cast<std::size_t>(file.gcount()));
+    if (bytes.size() > most) refuse_size(path, most, remedy);
+  }
+  if (file.bad()) throw InputError("cannot be read", path, remedy);
+  return bytes;
+}
+
+}  // namespace abut
