@@ -11,6 +11,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "subdomain_solver/bar_fields.hpp"
+#include "subdomain_solver/compressed_bar.hpp"
 #include "subdomain_solver/saved_state.hpp"
 
 namespace abut {
@@ -119,6 +120,8 @@ Outcome Body::finish(Response& response) {
   const auto began = std::chrono::steady_clock::now();
   response.records.resize(static_cast<std::size_t>(std::max(1, request.records)));
   recorded_ = 0;
+  // Of the window's begin, which is accepted: iterates may lie anywhere.
+  if (std::optional<Failed> failed = check_compression(request.window.begin)) return *failed;
   begin_traces(request, response);
   for (EndState& e : state_.end) e.work = 0.0;
   apply_impulses(request);
@@ -362,6 +365,18 @@ std::optional<Failed> Body::record(double time, Response& response) {
   if (body_force != 0.0) r.energy.external_work = body_force * bar_->momentum(state_.u);  // f . u
   r.momentum.assign(1, bar_->momentum(state_.v) + scheme_.integrator->momentum_lag(state_));
   return check_finite(r);
+}
+
+/// With the ends where partners see them: they are the contact elements' own.
+std::optional<Failed> Body::check_compression(double time) {
+  const double left = state_.u.front(), right = state_.u.back();
+  state_.u.front() = scheme_.integrator->port_displacement(state_, 0);
+  state_.u.back() = scheme_.integrator->port_displacement(state_, 1);
+  std::optional<Failed> failed =
+      compressed_to_nothing(state_.u, bar_->spacing(), time, description_.name);
+  state_.u.front() = left;
+  state_.u.back() = right;
+  return failed;
 }
 
 void Body::finish_ports(Response& response) {

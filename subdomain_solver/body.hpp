@@ -75,6 +75,7 @@ class Body final : public Subdomain {
   double force_on_body(int end, const BoundaryData& data) const;
   void approach(int end, PortResponse& port) const;
   std::optional<Failed> check_finite(const BodyRecord& record) const;
+  std::optional<Failed> check_compression(double time);
   std::vector<double> respond_from_rest(int end, double step, int count, double at_begin,
                                         double in_first);
   void report_progress();

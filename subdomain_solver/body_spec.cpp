@@ -7,19 +7,14 @@
 
 namespace abut {
 
-namespace {
-
-/// What the bar's own core knows and the model of solids does not.
-constexpr const char* of_bars =
-    "for bars of linear_elastic material without points, constraints, loads, fields and grading";
-
-}  // namespace
+namespace {}  // namespace
 
 void BarMeshSpec::fields(Fields& f) {
   f.required("length", length, "m", "length of the bar", positive);
   f.required("area", area, "m^2", "cross section", positive);
   f.required("elements", elements, "", "number of two-node elements", at_least(1));
   f.optional("grading", grading, "", "length of the last element over the first", positive);
+  f.idle(elements == 1, "grading", "one element has no other to be compared with");
 }
 
 double SolidShapeSpec::area() const {
@@ -43,8 +38,9 @@ void SolidShapeSpec::fields(Fields& f) {
           fmt::format("is {}, but the mesh has {}", dimension,
                       file ? "2 or 3" : std::to_string(wanted)),
           "Give the dimension of the mesh.");
-  f.check(plane == Plane::strain || dimension == 2, "plane", "is for bodies in two dimensions",
-          "Leave plane out.");
+  f.idle(dimension != 2, "plane", "it is for bodies in two dimensions");
+  f.idle(dimension != 2 || plane == Plane::axisymmetric, "thickness",
+         "it is for plane strain and plane stress");
 }
 
 void FiniteElementsSpec::fields(Fields& f) {
@@ -59,6 +55,9 @@ void FiniteElementsSpec::fields(Fields& f) {
   f.check(locks || formulation != Formulation::mean_dilatation, "formulation",
           "mean_dilatation does not apply to plane and uniaxial stress, which cannot lock",
           "Leave formulation out.");
+  f.idle(dimension == 1, "formulation", "bars have one integration of their elements");
+  f.idle(formulation != Formulation::one_point, "hourglass",
+         "it belongs to formulation: one_point");
 }
 
 void FeModelSpec::fields(Fields& f) {
@@ -86,6 +85,7 @@ void RigidModelSpec::fields(Fields& f) {
   f.check(plane != Plane::axisymmetric, "plane",
           "axisymmetric does not fit a rigid body, which turns about its centre",
           "Mesh the whole body in space, or leave plane out.");
+  f.idle(true, "plane", "a rigid body has no stress");
 }
 
 void PairedBarSpec::fields(Fields& f) {
@@ -115,7 +115,7 @@ void MasslessSpec::fields(Fields& f) {
       "stiffness_factor", stiffness_factor, "",
       "factor on the stiffness of the contact element; 4/3 is the distance to the centroid of the "
       "mass moved inwards",
-      positive);
+      between(0.1, 100.0));
 }
 
 void MassiveSpec::fields(Fields& f) {
@@ -173,6 +173,7 @@ void BodySpec::fields(Fields& f) {
   f.map("loads", loads, "forces on a solid", Presence::optional);
   f.defaulted("equations", equations, "solution of the equations of an implicit or static solid");
   check_dimensions(f);
+  idle_keys(f);
   if (is_solid()) check_solid(f);
   const bool wall = std::holds_alternative<RigidWallSpec>(model);
   const bool pair = std::holds_alternative<BarPairSpec>(model);
@@ -182,6 +183,10 @@ void BodySpec::fields(Fields& f) {
   const std::string words(std::visit([](const auto& m) { return m.name; }, model));
   f.check(wall || material.has_value(), "model", words + " needs a material",
           "Add material: {linear_elastic: {youngs_modulus: ..., density: ...}} to the body.");
+  const auto* elastic = material ? std::get_if<LinearElasticSpec>(&*material) : nullptr;
+  f.check(!pair || (elastic != nullptr && elastic->youngs_modulus), "material",
+          "is not offered to a bar_pair",
+          "Give linear_elastic: {youngs_modulus: ..., density: ...}.");
   f.check(wall || integrator.has_value(), "model", words + " needs an integrator",
           rigid ? "Add integrator: {rigid_motion: {step: ...}} to the body."
                 : "Add integrator: {central_difference: {step: ...}} or an implicit one to the "
@@ -254,25 +259,10 @@ void BodySpec::check_dimensions(Fields& f) const {
 }
 
 void BodySpec::check_solid(Fields& f) const {
-  const bool flat = shape()->dimension > 1;
-  f.check(!flat || (!supports.left_fixed && !supports.right_fixed), "supports", "are for bars",
-          "Use constraints, e.g. {clamp: {on: left, fixed: true}}.");
-  f.check(std::holds_alternative<MasslessSpec>(contact_layer), "contact_layer",
-          std::string("is ") + of_bars, "Leave contact_layer out.");
-  for (const auto& [key, port] : ports)
-    f.check(!port.tied, "ports." + key + ".tied", std::string("is ") + of_bars, "Leave tied out.");
   if (!integrator) return;
   f.check(!std::holds_alternative<BackwardEulerSpec>(*integrator), "integrator",
           "backward_euler is offered to bar_pair only",
           "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");
-  if (const auto* s = std::get_if<CentralDifferenceSpec>(&*integrator)) {
-    f.check(s->dispersion_terms == 1, "integrator.central_difference.dispersion_terms",
-            std::string("are ") + of_bars, "Leave dispersion_terms out.");
-    f.check(s->bulk_viscosity == 0.0, "integrator.central_difference.bulk_viscosity",
-            std::string("is ") + of_bars, "Leave bulk_viscosity out.");
-    f.check(s->tchamwa == 1.0, "integrator.central_difference.tchamwa",
-            std::string("is ") + of_bars, "Leave tchamwa out.");
-  }
 }
 
 void BodySpec::check_modal(Fields& f) const {
@@ -298,8 +288,6 @@ void BodySpec::check_modal(Fields& f) const {
 }
 
 void BodySpec::check_rigid(Fields& f) const {
-  f.check(!supports.left_fixed && !supports.right_fixed, "supports", "hold a rigid body as a whole",
-          "Leave supports out, or use a rigid_wall.");
   f.check(constraints.empty(), "constraints",
           "prescribe displacements of single nodes, which a rigid body does not have",
           "Leave constraints out, or use model fe.");

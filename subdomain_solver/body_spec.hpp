@@ -158,6 +158,11 @@ struct BodySpec {
   void check_solid(Fields& f) const;
   void check_modal(Fields& f) const;
   void check_rigid(Fields& f) const;
+  bool is_implicit() const;
+  void idle_keys(Fields& f) const;  // idle_keys.cpp
+  void idle_of_walls_and_pairs(Fields& f) const;
+  void idle_of_bars(Fields& f) const;
+  void idle_of_integrators(Fields& f) const;
 };
 
 /// Properties of the bar on which a port lies; empty for a wall. For closed forms and estimates.

@@ -1,9 +1,11 @@
 #include "subdomain_solver/expression.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <vector>
 
 #include <fmt/format.h>
 #include <muParser.h>
@@ -43,6 +45,20 @@ bool assigns(const std::string& text) {
   return false;
 }
 
+/// Whether a comma stands outside of a function's arguments, where the parser takes what follows it
+/// for the formula's value.
+bool has_loose_comma(const std::string& text) {
+  std::vector<bool> is_call;
+  char before = ' ';
+  for (const char letter : text) {
+    if (letter == '(') is_call.push_back(std::isalnum(static_cast<unsigned char>(before)) != 0);
+    if (letter == ')' && !is_call.empty()) is_call.pop_back();
+    if (letter == ',' && (is_call.empty() || !is_call.back())) return true;
+    if (letter != ' ') before = letter;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::function<double(const std::array<double, 3>&, double)> expression(const std::string& text,
@@ -50,6 +66,10 @@ std::function<double(const std::array<double, 3>&, double)> expression(const std
   if (assigns(text)) {
     throw InputError(fmt::format("'{}' sets a variable", text), where,
                      "Compare with ==, or leave the = out.");
+  }
+  if (has_loose_comma(text)) {
+    throw InputError(fmt::format("'{}' has a comma that separates no arguments", text), where,
+                     "Write decimals with a point: 0.5, not 0,5.");
   }
   try {
     std::shared_ptr<Formula> formula = std::make_shared<Formula>(text);  // std::function copies

@@ -1,11 +1,15 @@
 #include <cmath>
+#include <new>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "base/error.hpp"
 #include "base/yaml_fields.hpp"
 #include "subdomain_solver/body.hpp"
+#include "subdomain_solver/fe/element_limit.hpp"
 #include "subdomain_solver/makers.hpp"
+#include "subdomain_solver/mass_range.hpp"
 #include "subdomain_solver/rigid_wall.hpp"
 #include "subdomain_solver/time/central_difference.hpp"
 #include "subdomain_solver/time/generalized_alpha.hpp"
@@ -17,15 +21,10 @@ namespace {
 /// CFL 1 is exact and meant: a step may pass the limit by round-off.
 constexpr double limit_slack = 1.0e-12;
 
-struct Place {
-  const Document& document;
-  std::string path;
-
-  [[noreturn]] void refuse(const std::string& key, const std::string& what,
-                           const std::string& remedy) const {
-    throw InputError(what, document.where(path + "." + key), remedy);
-  }
-};
+[[noreturn]] void refuse(const Place& place, const std::string& key, const std::string& what,
+                         const std::string& remedy) {
+  throw InputError(what, place.where(key), remedy);
+}
 
 int end_of(const std::string& side) { return side == "left" ? 0 : side == "right" ? 1 : -1; }
 
@@ -35,13 +34,13 @@ std::vector<Body::BodyPort> ports_of(const BodySpec& spec, const Place& place) {
     const int end = end_of(port.side);
     const std::string key = "ports." + name + ".side";
     if (end < 0) {
-      place.refuse(key, fmt::format("side '{}' does not exist", port.side),
-                   "Give left or right, the sides of this body.");
+      refuse(place, key, fmt::format("side '{}' does not exist", port.side),
+             "Give left or right, the sides of this body.");
     }
     for (const Body::BodyPort& other : ports) {
       if (other.end != end) continue;
-      place.refuse(key, fmt::format("side '{}' is the port '{}' already", port.side, other.name),
-                   "Let each side be one port.");
+      refuse(place, key, fmt::format("side '{}' is the port '{}' already", port.side, other.name),
+             "Let each side be one port.");
     }
     ports.push_back({name, end, port.tied});
   }
@@ -65,16 +64,15 @@ struct SchemeMaker {
   Body::Scheme operator()(const CentralDifferenceSpec& s) const {
     const double limit = bar.stable_step();
     if (s.step > limit * (1.0 + limit_slack)) {
-      place.refuse("integrator.central_difference.step",
-                   fmt::format("{:g} s is above the stable limit of {:g} s", s.step, limit),
-                   "Give a step of at most the limit, or an implicit integrator such as newmark.");
+      refuse(place, "integrator.central_difference.step",
+             fmt::format("{:g} s is above the stable limit of {:g} s", s.step, limit),
+             "Give a step of at most the limit, or an implicit integrator such as newmark.");
     }
     if (s.dispersion_terms > 1 && bar.data().elements < 2 * s.dispersion_terms + 2) {
-      place.refuse(
-          "integrator.central_difference.dispersion_terms",
-          fmt::format("{} terms do not fit into {} elements", s.dispersion_terms,
-                      bar.data().elements),
-          fmt::format("Give at least {} elements or fewer terms.", 2 * s.dispersion_terms + 2));
+      refuse(place, "integrator.central_difference.dispersion_terms",
+             fmt::format("{} terms do not fit into {} elements", s.dispersion_terms,
+                         bar.data().elements),
+             fmt::format("Give at least {} elements or fewer terms.", 2 * s.dispersion_terms + 2));
     }
     std::string words = fmt::format("central difference, step {:g} s, CFL {:.3g}", s.step,
                                     s.step / (bar.spacing() / bar.data().wave_speed()));
@@ -94,13 +92,13 @@ struct SchemeMaker {
     return implicit(AlphaWeights::spectral_radius(s.spectral_radius), s.step, "generalised alpha");
   }
   Body::Scheme operator()(const QuasiStaticSpec&) const {
-    place.refuse("integrator", "quasi_static is not offered to a bar",
-                 "Use newmark or another implicit integrator.");
+    refuse(place, "integrator", "quasi_static is not offered to a bar",
+           "Use newmark or another implicit integrator.");
   }
   Body::Scheme operator()(const RigidMotionSpec&) const { return {}; }  // refused before
   Body::Scheme operator()(const BackwardEulerSpec&) const {
-    place.refuse("integrator", "backward_euler is offered to bar_pair only",
-                 "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");
+    refuse(place, "integrator", "backward_euler is offered to bar_pair only",
+           "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");
   }
   Body::Scheme implicit(const AlphaWeights& weights, double step, const char* words) const {
     return {std::make_unique<GeneralizedAlpha>(bar, weights), step, false,
@@ -112,29 +110,28 @@ struct SchemeMaker {
 void check_layers(const BodySpec& spec, const BarProperties& bar, const Place& place) {
   const bool explicit_scheme = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
   if (bar.complete_reaction && !explicit_scheme) {
-    place.refuse("contact_layer.massive.reaction",
-                 "complete is not offered by implicit integrators",
-                 "Give reaction: internal, or use contact_layer massless: an implicit step with a "
-                 "massive contact node and a complete reaction is unstable.");
+    refuse(place, "contact_layer.massive.reaction",
+           "complete is not offered by implicit integrators",
+           "Give reaction: internal, or use contact_layer massless: an implicit step with a "
+           "massive contact node and a complete reaction is unstable.");
   }
   int massless = 0;
   for (std::size_t e : {0u, 1u}) {
     if (bar.layer[e] == ContactLayer::kick && !explicit_scheme) {
-      place.refuse(
-          "contact_layer", "kick is not offered by implicit integrators",
+      refuse(
+          place, "contact_layer", "kick is not offered by implicit integrators",
           "Use massless: an implicit step with a massive contact node and a complete reaction is "
           "unstable.");
     }
     if (bar.layer[e] != ContactLayer::none && bar.fixed[e]) {
-      place.refuse(std::string("supports.") + (e == 0 ? "left" : "right"),
-                   "is fixed, but the end is a port", "Leave the end free, or take its port away.");
+      refuse(place, std::string("supports.") + (e == 0 ? "left" : "right"),
+             "is fixed, but the end is a port", "Leave the end free, or take its port away.");
     }
     if (bar.layer[e] == ContactLayer::massless) ++massless;
   }
   if (bar.elements <= massless - 1) {
-    place.refuse("model.fe.mesh.bar.elements",
-                 "one element cannot have a massless layer at both ends",
-                 "Give at least 2 elements.");
+    refuse(place, "model.fe.mesh.bar.elements",
+           "one element cannot have a massless layer at both ends", "Give at least 2 elements.");
   }
 }
 
@@ -184,8 +181,10 @@ BarProperties fe_bar_properties(const BodySpec& spec) {
   return bar;
 }
 
-std::unique_ptr<Subdomain> make_body(const Document& document, const std::string& path,
-                                     std::function<void()> progress) {
+namespace {
+
+std::unique_ptr<Subdomain> build(const Document& document, const std::string& path,
+                                 std::function<void()> progress) {
   BodySpec spec = read<BodySpec>(document, path);
   spec.place_files(document.name().substr(0, document.name().rfind('/') + 1));
   const Place place{document, path};
@@ -203,6 +202,10 @@ std::unique_ptr<Subdomain> make_body(const Document& document, const std::string
                                        Bar::outward(ports[0].end));
   }
   const BarProperties properties = fe_bar_properties(spec);
+  const double node = properties.mass_total() / properties.elements;
+  check_mass(node, node, spec, place);
+  require_room(properties.elements, bytes_of_bar_element,
+               document.where(path + ".model.fe.mesh.bar.elements"));
   check_layers(spec, properties, place);
   std::unique_ptr<Bar> bar = std::make_unique<Bar>(properties);
   Body::Scheme scheme = std::visit(SchemeMaker{*bar, place}, *spec.integrator);
@@ -210,6 +213,23 @@ std::unique_ptr<Subdomain> make_body(const Document& document, const std::string
       std::make_unique<Body>(name, std::move(bar), std::move(scheme), ports);
   body->set_progress(std::move(progress));
   return body;
+}
+
+}  // namespace
+
+std::unique_ptr<Subdomain> make_body(const Document& document, const std::string& path,
+                                     std::function<void()> progress) {
+  const auto too_large = [&document, &path] {
+    return InputError("takes more memory than there is", document.where(path + ".model"),
+                      "Make the mesh coarser, or run on a machine with more memory.");
+  };
+  try {
+    return build(document, path, std::move(progress));
+  } catch (const std::bad_alloc&) {
+    throw too_large();
+  } catch (const std::length_error&) {  // more than any container can hold
+    throw too_large();
+  }
 }
 
 }  // namespace abut

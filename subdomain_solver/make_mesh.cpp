@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/count.hpp"
 #include "subdomain_solver/fe/exodus_file.hpp"
 #include "subdomain_solver/fe/file_digest.hpp"
 #include "subdomain_solver/fe/gmsh_file.hpp"
@@ -31,7 +32,7 @@ template <std::size_t N>
 std::array<int, N> counts_of(const std::vector<double>& list) {
   std::array<int, N> out{};
   std::transform(list.begin(), list.end(), out.begin(),
-                 [](double x) { return static_cast<int>(std::lround(x)); });
+                 [](double x) { return count_within(x, 0, std::numeric_limits<int>::max()); });
   return out;
 }
 

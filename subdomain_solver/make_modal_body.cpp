@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include "base/count.hpp"
 #include "subdomain_solver/make_constraints.hpp"
 #include "subdomain_solver/make_fields.hpp"
 #include "subdomain_solver/make_material.hpp"
 #include "subdomain_solver/make_mesh.hpp"
 #include "subdomain_solver/make_scheme.hpp"
 #include "subdomain_solver/makers.hpp"
+#include "subdomain_solver/mass_range.hpp"
 #include "subdomain_solver/modal/modal_basis.hpp"
 #include "subdomain_solver/modal/modal_map.hpp"
 #include "subdomain_solver/modal/modal_model.hpp"
@@ -30,7 +32,7 @@ double hertz(double omega) { return omega / (2.0 * std::numbers::pi); }
 WantedModes wanted_of(const ModalModelSpec& spec) {
   WantedModes wanted;
   if (spec.modes) {
-    wanted.count = static_cast<int>(std::min(*spec.modes, 1.0e9));
+    wanted.count = count_within(*spec.modes, 0, 1'000'000'000);
   } else {
     const double omega = 2.0 * std::numbers::pi * *spec.below;
     wanted.below = omega * omega;
@@ -112,6 +114,7 @@ std::unique_ptr<Subdomain> make_modal_body(const BodySpec& spec, const Document&
                 .area = modal.area()},
       constraints.frames);
   FeModel& nodes = *parts.model;
+  check_mass(nodes.lumped_mass().minCoeff(), nodes.lumped_mass().maxCoeff(), spec, place);
   check_statics(spec, place, nodes, constraints.supports);
   std::vector<int> supports;
   for (const Prescribed& p : constraints.supports) supports.push_back(p.dof);

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "subdomain_solver/fe/element_limit.hpp"
 #include "subdomain_solver/makers.hpp"
+#include "subdomain_solver/mass_range.hpp"
 #include "subdomain_solver/pair_body.hpp"
 
 namespace abut {
@@ -14,8 +16,8 @@ namespace {
 /// CFL 1 is meant: a step may pass the limit by round-off.
 constexpr double limit_slack = 1.0e-12;
 
-using Refuse = std::function<void(const std::string& key, const std::string& what,
-                                  const std::string& remedy)>;
+using Refuse =
+    std::function<void(const std::string& key, const std::string& what, const std::string& remedy)>;
 
 /// Scheme and step of a pair; refuses what only single bars offer.
 struct PairScheme {
@@ -30,9 +32,8 @@ struct PairScheme {
              "has dispersion terms, bulk viscosity or tchamwa, which bar_pair does not offer",
              "Leave them out: the conventional methods are measured on the plain scheme.");
     }
-    const double limit =
-        BarPair(parameters.bars[0], parameters.bars[1], ElementLengths::reference)
-            .stable_step(parameters.contact.penalty);
+    const double limit = BarPair(parameters.bars[0], parameters.bars[1], ElementLengths::reference)
+                             .stable_step(parameters.contact.penalty);
     if (s.step > limit * (1.0 + limit_slack)) {
       refuse("integrator.central_difference.step",
              fmt::format("{:g} s is above the stable limit of {:g} s", s.step, limit),
@@ -59,21 +60,11 @@ struct PairScheme {
   }
 };
 
-void check_bars(const BodySpec& spec, const BarPairSpec& pair, const Refuse& refuse) {
+void check_bars(const BarPairSpec& pair, const Refuse& refuse) {
   const double gap = pair.right.position - (pair.left.position + pair.left.length);
   if (gap < 0.0) {
     refuse("model.bar_pair.right.position", fmt::format("overlaps the left bar by {:g} m", -gap),
            "Move a bar until the gap is zero or more.");
-  }
-  if (spec.body_force[0] != 0.0) {
-    refuse("body_force", "is not offered to bar_pair", "Leave it out, or use two fe bodies.");
-  }
-  if (spec.supports.left_fixed || spec.supports.right_fixed) {
-    refuse("supports", "are not offered to bar_pair", "Leave them out, or use two fe bodies.");
-  }
-  if (spec.initial.position[0] != 0.0 || spec.initial.velocity[0] != 0.0) {
-    refuse("initial", "is not used by bar_pair",
-           "Give position and velocity under model.bar_pair.left and right.");
   }
 }
 
@@ -104,25 +95,30 @@ std::array<BarProperties, 2> pair_properties(const BodySpec& spec) {
 }
 
 std::unique_ptr<Subdomain> make_pair_body(const BodySpec& spec, const Document& document,
-                                          const std::string& path,
-                                          std::function<void()> progress) {
+                                          const std::string& path, std::function<void()> progress) {
   const Refuse refuse = [&document, &path](const std::string& key, const std::string& what,
                                            const std::string& remedy) {
     throw InputError(what, document.where(path + "." + key), remedy);
   };
   const BarPairSpec& pair = std::get<BarPairSpec>(spec.model);
-  check_bars(spec, pair, refuse);
+  check_bars(pair, refuse);
+  require_room(pair.left.elements, bytes_of_bar_element,
+               document.where(path + ".model.bar_pair.left.elements"));
+  require_room(pair.right.elements, bytes_of_bar_element,
+               document.where(path + ".model.bar_pair.right.elements"));
   PairBody::Parameters parameters;
   parameters.bars = pair_properties(spec);
+  for (const BarProperties& bar : parameters.bars) {
+    const double node = bar.mass_total() / bar.elements;
+    check_mass(node, node, spec, Place{document, path});
+  }
   if (const PenaltySpec* penalty = std::get_if<PenaltySpec>(&pair.contact))
     parameters.contact.penalty = penalty->stiffness;
-  parameters.lengths =
-      pair.current_lengths ? ElementLengths::current : ElementLengths::reference;
+  parameters.lengths = pair.current_lengths ? ElementLengths::current : ElementLengths::reference;
   parameters.words = fmt::format(
       "pair of bars, {} + {} elements, {}{}", pair.left.elements, pair.right.elements,
-      parameters.contact.multiplier()
-          ? "Lagrange multiplier"
-          : fmt::format("penalty {:g} N/m", parameters.contact.penalty),
+      parameters.contact.multiplier() ? "Lagrange multiplier"
+                                      : fmt::format("penalty {:g} N/m", parameters.contact.penalty),
       pair.current_lengths ? ", current lengths" : "");
   std::visit(PairScheme{parameters, refuse}, *spec.integrator);
   parameters.words += fmt::format(", step {:g} s", parameters.step);

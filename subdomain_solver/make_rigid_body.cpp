@@ -8,6 +8,7 @@
 #include "subdomain_solver/make_mesh.hpp"
 #include "subdomain_solver/make_scheme.hpp"
 #include "subdomain_solver/makers.hpp"
+#include "subdomain_solver/mass_range.hpp"
 #include "subdomain_solver/rigid/rigid_fit.hpp"
 #include "subdomain_solver/rigid/rigid_motion.hpp"
 #include "subdomain_solver/solid_body.hpp"
@@ -73,6 +74,7 @@ std::unique_ptr<Subdomain> make_rigid_body(const BodySpec& spec, const Document&
       std::move(mesh), make_material(*spec.material, document, path + ".material", model.dimension),
       options);
   const FeModel& nodes = *parts.model;
+  check_mass(nodes.lumped_mass().minCoeff(), nodes.lumped_mass().maxCoeff(), spec, place);
   std::unique_ptr<RigidModel> body = std::make_unique<RigidModel>(nodes, integrator.mass);
   parts.map = std::make_unique<RigidMap>(*body, nodes.mesh());
   parts.problem = std::make_unique<Problem>();

@@ -41,6 +41,10 @@ struct SchemeMaker {
     // A whole number of parts, so that they divide windows as the step does.
     const double parts = s.step > limit ? std::ceil(s.step / (clamped * limit)) : 1.0;
     const double step = s.step / parts;
+    if (!(step > 0.0)) {
+      throw InputError("has a stable limit of 0 s: stiffness over mass is beyond all numbers",
+                       place.where(key), "Give the material's constants in SI units.");
+    }
     std::unique_ptr<Integrator> steps;
     if (watch && std::isfinite(limit))
       steps = std::make_unique<StableSteps>(problem, watch(),

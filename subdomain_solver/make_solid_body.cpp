@@ -8,6 +8,7 @@
 #include "subdomain_solver/make_mesh.hpp"
 #include "subdomain_solver/make_scheme.hpp"
 #include "subdomain_solver/makers.hpp"
+#include "subdomain_solver/mass_range.hpp"
 #include "subdomain_solver/place.hpp"
 #include "subdomain_solver/solid_body.hpp"
 
@@ -31,6 +32,11 @@ std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document&
                 fe.area()},
       constraints.frames);
   FeModel& model = *parts.model;
+  check_mass(model.lumped_mass().minCoeff(), model.lumped_mass().maxCoeff(), spec, place);
+  if (fe.threads > 1 && model.threads() == nullptr) {
+    throw InputError("have no effect: one thread computes the elements of this law or formulation",
+                     place.where("model.fe.threads"), "Leave threads out.");
+  }
   check_statics(spec, place, model, constraints.supports);
   parts.map = std::make_unique<IdentityMap>();
   parts.problem = std::make_unique<Problem>();

@@ -11,6 +11,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "subdomain_solver/bar_fields.hpp"
+#include "subdomain_solver/compressed_bar.hpp"
 #include "subdomain_solver/saved_state.hpp"
 
 namespace abut {
@@ -203,7 +204,14 @@ std::optional<Failed> PairBody::record(double time, Response& response) {
   }
   const bool finite = std::isfinite(r.energy.total() + r.momentum[0]);
   response.records.push_back(std::move(r));
-  if (finite) return std::nullopt;
+  const std::span<const double> u = state_.u;
+  if (finite) {
+    std::optional<Failed> failed = compressed_to_nothing(
+        u.first(pair_.tip(0) + 1), pair_.bar(0).spacing(), time, description_.members[0].name);
+    return failed ? failed
+                  : compressed_to_nothing(u.subspan(pair_.tip(1)), pair_.bar(1).spacing(), time,
+                                          description_.members[1].name);
+  }
   return Failed{
       Failed::Cause::non_finite, time,
       fmt::format("the state of body '{}' is no longer finite; its step of {:g} s may be unstable "

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/count.hpp"
+
 namespace abut {
 
 namespace {
@@ -59,7 +61,7 @@ std::vector<double> PortForces::at(double time) const {
   std::vector<double> out(map_.values(), 0.0);
   if (forces_.empty()) return out;
   const double place = grid_.count > 0 ? (time - grid_.begin) / grid_.step : 0.0;
-  const int near = std::clamp(static_cast<int>(std::lround(place)), 0, grid_.count);
+  const int near = count_within(place, 0, grid_.count);
   const double length = std::max(grid_.step, 0.0);
   const auto row = [this](int i) { return forces_.data() + index(i) * map_.values(); };
   const auto instant = [this](int i) { return i == 0 ? grid_.begin : grid_.time(i); };
@@ -67,7 +69,7 @@ std::vector<double> PortForces::at(double time) const {
     std::copy_n(row(near), map_.values(), out.begin());
     return out;
   }
-  const int after = std::clamp(static_cast<int>(std::ceil(place)), 1, grid_.count);
+  const int after = count_within(std::ceil(place), 1, grid_.count);
   const double share =
       std::clamp((time - instant(after - 1)) / (instant(after) - instant(after - 1)), 0.0, 1.0);
   for (std::size_t k = 0; k < map_.values(); ++k)

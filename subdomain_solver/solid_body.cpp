@@ -11,6 +11,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/life_signs.hpp"
+#include "subdomain_solver/compressed_bar.hpp"
 #include "subdomain_solver/fe/loads.hpp"
 #include "subdomain_solver/saved_state.hpp"
 #include "subdomain_solver/solid_fields.hpp"
@@ -165,6 +166,11 @@ Outcome SolidBody::finish(Response& response) {
   response.records.resize(index(std::max(1, request.records)));
   response.ports.resize(ports_.size());
   recorded_ = 0;
+  if (description_.dim == 1) {  // of the window's begin, which is accepted
+    std::optional<Failed> failed = compressed_to_nothing(displacement(), parts_.model->mesh(),
+                                                         request.window.begin, description_.name);
+    if (failed) return *failed;
+  }
   const Substeps grid =
       Substeps::divide(request.window.begin, request.window.end, parts_.scheme.step);
   if (port_forces_ != nullptr) port_forces_->impose(request.boundary, grid);

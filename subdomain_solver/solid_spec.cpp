@@ -1,5 +1,6 @@
 #include "subdomain_solver/solid_spec.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -30,6 +31,11 @@ void lattice_keys(Fields& f, std::size_t dim, std::vector<double>& lengths,
   for (double count : elements) {
     f.check(count == std::floor(count), "elements", fmt::format("holds {:g}", count),
             "Give whole numbers.");
+  }
+  for (std::size_t d = 0; d < std::min(grading.size(), elements.size()); ++d) {
+    f.check(elements[d] != 1.0 || grading[d] == 1.0, "grading",
+            fmt::format("is {:g} along a direction with one element", grading[d]),
+            "Give 1 there, or more elements.");
   }
 }
 
@@ -66,6 +72,7 @@ void CylinderSpec::fields(Fields& f) {
   f.optional("grading", grading, "", "length of the last element over the first", positive);
   element_key(f, element, {"hex8", "hex20", "tet4", "tet10"});
   origin_key(f, centred);
+  f.idle(elements == 1, "grading", "one element has no other to be compared with");
 }
 
 void SphereSpec::fields(Fields& f) {

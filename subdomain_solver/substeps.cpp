@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "base/count.hpp"
+#include "base/error.hpp"
+
 namespace abut {
 
 namespace {
@@ -15,7 +20,14 @@ Substeps Substeps::divide(double begin, double end, double step) {
   const double length = end - begin;
   if (length <= 0.0) return part;
   const double exact = length / step;
-  part.count = std::max(1, static_cast<int>(std::ceil(exact - remainder_tolerance)));
+  if (!(exact <= most_substeps)) {
+    throw RunError(fmt::format("a request of {:g} s would take {:g} substeps of {:g} s, more than "
+                               "{:g}",
+                               length, exact, step, most_substeps),
+                   "", "Give a shorter time.window or a longer step.");
+  }
+  part.count =
+      count_within(std::ceil(exact - remainder_tolerance), 1, static_cast<int>(most_substeps));
   const double rest = length - (part.count - 1) * step;
   // A whole step stays the nominal one to the last bit: its factors and kernels are reused.
   const bool whole = std::abs(rest - step) < remainder_tolerance * step;
@@ -36,7 +48,7 @@ RecordClock::RecordClock(const Advance& request, int substeps)
 
 int RecordClock::substep() const {
   if (done()) return -1;
-  return static_cast<int>(std::llround(static_cast<double>(next_) * substeps_ / records_));
+  return count_within(static_cast<double>(next_) * substeps_ / records_, 0, substeps_);
 }
 
 double RecordClock::time() const {

@@ -11,7 +11,8 @@ struct Substeps {
   double begin = 0.0, end = 0.0, step = 0.0, last = 0.0;  // [s]
   int count = 0;
 
-  /// Whole substeps, and a shorter last one where they do not fill the window.
+  /// Whole substeps, and a shorter last one where they do not fill the window. Throws RunError for
+  /// more than most_substeps.
   static Substeps divide(double begin, double end, double step);
   double length(int i) const { return i == count ? last : step; }  // i = 1..count
   double time(int i) const { return i == count ? end : begin + i * step; }

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <map>
 #include <set>
 #include <span>
-#include <sstream>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
+#include "base/machine_memory.hpp"
 #include "subdomain_solver/fe/facet_index.hpp"
 #include "subdomain_solver/fe/gmsh_data.hpp"
 #include "subdomain_solver/fe/named_sides.hpp"
@@ -188,11 +188,11 @@ Mesh gmsh_mesh(std::string bytes, const std::string& name, double scale) {
 }
 
 Mesh read_gmsh(const std::string& path, double scale) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError("cannot be opened", path, "Check the path of the mesh.");
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  return gmsh_mesh(std::move(bytes).str(), path, scale);
+  // The mesh takes about as much memory as the text that it was read from.
+  const std::size_t most = static_cast<std::size_t>(0.5 * machine_memory());
+  constexpr const char* remedy = "Check the path of the mesh.";
+  check_input_file(path, most, remedy);
+  return gmsh_mesh(read_input_file(path, most, remedy), path, scale);
 }
 
 }  // namespace abut

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "subdomain_solver/fe/element_limit.hpp"
 #include "subdomain_solver/fe/lattice_mesh.hpp"
 
 namespace abut {
@@ -52,14 +53,6 @@ void require_count(int value, const std::string& where) {
   if (value >= 1 && value <= most_lattice_cells) return;
   throw InputError(fmt::format("must be from 1 to {}, but is {}", most_lattice_cells, value), where,
                    "Change the number of elements.");
-}
-
-/// Of lattice cells in all; hex20 has 4 nodes per cell, and node numbers have 32 bits.
-void require_total(double cells, const std::string& where) {
-  constexpr double most = 2e8;
-  if (cells <= most) return;
-  throw InputError(fmt::format("asks for {:.3g} elements, more than {:.3g}", cells, most), where,
-                   "Make the mesh coarser.");
 }
 
 // Coordinates ----------------------------------------------------------------------------------
@@ -125,7 +118,7 @@ Mesh box(const Lengths<Dim>& data, const Element& element, const std::string& wh
     cells[d] = data.elements[d];
     last[d] = 2 * cells[d];
   }
-  require_total(total, where + ".elements");
+  require_room(total, bytes_of_cell, where + ".elements");
   for (std::size_t d = 0; d < Dim; ++d) {
     x[d] = line(lower_end(data.origin[d], data.origin_at, data.lengths[d]), data.lengths[d],
                 cells[d], data.grading[d]);
@@ -242,7 +235,7 @@ void require_round(double radius, int core, int layers, double along, double dim
   require_count(core, where + ".core");
   require_count(layers, where + ".layers");
   const double shell = 2.0 * dims * std::pow(core, dims - 1.0) * layers;
-  require_total(along * (std::pow(core, dims) + shell), where);
+  require_room(along * (std::pow(core, dims) + shell), bytes_of_cell, where);
 }
 
 }  // namespace

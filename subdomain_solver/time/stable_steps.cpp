@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/assert.hpp"
+#include "base/count.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -18,9 +19,10 @@ constexpr double part_of_limit = 0.95;  // that a part of a step takes
 constexpr double near = 0.96, far = 0.8;
 // Bounds are found to a hundredth, so they say nothing of smaller changes than two of them.
 constexpr double resolution = 0.02;
-constexpr double longest = 256.0;  // [steps] between bounds where nothing changes
-constexpr double shortest = 4.0;   // [steps] at the begin, and where a refusal is near
-constexpr double foresight = 1.5;  // share of the last growth that the next one may have
+constexpr double longest = 256.0;     // [steps] between bounds where nothing changes
+constexpr double shortest = 4.0;      // [steps] at the begin, and where a refusal is near
+constexpr double most_parts = 1.0e6;  // of a step: elements on the way to no size at all
+constexpr double foresight = 1.5;     // share of the last growth that the next one may have
 
 }  // namespace
 
@@ -76,8 +78,14 @@ std::optional<Failed> StableSteps::step(Motion& motion, double time, double dt) 
   if (control.since >= control.interval || (stirred && control.since >= watch_->least_interval())) {
     if (std::optional<Failed> failed = check(motion, time)) return failed;
   }
-  const int parts =
-      std::max(1, static_cast<int>(std::ceil(control.parts * dt / options_.step - 1.0e-6)));
+  const double needed = std::ceil(control.parts * dt / options_.step - 1.0e-6);
+  if (needed > most_parts) {
+    return Failed{Failed::Cause::step_too_small, time,
+                  fmt::format("the stable limit has fallen so far that a step of {:g} s would take "
+                              "{:g} parts, more than {:g}: check loads and the law's range",
+                              dt, needed, most_parts)};
+  }
+  const int parts = count_within(needed, 1, static_cast<int>(most_parts));
   if (parts > 1) before_ = motion;
   for (int k = 0; k < parts; ++k) {
     if (std::optional<Failed> failed = steps_.step(motion, time + k * (dt / parts), dt / parts)) {

@@ -93,7 +93,7 @@ TEST(Invariance, TheMirrorImageIsTheMirrorImage) {
 }
 
 class Speed : public testing::TestWithParam<double> {};
-INSTANTIATE_TEST_SUITE_P(Invariance, Speed, testing::Values(1e-9, 1e-6, 1e-3, 1.0, 1e4));
+INSTANTIATE_TEST_SUITE_P(Invariance, Speed, testing::Values(1e-9, 1e-6, 1e-3, 1.0, 500.0));
 
 TEST_P(Speed, OfTheImpactIsAScaleAlone) {
   SceneText scene = two_bars();

@@ -93,7 +93,7 @@ TEST_P(ImpulseOnASolid, IsThatOfTheForcesOfAllWindows) {
   const std::unique_ptr<Subdomain> body = build(text);
   Response response;
   double impulse = 0.0, time = 0.0;
-  for (const double size : {1.0, 0.4, 0.0}) {
+  for (const double size : {0.1, 0.04, 0.0}) {  // strains stay below 1
     Advance request = free_request(*body, time, time + 6.0);
     Waveform& force = request.boundary[0].force;
     for (int i = 0; i <= 7 && size > 0.0; ++i) {

@@ -114,6 +114,7 @@ SceneText whole(const SceneText& halves) {
   bar.sides = {};
   scene.bars = {bar};
   scene.interfaces = {};
+  scene.schwarz.clear();
   scene.tied = false;
   return scene;
 }

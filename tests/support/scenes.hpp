@@ -17,7 +17,8 @@ inline std::string number(double x) { return fmt::format("{:.17e}", x); }
 
 // The schemes that tests go through, as scenes write them; the step is filled in.
 inline std::string explicit_scheme(double step, int terms = 1) {
-  return fmt::format("central_difference: {{step: {}, dispersion_terms: {}}}", number(step), terms);
+  const std::string more = terms > 1 ? fmt::format(", dispersion_terms: {}", terms) : "";
+  return fmt::format("central_difference: {{step: {}{}}}", number(step), more);
 }
 inline std::string implicit_scheme(const std::string& name, double step) {
   return fmt::format("{}: {{step: {}}}", name, number(step));
@@ -31,17 +32,19 @@ struct BarText {
   int elements = 200;
   double modulus = 1.0e9, density = 1000.0;  // [Pa] [kg/m^3]
   std::string integrator = explicit_scheme(1.0e-7, 6);
-  std::string layer = "massless: {stiffness_factor: 1.4}";
+  std::string layer = "massless: {stiffness_factor: 1.4}";      // or empty
   double position = -0.27, velocity = 100.0, body_force = 0.0;  // [m] [m/s] [m/s^2]
   std::vector<std::string> sides = {"right"};
-  std::string fixed;  // side held at rest, or empty
-  std::string tied;   // sides among them that are joints
+  std::string fixed;   // side held at rest, or empty
+  std::string tied;    // sides among them that are joints
   bool solid = false;  // by the model of solids: its velocity is a field
 
   std::string text() const {
     std::string ports;
+    bool contact = false;
     for (const std::string& side : sides) {
       const bool joint = tied.find(side) != std::string::npos;
+      contact = contact || !joint;
       ports += fmt::format("{0}: {{side: {0}{1}}}, ", side, joint ? ", tied: true" : "");
     }
     std::string out = fmt::format("  {}:\n", name);
@@ -49,11 +52,15 @@ struct BarText {
         "    model: {{fe: {{dimension: 1, mesh: {{bar: {{length: {}, elements: {}, area: "
         "{}}}}}}}}}\n"
         "    material: {{linear_elastic: {{youngs_modulus: {}, density: {}}}}}\n"
-        "    integrator: {{{}}}\n    contact_layer: {{{}}}\n",
-        number(length), elements, number(area), number(modulus), number(density), integrator,
-        layer);
-    out += fmt::format("    initial: {{position: [{}], {}: [{}]}}\n", number(position),
-                       solid ? "velocity_field" : "velocity", number(velocity));
+        "    integrator: {{{}}}\n",
+        number(length), elements, number(area), number(modulus), number(density), integrator);
+    // What has no effect is refused.
+    if (contact && !solid && !layer.empty())
+      out += fmt::format("    contact_layer: {{{}}}\n", layer);
+    out += fmt::format("    initial: {{position: [{}]", number(position));
+    if (solid || velocity != 0.0)
+      out += fmt::format(", {}: [{}]", solid ? "velocity_field" : "velocity", number(velocity));
+    out += "}\n";
     if (body_force != 0.0) out += fmt::format("    body_force: [{}]\n", number(body_force));
     if (!fixed.empty()) out += fmt::format("    supports: {{{}: fixed}}\n", fixed);
     if (!sides.empty()) out += fmt::format("    ports: {{{}}}\n", ports);

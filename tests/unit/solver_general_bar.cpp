@@ -85,6 +85,13 @@ TEST_P(GeneralBar, TakesTheStepsOfTheBarsOwnCore) {
 
 BarText plain() { return case_bar({"plain", explicit_scheme(0.6), "massless: {}", {"right"}}); }
 
+/// Without a contact layer, which is the core's.
+BarText bare() {
+  BarText text = plain();
+  text.layer.clear();
+  return text;
+}
+
 TEST(GeneralBar, HasPortsAtItsEnds) {
   BarText text = plain();
   text.sides = {"left", "right"};
@@ -115,12 +122,12 @@ TEST(GeneralBar, KnowsTheStableStepOfItsOwnCore) {
 
 /// The bodies of scenes with one thing that the core does not know.
 TEST(GeneralBar, IsWhatTheCoreDoesNotKnow) {
-  const std::string text = plain().text();
+  const std::string text = bare().text();
   const auto is_solid = [](const std::string& body) {
     return dynamic_cast<SolidBody*>(build_text(body).get()) != nullptr;
   };
   EXPECT_FALSE(is_solid(text));
-  EXPECT_FALSE(is_solid(with(text, "density", "poissons_ratio: 0.3, density")));
+  EXPECT_THROW(is_solid(with(text, "density", "poissons_ratio: 0.3, density")), InputError);
   EXPECT_TRUE(is_solid(with(text, "linear_elastic: {", "neo_hookean: {poissons_ratio: 0.3, ")));
   EXPECT_TRUE(is_solid(with(text, ", area", ", grading: 1.01, area")));
   EXPECT_TRUE(is_solid(text + "    constraints: {wall: {on: left, fixed: true}}\n"));
@@ -142,15 +149,15 @@ std::string refusal(const std::string& body) {
 
 TEST(GeneralBar, RefusesWhatItDoesNotKnow) {
   const std::string load = "    loads: {pull: {on: right, pressure: '1', follows: true}}\n";
-  EXPECT_NE(refusal(plain().text() + load).find("loads.pull.follows"), std::string::npos);
+  EXPECT_NE(refusal(bare().text() + load).find("loads.pull.follows"), std::string::npos);
   const std::string clamp = "    constraints: {wall: {on: left, fixed: true}}\n";
-  BarText text = plain();
+  BarText text = bare();
   text.integrator = explicit_scheme(0.6, 6);
   EXPECT_NE(refusal(text.text() + clamp).find("dispersion_terms"), std::string::npos);
   text = plain();
   text.layer = "kick: {}";
   EXPECT_NE(refusal(text.text() + clamp).find("contact_layer"), std::string::npos);
-  text = plain();
+  text = bare();
   text.tied = "right";
   EXPECT_NE(refusal(text.text() + clamp).find("ports.right.tied"), std::string::npos);
 }
@@ -158,12 +165,12 @@ TEST(GeneralBar, RefusesWhatItDoesNotKnow) {
 TEST(GeneralBar, StretchesAsHookesLawHasIt) {
   // Pulled by 2 Pa on the right and by its weight of 0.01 N/m; u(L) = (p L + b L^2/2)/E, exact at
   // the nodes.
-  BarText text = plain();
+  BarText text = bare();
   text.body_force = 0.01;
   text.fixed = "left";
   text.integrator = "quasi_static: {step: 1.0}";
-  const std::unique_ptr<Subdomain> body = build_text(
-      text.text() + "    loads: {pull: {on: right, traction: ['2.0 * t']}}\n");
+  const std::unique_ptr<Subdomain> body =
+      build_text(text.text() + "    loads: {pull: {on: right, traction: ['2.0 * t']}}\n");
   Response response;
   step(*body, free_request(*body, 0.0, 1.0), response);
   const double exact = 2.0 * 40.0 + 0.5 * 0.01 * 40.0 * 40.0;

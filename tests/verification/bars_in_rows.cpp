@@ -133,15 +133,20 @@ TEST(StepsInRows, AnyRatioGivesTheSameImpact) {
   }
 }
 
+/// Of the first bar of a chain: the last and lightest one is hit so fast that speed 1, that of the
+/// waves, would compress it to nothing. Gaps shrink with it, and times stay.
+constexpr double slow = 0.1;
+
 /// Four bars with gaps before each but the first.
 SceneText chain(const std::vector<double>& gaps, const std::vector<double>& impedances,
                 double window) {
   SceneText scene = pair(1.0, impedances[0], 10.0, window);
   scene.bars.resize(1);
+  scene.bars[0].velocity = slow;
   scene.interfaces.clear();
   double position = 0.0;
   for (std::size_t b = 0; b < 3; ++b) {
-    position += gaps[b];
+    position += slow * gaps[b];
     const std::string name(1, static_cast<char>('b' + b));
     const std::string before(1, static_cast<char>('a' + b));
     const bool last = b == 2;
