@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <new>
 #include <random>
 #include <utility>
 
@@ -137,6 +138,9 @@ void Server::execute() {
   } catch (const CodecError& error) {
     fault(v1::FAULT_KIND_RUN, fmt::format("unsound request: {}", error.what()), name_,
           "this is a fault of the coordinator, not of the scene");
+  } catch (const std::bad_alloc&) {
+    fault(v1::FAULT_KIND_RUN, fmt::format("body '{}' has used up the memory of its machine", name_),
+          "", "make its mesh coarser, or run it on a machine with more memory");
   } catch (const std::exception& error) {
     fault(v1::FAULT_KIND_RUN, error.what(), name_, "this is a fault of the solver");
   }
@@ -182,8 +186,10 @@ void Server::dispatch() {
     return;
   }
   if (!body_) throw CodecError("the body is not configured");
+  if (request_.restore_first() && !saved_) throw CodecError("restore_first comes before any save");
   if (request_.restore_first()) body_->restore();
   if (request_.save_first()) body_->save();
+  saved_ = saved_ || request_.save_first();
   switch (request_.body_case()) {
     case v1::Request::kAdvance:
       advance(request_.advance());

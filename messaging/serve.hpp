@@ -67,6 +67,7 @@ class Server {
   Limits limits_;
   Deadlines deadlines_;
   std::unique_ptr<Subdomain> body_;
+  bool saved_ = false;  // there is a state to restore
   v1::Request request_;
   v1::Reply reply_;
   Frame reply_frame_, progress_frame_;

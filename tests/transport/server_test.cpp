@@ -113,6 +113,30 @@ TEST(Serve, AGapInTheNumbersIsAFault) {
       << reply.fault().what();
 }
 
+// Goal: a stranger's request cannot end the solver: what comes before any save is a fault, and the
+// body serves on. Oracle: the kind of the reply.
+TEST(Serve, ARestoreBeforeAnySaveIsAFault) {
+  Loop loop;
+  loop.configure();
+  const auto answer_to = [&loop](std::uint64_t number, bool restore) {
+    v1::Request request;
+    request.set_number(number);
+    request.set_restore_first(restore);
+    request.mutable_hash();
+    Frame frame;
+    frame.seal(request);
+    loop.link.near().send(frame.bytes());
+    const std::optional<Bytes> got = loop.link.near().receive(Milliseconds(1));
+    v1::Reply reply;
+    EXPECT_TRUE(got && parse_into(reply, *open_frame(*got)));
+    return reply;
+  };
+  const v1::Reply fault = answer_to(2, true);
+  EXPECT_EQ(fault.fault().kind(), v1::FAULT_KIND_RUN);
+  EXPECT_TRUE(contains(fault.fault().what(), "before any save")) << fault.fault().what();
+  EXPECT_TRUE(answer_to(3, false).has_hash());
+}
+
 TEST(Serve, AFailedSolveIsAValueAndTheBodyServesOn) {
   Loop loop;
   loop.configure();
