@@ -45,6 +45,8 @@ Command parse_command_line(int argc, const char* const* argv) {
   CLI::App& check_verb = *app.add_subcommand("check", "say whether a scene is valid");
   add_scene(check_verb, check.scene, check.overrides);
 
+  check_verb.add_flag("--verbose", check.verbose, "tell as well what the scene leaves unused");
+
   CLI::App& reference_verb =
       *app.add_subcommand("reference", "print every key of a scene file, as Markdown");
 

@@ -17,6 +17,7 @@ struct RunCommand {
 struct CheckCommand {
   std::string scene;
   std::vector<std::string> overrides;
+  bool verbose = false;
 };
 struct ReferenceCommand {};
 /// `abut V ...` where V is none of ours: the program abut-V.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/archive.hpp"
+#include "base/count.hpp"
 #include "base/denormals.hpp"
 #include "base/error.hpp"
 #include "coordinator/coupling/contact.hpp"
@@ -123,7 +124,8 @@ bool Controller::fly_free() {
   const double left = scene_.time.end - time_;
   const double whole = std::floor(std::min(horizon, left) / window + clock_tolerance);
   const int windows =
-      static_cast<int>(std::min<double>(whole, std::min(flight_limit_, windows_to_fields())));
+      count_within(std::min(whole, most_substeps * shortest_step() / window), 0,
+                   std::min(flight_limit_, windows_to_fields()));
   if (windows < 1) return false;
   TimeWindow flight = next_window();
   flight.end = anchor_ + static_cast<double>(since_ + windows) * window;

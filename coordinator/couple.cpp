@@ -106,8 +106,16 @@ void add_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
   const bool able0 = bodies.describe(interface.sides[0].body).can.obstacle;
   const bool able1 = bodies.describe(interface.sides[1].body).can.obstacle;
   if (!able0 && !able1) {
-    throw InputError("neither side can be kinematic: both are rigid", where,
-                     "Give one side a deformable body.");
+    const Description& one = bodies.describe(interface.sides[0].body);
+    const Description& other = bodies.describe(interface.sides[1].body);
+    throw InputError(
+        fmt::format(
+            "joins '{}' ({}) and '{}' ({}), of which neither can follow the other's surface "
+            "yet",
+            one.name, one.model, other.name, other.model),
+        where,
+        "Make one side a bar of equal elements and linear_elastic material, without points, "
+        "constraints, loads and fields.");
   }
   rule.role_fixed = how.kinematic != "auto";
   if (rule.role_fixed) {

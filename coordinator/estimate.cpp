@@ -7,6 +7,7 @@
 #include <cmath>
 #include <variant>
 
+#include "base/count.hpp"
 #include "coordinator/flight_work.hpp"
 
 namespace abut {
@@ -66,17 +67,22 @@ double memory_mib(const Description& body) {
   return process_mib + static_cast<double>(body.dofs) * bytes / 1048576.0;
 }
 
+/// Far above what a scene may hold (coordinator/scene.cpp), and far below the end of the type.
+std::int64_t count_of(double value) {
+  constexpr std::int64_t most = 1'000'000'000'000;
+  return count_within(value, std::int64_t{0}, most);
+}
+
 }  // namespace
 
 Estimate estimate(const Scene& scene, std::span<const Description* const> bodies,
                   std::optional<double> contact_time) {
   Estimate e;
   const double span = scene.time.end - scene.time.begin;
-  e.windows = static_cast<std::int64_t>(std::ceil(span / scene.time.window - 1.0e-9));
+  e.windows = count_of(std::ceil(span / scene.time.window - 1.0e-9));
   for (const Description* body : bodies) {
     const double steps = body->step > 0.0 ? span / body->step : static_cast<double>(e.windows);
-    e.bodies.push_back(
-        {body->name, body->model, body->dofs, std::llround(steps), memory_mib(*body)});
+    e.bodies.push_back({body->name, body->model, body->dofs, count_of(steps), memory_mib(*body)});
   }
   const std::int64_t count = static_cast<std::int64_t>(bodies.size());
   const std::int64_t joints = static_cast<std::int64_t>(scene.interfaces.size());
@@ -86,7 +92,7 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
     e.contact_windows_low = e.contact_windows_high = e.windows;
   } else if (contact_time) {
     const double windows = std::min(*contact_time, span) / scene.time.window;
-    e.contact_windows_low = e.contact_windows_high = std::llround(windows);
+    e.contact_windows_low = e.contact_windows_high = count_of(windows);
   } else if (joints > 0) {
     e.contact_windows_high = e.windows;
   }
@@ -111,7 +117,7 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
   return e;
 }
 
-std::string to_text(const Estimate& e) {
+std::string to_text(const Estimate& e, bool verbose) {
   std::string text;
   for (const Estimate::Body& body : e.bodies) {
     text +=
@@ -124,8 +130,8 @@ std::string to_text(const Estimate& e) {
   text += fmt::format("  windows    {}, in contact {}\n", e.windows,
                       range(e.contact_windows_low, e.contact_windows_high));
   text += fmt::format("  exchanges  {}\n", range(e.exchanges_low, e.exchanges_high));
-  text += fmt::format("  in use     {}\n", fmt::join(e.in_use, ", "));
-  text += fmt::format("  not built  {}\n", fmt::join(e.not_built, ", "));
+  if (!e.in_use.empty()) text += fmt::format("  in use     {}\n", fmt::join(e.in_use, ", "));
+  if (verbose) text += fmt::format("  unused     {}\n", fmt::join(e.not_built, ", "));
   return text;
 }
 

@@ -32,6 +32,6 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
                   std::optional<double> contact_time);
 
 /// For people, several lines.
-std::string to_text(const Estimate& estimate);
+std::string to_text(const Estimate& estimate, bool verbose = false);
 
 }  // namespace abut

@@ -1,13 +1,15 @@
 #include "coordinator/launch_local.hpp"
 
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "base/assert.hpp"
-#include "base/error.hpp"
+#include "base/input_errors.hpp"
 #include "base/yaml_fields.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 #include "subdomain_solver/body_spec.hpp"
@@ -118,22 +120,89 @@ ClosedForm impact_of(const Scene& scene, const Row& row, const std::string& inte
           {row.bodies[first], row.bodies[second]}};
 }
 
+/// What meets at an interface: a bar with the side at which it is met, or anything else.
+struct Meeting {
+  std::optional<BarProperties> bar;
+  double outward = 0.0;   // along x
+  double velocity = 0.0;  // [m/s]
+  bool known = false;     // a bar or a wall
+};
+
+Meeting meeting_of(const Document& document, const PortName& name) {
+  const BodySpec spec = read<BodySpec>(document, path_of(name.body));
+  if (std::holds_alternative<BarPairSpec>(spec.model)) {
+    const std::size_t member = name.port == "left_tip" ? 0 : 1;
+    const BarProperties bar = pair_properties(spec)[member];
+    return {bar, member == 0 ? 1.0 : -1.0, bar.velocity, true};
+  }
+  double outward = 0.0;
+  for (const auto& [port, data] : spec.ports)
+    if (port == name.port) outward = data.side == "left" ? -1.0 : 1.0;
+  if (std::holds_alternative<RigidWallSpec>(spec.model)) return {{}, outward, 0.0, true};
+  if (!spec.is_uniform_bar()) return {};
+  const BarProperties bar = fe_bar_properties(spec);
+  return {bar, outward, bar.velocity, true};
+}
+
+/// Impedance of a bar [kg/s]; of a wall none is higher.
+double impedance_of(const Meeting& side) {
+  if (!side.bar) return std::numeric_limits<double>::infinity();
+  return side.bar->density * side.bar->wave_speed() * side.bar->area;
+}
+
+/// The strain with which a front leaves the contact, as d'Alembert has it.
+void check_strain(const Meeting& one, const Meeting& other, const std::string& body,
+                  const Document& document) {
+  const double closing = one.outward * (one.velocity - other.velocity);
+  const double mine = impedance_of(one), its = impedance_of(other);
+  const double share = std::isinf(its) ? 1.0 : its / (mine + its);
+  const double strain = closing * share / one.bar->wave_speed();
+  if (strain <= 1.0 + 1.0e-9) return;
+  throw InputError(
+      fmt::format(
+          "is compressed to nothing: it is met at {:g} m/s, and {:g} m/s give it the strain "
+          "-1; its wave speed is {:g} m/s",
+          closing, one.bar->wave_speed() / share, one.bar->wave_speed()),
+      document.where(path_of(body)), "Give the bodies less speed, or the bar a higher modulus.");
+}
+
 }  // namespace
+
+void check_speeds(const Scene& scene, const Document& document) {
+  InputErrors errors;
+  for (const auto& [name, interface] : scene.interfaces) {
+    if (interface.tied) continue;
+    const std::array<PortName, 2> names = {split_port(interface.sides[0]),
+                                           split_port(interface.sides[1])};
+    const std::array<Meeting, 2> sides = {meeting_of(document, names[0]),
+                                          meeting_of(document, names[1])};
+    if (!sides[0].known || !sides[1].known) continue;
+    for (const std::size_t s : {0u, 1u})
+      if (sides[s].bar)
+        errors.gather([&] { check_strain(sides[s], sides[1 - s], names[s].body, document); });
+  }
+  errors.raise();
+}
 
 std::vector<std::unique_ptr<Subdomain>> launch_local(const Scene& scene, const Document& document,
                                                      const std::atomic<bool>* interrupted) {
   std::vector<std::unique_ptr<Subdomain>> bodies;
-  for (const auto& [name, entry] : scene.bodies) {
-    bodies.push_back(make_body(document, path_of(name), [interrupted] {
-      if (interrupted != nullptr && interrupted->load())
-        throw RunError("interrupted while a body was advancing", "", "start the run again");
-    }));
-  }
+  InputErrors errors;
+  const auto progress = [interrupted] {
+    if (interrupted != nullptr && interrupted->load())
+      throw RunError("interrupted while a body was advancing", "", "start the run again");
+  };
+  for (const auto& [name, entry] : scene.bodies)
+    errors.gather([&] { bodies.push_back(make_body(document, path_of(name), progress)); });
+  errors.raise();
   return bodies;
 }
 
-void validate_body_specs(const Scene& scene, const Document& document) {
-  for (const auto& [name, entry] : scene.bodies) make_body(document, path_of(name));
+void check_body_keys(const Document& document) {
+  InputErrors errors;
+  for (const std::string& name : document.keys("bodies"))
+    errors.gather([&] { read<BodySpec>(document, path_of(name)); });
+  errors.raise();
 }
 
 std::optional<ClosedForm> make_closed_form(const Scene& scene, const Document& document) {

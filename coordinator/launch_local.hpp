@@ -22,8 +22,12 @@ namespace abut {
 std::vector<std::unique_ptr<Subdomain>> launch_local(
     const Scene& scene, const Document& document, const std::atomic<bool>* interrupted = nullptr);
 
-/// Throws InputError when a body entry cannot be built.
-void validate_body_specs(const Scene& scene, const Document& document);
+/// Reads the keys of every body entry that the document has. Throws InputError.
+void check_body_keys(const Document& document);
+
+/// Bars of linear elasticity that meet at the speeds of the begin keep something of their length:
+/// refused is what a wave would compress to nothing. Throws InputError.
+void check_speeds(const Scene& scene, const Document& document);
 
 /// The exact solution that the scene names, if any. Throws InputError when it does not describe
 /// these bodies.

@@ -17,6 +17,7 @@
 
 #include "base/denormals.hpp"
 #include "base/error.hpp"
+#include "base/input_errors.hpp"
 #include "base/log.hpp"
 #include "base/yaml_fields.hpp"
 #include "coordinator/command_line.hpp"
@@ -97,14 +98,16 @@ void validate_expectations(const Scene& scene, const std::vector<const Descripti
   scope.filtered = scene.output.force_filter.has_value();
   scope.exact = exact_interfaces(scene);
   scope.told = told_measures(bodies);
+  InputErrors errors;
   for (std::size_t i = 0; i < scene.meta.expect.size(); ++i) {
     try {
       require_measure(scene.meta.expect[i].measure, scope);
     } catch (const InputError& error) {
-      throw InputError(error.what_is_wrong,
-                       document.where(fmt::format("meta.expect[{}].measure", i)), error.remedy);
+      errors.add({error.what_is_wrong, document.where(fmt::format("meta.expect[{}].measure", i)),
+                  error.remedy});
     }
   }
+  errors.raise();
 }
 
 /// Every interface can be joined as the scene says.
@@ -114,6 +117,16 @@ void validate_coupling(const Scene& scene, const Placement& placement, const Doc
   } catch (const InputError& error) {
     throw InputError(error.what_is_wrong, document.where(error.where), error.remedy);
   }
+}
+
+/// Scene and bodies are read by readers of their own: what both refuse is told at once.
+Scene read_all_keys(const Document& document) {
+  InputErrors errors;
+  Scene scene;
+  errors.gather([&] { scene = read_scene(document); });
+  errors.gather([&] { check_body_keys(document); });
+  errors.raise();
+  return scene;
 }
 
 /// All that can be said of a scene without another process.
@@ -141,6 +154,7 @@ Validated validate_all(const Scene& scene, const Document& document) {
   validate_bodies(scene, here.descriptions(), document);
   validate_coupling(scene, here, document);
   validate_expectations(scene, here.descriptions(), document);
+  check_speeds(scene, document);
   Validated valid{make_closed_form(scene, document), {}, {}};
   std::optional<double> contact;
   if (valid.form) contact = valid.form->contact_time();
@@ -208,7 +222,7 @@ int run_verb(const RunCommand& command) {
   start_log("abut", command.quiet ? LogLevel::error : LogLevel::info);
   const std::atomic<bool>& interrupted = watch_for_interrupts();
   const Document document = Document::load(command.scene, command.overrides);
-  const Scene scene = read_scene(document);
+  const Scene scene = read_all_keys(document);
   const Validated valid = validate_all(scene, document);
   // Held until the last file is written.
   RunDirectory held(
@@ -253,9 +267,9 @@ int run_verb(const RunCommand& command) {
 
 int check_verb(const CheckCommand& command) {
   const Document document = Document::load(command.scene, command.overrides);
-  const Scene scene = read_scene(document);
+  const Scene scene = read_all_keys(document);
   const Validated valid = validate_all(scene, document);
-  fmt::print("{}: valid\n{}", command.scene, to_text(valid.estimate));
+  fmt::print("{}: valid\n{}", command.scene, to_text(valid.estimate, command.verbose));
   return 0;
 }
 
@@ -309,8 +323,15 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file at the limit of its size is an error of writing
   try {
     return abut::delivered(std::visit(abut::Verbs{}, abut::parse_command_line(argc, argv)));
+  } catch (const abut::InputErrorList& errors) {
+    int code = abut::exit_input;
+    for (const abut::InputError& error : errors.all) code = abut::fail(error, abut::exit_input);
+    return code;
   } catch (const abut::InputError& error) {
     return abut::fail(error, abut::exit_input);
+  } catch (const std::bad_alloc&) {
+    return abut::fail(abut::RunError("the memory is used up", "", "Give coarser meshes."),
+                      abut::exit_world);
   } catch (const std::exception& error) {  // RunError, and what the library throws: memory, files
     return abut::fail(error, abut::exit_world);
   }

@@ -8,11 +8,19 @@
 #include <map>
 
 #include "base/assert.hpp"
-#include "base/error.hpp"
+#include "base/input_errors.hpp"
 #include "base/yaml_fields.hpp"
 #include "coordinator/coupling/interface.hpp"
+#include "coordinator/scene_times.hpp"
 
 namespace abut {
+
+namespace {
+
+/// Of deadlines [s]: a week is for ever, and milliseconds are counted.
+constexpr Rule patience_rule{.low = 0.0, .high = 604'800.0, .above_low = true};
+
+}  // namespace
 
 void TimeSpec::fields(Fields& f) {
   f.required("begin", begin, "s", "time at which the run begins");
@@ -29,7 +37,7 @@ void SpawnLaunch::fields(Fields& f) {
 }
 
 void ConnectLaunch::fields(Fields& f) {
-  f.optional("patience", patience, "s", "time to wait for the body to connect", positive);
+  f.optional("patience", patience, "s", "time to wait for the body to connect", patience_rule);
 }
 
 void BodyEntry::fields(Fields& f) {
@@ -75,6 +83,8 @@ void InterfaceSpec::fields(Fields& f) {
           "Write contact: {}, or tied: {} where the sides are joined from the start.");
   f.check(!contact || !tied, "tied", "stands beside contact",
           "Keep one of the two: tied sides never part.");
+  f.idle(tied.has_value(), "transmission.dirichlet_neumann.impact_projection",
+         "tied sides never hit each other");
 }
 
 void NoAcceleration::fields(Fields&) {}
@@ -157,9 +167,10 @@ void NetworkSpec::fields(Fields& f) {
   f.optional("endpoint", endpoint, "",
              "address at which bodies with launch: connect find the coordinator");
   f.optional("request_deadline", request_deadline, "s",
-             "time without a reply or a sign of progress after which a body is lost", positive);
+             "time without a reply or a sign of progress after which a body is lost",
+             patience_rule);
   f.optional("startup_deadline", startup_deadline, "s",
-             "time within which a started process must report", positive);
+             "time within which a started process must report", patience_rule);
   f.check(endpoint.starts_with("tcp://") || endpoint.starts_with("ipc://"), "endpoint",
           fmt::format("must begin with tcp:// or ipc://, but is {}", endpoint),
           "Give for example tcp://127.0.0.1:5555.");
@@ -173,6 +184,22 @@ void Scene::fields(Fields& f) {
   f.defaulted("schwarz", schwarz, "iteration inside a window in contact");
   f.defaulted("output", output, "what the run writes");
   f.defaulted("network", network, "addresses and deadlines");
+  idle_keys(f);
+}
+
+void Scene::idle_keys(Fields& f) const {
+  const bool iterated = std::any_of(interfaces.begin(), interfaces.end(), [](const auto& entry) {
+    return !std::holds_alternative<InternalTransmission>(entry.second.transmission);
+  });
+  for (const char* key : {"form", "tolerance", "max_iterations", "accelerator"})
+    f.idle(!iterated, std::string("schwarz.") + key, "no two bodies of the scene meet");
+  const auto waits = [](const auto& entry) {
+    return std::holds_alternative<ConnectLaunch>(entry.second.launch);
+  };
+  f.idle(std::none_of(bodies.begin(), bodies.end(), waits), "network.endpoint",
+         "no body has launch: connect");
+  f.idle(std::all_of(bodies.begin(), bodies.end(), waits), "network.startup_deadline",
+         "no body is started by the coordinator");
 }
 
 PortName split_port(std::string_view text) {
@@ -279,28 +306,6 @@ void validate_ports_used_once(const Scene& scene, const Document& document) {
   }
 }
 
-/// Whether `whole` holds a whole number of `part`s, up to the round-off of decimal input.
-bool divides(double part, double whole) {
-  const double count = whole / part;
-  const double nearest = std::round(count);
-  return nearest >= 1.0 && std::abs(count - nearest) <= 1.0e-9 * nearest;
-}
-
-/// "9e-06 s or 1.2e-05 s": the two multiples of `part` around `whole`, the lower only if there is
-/// one.
-std::string multiples(double part, double whole) {
-  const double below = std::floor(whole / part);
-  const std::string above = fmt::format("{:.12g} s", (below + 1.0) * part);
-  return below < 1.0 ? above : fmt::format("{:.12g} s or {}", below * part, above);
-}
-
-/// The two parts of `whole` around `part`, the longer only if there is one.
-std::string parts(double part, double whole) {
-  const double below = std::floor(whole / part);
-  const std::string shorter = fmt::format("{:.12g} s", whole / (below + 1.0));
-  return below < 1.0 ? shorter : fmt::format("{} or {:.12g} s", shorter, whole / below);
-}
-
 const Description& description_of(const Scene& scene, std::span<const Description* const> bodies,
                                   const std::string& name) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
@@ -337,7 +342,14 @@ void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
   if (ports[0]->dim != ports[1]->dim)
     throw InputError(fmt::format("join a port in {}D and one in {}D", ports[0]->dim, ports[1]->dim),
                      document.where(path), "Give both bodies the same dimension.");
-  if (ports[0]->dim != 1) return;
+  if (ports[0]->dim != 1)
+    throw InputError(
+        fmt::format("join bodies in {} dimensions, which cannot touch each other yet: only ends of "
+                    "bars can",
+                    ports[0]->dim),
+        document.where(path),
+        "Run each body in a scene of its own, without interfaces, or model both as bars "
+        "(dimension: 1).");
   const double normal = ports[0]->normals.at(0);
   if (normal + ports[1]->normals.at(0) != 0.0)
     throw InputError("look the same way and cannot touch", document.where(path),
@@ -388,59 +400,39 @@ Scene read_scene(const Document& document) {
 }
 
 void validate(const Scene& scene, const Document& document) {
-  const TimeSpec& time = scene.time;
-  if (!divides(time.window, time.end - time.begin))
-    throw InputError(
-        fmt::format("must divide the run of {:.9g} s, but {:.9g} s does not", time.end - time.begin,
-                    time.window),
-        document.where("time.window"),
-        fmt::format("Give a window of {}.", parts(time.window, time.end - time.begin)));
+  InputErrors errors;
+  errors.gather([&] { check_times(scene.time, document); });
   if (scene.bodies.empty())
-    throw InputError("has no body", document.where("bodies"), "Give at least one body.");
-  for (const auto& [name, interface] : scene.interfaces)
-    validate_interface(scene, interface, document);
-  validate_ports_used_once(scene, document);
-  validate_force_filter(scene, document);
+    errors.add({"has no body", document.where("bodies"), "Give at least one body."});
+  for (const auto& entry : scene.interfaces)
+    errors.gather([&] { validate_interface(scene, entry.second, document); });
+  errors.gather([&] { validate_ports_used_once(scene, document); });
+  errors.gather([&] { validate_force_filter(scene, document); });
   if (scene.meta.closed_form) {
     for (const std::string& name : exact_interfaces(scene))
       if (!has_name(scene.interfaces, name))
-        throw InputError(fmt::format("is {}, but there is no such interface", name),
-                         document.where("meta.closed_form.bar_impact.interface"),
-                         scene.interfaces.empty()
-                             ? "Declare it under interfaces."
-                             : fmt::format("Choose one of: {}.", names_of(scene.interfaces)));
+        errors.add({fmt::format("is {}, but there is no such interface", name),
+                    document.where("meta.closed_form.bar_impact.interface"),
+                    scene.interfaces.empty()
+                        ? "Declare it under interfaces."
+                        : fmt::format("Choose one of: {}.", names_of(scene.interfaces))});
   }
+  errors.raise();
 }
 
 void validate_bodies(const Scene& scene, std::span<const Description* const> bodies,
                      const Document& document) {
   ABUT_ASSERT(bodies.size() == scene.bodies.size());
-  validate_members(scene, bodies, document);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const double step = bodies[i]->step;
-    const double window = scene.time.window;
-    if (step > 0.0 && !divides(step, window))
-      throw InputError(
-          fmt::format("must hold a whole number of steps of body {}, but {:.9g} s is {:.6g} steps "
-                      "of {:.9g} s",
-                      scene.bodies[i].first, window, window / step, step),
-          document.where("time.window"),
-          fmt::format("Give a window of {}, or the body a step of {}.", multiples(step, window),
-                      parts(step, window)));
-    const int records = scene.output.records_per_window;
-    if (step > 0.0 && records > 1 && !divides(step, window / records))
-      throw InputError(
-          fmt::format("must cut a window into whole steps of body {}, but a window holds {:.0f}",
-                      scene.bodies[i].first, window / step),
-          document.where("output.records_per_window"),
-          "Give a divisor of every body's number of steps per window");
-  }
-  for (const auto& [name, interface] : scene.interfaces)
-    validate_geometry(interface, scene, bodies, document);
+  InputErrors errors;
+  errors.gather([&] { validate_members(scene, bodies, document); });
+  errors.gather([&] { check_steps(scene, bodies, document); });
+  for (const auto& entry : scene.interfaces)
+    errors.gather([&] { validate_geometry(entry.second, scene, bodies, document); });
   const auto silent = [](const Description* body) { return body->fields.empty(); };
   if (scene.output.field_output && std::all_of(bodies.begin(), bodies.end(), silent))
-    throw InputError("asks for fields, but no body of the scene has any",
-                     document.where("output.fields"), "Leave out output.fields.");
+    errors.add({"asks for fields, but no body of the scene has any",
+                document.where("output.fields"), "Leave out output.fields."});
+  errors.raise();
 }
 
 }  // namespace abut

@@ -164,6 +164,9 @@ struct Scene {
   OutputSpec output;
   NetworkSpec network;
   void fields(Fields& f);
+
+ private:
+  void idle_keys(Fields& f) const;
 };
 
 /// The interfaces that the scene's closed form describes.

@@ -2,14 +2,29 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <numeric>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
 
 namespace abut {
 
 namespace {
 /// Samples kept for the median of the overhead per exchange; later ones add nothing to it.
 constexpr std::size_t overhead_samples = 1u << 20;
+/// A body in this process shares its memory: when that ends, the body is to be named.
+Outcome finish(Subdomain& body, Response& response) {
+  try {
+    return body.finish(response);
+  } catch (const std::bad_alloc&) {
+    throw RunError(fmt::format("body '{}' has used up the memory", body.describe().name), "",
+                   "Make its mesh coarser, or give shorter windows and fewer records.");
+  }
+}
+
 }  // namespace
 
 Bodies::Bodies(std::vector<Subdomain*> subdomains)
@@ -48,7 +63,7 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
   double slowest = 0.0;
   for (int b : bodies) {
     Response& response = responses_[static_cast<std::size_t>(b)];
-    Outcome outcome = (*this)[b].finish(response);
+    Outcome outcome = finish((*this)[b], response);
     ++exchanges_;
     if (Failed* failure = std::get_if<Failed>(&outcome); failure != nullptr) {
       failure->detail = "body '" + describe(b).name + "': " + failure->detail;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/assert.hpp"
+#include "base/count.hpp"
 
 namespace abut {
 
@@ -75,7 +76,8 @@ TimeGrid::TimeGrid(double window_begin, double window_end, double body_step)
     : begin(window_begin), end(window_end), step(body_step) {
   const double length = end - begin;
   if (step <= 0.0) step = length;
-  count = std::max(1, static_cast<int>(std::ceil(length / step - remainder_tolerance)));
+  count = count_within(std::ceil(length / step - remainder_tolerance), 1,
+                       static_cast<int>(most_substeps));
 }
 
 Eigen::MatrixXd neumann_map(const PortKernel& kernel, const TimeGrid& here, const TimeGrid& source,

@@ -1,7 +1,8 @@
 """Goal: bad input ends with exit code 2 and a paragraph that says what to change;
 files stay as they are.
 
-The oracle stands at the head of every configs/invalid/*.yaml: `# refused with: <message>`.
+The oracle stands at the head of every configs/invalid/*.yaml: `# refused with: <message>`, and
+where there are several errors, ` And with: ` before each further message.
 usage: test_invalid_scenes.py ABUT ROOT
 """
 
@@ -31,8 +32,8 @@ def abut(*arguments: object) -> subprocess.CompletedProcess:
                           timeout=SECONDS, check=False)
 
 
-def expected_message(scene: Path) -> str:
-    """The comment lines at the head of a scene, joined into the paragraph they quote."""
+def expected_messages(scene: Path) -> list:
+    """The comment lines at the head of a scene, joined into the paragraphs they quote."""
     words = []
     for line in scene.read_text(encoding="utf-8").splitlines():
         if not line.startswith("# "):
@@ -41,7 +42,7 @@ def expected_message(scene: Path) -> str:
     text = " ".join(words)
     mark = "refused with: "
     assert text.startswith(mark), f"{scene} does not begin with '# {mark}'"
-    return text[len(mark):]
+    return text[len(mark):].split(" And with: ")
 
 
 def files_below(folder: Path) -> dict:
@@ -54,8 +55,8 @@ class InvalidScenes(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = Path(holder.name)
 
-    def assert_refused(self, result: subprocess.CompletedProcess, message: str):
-        self.assertEqual(result.stderr, f"error: {message}\n")
+    def assert_refused(self, result: subprocess.CompletedProcess, *messages: str):
+        self.assertEqual(result.stderr, "".join(f"error: {message}\n" for message in messages))
         self.assertEqual(result.stdout, "")
         self.assertEqual(result.returncode, 2)
 
@@ -78,12 +79,13 @@ class InvalidScenes(unittest.TestCase):
         before = files_below(kept)
         for scene in scenes:
             with self.subTest(scene=scene.name):
-                name, message = scene.relative_to(ROOT), expected_message(scene)
-                self.assert_refused(abut("check", name), message)
+                name, messages = scene.relative_to(ROOT), expected_messages(scene)
+                self.assert_refused(abut("check", name), *messages)
                 fresh = self.folder / "fresh"
-                self.assert_refused(abut("run", name, "--out", fresh), message)
+                self.assert_refused(abut("run", name, "--out", fresh), *messages)
                 self.assertFalse(fresh.exists())
-                self.assert_refused(abut("run", name, "--local", "--force", "--out", kept), message)
+                self.assert_refused(abut("run", name, "--local", "--force", "--out", kept),
+                                    *messages)
                 self.assertEqual(files_below(kept), before)
 
 
@@ -128,7 +130,7 @@ class CommandLines(InvalidScenes):
 
     def test_a_scene_that_is_not_there_is_refused(self):
         self.assert_refused(abut("check", "no/such.yaml"),
-                            "no/such.yaml: cannot be read. Give the path of a scene file.")
+                            "no/such.yaml: cannot be opened. Give the path of a scene file.")
 
     def test_an_override_says_where_the_value_came_from(self):
         scene = self.folder / "scene.yaml"
@@ -137,6 +139,32 @@ class CommandLines(InvalidScenes):
             abut("check", scene, "--set", "time.window=-1"),
             f"{scene}, from --set time.window=-1: time.window: must be positive, but is -1 s. Give "
             "the length of the controller step in s, greater than 0.")
+
+    def test_a_misspelt_override_is_blamed_itself(self):
+        scene = self.folder / "scene.yaml"
+        scene.write_text(VALID, encoding="utf-8")
+        cases = {
+            "tme.window=1.0e-6": "tme: is not a known key. Did you mean time?",
+            "time.windw=1.0e-6": "time.windw: is not a known key. Did you mean window?",
+            "bodies.bra.initial.velocity=[1.0]": ", which adds bodies.bra: bodies.bra.model: is "
+            "missing.",
+            "bodies.bar.integrator.newmark.step=1.0e-6": "bodies.bar.integrator.newmark: stands "
+            "beside central_difference, but only one can be chosen.",
+            "bodies.bar.model.fe.mesh.bra.length=1": "bodies.bar.model.fe.mesh.bra: stands beside "
+            "bar, but only one can be chosen."}
+        for override, words in cases.items():
+            with self.subTest(override=override):
+                result = abut("check", scene, "--set", override)
+                self.assertEqual(result.returncode, 2)
+                first = result.stderr.splitlines()[0]
+                self.assertTrue(first.startswith(f"error: {scene}, from --set {override}"), first)
+                self.assertIn(words, first)
+
+    def test_unused_features_are_told_when_asked_for(self):
+        scene = self.folder / "scene.yaml"
+        scene.write_text(VALID, encoding="utf-8")
+        self.assertNotIn("closed form", abut("check", scene).stdout)
+        self.assertIn("unused     ", abut("check", scene, "--verbose").stdout)
 
     def test_an_unknown_verb_is_refused(self):
         self.assert_refused(
