@@ -29,16 +29,14 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses) {
   if (!std::exchange(begun_, true)) first_ = own;
   most_ = std::max(most_, motion);
   if (most_ <= 0.0) return Verdict::fine;
-  culprit_ = -1;
-  Verdict worst = verdict((own - first_) / most_, share_, all_conserve_);
-  for (std::size_t b = 0; b < bodies_.size() && worst != Verdict::fail; ++b) {
-    if (!conserves_[b]) continue;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const double change = bodies_[b].change / most_;
-    if (std::abs(change) <= share_) continue;
+    if (!conserves_[b] || std::abs(change) <= share_) continue;
     culprit_ = static_cast<int>(b);
-    worst = verdict(change, share_, true);
+    return verdict(change, share_, true);
   }
-  return worst;
+  culprit_ = -1;
+  return verdict((own - first_) / most_, share_, all_conserve_);
 }
 
 EnergyGuard::Verdict EnergyGuard::verdict(double change, double share, bool losses) {

@@ -97,8 +97,10 @@ TEST(ManyImpacts, BetweenTwoWallsKeepTheEnergyForAnyWindow) {  // catalogue A10
       EXPECT_LT(most, c.most) << what;
       // At the end contact may still owe what the last event in flight has moved.
       EXPECT_LT(end, r->rows.back().closed ? c.most : 1.0e-6) << what;
-      EXPECT_GE(r->measure("contact.left.count"), 49.0) << what;  // one in every period, and rattle
-      EXPECT_GE(r->measure("contact.right.count"), 49.0) << what;
+      // One arrival in every period; vibration takes up to a tenth of the mean velocity by then,
+      // so periods grow, and what rattles at one arrival is one contact or a few.
+      EXPECT_GE(r->measure("contact.left.count"), 40.0) << what;
+      EXPECT_GE(r->measure("contact.right.count"), 40.0) << what;
     }
   }
 }

@@ -42,7 +42,8 @@ TEST(ValidityNotes, LeaveOutWhatABodyAtRestInItselfVibratesBy) {
 
 TEST(ValidityNotes, AreNoneWhereNothingWasTold) {
   EXPECT_TRUE(validity_notes(body_that_tells(), {}).empty());
-  EXPECT_TRUE(validity_notes(Description(), std::vector{1.0}).empty());
+  const Description silent;
+  EXPECT_TRUE(validity_notes(silent, std::vector{1.0}).empty());
 }
 
 }  // namespace
