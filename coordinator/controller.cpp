@@ -290,8 +290,8 @@ void Controller::accept(const TimeWindow& window, const Attempt& attempt) {
     interface.force_scale = std::max(interface.force_scale, peak_force(interface, bodies_));
   }
   ++end_.windows;
-  const EnergyGuard::Verdict energy = energy_guard_.look(bodies_.responses());
   settle(window);
+  const EnergyGuard::Verdict energy = energy_guard_.look(bodies_.responses(), bodies_.struck());
   for (Observer* observer : observers_)
     observer->on_window({window, bodies_.responses(), reports_, end_.windows});
   if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
@@ -388,8 +388,8 @@ void Controller::watch_energy(double time, EnergyGuard::Verdict verdict) {
           ? fmt::format("energy{} has fallen by {:.2g} % of the most there was in motion, and "
                         "nothing in this scene takes any; give smaller steps",
                         whose, -100.0 * growth)
-          : fmt::format("energy{} has grown by {:.2g} % of the most there was in motion, and contact "
-                        "makes none; give smaller steps, or contact_layer: massless",
+          : fmt::format("energy{} has grown by {:.2g} % of the most there was in motion, and "
+                        "contact makes none; give smaller steps, or contact_layer: massless",
                         whose, 100.0 * growth);
   if (verdict == EnergyGuard::Verdict::warn) {
     emit(RunEvent::Kind::warning, time, "", text, {{"growth", growth}});

@@ -218,7 +218,7 @@ void Controller::pay(Interface& interface) {
 
 /// Tells of the pushes that begin and end in the window.
 void Controller::narrate(Interface& interface) {
-  const double floor = least_force(interface);
+  const double floor = std::max(least_force(interface), history_.rounding());
   const double bound = std::max(floor, pressing_share * force_reference_);
   for (std::size_t k = 1; k < history_.size(); ++k) {
     const ContactLevel& before = history_[k - 1];

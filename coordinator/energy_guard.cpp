@@ -12,7 +12,8 @@ EnergyGuard::EnergyGuard(double share, std::vector<bool> conserves)
       all_conserve_(std::ranges::all_of(conserves_, [](bool yes) { return yes; })),
       bodies_(conserves_.size()) {}
 
-EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses) {
+EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
+                                       std::span<const double> struck) {
   double own = 0.0, motion = 0.0;
   for (std::size_t b = 0; b < responses.size(); ++b) {
     const Energy& energy = responses[b].records.back().energy;
@@ -24,7 +25,8 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses) {
     if (begun_) {
       for (const PortResponse& port : responses[b].ports) account.ports += port.work;
     }
-    account.change = here - account.first - account.ports;
+    account.change =
+        here - account.first - account.ports - (struck.empty() ? 0.0 : struck[b]);
   }
   if (!std::exchange(begun_, true)) first_ = own;
   most_ = std::max(most_, motion);

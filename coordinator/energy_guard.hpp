@@ -21,7 +21,8 @@ class EnergyGuard {
 
   /// Looks at the last record of every body, once for every accepted window. Warns once, at half
   /// the share of growth; of losses at the share itself.
-  Verdict look(std::span<const Response> responses);
+  /// `struck` [J]: by body, what records hold already and the ports' work does not yet; empty: none.
+  Verdict look(std::span<const Response> responses, std::span<const double> struck = {});
   double growth() const { return growth_; }  // as a fraction, at the last look
   double most() const { return most_; }      // [J] largest kinetic and stored energy so far
   int culprit() const { return culprit_; }   // body that a verdict is about; -1: all together

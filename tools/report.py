@@ -123,8 +123,10 @@ def body_figures(run: Run) -> list[Figure]:
 
 def own_energy(run: Run, body: str) -> list:
     """Kinetic, stored and what became heat, less what loads have put in."""
-    held = sum_of([run.history[f"{body}.total"], run.history[f"{body}.dissipated"]])
-    return less(held, run.history[f"{body}.external_work"])
+    held = [run.history[f"{body}.total"]]
+    if f"{body}.dissipated" in run.history:
+        held.append(run.history[f"{body}.dissipated"])
+    return less(sum_of(held), run.history[f"{body}.external_work"])
 
 
 def energy_error_figure(run: Run) -> Figure:

@@ -48,6 +48,7 @@ void Bodies::restore_all() {
 }
 
 void Bodies::prepare(const TimeWindow& window, int records, Sampling sampling) {
+  struck_.assign(subdomains_.size(), 0.0);
   for (Advance& request : requests_) {
     request.window = window;
     request.records = records;
@@ -89,7 +90,9 @@ void Bodies::strike_record(const Side& side, double impulse) {
   BodyRecord& record = response.records.back();
   const double before = port.recoil->velocity;
   port.recoil->velocity -= impulse * port.recoil->mobility;
-  record.energy.kinetic -= impulse * 0.5 * (before + port.recoil->velocity);
+  const double work = -impulse * 0.5 * (before + port.recoil->velocity);
+  record.energy.kinetic += work;
+  struck_[static_cast<std::size_t>(side.body)] += work;
   const Port& described = describe(side.body).ports[static_cast<std::size_t>(side.port)];
   if (port.recoil->mobility > 0.0) record.momentum[0] -= impulse * described.geometry.normals[0];
 }

@@ -38,6 +38,8 @@ class Bodies {
   /// An impulse [N s] into a port at the end of the last window, with which the next one begins:
   /// its body's last record tells of the state after it.
   void strike_record(const Side& side, double impulse);
+  /// [J] by body, of such impulses: in the last records, and in the ports' work of the next window.
+  std::span<const double> struck() const { return struck_; }
 
   const PortKernel& kernel(int body, int port, int count);
 
@@ -54,6 +56,7 @@ class Bodies {
   std::vector<Subdomain*> subdomains_;
   std::vector<Advance> requests_;
   std::vector<Response> responses_;
+  std::vector<double> struck_;
   std::vector<int> everybody_;
   std::deque<CachedKernel> kernels_;  // references to kernels stay valid
   std::int64_t exchanges_ = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace abut {
 
@@ -71,6 +72,9 @@ void ContactHistory::read(const Interface& interface, Bodies& bodies) {
   compliance_ = 0.0;
   for (const Side& side : interface.sides)
     compliance_ += bodies.kernel(side.body, side.port, 1).displacement.front();
+  constexpr double units = 2.0 * std::numeric_limits<double>::epsilon();
+  const double moved = std::max(std::abs(own.u.back()), interface.reference_gap);
+  rounding_ = compliance_ > 0.0 ? units * moved / compliance_ : 0.0;
 }
 
 double ContactHistory::peak() const {

@@ -24,7 +24,8 @@ std::optional<Touch> first_overlap(const Interface& interface, const Bodies& bod
 /// One level of time of an interface in contact.
 struct ContactLevel {
   double time = 0.0;   // [s]
-  double force = 0.0;  // [N] compressive; on substeps of unlike length the mean over the coarser one
+  // [N] compressive; on substeps of unlike length the mean over the coarser one
+  double force = 0.0;
   double gap = 0.0;    // [m]
 };
 
@@ -39,6 +40,7 @@ class ContactHistory {
   const ContactLevel& operator[](std::size_t i) const { return levels_[i]; }
   bool kicks() const { return kicks_; }  // a force acts over the substep that ends at its level
   double peak() const;                   // [N] largest force
+  double rounding() const { return rounding_; }  // [N] of a force, from that of displacements
 
   /// [J] that contact gives to the bodies in substep i: gaps and forces alone tell it  [M.25].
   double energy(std::size_t i) const {
@@ -62,6 +64,7 @@ class ContactHistory {
   std::vector<ContactLevel> finer_;  // of the kinematic side, where its substeps are shorter
   bool kicks_ = false;
   double compliance_ = 0.0;  // [m/N] of both sides over a substep
+  double rounding_ = 0.0;
 };
 
 /// Largest contact force [N] on the kinematic side in the latest responses.

@@ -58,7 +58,7 @@ SceneText short_last() {
   scene.bars[2].length = 0.025;
   scene.bars[2].position = 0.125;
   scene.bars[2].sides = {"left"};
-  for (BarText& bar : scene.bars) bar.elements = static_cast<int>(std::lround(400.0 * bar.length));
+  for (BarText& bar : scene.bars) bar.elements = static_cast<int>(std::lround(600.0 * bar.length));
   scene.interfaces = {{"left.right", "middle.left"}, {"middle.right", "right.left"}};
   scene.closed_form = false;
   scene.begin = 0.0;

@@ -87,6 +87,16 @@ inline std::unique_ptr<Subdomain> build_wall(double position, const std::string&
   return make_body(Document::from_text("test", text), "bodies.wall");
 }
 
+/// A law as a scene writes it for a body of this dimension: a linear bar has no constant of
+/// breadth.
+inline std::string law_in(int dim, std::string law) {
+  const std::string breadth = "poissons_ratio: 0.3, ";
+  const std::size_t at = law.find(breadth);
+  if (dim == 1 && law.starts_with("linear_elastic") && at != std::string::npos)
+    law.erase(at, breadth.size());
+  return law;
+}
+
 /// A request for one window with nothing imposed.
 inline Advance free_request(const Subdomain& body, double begin, double end, int records = 1) {
   Advance request;

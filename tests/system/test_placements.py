@@ -176,11 +176,11 @@ class OptionalScenes(SystemTest):
 class Expectations(SystemTest):
     def test_a_missed_expectation_ends_with_1_and_a_table_that_says_which(self):
         result = self.abut("run", TWO_BARS, "--local", "--out", self.out,
-                           "--set", "meta.expect[1].at_most=1.0e-9")
+                           "--set", "meta.expect[1].at_most=1.0e-16")
         self.assertEqual(result.returncode, 1, result.stderr)
         missed = [line for line in result.stdout.splitlines() if line.endswith("FAILED")]
         self.assertEqual([line.split()[0] for line in missed], ["energy.total.relative_drift_max"])
-        self.assertIn("at most 1e-09", missed[0])
+        self.assertIn("at most 1e-16", missed[0])
         self.assert_whole(self.out)
         passed = [entry["pass"] for entry in self.summary()["expectations"]]
         self.assertEqual(passed, [True, False] + [True] * (len(passed) - 2))

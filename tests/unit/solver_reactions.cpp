@@ -41,8 +41,8 @@ struct Part {
         "bodies:\n  part:\n    model: {{{}: {{dimension: {}, {}{}mesh: {{{}}}}}}}\n"
         "    material: {{{}}}\n    integrator: {{{}}}\n    constraints: {{{}}}\n"
         "    loads: {{{}}}\n{}",
-        model, dim(), plane.empty() ? "" : "plane: " + plane + ", ", options, mesh(), law,
-        integrator, constraints, loads, more);
+        model, dim(), plane.empty() ? "" : "plane: " + plane + ", ", options, mesh(),
+        law_in(dim(), law), integrator, constraints, loads, more);
     return make_body(Document::from_text("test", text), "bodies.part");
   }
 };
