@@ -122,9 +122,8 @@ std::optional<double> Controller::first_event(const TimeWindow& window) {
     Interface& interface = coupling_.interfaces[i];
     if (!coupling_.rules[i].unilateral() || !interface.closed) continue;
     history_.read(interface, bodies_);
-    const double floor =
-        std::max(force_floor, scene_.schwarz.tolerance) *
-        std::max(interface.force_scale, history_.peak());
+    const double floor = std::max(force_floor, scene_.schwarz.tolerance) *
+                         std::max(interface.force_scale, history_.peak());
     for (std::size_t k = 1; k < history_.size(); ++k) {
       const ContactLevel& before = history_[k - 1];
       const bool gone = before.force > floor && history_[k].force <= floor;

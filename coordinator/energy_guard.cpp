@@ -25,8 +25,7 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
     if (begun_) {
       for (const PortResponse& port : responses[b].ports) account.ports += port.work;
     }
-    account.change =
-        here - account.first - account.ports - (struck.empty() ? 0.0 : struck[b]);
+    account.change = here - account.first - account.ports - (struck.empty() ? 0.0 : struck[b]);
   }
   if (!std::exchange(begun_, true)) first_ = own;
   most_ = std::max(most_, motion);

@@ -7,10 +7,10 @@
 
 namespace abut {
 
-/// Watches the bodies' energy, what became heat included, less the work of external loads. Supports, ties and contact make
-/// none, so it must not grow; that it does is how an unstable step or window shows itself before
-/// its numbers overflow  [M.21]. A body that says that it conserves energy is watched by itself:
-/// what its ports did is known, so it may neither gain nor lose.
+/// Watches the bodies' energy, what became heat included, less the work of external loads.
+/// Supports, ties and contact make none, so it must not grow; that it does is how an unstable step
+/// or window shows itself before its numbers overflow  [M.21]. A body that says that it conserves
+/// energy is watched by itself: what its ports did is known, so it may neither gain nor lose.
 class EnergyGuard {
  public:
   enum class Verdict { fine, warn, fail };
@@ -21,7 +21,8 @@ class EnergyGuard {
 
   /// Looks at the last record of every body, once for every accepted window. Warns once, at half
   /// the share of growth; of losses at the share itself.
-  /// `struck` [J]: by body, what records hold already and the ports' work does not yet; empty: none.
+  /// `struck` [J]: by body, what records hold already and the ports' work does not yet; empty:
+  /// none.
   Verdict look(std::span<const Response> responses, std::span<const double> struck = {});
   double growth() const { return growth_; }  // as a fraction, at the last look
   double most() const { return most_; }      // [J] largest kinetic and stored energy so far

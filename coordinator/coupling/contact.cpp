@@ -111,8 +111,7 @@ double ContactHistory::release(std::size_t i) const {
 
 double ContactHistory::release_between(const ContactLevel& before,
                                        const ContactLevel& after) const {
-  const double pull =
-      after.gap > 0.0 && compliance_ > 0.0 ? after.gap / compliance_ : -after.force;
+  const double pull = after.gap > 0.0 && compliance_ > 0.0 ? after.gap / compliance_ : -after.force;
   const double length = after.time - before.time;
   const double end = after.time - (kicks_ ? length : 0.0);  // a kick acts at its begin
   if (before.force + pull <= 0.0) return end;

@@ -23,10 +23,10 @@ std::optional<Touch> first_overlap(const Interface& interface, const Bodies& bod
 
 /// One level of time of an interface in contact.
 struct ContactLevel {
-  double time = 0.0;   // [s]
+  double time = 0.0;  // [s]
   // [N] compressive; on substeps of unlike length the mean over the coarser one
   double force = 0.0;
-  double gap = 0.0;    // [m]
+  double gap = 0.0;  // [m]
 };
 
 /// What an interface showed in a window, at the substeps of its coarser side, the window's begin

@@ -169,7 +169,7 @@ Eigen::VectorXd solve_unilateral(const std::vector<double>& kinematic,
   const Eigen::Map<const Eigen::VectorXd> ck(kinematic.data(), n);
   const Eigen::Map<const Eigen::VectorXd> cn(neumann.data(), n);
   const double both = ck[0] + cn[0];
-  Eigen::VectorXd left = overlap + normal * r;  // overlap that is left to be removed
+  Eigen::VectorXd left = overlap + normal * r;        // overlap that is left to be removed
   Eigen::VectorXd given = Eigen::VectorXd::Zero(n);   // way that the kinematic side gives
   Eigen::VectorXd pushed = Eigen::VectorXd::Zero(n);  // way that the Neumann side is pushed
   Eigen::VectorXd motion(n);
@@ -183,8 +183,8 @@ Eigen::VectorXd solve_unilateral(const std::vector<double>& kinematic,
     }
     // Where the sides touch both differences are the same; the one of the stiffer side keeps its
     // digits when the residual is as large as the other one's compliance makes it.
-    motion[i] = closed && ck[0] < cn[0] ? normal * (given[i] - overlap[i])
-                                        : r[i] - normal * pushed[i];
+    motion[i] =
+        closed && ck[0] < cn[0] ? normal * (given[i] - overlap[i]) : r[i] - normal * pushed[i];
   }
   return motion;
 }

@@ -44,7 +44,8 @@ class Schwarz {
   struct Options {
     int max_iterations = 20;
     double tolerance = 1.0e-6;
-    bool kernels = true;  // the accelerator uses port kernels: they answer contact that comes and goes
+    bool kernels =
+        true;  // the accelerator uses port kernels: they answer contact that comes and goes
   };
   /// Of the inverse Jacobian and of the probed relaxation factors.
   using MakeAccelerator = std::function<std::unique_ptr<Accelerator>(ApplyInverse, ApplyInverse)>;

@@ -45,8 +45,8 @@ double reference_velocity(const Interface& interface, double compliance, double 
   return std::max(interface.closing_speed, interface.force_scale * compliance / step);
 }
 
-/// Velocity and force that go with each other: neither is measured against less than a thousandth of
-/// what the other one causes in a step, or the first touch of a window would be asked for digits
+/// Velocity and force that go with each other: neither is measured against less than a thousandth
+/// of what the other one causes in a step, or the first touch of a window would be asked for digits
 /// that it does not have.
 void balance(ReferenceScales& scale, double compliance) {
   constexpr double share = 1.0e-3;
@@ -129,8 +129,7 @@ void Unilateral::begin(const TimeWindow& window, const Interface& interface, Bod
   if (std::isinf(bodies.describe(n.body).mass)) return;
   inverse_ = inverses_.find(window.length());
   if (inverse_ != nullptr) return;
-  const bool small =
-      std::max(kinematic_grid_.count, neumann_grid_.count) <= KernelInverse::largest;
+  const bool small = std::max(kinematic_grid_.count, neumann_grid_.count) <= KernelInverse::largest;
   if (alike_) {
     inverse_ = inverses_.store(window.length(),
                                unilateral_jacobian_column(kernel_k, kernel_n, neumann_grid_.count));
@@ -266,8 +265,9 @@ void ParallelForce::begin(const TimeWindow& window, const Interface& interface, 
   if (inverse_ != nullptr) return;
   if (std::max(grids[0].count, grids[1].count) > KernelInverse::largest) return;
   Eigen::MatrixXd jacobian = parallel_jacobian(kernels, grids, force_grid_, support_);
-  inverse_ = unilateral_ ? inverses_.store(window.length(), ContactMaps{std::move(jacobian), {}, {}})
-                         : inverses_.store(window.length(), jacobian / compliance_);
+  inverse_ = unilateral_
+                 ? inverses_.store(window.length(), ContactMaps{std::move(jacobian), {}, {}})
+                 : inverses_.store(window.length(), jacobian / compliance_);
 }
 
 void ParallelForce::predict(Eigen::Ref<Eigen::VectorXd> x) const {

@@ -43,11 +43,13 @@ struct Bouncer {
           "  {0}_wall: {{model: {{rigid_wall: {{}}}}, initial: {{position: [{1}]}}, "
           "ports: {{face: {{side: {2}}}}}}}\n",
           side, number(place), other);
-      interfaces += fmt::format("  {0}: {{sides: [bar.{0}, {0}_wall.face], contact: {{}}}}\n", side);
+      interfaces +=
+          fmt::format("  {0}: {{sides: [bar.{0}, {0}_wall.face], contact: {{}}}}\n", side);
     }
     std::string out = fmt::format(
         "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n  bar:\n"
-        "    model: {{fe: {{dimension: 1, mesh: {{bar: {{length: {}, elements: {}, area: 1.0}}}}}}}}\n"
+        "    model: {{fe: {{dimension: 1, mesh: {{bar: {{length: {}, elements: {}, area: "
+        "1.0}}}}}}}}\n"
         "    material: {{linear_elastic: {{youngs_modulus: {}, density: 1.0}}}}\n"
         "    integrator: {{{}: {{step: {}{}}}}}\n    contact_layer: {{{}}}\n"
         "    initial: {{position: [{}], velocity: [{}]}}\n    ports: {{{}}}\n",
@@ -91,7 +93,8 @@ TEST(ManyImpacts, BetweenTwoWallsKeepTheEnergyForAnyWindow) {  // catalogue A10
       bar.layer = c.layer;
       bar.window = window;
       const ResultPtr r = bar.run(50 * 14.0);
-      const std::string what = fmt::format("{} {} {} {} {}", c.cfl, c.scheme, c.keys, c.layer, window);
+      const std::string what =
+          fmt::format("{} {} {} {} {}", c.cfl, c.scheme, c.keys, c.layer, window);
       ASSERT_TRUE(r->completed()) << what;
       const auto [most, end] = energy_errors(*r);
       EXPECT_LT(most, c.most) << what;
@@ -130,7 +133,8 @@ TEST(ManyImpacts, OfALargeImplicitStepNeitherPumpNorFail) {
     bar.scheme = "newmark";
     const ResultPtr r = bar.run(100 * 14.0);
     ASSERT_TRUE(r->completed()) << cfl;
-    EXPECT_LT(energy_errors(*r).first, 0.3) << cfl;  // owed for a while; without paying: 1.2, failed
+    EXPECT_LT(energy_errors(*r).first, 0.3)
+        << cfl;  // owed for a while; without paying: 1.2, failed
   }
 }
 
@@ -145,8 +149,8 @@ TEST(ManyImpacts, OfADissipativeSchemeLoseWhatTheSchemeLoses) {
 }
 
 TEST(ManyImpacts, UnderWeightKeepTheEnergy) {  // catalogue A9, a hundred impacts
-  for (const auto& [scheme, cfl] : {std::pair("central_difference", 0.4),
-                                    {"central_difference", 0.9}, {"newmark", 0.9}}) {
+  for (const auto& [scheme, cfl] :
+       {std::pair("central_difference", 0.4), {"central_difference", 0.9}, {"newmark", 0.9}}) {
     Bouncer bar;
     bar.elements = 100;
     bar.cfl = cfl;
@@ -206,7 +210,8 @@ ResultPtr cradle(int elements, int window, const std::string& form) {
     if (b < 4) bar.sides.push_back("right");
     scene.bars.push_back(bar);
     if (b > 0)
-      scene.interfaces.push_back({std::string(names[b - 1]) + ".right", std::string(names[b]) + ".left"});
+      scene.interfaces.push_back(
+          {std::string(names[b - 1]) + ".right", std::string(names[b]) + ".left"});
   }
   scene.schwarz = "form: " + form;
   return run(scene);

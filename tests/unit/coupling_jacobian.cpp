@@ -40,7 +40,7 @@ BarText bar(const std::string& name, const std::string& integrator, const std::s
   b.sides = {name == "left" ? "right" : "left"};
   b.solid = layer == solid;
   if (b.solid) b.layer = "massless: {}";  // of the ports of bars: solids keep their nodes' mass
-  if (name == "right") b.modulus = 2.0;  // not the symmetric special case
+  if (name == "right") b.modulus = 2.0;   // not the symmetric special case
   return b;
 }
 
@@ -198,7 +198,8 @@ TEST_P(PortJacobian, AnswersContactThatBeginsInTheWindowInOneCorrection) {
   for (double gap : {0.0, 0.02, 0.045, 0.07}) {  // closing at 0.03 m/s, 3.6 s
     Unilateral alternating;
     ParallelForce parallel;
-    for (Transmission* transmission : std::initializer_list<Transmission*>{&alternating, &parallel}) {
+    for (Transmission* transmission :
+         std::initializer_list<Transmission*>{&alternating, &parallel}) {
       Contact contact(GetParam(), *transmission, 0, gap);
       Eigen::VectorXd x = contact.predict();
       const Eigen::VectorXd first = contact.image(x) - x;

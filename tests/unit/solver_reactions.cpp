@@ -184,7 +184,9 @@ TEST(Reactions, OfAMovedSideArePushAndPullOfTheClosedForm) {
     EXPECT_EQ(body->describe().columns,
               (std::vector<std::string>{"wall.reaction [N]", "pull.reaction [N]"}));
     EXPECT_NEAR(record.columns[0] + record.columns[1], 0.0, 1.0e-10);  // Newton's tolerance
-    if (law == laws[0]) EXPECT_NEAR(record.columns[1], 0.01, roundoff(100.0, 0.01));
+    if (law == laws[0]) {
+      EXPECT_NEAR(record.columns[1], 0.01, roundoff(100.0, 0.01));
+    }
     EXPECT_NEAR(told(*body, "reaction.x"), 0.0, 1.0e-10);
   }
 }

@@ -130,13 +130,18 @@ TEST_P(Pressurised, LocksPointwiseAndNotUnderMeanDilatation) {
     // Cured: the error is that of an ordinary material, within a factor that the other field
     // excuses.
     const bool cured = cube && c.formulation == Formulation::mean_dilatation;
-    if (cured) EXPECT_LT(nearly, 2.5 * ordinary) << words;
+    if (cured) {
+      EXPECT_LT(nearly, 2.5 * ordinary) << words;
+    }
     // Quadratic cells without a cure: what the guide to solids says of them.
-    if (element.order == 2) EXPECT_LT(nearly, 0.1) << words;
+    if (element.order == 2) {
+      EXPECT_LT(nearly, 0.1) << words;
+    }
     // All other linear cells lock; one layer of triangles has more freedom than constraints, and
     // rings of one point have the exact mean of their hoop strain.
-    if (element.order == 1 && !cured && GetParam() != Body::cylinder_of_revolution)
+    if (element.order == 1 && !cured && GetParam() != Body::cylinder_of_revolution) {
       EXPECT_GT(nearly, 0.2) << words;
+    }
   }
 }
 
