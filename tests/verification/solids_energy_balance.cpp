@@ -38,8 +38,8 @@ struct Driven {
         "    constraints: {{wall: {{on: {}, fixed: true}}, pull: {{on: {}, {}: \"{}\"}}}}\n"
         "    loads: {{{}}}\n",
         dim(), plane.empty() ? "" : "plane: " + plane + ", ", mesh,
-        formulation == "full" ? "" : ", formulation: " + formulation, law_in(dim(), law), integrator,
-        dim() == 1 ? "left" : "bottom", end, dim() == 1 ? "x" : "y", move, loads);
+        formulation == "full" ? "" : ", formulation: " + formulation, law_in(dim(), law),
+        integrator, dim() == 1 ? "left" : "bottom", end, dim() == 1 ? "x" : "y", move, loads);
     return make_body(Document::from_text("test", text), "bodies.part");
   }
 };
