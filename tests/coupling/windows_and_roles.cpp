@@ -105,6 +105,29 @@ TEST(Balance, MomentumAtEqualStepsIsExactToRoundOff) {
   }
 }
 
+TEST(Balance, MomentumIsExactForEveryPairOfSchemes) {
+  // Goal: [M.24]. Oracle: impulses are equal and opposite at every level, whatever the weights.
+  const auto schemes = [](double step) {
+    return std::vector<std::string>{
+        explicit_scheme(step, 6), implicit_scheme("newmark", step),
+        fmt::format("hht_alpha: {{step: {}, alpha: -0.3}}", number(step)),
+        fmt::format("generalized_alpha: {{step: {}, spectral_radius: 0.5}}", number(step))};
+  };
+  for (const std::string& left : schemes(1.0e-7)) {
+    for (double step : {1.0e-7, 5.0e-7}) {
+      for (const std::string& right : schemes(step)) {
+        SceneText scene = unequal_bars();
+        scene.bars[0].integrator = left;
+        scene.bars[1].integrator = right;
+        const ResultPtr r = run(scene);
+        ASSERT_TRUE(r->completed()) << left << right;
+        // 1e4 substeps of 200 nodes, implicit ones through a factorisation; of either sign
+        EXPECT_LT(r->momentum_error(), roundoff(10'000, 1.0)) << left << right;
+      }
+    }
+  }
+}
+
 /// Two bars with steps of 1e-6 s on the left and a part of it on the right.
 SceneText subcycled(int ratio, bool fine_kinematic, bool implicit) {
   SceneText scene = two_bars();
