@@ -185,11 +185,8 @@ Controller::Verdict Controller::judge(TimeWindow& window) {
   }
   const std::optional<double> event = first_event(window);
   if (!event || *event >= window.end) return Verdict::accept;
-  if (*event > window.begin) {
-    window.end = *event;
-  } else {
-    release_kicks(window);
-  }
+  if (*event <= window.begin) return release_kicks(window) ? Verdict::again : Verdict::accept;
+  window.end = *event;
   return Verdict::again;
 }
 

@@ -58,7 +58,7 @@ class Controller {
   void engage(int interface, double speed);
   std::optional<double> first_event(const TimeWindow& window);
   double common_end(const TimeWindow& window, double time) const;
-  void release_kicks(const TimeWindow& window);
+  bool release_kicks(const TimeWindow& window);
   bool shorten(TimeWindow& window) const;
   void settle(const TimeWindow& window);
   void pay(Interface& interface);

@@ -107,9 +107,10 @@ void Controller::engage(int index, double speed) {
   choose_roles(index);
 }
 
+/// [N] of the window in history_: what the iteration leaves open is no force.
 double Controller::least_force(const Interface& interface) const {
-  // what the iteration leaves open is no force
-  return std::max(force_floor, scene_.schwarz.tolerance) * interface.force_scale;
+  return std::max(force_floor, scene_.schwarz.tolerance) *
+         std::max(interface.force_scale, history_.peak());
 }
 
 /// Where the window must end so that contact is paid what an event in it has moved, before more
@@ -122,8 +123,7 @@ std::optional<double> Controller::first_event(const TimeWindow& window) {
     Interface& interface = coupling_.interfaces[i];
     if (!coupling_.rules[i].unilateral() || !interface.closed) continue;
     history_.read(interface, bodies_);
-    const double floor = std::max(force_floor, scene_.schwarz.tolerance) *
-                         std::max(interface.force_scale, history_.peak());
+    const double floor = least_force(interface);
     for (std::size_t k = 1; k < history_.size(); ++k) {
       const ContactLevel& before = history_[k - 1];
       const bool gone = before.force > floor && history_[k].force <= floor;
@@ -156,7 +156,8 @@ double Controller::common_end(const TimeWindow& window, double time) const {
 }
 
 /// Kick layers that end their contact at the window's begin part with what they were owed.
-void Controller::release_kicks(const TimeWindow& window) {
+bool Controller::release_kicks(const TimeWindow& window) {
+  bool released = false;
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     Interface& interface = coupling_.interfaces[i];
     if (!coupling_.rules[i].unilateral() || !interface.closed) continue;
@@ -167,7 +168,9 @@ void Controller::release_kicks(const TimeWindow& window) {
     interface.impulse = std::exchange(interface.rebound_impulse, 0.0);
     interface.opened_at = window.begin;
     if (std::exchange(interface.pressed, false)) tell_opened(interface, history_.release(1));
+    released = true;
   }
+  return released;
 }
 
 /// Fewer substeps at once, fewer kinks in the map that is iterated.
