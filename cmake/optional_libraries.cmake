@@ -25,6 +25,10 @@ foreach(name IN LISTS abut_with)
     message(FATAL_ERROR "'${name}' was asked for, and ${header} or lib${library} is missing. "
       "Install Debian's ${package}, or build without: leave '${name}' out of WITH (of ABUT_WITH).")
   endif()
+  # Named again as a system folder, the compiler's own one would hide the C library from <cstdlib>.
+  if(ABUT_${name}_INCLUDE IN_LIST CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES)
+    set(ABUT_${name}_INCLUDE "")
+  endif()
   add_library(abut_with_${name} INTERFACE)
   target_link_libraries(abut_with_${name} INTERFACE ${ABUT_${name}_LIBRARY})
 endforeach()
