@@ -192,7 +192,7 @@ TEST(ExodusFile, SidesBothInsideAndOnTheBoundaryAndFacetsTwiceAreRefused) {
     return refusal([&changed]() { read_exodus(changed.path()); });
   };
   const std::string right = big_endian({2, 4, 2, 2});  // elements, then their sides
-  expect_words(with_locals(right, big_endian({2, 4, 4, 2})), {"'right'", "both on the boundary"});
+  expect_words(with_locals(right, big_endian({2, 4, 4, 2})), {"'right'", "partly on the boundary"});
   expect_words(with_locals(right, big_endian({2, 2, 2, 2})), {"a facet twice", "'right'"});
   expect_words(with_locals(right, big_endian({2, 5, 2, 2})), {"number 5 in elem_ss6", "1 to 4"});
   expect_words(with_locals(right, big_endian({2, 4, 2, 7})), {"number 7 in side_ss6", "1 to 6"});
