@@ -79,6 +79,16 @@ void Controller::choose_roles(int index) {
                         : rule.tied             ? tied_side(interface, bodies_, scene_.time.window)
                                     : kinematic_side(interface, bodies_, scene_.time.window);
   rule.role_fixed = true;  // roles do not change during a run
+  if (rule.tied || rule.published) return;
+  const double limit = stable_step_in_contact(interface, bodies_, scene_.time.window);
+  const Description& body = bodies_.describe(interface.neumann_side().body);
+  if (body.step <= limit) return;
+  emit(RunEvent::Kind::warning, time_, interface.name,
+       fmt::format(
+           "the contact spring of '{}' lowers the stable step of body '{}' to {:.4g} s: give "
+           "it a smaller step, or its partner a softer contact_layer",
+           interface.name, body.name, limit),
+       {{"stable_step", limit}});
 }
 
 // ---- in a window that was tried -----------------------------------------------------------------

@@ -1,5 +1,7 @@
 #include "coordinator/coupling/roles.hpp"
 
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "coordinator/coupling/port_jacobian.hpp"
@@ -30,6 +32,24 @@ int kinematic_side(const Interface& interface, Bodies& bodies, double length) {
   if (moved[1] > similar * moved[0]) return 1;
   if (spacing[0] != spacing[1]) return spacing[0] < spacing[1] ? 0 : 1;
   return step[1] < step[0] ? 1 : 0;
+}
+
+double stable_step_in_contact(const Interface& interface, Bodies& bodies, double length) {
+  const double none = std::numeric_limits<double>::infinity();
+  const Side& k = interface.kinematic_side();
+  const Side& n = interface.neumann_side();
+  const Description& body = bodies.describe(n.body);
+  const TimeGrid grid(0.0, length, body.step);
+  if (!std::isfinite(body.stable_step) || body.step <= 0.0 || grid.count < 2) return none;
+  // A force at the end of a substep moves a node with mass in the next one only: by step^2 / m.
+  const PortKernel& answer = bodies.kernel(n.body, n.port, grid.count);
+  if (answer.displacement[0] != 0.0) return none;
+  const TimeGrid spring_grid(0.0, length, bodies.describe(k.body).step);
+  const PortKernel& spring = bodies.kernel(k.body, k.port, spring_grid.count);
+  if (spring.compliance <= 0.0) return none;
+  const double own = 2.0 / body.stable_step;
+  const double added = answer.displacement[1] / (body.step * body.step * spring.compliance);
+  return 2.0 / std::sqrt(own * own + added);
 }
 
 int tied_side(const Interface& interface, Bodies& bodies, double length) {

@@ -20,4 +20,9 @@ int tied_side(const Interface& interface, Bodies& bodies, double length);
 /// steps.
 int coarser_side(const Interface& interface, const Bodies& bodies);
 
+/// Stable step [s] of an explicit Neumann side whose massive node takes the kinematic side's
+/// contact spring beside its own: by Gershgorin's rows, 2 / sqrt(w^2 + k / m)  [M.53]. Infinity
+/// where the side is implicit, or has a contact layer of its own, or the partner is no spring.
+double stable_step_in_contact(const Interface& interface, Bodies& bodies, double length);
+
 }  // namespace abut

@@ -357,6 +357,27 @@ TEST(Roles, AmongEqualsTheFinerMeshThenTheFinerStepThenTheFirst) {
   EXPECT_EQ(kinematic_of(BarText(), quicker), 1);
 }
 
+TEST(Roles, TheContactSpringLowersTheStableStepOfAMassiveNode) {
+  // Half a cell's mass between two springs k, the node beside it the same: 2 / w = h / c alone, and
+  // w^2 = (2 k + k) / (m / 2) with the partner's spring.
+  BarText soft, graded = right_bar();
+  soft.layer = "massless: {stiffness_factor: 1.0}";
+  soft.integrator = explicit_scheme(1.0e-7);  // without dispersion terms its spring is k
+  graded.solid = true;
+  graded.layer = "massless: {}";
+  graded.integrator = explicit_scheme(1.0e-6);
+  const std::unique_ptr<Subdomain> a = build(soft), b = build(graded);
+  Bodies bodies({a.get(), b.get()});
+  Interface interface = make_interface("i", {Side{0, 0}, Side{1, 0}}, bodies);
+  interface.kinematic = 0;
+  const double alone = bodies.describe(1).stable_step;
+  EXPECT_NEAR(stable_step_in_contact(interface, bodies, 1.0e-5) / alone, std::sqrt(4.0 / 6.0),
+              1.0e-3);  // the bound of solids is sharp to 1e-4
+  const std::unique_ptr<Subdomain> core = build(right_bar());
+  Bodies cores({a.get(), core.get()});
+  EXPECT_TRUE(std::isinf(stable_step_in_contact(interface, cores, 1.0e-5)));  // massless as well
+}
+
 TEST(Roles, AWallNeverIsKinematic) {
   const std::unique_ptr<Subdomain> wall = build_wall(0.0, "left");
   const std::unique_ptr<Subdomain> bar = build(BarText());
