@@ -95,7 +95,6 @@ class Unilateral final : public Transmission {
   TimeGrid kinematic_grid_, neumann_grid_;
   double u_begin_ = 0.0, v_begin_ = 0.0;  // of the Neumann port
   Waveform guess_;                        // last iterate: a window that is cut short starts from it
-  Waveform motion_;
   ReferenceScales scale_;
   double kinematic_compliance_ = 0.0, neumann_compliance_ = 0.0;  // [m/N] over one substep
   double roundoff_gain_ = 1.0;  // of displacements, through the reaction

@@ -193,8 +193,10 @@ TEST_P(PortJacobian, SolvesTheUnilateralWindowInOneCorrection) {
 }
 
 TEST_P(PortJacobian, AnswersContactThatBeginsInTheWindowInOneCorrection) {
-  // Where a kick layer begins to be held its dispersion correction changes: not linear.
-  if (GetParam().name.starts_with("six_terms_kick")) GTEST_SKIP() << "one iteration more";
+  // Where a kick layer begins to be held its dispersion correction changes, which the kernel does
+  // not know: corrections go on to converge there, and elsewhere the first one is exact.
+  const bool switches = GetParam().name.starts_with("six_terms_kick");
+  const int corrections = switches ? 12 : 1;
   for (double gap : {0.0, 0.02, 0.045, 0.07}) {  // closing at 0.03 m/s, 3.6 s
     Unilateral alternating;
     ParallelForce parallel;
@@ -203,8 +205,11 @@ TEST_P(PortJacobian, AnswersContactThatBeginsInTheWindowInOneCorrection) {
       Contact contact(GetParam(), *transmission, 0, gap);
       Eigen::VectorXd x = contact.predict();
       const Eigen::VectorXd first = contact.image(x) - x;
-      x += transmission->apply_inverse(first);
-      const Eigen::VectorXd second = contact.image(x) - x;
+      Eigen::VectorXd second = first;
+      for (int k = 0; k < corrections; ++k) {
+        x += transmission->apply_inverse(second);
+        second = contact.image(x) - x;
+      }
       // Kicks finer than their partner's steps are settled to 1e-3 at once.
       const bool creeps = GetParam().left_layer == kick && GetParam().name.ends_with("1to10");
       const double digits = creeps ? 1.0e-3 : 1.0e-9;
