@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/key.hpp"
 
 namespace abut {
@@ -46,7 +47,7 @@ class Fields {
     if constexpr (std::is_same_v<T, std::string>) {
       word_leaf({key, "", help, presence}, value, list);
     } else {
-      std::string text(list[static_cast<std::size_t>(value)]);
+      std::string text(list[index(value)]);
       word_leaf({key, "", help, presence}, text, list);
       for (std::size_t i = 0; i < list.size(); ++i)
         if (list[i] == text) value = static_cast<T>(i);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 namespace {
@@ -40,7 +41,7 @@ std::string read_input_file(const std::string& path, std::size_t most, const std
   std::string bytes;
   std::array<char, 65536> part{};
   while (file.read(part.data(), part.size()) || file.gcount() > 0) {
-    bytes.append(part.data(), static_cast<std::size_t>(file.gcount()));
+    bytes.append(part.data(), index(file.gcount()));
     if (bytes.size() > most) refuse_size(path, most, remedy);
   }
   if (file.bad()) throw InputError("cannot be read", path, remedy);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 #include "base/input_errors.hpp"
 #include "base/yaml_values.hpp"
 
@@ -245,7 +246,7 @@ void Reader::descend(std::string_view name) {
   const std::string path = join_path(parent.path, name);
   YAML::Node node;
   if (parent.node.IsSequence())
-    node.reset(parent.node[static_cast<std::size_t>(std::stoul(std::string(name.substr(1))))]);
+    node.reset(parent.node[index(std::stoul(std::string(name.substr(1))))]);
   else
     node.reset(parent.node[std::string(name)]);
   const std::size_t earlier = errors_.count();

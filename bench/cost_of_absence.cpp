@@ -18,7 +18,7 @@
 #include "base/yaml_document.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/launch_local.hpp"
-#include "subdomain_solver/time/bar_kernels.hpp"
+#include "subdomain_solver/bars/bar_kernels.hpp"
 
 namespace {
 std::atomic<long> allocations{0};

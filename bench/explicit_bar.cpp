@@ -13,8 +13,9 @@
 #include <memory>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/yaml_document.hpp"
-#include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/make/body_spec.hpp"
 
 namespace abut {
 namespace {
@@ -114,7 +115,7 @@ void run(int repeats) {
   }
   const int beyond = 8'000'000;  // 128 MB of state: beyond the caches
   const double large = cost(beyond, 1, false, 3);
-  const double limit = streaming_limit(static_cast<std::size_t>(beyond), 9);
+  const double limit = streaming_limit(index(beyond), 9);
   fmt::print("{:>10} {:>7} {:>9} {:>20.3f}   streaming limit {:.3f}, ratio {:.2f}\n", beyond, 1,
              "free", large, limit, large / limit);
 }

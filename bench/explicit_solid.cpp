@@ -16,6 +16,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
@@ -76,7 +77,7 @@ Cost cost(const Setting& s, int repeats) {
   problem.model = &model;
   ExplicitDynamics scheme(problem);
   Motion motion;
-  motion.q.assign(static_cast<std::size_t>(model.dofs()), 0.0);
+  motion.q.assign(index(model.dofs()), 0.0);
   motion.v = motion.q;
   for (std::size_t i = 0; i < motion.v.size(); i += 3)  // waves along x
     motion.v[i] = 10.0 * (model.mesh().points[i] - 0.5 * box.lengths[0]) / box.lengths[0];
@@ -117,7 +118,7 @@ void run_instructions(int repeats) {
         if (!cells.evaluate(q, force, stored)) std::abort();
       });
       fmt::print("   {} point(s): {:.1f} ns, {} B an element", one_point ? 1 : 8,
-                 wall * 1.0e9 / count, cells.bytes() / static_cast<std::size_t>(count));
+                 wall * 1.0e9 / count, cells.bytes() / index(count));
     }
     fmt::print("\n");
   }
@@ -129,7 +130,7 @@ void run_stable_step(int repeats) {
   box.elements = {20, 20, 20};
   box.lengths = {0.02, 0.02, 0.02};
   FeModel model(generate(box, "bench"), std::make_unique<NeoHookean>(rubber, 1000.0), {});
-  std::vector<double> q(static_cast<std::size_t>(model.dofs()), 0.0);
+  std::vector<double> q(index(model.dofs()), 0.0);
   const double count = model.mesh().cell_count();
   double sum = 0.0;
   const double rest = least(repeats, 1, [&] { sum += stable_step(model, q, {}); });
@@ -143,7 +144,7 @@ void run_stable_step(int repeats) {
 /// Nanoseconds per element for what a step must move at least, the vectors of motion: 11 reads and
 /// writes of each of three coordinates, 264 bytes an element.
 double streaming_limit(int elements, int repeats) {
-  const std::size_t n = static_cast<std::size_t>(elements) * 3;
+  const std::size_t n = index(elements) * 3;
   std::vector<double> q(n, 1.0), v(n, 2.0), a(n, 3.0), force(n, 4.0), mass(n, 5.0), next(n, 0.0);
   const double wall = least(repeats, 1, [&] {
     for (std::size_t i = 0; i < n; ++i) next[i] = q[i] + 1.0e-9 * (v[i] + 1.0e-9 * a[i]);

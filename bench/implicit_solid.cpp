@@ -20,6 +20,7 @@
 #include <Eigen/SparseCholesky>
 #endif
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
@@ -88,8 +89,8 @@ Cost cost_of_bare(const SparseMatrix& k, const Vector& b, Vector& x) {
   common.final_ll = 1;
   SparseMatrix copy = k;
   cholmod_sparse a = {};
-  a.nrow = a.ncol = static_cast<std::size_t>(k.rows());
-  a.nzmax = static_cast<std::size_t>(k.nonZeros());
+  a.nrow = a.ncol = index(k.rows());
+  a.nzmax = index(k.nonZeros());
   a.p = copy.outerIndexPtr();
   a.i = copy.innerIndexPtr();
   a.x = copy.valuePtr();
@@ -146,7 +147,7 @@ Mesh cube(int elements) {
 double assembly(std::unique_ptr<const Material> law, Formulation formulation, int elements,
                 int repeats, ModelResponse& response) {
   FeModel model(cube(elements), std::move(law), {Plane::strain, formulation, 1.0});
-  const std::vector<double> q(static_cast<std::size_t>(model.dofs()), 0.0);
+  const std::vector<double> q(index(model.dofs()), 0.0);
   std::vector<double> samples;
   for (int r = 0; r <= repeats; ++r) {
     const double wall = seconds([&] {
@@ -162,7 +163,7 @@ void run(int elements, int repeats) {
   const double empty = allocated();
   ModelResponse response;
   FeModel model(cube(elements), std::make_unique<LinearElastic>(Moduli{1.25, 0.5}, 1.0), {});
-  const std::vector<double> rest(static_cast<std::size_t>(model.dofs()), 0.0);
+  const std::vector<double> rest(index(model.dofs()), 0.0);
   if (!model.evaluate(rest, {}, Model::Want::tangent, response)) std::abort();
   response = {};
   model.mass();

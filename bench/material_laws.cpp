@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/batched_laws.hpp"
 #include "subdomain_solver/materials/hencky.hpp"
 #include "subdomain_solver/materials/j2_plasticity.hpp"
@@ -47,7 +48,7 @@ void report(benchmark::State& state) {
 void scalar(benchmark::State& state, const Material& law, Want want) {
   std::vector<Matrix3> f(points);
   for (std::size_t i = 0; i < points; ++i) f[i] = deformation(i);
-  const std::vector<double> before(static_cast<std::size_t>(law.history_size()), 0.0);
+  const std::vector<double> before(index(law.history_size()), 0.0);
   std::vector<double> after(before);
   PointResponse out;
   for (auto _ : state)

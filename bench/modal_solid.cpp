@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
@@ -74,7 +75,7 @@ struct Beam {
 /// Seconds of one factorisation of the free part of the stiffness, its analysis included.
 double factorisation(Beam& beam) {
   ModelResponse rest;
-  const std::vector<double> q(static_cast<std::size_t>(beam.model.dofs()), 0.0);
+  const std::vector<double> q(index(beam.model.dofs()), 0.0);
   if (!beam.model.evaluate(q, {}, Model::Want::tangent, rest)) std::abort();
   SparseMatrix k;
   FreeCoordinates(beam.model.dofs(), beam.problem.supports).extract(rest.tangent, k);
@@ -87,7 +88,7 @@ double factorisation(Beam& beam) {
 /// Seconds of one step from a motion that takes part in everything, the first ones left out.
 double step_time(Integrator& run, int coordinates, double dt, int steps) {
   Motion motion;
-  motion.q.assign(static_cast<std::size_t>(coordinates), 0.0);
+  motion.q.assign(index(coordinates), 0.0);
   motion.v.assign(motion.q.size(), 1.0e-3);
   if (run.begin(motion, 0.0)) std::abort();
   int done = 0;

@@ -18,6 +18,7 @@
 #include <random>
 #include <vector>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/fe/highest_frequency.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
@@ -74,7 +75,7 @@ void run(const Setting& s, int edge, int repeats) {
   problem.model = &model;
   ExplicitDynamics scheme(problem);
   Motion motion;
-  motion.q.assign(static_cast<std::size_t>(model.dofs()), 0.0);
+  motion.q.assign(index(model.dofs()), 0.0);
   motion.v = motion.q;
   for (std::size_t i = 0; i < motion.q.size(); i += 3) {  // most at the end, none at the begin
     const double part = model.mesh().points[i] / edge;
@@ -145,7 +146,7 @@ void run_deforming(int edge, double distortion, int steps) {
   StableSteps scheme(problem, std::make_unique<TimedWatch>(model, bounds, count),
                      {0.95 * limit, limit, true});
   Motion motion;
-  motion.q.assign(static_cast<std::size_t>(model.dofs()), 0.0);
+  motion.q.assign(index(model.dofs()), 0.0);
   motion.v = motion.q;
   for (std::size_t i = 0; i < motion.v.size(); i += 3)
     motion.v[i] = speed * (1.0 - 2.0 * model.mesh().points[i] / edge);

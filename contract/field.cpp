@@ -1,3 +1,4 @@
+#include "base/index.hpp"
 #include "contract/field.hpp"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ constexpr int most_components = 9;
 std::size_t first_not_finite(std::span<const double> values) {
   const auto at = std::find_if(values.begin(), values.end(),
                                [](double value) { return !std::isfinite(value); });
-  return static_cast<std::size_t>(at - values.begin());
+  return index(at - values.begin());
 }
 
 }  // namespace
@@ -43,10 +44,10 @@ std::string unsound(const Grid& grid) {
     if (grid.types[c] < 1 || grid.types[c] > 255)
       return "cell " + std::to_string(c) + " of the grid has no type of VTK's";
   }
-  if (static_cast<std::size_t>(grid.offsets.back()) != grid.connectivity.size())
+  if (index(grid.offsets.back()) != grid.connectivity.size())
     return "the last offset of the grid is not the number of its cells' nodes";
   const auto stray = [&grid](std::int32_t node) {
-    return node < 0 || static_cast<std::size_t>(node) >= grid.nodes();
+    return node < 0 || index(node) >= grid.nodes();
   };
   if (std::any_of(grid.connectivity.begin(), grid.connectivity.end(), stray))
     return "a cell of the grid has a node that is not there";
@@ -60,7 +61,7 @@ std::string unsound(std::span<const FieldValues> values, std::span<const FieldIn
            std::to_string(fields.size());
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const std::size_t wanted = (fields[k].place == FieldPlace::nodes ? nodes : cells) *
-                               static_cast<std::size_t>(fields[k].components);
+                               index(fields[k].components);
     if (values[k].size() != wanted)
       return "field " + fields[k].name + " has " + std::to_string(values[k].size()) +
              " numbers where " + std::to_string(wanted) + " belong";
@@ -74,7 +75,7 @@ std::string not_finite(std::span<const FieldValues> values, std::span<const Fiel
     if (bad == values[k].size()) continue;
     const bool nodal = fields[k].place == FieldPlace::nodes;
     return "field " + fields[k].name + " is not finite at " + (nodal ? "node " : "cell ") +
-           std::to_string(bad / static_cast<std::size_t>(fields[k].components));
+           std::to_string(bad / index(fields[k].components));
   }
   return "";
 }

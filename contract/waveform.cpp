@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/index.hpp"
 #include "base/assert.hpp"
 
 namespace abut {
@@ -11,8 +12,8 @@ namespace {
 /// Index of the last stored time that is not after `at`, limited so that a successor exists.
 std::size_t interval_of(const std::vector<double>& time, double at) {
   const auto after = std::upper_bound(time.begin(), time.end(), at);
-  const std::size_t index = static_cast<std::size_t>(after - time.begin());
-  return std::clamp<std::size_t>(index, 1, time.size() - 1) - 1;
+  const std::size_t next = index(after - time.begin());
+  return std::clamp<std::size_t>(next, 1, time.size() - 1) - 1;
 }
 
 }  // namespace
@@ -27,8 +28,8 @@ void Waveform::clear() {
 
 void Waveform::interpolate(const std::vector<double>& field, double at,
                            std::span<double> out) const {
-  ABUT_ASSERT(!time.empty() && field.size() == time.size() * static_cast<std::size_t>(width));
-  const std::size_t w = static_cast<std::size_t>(width);
+  ABUT_ASSERT(!time.empty() && field.size() == time.size() * index(width));
+  const std::size_t w = index(width);
   if (time.size() == 1 || at <= time.front()) {
     std::copy_n(field.begin(), w, out.begin());
     return;
@@ -55,12 +56,12 @@ void Waveform::force_at(double at, std::span<double> out) const {
   const std::size_t last = time.size() - 1;
   const std::size_t first = std::min<std::size_t>(1, last);
   const std::size_t i =
-      std::clamp(static_cast<std::size_t>(not_before - time.begin()), first, last);
+      std::clamp(index(not_before - time.begin()), first, last);
   std::copy_n(f.begin() + static_cast<std::ptrdiff_t>(i) * width, width, out.begin());
 }
 
 void Waveform::impulse(double from, double to, std::span<double> out) const {
-  const std::size_t w = static_cast<std::size_t>(width);
+  const std::size_t w = index(width);
   std::fill_n(out.begin(), w, 0.0);
   const std::size_t last = time.size() - 1;
   if (time.empty() || last == 0) return;

@@ -11,6 +11,7 @@
 #include "base/count.hpp"
 #include "base/denormals.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/horizon.hpp"
 #include "coordinator/flight_work.hpp"
@@ -115,17 +116,15 @@ void Controller::observe_start() {
 }
 
 bool Controller::fly_free() {
-  const bool waits =
-      std::any_of(coupling_.interfaces.begin(), coupling_.interfaces.end(),
-                  [](const Interface& i) { return i.closed || i.impulse != 0.0; });
+  const bool waits = std::any_of(coupling_.interfaces.begin(), coupling_.interfaces.end(),
+                                 [](const Interface& i) { return i.closed || i.impulse != 0.0; });
   if (waits || std::exchange(grounded_, false)) return false;
   const double window = scene_.time.window;
   const double horizon = free_flight_horizon(coupling_.interfaces, bodies_);
   const double left = scene_.time.end - time_;
   const double whole = std::floor(std::min(horizon, left) / window + clock_tolerance);
-  const int windows =
-      count_within(std::min(whole, most_substeps * shortest_step() / window), 0,
-                   std::min(flight_limit_, windows_to_fields()));
+  const int windows = count_within(std::min(whole, most_substeps * shortest_step() / window), 0,
+                                   std::min(flight_limit_, windows_to_fields()));
   if (windows < 1) return false;
   TimeWindow flight = next_window();
   flight.end = anchor_ + static_cast<double>(since_ + windows) * window;
@@ -202,7 +201,7 @@ const Controller::Partition& Controller::partition() {
   }
   if (same) return partition_;
   partition_.islands = find_islands(joints_, bodies_.count());
-  partition_.free.resize(static_cast<std::size_t>(bodies_.count()));
+  partition_.free.resize(index(bodies_.count()));
   std::iota(partition_.free.begin(), partition_.free.end(), 0);
   for (const Island& island : partition_.islands) {
     for (const std::vector<int>& level : island.levels) {
@@ -345,9 +344,9 @@ void Controller::prepare(const TimeWindow& window, int records, Sampling samplin
   for (const Interface& interface : coupling_.interfaces) {
     if (interface.impulse == 0.0) continue;
     for (int s : {0, 1}) {
-      const Side& side = interface.sides[static_cast<std::size_t>(s)];
-      bodies_.request(side.body).boundary[static_cast<std::size_t>(side.port)].impulse = {
-          -interface.normal_of(s) * interface.impulse};
+      const Side& side = interface.sides[index(s)];
+      bodies_.request(side.body).boundary[index(side.port)].impulse = {-interface.normal_of(s) *
+                                                                       interface.impulse};
     }
   }
 }
@@ -365,8 +364,8 @@ void Controller::fill_reports(const Attempt* attempt) {
   watch_internal();
   for (std::size_t k = 0; k < partition_.islands.size(); ++k) {
     for (int j : partition_.islands[k].joints) {
-      reports_[static_cast<std::size_t>(j)].iterations = attempt->reports[k].iterations;
-      reports_[static_cast<std::size_t>(j)].residual = attempt->reports[k].residual.largest();
+      reports_[index(j)].iterations = attempt->reports[k].iterations;
+      reports_[index(j)].residual = attempt->reports[k].residual.largest();
     }
   }
 }
@@ -381,13 +380,14 @@ void Controller::watch_energy(double time, EnergyGuard::Verdict verdict) {
   const std::string whose =
       body < 0 ? "" : fmt::format(" of body '{}'", bodies_.describe(body).name);
   const std::string text =
-      growth < 0.0
-          ? fmt::format("energy{} has fallen by {:.2g} % of the most there was in motion, and "
-                        "nothing in this scene takes any; give smaller steps",
-                        whose, -100.0 * growth)
-          : fmt::format("energy{} has grown by {:.2g} % of the most there was in motion, and "
-                        "contact makes none; give smaller steps, or contact_layer: massless",
-                        whose, 100.0 * growth);
+      growth < 0.0 ? fmt::format(
+                         "energy{} has fallen by {:.2g} % of the most there was in motion, and "
+                         "nothing in this scene takes any; give smaller steps",
+                         whose, -100.0 * growth)
+                   : fmt::format(
+                         "energy{} has grown by {:.2g} % of the most there was in motion, and "
+                         "contact makes none; give smaller steps, or contact_layer: massless",
+                         whose, 100.0 * growth);
   if (verdict == EnergyGuard::Verdict::warn) {
     emit(RunEvent::Kind::warning, time, "", text, {{"growth", growth}});
   } else if (end_.status == "completed") {
@@ -403,8 +403,7 @@ std::vector<bool> Controller::conserving_bodies() const {
   for (int b = 0; b < bodies_.count(); ++b) conserves.push_back(bodies_.describe(b).conserves);
   for (std::size_t i = 0; i < coupling_.interfaces.size(); ++i) {
     if (!coupling_.rules[i].published && !coupling_.rules[i].internal) continue;
-    for (const Side& side : coupling_.interfaces[i].sides)
-      conserves[static_cast<std::size_t>(side.body)] = false;
+    for (const Side& side : coupling_.interfaces[i].sides) conserves[index(side.body)] = false;
   }
   return conserves;
 }

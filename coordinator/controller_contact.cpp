@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/roles.hpp"
@@ -29,7 +30,7 @@ constexpr double payable_share = 1.0e-13;
 bool has_shared_node(const Interface& interface, const Bodies& bodies) {
   return std::ranges::all_of(interface.sides, [&bodies](const Side& side) {
     const Description& body = bodies.describe(side.body);
-    return std::isinf(body.mass) || body.ports[static_cast<std::size_t>(side.port)].tied;
+    return std::isinf(body.mass) || body.ports[index(side.port)].tied;
   });
 }
 
@@ -71,10 +72,10 @@ void Controller::tie() {
   }
 }
 
-void Controller::choose_roles(int index) {
-  Coupling::Rule& rule = coupling_.rules[static_cast<std::size_t>(index)];
+void Controller::choose_roles(int number) {
+  Coupling::Rule& rule = coupling_.rules[index(number)];
   if (rule.role_fixed) return;
-  Interface& interface = coupling_.interfaces[static_cast<std::size_t>(index)];
+  Interface& interface = coupling_.interfaces[index(number)];
   interface.kinematic = scene_.schwarz.parallel ? coarser_side(interface, bodies_)
                         : rule.tied             ? tied_side(interface, bodies_, scene_.time.window)
                                     : kinematic_side(interface, bodies_, scene_.time.window);
@@ -108,13 +109,13 @@ std::optional<double> Controller::engage_touching() {
   return first;
 }
 
-void Controller::engage(int index, double speed) {
-  Interface& interface = coupling_.interfaces[static_cast<std::size_t>(index)];
+void Controller::engage(int number, double speed) {
+  Interface& interface = coupling_.interfaces[index(number)];
   fastest_touch_ = std::max(fastest_touch_, speed);
   interface.closed = true;
   interface.closing_speed = std::max(speed, still_share * fastest_touch_);
   interface.force_scale = 0.0;
-  choose_roles(index);
+  choose_roles(number);
 }
 
 /// [N] of the window in history_: what the iteration leaves open is no force.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "coordinator/coupling/robin.hpp"
 #include "coordinator/coupling/roles.hpp"
 
@@ -30,7 +31,7 @@ Side find_side(const std::string& text, const Bodies& bodies, const std::string&
 
 int index_of(const InterfaceSpec& spec, const std::string& side, const std::string& where) {
   for (int s : {0, 1}) {
-    if (spec.sides[static_cast<std::size_t>(s)] == side) return s;
+    if (spec.sides[index(s)] == side) return s;
   }
   throw InputError(fmt::format("'{}' is not a side of this interface", side), where,
                    fmt::format("Give {} or {}.", spec.sides[0], spec.sides[1]));
@@ -49,8 +50,8 @@ void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies,
                        const Interface& interface) {
   const Description& a = bodies.describe(interface.sides[0].body);
   const Description& b = bodies.describe(interface.sides[1].body);
-  const bool shared[] = {a.ports[static_cast<std::size_t>(interface.sides[0].port)].tied,
-                         b.ports[static_cast<std::size_t>(interface.sides[1].port)].tied};
+  const bool shared[] = {a.ports[index(interface.sides[0].port)].tied,
+                         b.ports[index(interface.sides[1].port)].tied};
   if (!shared[0] && !shared[1]) return;
   const bool held = std::isinf(a.mass) || std::isinf(b.mass);
   const bool alike = a.step == b.step && std::isinf(a.stable_step) == std::isinf(b.stable_step);
@@ -66,7 +67,7 @@ void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies,
 void join(const InterfaceSpec& spec, const Bodies& bodies, Interface& interface) {
   double spacing = 0.0;
   for (const Side& side : interface.sides) {
-    const Port& port = bodies.describe(side.body).ports[static_cast<std::size_t>(side.port)];
+    const Port& port = bodies.describe(side.body).ports[index(side.port)];
     spacing = std::max(spacing, port.geometry.spacing);
   }
   if (interface.reference_gap > coincidence * spacing) {
@@ -81,7 +82,7 @@ void join(const InterfaceSpec& spec, const Bodies& bodies, Interface& interface)
 void refuse_joints(const InterfaceSpec& spec, const Bodies& bodies, const Interface& interface) {
   for (const Side& side : interface.sides) {
     const Description& body = bodies.describe(side.body);
-    const Port& port = body.ports[static_cast<std::size_t>(side.port)];
+    const Port& port = body.ports[index(side.port)];
     if (!port.tied) continue;
     throw InputError(
         fmt::format("port '{}' of body '{}' is for tied interfaces", port.name, body.name),
@@ -140,7 +141,7 @@ void add_published(const InterfaceSpec& spec, const DirichletNeumannTransmission
   interface.kinematic = index_of(spec, how.dirichlet, where + ".dirichlet");
   for (int s : {0, 1}) {
     if (s != interface.kinematic && !how.swap_every_window) continue;
-    const Description& body = bodies.describe(interface.sides[static_cast<std::size_t>(s)].body);
+    const Description& body = bodies.describe(interface.sides[index(s)].body);
     require(body.can.motion, body, where, "does not take prescribed motion",
             "Give the body contact_layer: {massive: {}}.");
   }

@@ -9,10 +9,11 @@
 #include <fmt/format.h>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 #include "base/input_errors.hpp"
 #include "base/yaml_fields.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
-#include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/make/body_spec.hpp"
 
 namespace abut {
 namespace {
@@ -107,11 +108,11 @@ void require_contact(const Scene& scene, const Document& document) {
 
 /// The two bodies of one interface alone.
 ClosedForm impact_of(const Scene& scene, const Row& row, const std::string& interface) {
-  std::size_t index = 0;
-  while (scene.interfaces[index].first != interface) ++index;
-  const std::array<BarEnd, 2>& ends = row.interfaces[index];
-  const std::size_t first = static_cast<std::size_t>(ends[0].bar);
-  const std::size_t second = static_cast<std::size_t>(ends[1].bar);
+  std::size_t number = 0;
+  while (scene.interfaces[number].first != interface) ++number;
+  const std::array<BarEnd, 2>& ends = row.interfaces[number];
+  const std::size_t first = index(ends[0].bar);
+  const std::size_t second = index(ends[1].bar);
   return {std::string(BarImpactForm::name),
           bar_impact({row.bars[first], row.bars[second]},
                      {BarEnd{0, ends[0].side}, BarEnd{1, ends[1].side}}, scene.time.begin,

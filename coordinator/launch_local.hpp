@@ -9,7 +9,7 @@
 #include "base/yaml_document.hpp"
 #include "base/yaml_resolved.hpp"
 #include "contract/subdomain.hpp"
-#include "coordinator/closed_form.hpp"
+#include "coordinator/exact/closed_form.hpp"
 #include "coordinator/scene.hpp"
 
 namespace abut {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 #include "messaging/codec_parts.hpp"
 
 namespace abut {
@@ -99,8 +100,7 @@ void decode(const v1::BoundaryData& from, const FieldPath& path, BoundaryData& t
                   to.obstacle.motion);
   take(from.obstacle().offset(), FieldPath{&obstacle, "offset"}, to.obstacle.offset);
   to.obstacle.bilateral = from.obstacle().bilateral();
-  if (from.has_obstacle() &&
-      to.obstacle.offset.size() != static_cast<std::size_t>(to.obstacle.motion.width)) {
+  if (from.has_obstacle() && to.obstacle.offset.size() != index(to.obstacle.motion.width)) {
     obstacle.fail(fmt::format("has {} offsets for a width of {}", to.obstacle.offset.size(),
                               to.obstacle.motion.width));
   }
@@ -116,7 +116,7 @@ void decode(const v1::BoundaryData& from, const FieldPath& path, BoundaryData& t
 void decode(const v1::PortResponse& from, const Port& port, std::size_t records,
             const FieldPath& path, PortResponse& to) {
   decode_optional(from.has_trace(), from.trace(), FieldPath{&path, "trace"}, to.trace);
-  const std::size_t dim = static_cast<std::size_t>(port.geometry.dim);
+  const std::size_t dim = index(port.geometry.dim);
   const int width = port.geometry.count() * port.geometry.dim;
   if (from.has_trace() && to.trace.width != width) {
     FieldPath{&path, "trace"}.fail(
@@ -155,14 +155,14 @@ Energy decode_energy(const Wire& from, const FieldPath& path) {
 
 void decode(const v1::BodyRecord& from, const Description& body, const FieldPath& path,
             BodyRecord& to) {
-  const std::size_t dim = static_cast<std::size_t>(body.dim);
+  const std::size_t dim = index(body.dim);
   to.time = number(from.time(), FieldPath{&path, "time"});
   to.energy = decode_energy(from, path);
   take(from.momentum(), dim, true, FieldPath{&path, "momentum"}, to.momentum);
   take(from.angular_momentum(), dim < 3 ? dim - 1 : dim, true, FieldPath{&path, "angular_momentum"},
        to.angular_momentum);
   take(from.columns(), body.columns.size(), false, FieldPath{&path, "columns"}, to.columns);
-  if (static_cast<std::size_t>(from.members_size()) != body.members.size()) {
+  if (index(from.members_size()) != body.members.size()) {
     FieldPath{&path, "members"}.fail(
         fmt::format("has {} entries for {} members", from.members_size(), body.members.size()));
   }
@@ -180,7 +180,7 @@ void decode(const v1::Port& from, const FieldPath& path, Port& to) {
   PortGeometry& geometry = to.geometry;
   geometry.dim = dimension(from.dim(), FieldPath{&path, "dim"});
   take(from.points(), FieldPath{&path, "points"}, geometry.points);
-  if (geometry.points.size() % static_cast<std::size_t>(geometry.dim) != 0) {
+  if (geometry.points.size() % index(geometry.dim) != 0) {
     FieldPath{&path, "points"}.fail("is no whole number of points");
   }
   take(from.normals(), geometry.points.size(), false, FieldPath{&path, "normals"},
@@ -235,14 +235,14 @@ void decode(const v1::Advance& from, std::size_t ports, Advance& to) {
     FieldPath{&path, "sampling"}.fail("has an unknown value");
   }
   to.sampling = from.sampling() == v1::SAMPLING_SUBSTEPS ? Sampling::substeps : Sampling::records;
-  if (static_cast<std::size_t>(from.boundary_size()) != ports) {
+  if (index(from.boundary_size()) != ports) {
     FieldPath{&path, "boundary"}.fail(
         fmt::format("has {} entries for {} ports", from.boundary_size(), ports));
   }
   to.boundary.resize(ports);
   for (std::size_t i = 0; i < ports; ++i) {
-    const int index = static_cast<int>(i);
-    decode(from.boundary(index), FieldPath{&path, "boundary", index}, to.boundary[i]);
+    const int p = static_cast<int>(i);
+    decode(from.boundary(p), FieldPath{&path, "boundary", p}, to.boundary[i]);
   }
 }
 
@@ -290,21 +290,19 @@ void decode(const v1::Advanced& from, const Description& body, Response& to) {
   const FieldPath path{nullptr, "advanced"};
   if (!from.has_steps()) FieldPath{&path, "steps"}.fail("is missing");
   if (from.steps() < 0) FieldPath{&path, "steps"}.fail("is negative");
-  if (static_cast<std::size_t>(from.ports_size()) != body.ports.size()) {
+  if (index(from.ports_size()) != body.ports.size()) {
     FieldPath{&path, "ports"}.fail(
         fmt::format("has {} entries for {} ports", from.ports_size(), body.ports.size()));
   }
   to.ports.resize(body.ports.size());
   for (std::size_t i = 0; i < to.ports.size(); ++i) {
-    const int index = static_cast<int>(i);
-    decode(from.ports(index), body.ports[i], static_cast<std::size_t>(from.records_size()),
-           FieldPath{&path, "ports", index}, to.ports[i]);
+    const int p = static_cast<int>(i);
+    decode(from.ports(p), body.ports[i], index(from.records_size()), FieldPath{&path, "ports", p}, to.ports[i]);
   }
   if (from.records_size() > most_records) FieldPath{&path, "records"}.fail("has too many entries");
-  to.records.resize(static_cast<std::size_t>(from.records_size()));
+  to.records.resize(index(from.records_size()));
   for (int i = 0; i < from.records_size(); ++i) {
-    decode(from.records(i), body, FieldPath{&path, "records", i},
-           to.records[static_cast<std::size_t>(i)]);
+    decode(from.records(i), body, FieldPath{&path, "records", i}, to.records[index(i)]);
   }
   to.steps = from.steps();
   to.compute_seconds = number(from.compute_seconds(), FieldPath{&path, "compute_seconds"});
@@ -403,9 +401,9 @@ void decode(const v1::Description& from, Description& to) {
   to.conserves = from.conserves();
   to.stable_step = number(from.stable_step(), FieldPath{&path, "stable_step"}, Allow::infinite);
   if (from.ports_size() > most_ports) FieldPath{&path, "ports"}.fail("has too many entries");
-  to.ports.resize(static_cast<std::size_t>(from.ports_size()));
+  to.ports.resize(index(from.ports_size()));
   for (int i = 0; i < from.ports_size(); ++i) {
-    decode(from.ports(i), FieldPath{&path, "ports", i}, to.ports[static_cast<std::size_t>(i)]);
+    decode(from.ports(i), FieldPath{&path, "ports", i}, to.ports[index(i)]);
   }
   if (!from.has_can()) FieldPath{&path, "can"}.fail("is missing");
   const v1::Capabilities& can = from.can();
@@ -421,10 +419,10 @@ void decode(const v1::Description& from, Description& to) {
   take(from.frequencies(), FieldPath{&path, "frequencies"}, to.frequencies);
   decode(from, path, to.fields);
   if (from.members_size() > most_members) FieldPath{&path, "members"}.fail("has too many entries");
-  to.members.resize(static_cast<std::size_t>(from.members_size()));
+  to.members.resize(index(from.members_size()));
   for (int i = 0; i < from.members_size(); ++i) {
     const FieldPath member{&path, "members", i};
-    Member& ours = to.members[static_cast<std::size_t>(i)];
+    Member& ours = to.members[index(i)];
     ours.name = from.members(i).name();
     ours.mass = number(from.members(i).mass(), FieldPath{&member, "mass"}, Allow::infinite);
     ours.ports.assign(from.members(i).ports().begin(), from.members(i).ports().end());

@@ -1,6 +1,7 @@
 #include <array>
 #include <utility>
 
+#include "base/index.hpp"
 #include "messaging/codec_parts.hpp"
 
 namespace abut {
@@ -72,7 +73,7 @@ void encode(const std::vector<FieldValues>& from, v1::FieldsReply& to) {
 
 void decode(const v1::FieldsReply& from, const Description& body, std::size_t nodes,
             std::size_t cells, std::vector<FieldValues>& to) {
-  to.resize(static_cast<std::size_t>(from.values_size()));
+  to.resize(index(from.values_size()));
   for (std::size_t k = 0; k < to.size(); ++k) {
     const auto& values = from.values(static_cast<int>(k)).values();
     to[k].assign(values.begin(), values.end());

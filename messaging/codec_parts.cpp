@@ -1,4 +1,5 @@
 #include "messaging/codec_parts.hpp"
+#include "base/index.hpp"
 
 #include <fmt/format.h>
 #include <google/protobuf/io/coded_stream.h>
@@ -68,7 +69,7 @@ bool parse_into(v1::Reply& message, Bytes payload) {
 
 void take(const google::protobuf::RepeatedField<double>& from, const FieldPath& path,
           std::vector<double>& to) {
-  const std::size_t count = static_cast<std::size_t>(from.size());
+  const std::size_t count = index(from.size());
   if (!all_finite(from.data(), count)) {
     int first = 0;
     while (std::isfinite(from.Get(first))) ++first;
@@ -79,7 +80,7 @@ void take(const google::protobuf::RepeatedField<double>& from, const FieldPath& 
 
 void take(const google::protobuf::RepeatedField<double>& from, std::size_t expected,
           bool may_be_empty, const FieldPath& path, std::vector<double>& to) {
-  const std::size_t count = static_cast<std::size_t>(from.size());
+  const std::size_t count = index(from.size());
   if (count != expected && !(may_be_empty && count == 0)) {
     path.fail(fmt::format("has {} numbers where {} belong", count, expected));
   }
@@ -123,7 +124,7 @@ void decode(const v1::Waveform& from, const FieldPath& path, Waveform& to) {
     if (to.time[i] > to.time[i - 1]) continue;
     FieldPath{&path, "time"}.fail(fmt::format("does not increase at entry {}", i));
   }
-  const std::size_t count = to.time.size() * static_cast<std::size_t>(to.width);
+  const std::size_t count = to.time.size() * index(to.width);
   take(from.u(), count, true, FieldPath{&path, "u"}, to.u);
   take(from.v(), count, true, FieldPath{&path, "v"}, to.v);
   take(from.a(), count, true, FieldPath{&path, "a"}, to.a);

@@ -1,5 +1,6 @@
 #include "messaging/remote_subdomain.hpp"
 
+#include "base/index.hpp"
 #include "messaging/codec.hpp"
 
 namespace abut {
@@ -115,7 +116,7 @@ std::vector<double> RemoteSubdomain::measure() {
   const v1::Reply& reply = caller_.call("measure");
   if (!reply.has_measure()) caller_.refuse_reply("not measures");
   const auto& values = reply.measure().values();
-  if (static_cast<std::size_t>(values.size()) != description_.measures.size())
+  if (index(values.size()) != description_.measures.size())
     caller_.refuse_reply("measures of another number than its description says");
   return {values.begin(), values.end()};
 }

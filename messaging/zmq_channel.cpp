@@ -10,6 +10,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -140,7 +141,7 @@ int ZmqHub::add_peer(const std::string& name) {
   return index;
 }
 
-Channel& ZmqHub::channel(int peer) { return *peers_.at(static_cast<std::size_t>(peer)); }
+Channel& ZmqHub::channel(int peer) { return *peers_.at(index(peer)); }
 
 bool ZmqHub::send_to(const std::string& routing_id, Bytes frame) {
   return send_part(socket_, routing_id.data(), routing_id.size(), ZMQ_SNDMORE) &&
@@ -182,7 +183,7 @@ bool ZmqHub::receive_for(int wanted, Milliseconds wait) {
     if (from < 0) {
       keep_stranger();
     } else {
-      Peer& peer = *peers_[static_cast<std::size_t>(from)];
+      Peer& peer = *peers_[index(from)];
       if (peer.descriptor < 0 && incoming_.size() > 0) {
         peer.descriptor = zmq_msg_get(incoming_.handle(), ZMQ_SRCFD);
       }
@@ -225,14 +226,14 @@ void ZmqHub::read_monitor() {
 
 int ZmqHub::disconnects(int peer, TimePoint since) {
   read_monitor();
-  const std::vector<TimePoint>& times = peers_.at(static_cast<std::size_t>(peer))->disconnects;
+  const std::vector<TimePoint>& times = peers_.at(index(peer))->disconnects;
   return static_cast<int>(std::count_if(times.begin(), times.end(),
                                         [since](const TimePoint& time) { return time >= since; }));
 }
 
 std::optional<TimePoint> ZmqHub::gone_since(int peer) {
   read_monitor();
-  return peers_.at(static_cast<std::size_t>(peer))->gone;
+  return peers_.at(index(peer))->gone;
 }
 
 // ---- dealer

@@ -14,7 +14,7 @@
 #include "messaging/liveness.hpp"
 #include "messaging/serve.hpp"
 #include "messaging/zmq_channel.hpp"
-#include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/make/body_spec.hpp"
 
 namespace {
 

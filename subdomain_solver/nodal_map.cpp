@@ -1,12 +1,11 @@
 #include "subdomain_solver/nodal_map.hpp"
+#include "base/index.hpp"
 
 #include <algorithm>
 
 namespace abut {
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Of any map, by way of all its values.
 class SomeValues final : public NodalMap {

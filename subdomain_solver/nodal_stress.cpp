@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/index.hpp"
 #include "subdomain_solver/solid_measures.hpp"
 
 namespace abut {
@@ -12,8 +13,6 @@ namespace abut {
 namespace {
 
 using Eigen::MatrixXd;
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// 1 and the coordinates on simplices, all their products on squares and cubes: as many terms as
 /// corners.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/count.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -11,8 +12,6 @@ namespace {
 
 /// Of a substep: times nearer to its end than this are its end, rounded.
 constexpr double rounding = 1.0e-6;
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

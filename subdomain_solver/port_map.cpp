@@ -1,4 +1,5 @@
 #include "subdomain_solver/port_map.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -13,7 +14,7 @@ PortMap::PortMap(const FeModel& model, const NodalMap& map, const std::vector<Na
     }
   }
   values_ = dofs.size();
-  map_ = map.on(dofs, static_cast<std::size_t>(model.dofs()));
+  map_ = map.on(dofs, index(model.dofs()));
 }
 
 void PortMap::displacement(std::span<const double> q, std::vector<double>& out) const {

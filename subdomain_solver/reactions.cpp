@@ -1,4 +1,5 @@
 #include "subdomain_solver/reactions.hpp"
+#include "base/index.hpp"
 
 #include <array>
 #include <utility>
@@ -10,8 +11,6 @@ namespace abut {
 namespace {
 
 constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

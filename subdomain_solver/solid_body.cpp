@@ -10,8 +10,9 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/life_signs.hpp"
-#include "subdomain_solver/compressed_bar.hpp"
+#include "subdomain_solver/bars/compressed_bar.hpp"
 #include "subdomain_solver/fe/loads.hpp"
 #include "subdomain_solver/saved_state.hpp"
 #include "subdomain_solver/solid_fields.hpp"
@@ -28,8 +29,6 @@ constexpr double progress_work = 1.0e3;
 /// Degrees of freedom from which on a factorisation may take more than a moment.
 constexpr std::int64_t long_factorisation = 30'000;
 constexpr std::chrono::milliseconds life_interval{250};
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// Speed [m/s] of the fastest wave at the undeformed state: of dilatation, or along a bar.
 double fastest_wave(const FeModel& model) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/index.hpp"
 #include "contract/subdomain.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/nodal_map.hpp"
@@ -85,7 +86,7 @@ class SolidBody final : public Subdomain {
   Port port_of(const PortNodes& port, const std::vector<std::int32_t>& list) const;
   Energy energy() const;
   std::optional<Failed> advance(const Advance& request, const Substeps& grid, Response& response);
-  std::size_t nodal_values() const { return static_cast<std::size_t>(parts_.model->dofs()); }
+  std::size_t nodal_values() const { return index(parts_.model->dofs()); }
   std::vector<double> displacement() const;
   std::vector<double> velocity() const;
   void meet_port_forces(double time);

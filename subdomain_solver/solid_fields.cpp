@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/vtk_cells.hpp"
 #include "subdomain_solver/nodal_stress.hpp"
 #include "subdomain_solver/solid_measures.hpp"
@@ -12,8 +13,6 @@
 namespace abut {
 
 namespace {
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// Sums over the points of the cells, to become means.
 struct CellSums {

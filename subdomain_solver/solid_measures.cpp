@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "base/index.hpp"
 #include "subdomain_solver/nodal_stress.hpp"
 
 namespace abut {
@@ -28,7 +29,7 @@ int first_spin(int dim) { return dim == 3 ? 0 : dim == 2 ? 2 : 3; }
 
 /// Smallest, largest and mean value of each component of a nodal field (nodes, dim).
 void summarise(const std::vector<double>& field, int dim, std::vector<double>& out) {
-  const std::size_t d = static_cast<std::size_t>(dim);
+  const std::size_t d = index(dim);
   for (std::size_t i = 0; i < d; ++i) {
     double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0.0;
     for (std::size_t k = i; k < field.size(); k += d) {
@@ -84,12 +85,11 @@ void add_stress_at(const NamedNodes& port, int dim, const std::vector<StressEntr
   const double each = 1.0 / static_cast<double>(port.nodes.size());
   for (std::size_t k = 0; k < stress_count(dim); ++k) {
     double sum = 0.0;
-    for (std::int32_t node : port.nodes) sum += nodes[static_cast<std::size_t>(node)][k];
+    for (std::int32_t node : port.nodes) sum += nodes[index(node)][k];
     out.push_back(sum * each);
   }
   double mises = 0.0;
-  for (std::int32_t node : port.nodes)
-    mises += von_mises(stress_of(nodes[static_cast<std::size_t>(node)]));
+  for (std::int32_t node : port.nodes) mises += von_mises(stress_of(nodes[index(node)]));
   out.push_back(mises * each);
 }
 
@@ -102,7 +102,7 @@ std::vector<double> angular_momentum(const Mesh& mesh, const std::vector<double>
   for (int node = 0; node < mesh.node_count(); ++node) {
     Eigen::Vector3d x = Eigen::Vector3d::Zero(), p = Eigen::Vector3d::Zero();
     for (int i = 0; i < mesh.dim; ++i) {
-      const std::size_t at = static_cast<std::size_t>(node * mesh.dim + i);
+      const std::size_t at = index(node * mesh.dim + i);
       x(i) = mesh.points[at] + u[at];
       p(i) = nodal_momentum(node * mesh.dim + i);
     }
@@ -118,7 +118,7 @@ std::vector<std::string> solid_measure_names(int dim, bool deforms,
   for (const char* field : {"displacement", "velocity"}) {
     for (int i = 0; i < dim; ++i) {
       for (const char* what : {"min", "max", "mean"})
-        names.push_back(fmt::format("{}.{}.{}", field, axes[static_cast<std::size_t>(i)], what));
+        names.push_back(fmt::format("{}.{}.{}", field, axes[index(i)], what));
     }
   }
   const std::size_t entries = deforms ? stress_count(dim) : 0;
@@ -132,15 +132,13 @@ std::vector<std::string> solid_measure_names(int dim, bool deforms,
   if (deforms) names.insert(names.end(), {"nodal_von_mises.max", "nodal_von_mises.max_of_cells"});
   names.insert(names.end(),
                {"energy.kinetic", "energy.stored", "energy.dissipated", "energy.external_work"});
-  for (int i = 0; i < dim; ++i)
-    names.push_back(fmt::format("momentum.{}", axes[static_cast<std::size_t>(i)]));
+  for (int i = 0; i < dim; ++i) names.push_back(fmt::format("momentum.{}", axes[index(i)]));
   for (int i = first_spin(dim); i < 3; ++i)
-    names.push_back(fmt::format("angular_momentum.{}", axes[static_cast<std::size_t>(i)]));
+    names.push_back(fmt::format("angular_momentum.{}", axes[index(i)]));
   for (const NamedNodes& port : ports) {
     for (const char* field : {"displacement", "velocity"}) {
       for (int i = 0; i < dim; ++i)
-        names.push_back(
-            fmt::format("{}.{}.{}", port.name, field, axes[static_cast<std::size_t>(i)]));
+        names.push_back(fmt::format("{}.{}.{}", port.name, field, axes[index(i)]));
     }
     for (std::size_t k = 0; k < entries; ++k)
       names.push_back(fmt::format("{}.stress.{}", port.name, stress_names[k]));
@@ -183,8 +181,7 @@ std::vector<double> solid_measures(FeModel& model, const SolidState& state,
     for (const std::vector<double>* field : {&std::as_const(u), &v}) {
       for (int i = 0; i < dim; ++i) {
         double total = 0.0;
-        for (std::int32_t node : port.nodes)
-          total += (*field)[static_cast<std::size_t>(node * dim + i)];
+        for (std::int32_t node : port.nodes) total += (*field)[index(node * dim + i)];
         out.push_back(total / static_cast<double>(port.nodes.size()));
       }
     }

@@ -7,6 +7,7 @@
 
 #include "base/count.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -36,9 +37,9 @@ Substeps Substeps::divide(double begin, double end, double step) {
 }
 
 bool Substeps::matches(const std::vector<double>& times) const {
-  if (times.size() != static_cast<std::size_t>(count) + 1) return false;
+  if (times.size() != index(count) + 1) return false;
   for (int i = 0; i <= count; ++i) {
-    if (times[static_cast<std::size_t>(i)] != time(i)) return false;
+    if (times[index(i)] != time(i)) return false;
   }
   return true;
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -63,7 +64,7 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
   std::optional<Failed> failed;
   double slowest = 0.0;
   for (int b : bodies) {
-    Response& response = responses_[static_cast<std::size_t>(b)];
+    Response& response = responses_[index(b)];
     Outcome outcome = finish((*this)[b], response);
     ++exchanges_;
     if (Failed* failure = std::get_if<Failed>(&outcome); failure != nullptr) {
@@ -71,7 +72,7 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
       if (!failed) failed = std::move(*failure);
       continue;
     }
-    compute_seconds_[static_cast<std::size_t>(b)] += response.compute_seconds;
+    compute_seconds_[index(b)] += response.compute_seconds;
     slowest = std::max(slowest, response.compute_seconds);
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - began;
@@ -84,16 +85,16 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
 std::optional<Failed> Bodies::advance_all() { return advance(everybody_); }
 
 void Bodies::strike_record(const Side& side, double impulse) {
-  Response& response = responses_[static_cast<std::size_t>(side.body)];
-  PortResponse& port = response.ports[static_cast<std::size_t>(side.port)];
+  Response& response = responses_[index(side.body)];
+  PortResponse& port = response.ports[index(side.port)];
   if (impulse == 0.0 || !port.recoil) return;
   BodyRecord& record = response.records.back();
   const double before = port.recoil->velocity;
   port.recoil->velocity -= impulse * port.recoil->mobility;
   const double work = -impulse * 0.5 * (before + port.recoil->velocity);
   record.energy.kinetic += work;
-  struck_[static_cast<std::size_t>(side.body)] += work;
-  const Port& described = describe(side.body).ports[static_cast<std::size_t>(side.port)];
+  struck_[index(side.body)] += work;
+  const Port& described = describe(side.body).ports[index(side.port)];
   if (port.recoil->mobility > 0.0) record.momentum[0] -= impulse * described.geometry.normals[0];
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/index.hpp"
 #include "contract/subdomain.hpp"
 #include "coordinator/coupling/side.hpp"
 
@@ -18,12 +19,10 @@ class Bodies {
   explicit Bodies(std::vector<Subdomain*> subdomains);
 
   int count() const { return static_cast<int>(subdomains_.size()); }
-  Subdomain& operator[](int body) { return *subdomains_[static_cast<std::size_t>(body)]; }
-  const Description& describe(int body) const {
-    return subdomains_[static_cast<std::size_t>(body)]->describe();
-  }
-  Advance& request(int body) { return requests_[static_cast<std::size_t>(body)]; }
-  const Response& response(int body) const { return responses_[static_cast<std::size_t>(body)]; }
+  Subdomain& operator[](int body) { return *subdomains_[index(body)]; }
+  const Description& describe(int body) const { return subdomains_[index(body)]->describe(); }
+  Advance& request(int body) { return requests_[index(body)]; }
+  const Response& response(int body) const { return responses_[index(body)]; }
   std::span<const Response> responses() const { return responses_; }
 
   void save_all();

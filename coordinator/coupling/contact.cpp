@@ -1,4 +1,5 @@
 #include "coordinator/coupling/contact.hpp"
+#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@ double gap_at(const Interface& interface, const Bodies& bodies, double time) {
 }
 
 const PortResponse& port_of(const Bodies& bodies, const Side& side) {
-  return bodies.response(side.body).ports[static_cast<std::size_t>(side.port)];
+  return bodies.response(side.body).ports[index(side.port)];
 }
 
 }  // namespace

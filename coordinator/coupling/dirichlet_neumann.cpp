@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/index.hpp"
 #include "coordinator/coupling/transmission.hpp"
 
 namespace abut {
@@ -16,10 +17,10 @@ void DirichletNeumann::begin(const TimeWindow& window, const Interface& interfac
   a_begin_ = trace.a[now];
   f_begin_ = trace.f[now];
   // the guess holds the velocity after the impulse that this window begins with
-  const PortResponse& port = bodies.response(n.body).ports[static_cast<std::size_t>(n.port)];
+  const PortResponse& port = bodies.response(n.body).ports[index(n.port)];
   if (port.recoil) {
-    v_begin_ -= interface.normal_of(1 - interface.kinematic) * port.recoil->mobility *
-                interface.impulse;
+    v_begin_ -=
+        interface.normal_of(1 - interface.kinematic) * port.recoil->mobility * interface.impulse;
   }
   scale_.step = grid_.step;
   scale_.velocity = interface.closing_speed;
@@ -35,8 +36,8 @@ void DirichletNeumann::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 
 void DirichletNeumann::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
                               const Interface& interface, Bodies& bodies) {
-  const Side& here = interface.sides[static_cast<std::size_t>(side)];
-  BoundaryData& data = bodies.request(here.body).boundary[static_cast<std::size_t>(here.port)];
+  const Side& here = interface.sides[index(side)];
+  BoundaryData& data = bodies.request(here.body).boundary[index(here.port)];
   if (side != interface.kinematic) {
     const Waveform& from = trace_of(bodies, interface.kinematic_side());
     data.force.support = from.support;

@@ -1,4 +1,5 @@
 #include "coordinator/coupling/horizon.hpp"
+#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@ namespace {
 constexpr double margin = 0.95;
 
 const PortResponse& port_of(const Bodies& bodies, const Side& side) {
-  return bodies.response(side.body).ports[static_cast<std::size_t>(side.port)];
+  return bodies.response(side.body).ports[index(side.port)];
 }
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -31,8 +32,7 @@ Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodi
   std::array<double, 2> place = {0.0, 0.0};
   double spacing = 0.0;
   for (std::size_t s : {0u, 1u}) {
-    const Port& port =
-        bodies.describe(sides[s].body).ports[static_cast<std::size_t>(sides[s].port)];
+    const Port& port = bodies.describe(sides[s].body).ports[index(sides[s].port)];
     interface.normal[s] = port.geometry.normals[0];
     place[s] = port.geometry.points[0];
     spacing = std::max(spacing, port.geometry.spacing);
@@ -43,9 +43,8 @@ Interface make_interface(std::string name, std::array<Side, 2> sides, const Bodi
                      "Join a right end with a left end.");
   }
   interface.reference_gap = interface.normal[0] * (place[1] - place[0]);
-  const double rounding =
-      std::max(place_rounding * std::max(std::abs(place[0]), std::abs(place[1])),
-               place_tolerance * spacing);
+  const double rounding = std::max(
+      place_rounding * std::max(std::abs(place[0]), std::abs(place[1])), place_tolerance * spacing);
   if (interface.reference_gap < -rounding) {
     throw InputError(
         fmt::format("its sides overlap by {:g} m at the start", -interface.reference_gap), where,

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/archive.hpp"
+#include "base/index.hpp"
 #include "contract/subdomain.hpp"
 #include "coordinator/coupling/bodies.hpp"
 #include "coordinator/coupling/side.hpp"
@@ -34,9 +35,9 @@ struct Interface {
 
   void state(Archive& archive);
 
-  const Side& kinematic_side() const { return sides[static_cast<std::size_t>(kinematic)]; }
-  const Side& neumann_side() const { return sides[static_cast<std::size_t>(1 - kinematic)]; }
-  double normal_of(int side) const { return normal[static_cast<std::size_t>(side)]; }
+  const Side& kinematic_side() const { return sides[index(kinematic)]; }
+  const Side& neumann_side() const { return sides[index(1 - kinematic)]; }
+  double normal_of(int side) const { return normal[index(side)]; }
   /// Reference position of the partner minus that of this side [m].
   double offset(int side) const { return reference_gap * normal_of(side); }
   /// Gap [m] for displacements of side 0 and side 1; negative when overlapping.
@@ -60,7 +61,7 @@ inline std::size_t index_at_begin(const Waveform& trace, double begin) {
 
 /// Trace of a side in the latest responses.
 inline const Waveform& trace_of(const Bodies& bodies, const Side& side) {
-  return bodies.response(side.body).ports[static_cast<std::size_t>(side.port)].trace;
+  return bodies.response(side.body).ports[index(side.port)].trace;
 }
 
 }  // namespace abut

@@ -5,6 +5,7 @@
 
 #include "base/assert.hpp"
 #include "base/count.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -33,12 +34,11 @@ Eigen::MatrixXd overlap_average(const std::vector<double>& to, const std::vector
   Eigen::MatrixXd average = Eigen::MatrixXd::Zero(rows, cols);
   std::ptrdiff_t first = 0;
   for (std::ptrdiff_t i = 0; i < rows; ++i) {
-    const double low = to[static_cast<std::size_t>(i)];
-    const double high = to[static_cast<std::size_t>(i) + 1];
-    while (first + 1 < cols && from[static_cast<std::size_t>(first) + 1] <= low) ++first;
-    for (std::ptrdiff_t j = first; j < cols && from[static_cast<std::size_t>(j)] < high; ++j) {
-      const double overlap = std::min(high, from[static_cast<std::size_t>(j) + 1]) -
-                             std::max(low, from[static_cast<std::size_t>(j)]);
+    const double low = to[index(i)];
+    const double high = to[index(i) + 1];
+    while (first + 1 < cols && from[index(first) + 1] <= low) ++first;
+    for (std::ptrdiff_t j = first; j < cols && from[index(j)] < high; ++j) {
+      const double overlap = std::min(high, from[index(j) + 1]) - std::max(low, from[index(j)]);
       if (overlap > 0.0) average(i, j) = overlap / (high - low);
     }
   }
@@ -65,7 +65,7 @@ Eigen::MatrixXd toeplitz(const std::vector<double>& c, int n) {
   ABUT_ASSERT(static_cast<int>(c.size()) >= n);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
   for (int i = 0; i < n; ++i) {
-    for (int j = 0; j <= i; ++j) matrix(i, j) = c[static_cast<std::size_t>(i - j)];
+    for (int j = 0; j <= i; ++j) matrix(i, j) = c[index(i - j)];
   }
   return matrix;
 }

@@ -1,4 +1,5 @@
 #include "coordinator/coupling/robin.hpp"
+#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +33,7 @@ std::array<int, 2> Robin::iterated() const { return {kinematic_, 1 - kinematic_}
 
 int Robin::values() const {
   int count = 0;
-  for (int k = 0; k < parts(); ++k)
-    count += partner(iterated()[static_cast<std::size_t>(k)]).grid.count;
+  for (int k = 0; k < parts(); ++k) count += partner(iterated()[index(k)]).grid.count;
   return count;
 }
 
@@ -81,16 +81,15 @@ void Robin::begin(const TimeWindow& window, const Interface& interface, Bodies& 
 void Robin::predict(Eigen::Ref<Eigen::VectorXd> x) const {
   Eigen::Index at = 0;
   for (int k = 0; k < parts(); ++k) {
-    const int side = iterated()[static_cast<std::size_t>(k)];
-    const Begin& here = sides_[static_cast<std::size_t>(side)];
+    const int side = iterated()[index(k)];
+    const Begin& here = sides_[index(side)];
     const Begin& other = partner(side);
     const bool known = here.incoming_begin == other.grid.begin &&
                        static_cast<int>(here.incoming.size()) >= other.grid.count;
     for (int i = 0; i < other.grid.count; ++i) {
       const double length = other.grid.time(i + 1) - other.grid.time(i);
       const double close = i == 0 ? overlap_ / length : 0.0;
-      x[at++] = known ? here.incoming[static_cast<std::size_t>(i)]
-                      : other.force + here.impedance * (other.v + close);
+      x[at++] = known ? here.incoming[index(i)] : other.force + here.impedance * (other.v + close);
     }
   }
 }
@@ -98,8 +97,8 @@ void Robin::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 void Robin::outgoing(int side, const Interface& interface, const Bodies& bodies,
                      Eigen::Ref<Eigen::VectorXd> q) const {
   const double n = interface.normal_of(1 - side);
-  const double z = sides_[static_cast<std::size_t>(side)].impedance;
-  const Waveform& trace = trace_of(bodies, interface.sides[static_cast<std::size_t>(1 - side)]);
+  const double z = sides_[index(side)].impedance;
+  const Waveform& trace = trace_of(bodies, interface.sides[index(1 - side)]);
   for (std::size_t i = 1; i < trace.size(); ++i) {
     const double length = trace.time[i] - trace.time[i - 1];
     double moved = n * (trace.u[i] - trace.u[i - 1]);
@@ -110,7 +109,7 @@ void Robin::outgoing(int side, const Interface& interface, const Bodies& bodies,
 
 void Robin::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
                    Bodies& bodies) {
-  Begin& here = sides_[static_cast<std::size_t>(side)];
+  Begin& here = sides_[index(side)];
   const Begin& other = partner(side);
   const int count = other.grid.count;
   Eigen::VectorXd q(count);
@@ -123,8 +122,8 @@ void Robin::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const I
   }
   here.incoming.assign(q.begin(), q.end());
   here.incoming_begin = other.grid.begin;
-  const Side& port = interface.sides[static_cast<std::size_t>(side)];
-  BoundaryData& data = bodies.request(port.body).boundary[static_cast<std::size_t>(port.port)];
+  const Side& port = interface.sides[index(side)];
+  BoundaryData& data = bodies.request(port.body).boundary[index(port.port)];
   const double inward = -interface.normal_of(side);
   data.force.clear();
   data.force.support = other.support;
@@ -154,7 +153,7 @@ FieldResiduals Robin::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
   FieldResiduals r;
   Eigen::Index at = 0;
   for (int k = 0; k < parts(); ++k) {
-    const TimeGrid& grid = partner(iterated()[static_cast<std::size_t>(k)]).grid;
+    const TimeGrid& grid = partner(iterated()[index(k)]).grid;
     double overlap = 0.0;
     for (int i = 0; i < grid.count; ++i, ++at) {
       const double difference = g[at] - x[at];

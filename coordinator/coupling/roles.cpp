@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/index.hpp"
 #include "coordinator/coupling/port_jacobian.hpp"
 
 namespace abut {
@@ -25,7 +26,7 @@ int kinematic_side(const Interface& interface, Bodies& bodies, double length) {
     const PortKernel& kernel = bodies.kernel(side.body, side.port, grid.count);
     moved[s] =
         std::accumulate(kernel.displacement.begin(), kernel.displacement.begin() + grid.count, 0.0);
-    spacing[s] = body.ports[static_cast<std::size_t>(side.port)].geometry.spacing;
+    spacing[s] = body.ports[index(side.port)].geometry.spacing;
     step[s] = body.step;
   }
   if (moved[0] > similar * moved[1]) return 0;

@@ -6,6 +6,7 @@
 #include "base/archive.hpp"
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -27,7 +28,7 @@ std::vector<std::vector<int>> levels_of(const std::vector<int>& members,
     for (int body : waiting) {
       const bool ready =
           std::all_of(island.begin(), island.end(), [&joints, body, &is_done](int j) {
-            const Joint& joint = joints[static_cast<std::size_t>(j)];
+            const Joint& joint = joints[index(j)];
             const bool takes_force = joint.interface->neumann_side().body == body;
             return !takes_force || !joint.transmission->ordered() ||
                    is_done(joint.interface->kinematic_side().body);
@@ -59,8 +60,8 @@ std::uint64_t layout_key(const TimeWindow& window, const std::vector<Eigen::Inde
 }  // namespace
 
 std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
-  std::vector<int> root(static_cast<std::size_t>(bodies));
-  for (int b = 0; b < bodies; ++b) root[static_cast<std::size_t>(b)] = b;
+  std::vector<int> root(index(bodies));
+  for (int b = 0; b < bodies; ++b) root[index(b)] = b;
   auto merge = [&root](int from, int to) {
     for (int& r : root) {
       if (r == from) r = to;
@@ -68,8 +69,8 @@ std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
   };
   for (const Joint& joint : joints) {
     if (!joint.interface->closed) continue;
-    const int a = root[static_cast<std::size_t>(joint.interface->sides[0].body)];
-    const int b = root[static_cast<std::size_t>(joint.interface->sides[1].body)];
+    const int a = root[index(joint.interface->sides[0].body)];
+    const int b = root[index(joint.interface->sides[1].body)];
     merge(std::max(a, b), std::min(a, b));
   }
   std::vector<Island> islands;
@@ -77,14 +78,14 @@ std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
     Island island;
     for (std::size_t j = 0; j < joints.size(); ++j) {
       const Interface& interface = *joints[j].interface;
-      if (interface.closed && root[static_cast<std::size_t>(interface.sides[0].body)] == r) {
+      if (interface.closed && root[index(interface.sides[0].body)] == r) {
         island.joints.push_back(static_cast<int>(j));
       }
     }
     if (island.joints.empty()) continue;
     std::vector<int> members;
     for (int b = 0; b < bodies; ++b) {
-      if (root[static_cast<std::size_t>(b)] == r) members.push_back(b);
+      if (root[index(b)] == r) members.push_back(b);
     }
     island.levels = levels_of(members, joints, island.joints);
     islands.push_back(std::move(island));
@@ -97,7 +98,7 @@ Eigen::VectorXd Schwarz::apply_inverses(const Eigen::VectorXd& r,
   Eigen::VectorXd out(r.size());
   for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
     const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
-    const Transmission& t = *joints[static_cast<std::size_t>(layout_.joints[i])].transmission;
+    const Transmission& t = *joints[index(layout_.joints[i])].transmission;
     out.segment(layout_.first[i], count) = t.apply_inverse(r.segment(layout_.first[i], count));
   }
   return out;
@@ -111,7 +112,7 @@ Accelerator& Schwarz::accelerator_of(const Island& island, std::span<const Joint
         Eigen::VectorXd out(r.size());
         for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
           const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
-          const Transmission& t = *joints[static_cast<std::size_t>(layout_.joints[i])].transmission;
+          const Transmission& t = *joints[index(layout_.joints[i])].transmission;
           // accelerators see scaled values; contact does not scale, its gaps and forces are given
           const auto unit = s_.segment(layout_.first[i], count);
           const Eigen::VectorXd plain = r.segment(layout_.first[i], count).cwiseQuotient(unit);
@@ -135,9 +136,9 @@ std::optional<Failed> Schwarz::sweep(const Island& island, std::span<const Joint
                                      Bodies& bodies) const {
   for (const std::vector<int>& level : island.levels) {
     for (std::size_t i = 0; i < layout.joints.size(); ++i) {
-      const Joint& joint = joints[static_cast<std::size_t>(layout.joints[i])];
+      const Joint& joint = joints[index(layout.joints[i])];
       for (int side : {0, 1}) {
-        const int body = joint.interface->sides[static_cast<std::size_t>(side)].body;
+        const int body = joint.interface->sides[index(side)].body;
         if (std::find(level.begin(), level.end(), body) == level.end()) continue;
         const Eigen::Index count = layout.first[i + 1] - layout.first[i];
         joint.transmission->impose(side, x.segment(layout.first[i], count), *joint.interface,
@@ -154,7 +155,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   layout_.joints = island.joints;
   layout_.first.assign(1, 0);
   for (int j : island.joints) {
-    const Joint& joint = joints[static_cast<std::size_t>(j)];
+    const Joint& joint = joints[index(j)];
     joint.transmission->begin(window, *joint.interface, bodies);
     layout_.first.push_back(layout_.first.back() + joint.transmission->values());
   }
@@ -164,7 +165,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     return v.segment(layout_.first[i], layout_.first[i + 1] - layout_.first[i]);
   };
   auto joint_at = [&joints, &island](std::size_t i) -> const Joint& {
-    return joints[static_cast<std::size_t>(island.joints[i])];
+    return joints[index(island.joints[i])];
   };
   for (std::size_t i = 0; i < island.joints.size(); ++i)
     joint_at(i).transmission->predict(part(x_, i));
@@ -189,7 +190,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
     if (options_.kernels && std::ranges::any_of(island.joints, [&joints](int j) {
-          return joints[static_cast<std::size_t>(j)].transmission->projects();
+          return joints[index(j)].transmission->projects();
         })) {
       x_ += apply_inverses(g_ - x_, joints);
       continue;

@@ -1,4 +1,5 @@
 #include "coordinator/coupling/transmission.hpp"
+#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ const PortKernel& kernel_of(Bodies& bodies, const Side& side, int count) {
 }
 
 BoundaryData& boundary_of(Bodies& bodies, const Side& side) {
-  return bodies.request(side.body).boundary[static_cast<std::size_t>(side.port)];
+  return bodies.request(side.body).boundary[index(side.port)];
 }
 
 /// The partner's reply, turned into the force on this side: equal and opposite.
@@ -154,7 +155,7 @@ void Unilateral::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 
 void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
                         const Interface& interface, Bodies& bodies) {
-  const Side& here = interface.sides[static_cast<std::size_t>(side)];
+  const Side& here = interface.sides[index(side)];
   BoundaryData& data = boundary_of(bodies, here);
   if (side != interface.kinematic) {
     hand_over(trace_of(bodies, interface.kinematic_side()), data.force);
@@ -180,7 +181,7 @@ void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Interface
   const bool same = static_cast<int>(trace.size()) == neumann_grid_.count + 1;
   for (int i = 1; i <= neumann_grid_.count; ++i) {
     if (same) {
-      g[i - 1] = trace.u[static_cast<std::size_t>(i)];
+      g[i - 1] = trace.u[index(i)];
     } else {
       trace.interpolate(trace.u, neumann_grid_.time(i), {&g[i - 1], 1});
     }
@@ -199,7 +200,7 @@ void Unilateral::see_contact(const Interface& interface, const Bodies& bodies) {
   overlap_.resize(kinematic_grid_.count);
   force_.resize(kinematic_grid_.count);
   for (Eigen::Index i = 0; i < force_.size(); ++i) {
-    const std::size_t at = static_cast<std::size_t>(i) + 1;
+    const std::size_t at = index(i) + 1;
     double u[2];
     u[interface.kinematic] = reply.u[at];
     guess_.interpolate(guess_.u, kinematic_grid_.time(static_cast<int>(at)),
@@ -251,7 +252,7 @@ void ParallelForce::begin(const TimeWindow& window, const Interface& interface, 
     kernels.push_back(&kernel_of(bodies, side, grids.back().count));
     compliance_ += kernels.back()->displacement.front();
   }
-  const std::size_t source = static_cast<std::size_t>(interface.kinematic);
+  const std::size_t source = index(interface.kinematic);
   force_grid_ = grids[source];
   support_ = kernels[source]->support;
   const Waveform& trace = trace_of(bodies, interface.kinematic_side());
@@ -289,7 +290,7 @@ void ParallelForce::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
     guess_.time.push_back(force_grid_.time(i));
     guess_.f.push_back(x[i - 1]);
   }
-  Waveform& force = boundary_of(bodies, interface.sides[static_cast<std::size_t>(side)]).force;
+  Waveform& force = boundary_of(bodies, interface.sides[index(side)]).force;
   force.support = support_;
   force.time = guess_.time;
   force.f = guess_.f;

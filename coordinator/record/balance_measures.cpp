@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.hpp"
 #include "coordinator/record/port_reader.hpp"
 
 namespace abut {
@@ -85,7 +86,7 @@ void BalanceMeasures::follow_exchange(const WindowReport& report) {
     const InterfaceInfo& info = start_.interfaces[i];
     for (const int side : {0, 1}) {
       const int on = recorded_body_of(start_.bodies, info.body[side], info.port[side]);
-      bodies_[static_cast<std::size_t>(on)].exchanged = true;
+      bodies_[index(on)].exchanged = true;
     }
   }
 }
@@ -149,7 +150,7 @@ void BalanceMeasures::write_angular(Measures& out) const {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     for (int axis = first_rotation_axis(out.scope.dim); axis < 3; ++axis)
       out.set(fmt::format("angular_momentum.{}.end{}", recorded_[b].name, axis_ending(3, axis)),
-              bodies_[b].angular[static_cast<std::size_t>(axis)]);
+              bodies_[b].angular[index(axis)]);
     scale += bodies_[b].angular_max;
   }
   if (out.scope.dim == 1) return;
@@ -167,8 +168,9 @@ void BalanceMeasures::write_energy(const RecordedBody& recorded, const Body& bod
   const std::string largest = fmt::format("energy.{}.relative_error_max", recorded.name);
   const std::string last = fmt::format("energy.{}.relative_error_end", recorded.name);
   if (body.bar < 0 && body.exchanged) {
-    const char* why = "the body has exchanged energy through an interface, and no closed form "
-                      "tells how much it should hold";
+    const char* why =
+        "the body has exchanged energy through an interface, and no closed form "
+        "tells how much it should hold";
     out.none(largest, why);
     out.none(last, why);
     return;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/closed_form.hpp"
+#include "coordinator/exact/closed_form.hpp"
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
@@ -33,7 +33,7 @@ class BalanceMeasures {
     double momentum_max = 0.0;
     Vector angular{};  // [kg m^2/s] about the origin
     double angular_max = 0.0;
-    int bar = -1;  // of the closed form; -1: not described by it, or a wall
+    int bar = -1;            // of the closed form; -1: not described by it, or a wall
     bool exchanged = false;  // energy, through an interface that was closed
   };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/index.hpp"
 #include "coordinator/record/csv_history.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 
@@ -18,11 +19,11 @@ std::string ClosedFormCsv::header(const RunStart& start) {
   std::string text = "time [s]";
   const std::vector<RecordedBody> recorded = recorded_bodies(start.bodies);
   for (int b = 0; b < static_cast<int>(start.bodies.size()); ++b) {
-    const Description& body = *start.bodies[static_cast<std::size_t>(b)];
+    const Description& body = *start.bodies[index(b)];
     Body columns;
     for (int p = 0; p < static_cast<int>(body.ports.size()); ++p) {
-      const Port& port = body.ports[static_cast<std::size_t>(p)];
-      const std::size_t on = static_cast<std::size_t>(recorded_body_of(start.bodies, b, p));
+      const Port& port = body.ports[index(p)];
+      const std::size_t on = index(recorded_body_of(start.bodies, b, p));
       const int bar = form_.bar_index(recorded[on].name);
       if (bar < 0) continue;
       columns.ends.push_back({bar, port.geometry.normals.at(0) > 0.0 ? 1 : 0});
@@ -70,7 +71,7 @@ void ClosedFormCsv::write_row(double time) {
   }
   for (const int interface : interfaces_) {
     number(row.gap(interface, time));
-    const RowContact& contact = row.contacts()[static_cast<std::size_t>(interface)];
+    const RowContact& contact = row.contacts()[index(interface)];
     fmt::format_to(std::back_inserter(row_), ",{:d}", contact.closed(time));
   }
   row_.push_back('\n');

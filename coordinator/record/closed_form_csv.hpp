@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "coordinator/closed_form.hpp"
+#include "coordinator/exact/closed_form.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/text_file.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "coordinator/closed_form.hpp"
+#include "coordinator/exact/closed_form.hpp"
 #include "coordinator/record/measure_names.hpp"
 
 namespace abut {

@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "coordinator/bar_row.hpp"
+#include "coordinator/exact/bar_row.hpp"
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/square_integral.hpp"
 

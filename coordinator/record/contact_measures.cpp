@@ -1,4 +1,5 @@
 #include "coordinator/record/contact_measures.hpp"
+#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +60,7 @@ void ContactMeasures::on_window(const WindowReport& report) {
   if (traces[0]->empty() || traces[1]->empty()) return;
   if (readers_[0].port().geometry.dim == 1) read_gap(report, traces);
   const InterfaceReport& mine = report.interfaces[index_];
-  const std::size_t kinematic = static_cast<std::size_t>(mine.kinematic);
+  const std::size_t kinematic = index(mine.kinematic);
   velocity_.on_window(readers_, traces, mine.kinematic, mine.closed, errors_ ? &*errors_ : nullptr);
   read_force(*traces[kinematic], readers_[kinematic]);
 }

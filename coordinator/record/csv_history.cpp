@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -155,7 +156,7 @@ void CsvHistory::write_body(const RecordedBody& body, const BodyRecord& record) 
   number(energy.kinetic);
   number(energy.stored);
   number(energy.total());
-  ABUT_ASSERT(momentum.size() == static_cast<std::size_t>(body.dim));
+  ABUT_ASSERT(momentum.size() == index(body.dim));
   for (const double value : momentum) number(value);
   for (const double value : momentum) number(value / body.mass);
   number(energy.dissipated);
@@ -163,8 +164,7 @@ void CsvHistory::write_body(const RecordedBody& body, const BodyRecord& record) 
   if (body.member >= 0) return;
   const int rotations = 3 - first_rotation_axis(body.dim);
   const std::vector<double>& angular = record.angular_momentum;
-  for (int i = 0; i < rotations; ++i)
-    number(angular.empty() ? nothing : angular[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < rotations; ++i) number(angular.empty() ? nothing : angular[index(i)]);
 }
 
 void CsvHistory::on_end(const RunEnd&) {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/clock.hpp"
-#include "coordinator/closed_form.hpp"
+#include "coordinator/exact/closed_form.hpp"
 #include "coordinator/record/closed_form_csv.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/port_reader.hpp"

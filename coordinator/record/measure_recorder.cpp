@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.hpp"
 #include "coordinator/record/port_reader.hpp"
 
 namespace abut {
@@ -22,15 +23,14 @@ void MeasureRecorder::on_start(const RunStart& start) {
     const InterfaceInfo& info = start_.interfaces[i];
     const int exact = form_ != nullptr ? form_->interface_index(info.name) : -1;
     std::optional<ContactErrors> errors;
-    if (exact >= 0)
-      errors.emplace(form_->row, form_->row.contacts()[static_cast<std::size_t>(exact)]);
+    if (exact >= 0) errors.emplace(form_->row, form_->row.contacts()[index(exact)]);
     contacts_.emplace_back(start_, static_cast<int>(i), std::move(errors),
                            filter_ ? make_force_filter(*filter_) : nullptr);
     for (const int side : {0, 1}) {
       const int dim = start_.bodies[info.body[side]]->ports[info.port[side]].geometry.dim;
-      positions_.push_back({info.body[side], info.port[side],
-                            std::vector<double>(static_cast<std::size_t>(dim),
-                                                -std::numeric_limits<double>::infinity())});
+      positions_.push_back(
+          {info.body[side], info.port[side],
+           std::vector<double>(index(dim), -std::numeric_limits<double>::infinity())});
     }
   }
   balance_.emplace(start_, form_);

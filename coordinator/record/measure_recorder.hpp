@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/closed_form.hpp"
+#include "coordinator/exact/closed_form.hpp"
 #include "coordinator/record/balance_measures.hpp"
 #include "coordinator/record/contact_measures.hpp"
 #include "coordinator/record/measure_names.hpp"

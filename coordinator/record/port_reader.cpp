@@ -1,4 +1,5 @@
 #include "coordinator/record/port_reader.hpp"
+#include "base/index.hpp"
 
 #include <algorithm>
 
@@ -6,7 +7,7 @@ namespace abut {
 
 std::array<double, 3> PortReader::gathered(double scale) const {
   std::array<double, 3> sum{};
-  const std::size_t dim = static_cast<std::size_t>(port_->geometry.dim);
+  const std::size_t dim = index(port_->geometry.dim);
   for (std::size_t i = 0; i < values_.size(); ++i) sum[i % dim] += values_[i];
   for (double& value : sum) value *= scale;
   return sum;
@@ -15,7 +16,7 @@ std::array<double, 3> PortReader::gathered(double scale) const {
 PortValues PortReader::at(const Waveform& trace, double time) {
   const double when = std::clamp(time, trace.time.front(), trace.time.back());
   const double share = 1.0 / std::max(1, port_->geometry.count());
-  values_.resize(static_cast<std::size_t>(trace.width));
+  values_.resize(index(trace.width));
   PortValues out;
   if (!trace.u.empty()) {
     trace.interpolate(trace.u, when, values_);
@@ -33,7 +34,7 @@ PortValues PortReader::at(const Waveform& trace, double time) {
 }
 
 double PortReader::compression(const Waveform& trace, std::size_t i) const {
-  const std::size_t width = static_cast<std::size_t>(trace.width);
+  const std::size_t width = index(trace.width);
   double force = 0.0;
   for (std::size_t k = 0; k < width; ++k)
     force -= trace.f[i * width + k] * port_->geometry.normals[k];
@@ -43,8 +44,8 @@ double PortReader::compression(const Waveform& trace, std::size_t i) const {
 double PortReader::along_x(const Waveform& trace, const std::vector<double>& field,
                            std::size_t i) const {
   if (field.empty()) return 0.0;
-  const std::size_t width = static_cast<std::size_t>(trace.width);
-  const std::size_t dim = static_cast<std::size_t>(port_->geometry.dim);
+  const std::size_t width = index(trace.width);
+  const std::size_t dim = index(port_->geometry.dim);
   double sum = 0.0;
   for (std::size_t k = 0; k < width; k += dim) sum += field[i * width + k];
   return sum * static_cast<double>(dim) / static_cast<double>(width);

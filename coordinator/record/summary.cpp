@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "coordinator/record/expectations.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 #include "coordinator/record/text_file.hpp"
@@ -70,7 +71,7 @@ Json closed_form_object(const ClosedForm& form) {
   for (std::size_t i = 0; !single && i < form.interfaces.size(); ++i)
     object["interfaces"][form.interfaces[i]] = contact_object(row.contacts()[i]);
   for (int b = 0; b < row.bars(); ++b) {
-    Json& body = object["bodies"][form.bodies[static_cast<std::size_t>(b)]];
+    Json& body = object["bodies"][form.bodies[index(b)]];
     body["wall"] = row.bar(b).wall;
     body["mean_velocity_end"] = number(row.mean_velocity(b, row.end()));
     body["total_begin"] = number(row.total(b, row.begin()));
@@ -107,10 +108,9 @@ Json ports_object(const RunStart& start) {
       const PortGeometry& geometry = body.ports[p].geometry;
       if (geometry.dim != 1 || geometry.count() != 1) continue;
       const int on = recorded_body_of(start.bodies, static_cast<int>(b), static_cast<int>(p));
-      object[body.name + "." + body.ports[p].name] = {
-          {"position", number(geometry.points[0])},
-          {"normal", number(geometry.normals[0])},
-          {"body", recorded[static_cast<std::size_t>(on)].name}};
+      object[body.name + "." + body.ports[p].name] = {{"position", number(geometry.points[0])},
+                                                      {"normal", number(geometry.normals[0])},
+                                                      {"body", recorded[index(on)].name}};
     }
   }
   return object;

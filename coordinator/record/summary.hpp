@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "coordinator/closed_form.hpp"
 #include "coordinator/estimate.hpp"
+#include "coordinator/exact/closed_form.hpp"
 #include "coordinator/record/measure_recorder.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/scene.hpp"

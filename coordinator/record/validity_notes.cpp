@@ -1,4 +1,5 @@
 #include "coordinator/record/validity_notes.hpp"
+#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,7 @@ constexpr double worth_a_look = 1.0e-6;
 /// 0: the body does not tell it.
 double told(const Description& body, std::span<const double> values, const std::string& name) {
   const auto found = std::find(body.measures.begin(), body.measures.end(), name);
-  const auto at = static_cast<std::size_t>(found - body.measures.begin());
+  const auto at = index(found - body.measures.begin());
   return found != body.measures.end() && at < values.size() ? values[at] : 0.0;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
 #include "subdomain_solver/materials/saint_venant_kirchhoff.hpp"
@@ -26,8 +27,6 @@ std::optional<BatchedCell> cell_of(const Element& element, bool one_point) {
   if (element.name == "tet4") return BatchedCell::tet4;
   return std::nullopt;
 }
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// Rows of Dim numbers, wherever they lie, to rows of 4, and back.
 template <int Dim>

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/moduli.hpp"
 
 namespace abut {
@@ -56,10 +57,10 @@ struct KernelTable {
       frequencies{};
 
   FrequencyKernel frequency_of(BatchedCell cell, BatchedLaw law) const {
-    return frequencies[static_cast<std::size_t>(cell)][static_cast<std::size_t>(law)];
+    return frequencies[index(cell)][index(law)];
   }
   PatchKernel of(BatchedCell cell, BatchedLaw law) const {
-    return kernels[static_cast<std::size_t>(cell)][static_cast<std::size_t>(law)];
+    return kernels[index(cell)][index(law)];
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/finite_strain.hpp"
 
 namespace abut {
@@ -21,12 +22,12 @@ bool CellKernel::evaluate(const CellGeometry& cell, std::span<const double> u,
 /// Every component of u on its own, with one stiffness for all or one for each.
 void CellKernel::add_hourglass(const CellGeometry& cell, std::span<const double> u, Want want,
                                CellResponse& out) {
-  const std::size_t n = static_cast<std::size_t>(cell.nodes);
+  const std::size_t n = index(cell.nodes);
   const bool alike = cell.hourglass.size() == n * n;
   const Eigen::Map<const Eigen::MatrixXd> moved(u.data(), cell.dim, cell.nodes);
   Eigen::Map<Eigen::MatrixXd> force(out.force.data(), cell.dim, cell.nodes);
   for (int i = 0; i < cell.dim; ++i) {
-    const double* first = cell.hourglass.data() + (alike ? 0 : static_cast<std::size_t>(i) * n * n);
+    const double* first = cell.hourglass.data() + (alike ? 0 : index(i) * n * n);
     const Eigen::Map<const Eigen::MatrixXd> k(first, cell.nodes, cell.nodes);
     const Eigen::RowVectorXd own = moved.row(i) * k;
     out.stored += 0.5 * own.dot(moved.row(i));
@@ -64,15 +65,14 @@ int CellKernel::entry(int direction, int column) const {
 }
 
 const Eigen::MatrixXd& CellKernel::along(int direction) const {
-  return b_[dim_ == 3 ? 0 : static_cast<std::size_t>(direction)];
+  return b_[dim_ == 3 ? 0 : index(direction)];
 }
 
 void CellKernel::fill_operators(const CellGeometry& cell) {
   dim_ = cell.dim;
   nodes_ = cell.nodes;
-  points_.resize(static_cast<std::size_t>(cell.points));
-  for (int p = 0; p < cell.points; ++p)
-    points_[static_cast<std::size_t>(p)].volume = cell.volume[static_cast<std::size_t>(p)];
+  points_.resize(index(cell.points));
+  for (int p = 0; p < cell.points; ++p) points_[index(p)].volume = cell.volume[index(p)];
   for (std::size_t i = 0; i < (dim_ == 2 ? 2 : 1); ++i) {
     b_[i].setZero(nodes_, 3 * cell.points);
     for (int p = 0; p < cell.points; ++p) {
@@ -93,8 +93,8 @@ void CellKernel::deform(std::span<const double> u) {
       for (int j = 0; j < 3; ++j) {
         const double* b = along(i).col(3 * p + j).data();
         double sum = 0.0;
-        for (int a = 0; a < nodes_; ++a) sum += b[a] * u[static_cast<std::size_t>(a * dim_ + i)];
-        points_[static_cast<std::size_t>(p)].f.data()[entry(i, j)] += sum;
+        for (int a = 0; a < nodes_; ++a) sum += b[a] * u[index(a * dim_ + i)];
+        points_[index(p)].f.data()[entry(i, j)] += sum;
       }
     }
   }
@@ -104,7 +104,7 @@ void CellKernel::deform(std::span<const double> u) {
 double CellKernel::in_fields(std::size_t point, const Eigen::VectorXd& amounts) const {
   double sum = 0.0;
   for (Eigen::Index k = 0; k < amounts.size(); ++k)
-    sum += amounts(k) * fields_[static_cast<std::size_t>(k) * points_.size() + point];
+    sum += amounts(k) * fields_[index(k) * points_.size() + point];
   return sum;
 }
 
@@ -145,7 +145,7 @@ bool CellKernel::average_volume() {
 bool CellKernel::respond(std::span<const double> before, std::span<double> after, Want want,
                          CellResponse& out) {
   out.stored = out.dissipation = 0.0;
-  const std::size_t each = static_cast<std::size_t>(history_size());
+  const std::size_t each = index(history_size());
   for (std::size_t p = 0; p < points_.size(); ++p) {
     Point& point = points_[p];
     if (!material_.evaluate(point.f, before.subspan(p * each, each), after.subspan(p * each, each),
@@ -213,8 +213,7 @@ void CellKernel::couple_fields(Eigen::MatrixXd& tangent) {
   swelling_.resize(tangent.rows(), count);
   coupling_.resize(tangent.rows(), count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    const std::span<const double> field =
-        fields_.subspan(static_cast<std::size_t>(k * points), points_.size());
+    const std::span<const double> field = fields_.subspan(index(k * points), points_.size());
     integrate(&Point::swell, field, swelling_.col(k));
     integrate(&Point::coupling, field, coupling_.col(k));
   }
@@ -222,7 +221,7 @@ void CellKernel::couple_fields(Eigen::MatrixXd& tangent) {
   const Eigen::Map<const Eigen::MatrixXd> fields(fields_.data(), points, count);
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index p = 0; p < points; ++p) {
-    const double own = points_[static_cast<std::size_t>(p)].stiffness;
+    const double own = points_[index(p)].stiffness;
     stiffness += own * fields.row(p).transpose() * fields.row(p);
   }
   coupling_ += 0.5 * swelling_ * stiffness;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/material.hpp"
 
 namespace abut {
@@ -56,10 +57,8 @@ class CellKernel {
                               std::span<const double> before, std::span<double> after, Want want,
                               CellResponse& out);
   /// F of a quadrature point as the material sees it in the last evaluated cell, P beside it.
-  const Matrix3& deformation(int point) const { return points_[static_cast<std::size_t>(point)].f; }
-  const Matrix3& stress(int point) const {
-    return points_[static_cast<std::size_t>(point)].response.stress;
-  }
+  const Matrix3& deformation(int point) const { return points_[index(point)].f; }
+  const Matrix3& stress(int point) const { return points_[index(point)].response.stress; }
 
  private:
   struct Point {

@@ -1,4 +1,5 @@
 #include "subdomain_solver/fe/cell_keys.hpp"
+#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +9,6 @@ namespace abut {
 namespace {
 
 constexpr int key_digits = 36;
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/hourglass.hpp"
 
 namespace abut {
@@ -12,8 +13,6 @@ namespace abut {
 namespace {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// The points of the last cell become one, with their mean gradient. A ring that turns in its
 /// section has a mean hoop strain of none and no hourglass: Young's modulus holds what the hoop

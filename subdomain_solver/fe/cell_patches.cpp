@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/batched_kernel.hpp"
 
 namespace abut {
@@ -16,8 +17,6 @@ namespace {
 // megabyte. Small meshes have smaller patches, so that there is work for several threads.
 constexpr std::size_t most_cells = 4096, least_cells = 512, wanted_patches = 16;
 constexpr std::size_t lanes = batch_lanes;
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 std::span<const std::int32_t> nodes_of(const CellBlock& cells, std::int32_t cell) {
   const std::size_t n = index(cells.element->nodes);

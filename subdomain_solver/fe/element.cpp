@@ -8,6 +8,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/shape_functions.hpp"
 
 namespace abut {
@@ -43,11 +44,11 @@ Element quadratic(std::string_view name, const Element& base, std::string_view f
   element.order = 2;
   element.facet_name = facet_name;
   element.evaluate = evaluate;
-  const auto dim = static_cast<std::size_t>(base.dim);
+  const auto dim = index(base.dim);
   for (const Edge& edge : edges) {
     for (std::size_t d = 0; d < dim; ++d) {
-      const double from = base.corners[static_cast<std::size_t>(edge[0]) * dim + d];
-      const double to = base.corners[static_cast<std::size_t>(edge[1]) * dim + d];
+      const double from = base.corners[index(edge[0]) * dim + d];
+      const double to = base.corners[index(edge[1]) * dim + d];
       element.corners.push_back(0.5 * (from + to));
     }
   }
@@ -146,9 +147,9 @@ Tabulation tabulate(const Element& element, const Quadrature& rule) {
   table.nodes = element.nodes;
   table.dim = element.dim;
   table.weight = rule.weights;
-  const auto points = static_cast<std::size_t>(table.points);
-  const auto nodes = static_cast<std::size_t>(table.nodes);
-  const auto dim = static_cast<std::size_t>(table.dim);
+  const auto points = index(table.points);
+  const auto nodes = index(table.nodes);
+  const auto dim = index(table.dim);
   ABUT_ASSERT(rule.points.size() == points * dim);
   table.n.resize(points * nodes);
   table.dn.resize(points * nodes * dim);

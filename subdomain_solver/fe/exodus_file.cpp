@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/named_sides.hpp"
 #include "subdomain_solver/fe/netcdf_file.hpp"
 
@@ -47,8 +48,7 @@ const Element* element_of(const std::string& type, std::size_t nodes) {
   for (const auto& [name, shape] : shape_names) {
     if (!upper.starts_with(name)) continue;
     for (const Element& element : all_elements())
-      if (element.shape == shape && static_cast<std::size_t>(element.nodes) == nodes)
-        return &element;
+      if (element.shape == shape && index(element.nodes) == nodes) return &element;
   }
   return nullptr;
 }
@@ -62,7 +62,7 @@ class Reader {
     if (dim > 3) file_.refuse(fmt::format("has {} dimensions", dim), "Write 1 to 3.");
     mesh_.dim = static_cast<int>(dim);
     nodes_ = file_.length("num_nodes");
-    if (nodes_ > static_cast<std::size_t>(INT32_MAX))
+    if (nodes_ > index(INT32_MAX))
       file_.refuse(fmt::format("has {} nodes", nodes_), "Make the mesh coarser.");
     read_blocks();
     read_points();
@@ -98,7 +98,7 @@ class Reader {
       file_.refuse(
           fmt::format("has the number {} in {}, where 1 to {} must be", number, variable, count),
           "The file is damaged: write it again.");
-    return static_cast<std::size_t>(number) - 1;
+    return index(number) - 1;
   }
 
   void read_blocks() {
@@ -126,7 +126,7 @@ class Reader {
       block.nodes.resize(numbers.size());
       for (std::size_t i = 0; i < numbers.size(); ++i) {
         const std::size_t a = i % width;
-        const std::size_t from = order.empty() ? a : static_cast<std::size_t>(order[a]);
+        const std::size_t from = order.empty() ? a : index(order[a]);
         block.nodes[i] =
             static_cast<std::int32_t>(from_one(numbers[i - a + from], nodes_, variable));
       }
@@ -139,7 +139,7 @@ class Reader {
 
   /// Coordinates of the nodes of cells; numbers them, in the file's order.
   void read_points() {
-    const auto dim = static_cast<std::size_t>(mesh_.dim);
+    const auto dim = index(mesh_.dim);
     std::vector<double> x;  // (dim, nodes)
     if (file_.has("coord")) {
       x = file_.reals("coord", dim * nodes_);
@@ -152,7 +152,7 @@ class Reader {
     }
     number_.assign(nodes_, -1);
     for (const CellBlock& block : mesh_.blocks)
-      for (std::int32_t node : block.nodes) number_[static_cast<std::size_t>(node)] = 0;
+      for (std::int32_t node : block.nodes) number_[index(node)] = 0;
     std::int32_t next = 0;
     for (std::size_t n = 0; n < nodes_; ++n) {
       if (number_[n] < 0) continue;
@@ -160,7 +160,7 @@ class Reader {
       for (std::size_t d = 0; d < dim; ++d) mesh_.points.push_back(scale_ * x[d * nodes_ + n]);
     }
     for (CellBlock& block : mesh_.blocks) {
-      for (std::int32_t& node : block.nodes) node = number_[static_cast<std::size_t>(node)];
+      for (std::int32_t& node : block.nodes) node = number_[index(node)];
       mesh_.node_sets[block.name] = block.nodes;
     }
   }
@@ -179,7 +179,7 @@ class Reader {
       std::vector<Facet>& side = mesh_.sides[names[s]];
       for (std::size_t f = 0; f < facets; ++f) {
         Facet facet = cells_[from_one(cells[f], cells_.size(), cell_list)];
-        const CellBlock& block = mesh_.blocks[static_cast<std::size_t>(facet.block)];
+        const CellBlock& block = mesh_.blocks[index(facet.block)];
         // our facets are in Exodus' order
         facet.local = static_cast<std::int32_t>(
             from_one(locals[f], block.element->facets.size(), local_list));

@@ -4,13 +4,12 @@
 #include <cstddef>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 namespace {
 
-std::size_t largest(const std::array<std::int32_t, 4>& corners) {
-  return static_cast<std::size_t>(corners[3]);
-}
+std::size_t largest(const std::array<std::int32_t, 4>& corners) { return index(corners[3]); }
 
 }  // namespace
 
@@ -27,10 +26,9 @@ FacetIndex::FacetIndex(const Mesh& mesh) {
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     const CellBlock& block = mesh.blocks[b];
     const Element& element = *block.element;
-    const auto corners = static_cast<std::size_t>(element_named(element.facet_name).corner_count());
+    const auto corners = index(element_named(element.facet_name).corner_count());
     for (std::int32_t cell = 0; cell < block.count(); ++cell) {
-      const std::int32_t* own =
-          &block.nodes[static_cast<std::size_t>(cell) * static_cast<std::size_t>(element.nodes)];
+      const std::int32_t* own = &block.nodes[index(cell) * index(element.nodes)];
       for (std::size_t f = 0; f < element.facets.size(); ++f) {
         for (std::size_t a = 0; a < corners; ++a) nodes[a] = own[element.facets[f][a]];
         facets_.push_back({static_cast<std::int32_t>(b), cell, static_cast<std::int32_t>(f)});
@@ -38,7 +36,7 @@ FacetIndex::FacetIndex(const Mesh& mesh) {
       }
     }
   }
-  begin_.assign(static_cast<std::size_t>(mesh.node_count()) + 1, 0);
+  begin_.assign(index(mesh.node_count()) + 1, 0);
   for (const Corners& key : corners_) ++begin_[largest(key) + 1];
   for (std::size_t n = 1; n < begin_.size(); ++n) begin_[n] += begin_[n - 1];
   std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);

@@ -6,13 +6,12 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/materials/stress_free.hpp"
 
 namespace abut {
 
 namespace {
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// Nodes of one cell.
 std::span<const std::int32_t> nodes_of(const CellBlock& cells, int cell) {

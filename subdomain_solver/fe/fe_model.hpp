@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/batched_cells.hpp"
 #include "subdomain_solver/fe/cell_kernel.hpp"
 #include "subdomain_solver/fe/cell_measures.hpp"
@@ -65,7 +66,7 @@ class FeModel final : public Model {
   /// Its reference geometry, as that of one cell.
   CellMeasures cell_measures(int block, int cell) const;
   /// The rule at which a block's cells are integrated.
-  const Tabulation& rule(int block) const { return blocks_[static_cast<std::size_t>(block)].table; }
+  const Tabulation& rule(int block) const { return blocks_[index(block)].table; }
   /// Null: forces are found cell by cell.
   BatchedCells* batched() { return batched_.get(); }
 

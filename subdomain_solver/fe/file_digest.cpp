@@ -8,6 +8,7 @@
 
 #include "base/archive.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -17,7 +18,7 @@ std::uint64_t digest_of_file(const std::string& path) {
   std::uint64_t digest = 0;
   while (file) {
     file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    const std::size_t count = static_cast<std::size_t>(file.gcount());
+    const std::size_t count = index(file.gcount());
     digest = hash_combine(digest, hash_bytes(std::as_bytes(std::span(piece.data(), count))));
   }
   if (!file.eof()) throw InputError("cannot be read", path, "Check that it is there and readable.");

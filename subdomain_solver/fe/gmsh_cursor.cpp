@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 namespace {
@@ -73,9 +74,8 @@ void GmshCursor::skip_to(const std::string& text) {
   const std::size_t found = bytes_.find("\n" + text, at_);
   if (found == std::string::npos) refuse("has no " + text, damaged);
   const std::size_t end = std::min(bytes_.find('\n', found + 1), bytes_.size());
-  line_ +=
-      static_cast<std::size_t>(std::count(bytes_.begin() + static_cast<std::ptrdiff_t>(at_),
-                                          bytes_.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+  line_ += index(std::count(bytes_.begin() + static_cast<std::ptrdiff_t>(at_),
+                            bytes_.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
   at_ = end;
 }
 
@@ -123,7 +123,7 @@ std::size_t GmshCursor::count(const char* things, std::size_t numbers) {
   if (value > (bytes_.size() - at_) / (least * numbers))
     refuse(fmt::format("announces {} {}, more than the rest of it can hold", value, things),
            damaged);
-  return static_cast<std::size_t>(value);
+  return index(value);
 }
 
 }  // namespace abut

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/gmsh_cursor.hpp"
 
 namespace abut {
@@ -175,7 +176,7 @@ class Parser {
       if (block.type->dim != dim)
         file_.refuse(fmt::format("has {} on an entity of {} dimensions", block.type->name, dim),
                      "Export the file again.");
-      const auto nodes = static_cast<std::size_t>(block.type->nodes);
+      const auto nodes = index(block.type->nodes);
       const std::size_t count = file_.count("elements", nodes + 1);
       block.where = file_.where();
       block.nodes.reserve(count * nodes);

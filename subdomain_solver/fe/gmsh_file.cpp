@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/input_file.hpp"
 #include "base/machine_memory.hpp"
 #include "subdomain_solver/fe/facet_index.hpp"
@@ -21,10 +22,8 @@
 namespace abut {
 namespace {
 
-std::size_t index(std::int32_t number) { return static_cast<std::size_t>(number); }
-
 std::span<const std::int32_t> nodes_of(const GmshData::Elements& block, std::size_t element) {
-  const auto count = static_cast<std::size_t>(block.type->nodes);
+  const auto count = index(block.type->nodes);
   return std::span(block.nodes).subspan(element * count, count);
 }
 
@@ -154,7 +153,7 @@ class Builder {
     std::vector<Facet>& side = mesh_.sides[group];
     for (std::size_t e = 0; e < block.tags.size(); ++e) {
       std::vector<std::int32_t> nodes = renumbered(group, block, e);
-      const auto corners = static_cast<std::size_t>(block.type->corner_count());
+      const auto corners = index(block.type->corner_count());
       const std::vector<Facet> found = facets.find(std::span(nodes).first(corners));
       std::sort(nodes.begin(), nodes.end());
       for (const Facet& facet : found) {

@@ -8,14 +8,13 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/cell_keys.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
 
 namespace abut {
 
 namespace {
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// Largest eigenvalue of B^-1 A, both symmetric and B positive definite.
 double largest_ratio(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {

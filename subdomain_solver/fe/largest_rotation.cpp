@@ -1,4 +1,5 @@
 #include "subdomain_solver/fe/largest_rotation.hpp"
+#include "base/index.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -15,9 +16,9 @@ Eigen::MatrixXd slopes_at_centre(const Element& element) {
   const int corners = element.corner_count();
   const Eigen::Map<const Rows> places(element.corners.data(), corners, element.dim);
   const Eigen::VectorXd centre = places.colwise().mean();
-  const std::size_t nodes = static_cast<std::size_t>(element.nodes);
-  std::vector<double> n(nodes), dn(nodes * static_cast<std::size_t>(element.dim));
-  element.evaluate({centre.data(), static_cast<std::size_t>(centre.size())}, n, dn);
+  const std::size_t nodes = index(element.nodes);
+  std::vector<double> n(nodes), dn(nodes * index(element.dim));
+  element.evaluate({centre.data(), index(centre.size())}, n, dn);
   return Eigen::Map<const Rows>(dn.data(), element.nodes, element.dim);
 }
 

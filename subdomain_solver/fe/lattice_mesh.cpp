@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/facet_index.hpp"
 #include "subdomain_solver/fe/shape_functions.hpp"
 
@@ -76,8 +77,7 @@ void LatticeMesh::add_element(std::span<const LatticePoint> corners) {
   for (const LatticePoint& corner : corners) nodes.push_back(node(corner));
   if (element_.order == 1) return;
   for (const Edge& edge : edges_of(element_.shape)) {
-    nodes.push_back(node(halfway(corners[static_cast<std::size_t>(edge[0])],
-                                 corners[static_cast<std::size_t>(edge[1])])));
+    nodes.push_back(node(halfway(corners[index(edge[0])], corners[index(edge[1])])));
   }
 }
 
@@ -94,11 +94,11 @@ void LatticeMesh::add_cell(std::span<const LatticePoint> corners) {
 /// Cones from the smallest corner over the facets that do not touch it, each facet cut from its
 /// own smallest corner.
 void LatticeMesh::split(const Element& whole, std::span<const LatticePoint> corners) {
-  ABUT_ASSERT(corners.size() == static_cast<std::size_t>(whole.nodes));
+  ABUT_ASSERT(corners.size() == index(whole.nodes));
   const LatticePoint tip = *std::min_element(corners.begin(), corners.end());
   for (const std::vector<int>& facet : whole.facets) {
     std::vector<LatticePoint> base;
-    for (int a : facet) base.push_back(corners[static_cast<std::size_t>(a)]);
+    for (int a : facet) base.push_back(corners[index(a)]);
     if (std::find(base.begin(), base.end(), tip) != base.end()) continue;
     if (whole.dim == 2) {
       add_element(std::array{base[0], base[1], tip});
@@ -121,9 +121,8 @@ void LatticeMesh::name_side(const std::string& name, const Predicate& contains) 
   std::vector<Facet> side;
   for (const Facet& facet : boundary()) {
     const std::vector<std::int32_t> nodes = mesh_.nodes_of(facet);
-    if (std::all_of(nodes.begin(), nodes.end(), [this, &contains](std::int32_t n) {
-          return contains(places_[static_cast<std::size_t>(n)]);
-        }))
+    if (std::all_of(nodes.begin(), nodes.end(),
+                    [this, &contains](std::int32_t n) { return contains(places_[index(n)]); }))
       side.push_back(facet);
   }
   mesh_.sides[name] = std::move(side);

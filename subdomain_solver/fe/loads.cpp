@@ -3,12 +3,11 @@
 #include <Eigen/Geometry>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
 namespace {
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -197,8 +196,7 @@ void Pressure::add_tangent(double time, std::span<const double> q, SparseMatrix&
           }
           for (int a = 0; a < nodes; ++a) {
             for (int i = 0; i < dim; ++i)
-              local(a * dim + i, b * dim + k) +=
-                  p * point.n[static_cast<std::size_t>(a)] * change(i);
+              local(a * dim + i, b * dim + k) += p * point.n[index(a)] * change(i);
           }
         }
       }

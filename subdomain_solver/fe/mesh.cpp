@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 namespace {
@@ -22,9 +23,7 @@ void append_names(const Map& map, std::string& names) {
 
 }  // namespace
 
-int CellBlock::count() const {
-  return static_cast<int>(nodes.size() / static_cast<std::size_t>(element->nodes));
-}
+int CellBlock::count() const { return static_cast<int>(nodes.size() / index(element->nodes)); }
 
 int Mesh::node_count() const { return dim == 0 ? 0 : static_cast<int>(points.size()) / dim; }
 
@@ -71,13 +70,12 @@ const std::vector<Facet>& Mesh::side(const std::string& name) const {
 }
 
 std::vector<std::int32_t> Mesh::nodes_of(const Facet& facet) const {
-  const CellBlock& block = blocks[static_cast<std::size_t>(facet.block)];
-  const std::size_t first =
-      static_cast<std::size_t>(facet.cell) * static_cast<std::size_t>(block.element->nodes);
-  const std::vector<int>& local = block.element->facets[static_cast<std::size_t>(facet.local)];
+  const CellBlock& block = blocks[index(facet.block)];
+  const std::size_t first = index(facet.cell) * index(block.element->nodes);
+  const std::vector<int>& local = block.element->facets[index(facet.local)];
   std::vector<std::int32_t> nodes;
   nodes.reserve(local.size());
-  for (int node : local) nodes.push_back(block.nodes[first + static_cast<std::size_t>(node)]);
+  for (int node : local) nodes.push_back(block.nodes[first + index(node)]);
   return nodes;
 }
 

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/element_limit.hpp"
 #include "subdomain_solver/fe/lattice_mesh.hpp"
 
@@ -60,7 +61,7 @@ void require_count(int value, const std::string& where) {
 /// Coordinates of a line of graded elements, with those halfway in between [m] (2 elements + 1).
 std::vector<double> line(double begin, double length, int elements, double grading) {
   const double growth = elements > 1 ? std::pow(grading, 1.0 / (elements - 1)) : 1.0;
-  std::vector<double> sizes(static_cast<std::size_t>(elements), 1.0);
+  std::vector<double> sizes(index(elements), 1.0);
   double sum = 1.0;
   for (std::size_t e = 1; e < sizes.size(); ++e) {
     sizes[e] = grading == 1.0 ? 1.0 : sizes[e - 1] * growth;
@@ -79,8 +80,6 @@ std::vector<double> line(double begin, double length, int elements, double gradi
 double lower_end(double origin, Origin at, double length) {
   return at == Origin::corner ? origin : origin - 0.5 * length;
 }
-
-std::size_t index(int number) { return static_cast<std::size_t>(number); }
 
 /// Calls `visit` with the lowest corner of all cells of a box of cells.
 template <typename Visit>

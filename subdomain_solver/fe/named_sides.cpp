@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/facet_index.hpp"
 
 namespace abut {
@@ -30,8 +31,8 @@ bool inside(const Mesh& mesh, const FacetIndex& facets, const std::vector<Facet>
   std::size_t shared = 0;
   for (const Facet& facet : side) {
     const std::vector<std::int32_t> nodes = mesh.nodes_of(facet);
-    const Element& cell = *mesh.blocks[static_cast<std::size_t>(facet.block)].element;
-    const auto corners = static_cast<std::size_t>(element_named(cell.facet_name).corner_count());
+    const Element& cell = *mesh.blocks[index(facet.block)].element;
+    const auto corners = index(element_named(cell.facet_name).corner_count());
     if (facets.find(std::span(nodes).first(corners)).size() > 1) ++shared;
   }
   if (shared > 0 && shared < side.size())
@@ -52,9 +53,9 @@ void refuse_repeated_cells(const Mesh& mesh, const std::string& where) {
   std::vector<Place> cells;
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     const CellBlock& block = mesh.blocks[b];
-    const auto nodes = static_cast<std::size_t>(block.element->nodes);
-    const auto corners = static_cast<std::size_t>(block.element->corner_count());
-    for (std::size_t c = 0; c < static_cast<std::size_t>(block.count()); ++c) {
+    const auto nodes = index(block.element->nodes);
+    const auto corners = index(block.element->corner_count());
+    for (std::size_t c = 0; c < index(block.count()); ++c) {
       Place& place = cells.emplace_back(Place{{}, b, c});
       place.corners.fill(-1);
       std::copy_n(&block.nodes[c * nodes], corners, place.corners.begin());

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/input_file.hpp"
 #include "base/machine_memory.hpp"
 
@@ -19,8 +20,7 @@ const char* const damaged = "The file is cut short or damaged: write it again.";
 }  // namespace
 
 NetcdfFile::NetcdfFile(const std::string& path) : path_(path) {
-  check_input_file(path, static_cast<std::size_t>(0.5 * machine_memory()),
-                   "Check the path of the mesh.");
+  check_input_file(path, index(0.5 * machine_memory()), "Check the path of the mesh.");
   // Deflate packs a byte of zeros in 1/1032 byte at best: a header that promises more lies.
   most_ = static_cast<std::uint64_t>(std::filesystem::file_size(path)) * 1032;
   check(nc_open(path.c_str(), NC_NOWRITE, &id_), "is not a NetCDF file, so no Exodus file");
@@ -67,7 +67,7 @@ int NetcdfFile::variable_of(const std::string& name, std::size_t count, std::siz
   check(nc_inq_vardimid(id_, number, dimension.data()), "has no readable variable " + name);
   std::size_t values = 1, last = 1;
   for (int d = 0; d < dimensions; ++d) {
-    check(nc_inq_dimlen(id_, dimension[static_cast<std::size_t>(d)], &last), "is damaged");
+    check(nc_inq_dimlen(id_, dimension[index(d)], &last), "is damaged");
     if (last != 0 && values > most_ / last)
       refuse("has a variable " + name + " of more values than its size can hold", damaged);
     values *= last;

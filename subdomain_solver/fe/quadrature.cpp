@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/element.hpp"
 
 namespace abut {
@@ -16,7 +17,7 @@ namespace {
 /// asymptotic guess, weights 2 / ((1 - x^2) P'^2).
 Quadrature gauss(int n) {
   Quadrature rule;
-  const auto count = static_cast<std::size_t>(n);
+  const auto count = index(n);
   rule.points.assign(count, 0.0);
   rule.weights.assign(count, 0.0);
   for (std::size_t i = 0; i < (count + 1) / 2; ++i) {
@@ -70,7 +71,7 @@ Quadrature collapsed(int dim, int degree) {
   for (std::size_t q = 0; q < rule.weights.size(); ++q) {
     double left = 1.0;
     for (int d = 0; d < dim; ++d) {
-      double& x = rule.points[q * static_cast<std::size_t>(dim) + static_cast<std::size_t>(d)];
+      double& x = rule.points[q * index(dim) + index(d)];
       const double u = 0.5 * (1.0 + x);
       rule.weights[q] *= 0.5 * left;
       x = u * left;

@@ -1,4 +1,5 @@
 #include "subdomain_solver/fe/rigid_motions.hpp"
+#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,6 @@
 namespace abut {
 
 namespace {
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// Part of a motion's size below which a component of it is round-off.
 constexpr double nothing = 1.0e-10;
@@ -57,7 +56,7 @@ Eigen::MatrixXd rigid_motions(const FeModel& model) {
     }
   }
   for (Eigen::Index k = 0; k < out.cols(); ++k)
-    model.to_frames({out.col(k).data(), static_cast<std::size_t>(out.rows())});
+    model.to_frames({out.col(k).data(), index(out.rows())});
   return out;
 }
 

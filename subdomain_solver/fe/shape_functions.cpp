@@ -1,4 +1,5 @@
 #include "subdomain_solver/fe/shape_functions.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 namespace {
@@ -42,8 +43,8 @@ void quadratic_simplex(std::span<const double> xi, Values n, Values dn) {
   }
   for (std::size_t e = 0; e < Edges.size(); ++e) {
     const std::size_t node = Dim + 1 + e;
-    const auto a = static_cast<std::size_t>(Edges[e][0]);
-    const auto b = static_cast<std::size_t>(Edges[e][1]);
+    const auto a = index(Edges[e][0]);
+    const auto b = index(Edges[e][1]);
     n[node] = 4.0 * l[a] * l[b];
     for (std::size_t d = 0; d < Dim; ++d)
       dn[node * Dim + d] = 4.0 * (slope(a, d) * l[b] + l[a] * slope(b, d));
@@ -93,8 +94,8 @@ void serendipity(std::span<const double> xi, Values n, Values dn) {
     for (std::size_t d = 0; d < Dim; ++d) dn[a * Dim + d] = dp[d] * sum + p * corner[a][d];
   }
   for (std::size_t e = 0; e < Edges.size(); ++e) {
-    const auto& from = corner[static_cast<std::size_t>(Edges[e][0])];
-    const auto& to = corner[static_cast<std::size_t>(Edges[e][1])];
+    const auto& from = corner[index(Edges[e][0])];
+    const auto& to = corner[index(Edges[e][1])];
     std::array<double, Dim> factor{}, derivative{};
     for (std::size_t d = 0; d < Dim; ++d) {
       const bool along = from[d] != to[d];

@@ -7,13 +7,12 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/cell_keys.hpp"
 
 namespace abut {
 
 namespace {
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// By which a bound is raised for what CellKeys do not tell apart.
 constexpr double margin = 1.0e-6;

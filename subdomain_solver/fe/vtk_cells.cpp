@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -41,7 +42,7 @@ VtkCell vtk_cell(const Element& element) {
     return entry.element == element.name;
   });
   ABUT_ASSERT(row != types.end());
-  VtkCell cell{row->type, std::vector<int>(static_cast<std::size_t>(element.nodes))};
+  VtkCell cell{row->type, std::vector<int>(index(element.nodes))};
   std::iota(cell.nodes.begin(), cell.nodes.end(), 0);
   if (element.name == "tet10") cell.nodes.assign(tet10_nodes.begin(), tet10_nodes.end());
   if (element.name == "hex20") cell.nodes.assign(hex20_nodes.begin(), hex20_nodes.end());

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -51,7 +52,7 @@ bool StressFree::find_stretch(Matrix3& f, std::span<const double> before, std::s
 
 bool StressFree::evaluate(const Matrix3& f, std::span<const double> before, std::span<double> after,
                           Want want, PointResponse& out) const {
-  const auto size = static_cast<std::size_t>(law_->history_size());
+  const auto size = index(law_->history_size());
   ABUT_ASSERT(is_linear() || (before.size() == size + 1 && after.size() == size + 1));
   Matrix3 whole = is_linear() ? f : completed(f, before);
   if (is_linear()) whole(2, 2) = 1.0;

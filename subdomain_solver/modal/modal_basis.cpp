@@ -8,6 +8,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/rigid_motions.hpp"
 #include "subdomain_solver/solve/linear_solver.hpp"
 #include "subdomain_solver/solve/orthonormal.hpp"
@@ -140,7 +141,7 @@ ModalBasis reduce(FeModel& model, const std::vector<int>& supports, const std::v
   ABUT_ASSERT(model.is_linear());
   const int n = model.dofs();
   ModelResponse rest;
-  const std::vector<double> zero(static_cast<std::size_t>(n), 0.0);
+  const std::vector<double> zero(index(n), 0.0);
   const std::vector<double> history(model.history_size(), 0.0);
   const bool admissible = model.evaluate(zero, history, Model::Want::tangent, rest);
   ABUT_ASSERT(admissible);

@@ -4,6 +4,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/rigid_motions.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
@@ -31,7 +32,7 @@ ModalReactions::ModalReactions(Body body, const std::vector<int>& supports,
       supports_(supports),
       held_(holding(body_.mesh, supports)),
       solver_(make_direct_solver()) {
-  const std::vector<double> zero(static_cast<std::size_t>(body_.mesh.dofs()), 0.0);
+  const std::vector<double> zero(index(body_.mesh.dofs()), 0.0);
   ModelResponse rest;
   const bool admissible = body_.mesh.evaluate(zero, {}, Model::Want::tangent, rest);
   ABUT_ASSERT(admissible);
@@ -71,7 +72,7 @@ Vector ModalReactions::carried(const Motion& motion, double time, const Vector& 
   Vector force = on_ports;
   for (const std::unique_ptr<Load>& load : body_.loads) load->add(time, {}, force);
   const Vector rates = body_.integrator.acceleration(motion, time, body_.step);
-  std::vector<double> acceleration(static_cast<std::size_t>(force.size()));
+  std::vector<double> acceleration(index(force.size()));
   body_.map.acceleration(motion.q, motion.v, span_of(rates), acceleration);
   return force - body_.mass * view(acceleration);
 }

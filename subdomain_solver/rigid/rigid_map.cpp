@@ -1,9 +1,10 @@
 #include "subdomain_solver/rigid/rigid_map.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
 RigidMap::RigidMap(const RigidModel& body, const Mesh& mesh) : body_(body) {
-  const std::size_t dim = static_cast<std::size_t>(mesh.dim);
+  const std::size_t dim = index(mesh.dim);
   for (std::size_t k = 0; k < mesh.points.size(); k += dim) {
     Eigen::Vector3d arm = -body.centre();
     for (std::size_t i = 0; i < dim; ++i) arm(static_cast<Eigen::Index>(i)) += mesh.points[k + i];
@@ -14,7 +15,7 @@ RigidMap::RigidMap(const RigidModel& body, const Mesh& mesh) : body_(body) {
 /// (nodes, dim) values of a field that is a function of the arm.
 template <class Value>
 void RigidMap::fill(std::span<double> out, Value value) const {
-  const std::size_t dim = static_cast<std::size_t>(body_.dim());
+  const std::size_t dim = index(body_.dim());
   for (std::size_t node = 0; node < arms_.size(); ++node) {
     const Eigen::Vector3d at = value(arms_[node]);
     for (std::size_t i = 0; i < dim; ++i) out[node * dim + i] = at(static_cast<Eigen::Index>(i));
@@ -53,7 +54,7 @@ void RigidMap::acceleration(std::span<const double> q, std::span<const double> v
 
 void RigidMap::lift(std::span<const double> q, std::span<const double> nodal, Vector& force) const {
   const Eigen::Matrix3d turn = body_.pose(q).attitude.toRotationMatrix();
-  const std::size_t dim = static_cast<std::size_t>(body_.dim());
+  const std::size_t dim = index(body_.dim());
   Eigen::Vector3d sum = Eigen::Vector3d::Zero(), moment = sum;
   for (std::size_t node = 0; node < arms_.size(); ++node) {
     Eigen::Vector3d f = Eigen::Vector3d::Zero();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -35,8 +36,7 @@ void ExplicitDynamics::find_loads(double time, std::span<const double> q) {
 
 std::optional<Failed> ExplicitDynamics::begin(Motion& motion, double time) {
   motion.history.resize(problem_.model->history_size(), 0.0);
-  for (const Prescribed& p : problem_.supports)
-    motion.q[static_cast<std::size_t>(p.dof)] = p.value(time);
+  for (const Prescribed& p : problem_.supports) motion.q[index(p.dof)] = p.value(time);
   if (!problem_.model->evaluate(motion.q, motion.history, Model::Want::force, response_))
     return failed_newton({NewtonReport::End::inadmissible}, time);
   store(response_.force, motion.force);
@@ -90,7 +90,7 @@ double ExplicitDynamics::correct(Motion& motion, double dt, Range range) const {
 double ExplicitDynamics::correct_supports(Motion& motion, double dt) const {
   double work = 0.0;
   for (const Prescribed& p : problem_.supports) {
-    const std::size_t i = static_cast<std::size_t>(p.dof);
+    const std::size_t i = index(p.dof);
     const double moved = next_[i] - motion.q[i], before = motion.v[i];
     motion.v[i] = moved / dt;
     work +=
@@ -106,7 +106,7 @@ std::optional<Failed> ExplicitDynamics::step(Motion& motion, double time, double
   for (const Prescribed& p : problem_.supports) {
     const double value = p.value(time + dt);
     if (!std::isfinite(value)) return not_finite(time + dt);
-    next_[static_cast<std::size_t>(p.dof)] = value;
+    next_[index(p.dof)] = value;
   }
   if (!problem_.model->evaluate(next_, motion.history, Model::Want::force, response_))
     return failed_newton({NewtonReport::End::inadmissible}, time + dt);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -29,8 +30,7 @@ class ImplicitDynamics::Balance final : public Equations {
   Vector first_guess() const { return o_.free_.pick(a_); }
 
   [[nodiscard]] bool residual(const Vector& x, Vector& r, double& scale) override {
-    for (int i = 0; i < o_.free_.count(); ++i)
-      a_(o_.free_.list()[static_cast<std::size_t>(i)]) = x(i);
+    for (int i = 0; i < o_.free_.count(); ++i) a_(o_.free_.list()[index(i)]) = x(i);
     q_ = q_start_ + w_.beta * dt_ * dt_ * a_;
     Model& model = *o_.problem_.model;
     const std::span<const double> q = span_of(q_);
@@ -162,8 +162,8 @@ std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
   motion.a.resize(motion.q.size(), 0.0);
   Vector a = Vector::Zero(model.dofs());
   for (const Prescribed& p : problem_.supports) {
-    motion.q[static_cast<std::size_t>(p.dof)] = p.value(time);
-    a(p.dof) = motion.a[static_cast<std::size_t>(p.dof)];
+    motion.q[index(p.dof)] = p.value(time);
+    a(p.dof) = motion.a[index(p.dof)];
   }
   if (!model.evaluate(motion.q, motion.history, Model::Want::force, response))
     return failed_newton({NewtonReport::End::inadmissible}, time);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.hpp"
 #include "contract/outcome.hpp"
 #include "subdomain_solver/model.hpp"
 #include "subdomain_solver/solve/newton.hpp"
@@ -21,7 +22,7 @@ inline Eigen::Map<Vector> view(std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 inline std::span<const double> span_of(const Vector& values) {
-  return {values.data(), static_cast<std::size_t>(values.size())};
+  return {values.data(), index(values.size())};
 }
 inline void store(const Vector& from, std::vector<double>& to) {
   to.assign(from.data(), from.data() + from.size());

@@ -1,4 +1,5 @@
 #include "subdomain_solver/time/problem.hpp"
+#include "base/index.hpp"
 
 #include <cmath>
 
@@ -25,7 +26,7 @@ void Problem::set_rates(double time, double step, Motion& motion) const {
   const double h = 1.0e-3 * step;
   motion.a.resize(motion.q.size(), 0.0);
   for (const Prescribed& p : supports) {
-    const std::size_t i = static_cast<std::size_t>(p.dof);
+    const std::size_t i = index(p.dof);
     const double at = p.value(time), next = p.value(time + h), last = p.value(time + 2.0 * h);
     motion.v[i] = (4.0 * (next - at) - (last - at)) / (2.0 * h);
     const double a = one_sided_acceleration(p, time, step);
@@ -44,10 +45,10 @@ void Problem::set_accelerations(double time, double step, Vector& acceleration) 
 }
 
 FreeCoordinates::FreeCoordinates(int dofs, const std::vector<Prescribed>& supports)
-    : place_(static_cast<std::size_t>(dofs), 0) {
-  for (const Prescribed& p : supports) place_[static_cast<std::size_t>(p.dof)] = -1;
+    : place_(index(dofs), 0) {
+  for (const Prescribed& p : supports) place_[index(p.dof)] = -1;
   for (int i = 0; i < dofs; ++i) {
-    int& place = place_[static_cast<std::size_t>(i)];
+    int& place = place_[index(i)];
     if (place < 0) continue;
     place = count();
     free_.push_back(i);
@@ -56,12 +57,12 @@ FreeCoordinates::FreeCoordinates(int dofs, const std::vector<Prescribed>& suppor
 
 Vector FreeCoordinates::pick(const Vector& all) const {
   Vector out(count());
-  for (int i = 0; i < count(); ++i) out(i) = all(free_[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < count(); ++i) out(i) = all(free_[index(i)]);
   return out;
 }
 
 void FreeCoordinates::add(const Vector& free, Vector& all) const {
-  for (int i = 0; i < count(); ++i) all(free_[static_cast<std::size_t>(i)]) += free(i);
+  for (int i = 0; i < count(); ++i) all(free_[index(i)]) += free(i);
 }
 
 void FreeCoordinates::extract(const SparseMatrix& all, SparseMatrix& free) {
@@ -72,9 +73,9 @@ void FreeCoordinates::extract(const SparseMatrix& all, SparseMatrix& free) {
     for (int column : free_) {
       const int first = all.outerIndexPtr()[column], last = all.outerIndexPtr()[column + 1];
       for (int k = first; k < last; ++k) {
-        const int row = place_[static_cast<std::size_t>(all.innerIndexPtr()[k])];
+        const int row = place_[index(all.innerIndexPtr()[k])];
         if (row < 0) continue;
-        entries.emplace_back(row, place_[static_cast<std::size_t>(column)], 0.0);
+        entries.emplace_back(row, place_[index(column)], 0.0);
         from_.push_back(k);
       }
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/index.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -47,8 +48,7 @@ class QuasiStatic::Balance final : public Equations {
   }
 
   [[nodiscard]] bool residual(const Vector& x, Vector& r, double& scale) override {
-    for (int i = 0; i < o_.free_.count(); ++i)
-      q_(o_.free_.list()[static_cast<std::size_t>(i)]) = x(i);
+    for (int i = 0; i < o_.free_.count(); ++i) q_(o_.free_.list()[index(i)]) = x(i);
     Model& model = *o_.problem_.model;
     if (!model.evaluate(span_of(q_), motion_.history, Model::Want::force, response)) return false;
     const Vector external = o_.problem_.external_force(time_, span_of(q_));

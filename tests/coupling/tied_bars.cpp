@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "base/archive.hpp"
-#include "subdomain_solver/time/bar_integrator.hpp"
+#include "subdomain_solver/bars/bar_integrator.hpp"
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 

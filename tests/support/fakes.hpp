@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/archive.hpp"
+#include "base/index.hpp"
 #include "contract/subdomain.hpp"
 
 namespace abut {
@@ -97,7 +98,7 @@ class FakeSubdomain : public Subdomain {
       port.upper[0] = std::max(port.upper[0], u_);
       sample(time, port.trace);
     }
-    const std::size_t records = static_cast<std::size_t>(std::max(1, request_->records));
+    const std::size_t records = index(std::max(1, request_->records));
     port.lower.resize(records, port.lower[0]);  // the range of the whole window covers its parts
     port.upper.resize(records, port.upper[0]);
     port.approach_bound = std::abs(v_);
@@ -157,7 +158,7 @@ class FakeSubdomain : public Subdomain {
     trace.f.push_back(-options_.stiffness * u_);
   }
   void fill_records(const TimeWindow& window, Response& response) const {
-    response.records.resize(static_cast<std::size_t>(request_->records));
+    response.records.resize(index(request_->records));
     for (std::size_t i = 0; i < response.records.size(); ++i) {
       BodyRecord& record = response.records[i];
       const double part = static_cast<double>(i + 1) / static_cast<double>(request_->records);

@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/hencky.hpp"
 #include "subdomain_solver/materials/j2_plasticity.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
@@ -109,9 +110,7 @@ inline std::vector<Matrix3> sample_deformations() {
 
 using History = std::vector<double>;
 
-inline History zero_history(const Material& law) {
-  return History(static_cast<std::size_t>(law.history_size()), 0.0);
-}
+inline History zero_history(const Material& law) { return History(index(law.history_size()), 0.0); }
 
 /// Answer from a given history; the history at the end takes its place when `advance`.
 inline PointResponse answer(const Material& law, const Matrix3& f, History& history,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/element.hpp"
 #include "subdomain_solver/fe/mesh.hpp"
 
@@ -15,7 +16,7 @@ namespace abut {
 /// Measures of a mesh, by quadrature on the mapped cells and facets and independent of the solver.
 class MeshMeasures {
  public:
-  explicit MeshMeasures(const Mesh& mesh) : mesh_(mesh), dim_(static_cast<std::size_t>(mesh.dim)) {}
+  explicit MeshMeasures(const Mesh& mesh) : mesh_(mesh), dim_(index(mesh.dim)) {}
 
   /// [m^dim]
   double volume() const {
@@ -23,7 +24,7 @@ class MeshMeasures {
     for (const CellBlock& block : mesh_.blocks) {
       const Element& element = *block.element;
       const Tabulation table = tabulate(element, quadrature(element.shape, degree));
-      const auto nodes = static_cast<std::size_t>(element.nodes);
+      const auto nodes = index(element.nodes);
       for (std::size_t first = 0; first < block.nodes.size(); first += nodes) {
         const std::vector<std::int32_t> own(&block.nodes[first], &block.nodes[first] + nodes);
         for (std::size_t q = 0; q < table.weight.size(); ++q) {
@@ -48,7 +49,7 @@ class MeshMeasures {
   Surface surface(const std::string& side) const {
     Surface sum;
     for (const Facet& facet : mesh_.side(side)) {
-      const Element& cell = *mesh_.blocks[static_cast<std::size_t>(facet.block)].element;
+      const Element& cell = *mesh_.blocks[index(facet.block)].element;
       const Element& face = element_named(cell.facet_name);
       const Tabulation table = tabulate(face, quadrature(face.shape, degree));
       const std::vector<std::int32_t> own = mesh_.nodes_of(facet);
@@ -63,8 +64,7 @@ class MeshMeasures {
         for (std::size_t d = 0; d < dim_; ++d) {
           double x = 0.0;
           for (std::size_t a = 0; a < own.size(); ++a)
-            x += table.n[q * own.size() + a] *
-                 mesh_.points[static_cast<std::size_t>(own[a]) * dim_ + d];
+            x += table.n[q * own.size() + a] * mesh_.points[index(own[a]) * dim_ + d];
           sum.vector[d] += table.weight[q] * n[d];
           sum.flux += table.weight[q] * n[d] * x;
           square += n[d] * n[d];
@@ -82,11 +82,11 @@ class MeshMeasures {
   std::array<double, 9> jacobian(const std::vector<std::int32_t>& nodes, const Tabulation& table,
                                  std::size_t q) const {
     std::array<double, 9> j{};
-    const auto columns = static_cast<std::size_t>(table.dim);
+    const auto columns = index(table.dim);
     for (std::size_t a = 0; a < nodes.size(); ++a)
       for (std::size_t i = 0; i < dim_; ++i)
         for (std::size_t k = 0; k < columns; ++k)
-          j[i * 3 + k] += mesh_.points[static_cast<std::size_t>(nodes[a]) * dim_ + i] *
+          j[i * 3 + k] += mesh_.points[index(nodes[a]) * dim_ + i] *
                           table.dn[(q * nodes.size() + a) * columns + k];
     return j;
   }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/index.hpp"
 #include "subdomain_solver/modal/modal_basis.hpp"
 #include "subdomain_solver/modal/modal_map.hpp"
 #include "subdomain_solver/modal/modal_model.hpp"
@@ -51,8 +52,8 @@ struct ModalSolid {
 
   /// The load acts here instead of on the solid's nodes.
   void take(std::unique_ptr<Load> load) {
-    problem.loads.push_back(std::make_unique<LiftedLoad>(
-        std::move(load), map, static_cast<std::size_t>(fe.model.dofs())));
+    problem.loads.push_back(
+        std::make_unique<LiftedLoad>(std::move(load), map, index(fe.model.dofs())));
   }
   /// Amplitudes of nodal values, in the mass.
   std::vector<double> project(const std::vector<double>& nodal) const {
@@ -60,7 +61,7 @@ struct ModalSolid {
     return {q.data(), q.data() + q.size()};
   }
   std::vector<double> nodal(const std::vector<double>& amplitudes) const {
-    std::vector<double> out(static_cast<std::size_t>(fe.model.dofs()));
+    std::vector<double> out(index(fe.model.dofs()));
     map.displacement(amplitudes, out);
     return out;
   }

@@ -9,7 +9,7 @@
 
 #include "base/yaml_document.hpp"
 #include "contract/subdomain.hpp"
-#include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/make/body_spec.hpp"
 
 namespace abut {
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/loads.hpp"
 #include "subdomain_solver/time/implicit_dynamics.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
@@ -24,8 +25,7 @@ using Place = std::function<Position(const Position&)>;
 /// Reference position of a node; zeros beyond the mesh's dimension.
 inline Position position(const Mesh& mesh, int node) {
   Position x = Position::Zero();
-  for (int i = 0; i < mesh.dim; ++i)
-    x(i) = mesh.points[static_cast<std::size_t>(node * mesh.dim + i)];
+  for (int i = 0; i < mesh.dim; ++i) x(i) = mesh.points[index(node * mesh.dim + i)];
   return x;
 }
 
@@ -34,8 +34,7 @@ inline std::vector<double> nodal(const Mesh& mesh, const Place& field) {
   std::vector<double> out(mesh.points.size());
   for (int node = 0; node < mesh.node_count(); ++node) {
     const Position value = field(position(mesh, node));
-    for (int i = 0; i < mesh.dim; ++i)
-      out[static_cast<std::size_t>(node * mesh.dim + i)] = value(i);
+    for (int i = 0; i < mesh.dim; ++i) out[index(node * mesh.dim + i)] = value(i);
   }
   return out;
 }
@@ -56,7 +55,7 @@ struct Solid {
                  const std::vector<NodeFrame>& frames = {})
       : model(std::move(mesh), std::move(law), options, frames) {
     problem.model = &model;
-    motion.q.assign(static_cast<std::size_t>(model.dofs()), 0.0);
+    motion.q.assign(index(model.dofs()), 0.0);
     motion.v = motion.q;
   }
 
@@ -99,8 +98,7 @@ struct Solid {
   /// Displacement of a node.
   Position displacement(int node) const {
     Position u = Position::Zero();
-    for (int i = 0; i < model.mesh().dim; ++i)
-      u(i) = motion.q[static_cast<std::size_t>(node * model.mesh().dim + i)];
+    for (int i = 0; i < model.mesh().dim; ++i) u(i) = motion.q[index(node * model.mesh().dim + i)];
     return u;
   }
   /// Mean over the nodes of a side or node set.

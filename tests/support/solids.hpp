@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "subdomain_solver/time/problem.hpp"
@@ -33,7 +34,7 @@ inline Mesh unit_mesh(const std::string& element, int n) {
 /// unit; nodes on the boundary stay.
 inline void distort(Mesh& mesh, double size) {
   std::mt19937_64 engine(7);
-  const std::size_t dim = static_cast<std::size_t>(mesh.dim);
+  const std::size_t dim = index(mesh.dim);
   for (std::size_t node = 0; node < mesh.points.size() / dim; ++node) {
     double* x = mesh.points.data() + node * dim;
     bool inside = true;

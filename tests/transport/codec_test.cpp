@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "base/index.hpp"
 #include "messaging/codec.hpp"
 #include "messaging/frame.hpp"
 #include "tests/support/fakes.hpp"
@@ -137,7 +138,7 @@ TEST(Codec, AngularMomentumHasOneNumberPerAxisOfRotationOrNone) {
   sent.records.push_back(BodyRecord{0.25, {}, {}, {}});
   for (const auto& [dim, axes] : {std::pair{1, 0u}, {2, 1u}, {3, 3u}}) {
     body.dim = dim;
-    sent.records[0].momentum.assign(static_cast<std::size_t>(dim), 1.0);
+    sent.records[0].momentum.assign(index(dim), 1.0);
     for (const std::size_t count : {0u, 1u, 2u, 3u}) {
       sent.records[0].angular_momentum.assign(count, 2.5);
       const v1::Advanced wire = through_bytes<Response, v1::Advanced>(sent);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/horizon.hpp"
 #include "coordinator/coupling/roles.hpp"
@@ -31,7 +32,7 @@ class Scripted : public Subdomain {
       port.geometry.normals = {p == 0 ? normal : -normal};
       description_.ports.push_back(port);
     }
-    reply.ports.resize(static_cast<std::size_t>(ports));
+    reply.ports.resize(index(ports));
   }
   /// u at the times of a window and, if any, forces.
   void trace(std::vector<double> time, std::vector<double> u, std::vector<double> f = {}) {
@@ -51,7 +52,7 @@ class Scripted : public Subdomain {
   PortKernel kernel(int, double step, int count) override {
     PortKernel kernel;
     kernel.step = step;
-    kernel.displacement.assign(static_cast<std::size_t>(count), compliance);
+    kernel.displacement.assign(index(count), compliance);
     return kernel;
   }
   std::vector<std::byte> checkpoint() override { return {}; }

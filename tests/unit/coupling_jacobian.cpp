@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "coordinator/coupling/interface.hpp"
 #include "coordinator/coupling/transmission.hpp"
 #include "tests/support/scenes.hpp"
@@ -269,8 +270,7 @@ TEST(UnilateralSolution, MakesForcesAndGapsComplementary) {
     Eigen::VectorXd left = overlap + normal * r;
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j <= i; ++j)
-        left[i] -=
-            (ck[static_cast<std::size_t>(i - j)] + cn[static_cast<std::size_t>(i - j)]) * change[j];
+        left[i] -= (ck[index(i - j)] + cn[index(i - j)]) * change[j];
     const Eigen::VectorXd now = force + change;
     int pressed = 0;
     for (Eigen::Index i = 0; i < n; ++i) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
+#include "base/index.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
@@ -83,7 +84,7 @@ std::vector<double> displaced(const Mesh& mesh, double size) {
 
 /// u = H x.
 std::vector<double> affine(const Mesh& mesh, const Matrix3& h) {
-  const std::size_t dim = static_cast<std::size_t>(mesh.dim);
+  const std::size_t dim = index(mesh.dim);
   std::vector<double> q(mesh.points.size());
   for (std::size_t n = 0; n < q.size(); n += dim) {
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
@@ -142,7 +143,7 @@ TEST_P(BatchedCellsOf, PassThePatchTest) {
   if (mesh.dim == 2) h.row(2).setZero(), h.col(2).setZero();
   const Answer found = batched(GetParam(), mesh, affine(mesh, h));
   ASSERT_TRUE(found.admissible);
-  const std::size_t dim = static_cast<std::size_t>(mesh.dim);
+  const std::size_t dim = index(mesh.dim);
   for (std::size_t i = 0; i < found.force.size(); ++i) {
     const double* x = mesh.points.data() + i / dim * dim;
     const bool inside = std::all_of(x, x + dim, [](double c) { return c > 1e-9 && c < 1 - 1e-9; });
@@ -159,7 +160,7 @@ TEST_P(BatchedCellsOf, PassThePatchTest) {
 TEST_P(BatchedCellsOf, BalanceForces) {
   const Mesh mesh = distorted_mesh(GetParam());
   const Answer found = batched(GetParam(), mesh, displaced(mesh, 1.0e-2));
-  const std::size_t dim = static_cast<std::size_t>(mesh.dim);
+  const std::size_t dim = index(mesh.dim);
   for (std::size_t i = 0; i < dim; ++i) {
     double sum = 0.0;
     for (std::size_t n = i; n < found.force.size(); n += dim) sum += found.force[n];
@@ -191,7 +192,7 @@ TEST_P(ObjectiveBatchedCells, ForcesHaveNoMoment) {
   const Mesh mesh = distorted_mesh(GetParam());
   const std::vector<double> q = displaced(mesh, 1.0e-2);
   const Answer found = batched(GetParam(), mesh, q);
-  const std::size_t dim = static_cast<std::size_t>(mesh.dim);
+  const std::size_t dim = index(mesh.dim);
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (std::size_t n = 0; n < q.size(); n += dim) {
     Eigen::Vector3d x = Eigen::Vector3d::Zero(), f = Eigen::Vector3d::Zero();
@@ -224,7 +225,7 @@ TEST(Hourglass, EveryFieldButRigidMotionHasEnergy) {
       FeModel model(Mesh(mesh), law_named("linear_elastic"),
                     {Plane::strain, Formulation::one_point, 1.0, coefficient});
       ModelResponse response;
-      const std::vector<double> rest(static_cast<std::size_t>(size), 0.0);
+      const std::vector<double> rest(index(size), 0.0);
       ASSERT_TRUE(model.evaluate(rest, {}, Model::Want::tangent, response));
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes{Eigen::MatrixXd(response.tangent)};
       // Moduli and edges of order 1: stiffnesses of 0.01 and more, or round-off.

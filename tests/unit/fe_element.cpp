@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/element.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -21,22 +22,22 @@ using Vector = std::vector<double>;
 class EveryElement : public testing::TestWithParam<Element> {
  protected:
   const Element& element = GetParam();
-  const std::size_t dim = static_cast<std::size_t>(element.dim);
-  const std::size_t nodes = static_cast<std::size_t>(element.nodes);
+  const std::size_t dim = index(element.dim);
+  const std::size_t nodes = index(element.nodes);
 };
 
 /// Points inside the reference shape, chosen without symmetry.
 std::vector<Vector> inner_points(const Element& element) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> share(0.05, 0.30);
-  std::vector<Vector> points(5, Vector(static_cast<std::size_t>(element.dim)));
+  std::vector<Vector> points(5, Vector(index(element.dim)));
   for (Vector& point : points)
     for (double& x : point) x = share(random);
   return points;
 }
 
 Vector values(const Element& element, const Vector& xi, Vector* derivatives = nullptr) {
-  const auto nodes = static_cast<std::size_t>(element.nodes);
+  const auto nodes = index(element.nodes);
   Vector n(nodes), dn(nodes * xi.size());
   element.evaluate(xi, n, dn);
   if (derivatives != nullptr) *derivatives = dn;
@@ -110,12 +111,12 @@ TEST_P(EveryElement, RestrictedToAFacetIsTheFacetsElement) {
   for (const std::vector<int>& facet : element.facets) {
     const Element& face = element_named(element.facet_name);
     ASSERT_EQ(face.dim, element.dim - 1);
-    ASSERT_EQ(facet.size(), static_cast<std::size_t>(face.nodes));
+    ASSERT_EQ(facet.size(), index(face.nodes));
     for (const Vector& s : inner_points(face)) {
       const Vector n_face = values(face, s);
       Vector xi(dim, 0.0), expected(nodes, 0.0);
       for (std::size_t a = 0; a < facet.size(); ++a) {
-        const auto node = static_cast<std::size_t>(facet[a]);
+        const auto node = index(facet[a]);
         expected[node] = n_face[a];
         for (std::size_t d = 0; d < dim; ++d) xi[d] += n_face[a] * element.corners[node * dim + d];
       }
@@ -142,8 +143,8 @@ double determinant(const double* j, std::size_t dim) {
 
 /// dx_i / dxi_j at a point of the table, (space, table.dim).
 Vector jacobian(const Tabulation& table, std::size_t q, const Vector& x, std::size_t space) {
-  const auto nodes = static_cast<std::size_t>(table.nodes);
-  const auto dim = static_cast<std::size_t>(table.dim);
+  const auto nodes = index(table.nodes);
+  const auto dim = index(table.dim);
   Vector j(space * dim, 0.0);
   for (std::size_t a = 0; a < nodes; ++a)
     for (std::size_t i = 0; i < space; ++i)
@@ -176,8 +177,7 @@ TEST_P(EveryElement, FacetsCloseTheCellAndPointOutwards) {
   for (std::size_t f = 0; f < element.facets.size(); ++f) {
     Vector y;
     for (int node : element.facets[f])
-      for (std::size_t d = 0; d < dim; ++d)
-        y.push_back(x[static_cast<std::size_t>(node) * dim + d]);
+      for (std::size_t d = 0; d < dim; ++d) y.push_back(x[index(node) * dim + d]);
     for (std::size_t q = 0; q < table.weight.size(); ++q) {
       const Vector area = area_vector(jacobian(table, q, y, dim), dim, f);
       for (std::size_t d = 0; d < dim; ++d) {

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/exodus_file.hpp"
 #include "tests/support/mesh_measures.hpp"
 #include "tests/support/refusal.hpp"
@@ -74,7 +75,7 @@ TEST_P(ExodusBlocks, HaveTheirVolumesSidesAndSets) {
   EXPECT_EQ(mesh.blocks[0].name, "steel");
   EXPECT_EQ(mesh.blocks[1].name, "lead");
   const auto expect_area = [&measures](const char* side, int direction, double area) {
-    const auto d = static_cast<std::size_t>(direction);
+    const auto d = index(direction);
     EXPECT_NEAR(measures.surface(side).vector[d], area, roundoff(500, 6.0)) << side;
   };
   expect_area("bottom", 2, -2.0);
@@ -85,8 +86,8 @@ TEST_P(ExodusBlocks, HaveTheirVolumesSidesAndSets) {
   expect_area("right", 0, 3.0);
   EXPECT_FALSE(mesh.sides.contains("between"));
   for (std::int32_t n : mesh.nodes_of("edge")) {
-    EXPECT_EQ(mesh.points[static_cast<std::size_t>(3 * n + 1)], 0.0);
-    EXPECT_EQ(mesh.points[static_cast<std::size_t>(3 * n + 2)], 0.0);
+    EXPECT_EQ(mesh.points[index(3 * n + 1)], 0.0);
+    EXPECT_EQ(mesh.points[index(3 * n + 2)], 0.0);
   }
   EXPECT_EQ(mesh.nodes_of("nodelist_5"), (std::vector<std::int32_t>{0}));
 }
@@ -95,17 +96,17 @@ TEST_P(ExodusBlocks, HaveTheNodesBetweenCornersWhereOurOrderPutsThem) {
   const Mesh mesh = read_exodus(path_of(GetParam()));
   for (const CellBlock& block : mesh.blocks) {
     const Element& element = *block.element;
-    const auto nodes = static_cast<std::size_t>(element.nodes);
+    const auto nodes = index(element.nodes);
     const Element& linear = element_named(element.shape == Shape::hexahedron ? "hex8" : "tet4");
     for (std::size_t first = 0; first < block.nodes.size(); first += nodes) {
       for (std::size_t a = 0; a < nodes; ++a) {
-        std::vector<double> n(static_cast<std::size_t>(linear.nodes)), dn(3 * n.size());
+        std::vector<double> n(index(linear.nodes)), dn(3 * n.size());
         linear.evaluate(std::span(element.corners).subspan(3 * a, 3), n, dn);
         for (std::size_t d = 0; d < 3; ++d) {
           double x = 0.0;
           for (std::size_t c = 0; c < n.size(); ++c)
-            x += n[c] * mesh.points[3 * static_cast<std::size_t>(block.nodes[first + c]) + d];
-          const double own = mesh.points[3 * static_cast<std::size_t>(block.nodes[first + a]) + d];
+            x += n[c] * mesh.points[3 * index(block.nodes[first + c]) + d];
+          const double own = mesh.points[3 * index(block.nodes[first + a]) + d];
           EXPECT_EQ(own, x) << a;  // halves of whole numbers
         }
       }

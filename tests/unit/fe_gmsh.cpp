@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/gmsh_file.hpp"
 #include "subdomain_solver/fe/shape_functions.hpp"
 #include "tests/support/mesh_measures.hpp"
@@ -59,11 +60,11 @@ TEST_P(GmshBlocks, HaveTheirVolumesSidesAndSets) {
   EXPECT_EQ(mesh.sides.size(), 3u);  // and the one without a name:
   EXPECT_NEAR(measures.surface("surface_77").vector[1], -6.0, roundoff(500, 6.0));
   for (std::int32_t n : mesh.nodes_of("between"))
-    EXPECT_NEAR(mesh.points[static_cast<std::size_t>(3 * n + 2)], 1.0, roundoff(4, 1.0));
+    EXPECT_NEAR(mesh.points[index(3 * n + 2)], 1.0, roundoff(4, 1.0));
   EXPECT_GE(mesh.nodes_of("between").size(), 4u);
   EXPECT_EQ(mesh.nodes_of("edge").size(), mesh.blocks[0].element->order == 2 ? 3u : 2u);
   ASSERT_EQ(mesh.nodes_of("origin").size(), 1u);
-  const auto origin = static_cast<std::size_t>(mesh.nodes_of("origin")[0]);
+  const auto origin = index(mesh.nodes_of("origin")[0]);
   for (std::size_t d = 0; d < 3; ++d) EXPECT_EQ(mesh.points[3 * origin + d], 0.0);
 }
 
@@ -71,18 +72,18 @@ TEST_P(GmshBlocks, HaveTheNodesBetweenCornersWhereOurOrderPutsThem) {
   const Mesh mesh = read_gmsh(path_of(GetParam()));
   for (const CellBlock& block : mesh.blocks) {
     const Element& element = *block.element;
-    const auto nodes = static_cast<std::size_t>(element.nodes);
+    const auto nodes = index(element.nodes);
     const Element& linear = element_named(element.shape == Shape::hexahedron ? "hex8" : "tet4");
     for (std::size_t first = 0; first < block.nodes.size(); first += nodes) {
       for (std::size_t a = 0; a < nodes; ++a) {
         // the parts' cells are straight: the corners' map gives the other nodes
-        std::vector<double> n(static_cast<std::size_t>(linear.nodes)), dn(3 * n.size());
+        std::vector<double> n(index(linear.nodes)), dn(3 * n.size());
         linear.evaluate(std::span(element.corners).subspan(3 * a, 3), n, dn);
         for (std::size_t d = 0; d < 3; ++d) {
           double x = 0.0;
           for (std::size_t c = 0; c < n.size(); ++c)
-            x += n[c] * mesh.points[3 * static_cast<std::size_t>(block.nodes[first + c]) + d];
-          const double own = mesh.points[3 * static_cast<std::size_t>(block.nodes[first + a]) + d];
+            x += n[c] * mesh.points[3 * index(block.nodes[first + c]) + d];
+          const double own = mesh.points[3 * index(block.nodes[first + a]) + d];
           EXPECT_NEAR(own, x, 1e-10) << a;  // Gmsh finds places on curves to about 1e-11
         }
       }
@@ -125,7 +126,7 @@ TEST(GmshFile, PlanePartsKeepTheirCurvedSides) {
         0.5 * std::sin(2.0 * half) + 4.0 / 3.0 * std::sin(half) * (1.0 - std::cos(half));
     EXPECT_NEAR(hole, 0.25 * arcs * arc, 1e-10) << file;  // Gmsh's own precision, as below
     for (std::int32_t n : mesh.nodes_of("hole")) {
-      const double* x = &mesh.points[static_cast<std::size_t>(2 * n)];
+      const double* x = &mesh.points[index(2 * n)];
       EXPECT_NEAR(std::hypot(x[0] - 1.0, x[1] - 1.0), 0.5, 1e-10);
     }
     EXPECT_NEAR(measures.surface("right").vector[0], 2.0, roundoff(100, 2.0));

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/facet_index.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "tests/support/mesh_measures.hpp"
@@ -78,9 +79,8 @@ TEST_P(PlaneParts, RectanglesHaveTheirAreaAndSides) {
     EXPECT_NEAR(measures.surface("top").vector[1], 3.0, roundoff(100, 3.0));
     EXPECT_EQ(mesh.cell_count(), element_named(data.element).shape == Shape::triangle ? 24 : 12);
     const std::int32_t corner = mesh.nodes_of("right_bottom").at(0);
-    EXPECT_EQ(mesh.points[static_cast<std::size_t>(2 * corner)], at == Origin::corner ? 4.0 : 2.5);
-    EXPECT_EQ(mesh.points[static_cast<std::size_t>(2 * corner + 1)],
-              at == Origin::corner ? -2.0 : -2.25);
+    EXPECT_EQ(mesh.points[index(2 * corner)], at == Origin::corner ? 4.0 : 2.5);
+    EXPECT_EQ(mesh.points[index(2 * corner + 1)], at == Origin::corner ? -2.0 : -2.25);
   }
 }
 
@@ -100,11 +100,11 @@ TEST_P(PlaneParts, DisksAreBoundedByTheirPolygonOrItsParabolas) {
     const double exact = radius * radius * area;
     EXPECT_NEAR(MeshMeasures(mesh).volume(), exact, roundoff(100 * mesh.cell_count(), exact));
     if (core % 2 == 0) {
-      const auto centre = static_cast<std::size_t>(mesh.nodes_of("centre").at(0));
+      const auto centre = index(mesh.nodes_of("centre").at(0));
       EXPECT_EQ(mesh.points[2 * centre], 0.2);
       EXPECT_EQ(mesh.points[2 * centre + 1], -0.1);
     }
-    EXPECT_EQ(mesh.side("mantle").size(), static_cast<std::size_t>(4 * core));
+    EXPECT_EQ(mesh.side("mantle").size(), index(4 * core));
   }
 }
 
@@ -123,7 +123,7 @@ TEST_P(SolidParts, BoxesHaveTheirVolumeAndSides) {
   EXPECT_NEAR(measures.surface("back").vector[2], -1.5, roundoff(100, 1.5));
   EXPECT_NEAR(measures.surface("front").vector[2], 1.5, roundoff(100, 1.5));
   EXPECT_EQ(mesh.node_sets.size(), 8u);
-  const auto corner = static_cast<std::size_t>(mesh.nodes_of("left_top_front").at(0));
+  const auto corner = index(mesh.nodes_of("left_top_front").at(0));
   EXPECT_EQ(mesh.points[3 * corner], 1.0);
   EXPECT_EQ(mesh.points[3 * corner + 1], -1.5);
   EXPECT_EQ(mesh.points[3 * corner + 2], 2.5);
@@ -153,7 +153,7 @@ TEST_P(SolidParts, CylindersArePrismsOverTheirPolygonOrItsParabolas) {
     if (core % 2 == 0) {
       const std::vector<std::int32_t> axis = mesh.nodes_of("axis");
       EXPECT_EQ(axis.size(), quadratic(element) ? 7u : 4u);
-      for (std::int32_t n : axis) EXPECT_EQ(mesh.points[3 * static_cast<std::size_t>(n) + 1], 1.0);
+      for (std::int32_t n : axis) EXPECT_EQ(mesh.points[3 * index(n) + 1], 1.0);
     }
   }
 }

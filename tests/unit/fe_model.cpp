@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
@@ -50,7 +51,7 @@ FeModel one_cell(const Case& c) {
 
 std::vector<double> displaced(const FeModel& model, double size) {
   Draw draw;
-  std::vector<double> q(static_cast<std::size_t>(model.dofs()));
+  std::vector<double> q(index(model.dofs()));
   for (double& x : q) x = size * draw.between(-1.0, 1.0);
   return q;
 }
@@ -107,10 +108,10 @@ TEST_P(Cells, TranslationCostsNothing) {
   const Case& c = GetParam();
   FeModel model = one_cell(c);
   const int dim = model.mesh().dim;
-  std::vector<double> q(static_cast<std::size_t>(model.dofs()));
+  std::vector<double> q(index(model.dofs()));
   // Axisymmetric bodies are free to move along their axis alone.
   for (std::size_t i = 0; i < q.size(); ++i) {
-    const bool along = c.plane != Plane::axisymmetric || i % static_cast<std::size_t>(dim) == 1;
+    const bool along = c.plane != Plane::axisymmetric || i % index(dim) == 1;
     q[i] = along ? 0.3 : 0.0;
   }
   const std::vector<double> history(model.history_size(), 0.0);
@@ -145,8 +146,8 @@ TEST(FeModel, RotationCostsNothingAtFiniteStrain) {
       distort(mesh, 0.05);
       FeModel model(std::move(mesh), std::make_unique<NeoHookean>(test_moduli, 1.0),
                     {Plane::strain, formulation, 1.0});
-      const std::size_t dim = static_cast<std::size_t>(model.mesh().dim);
-      std::vector<double> q(static_cast<std::size_t>(model.dofs()), 0.0);
+      const std::size_t dim = index(model.mesh().dim);
+      std::vector<double> q(index(model.dofs()), 0.0);
       const double cosine = std::cos(1.0), sine = std::sin(1.0);
       for (std::size_t n = 0; n < q.size(); n += dim) {
         const double x = model.mesh().points[n], y = model.mesh().points[n + 1];
@@ -188,7 +189,7 @@ TEST(FeModel, TellsTheStressOfThePresentAreaWhereCellsThin) {
   for (const std::string element : {"quad4", "bar2"}) {
     FeModel model(unit_mesh(element, 1), std::make_unique<Hencky>(test_moduli, 1.0),
                   {Plane::stress, Formulation::full});
-    const std::size_t dim = static_cast<std::size_t>(model.mesh().dim);
+    const std::size_t dim = index(model.mesh().dim);
     std::vector<double> q = model.mesh().points;
     for (std::size_t k = 0; k < q.size(); ++k)
       q[k] *= k % dim == 0 ? s - 1.0 : std::pow(s, -nu) - 1.0;

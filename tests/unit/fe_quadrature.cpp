@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/element.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -46,8 +47,7 @@ double by_rule(const Case& c, const Quadrature& rule, const int (&power)[3]) {
   for (std::size_t q = 0; q < rule.weights.size(); ++q) {
     double term = rule.weights[q];
     for (int d = 0; d < c.dim; ++d)
-      term *= std::pow(
-          rule.points[q * static_cast<std::size_t>(c.dim) + static_cast<std::size_t>(d)], power[d]);
+      term *= std::pow(rule.points[q * index(c.dim) + index(d)], power[d]);
     sum += term;
   }
   return sum;
@@ -77,8 +77,8 @@ TEST_P(EveryShape, HasPositiveWeightsAndInnerPoints) {
     for (double weight : rule.weights) EXPECT_GT(weight, 0.0);
     for (std::size_t q = 0; q < rule.weights.size(); ++q) {
       double sum = 0.0;
-      for (std::size_t d = 0; d < static_cast<std::size_t>(c.dim); ++d) {
-        const double x = rule.points[q * static_cast<std::size_t>(c.dim) + d];
+      for (std::size_t d = 0; d < index(c.dim); ++d) {
+        const double x = rule.points[q * index(c.dim) + d];
         sum += x;
         EXPECT_GT(x, c.simplex ? 0.0 : -1.0);
         EXPECT_LT(x, 1.0);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/solids.hpp"
 
@@ -19,7 +20,7 @@ Mesh pieces(const std::string& element, int count) {
   for (int k = 1; k < count; ++k) {
     const std::int32_t first = all.node_count();
     for (std::size_t i = 0; i < one.points.size(); ++i) {
-      const bool along = i % static_cast<std::size_t>(one.dim) == 0;
+      const bool along = i % index(one.dim) == 0;
       all.points.push_back(one.points[i] + (along ? 2.0 * k : 0.0));
     }
     for (std::int32_t node : one.blocks[0].nodes) all.blocks[0].nodes.push_back(first + node);
@@ -44,7 +45,7 @@ TEST(ConnectedPieces, AreTheNodesThatCellsJoin) {
     const std::vector<std::vector<std::int32_t>> found = connected_pieces(pieces(element, 3));
     ASSERT_EQ(found.size(), 3u) << element;
     for (std::int32_t k = 0; k < 3; ++k) {
-      const std::vector<std::int32_t>& nodes = found[static_cast<std::size_t>(k)];
+      const std::vector<std::int32_t>& nodes = found[index(k)];
       EXPECT_EQ(static_cast<std::int32_t>(nodes.size()), each) << element;
       EXPECT_EQ(nodes.front(), k * each) << element;
       EXPECT_TRUE(std::is_sorted(nodes.begin(), nodes.end())) << element;

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/batched_tangents.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
@@ -20,8 +21,7 @@ template <int N>
 TensorLanes<N> gather(const std::vector<Matrix3>& f, std::size_t first) {
   TensorLanes<N> lanes;
   for (int k = 0; k < 9; ++k)
-    for (int l = 0; l < N; ++l)
-      lanes.entry[k][l] = f[first + static_cast<std::size_t>(l)].reshaped()[k];
+    for (int l = 0; l < N; ++l) lanes.entry[k][l] = f[first + index(l)].reshaped()[k];
   return lanes;
 }
 
@@ -50,7 +50,7 @@ void expect_agreement(const Batched& batched, const Material& law) {
     const typename Lanes<N>::Real energy = batched.energy(minus_identity(at));
     for (int l = 0; l < N; ++l) {
       History none;
-      const PointResponse r = answer(law, f[i + static_cast<std::size_t>(l)], none);
+      const PointResponse r = answer(law, f[i + index(l)], none);
       // F rounds at 1e-16 of itself, P then at the modulus times that: some hundred of these.
       const double scale = r.tangent.cwiseAbs().maxCoeff();
       for (int k = 0; k < 9; ++k)
@@ -83,7 +83,7 @@ void expect_equal_tangents(const Batched& batched, const Material& law) {
     EXPECT_TRUE(all_positive(valid));
     for (int lane = 0; lane < N; ++lane) {
       History none;
-      const Tangent t = answer(law, f[i + static_cast<std::size_t>(lane)], none).tangent;
+      const Tangent t = answer(law, f[i + index(lane)], none).tangent;
       const double scale = t.cwiseAbs().maxCoeff();
       for (int j = 0; j < 3; ++j)
         for (int l = j; l < 3; ++l)

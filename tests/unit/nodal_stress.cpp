@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "subdomain_solver/solid_measures.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/solids.hpp"
@@ -17,8 +18,6 @@
 
 namespace abut {
 namespace {
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// Linear in every coordinate, with all products on squares and cubes.
 double polynomial(const Element& element, std::span<const double> xi) {

@@ -9,8 +9,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "base/yaml_document.hpp"
-#include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/make/body_spec.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
@@ -44,7 +45,7 @@ const std::string spinning =
 Advance pushed(const Subdomain& body, double from, double to, std::vector<double> force) {
   Advance request = free_request(body, from, to);
   const Port& port = body.describe().ports[0];
-  const std::size_t dim = static_cast<std::size_t>(port.geometry.dim);
+  const std::size_t dim = index(port.geometry.dim);
   Waveform& imposed = request.boundary[0].force;
   imposed.width = static_cast<int>(port.geometry.points.size());
   imposed.time = {from, to};
@@ -87,7 +88,7 @@ std::array<double, 2> mismatch(double step_length) {
   Response response;
   step(*body, pushed(*body, begin, end, {1.0e3, 2.0e3, -3.0e3}), response);
   const Waveform& t = response.ports[0].trace;
-  const std::size_t width = static_cast<std::size_t>(t.width);
+  const std::size_t width = index(t.width);
   EXPECT_EQ(t.u.size(), t.size() * width);
   std::array<double, 2> most{};
   for (std::size_t k = 0; k + width < t.u.size(); ++k) {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/rigid/rigid_fit.hpp"
 #include "tests/support/solid_runs.hpp"
@@ -55,7 +56,7 @@ struct Moved {
     const Pose pose = some_pose(body.dim());
     q = body.coordinates(pose);
     v = body.rates(pose, some_twist(body.dim()));
-    u.resize(static_cast<std::size_t>(mesh.dofs()));
+    u.resize(index(mesh.dofs()));
     velocity = u;
     map.displacement(q, u);
     map.velocity(q, v, velocity);
@@ -101,7 +102,7 @@ TEST(RigidModel, HasTheMomentaOfItsFiniteElements) {
       for (int node = 0; node < m.mesh.mesh().node_count(); ++node) {
         Vector3d x = position(m.mesh.mesh(), node), p = Vector3d::Zero();
         for (int i = 0; i < dim; ++i) {
-          x(i) += m.u[static_cast<std::size_t>(node * dim + i)];
+          x(i) += m.u[index(node * dim + i)];
           p(i) = momentum(node * dim + i);
         }
         linear += p;

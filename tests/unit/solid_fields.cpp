@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/vtk_cells.hpp"
 #include "subdomain_solver/solid_measures.hpp"
 #include "tests/support/materials.hpp"
@@ -60,11 +61,11 @@ TEST(VtkCells, HoldEveryNodeOnceWithCornersFirstAndEveryOtherNodeBetweenItsCorne
     std::vector<int> sorted = cell.nodes;
     std::sort(sorted.begin(), sorted.end());
     ASSERT_EQ(static_cast<int>(sorted.size()), element.nodes);
-    for (int i = 0; i < element.nodes; ++i) EXPECT_EQ(sorted[static_cast<std::size_t>(i)], i);
+    for (int i = 0; i < element.nodes; ++i) EXPECT_EQ(sorted[index(i)], i);
     const int corners = vtk_corners(cell.type);
     EXPECT_EQ(corners, element.corner_count());
     // Both go around the base first, so that corners agree; their orientation is the Jacobian's.
-    for (int i = 0; i < corners; ++i) EXPECT_EQ(cell.nodes[static_cast<std::size_t>(i)], i);
+    for (int i = 0; i < corners; ++i) EXPECT_EQ(cell.nodes[index(i)], i);
     if (element.order == 1) {
       EXPECT_EQ(element.nodes, corners);
       continue;
@@ -72,8 +73,8 @@ TEST(VtkCells, HoldEveryNodeOnceWithCornersFirstAndEveryOtherNodeBetweenItsCorne
     const Edges& edges = vtk_edges().at(cell.type);
     ASSERT_EQ(static_cast<int>(edges.size()), element.nodes - corners);
     const auto at = [&](int vtk_node, int axis) {
-      const int ours = cell.nodes[static_cast<std::size_t>(vtk_node)];
-      return element.corners[static_cast<std::size_t>(ours * element.dim + axis)];
+      const int ours = cell.nodes[index(vtk_node)];
+      return element.corners[index(ours * element.dim + axis)];
     };
     for (std::size_t e = 0; e < edges.size(); ++e) {
       for (int axis = 0; axis < element.dim; ++axis)
@@ -93,7 +94,7 @@ TEST(SolidGrid, IsTheMeshInSpace) {
     ASSERT_EQ(static_cast<int>(grid.nodes()), mesh.node_count());
     EXPECT_EQ(static_cast<int>(grid.cells()), mesh.cell_count());
     EXPECT_EQ(grid.connectivity.size(), mesh.blocks[0].nodes.size());
-    const std::size_t dim = static_cast<std::size_t>(mesh.dim);
+    const std::size_t dim = index(mesh.dim);
     for (std::size_t node = 0; node < grid.nodes(); ++node) {
       for (std::size_t i = 0; i < 3; ++i)
         EXPECT_EQ(grid.points[3 * node + i], i < dim ? mesh.points[dim * node + i] : 0.0);
@@ -107,9 +108,8 @@ std::vector<double> homogeneous(const Mesh& mesh, const Matrix3& f) {
   for (int node = 0; node < mesh.node_count(); ++node) {
     for (int i = 0; i < mesh.dim; ++i) {
       for (int j = 0; j < mesh.dim; ++j)
-        u[static_cast<std::size_t>(node * mesh.dim + i)] +=
-            (f(i, j) - (i == j ? 1.0 : 0.0)) *
-            mesh.points[static_cast<std::size_t>(node * mesh.dim + j)];
+        u[index(node * mesh.dim + i)] +=
+            (f(i, j) - (i == j ? 1.0 : 0.0)) * mesh.points[index(node * mesh.dim + j)];
     }
   }
   return u;
@@ -160,7 +160,7 @@ TEST(SolidFields, HomogeneousStressIsThatOfTheLawInEveryCellOfEveryElement) {
     EXPECT_EQ(fields.size(), 6U);
     expect_stress(fields["stress"], fields["von_mises"], exact);
     expect_stress(fields["nodal_stress"], fields["nodal_von_mises"], exact);
-    const std::size_t dim = static_cast<std::size_t>(model.mesh().dim);
+    const std::size_t dim = index(model.mesh().dim);
     for (std::size_t k = 0; k < fields["displacement"].size(); ++k) {
       const bool there = k % 3 < dim;
       const std::size_t ours = there ? k / 3 * dim + k % 3 : 0;

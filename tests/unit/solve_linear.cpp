@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
@@ -63,7 +64,7 @@ SparseMatrix free_stiffness(const std::string& element, const std::array<int, 3>
   box.element = element;
   FeModel model(generate(box, "test"), std::make_unique<LinearElastic>(Moduli{1.25, 0.5}, 1.0), {});
   ModelResponse at_rest;
-  const std::vector<double> rest(static_cast<std::size_t>(model.dofs()), 0.0);
+  const std::vector<double> rest(index(model.dofs()), 0.0);
   EXPECT_TRUE(model.evaluate(rest, {}, Model::Want::tangent, at_rest));
   return at_rest.tangent;
 }

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
-#include "subdomain_solver/make_constraints.hpp"
+#include "subdomain_solver/make/constraints.hpp"
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 

@@ -10,8 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include "subdomain_solver/time/central_difference.hpp"
-#include "subdomain_solver/time/generalized_alpha.hpp"
+#include "base/index.hpp"
+#include "subdomain_solver/bars/central_difference.hpp"
+#include "subdomain_solver/bars/generalized_alpha.hpp"
 #include "tests/support/oracles.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -29,7 +30,7 @@ struct Vibration {
 
   Vibration(int elements, double length, MassForm mass, double step)
       : bar(data(elements, length, mass)), dt(step) {
-    const std::size_t n = static_cast<std::size_t>(bar.nodes());
+    const std::size_t n = index(bar.nodes());
     state.u.assign(n, 0.0);
     state.v.assign(n, 0.0);
     state.a.assign(n, 0.0);

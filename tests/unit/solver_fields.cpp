@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
@@ -70,7 +71,7 @@ TEST(BarFields, AFrontStandsWhereDAlembertPutsIt) {
   }
   const FieldValues u = told(*body, "displacement");
   for (int i = 0; i <= case_elements; ++i) {
-    const std::size_t at = 3 * static_cast<std::size_t>(i);
+    const std::size_t at = 3 * index(i);
     const double arrival = case_elements - i;  // of the front, at wave speed 1
     EXPECT_NEAR(u[at], speed * std::min<double>(arrival, time), roundoff(1000, speed * time)) << i;
     EXPECT_EQ(u[at + 1], 0.0);
@@ -129,8 +130,8 @@ TEST(PairFields, StressOnCurrentLengthsIsLogarithmic) {
   ASSERT_EQ(grid.nodes(), 32U);
   double most = 0.0;
   for (std::size_t c = 0; c < grid.cells(); ++c) {
-    const std::size_t a = static_cast<std::size_t>(grid.connectivity[2 * c]) * 3;
-    const std::size_t b = static_cast<std::size_t>(grid.connectivity[2 * c + 1]) * 3;
+    const std::size_t a = index(grid.connectivity[2 * c]) * 3;
+    const std::size_t b = index(grid.connectivity[2 * c + 1]) * 3;
     const double before = grid.points[b] - grid.points[a];
     const double now = before + u[b] - u[a];
     EXPECT_NEAR(stress[6 * c], 3.0 * std::log(now / before), roundoff(1000, 3.0)) << c;

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "subdomain_solver/body.hpp"
+#include "subdomain_solver/bars/bar_body.hpp"
 #include "subdomain_solver/solid_body.hpp"
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
@@ -63,7 +63,7 @@ TEST_P(GeneralBar, TakesTheStepsOfTheBarsOwnCore) {
   text.layer = "massless: {}";
   const std::unique_ptr<Subdomain> solid = general(text);
   ASSERT_NE(dynamic_cast<SolidBody*>(solid.get()), nullptr);
-  ASSERT_NE(dynamic_cast<Body*>(core.get()), nullptr);
+  ASSERT_NE(dynamic_cast<BarBody*>(core.get()), nullptr);
   const int steps = 200;
   Response expected, found;
   const Advance request = free_request(*core, 0.0, steps * case_step);

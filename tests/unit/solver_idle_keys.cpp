@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "base/yaml_fields.hpp"
 #include "base/yaml_resolved.hpp"
-#include "subdomain_solver/body_spec.hpp"
+#include "subdomain_solver/make/body_spec.hpp"
 
 namespace abut {
 namespace {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "coordinator/coupling/port_jacobian.hpp"
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
@@ -55,15 +56,15 @@ TEST_P(PortLine, KernelIsTheInverseOfTheReactionToAnObstacle) {
   const std::unique_ptr<Subdomain> body = build(case_bar(GetParam()));
   const std::vector<double> times = substep_times(0.0, window_length, case_step);
   const PortKernel kernel = body->kernel(0, case_step, window_steps);
-  ASSERT_EQ(kernel.displacement.size(), static_cast<std::size_t>(window_steps));
+  ASSERT_EQ(kernel.displacement.size(), index(window_steps));
   Advance request = free_request(*body, 0.0, window_length);
   request.boundary[0].obstacle = pushing_surface(*body, 0, times, depth);
   Response answer;
   step(*body, request, answer);
   Eigen::VectorXd moved(window_steps), reaction(window_steps);
   for (int i = 0; i < window_steps; ++i) {
-    moved[i] = request.boundary[0].obstacle.motion.u[static_cast<std::size_t>(i) + 1];
-    reaction[i] = answer.ports[0].trace.f[static_cast<std::size_t>(i) + 1];
+    moved[i] = request.boundary[0].obstacle.motion.u[index(i) + 1];
+    reaction[i] = answer.ports[0].trace.f[index(i) + 1];
   }
   const Eigen::VectorXd expected = solve_toeplitz(kernel.displacement, moved);
   // Differences of neighbouring displacements are divided by the first compliance; in the

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/element.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solids.hpp"
@@ -116,7 +117,7 @@ TEST(Reactions, OfAClampAreTheLoadInEveryElementPlaneAndLaw) {
         const BodyRecord record = advance(*body, 0.0, 1.0);
         const double load = top_of(plane) * (0.03 - 0.01);
         const std::size_t loaded = flat ? 1 : 0;
-        ASSERT_EQ(record.columns.size(), static_cast<std::size_t>(dim));
+        ASSERT_EQ(record.columns.size(), index(dim));
         for (std::size_t i = 0; i < record.columns.size(); ++i) {
           if (plane == "axisymmetric" && i == 0) continue;  // hoop stress has a part in it
           // Newton's method leaves 1e-9 of the forces' norm; these are a few times the load.
@@ -234,7 +235,7 @@ double imbalance(Part part, const std::string& integrator, int steps, double fro
   const double dt = 1.0 / steps;
   part.integrator = fmt::format(fmt::runtime(integrator), number(dt));
   const std::unique_ptr<Subdomain> body = part.build();
-  const std::size_t axis = part.dim() == 1 ? 0 : 1, dim = static_cast<std::size_t>(part.dim());
+  const std::size_t axis = part.dim() == 1 ? 0 : 1, dim = index(part.dim());
   const auto force = [&](const BodyRecord& record) {
     double sum = top_of(part.plane) * 0.1 * std::sin(3.0 * record.time);
     for (std::size_t k = axis; k < record.columns.size(); k += dim) sum += record.columns[k];

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
@@ -113,7 +114,7 @@ TEST_P(Rewind, RecordsDivideTheWindowAndEachHasItsSweptRange) {
     ASSERT_EQ(port.upper.size(), 5u);
     EXPECT_EQ(port.trace.size(), 6u);  // begin and the records
     for (int i = 0; i < 5; ++i) {
-      const std::size_t k = static_cast<std::size_t>(i);
+      const std::size_t k = index(i);
       EXPECT_NEAR(response.records[k].time, 2.4 * (i + 1), roundoff(4, 12.0));
       // uniform flight at 0.5 m/s: the range of each part is where its ends are
       EXPECT_NEAR(port.lower[k], 1.2 * i, roundoff(200, 6.0));

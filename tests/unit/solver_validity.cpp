@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/hourglass.hpp"
 #include "subdomain_solver/fe/largest_rotation.hpp"
 #include "tests/support/materials.hpp"
@@ -21,7 +22,7 @@ using Position = Eigen::Vector3d;
 
 std::vector<double> nodal(const Mesh& mesh, const std::function<Position(const Position&)>& field) {
   std::vector<double> u;
-  const std::size_t dim = static_cast<std::size_t>(mesh.dim);
+  const std::size_t dim = index(mesh.dim);
   for (std::size_t k = 0; k < mesh.points.size(); k += dim) {
     Position x = Position::Zero();
     for (std::size_t i = 0; i < dim; ++i) x(static_cast<Eigen::Index>(i)) = mesh.points[k + i];

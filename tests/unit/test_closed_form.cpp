@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "coordinator/closed_form.hpp"
+#include "coordinator/exact/closed_form.hpp"
 
 namespace abut {
 namespace {

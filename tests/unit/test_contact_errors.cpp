@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "coordinator/bar_row.hpp"
+#include "coordinator/exact/bar_row.hpp"
 #include "coordinator/record/contact_errors.hpp"
 
 namespace abut {

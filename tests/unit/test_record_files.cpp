@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "coordinator/record/csv_history.hpp"
 #include "coordinator/record/event_log.hpp"
 #include "coordinator/record/expectations.hpp"
@@ -54,7 +55,7 @@ class RecordFiles : public ::testing::Test {
                             const std::string& name) {
     const auto at = std::find(rows[0].begin(), rows[0].end(), name);
     EXPECT_NE(at, rows[0].end()) << name;
-    return static_cast<std::size_t>(at - rows[0].begin()) % rows[0].size();
+    return index(at - rows[0].begin()) % rows[0].size();
   }
   nlohmann::json summary() const { return nlohmann::json::parse(read("summary.json")); }
 

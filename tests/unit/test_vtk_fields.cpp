@@ -18,6 +18,7 @@
 #include <pugixml.hpp>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "coordinator/record/vtk_fields.hpp"
 #include "coordinator/record/vtu_file.hpp"
 #include "tests/support/fakes.hpp"
@@ -203,7 +204,7 @@ TEST_F(VtkFiles, AreWrittenAtTheBeginEverySoManyWindowsAndAtTheEnd) {
 TEST_F(VtkFiles, TheListIsWholeAfterEveryState) {
   FakeRun run(directory, 1);
   for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(listed().size(), static_cast<std::size_t>(k + 1));
+    EXPECT_EQ(listed().size(), index(k + 1));
     run.window(k, k + 1);
   }
   run.end("interrupted", 3.0);

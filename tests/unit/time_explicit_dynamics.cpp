@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "base/index.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
@@ -28,7 +29,7 @@ struct Block {
       problem.supports.push_back({3 * f.node, [](double) { return 0.0; }});
     std::sort(problem.supports.begin(), problem.supports.end(),
               [](const Prescribed& a, const Prescribed& b) { return a.dof < b.dof; });
-    motion.q.assign(static_cast<std::size_t>(model.dofs()), 0.0);
+    motion.q.assign(index(model.dofs()), 0.0);
     Draw draw;
     for (std::size_t i = 0; i < motion.q.size(); ++i)
       motion.v.push_back(0.01 * draw.between(-1.0, 1.0));

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -119,7 +120,7 @@ TEST(StepsInRows, AnyRatioGivesTheSameImpact) {
   for (int ratio : {1, 2, 3, 7, 10, 30, 100}) {
     for (const int fine : {0, 1}) {
       SceneText scene = pair(1.0, 0.5, 3.0, 10 * step);
-      scene.bars[static_cast<std::size_t>(fine)].integrator = explicit_scheme(step / ratio, 6);
+      scene.bars[index(fine)].integrator = explicit_scheme(step / ratio, 6);
       const ResultPtr r = run(scene);
       ASSERT_TRUE(r->completed()) << ratio << fine;
       EXPECT_EQ(r->measure("contact.first.count_error"), 0.0) << ratio << fine;

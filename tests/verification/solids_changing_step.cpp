@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/highest_frequency.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
 #include "subdomain_solver/saved_state.hpp"
@@ -64,7 +65,7 @@ struct Pressed {
   double kinetic_of_supports() const {
     double sum = 0.0;
     for (const Prescribed& p : solid.problem.supports) {
-      const double v = solid.motion.v[static_cast<std::size_t>(p.dof)];
+      const double v = solid.motion.v[index(p.dof)];
       sum += 0.5 * solid.model.lumped_mass()(p.dof) * v * v;
     }
     return sum;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
 #include "subdomain_solver/time/explicit_dynamics.hpp"
@@ -31,7 +32,7 @@ struct Plate {
     s.fix("left", 0);
     s.fix("left", 1);
     ModelResponse rest;
-    const std::vector<double> q(static_cast<std::size_t>(s.model.dofs()), 0.0);
+    const std::vector<double> q(index(s.model.dofs()), 0.0);
     EXPECT_TRUE(s.model.evaluate(q, {}, Model::Want::tangent, rest));
     const std::vector<int> free = FreeCoordinates(s.model.dofs(), s.problem.supports).list();
     const Eigen::MatrixXd mass =
@@ -185,7 +186,7 @@ TEST(MovedSide, KeepsTheVelocityThatItBeginsWith) {
       ASSERT_FALSE(run.step(plate.s.motion, 0.01 * k, 0.01));
       // Round-off of a difference over a step of 0.01, which alternates and adds up.
       for (const Prescribed& p : plate.s.problem.supports)
-        ASSERT_NEAR(plate.s.motion.v[static_cast<std::size_t>(p.dof)], 0.25, roundoff(1.0e4, 1.0));
+        ASSERT_NEAR(plate.s.motion.v[index(p.dof)], 0.25, roundoff(1.0e4, 1.0));
     }
   }
 }
@@ -218,7 +219,7 @@ TEST(ClampedWave, DispersesAsTheoryHasIt) {
   Eigen::Vector3d error = Eigen::Vector3d::Zero(), norm = error;
   for (int node = 0; node < s.model.mesh().node_count(); ++node) {
     const double z = position(s.model.mesh(), node).z();
-    const std::size_t at = static_cast<std::size_t>(3 * node + 2);
+    const std::size_t at = index(3 * node + 2);
     const double ahead = z + c * end, behind = z - c * end;
     const Eigen::Vector3d exact(0.5 * (f(behind, 0) + f(ahead, 0)),
                                 0.5 * c * (f(ahead, 1) - f(behind, 1)),

@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
 #include "tests/support/solid_runs.hpp"
@@ -23,7 +24,7 @@ int rigid_motions_of(const ElementCase& c) {
 
 /// Eigenvalues of one cell's tangent at rest, ascending, in parts of the largest.
 Vector stiffnesses(FeModel& model) {
-  const std::vector<double> rest(static_cast<std::size_t>(model.dofs()), 0.0);
+  const std::vector<double> rest(index(model.dofs()), 0.0);
   const std::vector<double> history(model.history_size(), 0.0);
   Eigen::MatrixXd tangent;
   EXPECT_TRUE(model.cell_tangent(0, 0, rest, history, tangent));

@@ -7,6 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/solid_runs.hpp"
@@ -24,7 +25,7 @@ struct Case {
 
 void PrintTo(const Case& c, std::ostream* out) {
   *out << c.element << " " << static_cast<int>(c.formulation) << " "
-       << all_laws()[static_cast<std::size_t>(c.law)].name;
+       << all_laws()[index(c.law)].name;
 }
 
 std::vector<Case> cases() {
@@ -61,7 +62,7 @@ std::unique_ptr<const Material> law_of(int i) {
 Mesh uneven_mesh(const std::string& element, double distortion) {
   Mesh mesh = unit_mesh(element, 2);
   distort(mesh, distortion);
-  for (std::size_t i = 0; i < mesh.points.size(); i += static_cast<std::size_t>(mesh.dim))
+  for (std::size_t i = 0; i < mesh.points.size(); i += index(mesh.dim))
     mesh.points[i] *= 2.0 + mesh.points[i];
   return mesh;
 }
@@ -146,7 +147,7 @@ TEST(FrequencyBound, IsThatOfTheCellsWhereAllAreParallelepipedsInUniformStrain) 
   for (const char* element : {"hex8", "quad4", "tet4"}) {
     for (const int law : {1, 2}) {
       Mesh mesh = unit_mesh(element, 2);
-      for (std::size_t i = 0; i < mesh.points.size(); i += static_cast<std::size_t>(mesh.dim)) {
+      for (std::size_t i = 0; i < mesh.points.size(); i += index(mesh.dim)) {
         mesh.points[i] += 0.3 * mesh.points[i + 1];
         mesh.points[i + 1] *= 5.0;
       }
@@ -171,7 +172,7 @@ TEST(FrequencyBound, IsTheSameBitsForAllThreads) {
     FeModel model(unit_mesh("hex8", 14), law_of(2), options_of(Formulation::full, threads));
     HighestFrequency watch(model);
     Draw draw;
-    std::vector<double> q(static_cast<std::size_t>(model.dofs()));
+    std::vector<double> q(index(model.dofs()));
     for (double& u : q) u = 0.005 * draw.between(-1.0, 1.0);
     return watch.bound(q, {}, 1.0, Effort::bounded)->square;
   };
@@ -182,7 +183,7 @@ TEST(FrequencyBound, HasNoAnswerForAnInvertedCell) {
   for (const Formulation formulation : {Formulation::full, Formulation::mean_dilatation}) {
     FeModel model(unit_mesh("hex8", 3), law_of(2), options_of(formulation));
     HighestFrequency watch(model);
-    std::vector<double> q(static_cast<std::size_t>(model.dofs()), 0.0);
+    std::vector<double> q(index(model.dofs()), 0.0);
     q[0] = 2.0;
     for (const Effort effort : {Effort::bounded, Effort::exact})
       EXPECT_FALSE(watch.bound(q, {}, 1.0, effort));

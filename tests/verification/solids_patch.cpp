@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
 #include "tests/support/solid_runs.hpp"
@@ -65,7 +66,7 @@ class Patch : public testing::TestWithParam<Case> {
     }
     EXPECT_LT(most, tolerance * h.norm());
     PointResponse exact;
-    std::vector<double> before(static_cast<std::size_t>(s.model.material().history_size()), 0.0);
+    std::vector<double> before(index(s.model.material().history_size()), 0.0);
     std::vector<double> after = before;
     const Matrix3 f = deformation(GetParam(), h);
     ASSERT_TRUE(s.model.material().evaluate(f, before, after, Want::stress, exact));

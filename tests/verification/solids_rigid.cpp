@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
 #include "subdomain_solver/rigid/rigid_map.hpp"
 #include "subdomain_solver/rigid/rigid_motion.hpp"
@@ -33,8 +34,8 @@ struct Rigid {
     motion.v = body.rates(pose, twist);
   }
   void add(std::unique_ptr<const Load> load) {
-    problem.loads.push_back(std::make_unique<LiftedLoad>(
-        std::move(load), map, static_cast<std::size_t>(solid.model.dofs())));
+    problem.loads.push_back(
+        std::make_unique<LiftedLoad>(std::move(load), map, index(solid.model.dofs())));
   }
   void add_acceleration(VectorField field) {
     add(std::make_unique<BodyForce>(solid.model, std::move(field)));

@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
@@ -19,8 +20,7 @@ namespace {
 Mesh slender_mesh(const std::string& element, int n, double aspect) {
   Mesh mesh = unit_mesh(element, n);
   distort(mesh, 0.03);
-  for (std::size_t i = 0; i < mesh.points.size(); i += static_cast<std::size_t>(mesh.dim))
-    mesh.points[i] *= aspect;
+  for (std::size_t i = 0; i < mesh.points.size(); i += index(mesh.dim)) mesh.points[i] *= aspect;
   return mesh;
 }
 
@@ -30,7 +30,7 @@ double growth(FeModel& model, double dt, int steps) {
   problem.model = &model;
   ExplicitDynamics run(problem);
   Motion motion;
-  motion.q.assign(static_cast<std::size_t>(model.dofs()), 0.0);
+  motion.q.assign(index(model.dofs()), 0.0);
   motion.v = motion.q;
   Draw draw;
   for (double& v : motion.v) v = draw.between(-1.0, 1.0);
@@ -103,7 +103,7 @@ TEST(StableStep, BoundsTheFrequenciesOfADeformedBody) {
     FeModel model(slender_mesh("hex8", 2, 3.0), std::make_unique<NeoHookean>(test_moduli, 1.0),
                   {Plane::strain, formulation});
     Draw draw;
-    std::vector<double> q(static_cast<std::size_t>(model.dofs()));
+    std::vector<double> q(index(model.dofs()));
     for (double& x : q) x = draw.between(-0.08, 0.08);
     ModelResponse response;
     ASSERT_TRUE(model.evaluate(q, {}, Model::Want::tangent, response));

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/index.hpp"
 #include "subdomain_solver/materials/j2_plasticity.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
@@ -150,13 +151,12 @@ TEST(QuasiStatic, HalvesAStepThatIsTooLong) {
 /// Two unit cells in a row that share one corner alone.
 Mesh hinged(const std::string& element) {
   const Mesh one = unit_mesh(element, 1);
-  const std::size_t dim = static_cast<std::size_t>(one.dim);
+  const std::size_t dim = index(one.dim);
   Mesh both = one;
   std::int32_t joint = 0;  // the corner farthest from the origin, which the second begins at
   const auto sum = [&one, dim](std::int32_t node) {
     double total = 0.0;
-    for (std::size_t i = 0; i < dim; ++i)
-      total += one.points[static_cast<std::size_t>(node) * dim + i];
+    for (std::size_t i = 0; i < dim; ++i) total += one.points[index(node) * dim + i];
     return total;
   };
   for (std::int32_t node = 1; node < one.node_count(); ++node)
@@ -166,10 +166,9 @@ Mesh hinged(const std::string& element) {
     number.push_back(sum(node) == 0.0 ? joint : both.node_count());
     if (number.back() == joint) continue;
     for (std::size_t i = 0; i < dim; ++i)
-      both.points.push_back(one.points[static_cast<std::size_t>(node) * dim + i] + 1.0);
+      both.points.push_back(one.points[index(node) * dim + i] + 1.0);
   }
-  for (std::int32_t node : one.blocks[0].nodes)
-    both.blocks[0].nodes.push_back(number[static_cast<std::size_t>(node)]);
+  for (std::int32_t node : one.blocks[0].nodes) both.blocks[0].nodes.push_back(number[index(node)]);
   return both;
 }
 

@@ -1,0 +1,376 @@
+#include "subdomain_solver/bars/central_difference.hpp"
+
+#include <algorithm>
+
+#include "base/index.hpp"
+#include "subdomain_solver/bars/bar_kernels.hpp"
+
+namespace abut {
+
+double CentralDifference::Row::force(const double* x) const {
+  double force = 0.0;
+  if (left > 0.0) force += left * (x[node] - x[node - 1]);
+  if (right > 0.0) force -= right * (x[node + 1] - x[node]);
+  return force;
+}
+
+CentralDifference::CentralDifference(const Bar& bar, double step, int terms)
+    : BarIntegrator(bar), step_(step), terms_(terms) {
+  const double r = step_ / (bar_.spacing() / bar_.data().wave_speed());
+  for (int q = 2; q <= terms_; ++q) {
+    ratio_.push_back(((q - 1.0) * (q - 1.0) - r * r) / (2.0 * q * (2.0 * q - 1.0)));
+  }
+  const std::size_t n = index(bar_.nodes());
+  const std::vector<double>& k = bar_.stiffness();
+  for (std::size_t i : {std::size_t{0}, std::size_t{1}, n - 2, n - 1}) {
+    const bool listed =
+        std::any_of(outer_.begin(), outer_.end(), [i](const Row& row) { return row.node == i; });
+    if (listed) continue;
+    outer_.push_back({i, i > 0 ? k[i - 1] : 0.0, i + 1 < n ? k[i] : 0.0, bar_.inverse_mass()[i]});
+  }
+  for (int end : {0, 1}) {
+    if (!is(end, ContactLayer::massless)) continue;
+    End& e = ends_[index(end)];
+    e.spring = end == 0 ? bar_.stiffness().front() : bar_.stiffness().back();
+    BarState unit;
+    unit.u.assign(n, 0.0);
+    unit.u[index(bar_.node_of(end))] = 1.0;
+    unit.end[0].closed = unit.end[1].closed = true;
+    smooth(unit, unit.u, e.response);
+    e.compliance = 1.0 / (e.spring * (1.0 - e.response[index(bar_.inner_of(end))]));
+    if (end == 1) std::reverse(e.response.begin(), e.response.end());
+    e.response.resize(std::min(n, index(terms_)));
+  }
+}
+
+void CentralDifference::smooth(const BarState& state, const std::vector<double>& u,
+                               std::vector<double>& s) const {
+  const std::size_t n = u.size();
+  const double cell = bar_.spacing() / bar_.data().wave_speed();
+  const double* t = u.data();
+  double* const a = placed_like(u.data(), n, work_a_);
+  double* const b = placed_like(u.data(), n, work_b_);
+  for (std::size_t pass = ratio_.size(); pass-- > 0;) {
+    double* const out = t == a ? b : a;
+    if (n > 4) smooth_nodes(u.data(), t, out, 2, n - 2, ratio_[pass]);
+    for (const Row& row : outer_) {
+      const double d = cell * cell * row.inverse_mass * row.force(t);
+      out[row.node] = u[row.node] + ratio_[pass] * d;
+    }
+    for (int end : {0, 1}) {
+      const bool closed = state.end[index(end)].closed;
+      const std::size_t node = index(bar_.node_of(end));
+      // a contact node is held by its partner: its row alone, without the contact force, is not
+      // what moves it
+      if (is(end, ContactLayer::kick) && closed) out[node] = u[node];
+    }
+    t = out;
+  }
+  s.assign(t, t + n);
+}
+
+void CentralDifference::kick_end_nodes(BarState& state, const std::vector<double>& s, double kick) {
+  for (const Row& row : outer_) {
+    if (row.inverse_mass == 0.0) continue;
+    state.v[row.node] += kick * (bar_.data().body_force - row.inverse_mass * row.force(s.data()));
+  }
+  for (int end : {0, 1}) {
+    if (!is(end, ContactLayer::massive)) continue;
+    const std::size_t node = index(bar_.node_of(end));
+    const double force = state.end[index(end)].dynamic;
+    state.v[node] -= kick * bar_.inverse_mass()[node] * Bar::outward(end) * force;
+  }
+}
+
+void CentralDifference::drift_end_nodes(BarState& state, double dt) {
+  for (const Row& row : outer_) {
+    if (row.inverse_mass > 0.0) state.u[row.node] += dt * state.v[row.node];
+  }
+}
+
+void CentralDifference::kick_drift(BarState& state, double kick, double dt) {
+  const std::size_t n = state.u.size();
+  const double g = kick * bar_.element_stiffness() / bar_.element_mass();
+  const double shift = kick * bar_.data().body_force;
+  const std::vector<double>& s = simple() ? state.u : smoothed_;
+  if (viscous()) {
+    viscous_.assign(n, 0.0);
+    add_viscous_force(state.v, viscous_);
+    for (std::size_t i = 0; i < n; ++i) state.v[i] -= kick * bar_.inverse_mass()[i] * viscous_[i];
+  }
+  if (forward()) acceleration(state);  // before the places move on
+  kick_end_nodes(state, s, kick);
+  if (n > 4 && simple()) {
+    kick_drift_nodes(state.u.data(), state.v.data(), 2, n - 2, g, shift, dt);
+  } else if (n > 4) {
+    kick_nodes(s.data(), state.v.data(), 2, n - 2, g, shift);
+    drift_nodes(state.u.data(), state.v.data(), 2, n - 2, dt);
+  }
+  drift_end_nodes(state, dt);
+  push_on(state, kick, dt);
+}
+
+void CentralDifference::push_on(BarState& state, double kick, double dt) const {
+  if (!forward()) return;
+  const double weight = (bar_.data().tchamwa - 1.0) * kick * dt;
+  for (std::size_t i = 0; i < state.u.size(); ++i) {
+    if (bar_.inverse_mass()[i] > 0.0) state.u[i] += weight * state.a[i];
+  }
+}
+
+void CentralDifference::add_viscous_force(const std::vector<double>& v,
+                                          std::vector<double>& force) const {
+  const double dashpot = bar_.data().bulk_viscosity * bar_.data().impedance();  // [kg/s]
+  for (std::size_t e = 0; e + 1 < v.size(); ++e) {
+    if (bar_.inverse_mass()[e] == 0.0 || bar_.inverse_mass()[e + 1] == 0.0) continue;
+    const double tension = dashpot * (v[e + 1] - v[e]);
+    force[e] -= tension;
+    force[e + 1] += tension;
+  }
+}
+
+void CentralDifference::drift(BarState& state, double dt) {
+  const std::size_t n = state.u.size();
+  if (n > 4) drift_nodes(state.u.data(), state.v.data(), 2, n - 2, dt);
+  drift_end_nodes(state, dt);
+}
+
+void CentralDifference::acceleration(BarState& state) {
+  const std::vector<double>& s = simple() ? state.u : smoothed_;
+  bar_.internal_force(s, force_);
+  if (viscous()) add_viscous_force(state.v, force_);
+  const std::vector<double>& inverse = bar_.inverse_mass();
+  const double body_force = bar_.data().body_force;
+  for (std::size_t i = 0; i < force_.size(); ++i) {
+    state.a[i] = inverse[i] > 0.0 ? body_force - inverse[i] * force_[i] : 0.0;
+  }
+  for (int end : {0, 1}) {
+    const std::size_t node = index(bar_.node_of(end));
+    const EndState& e = state.end[index(end)];
+    if (is(end, ContactLayer::massive))
+      state.a[node] -= inverse[node] * Bar::outward(end) * e.dynamic;
+    if (is(end, ContactLayer::massless)) state.a[node] = state.a[index(bar_.inner_of(end))];
+  }
+}
+
+double CentralDifference::reaction_of(const BarState& state, int end) const {
+  const std::vector<double>& s = simple() ? state.u : smoothed_;
+  const std::size_t node = index(bar_.node_of(end));
+  const std::size_t inner = index(bar_.inner_of(end));
+  return ends_[index(end)].spring * Bar::outward(end) * (s[inner] - s[node]);
+}
+
+void CentralDifference::place_massless(BarState& state, int end, const EndAction& action,
+                                       double dt) {
+  const End& line = ends_[index(end)];
+  EndState& e = state.end[index(end)];
+  const double n = Bar::outward(end);
+  const std::size_t node = index(bar_.node_of(end));
+  const double before = n * state.u[node];
+  const double free_position = before + line.compliance * reaction_of(state, end);
+  if (action.kind == EndAction::Kind::obstacle) {
+    e.force = e.dynamic = end_reaction(free_position, line.compliance, action);
+  } else if (action.kind == EndAction::Kind::open) {
+    e.force = e.dynamic = 0.0;
+  } else {
+    e.force = action.force;
+    e.dynamic = action.dynamic;
+  }
+  const double shift = n * ((free_position - line.compliance * e.dynamic) - before);
+  state.u[node] += shift;
+  if (!simple()) {
+    for (std::size_t i = 0; i < line.response.size(); ++i) {
+      const std::size_t at = end == 0 ? i : state.u.size() - 1 - i;
+      smoothed_[at] += shift * line.response[i];
+    }
+  }
+  if (dt > 0.0) state.v[node] += shift / dt;  // backward difference: nothing but output reads it
+}
+
+void CentralDifference::resolve_massless(BarState& state, const EndActions& actions, double dt) {
+  bool any = false;
+  for (int end : {0, 1}) {
+    if (!is(end, ContactLayer::massless)) continue;
+    any = true;
+    const EndAction& action = actions[index(end)];
+    const std::size_t node = index(bar_.node_of(end));
+    const std::size_t inner = index(bar_.inner_of(end));
+    const double before = state.u[node];
+    if (action.kind == EndAction::Kind::open) {
+      state.u[node] = state.u[inner];
+    } else if (action.kind == EndAction::Kind::obstacle) {
+      // the usual answer; corrected below when it is not
+      state.u[node] = Bar::outward(end) * action.target;
+    }
+    if (dt > 0.0) state.v[node] = (state.u[node] - before) / dt;
+  }
+  if (!simple()) smooth(state, state.u, smoothed_);
+  if (!any) return;
+  for (int end : {0, 1}) {
+    const EndAction& action = actions[index(end)];
+    if (is(end, ContactLayer::massless)) place_massless(state, end, action, dt);
+  }
+}
+
+void CentralDifference::resolve_kick(BarState& state, int end, const EndAction& action, double dt) {
+  EndState& e = state.end[index(end)];
+  const std::size_t node = index(bar_.node_of(end));
+  const double n = Bar::outward(end);
+  const double inverse = bar_.inverse_mass()[node];
+  if (action.kind == EndAction::Kind::obstacle) {
+    e.force = end_reaction(n * state.u[node], dt * dt * inverse, action);
+  } else {
+    e.force = action.kind == EndAction::Kind::force ? action.dynamic : 0.0;
+  }
+  e.dynamic = e.force;
+  state.v[node] -= n * dt * inverse * e.force;
+  state.u[node] -= n * dt * dt * inverse * e.force;
+  const double before = ends_[index(end)].velocity_before;
+  e.work -= dt * e.force * 0.5 * (before + n * state.v[node]);
+  const bool held = action.held || e.force != 0.0;
+  if (held == e.closed) return;
+  e.work += simple() ? 0.0 : work_of_switch(state, end, dt);
+  e.closed = held;
+}
+
+/// [J] by which [M.4] changes because a contact node comes to be held, or is no longer: its row
+/// then smooths otherwise. With u before the substep and K d the change of the force after it,
+/// 1/2 u K d.
+double CentralDifference::work_of_switch(BarState& state, int end, double dt) const {
+  EndState& e = state.end[index(end)];
+  std::vector<double> was, is;
+  smooth(state, state.u, was);
+  e.closed = !e.closed;
+  smooth(state, state.u, is);
+  e.closed = !e.closed;
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < is.size(); ++i) {
+    const double stretch = (state.u[i + 1] - state.u[i]) - dt * (state.v[i + 1] - state.v[i]);
+    sum += bar_.stiffness()[i] * stretch * ((is[i + 1] - was[i + 1]) - (is[i] - was[i]));
+  }
+  return 0.5 * sum;
+}
+
+void CentralDifference::open(BarState& state, double dt, const EndActions& opening) {
+  // Contact that comes or goes moves nothing by itself: a massless port that is free stands where
+  // its force is zero. A force that sets in moves the port at once.
+  bool refresh = false;
+  for (int end : {0, 1}) {
+    const EndAction& action = opening[index(end)];
+    if (!is(end, ContactLayer::massless) || action.kind == EndAction::Kind::obstacle) continue;
+    const double force = action.kind == EndAction::Kind::force ? action.dynamic : 0.0;
+    refresh = refresh || force != state.end[index(end)].dynamic;
+  }
+  update_closed(state, opening);
+  if (refresh) {
+    EndActions held = opening;
+    // an obstacle's reaction at this instant is the one already known
+    for (std::size_t e : {0u, 1u}) {
+      if (held[e].kind != EndAction::Kind::obstacle) continue;
+      held[e].kind = EndAction::Kind::force;
+      held[e].force = held[e].dynamic = state.end[e].dynamic;
+    }
+    resolve_massless(state, held, 0.0);
+    acceleration(state);
+  }
+  for (int end : {0, 1}) {
+    const std::size_t node = index(bar_.node_of(end));
+    ends_[index(end)].velocity_before =
+        Bar::outward(end) * (state.v[node] - 0.5 * dt * state.a[node]);
+  }
+  kick_nodes_with(state, 0.5 * dt);
+  previous_dt_ = 0.0;
+  prescribed_ = {};
+}
+
+void CentralDifference::kick_nodes_with(BarState& state, double kick) const {
+  const std::vector<double>& inverse = bar_.inverse_mass();
+  for (std::size_t i = 0; i < state.v.size(); ++i) {
+    if (inverse[i] > 0.0) state.v[i] += kick * state.a[i];
+  }
+}
+
+void CentralDifference::substep(BarState& state, double dt, const EndActions& actions) {
+  if (previous_dt_ == 0.0) {
+    drift(state, dt);
+    push_on(state, dt, dt);
+  } else if (bar_.data().stabilised) {
+    // the next predictor must not see the accelerations that close() drops
+    close(state, previous_dt_);
+    kick_nodes_with(state, 0.5 * dt);
+    drift(state, dt);
+    push_on(state, dt, dt);
+  } else {
+    for (int end : {0, 1}) {
+      if (!is(end, ContactLayer::kick)) continue;
+      const std::size_t node = index(bar_.node_of(end));
+      ends_[index(end)].velocity_before = Bar::outward(end) * state.v[node];
+    }
+    kick_drift(state, 0.5 * (previous_dt_ + dt), dt);
+  }
+  previous_dt_ = dt;
+  for (int end : {0, 1}) {
+    const EndAction& action = actions[index(end)];
+    if (is(end, ContactLayer::kick)) resolve_kick(state, end, action, dt);
+    if (is(end, ContactLayer::massive)) resolve_massive(state, end, action);
+  }
+  // Last: it forms the smoothed displacements of the final places.
+  resolve_massless(state, actions, dt);
+}
+
+void CentralDifference::resolve_massive(BarState& state, int end, const EndAction& action) {
+  EndState& e = state.end[index(end)];
+  if (action.kind == EndAction::Kind::force) e.force = e.dynamic = action.force;
+  if (action.kind != EndAction::Kind::motion) return;
+  state.u[index(bar_.node_of(end))] = action.u;
+  prescribed_[index(end)] = action;
+}
+
+void CentralDifference::close(BarState& state, double dt) {
+  acceleration(state);
+  kick_nodes_with(state, 0.5 * dt);
+  for (int end : {0, 1}) {
+    const std::size_t node = index(bar_.node_of(end));
+    const EndAction& action = prescribed_[index(end)];
+    if (action.kind == EndAction::Kind::motion) {
+      state.v[node] = action.v;
+      state.a[node] = action.a;
+    } else if (is(end, ContactLayer::massless) && !state.end[index(end)].closed) {
+      state.v[node] = state.v[index(bar_.inner_of(end))];
+    }
+    drop_acceleration(state, end);
+  }
+}
+
+double CentralDifference::port_displacement(const BarState& state, int end) const {
+  const EndState& e = state.end[index(end)];
+  const double u = state.u[index(bar_.node_of(end))];
+  return u - Bar::outward(end) * static_compliance(end) * (e.force - e.dynamic);
+}
+
+double CentralDifference::static_compliance(int end) const { return ends_[index(end)].compliance; }
+
+double CentralDifference::kinetic(const BarState& state) const {
+  const std::vector<double>& mass = bar_.row_mass();
+  const std::vector<double>& inverse = bar_.inverse_mass();
+  const double quarter = 0.25 * step_ * step_;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    if (inverse[i] > 0.0)
+      sum += mass[i] * (state.v[i] * state.v[i] - quarter * state.a[i] * state.a[i]);
+  }
+  return 0.5 * sum;
+}
+
+double CentralDifference::stored(const BarState& state) const {
+  if (simple()) return bar_.stored(state.u);
+  std::vector<double>& s = work_s_;
+  smooth(state, state.u, s);
+  double sum = 0.0;
+  for (std::size_t e = 0; e + 1 < s.size(); ++e) {
+    sum += bar_.stiffness()[e] * (state.u[e + 1] - state.u[e]) * (s[e + 1] - s[e]);
+  }
+  return 0.5 * sum;
+}
+
+}  // namespace abut

@@ -1,0 +1,299 @@
+#include "subdomain_solver/make/body_spec.hpp"
+#include "base/index.hpp"
+
+#include <cmath>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+namespace abut {
+
+namespace {}  // namespace
+
+void BarMeshSpec::fields(Fields& f) {
+  f.required("length", length, "m", "length of the bar", positive);
+  f.required("area", area, "m^2", "cross section", positive);
+  f.required("elements", elements, "", "number of two-node elements", at_least(1));
+  f.optional("grading", grading, "", "length of the last element over the first", positive);
+  f.idle(elements == 1, "grading", "one element has no other to be compared with");
+}
+
+double SolidShapeSpec::area() const {
+  const BarMeshSpec* bar = std::get_if<BarMeshSpec>(&mesh);
+  return bar != nullptr ? bar->area : 1.0;
+}
+
+void SolidShapeSpec::fields(Fields& f) {
+  f.required("dimension", dimension, "", "space dimension of the body", between(1, 3));
+  f.choice("mesh", mesh, "mesh of the body");
+  f.word("plane", plane, {"strain", "stress", "axisymmetric"},
+         "kinematics in two dimensions; axisymmetric: x is the radius, y the axis");
+  f.optional("thickness", thickness, "m", "thickness in plane strain and stress", positive);
+  const bool bar = std::holds_alternative<BarMeshSpec>(mesh);
+  const bool flat =
+      std::holds_alternative<RectangleSpec>(mesh) || std::holds_alternative<DiskSpec>(mesh);
+  const bool file =
+      std::holds_alternative<GmshSpec>(mesh) || std::holds_alternative<ExodusSpec>(mesh);
+  const int wanted = bar ? 1 : flat ? 2 : 3;
+  f.check(file ? dimension > 1 : dimension == wanted, "dimension",
+          fmt::format("is {}, but the mesh has {}", dimension,
+                      file ? "2 or 3" : std::to_string(wanted)),
+          "Give the dimension of the mesh.");
+  f.idle(dimension != 2, "plane", "it is for bodies in two dimensions");
+  f.idle(dimension != 2 || plane == Plane::axisymmetric, "thickness",
+         "it is for plane strain and plane stress");
+}
+
+void FiniteElementsSpec::fields(Fields& f) {
+  SolidShapeSpec::fields(f);
+  f.word("formulation", formulation, {"full", "mean_dilatation", "one_point"},
+         "integration of an element: full; with one volume change for all of it, a linear field "
+         "of it where the element is quadratic (B-bar, F-bar), which does not lock when nearly "
+         "incompressible; or one point with hourglass control, for explicit steps");
+  f.optional("hourglass", hourglass, "", "coefficient of the hourglass stiffness of one_point",
+             between(0.0, 1.0));
+  const bool locks = plane != Plane::stress && dimension > 1;
+  f.check(locks || formulation != Formulation::mean_dilatation, "formulation",
+          "mean_dilatation does not apply to plane and uniaxial stress, which cannot lock",
+          "Leave formulation out.");
+  f.idle(dimension == 1, "formulation", "bars have one integration of their elements");
+  f.idle(formulation != Formulation::one_point, "hourglass",
+         "it belongs to formulation: one_point");
+}
+
+void FeModelSpec::fields(Fields& f) {
+  FiniteElementsSpec::fields(f);
+  f.optional("threads", threads, "", "number of threads of an explicit body", between(1, 256));
+}
+
+void ModalModelSpec::fields(Fields& f) {
+  FiniteElementsSpec::fields(f);
+  f.optional("modes", modes, "",
+             "number of modes with fixed ports, the lowest ones, beside the static shapes of the "
+             "ports and rigid motions",
+             at_least(0));
+  f.optional("below", below, "Hz", "frequency below which all modes with fixed ports are kept",
+             positive);
+  f.check(!modes || *modes == std::floor(*modes), "modes", "is not a whole number",
+          "Give a whole number of modes.");
+  f.check(modes.has_value() != below.has_value(), "modes",
+          modes ? "stands beside below" : "is missing, and so is below",
+          "Give the number of modes, or the frequency below which all are kept.");
+}
+
+void RigidModelSpec::fields(Fields& f) {
+  SolidShapeSpec::fields(f);
+  f.check(plane != Plane::axisymmetric, "plane",
+          "axisymmetric does not fit a rigid body, which turns about its centre",
+          "Mesh the whole body in space, or leave plane out.");
+  f.idle(true, "plane", "a rigid body has no stress");
+}
+
+void PairedBarSpec::fields(Fields& f) {
+  f.required("length", length, "m", "length of the bar", positive);
+  f.required("area", area, "m^2", "cross section", positive);
+  f.required("elements", elements, "", "number of equal two-node elements", at_least(1));
+  f.required("position", position, "m", "place of the bar's left end");
+  f.optional("velocity", velocity, "m/s", "uniform velocity at the start");
+}
+
+void PenaltySpec::fields(Fields& f) {
+  f.required("stiffness", stiffness, "N/m", "spring that resists the overlap of the tips",
+             positive);
+}
+
+void BarPairSpec::fields(Fields& f) {
+  f.section("left", left, "the left bar; its right end may touch");
+  f.section("right", right, "the right bar; its left end may touch");
+  f.choice("contact", contact, "contact between the tips, solved within the body");
+  f.word("lengths", current_lengths, {"reference", "current"},
+         "element lengths on which mass and stiffness are assembled; current: anew in every step, "
+         "as in some published comparisons");
+}
+
+void MasslessSpec::fields(Fields& f) {
+  f.optional(
+      "stiffness_factor", stiffness_factor, "",
+      "factor on the stiffness of the contact element; 4/3 is the distance to the centroid of the "
+      "mass moved inwards",
+      between(0.1, 100.0));
+}
+
+void MassiveSpec::fields(Fields& f) {
+  f.optional("stabilised", stabilised, "",
+             "dropping of the contact node's acceleration after every substep in contact, as "
+             "published");
+  f.word("reaction", complete_reaction, {"internal", "complete"},
+         "force handed over by the side whose motion is prescribed: internal force of the contact "
+         "node as published, or with its inertia");
+  f.check(!stabilised || !complete_reaction, "reaction",
+          "is complete, but stabilised drops the inertia that it holds",
+          "Give reaction: internal, or stabilised: false.");
+}
+
+void InitialSpec::fields(Fields& f) {
+  f.optional("position", position, "m", "place of the body's own origin, one number per dimension");
+  f.optional("velocity", velocity, "m/s",
+             "uniform velocity at the start, one number per dimension");
+  f.optional("displacement_field", displacement_field, "m",
+             "initial displacement of a solid, one expression in x, y, z per dimension");
+  f.optional("velocity_field", velocity_field, "m/s",
+             "initial velocity of a solid, added to velocity, one expression per dimension");
+}
+
+void SupportsSpec::fields(Fields& f) {
+  f.word("left", left_fixed, {"free", "fixed"}, "support of the left end");
+  f.word("right", right_fixed, {"free", "fixed"}, "support of the right end");
+}
+
+void PortSpec::fields(Fields& f) {
+  f.required("side", side, "",
+             "side of the body that the port is: left or right for a bar or a wall");
+  f.optional("tied", tied, "",
+             "whether the port is joined to another body from the start: its node then keeps its "
+             "share of the joint's mass, whatever the contact_layer, and takes no contact");
+}
+
+void BodySpec::fields(Fields& f) {
+  f.ignore("launch");
+  f.choice("model", model, "model of the body");
+  f.choice("material", material, "material of the body; a rigid wall has none");
+  f.choice("integrator", integrator, "time integrator; a rigid wall has none");
+  f.choice("contact_layer", contact_layer, "treatment of the contact nodes' mass",
+           Presence::optional);
+  f.defaulted("initial", initial, "initial state");
+  f.defaulted("supports", supports, "supports of the ends");
+  f.optional("body_force", body_force, "m/s^2", "force per mass, one number per dimension");
+  f.map("ports", ports, "named boundary sets through which motion and force pass",
+        Presence::optional);
+  f.map("points", points,
+        "nodes of a solid under names of their own, for ports and constraints beside the names "
+        "that the mesh has",
+        Presence::optional);
+  f.map("constraints", constraints, "prescribed displacements of a solid", Presence::optional);
+  f.map("loads", loads, "forces on a solid", Presence::optional);
+  f.defaulted("equations", equations, "solution of the equations of an implicit or static solid");
+  check_dimensions(f);
+  idle_keys(f);
+  if (is_solid()) check_solid(f);
+  const bool wall = std::holds_alternative<RigidWallSpec>(model);
+  const bool pair = std::holds_alternative<BarPairSpec>(model);
+  const bool rigid = std::holds_alternative<RigidModelSpec>(model);
+  if (rigid) check_rigid(f);
+  if (std::holds_alternative<ModalModelSpec>(model)) check_modal(f);
+  const std::string words(std::visit([](const auto& m) { return m.name; }, model));
+  f.check(wall || material.has_value(), "model", words + " needs a material",
+          "Add material: {linear_elastic: {youngs_modulus: ..., density: ...}} to the body.");
+  const auto* elastic = material ? std::get_if<LinearElasticSpec>(&*material) : nullptr;
+  f.check(!pair || (elastic != nullptr && elastic->youngs_modulus), "material",
+          "is not offered to a bar_pair",
+          "Give linear_elastic: {youngs_modulus: ..., density: ...}.");
+  f.check(wall || integrator.has_value(), "model", words + " needs an integrator",
+          rigid ? "Add integrator: {rigid_motion: {step: ...}} to the body."
+                : "Add integrator: {central_difference: {step: ...}} or an implicit one to the "
+                  "body.");
+  f.check(rigid || !integrator || !std::holds_alternative<RigidMotionSpec>(*integrator),
+          "integrator", "rigid_motion is offered to model rigid only",
+          "Use newmark: {step: ...} or another integrator of bodies that deform.");
+  f.check(!pair || ports.empty(), "ports", "do not belong to a bar_pair",
+          "Leave ports out: the pair has left_tip and right_tip.");
+  f.check(!wall || ports.size() == 1, "model", "rigid_wall needs exactly one port",
+          "Add ports: {face: {side: left}}, where the side tells to which side the wall faces.");
+}
+
+void BodySpec::place_files(const std::string& folder) {
+  auto place = [&folder](auto& mesh) {
+    if constexpr (requires { mesh.file; }) {
+      if (!mesh.file.starts_with('/')) mesh.file = folder + mesh.file;
+    }
+  };
+  auto place_mesh = [&place](auto& kind) {
+    if constexpr (requires { kind.mesh; }) std::visit(place, kind.mesh);
+  };
+  std::visit(place_mesh, model);
+}
+
+const SolidShapeSpec* BodySpec::shape() const {
+  auto find = [](const auto& kind) -> const SolidShapeSpec* {
+    if constexpr (requires { kind.mesh; }) return &kind;
+    return nullptr;
+  };
+  return std::visit(find, model);
+}
+
+bool BodySpec::is_uniform_bar() const {
+  const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
+  const LinearElasticSpec* elastic =
+      material ? std::get_if<LinearElasticSpec>(&*material) : nullptr;
+  const bool known = fe != nullptr && std::holds_alternative<BarMeshSpec>(fe->mesh) &&
+                     elastic != nullptr && elastic->youngs_modulus && integrator &&
+                     !std::holds_alternative<QuasiStaticSpec>(*integrator);
+  return known && points.empty() && constraints.empty() && loads.empty() &&
+         initial.displacement_field.empty() && initial.velocity_field.empty();
+}
+
+bool BodySpec::is_bar() const {
+  return is_uniform_bar() &&
+         std::get<BarMeshSpec>(std::get<FeModelSpec>(model).mesh).grading == 1.0;
+}
+
+bool BodySpec::is_solid() const { return shape() != nullptr && !is_bar(); }
+
+void BodySpec::check_dimensions(Fields& f) const {
+  const std::size_t dim = shape() != nullptr ? index(shape()->dimension) : 1;
+  const std::string numbers = dim == 1 ? "Give one number: the body has one dimension."
+                                       : fmt::format("Give {} numbers, one per dimension.", dim);
+  auto check = [&](const std::vector<double>& list, const char* key) {
+    const bool absent = list.size() == 1 && list[0] == 0.0;  // as when left out
+    f.check(list.size() == dim || absent, key, fmt::format("has {} numbers", list.size()), numbers);
+  };
+  check(initial.position, "initial.position");
+  check(initial.velocity, "initial.velocity");
+  check(body_force, "body_force");
+  for (const auto& [list, key] :
+       {std::pair(&initial.displacement_field, "initial.displacement_field"),
+        {&initial.velocity_field, "initial.velocity_field"}}) {
+    f.check(list->empty() || list->size() == dim, key,
+            fmt::format("has {} expressions", list->size()),
+            fmt::format("Give {} expressions, one per dimension.", dim));
+  }
+}
+
+void BodySpec::check_solid(Fields& f) const {
+  if (!integrator) return;
+  f.check(!std::holds_alternative<BackwardEulerSpec>(*integrator), "integrator",
+          "backward_euler is offered to bar_pair only",
+          "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");
+}
+
+void BodySpec::check_modal(Fields& f) const {
+  f.check(!material || std::holds_alternative<LinearElasticSpec>(*material), "material",
+          "is nonlinear, but modes are of a linear body", "Use linear_elastic, or model fe.");
+  for (const auto& [name, load] : loads) {
+    f.check(!load.follows, "loads." + name + ".follows",
+            "is true, but modes are of small displacements", "Leave follows out, or use model fe.");
+  }
+  const auto zero = [](const std::string& text) {
+    char* end = nullptr;
+    return std::strtod(text.c_str(), &end) == 0.0 && end == text.c_str() + text.size();
+  };
+  for (const auto& [name, constraint] : constraints) {
+    for (const auto& [text, key] : {std::pair(&constraint.x, ".x"),
+                                    {&constraint.y, ".y"},
+                                    {&constraint.z, ".z"},
+                                    {&constraint.value, ".value"}}) {
+      f.check(zero(*text), "constraints." + name + key, "is not 0, but modes have supports at rest",
+              "Give 0, or use model fe.");
+    }
+  }
+}
+
+void BodySpec::check_rigid(Fields& f) const {
+  f.check(constraints.empty(), "constraints",
+          "prescribe displacements of single nodes, which a rigid body does not have",
+          "Leave constraints out, or use model fe.");
+  f.check(!integrator || std::holds_alternative<RigidMotionSpec>(*integrator), "integrator",
+          "is for bodies that deform", "Use rigid_motion: {step: ...} with model rigid.");
+}
+
+}  // namespace abut

@@ -1,0 +1,94 @@
+#include "subdomain_solver/make/fields.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/index.hpp"
+#include "subdomain_solver/make/expression.hpp"
+
+namespace abut {
+
+namespace {
+
+/// One expression per dimension; an empty list is no field.
+VectorField field_of(const std::vector<std::string>& texts, int dim, const std::string& where) {
+  if (texts.size() != index(dim)) {
+    throw InputError(fmt::format("has {} expressions", texts.size()), where,
+                     fmt::format("Give {} expressions, one per dimension.", dim));
+  }
+  VectorField field;
+  for (int i = 0; i < dim; ++i) field[index(i)] = expression(texts[index(i)], where);
+  return field;
+}
+
+}  // namespace
+
+std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node) {
+  std::array<double, 3> at = {0.0, 0.0, 0.0};
+  for (int i = 0; i < mesh.dim; ++i) at[index(i)] = mesh.points[index(node * mesh.dim + i)];
+  return at;
+}
+
+std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place& place,
+                                              const FeModel& model) {
+  std::vector<std::unique_ptr<Load>> loads;
+  const int dim = model.mesh().dim;
+  const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+  const BodyForce::Mass mass =
+      explicit_in_time ? BodyForce::Mass::lumped : BodyForce::Mass::consistent;
+  for (const auto& [name, load] : spec.loads) {
+    const std::string key = "loads." + name;
+    named(place, key + ".on", [&] {
+      if (!load.on.empty()) (void)model.mesh().side(load.on);
+      return 0;
+    });
+    if (!load.traction.empty()) {
+      loads.push_back(std::make_unique<Traction>(
+          model, load.on, field_of(load.traction, dim, place.where(key + ".traction"))));
+    } else if (!load.pressure.empty()) {
+      const ScalarField pressure = expression(load.pressure, place.where(key + ".pressure"));
+      loads.push_back(named(place, key + ".follows", [&] {
+        return std::make_unique<Pressure>(model, load.on, pressure, load.follows);
+      }));
+    } else {
+      loads.push_back(std::make_unique<BodyForce>(
+          model, field_of(load.acceleration, dim, place.where(key + ".acceleration")), mass));
+    }
+  }
+  const bool weightless = std::all_of(spec.body_force.begin(), spec.body_force.end(),
+                                      [](double b) { return b == 0.0; });
+  if (weightless) return loads;
+  VectorField uniform;
+  for (int i = 0; i < dim; ++i)
+    uniform[index(i)] = [b = spec.body_force[index(i)]](const std::array<double, 3>&, double) {
+      return b;
+    };
+  loads.push_back(std::make_unique<BodyForce>(model, std::move(uniform), mass));
+  return loads;
+}
+
+/// Coordinates and velocities of the start, in the nodes' frames.
+Motion initial_motion(const BodySpec& spec, const Place& place, const FeModel& model) {
+  const Mesh& mesh = model.mesh();
+  const std::size_t dim = index(mesh.dim);
+  Motion motion;
+  motion.q.assign(index(model.dofs()), 0.0);
+  motion.v.assign(index(model.dofs()), 0.0);
+  auto add = [&](const std::vector<std::string>& texts, const char* key, std::vector<double>& to) {
+    if (texts.empty()) return;
+    const VectorField field = field_of(texts, mesh.dim, place.where(key));
+    for (std::size_t k = 0; k < to.size(); ++k)
+      to[k] += field[k % dim](position_of(mesh, static_cast<std::int32_t>(k / dim)), 0.0);
+  };
+  if (spec.initial.velocity.size() == dim) {
+    for (std::size_t k = 0; k < motion.v.size(); ++k) motion.v[k] = spec.initial.velocity[k % dim];
+  }
+  add(spec.initial.displacement_field, "initial.displacement_field", motion.q);
+  add(spec.initial.velocity_field, "initial.velocity_field", motion.v);
+  model.to_frames(motion.q);
+  model.to_frames(motion.v);
+  return motion;
+}
+
+}  // namespace abut

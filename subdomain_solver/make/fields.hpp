@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "subdomain_solver/fe/loads.hpp"
+#include "subdomain_solver/make/body_spec.hpp"
+#include "subdomain_solver/place.hpp"
+
+namespace abut {
+
+// What a scene says of a solid's space: loads and the state of the start.
+
+/// [m] reference position of a node.
+std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node);
+
+/// The loads on a mesh, body forces last. They refer to the model. Throws InputError.
+std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place& place,
+                                              const FeModel& model);
+
+/// Coordinates [m] and velocities [m/s] of the mesh's model at the start. Throws InputError.
+Motion initial_motion(const BodySpec& spec, const Place& place, const FeModel& model);
+
+}  // namespace abut

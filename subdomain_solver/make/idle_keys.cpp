@@ -1,0 +1,97 @@
+// Keys of a body that have no effect beside its other keys: what is refused rather than ignored.
+
+#include <string>
+
+#include "subdomain_solver/make/body_spec.hpp"
+
+namespace abut {
+
+namespace {
+
+using Names = std::initializer_list<const char*>;
+
+void all_idle(Fields& f, bool is_idle, Names keys, const char* why) {
+  for (const char* key : keys) f.idle(is_idle, key, why);
+}
+
+}  // namespace
+
+void BodySpec::idle_keys(Fields& f) const {
+  idle_of_walls_and_pairs(f);
+  idle_of_bars(f);
+  idle_of_integrators(f);
+  for (const auto& [name, load] : loads)
+    f.idle(load.pressure.empty(), "loads." + name + ".follows", "it belongs to a pressure");
+  for (const auto& [name, constraint] : constraints)
+    f.idle(constraint.direction.empty(), "constraints." + name + ".value",
+           "it is along direction, which is not given");
+}
+
+void BodySpec::idle_of_walls_and_pairs(Fields& f) const {
+  const bool wall = std::holds_alternative<RigidWallSpec>(model);
+  const bool pair = std::holds_alternative<BarPairSpec>(model);
+  const char* of_wall = "a rigid_wall has nothing but a place and a port";
+  const char* of_pair = "a bar_pair has bars of its own, free, at their own places";
+  all_idle(f, wall,
+           {"material", "integrator", "initial.velocity", "initial.displacement_field",
+            "initial.velocity_field"},
+           of_wall);
+  for (const auto& [name, port] : ports)
+    f.idle(wall, "ports." + name + ".tied", "a rigid_wall has no node whose mass could be shared");
+  all_idle(f, pair, {"initial"}, of_pair);
+  for (const char* key :
+       {"contact_layer", "supports", "body_force", "points", "constraints", "loads", "equations"}) {
+    f.idle(wall, key, of_wall);
+    f.idle(pair, key, of_pair);
+  }
+  f.idle(pair, "integrator.central_difference.above_limit", "it is for solids");
+  const auto* elastic = material ? std::get_if<LinearElasticSpec>(&*material) : nullptr;
+  const bool one_dimension = shape() != nullptr && shape()->dimension == 1;
+  for (const char* key : {"poissons_ratio", "bulk_modulus", "lame_modulus", "shear_modulus"})
+    f.idle(elastic != nullptr && elastic->youngs_modulus && (pair || one_dimension),
+           std::string("material.linear_elastic.") + key,
+           "of a bar of linear_elastic material youngs_modulus tells all");
+}
+
+void BodySpec::idle_of_bars(Fields& f) const {
+  const bool solid = is_solid();
+  const bool flat = shape() != nullptr && shape()->dimension > 1;
+  const bool modal = std::holds_alternative<ModalModelSpec>(model);
+  const bool rigid = std::holds_alternative<RigidModelSpec>(model);
+  all_idle(f, is_bar(), {"integrator.central_difference.above_limit", "equations"},
+           "it is for solids");
+  all_idle(
+      f, solid,
+      {"contact_layer", "integrator.central_difference.dispersion_terms",
+       "integrator.central_difference.bulk_viscosity", "integrator.central_difference.tchamwa"},
+      "it is for bars of linear_elastic material without points, constraints, loads, fields "
+      "and grading");
+  for (const auto& [name, port] : ports)
+    f.idle(solid, "ports." + name + ".tied", "it is for bars of equal elements");
+  f.idle(flat || rigid, "supports",
+         flat ? "they are for the ends of bars" : "a rigid body has no ends of its own to hold");
+  bool contact = false;
+  for (const auto& [name, port] : ports) contact = contact || !port.tied;
+  f.idle(is_bar() && !contact, "contact_layer", "the body has no port for contact");
+  f.idle(rigid || (modal && !is_implicit()), "equations",
+         "nothing of the body is solved by iteration");
+}
+
+void BodySpec::idle_of_integrators(Fields& f) const {
+  const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
+  const bool explicit_in_time =
+      integrator && std::holds_alternative<CentralDifferenceSpec>(*integrator);
+  f.idle(fe != nullptr && integrator && (!explicit_in_time || !is_solid() || fe->dimension == 1),
+         "model.fe.threads", "it is for explicit bodies in two and three dimensions");
+  f.idle(fe != nullptr && explicit_in_time, "equations", "an explicit body solves none");
+  const bool still = integrator && std::holds_alternative<QuasiStaticSpec>(*integrator);
+  all_idle(f, still, {"initial.velocity", "initial.velocity_field"},
+           "a quasi_static body has no inertia");
+}
+
+bool BodySpec::is_implicit() const {
+  return integrator && !std::holds_alternative<CentralDifferenceSpec>(*integrator) &&
+         !std::holds_alternative<RigidMotionSpec>(*integrator);
+}
+
+}  // namespace abut

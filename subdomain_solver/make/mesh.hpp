@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "subdomain_solver/make/body_spec.hpp"
+#include "subdomain_solver/place.hpp"
+
+namespace abut {
+
+/// The checked mesh of a solid, moved to its position (dim; otherwise not moved). `model` is the
+/// key of the spec, e.g. "model.fe". Throws InputError.
+Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,
+               const std::string& model);
+
+/// For the line that tells people of a body: " on part.msh (digest 0123456789abcdef)", the digest
+/// that of the file's bytes; empty where the mesh is generated. Throws InputError.
+std::string on_file(const SolidShapeSpec& spec);
+
+/// Adds the scene's named points to a mesh, as sets of one node. Throws InputError where no node
+/// is.
+void name_points(const BodySpec& spec, const Place& place, Mesh& mesh);
+
+/// Throws InputError when the mesh has cells that the formulation has no form for.
+void check_formulation(const FiniteElementsSpec& spec, const Mesh& mesh, const Place& place,
+                       const std::string& model);
+
+}  // namespace abut

@@ -1,0 +1,117 @@
+#include "subdomain_solver/make/scheme.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "subdomain_solver/time/explicit_dynamics.hpp"
+#include "subdomain_solver/time/implicit_dynamics.hpp"
+#include "subdomain_solver/time/quasi_static.hpp"
+#include "subdomain_solver/time/stable_steps.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Of the stable limit, that a clamped step takes at most: finite strain may lower the limit a
+/// little.
+constexpr double clamped = 0.95;
+
+struct SchemeMaker {
+  const BodySpec& spec;
+  const Place& place;
+  const Problem& problem;
+  const std::function<double()>& stable_limit;
+  const MakeWatch& watch;
+
+  SolidBody::Scheme operator()(const CentralDifferenceSpec& s) const {
+    const double limit = stable_limit();
+    const std::string key = "integrator.central_difference.step";
+    if (std::isnan(limit)) {
+      throw InputError("has no stable limit: an element is inverted by the initial displacement",
+                       place.where(key), "Correct initial.displacement_field.");
+    }
+    if (s.step > limit && !s.clamp) {
+      throw InputError(fmt::format("{:g} s is above the stable limit of {:g} s", s.step, limit),
+                       place.where(key),
+                       "Give a step of at most the limit, above_limit: clamp, or an implicit "
+                       "integrator such as newmark.");
+    }
+    // A whole number of parts, so that they divide windows as the step does.
+    const double parts = s.step > limit ? std::ceil(s.step / (clamped * limit)) : 1.0;
+    const double step = s.step / parts;
+    if (!(step > 0.0)) {
+      throw InputError("has a stable limit of 0 s: stiffness over mass is beyond all numbers",
+                       place.where(key), "Give the material's constants in SI units.");
+    }
+    std::unique_ptr<Integrator> steps;
+    if (watch && std::isfinite(limit))
+      steps = std::make_unique<StableSteps>(problem, watch(),
+                                            StableSteps::Options{step, limit, s.clamp});
+    else
+      steps = std::make_unique<ExplicitDynamics>(problem);
+    return {std::move(steps), step, limit, MassForm::lumped,
+            fmt::format("central difference, step {:.4g} s, stable limit {:.4g} s{}", step, limit,
+                        parts > 1.0 ? fmt::format(" ({:.10g} to one of the scene)", parts) : "")};
+  }
+  SolidBody::Scheme operator()(const NewmarkSpec& s) const {
+    return implicit(AlphaWeights::newmark(s.beta, s.gamma), s.step, s.mass, "newmark");
+  }
+  SolidBody::Scheme operator()(const HhtAlphaSpec& s) const {
+    return implicit(AlphaWeights::hht(s.alpha), s.step, s.mass, "HHT-alpha");
+  }
+  SolidBody::Scheme operator()(const GeneralizedAlphaSpec& s) const {
+    return implicit(AlphaWeights::spectral_radius(s.spectral_radius), s.step, s.mass,
+                    "generalised alpha");
+  }
+  SolidBody::Scheme operator()(const QuasiStaticSpec& s) const {
+    return {std::make_unique<QuasiStatic>(problem, QuasiStatic::Options{newton(), s.halvings},
+                                          linear(Pivots::with_digits)),
+            s.step, std::numeric_limits<double>::infinity(), MassForm::lumped,
+            fmt::format("quasi-static, step {:g} s", s.step)};
+  }
+  SolidBody::Scheme operator()(const RigidMotionSpec&) const { return {}; }    // refused before
+  SolidBody::Scheme operator()(const BackwardEulerSpec&) const { return {}; }  // refused before
+
+  SolidBody::Scheme implicit(const AlphaWeights& weights, double step, MassForm mass,
+                             const char* words) const {
+    return {std::make_unique<ImplicitDynamics>(
+                problem, ImplicitDynamics::Options{weights, mass, newton()}, linear(Pivots::every)),
+            step, std::numeric_limits<double>::infinity(), mass,
+            fmt::format("{}, step {:g} s", words, step)};
+  }
+  NewtonOptions newton() const { return {spec.equations.tolerance, spec.equations.max_iterations}; }
+  std::unique_ptr<LinearSolver> linear(Pivots pivots) const {
+    if (const auto* cg = std::get_if<ConjugateGradientsSpec>(&spec.equations.linear))
+      return make_conjugate_gradients(cg->tolerance);
+    return make_direct_solver(pivots);
+  }
+};
+
+}  // namespace
+
+std::vector<SolidBody::PortNodes> make_ports(const BodySpec& spec, const Place& place,
+                                             const Mesh& mesh) {
+  std::vector<SolidBody::PortNodes> ports;
+  for (const auto& [name, port] : spec.ports) {
+    named(place, "ports." + name + ".side", [&] { return mesh.nodes_of(port.side); });
+    ports.push_back({name, port.side});
+  }
+  return ports;
+}
+
+MassForm mass_form(const BodySpec::Integrator& integrator) {
+  const auto find = [](const auto& scheme) {
+    if constexpr (requires { scheme.mass; }) return scheme.mass;
+    return MassForm::lumped;
+  };
+  return std::visit(find, integrator);
+}
+
+SolidBody::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
+                              const std::function<double()>& stable_limit, const MakeWatch& watch) {
+  return std::visit(SchemeMaker{spec, place, problem, stable_limit, watch}, *spec.integrator);
+}
+
+}  // namespace abut

@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include "subdomain_solver/fe/highest_frequency.hpp"
+#include "subdomain_solver/fe/stable_step.hpp"
+#include "subdomain_solver/make/constraints.hpp"
+#include "subdomain_solver/make/fields.hpp"
+#include "subdomain_solver/make/makers.hpp"
+#include "subdomain_solver/make/mass_range.hpp"
+#include "subdomain_solver/make/material.hpp"
+#include "subdomain_solver/make/mesh.hpp"
+#include "subdomain_solver/make/scheme.hpp"
+#include "subdomain_solver/place.hpp"
+#include "subdomain_solver/solid_body.hpp"
+
+namespace abut {
+
+std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document& document,
+                                           const std::string& path,
+                                           std::function<void()> progress) {
+  const Place place{document, path};
+  const FeModelSpec& fe = std::get<FeModelSpec>(spec.model);
+  Mesh mesh = make_mesh(fe, spec.initial.position, place, "model.fe");
+  name_points(spec, place, mesh);
+  const std::vector<SolidBody::PortNodes> ports = make_ports(spec, place, mesh);
+  Constraints constraints = make_constraints(spec, place, mesh);
+  check_formulation(fe, mesh, place, "model.fe");
+  const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+  SolidBody::Parts parts;
+  parts.model = std::make_unique<FeModel>(
+      std::move(mesh), make_material(*spec.material, document, path + ".material", fe.dimension),
+      FeOptions{fe.plane, fe.formulation, fe.thickness, fe.hourglass, explicit_in_time, fe.threads,
+                fe.area()},
+      constraints.frames);
+  FeModel& model = *parts.model;
+  check_mass(model.lumped_mass().minCoeff(), model.lumped_mass().maxCoeff(), spec, place);
+  if (fe.threads > 1 && model.threads() == nullptr) {
+    throw InputError("have no effect: one thread computes the elements of this law or formulation",
+                     place.where("model.fe.threads"), "Leave threads out.");
+  }
+  check_statics(spec, place, model, constraints.supports);
+  parts.map = std::make_unique<IdentityMap>();
+  parts.problem = std::make_unique<Problem>();
+  parts.problem->model = &model;
+  parts.problem->supports = std::move(constraints.supports);
+  parts.problem->loads = make_loads(spec, place, model);
+  parts.motion = initial_motion(spec, place, model);
+  const auto limit = [&] {
+    return stable_step(model, parts.motion.q, std::vector<double>(model.history_size(), 0.0));
+  };
+  parts.rung += on_file(fe);
+  MakeWatch watch;  // the tangent of linear bodies stays
+  if (!model.is_linear()) watch = [&] { return std::make_unique<HighestFrequency>(model); };
+  parts.scheme = make_scheme(spec, place, *parts.problem, limit, watch);
+  if (!constraints.held.empty()) {
+    parts.reactions = std::make_unique<NodalReactions>(
+        model, *parts.problem, *parts.scheme.integrator, mass_matrix(model, parts.scheme.mass),
+        parts.scheme.step, constraints.held);
+    parts.constraints = std::move(constraints.held);
+  }
+  const std::string name = path.substr(path.rfind('.') + 1);
+  std::unique_ptr<SolidBody> body = std::make_unique<SolidBody>(name, std::move(parts), ports);
+  body->set_progress(std::move(progress));
+  return body;
+}
+
+}  // namespace abut
