@@ -1,23 +1,33 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "contract/waveform.hpp"
 
 namespace abut {
 
-/// The partner's moving surface, as this side sees it: what the body must not penetrate.
+/// What joins two ports: with which law a body meets its partner's surface (Subdomain::meet).
+struct ContactLaw {
+  bool tied = false;  // holds in tension too, and any gap of the references counts as none
+};
+
+/// The partner's moving surface, on the partner's own points: what the body must not penetrate, or,
+/// where the law ties, what it must follow. The body that takes it knows the surface and the law
+/// (Subdomain::meet); it finds gaps, solves its own unilateral problem, and replies with the
+/// reaction on the same points.
+///
+/// The surface gives way where its port kernel was given (Subdomain::yields):
+///   y = motion.u + kernel * (reaction - motion.f)
+/// with motion.f the force on the partner under which motion.u was found, both of its last reply
+/// (eq. 9 of the compliant obstacle, docs/METHOD.md).
 struct Obstacle {
-  Waveform motion;             // partner's displacement u (and f unused), on this side's points
-  // [m] (n, dim) reference position of the partner minus that of this side
-  std::vector<double> offset;
-  // keep contact also in tension: the coordinator locates the release itself
-  bool bilateral = false;
+  Waveform motion;  // the partner's displacement u, and f where its surface gives way
 
   bool empty() const { return motion.empty(); }
 };
 
-/// The partner as a dashpot: with it, the port's force is that of BoundaryData::force minus
+/// The partner as a dashpot: with it, the port's force is that of BoundaryData::forces minus
 /// impedance x the port's velocity over each substep (positions at its ends over its length).
 struct Impedance {
   double value = 0.0;     // [kg/s]; 0: absent
@@ -27,28 +37,38 @@ struct Impedance {
 };
 
 /// What is imposed on one port over one window. An empty part is absent: not imposed.
-///  - motion:   Dirichlet, u, v, a are overwritten (published form; the reply's f is the internal
-///              force)
-///  - force:    Neumann, f acts on this body
-///  - obstacle: one-body unilateral problem; the reply's f is the complete reaction, inertia
-///              included
-///  - impedance: beside force: resists the port's own motion; the reply's f is the whole force
-///  - impulse:  [N s] (n, dim) once, at the window's begin
+///  - motion:    Dirichlet, u, v, a are overwritten (published form; the reply's f is the internal
+///               force)
+///  - forces:    Neumann, by partner, on this port's points; their sum acts on this body
+///  - obstacles: one-body unilateral problem against partners, by partner; the reply's f is the
+///               complete reaction, inertia included
+///  - impedance: beside forces: resists the port's own motion; the reply's f is the whole force
+///  - impulse:   [N s] (n, dim) once, at the window's begin
+/// Partners are numbered as the port met them (Subdomain::meet); of those that do nothing the entry
+/// is empty or missing.
 struct BoundaryData {
   Waveform motion;
-  Waveform force;
-  Obstacle obstacle;
+  std::vector<Waveform> forces;
+  std::vector<Obstacle> obstacles;
   Impedance impedance;
   std::vector<double> impulse;
 
+  /// Forgets the values and keeps the memory.
   void clear() {
     motion.clear();
-    force.clear();
-    obstacle.motion.clear();
+    for (Waveform& force : forces) force.clear();
+    for (Obstacle& obstacle : obstacles) obstacle.motion.clear();
     impedance = {};
     impulse.clear();
   }
-  bool closed() const { return !motion.empty() || !force.empty() || !obstacle.empty(); }
+  bool pushed() const {
+    return std::any_of(forces.begin(), forces.end(), [](const Waveform& f) { return !f.empty(); });
+  }
+  bool obstructed() const {
+    return std::any_of(obstacles.begin(), obstacles.end(),
+                       [](const Obstacle& o) { return !o.empty(); });
+  }
+  bool closed() const { return !motion.empty() || pushed() || obstructed(); }
 };
 
 }  // namespace abut

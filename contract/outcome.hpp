@@ -27,9 +27,9 @@ struct MemberRecord {
 
 /// State of a body at one time, as a number or two.
 struct BodyRecord {
-  double time = 0.0;              // [s]
-  Energy energy;                  // [J]; of all members and of what acts between them
-  std::vector<double> momentum;   // [kg m/s] (dim)
+  double time = 0.0;             // [s]
+  Energy energy;                 // [J]; of all members and of what acts between them
+  std::vector<double> momentum;  // [kg m/s] (dim)
   // [kg m^2/s] about the origin of space: one number in two dimensions, three in three; empty:
   // none, or not told
   std::vector<double> angular_momentum{};
@@ -44,14 +44,22 @@ struct Recoil {
   double mobility = 0.0;  // [1/kg] change of that velocity per unit impulse; 0: immovable
 };
 
+/// What a body that met an obstacle does to the partner behind it.
+struct Reaction {
+  Waveform force;  // [N] on the partner, on the partner's points that the obstacle listed
+};
+
 /// One port's reply to a window.
 struct PortResponse {
-  Waveform trace;                  // at the substeps, or at the records only (Sampling)
-  std::vector<double> lower;       // [m] (records, dim) smallest and largest displacement over the
-  std::vector<double> upper;       // substeps of each record's part of the window
-  double approach_bound = 0.0;
-  double approach_acceleration = 0.0;  // [m/s^2] by which body forces may raise that bound
-  std::optional<Recoil> recoil;  // only bodies that take impulses
+  Waveform trace;                   // at the substeps, or at the records only (Sampling)
+  std::vector<Reaction> reactions;  // by partner, to the obstacles of the request
+  // [m] (records, dim) box that the points swept in each record's part of the window: positions
+  std::vector<double> lower, upper;
+  // Bound of the velocity at which a point may come while no partner touches, from the window's end
+  // on: [m/s] along the outward normal (one point) or in any direction; infinity: unknown.
+  double speed_bound = 0.0;
+  double acceleration_bound = 0.0;  // [m/s^2] by which body forces may raise it
+  std::optional<Recoil> recoil;     // only bodies that take impulses
   // [J] done on the body through the port over the window, impulses included: the change of the
   // energy that its integrator conserves [M.23]
   double work = 0.0;
@@ -61,8 +69,8 @@ struct PortResponse {
 struct Response {
   std::vector<PortResponse> ports;  // in the order of Description::ports
   std::vector<BodyRecord> records;
-  int steps = 0;                    // substeps taken
-  double compute_seconds = 0.0;     // wall time inside the solver; never decides anything
+  int steps = 0;                 // substeps taken
+  double compute_seconds = 0.0;  // wall time inside the solver; never decides anything
 };
 
 struct Advanced {};

@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "base/index.hpp"
 #include "contract/waveform.hpp"
 
 namespace abut {
 
-/// Where a port is. All arrays are flat and row-major.
+/// The surface of a port, in the reference configuration. All arrays are flat and row-major.
 struct PortGeometry {
   int dim = 1;                        // 1, 2 or 3
   std::vector<double> points;         // [m] (n, dim), reference configuration
@@ -29,16 +30,23 @@ struct Port {
   bool tied = false;  // for tied interfaces only: contact would make its node unstable
 };
 
-/// Response of a port to a unit force along its outward normal, from rest and with all other loads
-/// absent: the building block of the interface Jacobian (docs/METHOD.md, port kernel).
+/// Responses of a port to patterns of force on its points, from rest and with all other loads
+/// absent: the building block of the interface Jacobian (docs/METHOD.md, port kernel). The kernel
+/// of a one-point port has one pattern, a unit force along its outward normal.
 struct PortKernel {
   double step = 0.0;  // [s] the substep it was computed for
   ForceSupport support = ForceSupport::nodal;
-  // [m/N] quasi-static part: follows the force of the same instant
-  double compliance = 0.0;
-  std::vector<double> displacement;  // [m/N] (n) at the ends of substeps 1..n, force in substep 1
-  // [m/N] (n) the same, force at the window's begin only (nodal support)
+  int patterns = 1;
+  int width = 1;  // points x dimension: values of a pattern and of a response
+  // [m/N] (patterns, width) quasi-static part: follows the force of the same instant; empty: none
+  std::vector<double> compliance;
+  // [m/N] (n, patterns, width) at the ends of substeps 1..n, force in substep 1
+  std::vector<double> displacement;
+  // [m/N] (n, patterns, width) the same, force at the window's begin only (nodal support)
   std::vector<double> begin;
+
+  std::size_t per_step() const { return index(patterns) * index(width); }
+  int count() const { return static_cast<int>(displacement.size() / per_step()); }
 };
 
 }  // namespace abut

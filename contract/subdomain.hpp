@@ -16,13 +16,13 @@ namespace abut {
 
 /// What a body can do; checked against the scene before the first window.
 struct Capabilities {
-  bool motion = false;    // accepts BoundaryData::motion
-  bool force = false;     // accepts BoundaryData::force
-  bool obstacle = false;  // accepts BoundaryData::obstacle: may be the kinematic side
-  bool impulse = false;   // accepts BoundaryData::impulse
-  bool kernel = false;    // answers kernel()
+  bool motion = false;     // accepts BoundaryData::motion
+  bool force = false;      // accepts BoundaryData::force
+  bool obstacle = false;   // accepts BoundaryData::obstacle: may be the kinematic side
+  bool impulse = false;    // accepts BoundaryData::impulse
+  bool kernel = false;     // answers probe()
   bool impedance = false;  // accepts BoundaryData::impedance
-  bool complete = false;  // reactions hold the inertia of the contact row: unilateral interfaces
+  bool yielding = false;   // takes obstacles that give way: yields()
 };
 
 /// A solid inside a body that tables show as if it were a body: monolithic models hold several.
@@ -34,28 +34,34 @@ struct Member {
 
 struct Description {
   std::string name;
-  std::string model;            // one line for people: "fe bar, 200 elements, central difference"
+  std::string model;  // one line for people: "fe bar, 200 elements, central difference"
   int dim = 1;
   std::int64_t dofs = 0;
-  double mass = 0.0;            // [kg]; infinity: immovable
-  double step = 0.0;            // [s] nominal substep; 0: any window is one step
-  double stable_step = 0.0;     // [s] limit of the nominal step; infinity: none
+  double mass = 0.0;         // [kg]; infinity: immovable
+  double step = 0.0;         // [s] nominal substep; 0: any window is one step
+  double stable_step = 0.0;  // [s] limit of the nominal step; infinity: none
   // Its energy changes by port and external work alone, as its records tell: no damping, no heat.
   bool conserves = false;
   std::vector<Port> ports;
   Capabilities can;
-  std::vector<Member> members;  // empty: the body is one solid
+  std::vector<Member> members;        // empty: the body is one solid
   std::vector<std::string> measures;  // names of what measure() tells, in its order
   std::vector<FieldInfo> fields;      // what fields() tells, in its order; empty: has none
   // what every record tells beside energies and momenta, with its unit: "clamp.reaction_x [N]"
   std::vector<std::string> columns;
-  std::vector<double> frequencies;    // [Hz] of a body that moves in modes, ascending
+  std::vector<double> frequencies;  // [Hz] of a body that moves in modes, ascending
 };
 
 /// Which traces a response holds.
 enum class Sampling {
   substeps,  // window begin and every substep: needed where an interface may close
   records,   // window begin and the records: free flight
+};
+
+/// Which fields of a port's trace are wanted, and of which points.
+struct Want {
+  bool u = true, v = true, a = true, f = true;
+  std::vector<std::int32_t> points;  // of the port, ascending; empty: all of them
 };
 
 /// One request: advance through a window with given data on the ports.
@@ -65,6 +71,7 @@ struct Advance {
   int records = 1;
   Sampling sampling = Sampling::substeps;
   std::vector<BoundaryData> boundary;  // in the order of Description::ports
+  std::vector<Want> want;              // the same; empty: everything
 };
 
 /// A body: something that can be advanced through a window with given data on its ports, and
@@ -81,16 +88,23 @@ class Subdomain {
  public:
   virtual ~Subdomain() = default;
   virtual const Description& describe() const = 0;
-  virtual void save() = 0;     // the one state that restore() returns to
+  /// The partner that a port may meet, before the first window: its surface in the reference
+  /// configuration, and the law. Partners of a port are numbered from 0 in the order of the calls.
+  /// Bodies that take no obstacles are not told.
+  virtual void meet(int port, const PortGeometry& partner, const ContactLaw& law) = 0;
+  /// How that partner's surface gives way: its kernel for unit forces on its points, one pattern
+  /// per component. Bodies that take no yielding obstacles are not told.
+  virtual void yields(int port, int partner, const PortKernel& kernel) = 0;
+  virtual void save() = 0;  // the one state that restore() returns to
   virtual void restore() = 0;
   virtual void start(const Advance& request) = 0;  // the request must live until finish() returns
   [[nodiscard]] virtual Outcome finish(Response& response) = 0;
-  /// Impulse response of a port over `count` substeps of length `step`; the state is left
-  /// untouched.
-  virtual PortKernel kernel(int port, double step, int count) = 0;
-  virtual std::vector<std::byte> checkpoint() = 0;          // durable form of the state
+  /// Responses of a port to patterns of force (patterns, points x dim) over `count` substeps of
+  /// length `step`; the state is left untouched.
+  virtual PortKernel probe(int port, std::span<const double> patterns, double step, int count) = 0;
+  virtual std::vector<std::byte> checkpoint() = 0;  // durable form of the state
   virtual void resume(std::span<const std::byte> bytes) = 0;
-  virtual std::uint64_t state_hash() = 0;                   // equal states, equal hashes
+  virtual std::uint64_t state_hash() = 0;  // equal states, equal hashes
   /// Numbers that sum up the present state, in the order of Description::measures; SI units. Asked
   /// for at the end of a run.
   virtual std::vector<double> measure() { return {}; }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "base/index.hpp"
 #include "base/assert.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -19,6 +19,7 @@ std::size_t interval_of(const std::vector<double>& time, double at) {
 }  // namespace
 
 void Waveform::clear() {
+  points.clear();
   time.clear();
   u.clear();
   v.clear();
@@ -28,8 +29,8 @@ void Waveform::clear() {
 
 void Waveform::interpolate(const std::vector<double>& field, double at,
                            std::span<double> out) const {
-  ABUT_ASSERT(!time.empty() && field.size() == time.size() * index(width));
   const std::size_t w = index(width);
+  ABUT_ASSERT(!time.empty() && field.size() == time.size() * w && out.size() == w);
   if (time.size() == 1 || at <= time.front()) {
     std::copy_n(field.begin(), w, out.begin());
     return;
@@ -51,20 +52,22 @@ void Waveform::force_at(double at, std::span<double> out) const {
     interpolate(f, at, out);
     return;
   }
+  ABUT_ASSERT(!time.empty() && f.size() == time.size() * index(width) &&
+              out.size() == index(width));
   // The force of a substep belongs to the half-open interval that ends at its stored time.
   const auto not_before = std::lower_bound(time.begin(), time.end(), at);
   const std::size_t last = time.size() - 1;
   const std::size_t first = std::min<std::size_t>(1, last);
-  const std::size_t i =
-      std::clamp(index(not_before - time.begin()), first, last);
+  const std::size_t i = std::clamp(index(not_before - time.begin()), first, last);
   std::copy_n(f.begin() + static_cast<std::ptrdiff_t>(i) * width, width, out.begin());
 }
 
 void Waveform::impulse(double from, double to, std::span<double> out) const {
   const std::size_t w = index(width);
+  ABUT_ASSERT(f.size() == time.size() * w && out.size() == w);
   std::fill_n(out.begin(), w, 0.0);
+  if (time.size() < 2) return;
   const std::size_t last = time.size() - 1;
-  if (time.empty() || last == 0) return;
   const bool nodal = support == ForceSupport::nodal;
   // Cell i is [begin_of(i), begin_of(i + 1)]: dual cells of all nodes, or the substeps 1..last.
   auto begin_of = [this, nodal, last](std::size_t i) {
@@ -81,7 +84,5 @@ void Waveform::impulse(double from, double to, std::span<double> out) const {
     for (std::size_t c = 0; c < w; ++c) out[c] += overlap * f[i * w + c];
   }
 }
-
-bool same_times(const Waveform& a, const Waveform& b) { return a.time == b.time; }
 
 }  // namespace abut

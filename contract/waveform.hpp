@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,7 +11,7 @@ namespace abut {
 enum class ForceSupport {
   // f(t_i) acts over the dual cell around t_i (trapezoid rule): massless layers, implicit bodies
   nodal,
-  step,   // f_i is constant over the substep that ends at t_i: contact kicks
+  step,  // f_i is constant over the substep that ends at t_i: contact kicks
 };
 
 /// Motion and force on a port as functions of time over a window.
@@ -18,8 +19,9 @@ enum class ForceSupport {
 /// Structure of arrays, so that a window costs no allocation once its buffers have grown: times are
 /// strictly increasing, the first is the window's begin and the last its end. `width` is points x
 /// dimension; u [m], v [m/s], a [m/s^2] and f [N] are (times, width), row-major, and each may be
-/// empty. u is the displacement from the reference configuration: positions would lose small
-/// motions to round-off. f is the force that acts on this body through the port.
+/// empty. Only what is near another body travels: `points` lists the points that are meant. u is
+/// the displacement from the reference configuration: positions would lose small motions to
+/// round-off. f is the force that acts on this body through the port.
 class Waveform {
  public:
   Waveform() = default;
@@ -27,8 +29,9 @@ class Waveform {
 
   int width = 1;
   ForceSupport support = ForceSupport::nodal;
-  std::vector<double> time;        // [s] (m)
-  std::vector<double> u, v, a, f;  // (m, width) or empty
+  std::vector<std::int32_t> points;  // of the port, ascending; empty: all of them
+  std::vector<double> time;          // [s] (m)
+  std::vector<double> u, v, a, f;    // (m, width) or empty
 
   std::size_t size() const { return time.size(); }
   bool empty() const { return time.empty(); }
@@ -36,8 +39,8 @@ class Waveform {
   void clear();
 
   /// Values of one field at a time inside the window, linear between the stored times and exact at
-  /// them; writes `width` numbers. Precondition: the waveform is not empty and the field is (times,
-  /// width).
+  /// them; writes `width` numbers, as many as `out` must hold. Precondition: the waveform is not
+  /// empty and the field is (times, width).
   void interpolate(const std::vector<double>& field, double at, std::span<double> out) const;
 
   /// Force that acts at a time: linear between stored times (nodal) or that of the substep (step).
@@ -47,8 +50,5 @@ class Waveform {
   /// so the impulses of adjoining intervals add up to that of their union. Writes `width` numbers.
   void impulse(double from, double to, std::span<double> out) const;
 };
-
-/// True when both are sampled at exactly the same times.
-bool same_times(const Waveform& a, const Waveform& b);
 
 }  // namespace abut
