@@ -54,7 +54,7 @@ class Assembled final : public Material {
   double density() const override { return law_.density(); }
   Moduli moduli() const override { return law_.moduli(); }
   bool evaluate(const Matrix3& f, std::span<const double> before, std::span<double> after,
-                Want want, PointResponse& out) const override {
+                Need want, PointResponse& out) const override {
     return law_.evaluate(f, before, after, want, out);
   }
 

@@ -45,7 +45,7 @@ void report(benchmark::State& state) {
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void scalar(benchmark::State& state, const Material& law, Want want) {
+void scalar(benchmark::State& state, const Material& law, Need want) {
   std::vector<Matrix3> f(points);
   for (std::size_t i = 0; i < points; ++i) f[i] = deformation(i);
   const std::vector<double> before(index(law.history_size()), 0.0);
@@ -93,9 +93,9 @@ void add_batched(const std::string& name) {
 
 void add_scalar(const std::string& name, std::shared_ptr<const Material> law) {
   benchmark::RegisterBenchmark((name + "/scalar stress").c_str(),
-                               [law](benchmark::State& s) { scalar(s, *law, Want::stress); });
+                               [law](benchmark::State& s) { scalar(s, *law, Need::stress); });
   benchmark::RegisterBenchmark((name + "/scalar tangent").c_str(),
-                               [law](benchmark::State& s) { scalar(s, *law, Want::tangent); });
+                               [law](benchmark::State& s) { scalar(s, *law, Need::tangent); });
 }
 
 }  // namespace

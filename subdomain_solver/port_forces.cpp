@@ -19,7 +19,12 @@ void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substep
   grid_ = grid;
   forces_.clear();
   for (std::size_t p = 0; p < std::min(boundary.size(), map_.ports()); ++p) {
-    if (!boundary[p].force.empty()) sample(boundary[p].force, p);
+    bool first = true;
+    for (const Waveform& force : boundary[p].forces) {
+      if (force.empty()) continue;
+      add_sampled(force, p, first);
+      first = false;
+    }
   }
 }
 
@@ -31,16 +36,15 @@ void PortForces::impose(std::vector<double> at_begin, std::vector<double> in_fir
   forces_.resize(index(grid.count + 1) * map_.values(), 0.0);
 }
 
-void PortForces::sample(const Waveform& imposed, std::size_t port) {
+void PortForces::add_sampled(const Waveform& imposed, std::size_t port, bool first) {
   forces_.resize(index(grid_.count + 1) * map_.values(), 0.0);
   const std::size_t width = index(imposed.width);
   const bool same = imposed.support == ForceSupport::nodal && grid_.matches(imposed.time);
+  mean_.resize(width);
   for (int i = 0; i <= grid_.count; ++i) {
-    const std::span<double> to =
-        std::span(forces_).subspan(index(i) * map_.values() + map_.first(port), width);
+    double* row = forces_.data() + index(i) * map_.values() + map_.first(port);
     if (same) {  // the common case, and exact: no averaging at all
-      std::copy_n(imposed.f.begin() + static_cast<std::ptrdiff_t>(index(i) * width), width,
-                  to.begin());
+      add(imposed, imposed.f.data() + index(i) * width, first, row);
       continue;
     }
     const double now = i == 0 ? grid_.begin : grid_.time(i);
@@ -48,11 +52,24 @@ void PortForces::sample(const Waveform& imposed, std::size_t port) {
     const double after = i == grid_.count ? grid_.end : grid_.time(i + 1);
     const double from = 0.5 * (before + now), until = 0.5 * (now + after);
     if (until <= from) {  // a window of no length
-      imposed.force_at(now, to);
-      continue;
+      imposed.force_at(now, mean_);
+    } else {
+      imposed.impulse(from, until, mean_);
+      for (double& f : mean_) f /= until - from;
     }
-    imposed.impulse(from, until, to);
-    for (double& f : to) f /= until - from;
+    add(imposed, mean_.data(), first, row);
+  }
+}
+
+/// The values of the points that a waveform lists to those of all points of its port. The first
+/// ones are taken as they are: zeros have signs.
+void PortForces::add(const Waveform& imposed, const double* values, bool first,
+                     double* row) const {
+  const std::size_t dim = index(map_.dim()), width = index(imposed.width);
+  for (std::size_t k = 0; k < width; ++k) {
+    const bool listed = !imposed.points.empty();
+    double& sum = row[listed ? index(imposed.points[k / dim]) * dim + k % dim : k];
+    sum = first ? values[k] : sum + values[k];
   }
 }
 

@@ -10,7 +10,7 @@
 
 namespace abut {
 
-/// Forces imposed on the ports of a body over a window, as its own substeps take them: values at
+/// Forces imposed by partners on the ports of a body over a window, as its own substeps take them: values at
 /// their ends, equal to those of the waveform where it is sampled there, else means over the dual
 /// cells [M.8], so that the impulse is exact; linear in between. Lists of values are
 /// those of PortMap.
@@ -30,11 +30,13 @@ class PortForces final : public Load {
   void add(double time, std::span<const double> q, Vector& force) const override;
 
  private:
-  void sample(const Waveform& imposed, std::size_t port);
+  void add_sampled(const Waveform& imposed, std::size_t port, bool first);
+  void add(const Waveform& imposed, const double* values, bool first, double* row) const;
 
   const PortMap& map_;
   Substeps grid_;
   std::vector<double> forces_;  // [N] (substeps + 1, values); empty: none imposed
+  std::vector<double> mean_;    // [N] of a waveform over a dual cell
 };
 
 }  // namespace abut

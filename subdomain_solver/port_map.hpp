@@ -18,6 +18,7 @@ class PortMap {
   /// The model and the map must outlive it.
   PortMap(const FeModel& model, const NodalMap& map, const std::vector<NamedNodes>& ports);
 
+  int dim() const { return dim_; }
   std::size_t values() const { return values_; }
   std::size_t ports() const { return first_.size(); }
   /// Where the values of a port begin.

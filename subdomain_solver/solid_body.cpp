@@ -66,8 +66,9 @@ void SolidBody::describe(std::string name, const std::vector<PortNodes>& ports) 
   description_.step = parts_.scheme.step;
   description_.stable_step = parts_.scheme.stable_step;
   description_.can.force = true;
-  const bool answers = mesh.dim == 1 && parts_.problem->model->is_linear() && !ports.empty();
-  description_.can.kernel = description_.can.complete = answers;  // as the side that takes forces
+  const bool linear = parts_.problem->model->is_linear() && (parts_.deforms || mesh.dim == 1);
+  description_.can.kernel =
+      linear && parts_.scheme.integrator->has_inertia() && !ports.empty();
   for (const PortNodes& p : ports) {
     ports_.push_back({p.name, mesh.nodes_of(p.side)});
     Port port = port_of(p, ports_.back().nodes);
@@ -201,11 +202,13 @@ std::optional<Failed> SolidBody::advance(const Advance& request, const Substeps&
     port.work = 0.0;
     port.lower.clear();
     port.upper.clear();
+    port.reactions.clear();
+    port.acceleration_bound = 0.0;
     // Nothing is known of how fast a port may come: the coordinator goes window by window.
-    port.approach_bound = std::numeric_limits<double>::infinity();
+    port.speed_bound = std::numeric_limits<double>::infinity();
   }
   see_ports();
-  push_traces(request.window.begin, response);
+  push_traces(request, request.window.begin, response);
   begin_sweep();
   RecordClock clock(request, grid.count);
   for (int i = 1; i <= grid.count; ++i) {
@@ -218,9 +221,9 @@ std::optional<Failed> SolidBody::advance(const Advance& request, const Substeps&
     report_progress();
     const bool due = i == clock.substep();
     if (request.sampling == Sampling::substeps)
-      push_traces(grid.time(i), response);
+      push_traces(request, grid.time(i), response);
     else if (due)
-      push_traces(clock.time(), response);
+      push_traces(request, clock.time(), response);
     for (; i == clock.substep(); clock.next()) {
       if (std::optional<Failed> failed = record(clock.time(), response)) return failed;
     }
@@ -246,26 +249,33 @@ std::vector<double> SolidBody::velocity() const {
   return v;
 }
 
-void SolidBody::push_traces(double time, Response& response) const {
+void SolidBody::push_traces(const Advance& request, double time, Response& response) const {
   if (ports_.empty()) return;
   const Motion& motion = state_.motion;
   std::vector<double> v, a;
   port_map_->velocity(motion.q, motion.v, v);
   port_map_->acceleration(motion.q, motion.v, motion.a, a);
   const std::vector<double> f = port_forces_->at(time);
+  const std::size_t dim = index(description_.dim);
   for (std::size_t p = 0; p < ports_.size(); ++p) {
+    const Want want = request.want.empty() ? Want{} : request.want[p];
     Waveform& trace = response.ports[p].trace;
-    trace.width = static_cast<int>(ports_[p].nodes.size()) * description_.dim;
+    const std::size_t points = want.points.empty() ? ports_[p].nodes.size() : want.points.size();
+    trace.points = want.points;
+    trace.width = static_cast<int>(points * dim);
     trace.time.push_back(time);
-    const auto first = static_cast<std::ptrdiff_t>(port_map_->first(p));
-    const auto add = [first, width = trace.width](const std::vector<double>& from,
-                                                  std::vector<double>& to) {
-      to.insert(to.end(), from.begin() + first, from.begin() + first + width);
+    const auto add = [this, p, dim, &trace](bool wanted, const std::vector<double>& from,
+                                            std::vector<double>& to) {
+      if (!wanted) return;
+      const double* first = from.data() + port_map_->first(p);
+      if (trace.points.empty()) to.insert(to.end(), first, first + trace.width);
+      for (std::int32_t point : trace.points)
+        to.insert(to.end(), first + index(point) * dim, first + (index(point) + 1) * dim);
     };
-    add(port_displacement_, trace.u);
-    add(v, trace.v);
-    add(a, trace.a);
-    add(f, trace.f);
+    add(want.u, port_displacement_, trace.u);
+    add(want.v, v, trace.v);
+    add(want.a, a, trace.a);
+    add(want.f, f, trace.f);
   }
 }
 
@@ -308,13 +318,15 @@ void SolidBody::begin_sweep() {
   widen_sweep();
 }
 
+/// By the places of the points.
 void SolidBody::widen_sweep() {
   const std::size_t dim = index(description_.dim);
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     const double* u = port_displacement_.data() + port_map_->first(p);
-    for (std::size_t k = 0; k < ports_[p].nodes.size() * dim; ++k) {
-      lower_[p][k % dim] = std::min(lower_[p][k % dim], u[k]);
-      upper_[p][k % dim] = std::max(upper_[p][k % dim], u[k]);
+    const std::vector<double>& x = description_.ports[p].geometry.points;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      lower_[p][k % dim] = std::min(lower_[p][k % dim], x[k] + u[k]);
+      upper_[p][k % dim] = std::max(upper_[p][k % dim], x[k] + u[k]);
     }
   }
 }
@@ -418,15 +430,9 @@ Energy SolidBody::energy() const {
           motion.external_work - state_.port_work};  // partners account for what ports exchange
 }
 
-/// Outward displacement of a port at the ends of substeps under one force at the begin and one at
-/// the end of the first of them, from rest [m].
-std::vector<double> SolidBody::respond_from_rest(std::size_t port, double at_begin, double in_first,
-                                                 const Substeps& grid) {
-  const double outward = description_.ports[port].geometry.normals[0];
-  std::vector<double> first(port_map_->values(), 0.0), second = first;
-  first[port_map_->first(port)] = outward * at_begin;
-  second[port_map_->first(port)] = outward * in_first;
-  port_forces_->impose(std::move(first), std::move(second), grid);
+/// Displacement (substeps, values) of a port at the ends of substeps, from rest under the forces
+/// that are imposed [m].
+std::vector<double> SolidBody::respond_from_rest(std::size_t port, const Substeps& grid) {
   Integrator& integrator = *parts_.scheme.integrator;
   Motion& motion = state_.motion;
   const std::size_t coordinates = motion.q.size(), rates = motion.v.size();
@@ -438,7 +444,9 @@ std::vector<double> SolidBody::respond_from_rest(std::size_t port, double at_beg
   for (int i = 1; i <= grid.count && !failed; ++i) {
     failed = integrator.step(motion, grid.time(i - 1), grid.step);
     see_ports();
-    displacement.push_back(outward * port_displacement_[port_map_->first(port)]);
+    const double* first = port_displacement_.data() + port_map_->first(port);
+    const std::size_t width = description_.ports[port].geometry.points.size();
+    displacement.insert(displacement.end(), first, first + width);
   }
   if (!failed) return displacement;
   throw RunError("has no port kernel: " + failed->detail,
@@ -446,7 +454,7 @@ std::vector<double> SolidBody::respond_from_rest(std::size_t port, double at_beg
                  "Give the body inertia or supports that hold it.");
 }
 
-PortKernel SolidBody::kernel(int port, double step, int count) {
+PortKernel SolidBody::probe(int port, std::span<const double> patterns, double step, int count) {
   ABUT_ASSERT(description_.can.kernel && port >= 0 && index(port) < ports_.size() && step > 0.0);
   const State kept = state_;
   Problem& problem = *parts_.problem;
@@ -456,11 +464,25 @@ PortKernel SolidBody::kernel(int port, double step, int count) {
   problem.loads.pop_back();
   std::swap(problem, alone);
   const Substeps grid{0.0, count * step, step, step, count};
+  const std::size_t width = description_.ports[index(port)].geometry.points.size();
   PortKernel kernel;
   kernel.step = step;
-  kernel.support = ForceSupport::nodal;
-  kernel.displacement = respond_from_rest(index(port), 0.0, 1.0, grid);
-  kernel.begin = respond_from_rest(index(port), 1.0, 0.0, grid);
+  kernel.width = static_cast<int>(width);
+  kernel.patterns = static_cast<int>(patterns.size() / width);
+  kernel.displacement.assign(index(count) * patterns.size(), 0.0);
+  kernel.begin = kernel.displacement;
+  for (std::size_t first = 0; first < patterns.size(); first += width) {
+    std::vector<double> force(port_map_->values(), 0.0);
+    const std::vector<double> none = force;
+    std::copy_n(patterns.data() + first, width, force.data() + port_map_->first(index(port)));
+    for (const bool at_begin : {false, true}) {
+      port_forces_->impose(at_begin ? force : none, at_begin ? none : force, grid);
+      const std::vector<double> moved = respond_from_rest(index(port), grid);
+      std::vector<double>& to = at_begin ? kernel.begin : kernel.displacement;
+      for (std::size_t k = 0; k < moved.size(); ++k)
+        to[k / width * patterns.size() + first + k % width] = moved[k];
+    }
+  }
   std::swap(problem, alone);
   problem.loads.push_back(std::move(alone.loads.back()));
   state_ = kept;

@@ -19,8 +19,8 @@ namespace abut {
 
 /// Our subdomain in one, two and three dimensions: a mesh, the rung of the fidelity ladder whose
 /// coordinates move it, what acts on it, an integrator, and ports, which are sides or node sets of
-/// the mesh. Ports take forces; linear bodies in one dimension answer for their port kernels too,
-/// so that they can meet a body that finds the contact force. An end node keeps its mass.
+/// the mesh. Ports take forces; linear bodies answer for their port kernels too. A node of a port
+/// keeps its mass.
 class SolidBody final : public Subdomain {
  public:
   struct PortNodes {
@@ -50,11 +50,13 @@ class SolidBody final : public Subdomain {
   SolidBody(std::string name, Parts parts, const std::vector<PortNodes>& ports);
 
   const Description& describe() const override { return description_; }
+  void meet(int, const PortGeometry&, const ContactLaw&) override {}  // takes no obstacles
+  void yields(int, int, const PortKernel&) override {}
   void save() override;
   void restore() override;
   void start(const Advance& request) override { request_ = &request; }
   [[nodiscard]] Outcome finish(Response& response) override;
-  PortKernel kernel(int port, double step, int count) override;
+  PortKernel probe(int port, std::span<const double> patterns, double step, int count) override;
   std::vector<std::byte> checkpoint() override;
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override { return hash_state(state_); }
@@ -92,9 +94,8 @@ class SolidBody final : public Subdomain {
   void meet_port_forces(double time);
   void see_ports();
   void follow_ports(double time);
-  std::vector<double> respond_from_rest(std::size_t port, double at_begin, double in_first,
-                                        const Substeps& grid);
-  void push_traces(double time, Response& response) const;
+  std::vector<double> respond_from_rest(std::size_t port, const Substeps& grid);
+  void push_traces(const Advance& request, double time, Response& response) const;
   void widen_sweep();
   void begin_sweep();
   void end_sweep(Response& response) const;

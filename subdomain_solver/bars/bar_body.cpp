@@ -26,7 +26,10 @@ constexpr double progress_work = 2.0e7;
 
 BarBody::BarBody(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
                  const std::vector<BodyPort>& ports)
-    : bar_(std::move(bar)), scheme_(std::move(scheme)), same_grid_(ports.size(), false) {
+    : bar_(std::move(bar)),
+      scheme_(std::move(scheme)),
+      partners_(ports.size()),
+      imposed_(ports.size()) {
   const std::size_t n = index(bar_->nodes());
   state_.u.assign(n, 0.0);
   state_.v.assign(n, bar_->data().velocity);
@@ -58,12 +61,12 @@ BarBody::BarBody(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
 void BarBody::describe_ports(const std::vector<BodyPort>& ports) {
   Capabilities& can = description_.can;
   can.force = true;
-  can.kernel = can.complete = can.obstacle = can.impedance = can.impulse = !ports.empty();
+  can.kernel = can.obstacle = can.yielding = can.impedance = can.impulse = !ports.empty();
   for (const BodyPort& p : ports) {
     const ContactLayer layer = bar_->data().layer[index(p.end)];
     if (layer == ContactLayer::massive) {
       can.motion = true;
-      can.kernel = can.complete = can.obstacle = can.impedance = false;
+      can.kernel = can.obstacle = can.yielding = can.impedance = false;
     }
     support_[p.end] = layer == ContactLayer::kick ? ForceSupport::step : ForceSupport::nodal;
     end_of_port_.push_back(p.end);
@@ -77,6 +80,24 @@ void BarBody::describe_ports(const std::vector<BodyPort>& ports) {
     port.geometry.transit = bar_->spacing() / bar_->data().wave_speed();
     description_.ports.push_back(std::move(port));
   }
+}
+
+void BarBody::meet(int port, const PortGeometry& partner, const ContactLaw& law) {
+  const PortGeometry& own = description_.ports.at(index(port)).geometry;
+  const double gap = own.normals[0] * (partner.points.at(0) - own.points[0]);
+  partners_[index(port)].push_back({law.tied ? 0.0 : std::max(0.0, gap), law.tied, {}});
+}
+
+void BarBody::yields(int port, int partner, const PortKernel& kernel) {
+  const ForceSupport support = support_[end_of_port_.at(index(port))];
+  if (kernel.step != scheme_.step || kernel.support != support || kernel.per_step() != 1) {
+    throw RunError(fmt::format("gives way by a kernel of steps of {:g} s, but this body has {:g} s "
+                               "and reactions of the same support",
+                               kernel.step, scheme_.step),
+                   fmt::format("a partner of body '{}'", description_.name),
+                   "Let obstacles yield only with kernels of this body's step and support.");
+  }
+  partners_[index(port)].at(index(partner)).kernel = kernel;
 }
 
 void BarBody::save() { save_state(state_, saved_); }
@@ -198,10 +219,24 @@ void BarBody::add_work(EndPlaces& before) {
 void BarBody::find_same_grids(const Advance& request, const Substeps& grid) {
   for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
     const BoundaryData& data = request.boundary[p];
-    const bool pushed = !data.force.empty();
-    const Waveform& imposed = pushed ? data.force : data.obstacle.motion;
-    same_grid_[p] =
-        grid.matches(imposed.time) && (!pushed || imposed.support == support_[end_of_port_[p]]);
+    Imposed& imposed = imposed_[p];
+    imposed.same_grid.clear();
+    for (const Waveform& force : data.forces) {
+      imposed.same_grid.push_back(!force.empty() && grid.matches(force.time) &&
+                                  force.support == support_[end_of_port_[p]]);
+    }
+    imposed.obstacle = -1;
+    imposed.excess.clear();
+    for (std::size_t k = 0; k < data.obstacles.size(); ++k) {
+      if (data.obstacles[k].empty()) continue;
+      if (imposed.obstacle >= 0 || data.pushed() || k >= partners_[p].size()) {
+        throw RunError("an end of a bar takes one obstacle at a time, of a partner that it has met",
+                       fmt::format("body '{}'", description_.name),
+                       "Give one of the partners the other role.");
+      }
+      imposed.obstacle = static_cast<int>(k);
+      imposed.same_motion = grid.matches(data.obstacles[k].motion.time);
+    }
   }
 }
 
@@ -212,29 +247,70 @@ void BarBody::set_actions(const Advance& request, const Substeps& grid, int i,
     const BoundaryData& data = request.boundary[p];
     EndAction& action = actions[index(end_of_port_[p])];
     action.held = description_.ports[p].tied;
-    if (!data.obstacle.empty()) {
-      const Waveform& motion = data.obstacle.motion;
-      double u = 0.0;
-      if (same_grid_[p]) {
-        u = motion.u[index(i)];
-      } else {
-        motion.interpolate(motion.u, time, {&u, 1});
-      }
-      action.kind = EndAction::Kind::obstacle;
-      action.yield = 0.0;
-      action.target = Bar::outward(end_of_port_[p]) * (data.obstacle.offset[0] + u);
-      action.bilateral = data.obstacle.bilateral;
+    if (imposed_[p].obstacle >= 0) {
+      set_obstacle(data.obstacles[index(imposed_[p].obstacle)], grid, i, p, action);
     } else if (!data.motion.empty()) {
       action.kind = EndAction::Kind::motion;
       data.motion.interpolate(data.motion.u, time, {&action.u, 1});
       data.motion.interpolate(data.motion.v, time, {&action.v, 1});
       data.motion.interpolate(data.motion.a, time, {&action.a, 1});
-    } else if (!data.force.empty()) {
-      action.kind = EndAction::Kind::force;
-      fill_force(data, grid, i, p, action);
-      if (!data.impedance.empty()) resist(data.impedance, grid, i, end_of_port_[p], action);
+    } else if (data.pushed()) {
+      const int end = end_of_port_[p];
+      action.kind = EndAction::Kind::open;
+      for (std::size_t k = 0; k < data.forces.size(); ++k) {
+        if (!data.forces[k].empty())
+          add_force(data.forces[k], imposed_[p].same_grid[k], grid, i, end, action);
+      }
+      if (!data.impedance.empty()) resist(data.impedance, grid, i, end, action);
     }
   }
+}
+
+void BarBody::set_obstacle(const Obstacle& obstacle, const Substeps& grid, int i, std::size_t port,
+                           EndAction& action) {
+  const Imposed& imposed = imposed_[port];
+  const Partner& partner = partners_[port][index(imposed.obstacle)];
+  const double n = Bar::outward(end_of_port_[port]);
+  const Waveform& motion = obstacle.motion;
+  double u = 0.0;
+  if (imposed.same_motion) {
+    u = motion.u[index(i)];
+  } else {
+    motion.interpolate(motion.u, i == 0 ? grid.begin : grid.time(i), {&u, 1});
+  }
+  action.kind = EndAction::Kind::obstacle;
+  action.yield = action.give = 0.0;
+  action.target = n * (partner.gap * n + u);
+  action.bilateral = partner.tied;
+  if (partner.kernel.count() > 0) give_way(obstacle, i, port, action);
+}
+
+/// What the surface has given way by the reactions so far, and how much it does per newton of this
+/// substep's.
+void BarBody::give_way(const Obstacle& obstacle, int i, std::size_t port, EndAction& action) {
+  Imposed& imposed = imposed_[port];
+  const PortKernel& kernel = partners_[port][index(imposed.obstacle)].kernel;
+  const std::vector<double>& under = obstacle.motion.f;
+  const double n = Bar::outward(end_of_port_[port]);
+  const EndState& end = state_.end[index(end_of_port_[port])];
+  if (!imposed.same_motion || under.size() != obstacle.motion.size() ||
+      kernel.count() + 1 < static_cast<int>(under.size())) {
+    throw RunError("an obstacle that gives way has other times than the body's substeps, no force, "
+                   "or a kernel that is too short",
+                   fmt::format("body '{}'", description_.name),
+                   "Give its motion and its force at every substep.");
+  }
+  if (i == 0) {  // the reaction of this instant is known, and moves no end by the target
+    imposed.excess.assign(1, n * end.force - under[0]);
+    return;
+  }
+  if (i > 1) imposed.excess.push_back(n * end.force - under[index(i) - 1]);
+  double moved = -kernel.displacement[0] * under[index(i)];
+  if (!kernel.begin.empty()) moved += kernel.begin[index(i) - 1] * imposed.excess[0];
+  for (std::size_t j = 1; j < index(i); ++j)
+    moved += kernel.displacement[index(i) - j] * imposed.excess[j];
+  action.target += n * moved;
+  action.give = kernel.displacement[0];
 }
 
 void BarBody::resist(const Impedance& impedance, const Substeps& grid, int i, int end,
@@ -246,31 +322,36 @@ void BarBody::resist(const Impedance& impedance, const Substeps& grid, int i, in
   action.bilateral = impedance.bilateral;
 }
 
-void BarBody::fill_force(const BoundaryData& data, const Substeps& grid, int i, std::size_t port,
-                         EndAction& action) {
-  const int end = end_of_port_[port];
+/// Forces of several partners add up.
+void BarBody::add_force(const Waveform& imposed, bool same_grid, const Substeps& grid, int i,
+                        int end, EndAction& action) const {
   const double inward = -Bar::outward(end);
-  const ContactLayer layer = bar_->data().layer[index(end)];
+  const auto add = [&action](double force, double dynamic) {
+    const bool first = action.kind != EndAction::Kind::force;
+    action.kind = EndAction::Kind::force;
+    action.force = first ? force : action.force + force;
+    action.dynamic = first ? dynamic : action.dynamic + dynamic;
+  };
   double force = 0.0;
-  if (same_grid_[port]) {  // the common case, and exact: no averaging at all
-    force = data.force.f[index(i)];
-    action.force = action.dynamic = inward * force;
-    return;
+  if (same_grid) {  // the common case, and exact: no averaging at all
+    force = inward * imposed.f[index(i)];
+    return add(force, force);
   }
   const double now = i == 0 ? grid.begin : grid.time(i);
-  data.force.force_at(now, {&force, 1});
-  action.force = action.dynamic = inward * force;
-  if (layer == ContactLayer::massive) return;  // as published: the value at the substep's end
+  imposed.force_at(now, {&force, 1});
+  force *= inward;
+  // massive: as published, the value at the substep's end
+  if (bar_->data().layer[index(end)] == ContactLayer::massive) return add(force, force);
   const double before = i == 0 ? grid.begin : i == 1 ? grid.begin : grid.time(i - 1);
   const double after = i == grid.count ? grid.end : grid.time(i + 1);
   const bool step_support = support_[end] == ForceSupport::step;
   const double from = step_support ? before : 0.5 * (before + now);
   const double to = step_support ? now : 0.5 * (now + after);
-  if (to <= from) return;
+  if (to <= from) return add(force, force);
   double impulse = 0.0;
-  data.force.impulse(from, to, {&impulse, 1});
-  action.dynamic = inward * impulse / (to - from);
-  if (step_support) action.force = action.dynamic;
+  imposed.impulse(from, to, {&impulse, 1});
+  const double mean = inward * impulse / (to - from);
+  add(step_support ? mean : force, mean);
 }
 
 void BarBody::apply_impulses(const Advance& request) {
@@ -303,28 +384,51 @@ void BarBody::begin_traces(const Advance& request, Response& response) {
     response.ports[p].lower.clear();
     response.ports[p].upper.clear();
   }
+  begin_reactions(request, response);
   push_traces(request, request.window.begin, response);
 }
 
+void BarBody::begin_reactions(const Advance& request, Response& response) const {
+  for (std::size_t p = 0; p < response.ports.size(); ++p) {
+    std::vector<Reaction>& reactions = response.ports[p].reactions;
+    reactions.resize(request.boundary[p].obstacles.size());
+    for (std::size_t k = 0; k < reactions.size(); ++k) {
+      reactions[k].force.clear();
+      reactions[k].force.support = response.ports[p].trace.support;
+      reactions[k].force.points = request.boundary[p].obstacles[k].motion.points;
+    }
+  }
+}
+
 void BarBody::push_traces(const Advance& request, double time, Response& response) {
-  for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
-    const int end = end_of_port_[p];
-    const std::size_t node = index(bar_->node_of(end));
-    Waveform& trace = response.ports[p].trace;
-    const double u = scheme_.integrator->port_displacement(state_, end);
-    double v = state_.v[node];
-    // Kicks make the nodal velocity jump within a substep; the mean over it is the contact point's
-    // velocity.
-    const bool kicked = support_[end] == ForceSupport::step && state_.end[index(end)].closed;
-    if (kicked && !trace.empty()) v = (u - trace.u.back()) / (time - trace.time.back());
-    EndState& e = state_.end[index(end)];
-    e.swept_low = std::min(e.swept_low, u);
-    e.swept_high = std::max(e.swept_high, u);
-    trace.time.push_back(time);
-    trace.u.push_back(u);
-    trace.v.push_back(v);
-    trace.a.push_back(state_.a[node]);
-    trace.f.push_back(force_on_body(end, request.boundary[p]));
+  for (std::size_t p = 0; p < end_of_port_.size(); ++p) push_trace(request, time, p, response);
+}
+
+void BarBody::push_trace(const Advance& request, double time, std::size_t p, Response& response) {
+  const int end = end_of_port_[p];
+  const std::size_t node = index(bar_->node_of(end));
+  PortResponse& port = response.ports[p];
+  const double u = scheme_.integrator->port_displacement(state_, end);
+  double v = state_.v[node];
+  // Kicks make the nodal velocity jump within a substep; the mean over it is the contact point's
+  // velocity.
+  const bool kicked = support_[end] == ForceSupport::step && state_.end[index(end)].closed;
+  if (kicked && !port.trace.empty()) v = (u - imposed_[p].last) / (time - port.trace.time.back());
+  imposed_[p].last = u;
+  EndState& e = state_.end[index(end)];
+  e.swept_low = std::min(e.swept_low, u);
+  e.swept_high = std::max(e.swept_high, u);
+  const double force = force_on_body(end, request.boundary[p]);
+  const Want want = request.want.empty() ? Want{} : request.want[p];
+  port.trace.time.push_back(time);
+  if (want.u) port.trace.u.push_back(u);
+  if (want.v) port.trace.v.push_back(v);
+  if (want.a) port.trace.a.push_back(state_.a[node]);
+  if (want.f) port.trace.f.push_back(force);
+  for (std::size_t k = 0; k < port.reactions.size(); ++k) {
+    if (request.boundary[p].obstacles[k].empty()) continue;
+    port.reactions[k].force.time.push_back(time);
+    port.reactions[k].force.f.push_back(-force);
   }
 }
 
@@ -347,8 +451,9 @@ void BarBody::begin_sweep() {
 void BarBody::end_sweep(Response& response) const {
   for (std::size_t p = 0; p < end_of_port_.size(); ++p) {
     const EndState& e = state_.end[index(end_of_port_[p])];
-    response.ports[p].lower.push_back(e.swept_low);
-    response.ports[p].upper.push_back(e.swept_high);
+    const double reference = description_.ports[p].geometry.points[0];
+    response.ports[p].lower.push_back(reference + e.swept_low);
+    response.ports[p].upper.push_back(reference + e.swept_high);
   }
 }
 
@@ -406,8 +511,8 @@ void BarBody::approach(int end, PortResponse& port) const {
   }
   const std::size_t node = index(bar_->node_of(end));
   high = std::max(high, n * state_.v[node]);
-  port.approach_bound = high + 0.1 * std::max(0.0, high - low);
-  port.approach_acceleration = std::abs(bar_->data().body_force);
+  port.speed_bound = high + 0.1 * std::max(0.0, high - low);
+  port.acceleration_bound = std::abs(bar_->data().body_force);
 }
 
 std::optional<Failed> BarBody::check_finite(const BodyRecord& record) const {
@@ -456,23 +561,33 @@ std::vector<double> BarBody::respond_from_rest(int end, double step, int count, 
   return displacement;
 }
 
-PortKernel BarBody::kernel(int port, double step, int count) {
+PortKernel BarBody::probe(int port, std::span<const double> patterns, double step, int count) {
   ABUT_ASSERT(port >= 0 && index(port) < end_of_port_.size() && step > 0.0);
   const BarState kept = state_;
   const int end = end_of_port_[index(port)];
+  const double n = Bar::outward(end);
   PortKernel kernel;
   kernel.step = step;
   kernel.support = support_[end];
-  kernel.compliance = scheme_.integrator->static_compliance(end);
-  kernel.displacement = respond_from_rest(end, step, count, 0.0, 1.0);
+  kernel.patterns = static_cast<int>(patterns.size());
+  const std::size_t values = index(count) * patterns.size();
   const bool nodal = kernel.support == ForceSupport::nodal;
-  if (nodal) kernel.begin = respond_from_rest(end, step, count, 1.0, 0.0);
-  if (bar_->data().body_force != 0.0) {  // what the body force does alone is no response
-    const std::vector<double> alone = respond_from_rest(end, step, count, 0.0, 0.0);
-    for (std::size_t i = 0; i < alone.size(); ++i) {
-      kernel.displacement[i] -= alone[i];
-      if (nodal) kernel.begin[i] -= alone[i];
-    }
+  const double compliance = scheme_.integrator->static_compliance(end);
+  kernel.displacement.assign(values, 0.0);
+  if (nodal) kernel.begin.assign(values, 0.0);
+  // what the body force does alone is no response
+  const std::vector<double> alone = bar_->data().body_force != 0.0
+                                        ? respond_from_rest(end, step, count, 0.0, 0.0)
+                                        : std::vector<double>(index(count), 0.0);
+  for (std::size_t k = 0; k < patterns.size(); ++k) {
+    const double pull = n * patterns[k];
+    const auto write = [&](const std::vector<double>& response, std::vector<double>& to) {
+      for (std::size_t i = 0; i < alone.size(); ++i)
+        to[i * patterns.size() + k] = n * (response[i] - alone[i]);
+    };
+    if (compliance > 0.0) kernel.compliance.push_back(compliance * patterns[k]);
+    write(respond_from_rest(end, step, count, 0.0, pull), kernel.displacement);
+    if (nodal) write(respond_from_rest(end, step, count, pull, 0.0), kernel.begin);
   }
   state_ = kept;
   return kernel;

@@ -67,7 +67,7 @@ double end_reaction(double free_position, double compliance, const EndAction& ac
   const double overlap = free_position - action.target;
   const double reaction = action.yield > 0.0 ? (action.dynamic + action.yield * overlap) /
                                                    (1.0 + action.yield * compliance)
-                                             : overlap / compliance;
+                                             : overlap / (compliance + action.give);
   return action.bilateral ? reaction : std::max(0.0, reaction);
 }
 

@@ -41,7 +41,8 @@ struct EndAction {
   bool bilateral = false;  // keep contact in tension (obstacle)
   // Of a kick layer: the node counts as held even where no force acts (ties, probes).
   bool held = false;
-  double yield = 0.0;                // [N/m] of the surface; 0: it does not give way (obstacle)
+  double yield = 0.0;  // [N/m] the surface pushes with `dynamic` and this x overlap; 0: it is hard
+  double give = 0.0;   // [m/N] by which the target moves out under this substep's reaction
   double u = 0.0, v = 0.0, a = 0.0;  // prescribed (motion)
 };
 using EndActions = std::array<EndAction, 2>;
@@ -107,7 +108,7 @@ class BarIntegrator {
 };
 
 /// Compressive force that keeps x_free - C lambda at or inside the target: the unilateral problem
-/// of one end. A surface that yields pushes with its known force plus stiffness x overlap.
+/// of one end.
 double end_reaction(double free_position, double compliance, const EndAction& action);
 
 }  // namespace abut

@@ -102,7 +102,7 @@ std::vector<FieldValues> PairBody::fields() {
   return bar_field_values(state_.u, state_.v, stress);
 }
 
-PortKernel PairBody::kernel(int, double, int) {
+PortKernel PairBody::probe(int, std::span<const double>, double, int) {
   throw RunError("does not answer for port kernels", fmt::format("body '{}'", description_.name),
                  "Ask bodies for kernels only when they offer them.");
 }
@@ -117,16 +117,17 @@ Outcome PairBody::finish(Response& response) {
   for (PortResponse& port : response.ports) {
     port.trace.clear();
     port.trace.support = ForceSupport::nodal;
+    port.reactions.clear();
     port.lower.clear();
     port.upper.clear();
     port.recoil.reset();
     port.work = 0.0;
     // Contact inside the body asks nobody: no flight is free.
-    port.approach_bound = std::numeric_limits<double>::infinity();
-    port.approach_acceleration = 0.0;
+    port.speed_bound = std::numeric_limits<double>::infinity();
+    port.acceleration_bound = 0.0;
   }
   for (std::size_t m : {0u, 1u}) low_[m] = high_[m] = state_.u[pair_.tip(static_cast<int>(m))];
-  push_traces(request.window.begin, response);
+  push_traces(request, request.window.begin, response);
   const Substeps grid =
       Substeps::divide(request.window.begin, request.window.end, description_.step);
   if (std::optional<Failed> failed = advance_window(request, grid, response)) return *failed;
@@ -150,9 +151,9 @@ std::optional<Failed> PairBody::advance_window(const Advance& request, const Sub
     report_progress();
     const bool due = i == clock.substep();
     if (request.sampling == Sampling::substeps) {
-      push_traces(grid.time(i), response);
+      push_traces(request, grid.time(i), response);
     } else if (due) {
-      push_traces(clock.time(), response);
+      push_traces(request, clock.time(), response);
     }
     for (; i == clock.substep(); clock.next()) {
       if (std::optional<Failed> failed = record(clock.time(), response)) return failed;
@@ -164,15 +165,16 @@ std::optional<Failed> PairBody::advance_window(const Advance& request, const Sub
   return std::nullopt;
 }
 
-void PairBody::push_traces(double time, Response& response) const {
+void PairBody::push_traces(const Advance& request, double time, Response& response) const {
   for (int m : {0, 1}) {
     const std::size_t tip = pair_.tip(m);
     Waveform& trace = response.ports[index(m)].trace;
     trace.time.push_back(time);
-    trace.u.push_back(state_.u[tip]);
-    trace.v.push_back(state_.v[tip]);
-    trace.a.push_back(state_.a[tip]);
-    trace.f.push_back(m == 0 ? -state_.force : state_.force);
+    const Want want = request.want.empty() ? Want{} : request.want[index(m)];
+    if (want.u) trace.u.push_back(state_.u[tip]);
+    if (want.v) trace.v.push_back(state_.v[tip]);
+    if (want.a) trace.a.push_back(state_.a[tip]);
+    if (want.f) trace.f.push_back(m == 0 ? -state_.force : state_.force);
   }
 }
 
@@ -199,8 +201,9 @@ std::optional<Failed> PairBody::record(double time, Response& response) {
     r.momentum[0] += member.momentum[0];
     r.members.push_back(std::move(member));
     PortResponse& port = response.ports[index(m)];
-    port.lower.push_back(low_[index(m)]);
-    port.upper.push_back(high_[index(m)]);
+    const double reference = description_.ports[index(m)].geometry.points[0];
+    port.lower.push_back(reference + low_[index(m)]);
+    port.upper.push_back(reference + high_[index(m)]);
     low_[index(m)] = high_[index(m)] = state_.u[pair_.tip(m)];
   }
   const bool finite = std::isfinite(r.energy.total() + r.momentum[0]);

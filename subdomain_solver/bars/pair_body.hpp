@@ -30,12 +30,14 @@ class PairBody final : public Subdomain {
   PairBody(std::string name, const Parameters& parameters);
 
   const Description& describe() const override { return description_; }
+  void meet(int, const PortGeometry&, const ContactLaw&) override {}  // takes no obstacles
+  void yields(int, int, const PortKernel&) override {}
   void save() override;
   void restore() override;
   void start(const Advance& request) override { request_ = &request; }
   [[nodiscard]] Outcome finish(Response& response) override;
   /// Not offered: RunError.
-  PortKernel kernel(int port, double step, int count) override;
+  PortKernel probe(int port, std::span<const double> patterns, double step, int count) override;
   std::vector<std::byte> checkpoint() override;
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override;
@@ -49,7 +51,7 @@ class PairBody final : public Subdomain {
   void describe_members(const Parameters& parameters);
   std::optional<Failed> advance_window(const Advance& request, const Substeps& grid,
                                        Response& response);
-  void push_traces(double time, Response& response) const;
+  void push_traces(const Advance& request, double time, Response& response) const;
   void sweep();
   std::optional<Failed> record(double time, Response& response);
   void report_progress();

@@ -12,7 +12,7 @@ namespace abut {
 int CellKernel::history_size() const { return material_.history_size(); }
 
 bool CellKernel::evaluate(const CellGeometry& cell, std::span<const double> u,
-                          std::span<const double> before, std::span<double> after, Want want,
+                          std::span<const double> before, std::span<double> after, Need want,
                           CellResponse& out) {
   if (!evaluate_points(cell, u, before, after, want, out)) return false;
   if (!cell.hourglass.empty()) add_hourglass(cell, u, want, out);
@@ -20,7 +20,7 @@ bool CellKernel::evaluate(const CellGeometry& cell, std::span<const double> u,
 }
 
 /// Every component of u on its own, with one stiffness for all or one for each.
-void CellKernel::add_hourglass(const CellGeometry& cell, std::span<const double> u, Want want,
+void CellKernel::add_hourglass(const CellGeometry& cell, std::span<const double> u, Need want,
                                CellResponse& out) {
   const std::size_t n = index(cell.nodes);
   const bool alike = cell.hourglass.size() == n * n;
@@ -32,7 +32,7 @@ void CellKernel::add_hourglass(const CellGeometry& cell, std::span<const double>
     const Eigen::RowVectorXd own = moved.row(i) * k;
     out.stored += 0.5 * own.dot(moved.row(i));
     force.row(i) += own;
-    if (want != Want::tangent) continue;
+    if (want != Need::tangent) continue;
     for (int a = 0; a < cell.nodes; ++a)
       for (int b = 0; b < cell.nodes; ++b)
         out.tangent(a * cell.dim + i, b * cell.dim + i) += k(a, b);
@@ -40,7 +40,7 @@ void CellKernel::add_hourglass(const CellGeometry& cell, std::span<const double>
 }
 
 bool CellKernel::evaluate_points(const CellGeometry& cell, std::span<const double> u,
-                                 std::span<const double> before, std::span<double> after, Want want,
+                                 std::span<const double> before, std::span<double> after, Need want,
                                  CellResponse& out) {
   fields_ = cell.dilatation;
   fill_operators(cell);
@@ -50,7 +50,7 @@ bool CellKernel::evaluate_points(const CellGeometry& cell, std::span<const doubl
   if (!fields_.empty()) split_force();
   out.force.resize(nodes_ * dim_);
   integrate(&Point::force, {}, out.force);
-  if (want == Want::stress) return true;
+  if (want == Need::stress) return true;
   if (!fields_.empty()) split_moduli();
   integrate_moduli(out.tangent);
   if (!fields_.empty()) couple_fields(out.tangent);
@@ -142,7 +142,7 @@ bool CellKernel::average_volume() {
   return true;
 }
 
-bool CellKernel::respond(std::span<const double> before, std::span<double> after, Want want,
+bool CellKernel::respond(std::span<const double> before, std::span<double> after, Need want,
                          CellResponse& out) {
   out.stored = out.dissipation = 0.0;
   const std::size_t each = index(history_size());
@@ -154,7 +154,7 @@ bool CellKernel::respond(std::span<const double> before, std::span<double> after
     out.stored += point.volume * point.response.energy;
     out.dissipation += point.volume * point.response.dissipation;
     point.force = point.volume * point.response.stress;
-    if (want == Want::tangent) point.moduli = point.volume * point.response.tangent;
+    if (want == Need::tangent) point.moduli = point.volume * point.response.tangent;
   }
   return true;
 }

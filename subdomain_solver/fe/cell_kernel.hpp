@@ -54,7 +54,7 @@ class CellKernel {
   int history_size() const;
   /// u: [m] (nodes x dim); history: (points, history_size()). False: inadmissible.
   [[nodiscard]] bool evaluate(const CellGeometry& cell, std::span<const double> u,
-                              std::span<const double> before, std::span<double> after, Want want,
+                              std::span<const double> before, std::span<double> after, Need want,
                               CellResponse& out);
   /// F of a quadrature point as the material sees it in the last evaluated cell, P beside it.
   const Matrix3& deformation(int point) const { return points_[index(point)].f; }
@@ -79,8 +79,8 @@ class CellKernel {
 
   [[nodiscard]] bool evaluate_points(const CellGeometry& cell, std::span<const double> u,
                                      std::span<const double> before, std::span<double> after,
-                                     Want want, CellResponse& out);
-  static void add_hourglass(const CellGeometry& cell, std::span<const double> u, Want want,
+                                     Need want, CellResponse& out);
+  static void add_hourglass(const CellGeometry& cell, std::span<const double> u, Need want,
                             CellResponse& out);
   int entry(int direction, int column) const;
   const Eigen::MatrixXd& along(int direction) const;
@@ -88,7 +88,7 @@ class CellKernel {
   void deform(std::span<const double> u);
   bool average_volume();
   double in_fields(std::size_t point, const Eigen::VectorXd& amounts) const;
-  bool respond(std::span<const double> before, std::span<double> after, Want want,
+  bool respond(std::span<const double> before, std::span<double> after, Need want,
                CellResponse& out);
   void split_force();
   void split_moduli();

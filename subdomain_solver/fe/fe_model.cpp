@@ -298,7 +298,7 @@ bool FeModel::assemble(std::span<const double> q, std::span<const double> histor
       gather(cells, c, q, u_);
       const bool admissible = kernel_.evaluate(
           measures.of(c), u_, history.subspan(at, each), std::span(out.history).subspan(at, each),
-          want == Want::tangent ? abut::Want::tangent : abut::Want::stress, local_);
+          want == Want::tangent ? Need::tangent : Need::stress, local_);
       if (!admissible) return false;
       scatter(k, c, want, local_, out);
     }
@@ -420,7 +420,7 @@ bool FeModel::cell_tangent(int block, int cell, std::span<const double> q,
   const std::size_t first = blocks_[index(block)].history + index(cell) * each;
   after_.resize(each);
   gather(mesh_.blocks[index(block)], cell, q, u_);
-  if (!kernel_.evaluate(geometry, u_, history.subspan(first, each), after_, abut::Want::tangent,
+  if (!kernel_.evaluate(geometry, u_, history.subspan(first, each), after_, Need::tangent,
                         local_))
     return false;
   tangent = local_.tangent;
@@ -451,7 +451,7 @@ bool FeModel::visit(std::span<const double> q, std::span<const double> history,
           history.subspan(blocks_[k].history + index(c) * each, each);
       const CellGeometry cell = measures.of(assembly_ ? c : 0);
       gather(cells, c, q, u_);
-      if (!kernel_.evaluate(cell, u_, before, after, abut::Want::stress, local_)) return false;
+      if (!kernel_.evaluate(cell, u_, before, after, Need::stress, local_)) return false;
       for (int p = 0; p < cell.points; ++p) {
         const std::span<const double> own =
             std::span<const double>(after).subspan(index(p) * per_point, per_point);

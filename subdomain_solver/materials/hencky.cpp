@@ -4,7 +4,7 @@
 
 namespace abut {
 
-bool Hencky::evaluate(const Matrix3& f, std::span<const double>, std::span<double>, Want want,
+bool Hencky::evaluate(const Matrix3& f, std::span<const double>, std::span<double>, Need want,
                       PointResponse& out) const {
   FiniteStrain finite;
   LogStrain log;
@@ -16,7 +16,7 @@ bool Hencky::evaluate(const Matrix3& f, std::span<const double>, std::span<doubl
       0.5 * bulk() * finite.log_volume * finite.log_volume + shear() * deviatoric.squaredNorm();
   out.dissipation = 0.0;
   out.stress = kirchhoff * finite.inverse_transpose;
-  if (want == Want::tangent)
+  if (want == Need::tangent)
     out.tangent =
         log.tangent(f, finite.inverse_transpose, kirchhoff, PrincipalModulus::isotropic(moduli()));
   return is_finite(out, want);

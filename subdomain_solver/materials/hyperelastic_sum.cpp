@@ -64,7 +64,7 @@ bool HyperelasticSum::finish(const FiniteStrain& strain, PointResponse& out) con
   out.dissipation = 0.0;
   out.stress = kirchhoff * strain.inverse_transpose;
   if (wanted) out.tangent = tangent;
-  return is_finite(out, wanted ? Want::tangent : Want::stress);
+  return is_finite(out, wanted ? Need::tangent : Need::stress);
 }
 
 }  // namespace abut

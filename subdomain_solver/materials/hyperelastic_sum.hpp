@@ -11,7 +11,7 @@ struct HyperelasticSum {
   Matrix3 kirchhoff = Matrix3::Zero();
   Tangent tangent;
 
-  explicit HyperelasticSum(Want want) : wanted(want == Want::tangent) {
+  explicit HyperelasticSum(Need want) : wanted(want == Need::tangent) {
     if (wanted) tangent.setZero();
   }
   /// kappa/4 (J^2 - ln J^2 - 1)

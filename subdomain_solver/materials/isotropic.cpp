@@ -11,9 +11,9 @@ IsotropicMaterial::IsotropicMaterial(const Moduli& moduli, double density)
   require_positive(density, "density", "kg/m^3");
 }
 
-bool is_finite(const PointResponse& answer, Want want) {
+bool is_finite(const PointResponse& answer, Need want) {
   return std::isfinite(answer.energy) && std::isfinite(answer.dissipation) &&
-         answer.stress.allFinite() && (want == Want::stress || answer.tangent.allFinite());
+         answer.stress.allFinite() && (want == Need::stress || answer.tangent.allFinite());
 }
 
 }  // namespace abut

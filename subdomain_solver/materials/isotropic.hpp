@@ -23,6 +23,6 @@ class IsotropicMaterial : public Material {
 };
 
 /// Whether every number of an answer is finite: the last check of every law.
-bool is_finite(const PointResponse& answer, Want want);
+bool is_finite(const PointResponse& answer, Need want);
 
 }  // namespace abut

@@ -105,7 +105,7 @@ PrincipalModulus J2Plasticity::modulus(const Return& r) const {
 }
 
 bool J2Plasticity::evaluate(const Matrix3& f, std::span<const double> before,
-                            std::span<double> after, Want want, PointResponse& out) const {
+                            std::span<double> after, Need want, PointResponse& out) const {
   ABUT_ASSERT(before.size() == 7 && after.size() == 7);
   FiniteStrain finite;
   LogStrain log;
@@ -127,7 +127,7 @@ bool J2Plasticity::evaluate(const Matrix3& f, std::span<const double> before,
   out.energy = 0.5 * bulk() * volume * volume + shear() * elastic.squaredNorm() +
                hardening_.stored(r.a + r.p);
   out.dissipation = hardening_.yield_stress * r.p;
-  if (want == Want::tangent)
+  if (want == Need::tangent)
     out.tangent = log.tangent(f + f_plastic, finite.inverse_transpose, kirchhoff, modulus(r));
   if (r.yields) {
     // C_p^-1 changes by F^-1 (b_e - b_e of the trial) F^-T: a difference, so that rounding of the

@@ -43,7 +43,7 @@ class J2Plasticity final : public IsotropicMaterial {
     return {{"equivalent_plastic_strain", 6}};
   }
   [[nodiscard]] bool evaluate(const Matrix3& f, std::span<const double> before,
-                              std::span<double> after, Want want,
+                              std::span<double> after, Need want,
                               PointResponse& out) const override;
 
  private:

@@ -5,7 +5,7 @@
 namespace abut {
 
 bool LinearElastic::evaluate(const Matrix3& f, std::span<const double>, std::span<double>,
-                             Want want, PointResponse& out) const {
+                             Need want, PointResponse& out) const {
   const Matrix3 identity = Matrix3::Identity();
   const Matrix3 h = f - identity;
   const Matrix3 strain = 0.5 * (h + h.transpose());
@@ -13,7 +13,7 @@ bool LinearElastic::evaluate(const Matrix3& f, std::span<const double>, std::spa
   out.stress = lambda * strain.trace() * identity + 2.0 * mu * strain;
   out.energy = 0.5 * out.stress.cwiseProduct(strain).sum();
   out.dissipation = 0.0;
-  if (want == Want::tangent)
+  if (want == Need::tangent)
     out.tangent = lambda * outer(identity, identity) +
                   mu * (kronecker(identity, identity) + crossed(identity, identity));
   return is_finite(out, want);

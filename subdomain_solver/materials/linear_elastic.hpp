@@ -10,7 +10,7 @@ class LinearElastic final : public IsotropicMaterial {
   using IsotropicMaterial::IsotropicMaterial;
   bool is_linear() const override { return true; }
   [[nodiscard]] bool evaluate(const Matrix3& f, std::span<const double> before,
-                              std::span<double> after, Want want,
+                              std::span<double> after, Need want,
                               PointResponse& out) const override;
 };
 

@@ -28,7 +28,7 @@ struct NamedHistory {
   int index = 0;
 };
 
-enum class Want { stress, tangent };
+enum class Need { stress, tangent };
 
 /// A material law in three dimensions, in terms of the deformation gradient F. Plane strain, plane
 /// stress and axisymmetry embed their F in it (plane.hpp), so a law is written once.
@@ -53,7 +53,7 @@ class Material {
   /// history_size()). False: F is inadmissible (det F <= 0 for finite-strain laws, numbers that
   /// are not finite, no local convergence) and out and after are undefined.
   [[nodiscard]] virtual bool evaluate(const Matrix3& f, std::span<const double> before,
-                                      std::span<double> after, Want want,
+                                      std::span<double> after, Need want,
                                       PointResponse& out) const = 0;
 };
 

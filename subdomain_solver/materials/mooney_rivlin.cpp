@@ -18,7 +18,7 @@ MooneyRivlin::MooneyRivlin(const MooneyRivlinParameters& parameters)
       c10_(parameters.c10),
       c01_(parameters.c01) {}
 
-bool MooneyRivlin::evaluate(const Matrix3& f, std::span<const double>, std::span<double>, Want want,
+bool MooneyRivlin::evaluate(const Matrix3& f, std::span<const double>, std::span<double>, Need want,
                             PointResponse& out) const {
   FiniteStrain strain;
   if (!FiniteStrain::from(f, strain)) return false;

@@ -17,7 +17,7 @@ class MooneyRivlin final : public IsotropicMaterial {
   /// Throws InputError, with the key's name as `where`, when a number is inadmissible.
   explicit MooneyRivlin(const MooneyRivlinParameters& parameters);
   [[nodiscard]] bool evaluate(const Matrix3& f, std::span<const double> before,
-                              std::span<double> after, Want want,
+                              std::span<double> after, Need want,
                               PointResponse& out) const override;
 
  private:

@@ -4,7 +4,7 @@
 
 namespace abut {
 
-bool NeoHookean::evaluate(const Matrix3& f, std::span<const double>, std::span<double>, Want want,
+bool NeoHookean::evaluate(const Matrix3& f, std::span<const double>, std::span<double>, Need want,
                           PointResponse& out) const {
   FiniteStrain strain;
   if (!FiniteStrain::from(f, strain)) return false;

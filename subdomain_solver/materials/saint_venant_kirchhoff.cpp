@@ -5,7 +5,7 @@
 namespace abut {
 
 bool SaintVenantKirchhoff::evaluate(const Matrix3& f, std::span<const double>, std::span<double>,
-                                    Want want, PointResponse& out) const {
+                                    Need want, PointResponse& out) const {
   FiniteStrain strain;
   if (!FiniteStrain::from(f, strain)) return false;
   const Matrix3 identity = Matrix3::Identity();
@@ -15,7 +15,7 @@ bool SaintVenantKirchhoff::evaluate(const Matrix3& f, std::span<const double>, s
   out.stress = f * s;
   out.energy = 0.5 * s.cwiseProduct(e).sum();
   out.dissipation = 0.0;
-  if (want == Want::tangent)
+  if (want == Need::tangent)
     out.tangent = kronecker(identity, s) + lambda * outer(f, f) +
                   mu * (crossed(f, f) + kronecker(f * f.transpose(), identity));
   return is_finite(out, want);

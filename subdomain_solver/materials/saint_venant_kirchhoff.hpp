@@ -10,7 +10,7 @@ class SaintVenantKirchhoff final : public IsotropicMaterial {
  public:
   using IsotropicMaterial::IsotropicMaterial;
   [[nodiscard]] bool evaluate(const Matrix3& f, std::span<const double> before,
-                              std::span<double> after, Want want,
+                              std::span<double> after, Need want,
                               PointResponse& out) const override;
 };
 

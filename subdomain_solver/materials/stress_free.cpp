@@ -21,7 +21,7 @@ bool StressFree::find_stretch(Matrix3& f, std::span<const double> before, std::s
   const int count = 3 - first_;
   const auto residual = [&](double stretch) {
     f.diagonal().tail(count).setConstant(stretch);
-    const bool answers = law_->evaluate(f, before, after, Want::tangent, out);
+    const bool answers = law_->evaluate(f, before, after, Need::tangent, out);
     return answers ? std::abs(out.stress.diagonal().tail(count).sum()) : HUGE_VAL;
   };
   double stretch = f(2, 2), left = residual(stretch);
@@ -51,7 +51,7 @@ bool StressFree::find_stretch(Matrix3& f, std::span<const double> before, std::s
 }
 
 bool StressFree::evaluate(const Matrix3& f, std::span<const double> before, std::span<double> after,
-                          Want want, PointResponse& out) const {
+                          Need want, PointResponse& out) const {
   const auto size = index(law_->history_size());
   ABUT_ASSERT(is_linear() || (before.size() == size + 1 && after.size() == size + 1));
   Matrix3 whole = is_linear() ? f : completed(f, before);
@@ -59,7 +59,7 @@ bool StressFree::evaluate(const Matrix3& f, std::span<const double> before, std:
   if (!find_stretch(whole, before.first(size), after.first(size), out)) return false;
   if (!is_linear()) after[size] = whole(2, 2) - 1.0;
   for (int a = first_; a < 3; ++a) out.stress(a, a) = 0.0;
-  if (want == Want::stress) return true;
+  if (want == Need::stress) return true;
   // Along the family of equal stretches; of an isotropic law that is the whole condensation.
   Eigen::Matrix<double, 9, 1> column = out.tangent.col(normal_entry(2));
   Eigen::Matrix<double, 1, 9> row = out.tangent.row(normal_entry(2));

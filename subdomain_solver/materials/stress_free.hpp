@@ -20,7 +20,7 @@ class StressFree : public Material {
   bool is_linear() const override { return law_->is_linear(); }
   int history_size() const override { return law_->history_size() + (is_linear() ? 0 : 1); }
   [[nodiscard]] bool evaluate(const Matrix3& f, std::span<const double> before,
-                              std::span<double> after, Want want,
+                              std::span<double> after, Need want,
                               PointResponse& out) const override;
   std::vector<NamedHistory> named_history() const override { return law_->named_history(); }
   Matrix3 completed(const Matrix3& f, std::span<const double> after) const override;

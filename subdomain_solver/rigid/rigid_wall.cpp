@@ -18,8 +18,7 @@ RigidWall::RigidWall(std::string name, double position, std::string port, double
                       .force = true,
                       .obstacle = false,
                       .impulse = true,
-                      .kernel = true,
-                      .complete = true};
+                      .kernel = true};
   Port p;
   p.name = std::move(port);
   p.geometry.points = {position};
@@ -47,14 +46,19 @@ Outcome RigidWall::finish(Response& response) {
   PortResponse& port = response.ports[0];
   Waveform& trace = port.trace;
   trace.clear();
-  auto push = [&trace, &data](double time) {
+  const Want want = request.want.empty() ? Want{} : request.want[0];
+  auto push = [&trace, &data, &want](double time) {
     double force = 0.0;
-    if (!data.force.empty()) data.force.force_at(time, {&force, 1});
+    for (const Waveform& imposed : data.forces) {
+      double part = 0.0;
+      if (!imposed.empty()) imposed.force_at(time, {&part, 1});
+      force += part;
+    }
     trace.time.push_back(time);
-    trace.u.push_back(0.0);
-    trace.v.push_back(0.0);
-    trace.a.push_back(0.0);
-    trace.f.push_back(force);
+    if (want.u) trace.u.push_back(0.0);
+    if (want.v) trace.v.push_back(0.0);
+    if (want.a) trace.a.push_back(0.0);
+    if (want.f) trace.f.push_back(force);
   };
   push(request.window.begin);
   for (int p = 1; p <= parts; ++p) {
@@ -64,9 +68,10 @@ Outcome RigidWall::finish(Response& response) {
     record = BodyRecord{time, {}, {0.0}};
     if (time > trace.time.back()) push(time);
   }
-  port.lower.assign(index(parts), 0.0);
+  port.reactions.clear();
+  port.lower.assign(index(parts), description_.ports[0].geometry.points[0]);
   port.upper = port.lower;
-  port.approach_bound = port.approach_acceleration = 0.0;
+  port.speed_bound = port.acceleration_bound = 0.0;
   port.recoil = Recoil{};  // gives way to nothing
   port.work = 0.0;
   response.steps = request.window.length() > 0.0 ? 1 : 0;
@@ -74,10 +79,11 @@ Outcome RigidWall::finish(Response& response) {
   return Advanced{};
 }
 
-PortKernel RigidWall::kernel(int, double step, int count) {
+PortKernel RigidWall::probe(int, std::span<const double> patterns, double step, int count) {
   PortKernel kernel;
   kernel.step = step;
-  kernel.displacement.assign(index(count), 0.0);
+  kernel.patterns = static_cast<int>(patterns.size());
+  kernel.displacement.assign(index(count) * patterns.size(), 0.0);
   kernel.begin = kernel.displacement;
   return kernel;
 }

@@ -23,6 +23,7 @@ class QuasiStatic final : public Integrator {
   Vector acceleration(const Motion& motion, double, double) const override {
     return Vector::Zero(static_cast<Eigen::Index>(motion.q.size()));
   }
+  bool has_inertia() const override { return false; }
   double kinetic(const Motion&) const override { return 0.0; }
 
  private:

@@ -42,7 +42,7 @@ double difference_error(const Eigen::VectorXd& exact, const Value& value, const 
 inline double gradient_error(const Material& law, const Matrix3& f, History start,
                              std::span<const int> entries) {
   const auto potential = [&law, &start](const Matrix3& x) -> Eigen::VectorXd {
-    const PointResponse r = answer(law, x, start, false, Want::stress);
+    const PointResponse r = answer(law, x, start, false, Need::stress);
     return Eigen::VectorXd::Constant(1, r.energy + r.dissipation);
   };
   const PointResponse at = answer(law, f, start);
@@ -59,7 +59,7 @@ inline double gradient_error(const Material& law, const Matrix3& f, History star
 inline double tangent_error(const Material& law, const Matrix3& f, History start,
                             std::span<const int> entries) {
   const auto stress = [&law, &start](const Matrix3& x) -> Eigen::VectorXd {
-    return answer(law, x, start, false, Want::stress).stress.reshaped();
+    return answer(law, x, start, false, Need::stress).stress.reshaped();
   };
   const Tangent tangent = answer(law, f, start).tangent;
   double most = 0.0;

@@ -39,7 +39,7 @@ class Borrowed final : public Material {
   bool is_linear() const override { return law_.is_linear(); }
   int history_size() const override { return law_.history_size(); }
   bool evaluate(const Matrix3& f, std::span<const double> before, std::span<double> after,
-                Want want, PointResponse& out) const override {
+                Need want, PointResponse& out) const override {
     return law_.evaluate(f, before, after, want, out);
   }
 
@@ -114,7 +114,7 @@ inline History zero_history(const Material& law) { return History(index(law.hist
 
 /// Answer from a given history; the history at the end takes its place when `advance`.
 inline PointResponse answer(const Material& law, const Matrix3& f, History& history,
-                            bool advance = false, Want want = Want::tangent) {
+                            bool advance = false, Need want = Need::tangent) {
   PointResponse out;
   History after(history.size());
   if (!law.evaluate(f, history, after, want, out))

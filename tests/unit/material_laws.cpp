@@ -128,7 +128,7 @@ TEST_P(MaterialLaw, StressAloneIsTheSameStress) {
   for (const Matrix3& f : sample_deformations()) {
     History none = zero_history(law());
     const PointResponse both = answer(law(), f, none);
-    const PointResponse stress = answer(law(), f, none, false, Want::stress);
+    const PointResponse stress = answer(law(), f, none, false, Need::stress);
     EXPECT_EQ(both.stress, stress.stress);
     EXPECT_EQ(both.energy, stress.energy);
   }
@@ -141,7 +141,7 @@ TEST_P(MaterialLaw, InadmissibleDeformationHasNoAnswer) {
   History after = before;
   PointResponse out;
   const auto answers = [&](const Matrix3& f) {
-    return law().evaluate(f, before, after, Want::tangent, out);
+    return law().evaluate(f, before, after, Need::tangent, out);
   };
   const Matrix3 identity = Matrix3::Identity();
   Matrix3 mirrored = identity, flat = identity, broken = identity, endless = identity;

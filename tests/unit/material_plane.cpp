@@ -119,7 +119,7 @@ TEST_P(PlaneLaw, InvertedSheetHasNoAnswer) {
   PointResponse out;
   Matrix3 f = Matrix3::Identity();
   f(0, 0) = GetParam().objective ? -1.0 : std::nan("");  // small strains know no inversion
-  EXPECT_FALSE(law.evaluate(f, before, after, Want::tangent, out));
+  EXPECT_FALSE(law.evaluate(f, before, after, Need::tangent, out));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PlaneLaw, testing::ValuesIn(all_laws()),
@@ -196,7 +196,7 @@ TEST(PlaneStress, NoThicknessNoAnswer) {
   History after = before;
   PointResponse out;
   const Matrix3 f = embed(1.5 * Eigen::Matrix2d::Identity());
-  EXPECT_FALSE(law.evaluate(f, before, after, Want::stress, out));
+  EXPECT_FALSE(law.evaluate(f, before, after, Need::stress, out));
 }
 
 }  // namespace

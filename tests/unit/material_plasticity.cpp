@@ -148,7 +148,7 @@ TEST(J2Plasticity, RandomPathsDissipateKeepPlasticVolumeAndStayOnTheSurface) {
   for (int i = 0; i < steps; ++i) {
     const double before = h[6];
     const Matrix3 f = Matrix3::Identity() + draw.matrix(0.3);
-    const PointResponse r = answer(metal(), f, h, true, Want::stress);
+    const PointResponse r = answer(metal(), f, h, true, Need::stress);
     ASSERT_GE(r.dissipation, 0.0);
     ASSERT_GE(h[6], before);
     const Matrix3 kirchhoff = r.stress * f.transpose();
@@ -171,7 +171,7 @@ TEST(J2Plasticity, EnergyBalanceClosesWithFinerSteps) {
       Matrix3 f = Matrix3::Identity();
       f(0, 1) = 0.4 * std::sin(angle);
       f(2, 2) = 1.0 + 0.1 * (1.0 - std::cos(angle));
-      const PointResponse r = answer(metal(), f, h, true, Want::stress);
+      const PointResponse r = answer(metal(), f, h, true, Need::stress);
       work += 0.5 * (r.stress + last_p).cwiseProduct(f - last_f).sum();
       dissipated += r.dissipation;
       stored = r.energy;

@@ -154,7 +154,7 @@ TEST(UniaxialStress, InvertedBarHasNoAnswer) {
   const History before = zero_history(law);
   History after = before;
   PointResponse out;
-  EXPECT_FALSE(law.evaluate(along(-1.0), before, after, Want::stress, out));
+  EXPECT_FALSE(law.evaluate(along(-1.0), before, after, Need::stress, out));
 }
 
 }  // namespace

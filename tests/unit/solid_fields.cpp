@@ -152,7 +152,7 @@ TEST(SolidFields, HomogeneousStressIsThatOfTheLawInEveryCellOfEveryElement) {
     const std::vector<double> u = homogeneous(mesh, f);
     FeModel model(std::move(mesh), std::make_unique<NeoHookean>(test_moduli, 1.0), {});
     PointResponse point;
-    ASSERT_TRUE(law.evaluate(f, {}, {}, Want::stress, point));
+    ASSERT_TRUE(law.evaluate(f, {}, {}, Need::stress, point));
     const Matrix3 exact = point.stress * f.transpose() / f.determinant();
     std::vector<double> v = u;
     for (double& value : v) value *= 3.0;
@@ -180,7 +180,7 @@ TEST(SolidFields, StressOfASheetIsPerAreaOfTheThinnerSheet) {
   double low = 0.3, high = 1.5;
   for (int i = 0; i < 100; ++i) {
     f(2, 2) = 0.5 * (low + high);
-    ASSERT_TRUE(law.evaluate(f, {}, {}, Want::stress, point));
+    ASSERT_TRUE(law.evaluate(f, {}, {}, Need::stress, point));
     (point.stress(2, 2) > 0.0 ? high : low) = f(2, 2);
   }
   ASSERT_LT(f(2, 2), 0.95) << "the sheet gets thinner";

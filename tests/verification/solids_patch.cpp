@@ -69,7 +69,7 @@ class Patch : public testing::TestWithParam<Case> {
     std::vector<double> before(index(s.model.material().history_size()), 0.0);
     std::vector<double> after = before;
     const Matrix3 f = deformation(GetParam(), h);
-    ASSERT_TRUE(s.model.material().evaluate(f, before, after, Want::stress, exact));
+    ASSERT_TRUE(s.model.material().evaluate(f, before, after, Need::stress, exact));
     double worst = 0.0;
     ASSERT_TRUE(s.model.visit(s.motion.q, s.motion.history, [&](const FeModel::PointState& point) {
       worst = std::max(worst, (point.stress - exact.stress).norm());
