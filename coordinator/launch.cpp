@@ -156,8 +156,7 @@ void Launch::greet_all(const Specification& scene_text) {
     refuse_strangers();
     for (const std::unique_ptr<Member>& member : members_) {
       if (member->welcome) continue;
-      const std::optional<Bytes> frame = hub_->channel(member->peer).receive(Milliseconds(0));
-      if (frame && greet(*member, *frame)) {
+      if (greet(*member)) {
         // It builds itself while the others are still on their way.
         Specification specification = scene_text;
         specification.path = "bodies." + member->name;
@@ -170,33 +169,47 @@ void Launch::greet_all(const Specification& scene_text) {
   }
 }
 
-bool Launch::greet(Member& member, Bytes frame) {
+/// The last Hello that has come: an earlier one may be of a solver that has been restarted since.
+bool Launch::greet(Member& member) {
   v1::Reply reply;
-  const std::optional<Bytes> payload = open_frame(frame);
-  const bool sound =
-      frame.size() <= options_.limits.frame_bytes && payload && parse_into(reply, *payload);
-  if (!sound || !reply.has_hello()) {
+  bool came = false;
+  while (const std::optional<Bytes> frame = hub_->channel(member.peer).receive(Milliseconds(0))) {
+    came = true;
+    const std::optional<Bytes> payload = open_frame(*frame);
+    const bool sound =
+        frame->size() <= options_.limits.frame_bytes && payload && parse_into(reply, *payload);
+    if (sound && reply.has_hello()) continue;
     throw RunError(
         fmt::format("body '{}' did not say hello: its first frame, of {} bytes (limit {}), "
                     "is {}",
-                    member.name, frame.size(), options_.limits.frame_bytes,
+                    member.name, frame->size(), options_.limits.frame_bytes,
                     sound ? "of another kind" : "corrupt or of another program"),
         "", "connect an abut-solver of this version");
   }
-  const v1::Hello& hello = reply.hello();
+  return came && welcome(member, reply.hello());
+}
+
+bool Launch::welcome(Member& member, const v1::Hello& hello) {
   if (hello.protocol() != protocol_version) {
     const std::string versions = fmt::format(
         "the solver of body '{}' (build {}) speaks protocol {}, this coordinator (build {}) "
         "speaks protocol {}",
         member.name, hello.build(), hello.protocol(), build_version(), protocol_version);
-    refuse(member.name, versions);
+    refuse(member.name, hello.session(), versions);
     throw RunError(versions, "", "install the same version at both ends");
   }
   if (hello.last_request() > 0) {
-    refuse(member.name, "it has taken part in another run");
+    refuse(member.name, hello.session(), "it has taken part in another run");
     return false;  // a fresh one may still come
   }
+  if (hello.session() == 0) {
+    const std::string reason = "its Hello has no session";
+    refuse(member.name, 0, reason);
+    throw RunError(fmt::format("the solver of body '{}' is no sound one: {}", member.name, reason),
+                   "", "let the solver draw a number above 0 when it starts (proto/README.md)");
+  }
   v1::Request welcome;
+  welcome.set_session(hello.session());
   welcome.mutable_welcome()->set_protocol(protocol_version);
   welcome.mutable_welcome()->set_build(build_version());
   welcome.mutable_welcome()->set_frame_limit(options_.limits.frame_bytes);
@@ -208,8 +221,10 @@ bool Launch::greet(Member& member, Bytes frame) {
   return true;
 }
 
-void Launch::refuse(const std::string& routing_id, const std::string& reason) {
+void Launch::refuse(const std::string& routing_id, std::uint64_t session,
+                    const std::string& reason) {
   v1::Request refusal;
+  refusal.set_session(session);
   refusal.mutable_refuse()->set_reason(reason);
   Frame out;
   out.seal(refusal);
@@ -222,7 +237,12 @@ void Launch::refuse_strangers() {
     for (const std::unique_ptr<Member>& member : members_) {
       names += (names.empty() ? "" : ", ") + member->name;
     }
-    refuse(stranger->first, "the scene has no body of this name, only " + names);
+    // Where its session cannot be read, the refusal has none.
+    v1::Reply hello;
+    const std::optional<Bytes> payload = open_frame(stranger->second);
+    if (!payload || !parse_into(hello, *payload)) hello.Clear();
+    refuse(stranger->first, hello.hello().session(),
+           "the scene has no body of this name, only " + names);
   }
 }
 
@@ -292,7 +312,7 @@ void Launch::end_processes() {
   for (const std::unique_ptr<Member>& member : members_) {
     // Somebody else's solver is told; ours is ended.
     if (!finished_ && !member->child && member->welcome) {
-      refuse(member->name, "the run has ended early");
+      refuse(member->name, member->caller->session(), "the run has ended early");
     }
     if (member->child && !member->child->ended(Milliseconds(0)))
       member->child->send_signal(SIGTERM);

@@ -17,6 +17,9 @@ class ChildProcess;
 class Liveness;
 class RemoteSubdomain;
 class ZmqHub;
+namespace v1 {
+class Hello;
+}
 
 struct LaunchOptions {
   std::string solver;  // program of spawned bodies; empty: abut-solver beside this program
@@ -50,8 +53,9 @@ class Launch {
   void listen(const Scene& scene);
   void spawn_all(const Scene& scene);
   void greet_all(const Specification& scene_text);
-  bool greet(Member& member, Bytes frame);
-  void refuse(const std::string& routing_id, const std::string& reason);
+  bool greet(Member& member);
+  bool welcome(Member& member, const v1::Hello& hello);
+  void refuse(const std::string& routing_id, std::uint64_t session, const std::string& reason);
   void refuse_strangers();
   void check_startup(Member& member, TimePoint begin);
   void remove_directory();

@@ -25,9 +25,10 @@ std::string Caller::under_way_text() const {
 }
 
 void Caller::post(const char* verb) {
-  ABUT_ASSERT(!under_way_);
+  ABUT_ASSERT(!under_way_ && session_ != 0);
   verb_ = verb;
   request_.set_number(++number_);
+  request_.set_session(session_);
   if (request_.ByteSizeLong() + frame_header_bytes > context_.limits.frame_bytes) {
     throw RunError(
         fmt::format("{} for body '{}' would be a frame of {} bytes, above the limit of {}",
@@ -107,6 +108,10 @@ bool Caller::is_reply(Bytes frame) {
     greeted_again(reply_.hello());
     return false;
   }
+  if (reply_.session() != session_) {  // of a solver that had this name before: nobody's
+    ++foreign_;
+    return false;
+  }
   if (reply_.number() != number_) return false;  // repeat of an earlier reply
   if (reply_.has_progress()) {
     // It has the request. Repeats that it cannot look at would fill its queue, and a full queue
@@ -121,7 +126,7 @@ bool Caller::is_reply(Bytes frame) {
 }
 
 void Caller::greeted_again(const v1::Hello& hello) {
-  if (session_ && hello.session() != *session_) {
+  if (hello.session() != session_) {
     throw RunError(fmt::format("a second solver with the name of body '{}' has connected", body_),
                    "", "start one solver per body; after the loss of a solver start the run again");
   }
@@ -145,10 +150,11 @@ void Caller::look_around() {
   }
   const TimePoint now = context_.channel.now();
   if (now >= deadline_) {
-    const std::string noise =
-        corrupt_ > 0 ? fmt::format("; {} corrupt frames came, the last one of {} bytes", corrupt_,
-                                   corrupt_bytes_)
-                     : std::string();
+    std::string noise;
+    if (corrupt_ > 0)
+      noise += fmt::format("; {} corrupt frames came, the last one of {} bytes", corrupt_,
+                           corrupt_bytes_);
+    if (foreign_ > 0) noise += fmt::format("; {} replies of another session came", foreign_);
     throw RunError(fmt::format("body '{}' has not answered {} within {} s, nor shown progress{}",
                                body_, under_way_text(), seconds(context_.deadlines.request), noise),
                    "", "raise network.request_deadline if one solve may take longer");

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "abut/v1/subdomain.pb.h"
@@ -43,8 +42,12 @@ class Caller {
   bool await_at_most(Milliseconds time);
   bool under_way() const { return under_way_; }
 
-  /// After a sound Hello: a later one of another session is another solver with this body's name.
+  /// After a sound Hello, before the first request. All requests carry this session, and a reply of
+  /// another one is nobody's; a later Hello of another one is another solver with this body's name.
   void accept_session(std::uint64_t session) { session_ = session; }
+  std::uint64_t session() const { return session_; }
+  /// Replies of other sessions that came so far.
+  int foreign() const { return foreign_; }
   const std::string& body() const { return body_; }
   /// Throws: the reply to the request under way is no answer to it.
   [[noreturn]] void refuse_reply(const std::string& why) const;
@@ -64,7 +67,8 @@ class Caller {
   Frame frame_;
   const char* verb_ = "";
   std::uint64_t number_ = 0;
-  std::optional<std::uint64_t> session_;
+  std::uint64_t session_ = 0;  // 0: not greeted yet
+  int foreign_ = 0;
   bool under_way_ = false;
   TimePoint begun_{};     // of the request
   TimePoint deadline_{};  // moves with every sign of progress

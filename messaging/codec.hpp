@@ -19,23 +19,61 @@ class CodecError : public std::runtime_error {
 bool parse_into(v1::Request& message, Bytes payload);
 bool parse_into(v1::Reply& message, Bytes payload);
 
+/// What a waveform of a surface may be wide.
+struct Shape {
+  int points = 0, dim = 1;
+  int width() const { return points * dim; }
+};
+Shape shape_of(const PortGeometry& surface);
+/// Of the surfaces that each port has met, by port and partner.
+using Partners = std::vector<std::vector<Shape>>;
+
+/// Subdomain::meet as a value.
+struct Meeting {
+  int port = 0;
+  PortGeometry partner;
+  ContactLaw law;
+};
+/// Subdomain::yields as a value.
+struct Yielding {
+  int port = 0;
+  int partner = 0;
+  PortKernel kernel;
+};
+/// Subdomain::probe as a value.
+struct Probing {
+  int port = 0;
+  std::vector<double> patterns;  // [N] (patterns, points x dim)
+  double step = 0.0;             // [s]
+  int count = 0;
+};
+
 // Contract to wire. The target may hold an earlier message: every field is overwritten, memory is
 // kept.
 void encode(const Advance& from, v1::Advance& to);
-void encode(const Response& from, v1::Advanced& to);
+/// Fields that the request does not want are left out.
+void encode(const Response& from, const Advance& asked, v1::Advanced& to);
 void encode(const Failed& from, v1::Failed& to);
-void encode(const PortKernel& from, v1::KernelReply& to);
 void encode(const Description& from, v1::Description& to);
+void encode(const Meeting& from, v1::Meet& to);
+void encode(const Yielding& from, v1::Yields& to);
+void encode(const Probing& from, v1::Probe& to);
+void encode(const PortKernel& from, v1::PortKernel& to);
 void encode(const Grid& from, v1::GridReply& to);
 void encode(const std::vector<FieldValues>& from, v1::FieldsReply& to);
 
 // Wire to contract. Shapes, counts, enums and finite numbers are checked; throws CodecError.
-void decode(const v1::Advance& from, std::size_t ports, Advance& to);
-/// `body` tells how many ports of which dimension there must be.
-void decode(const v1::Advanced& from, const Description& body, Response& to);
+/// `body` and `met` tell how wide the waveforms of ports and partners are.
+void decode(const v1::Advance& from, const Description& body, const Partners& met, Advance& to);
+/// Held against the request that it answers.
+void decode(const v1::Advanced& from, const Description& body, const Advance& asked, Response& to);
 void decode(const v1::Failed& from, Failed& to);
-void decode(const v1::KernelReply& from, PortKernel& to);
 void decode(const v1::Description& from, Description& to);
+void decode(const v1::Meet& from, const Description& body, Meeting& to);
+void decode(const v1::Yields& from, const Partners& met, Yielding& to);
+void decode(const v1::Probe& from, const Description& body, Probing& to);
+void decode(const v1::PortKernel& from, const Description& body, const Probing& asked,
+            PortKernel& to);
 void decode(const v1::GridReply& from, Grid& to);
 /// Values may be other than finite: whoever writes fields says at which node or cell.
 void decode(const v1::FieldsReply& from, const Description& body, std::size_t nodes,

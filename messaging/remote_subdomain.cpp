@@ -23,11 +23,24 @@ void RemoteSubdomain::finish_configure() {
   } catch (const CodecError& error) {
     caller_.refuse_reply(error.what());
   }
+  description_.name = caller_.body();  // a body is called what its scene calls it
 }
 
 void RemoteSubdomain::ping() {
   caller_.request().mutable_ping();
   if (!caller_.call("ping").has_pong()) caller_.refuse_reply("not a pong");
+}
+
+void RemoteSubdomain::meet(int port, const PortGeometry& partner, const ContactLaw& law) {
+  encode(Meeting{port, partner, law}, *caller_.request().mutable_meet());
+  carry_flags();
+  if (!caller_.call("meet").has_met()) caller_.refuse_reply("not a meeting");
+}
+
+void RemoteSubdomain::yields(int port, int partner, const PortKernel& kernel) {
+  encode(Yielding{port, partner, kernel}, *caller_.request().mutable_yields());
+  carry_flags();
+  if (!caller_.call("yields").has_yielding()) caller_.refuse_reply("not a yielding");
 }
 
 void RemoteSubdomain::save() { save_first_ = true; }
@@ -46,6 +59,7 @@ void RemoteSubdomain::carry_flags() {
 
 void RemoteSubdomain::start(const Advance& request) {
   encode(request, *caller_.request().mutable_advance());
+  asked_ = &request;
   carry_flags();
   caller_.post("advance");
 }
@@ -54,7 +68,7 @@ Outcome RemoteSubdomain::finish(Response& response) {
   const v1::Reply& reply = caller_.await();
   try {
     if (reply.has_advanced()) {
-      decode(reply.advanced(), description_, response);
+      decode(reply.advanced(), description_, *asked_, response);
       return Advanced{};
     }
     if (reply.has_failed()) {
@@ -68,17 +82,16 @@ Outcome RemoteSubdomain::finish(Response& response) {
   caller_.refuse_reply("not a response");
 }
 
-PortKernel RemoteSubdomain::kernel(int port, double step, int count) {
-  v1::Kernel& kernel = *caller_.request().mutable_kernel();
-  kernel.set_port(port);
-  kernel.set_step(step);
-  kernel.set_count(count);
+PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, double step,
+                                  int count) {
+  const Probing probing{port, {patterns.begin(), patterns.end()}, step, count};
+  encode(probing, *caller_.request().mutable_probe());
   carry_flags();
-  const v1::Reply& reply = caller_.call("kernel");
+  const v1::Reply& reply = caller_.call("probe");
   if (!reply.has_kernel()) caller_.refuse_reply("not a kernel");
   PortKernel result;
   try {
-    decode(reply.kernel(), result);
+    decode(reply.kernel(), description_, probing, result);
   } catch (const CodecError& error) {
     caller_.refuse_reply(error.what());
   }

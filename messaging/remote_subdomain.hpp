@@ -27,11 +27,13 @@ class RemoteSubdomain : public Subdomain {
   void ping();
 
   const Description& describe() const override { return description_; }
+  void meet(int port, const PortGeometry& partner, const ContactLaw& law) override;
+  void yields(int port, int partner, const PortKernel& kernel) override;
   void save() override;
   void restore() override;
   void start(const Advance& request) override;
   [[nodiscard]] Outcome finish(Response& response) override;
-  PortKernel kernel(int port, double step, int count) override;
+  PortKernel probe(int port, std::span<const double> patterns, double step, int count) override;
   std::vector<std::byte> checkpoint() override;
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override;
@@ -45,8 +47,9 @@ class RemoteSubdomain : public Subdomain {
 
   Caller& caller_;
   Description description_;
-  bool save_first_ = false;     // wanted, not yet sent
-  bool restore_first_ = false;  // before the save
+  const Advance* asked_ = nullptr;  // between start() and finish()
+  bool save_first_ = false;         // wanted, not yet sent
+  bool restore_first_ = false;      // before the save
   struct GridSize {
     std::size_t nodes = 0, cells = 0;
   };

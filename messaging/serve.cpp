@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/denormals.hpp"
+#include "base/index.hpp"
 #include "base/life_signs.hpp"
 #include "messaging/codec.hpp"
 
@@ -18,18 +19,7 @@ namespace {
 
 std::uint64_t random_session() {
   std::random_device device;  // tells processes apart; decides nothing that is computed
-  return (std::uint64_t{device()} << 32) | device();
-}
-
-void check_kernel(const v1::Kernel& kernel, const Description& body) {
-  if (kernel.port() < 0 || kernel.port() >= static_cast<int>(body.ports.size())) {
-    throw CodecError(
-        fmt::format("kernel.port is {}, the body has {} ports", kernel.port(), body.ports.size()));
-  }
-  if (kernel.count() < 1 || kernel.count() > most_kernel_steps || !(kernel.step() > 0.0)) {
-    throw CodecError(
-        fmt::format("kernel of {} steps of {} s is out of range", kernel.count(), kernel.step()));
-  }
+  return (std::uint64_t{device()} << 32) | device() | 1;  // never 0, which is no session
 }
 
 }  // namespace
@@ -47,6 +37,7 @@ Server::Server(std::string body, MakeBody make, Channel& channel, Liveness& coor
 
 void Server::say_hello() {
   v1::Reply greeting;
+  greeting.set_session(session_);
   v1::Hello& hello = *greeting.mutable_hello();
   hello.set_protocol(protocol_version);
   hello.set_build(build_version());
@@ -65,10 +56,12 @@ void Server::greet(Milliseconds patience) {
   while (!welcome_) {
     const TimePoint now = channel_.now();
     if (now - begin >= patience) {
-      throw CoordinatorLost(fmt::format("no coordinator has answered body '{}' within {} s", name_,
-                                        static_cast<double>(patience.count()) / 1000.0),
-                            "",
-                            "start `abut run` with the scene that has this body and this endpoint");
+      const std::string foreign =
+          foreign_ > 0 ? fmt::format("; {} requests of another session came", foreign_) : "";
+      throw CoordinatorLost(
+          fmt::format("no coordinator has answered body '{}' within {} s{}", name_,
+                      static_cast<double>(patience.count()) / 1000.0, foreign),
+          "", "start `abut run` with the scene that has this body and this endpoint");
     }
     if (now >= next) {
       say_hello();
@@ -95,12 +88,22 @@ bool Server::handle(Bytes frame) {
   if (frame.size() > limits_.frame_bytes) return true;  // as a damaged one: the coordinator repeats
   const std::optional<Bytes> payload = open_frame(frame);
   if (!payload || !parse_into(request_, *payload)) return true;
+  if (!is_mine()) {
+    ++foreign_;
+    return true;
+  }
   if (handle_greeting()) return true;
   welcome_ = true;  // a request says as much as a Welcome that was lost
   if (request_.number() < executed_ || request_.number() == 0) return true;  // late: long answered
   if (request_.number() > executed_) execute();
   channel_.send(reply_frame_.bytes());
   return !finished_;
+}
+
+/// For this process, not for one that had this name before. A refusal may come from a coordinator
+/// that could not read the Hello.
+bool Server::is_mine() const {
+  return request_.session() == session_ || (request_.has_refuse() && request_.session() == 0);
 }
 
 bool Server::handle_greeting() {
@@ -146,6 +149,7 @@ void Server::execute() {
   }
   executed_ = number;
   reply_.set_number(number);
+  reply_.set_session(session_);
   seal_reply();
 }
 
@@ -194,12 +198,15 @@ void Server::dispatch() {
     case v1::Request::kAdvance:
       advance(request_.advance());
       return;
-    case v1::Request::kKernel: {
-      const v1::Kernel& kernel = request_.kernel();
-      check_kernel(kernel, body_->describe());
-      encode(body_->kernel(kernel.port(), kernel.step(), kernel.count()), *reply_.mutable_kernel());
+    case v1::Request::kMeet:
+      meet(request_.meet());
       return;
-    }
+    case v1::Request::kYields:
+      yields(request_.yields());
+      return;
+    case v1::Request::kProbe:
+      probe(request_.probe());
+      return;
     case v1::Request::kCheckpoint: {
       const std::vector<std::byte> state = body_->checkpoint();
       reply_.mutable_checkpoint()->set_state(state.data(), state.size());
@@ -239,16 +246,47 @@ void Server::configure(const v1::Configure& wire) {
   LifeSigns life([this] { show_progress(); }, deadlines_.progress);
   body_ = make_(specification, [this] { show_progress(); });
   life.end();
+  partners_.assign(body_->describe().ports.size(), {});
   encode(body_->describe(), *reply_.mutable_configured()->mutable_description());
 }
 
+void Server::meet(const v1::Meet& request) {
+  Meeting meeting;
+  decode(request, body_->describe(), meeting);
+  body_->meet(meeting.port, meeting.partner, meeting.law);
+  partners_[index(meeting.port)].push_back(shape_of(meeting.partner));
+  reply_.mutable_met();
+}
+
+void Server::yields(const v1::Yields& request) {
+  Yielding yielding;
+  decode(request, partners_, yielding);
+  body_->yields(yielding.port, yielding.partner, yielding.kernel);
+  reply_.mutable_yielding();
+}
+
+void Server::probe(const v1::Probe& request) {
+  Probing probing;
+  decode(request, body_->describe(), probing);
+  // Looked at first: a body would use up its memory on what cannot be sent.
+  const std::size_t least = sizeof(double) * probing.patterns.size() * index(probing.count);
+  if (least > reply_limit_) {
+    throw RunError(fmt::format("a kernel of {} substeps for {} values is a frame of more than {} "
+                               "bytes, above the limit of {}",
+                               probing.count, probing.patterns.size(), least, reply_limit_),
+                   name_, remedy_of_large_frame(request_));
+  }
+  encode(body_->probe(probing.port, probing.patterns, probing.step, probing.count),
+         *reply_.mutable_kernel());
+}
+
 void Server::advance(const v1::Advance& request) {
-  decode(request, body_->describe().ports.size(), advance_);
+  decode(request, body_->describe(), partners_, advance_);
   const Outcome outcome = body_->advance(advance_, response_);
   if (const Failed* failed = std::get_if<Failed>(&outcome)) {
     encode(*failed, *reply_.mutable_failed());
   } else {
-    encode(response_, *reply_.mutable_advanced());
+    encode(response_, advance_, *reply_.mutable_advanced());
   }
 }
 
@@ -266,6 +304,7 @@ void Server::show_progress() {
   next_progress_ = now + deadlines_.progress;
   v1::Reply progress;
   progress.set_number(request_.number());
+  progress.set_session(session_);
   progress.mutable_progress();
   progress_frame_.seal(progress);
   channel_.send(progress_frame_.bytes());

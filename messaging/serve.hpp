@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "contract/subdomain.hpp"
 #include "messaging/channel.hpp"
+#include "messaging/codec.hpp"
 #include "messaging/frame.hpp"
 #include "messaging/liveness.hpp"
 #include "messaging/protocol.hpp"
@@ -46,13 +47,22 @@ class Server {
   /// coordinator any more.
   bool step(Milliseconds wait);
 
+  /// Drawn for this process; every request and reply carries it.
+  std::uint64_t session() const { return session_; }
+  /// Requests of other sessions that came so far: for a solver that had this name before.
+  int foreign() const { return foreign_; }
+
  private:
   void say_hello();
   bool handle(Bytes frame);
+  bool is_mine() const;
   bool handle_greeting();
   void execute();
   void dispatch();
   void configure(const v1::Configure& specification);
+  void meet(const v1::Meet& request);
+  void yields(const v1::Yields& request);
+  void probe(const v1::Probe& request);
   void advance(const v1::Advance& request);
   void fault(v1::FaultKind kind, const std::string& what, const std::string& where,
              const std::string& remedy);
@@ -67,6 +77,7 @@ class Server {
   Limits limits_;
   Deadlines deadlines_;
   std::unique_ptr<Subdomain> body_;
+  Partners partners_;   // that the body has met
   bool saved_ = false;  // there is a state to restore
   v1::Request request_;
   v1::Reply reply_;
@@ -74,6 +85,7 @@ class Server {
   Advance advance_;
   Response response_;
   std::uint64_t session_;
+  int foreign_ = 0;
   std::uint64_t executed_ = 0;  // number of the last request executed
   std::size_t reply_limit_;     // [bytes]
   bool welcome_ = false;

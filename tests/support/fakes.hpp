@@ -30,6 +30,7 @@ class FakeSubdomain : public Subdomain {
   };
   struct Counts {
     int advances = 0, saves = 0, restores = 0, kernels = 0, grids = 0, fields = 0;
+    int meetings = 0, yieldings = 0;
   };
 
   FakeSubdomain() : FakeSubdomain(Options{}) {}
@@ -60,6 +61,8 @@ class FakeSubdomain : public Subdomain {
 
   const Description& describe() const override { return description_; }
 
+  void meet(int, const PortGeometry&, const ContactLaw&) override { ++counts.meetings; }
+  void yields(int, int, const PortKernel&) override { ++counts.yieldings; }
   void save() override {
     ++counts.saves;
     saved_.clear();
@@ -91,7 +94,11 @@ class FakeSubdomain : public Subdomain {
       if (during_substep) during_substep();
       const double time = i == options_.substeps ? window.end : window.begin + i * step;
       double force = 0.0;
-      if (!boundary.force.empty()) boundary.force.force_at(time, std::span<double>(&force, 1));
+      for (const Waveform& given : boundary.forces) {
+        double part = 0.0;
+        if (!given.empty()) given.force_at(time, std::span<double>(&part, 1));
+        force += part;
+      }
       v_ += step * (force - options_.stiffness * u_) / options_.mass;
       u_ += step * v_;
       port.lower[0] = std::min(port.lower[0], u_);
@@ -101,7 +108,8 @@ class FakeSubdomain : public Subdomain {
     const std::size_t records = index(std::max(1, request_->records));
     port.lower.resize(records, port.lower[0]);  // the range of the whole window covers its parts
     port.upper.resize(records, port.upper[0]);
-    port.approach_bound = std::abs(v_);
+    port.speed_bound = std::abs(v_);
+    answer(boundary, window, port);
     fill_records(window, response);
     response.steps = options_.substeps;
     if (!std::isfinite(u_))
@@ -109,12 +117,17 @@ class FakeSubdomain : public Subdomain {
     return Advanced{};
   }
 
-  PortKernel kernel(int, double step, int count) override {
+  PortKernel probe(int, std::span<const double> patterns, double step, int count) override {
     ++counts.kernels;
     PortKernel kernel;
     kernel.step = step;
     kernel.support = ForceSupport::step;
-    for (int i = 1; i <= count; ++i) kernel.displacement.push_back(step * step * i / options_.mass);
+    kernel.patterns = static_cast<int>(patterns.size());
+    for (int i = 1; i <= count; ++i) {
+      for (const double force : patterns) {
+        kernel.displacement.push_back(force * step * step * i / options_.mass);
+      }
+    }
     return kernel;
   }
 
@@ -156,6 +169,20 @@ class FakeSubdomain : public Subdomain {
     trace.v.push_back(v_);
     trace.a.push_back(-options_.stiffness * u_ / options_.mass);
     trace.f.push_back(-options_.stiffness * u_);
+  }
+  /// Touches no obstacle, and says so.
+  static void answer(const BoundaryData& boundary, const TimeWindow& window, PortResponse& port) {
+    port.reactions.resize(boundary.obstacles.size());
+    for (std::size_t i = 0; i < port.reactions.size(); ++i) {
+      const Waveform& motion = boundary.obstacles[i].motion;
+      Waveform& force = port.reactions[i].force;
+      force.clear();
+      if (motion.empty()) continue;
+      force.width = motion.width;
+      force.points = motion.points;
+      force.time = {window.begin, window.end};
+      force.f.assign(2 * index(motion.width), 0.0);
+    }
   }
   void fill_records(const TimeWindow& window, Response& response) const {
     response.records.resize(index(request_->records));

@@ -118,7 +118,11 @@ TEST(Transport, ACheckpointResumesInAnotherBody) {
 TEST(Transport, AKernelComesBackAsTheBodyMadeIt) {
   Loop loop;
   loop.configure();
-  EXPECT_EQ(loop.body.kernel(0, 0.01, 5).displacement, loop.fake->kernel(0, 0.01, 5).displacement);
+  const std::vector<double> patterns{1.0, -2.5};
+  const PortKernel got = loop.body.probe(0, patterns, 0.01, 5);
+  EXPECT_EQ(got.displacement, loop.fake->probe(0, patterns, 0.01, 5).displacement);
+  EXPECT_EQ(got.patterns, 2);
+  EXPECT_EQ(got.count(), 5);
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ int run(const std::string& endpoint, const std::string& name, const std::string&
   ZmqDealer dealer(endpoint, name, limits);
   if (manners == "old_version") {
     v1::Reply greeting;
-    greeting.mutable_hello()->set_protocol(protocol_version + 1);
+    greeting.mutable_hello()->set_protocol(protocol_version - 1);
     greeting.mutable_hello()->set_build("9.9.9");
     Frame frame;
     frame.seal(greeting);

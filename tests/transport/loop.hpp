@@ -37,6 +37,7 @@ struct Loop {
   }
 
   void configure() {
+    caller.accept_session(server.session());
     body.start_configure(Specification{"scene.yaml", "text", {"a.b=1"}, "bodies.fake"});
     body.finish_configure();
   }
@@ -59,7 +60,8 @@ inline Advance request_for(int window) {
   advance.window = TimeWindow{window, 0.1 * window, 0.1 * (window + 1)};
   advance.records = 2;
   advance.boundary.resize(1);
-  Waveform& force = advance.boundary[0].force;
+  advance.boundary[0].forces.resize(1);
+  Waveform& force = advance.boundary[0].forces[0];
   force.time = {advance.window.begin, advance.window.end};
   force.f = {1.0 + window, -0.5 * window};
   return advance;

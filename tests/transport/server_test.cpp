@@ -60,6 +60,7 @@ TEST(Serve, TheMakingOfABodyShowsThatItGoesOn) {
   std::thread solver([&server] { server.step(Milliseconds(60'000)); });
   v1::Request request;
   request.set_number(1);
+  request.set_session(server.session());
   request.mutable_configure()->set_path("bodies.fake");
   Frame frame;
   frame.seal(request);
@@ -81,6 +82,7 @@ TEST(Serve, RepeatedRequestRunsOnce) {
   loop.configure();
   v1::Request request;
   request.set_number(2);
+  request.set_session(loop.server.session());
   const Advance advance = request_for(0);
   encode(advance, *request.mutable_advance());
   Frame frame;
@@ -101,6 +103,7 @@ TEST(Serve, AGapInTheNumbersIsAFault) {
   loop.configure();
   v1::Request request;
   request.set_number(9);
+  request.set_session(loop.server.session());
   request.mutable_ping();
   Frame frame;
   frame.seal(request);
@@ -121,6 +124,7 @@ TEST(Serve, ARestoreBeforeAnySaveIsAFault) {
   const auto answer_to = [&loop](std::uint64_t number, bool restore) {
     v1::Request request;
     request.set_number(number);
+    request.set_session(loop.server.session());
     request.set_restore_first(restore);
     request.mutable_hash();
     Frame frame;
@@ -193,7 +197,7 @@ TEST(Caller, ARequestAboveTheLimitIsNamedWithItsSize) {
   Loop loop({}, {}, 0, limits);
   loop.configure();
   Advance large = request_for(0);
-  Waveform& force = large.boundary[0].force;
+  Waveform& force = large.boundary[0].forces[0];
   force.clear();
   for (int i = 0; i < 1000; ++i) {
     force.time.push_back(i);
@@ -211,12 +215,13 @@ TEST(Caller, NaNInAReplyIsRefusedByName) {
   loop.configure();
   v1::Reply reply;
   reply.set_number(2);
+  reply.set_session(loop.server.session());
   Response response;
   FakeSubdomain body;
   const Advance advance = request_for(0);
   EXPECT_TRUE(std::holds_alternative<Advanced>(body.advance(advance, response)));
   response.ports[0].trace.v[4] = std::numeric_limits<double>::quiet_NaN();
-  encode(response, *reply.mutable_advanced());
+  encode(response, advance, *reply.mutable_advanced());
   Frame frame;
   frame.seal(reply);
   loop.deaf = true;
@@ -250,6 +255,7 @@ TEST(Caller, ProgressExtendsTheDeadline) {
   TimePoint next = begin + std::chrono::seconds(50);
   v1::Reply progress;
   progress.set_number(2);
+  progress.set_session(loop.server.session());
   progress.mutable_progress();
   Frame frame;
   frame.seal(progress);
@@ -275,6 +281,7 @@ TEST(Caller, ARequestIsNotRepeatedToABodyThatShowsProgress) {
   TimePoint next = begin + Deadlines{}.progress;
   v1::Reply progress;
   progress.set_number(2);
+  progress.set_session(loop.server.session());
   progress.mutable_progress();
   Frame frame;
   frame.seal(progress);
@@ -304,6 +311,7 @@ TEST(Serve, TheHookShowsProgressAtMostFourTimesASecond) {
   };
   v1::Request request;
   request.set_number(2);
+  request.set_session(loop.server.session());
   const Advance advance = request_for(0);
   encode(advance, *request.mutable_advance());
   Frame frame;
@@ -349,6 +357,7 @@ TEST(Caller, AnInterruptEndsTheWaitAtOnce) {
   const std::atomic<bool> interrupted{true};
   Caller caller("fake",
                 CallContext{loop.to_solver, loop.alive, &interrupted, Limits{}, Deadlines{}});
+  caller.accept_session(1);
   caller.request().mutable_ping();
   const TimePoint begin = loop.link.near().now();
   EXPECT_EQ(run_error([&caller] { caller.call("ping"); }),
@@ -370,6 +379,7 @@ TEST(Serve, WorksInAThreadOfItsOwn) {
     }
   });
   Caller caller("fake", CallContext{link.near(), alive, nullptr, Limits{}, Deadlines{}});
+  caller.accept_session(server.session());
   RemoteSubdomain body(caller);
   body.start_configure(Specification{});
   body.finish_configure();
@@ -408,6 +418,7 @@ TEST(Serve, ALostCoordinatorEndsTheSolveItself) {
       link.far(), coordinator, Limits{}, deadlines);
   v1::Request request;
   Frame frame;
+  request.set_session(server.session());
   request.set_number(1);
   request.mutable_configure();
   frame.seal(request);

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "base/index.hpp"
-#include "messaging/codec_parts.hpp"
+#include "messaging/codec/parts.hpp"
 
 namespace abut {
 
@@ -14,12 +14,6 @@ static_assert(sizeof(Grid) == 4 * sizeof(std::vector<double>));
 
 void refuse(const FieldPath& path, const std::string& why) {
   if (!why.empty()) path.fail("is unsound: " + why);
-}
-
-void copy(const std::vector<std::int32_t>& from,
-          google::protobuf::RepeatedField<std::int32_t>& to) {
-  to.Clear();
-  to.Add(from.data(), from.data() + from.size());
 }
 
 FieldPlace decode(v1::FieldPlace place, const FieldPath& path) {

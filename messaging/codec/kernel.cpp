@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include "base/index.hpp"
+#include "messaging/codec/parts.hpp"
+
+namespace abut {
+
+namespace {
+
+// A member added to the contract and forgotten here would silently arrive as zero.
+static_assert(sizeof(PortKernel) == 3 * sizeof(double) + 3 * sizeof(std::vector<double>));
+
+/// The arrays are whole and of one size; patterns and width are those that the caller expects.
+void decode(const v1::PortKernel& from, int patterns, int width, const FieldPath& path,
+            PortKernel& to) {
+  to.step = number(from.step(), FieldPath{&path, "step"}, Allow::not_negative);
+  to.support = decode(from.support(), FieldPath{&path, "support"});
+  if (from.width() != width) {
+    FieldPath{&path, "width"}.fail(
+        fmt::format("is {}, but the surface's is {}", from.width(), width));
+  }
+  if (from.patterns() != patterns) {
+    FieldPath{&path, "patterns"}.fail(fmt::format("is {}, not {}", from.patterns(), patterns));
+  }
+  to.patterns = patterns;
+  to.width = width;
+  take(from.compliance(), to.per_step(), true, FieldPath{&path, "compliance"}, to.compliance);
+  const FieldPath displacement{&path, "displacement"};
+  if (index(from.displacement_size()) % to.per_step() != 0) {
+    displacement.fail(fmt::format("has {} numbers, no whole number of substeps of {}",
+                                  from.displacement_size(), to.per_step()));
+  }
+  take(from.displacement(), displacement, to.displacement);
+  take(from.begin(), to.displacement.size(), true, FieldPath{&path, "begin"}, to.begin);
+}
+
+}  // namespace
+
+void encode(const Probing& from, v1::Probe& to) {
+  to.set_port(from.port);
+  to.set_step(from.step);
+  to.set_count(from.count);
+  copy(from.patterns, *to.mutable_patterns());
+}
+
+void decode(const v1::Probe& from, const Description& body, Probing& to) {
+  const FieldPath path{nullptr, "probe"};
+  to.port = position(from.port(), body.ports.size(), FieldPath{&path, "port"});
+  to.step = number(from.step(), FieldPath{&path, "step"}, Allow::not_negative);
+  to.count = from.count();
+  if (to.count < 1 || to.count > most_kernel_steps || to.step == 0.0) {
+    path.fail(fmt::format("of {} steps of {} s is out of range", to.count, to.step));
+  }
+  const FieldPath patterns{&path, "patterns"};
+  const std::size_t width = index(shape_of(body.ports[index(to.port)].geometry).width());
+  take(from.patterns(), patterns, to.patterns);
+  if (to.patterns.empty() || width == 0 || to.patterns.size() % width != 0) {
+    patterns.fail(fmt::format("has {} numbers, no whole number of patterns of {}",
+                              to.patterns.size(), width));
+  }
+}
+
+void encode(const PortKernel& from, v1::PortKernel& to) {
+  to.Clear();
+  to.set_step(from.step);
+  to.set_support(encode(from.support));
+  to.set_patterns(from.patterns);
+  to.set_width(from.width);
+  copy(from.compliance, *to.mutable_compliance());
+  copy(from.displacement, *to.mutable_displacement());
+  copy(from.begin, *to.mutable_begin());
+}
+
+void decode(const v1::PortKernel& from, const Description& body, const Probing& asked,
+            PortKernel& to) {
+  const FieldPath path{nullptr, "kernel"};
+  const int width = shape_of(body.ports[index(asked.port)].geometry).width();
+  decode(from, static_cast<int>(asked.patterns.size()) / width, width, path, to);
+  if (to.count() == asked.count) return;
+  FieldPath{&path, "displacement"}.fail(
+      fmt::format("has {} substeps where {} were asked for", to.count(), asked.count));
+}
+
+void encode(const Yielding& from, v1::Yields& to) {
+  to.set_port(from.port);
+  to.set_partner(from.partner);
+  encode(from.kernel, *to.mutable_kernel());
+}
+
+void decode(const v1::Yields& from, const Partners& met, Yielding& to) {
+  const FieldPath path{nullptr, "yields"};
+  to.port = position(from.port(), met.size(), FieldPath{&path, "port"});
+  const std::vector<Shape>& partners = met[index(to.port)];
+  to.partner = position(from.partner(), partners.size(), FieldPath{&path, "partner"});
+  const FieldPath kernel{&path, "kernel"};
+  if (!from.has_kernel()) kernel.fail("is missing");
+  const int width = partners[index(to.partner)].width();
+  decode(from.kernel(), width, width, kernel, to.kernel);
+}
+
+}  // namespace abut
