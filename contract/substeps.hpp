@@ -13,7 +13,7 @@ struct Substeps {
 
   /// `step` 0: any window is one substep. Throws RunError for more than most_substeps.
   static Substeps divide(double begin, double end, double step);
-  double length(int i) const { return i == count ? last : step; }  // i = 1..count
+  double length(int i) const { return i == count ? last : step; }           // i = 1..count
   double time(int i) const { return i == count ? end : begin + i * step; }  // i = 0..count
   bool matches(const std::vector<double>& times) const;  // the same instants, i = 0..count
   bool same_as(const Substeps& other) const { return count == other.count && step == other.step; }

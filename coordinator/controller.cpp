@@ -46,8 +46,7 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       guard_(scene.schwarz.energy_guard, conserving_bodies()),
       reports_(joints_.size()) {
   end_.status = "completed";
-  flight_.longest = flight_.limit =
-      windows_at_once(scene.time.window, descriptions_of(bodies_));
+  flight_.longest = flight_.limit = windows_at_once(scene.time.window, descriptions_of(bodies_));
 }
 
 // ---- the loop -----------------------------------------------------------------------------------
@@ -215,7 +214,9 @@ void Controller::accept(const TimeWindow& window) {
 
 // ---- of a window --------------------------------------------------------------------------------
 
-bool Controller::Attempt::converged() const { return std::ranges::all_of(reports, &SchwarzReport::converged); }
+bool Controller::Attempt::converged() const {
+  return std::ranges::all_of(reports, &SchwarzReport::converged);
+}
 
 std::string Controller::Attempt::trouble(double tolerance) const {
   if (failed) return fmt::format("{}: {}", to_string(failed->cause), failed->detail);
@@ -239,8 +240,8 @@ int Controller::windows_to_fly() const {
     const int every = scene_.output.field_output->every;
     most = std::min(most, every - static_cast<int>(clock_.windows() % every));
   }
-  return count_within(
-      std::min(whole, most_substeps * bodies_.shortest_step() / scene_.time.window), 0, most);
+  return count_within(std::min(whole, most_substeps * bodies_.shortest_step() / scene_.time.window),
+                      0, most);
 }
 
 void Controller::prepare(const TimeWindow& window, int records, Sampling sampling) {

@@ -54,9 +54,9 @@ class Controller {
     double end = 0.0;    // [s] of a window that is cut
     std::string reason;  // of a failure
   };
-  struct Flight {  // how many windows are flown free in one request
-    int longest = 1;  // (flight_work.hpp)
-    int limit = 1;    // at present
+  struct Flight {           // how many windows are flown free in one request
+    int longest = 1;        // (flight_work.hpp)
+    int limit = 1;          // at present
     bool grounded = false;  // came too near: step once
     void state(Archive& archive);
   };

@@ -49,8 +49,7 @@ void require(bool able, const Description& body, const std::string& where, const
 
 /// A node whose mass both sides share has one motion only where both step alike: at other steps
 /// roundings of the partner's path become accelerations that grow.
-void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies,
-                       const Joint& joint) {
+void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies, const Joint& joint) {
   const Description& a = bodies.describe(joint.sides[0].body);
   const Description& b = bodies.describe(joint.sides[1].body);
   const bool shared[] = {bodies.port(joint.sides[0]).tied, bodies.port(joint.sides[1]).tied};

@@ -35,28 +35,37 @@ void Narrator::end_after_error(const RunEnd& end) {
 }
 
 void Narrator::closed(const Joint& joint, double time, double speed) {
-  tell({RunEvent::Kind::contact_closed, time, joint.name,
+  tell({RunEvent::Kind::contact_closed,
+        time,
+        joint.name,
         fmt::format("contact '{}' closes at {:.6g} m/s; kinematic side: {}", joint.name, speed,
                     bodies_.describe(joint.kinematic_side().body).name),
         {{"closing_speed", speed}}});
 }
 
 void Narrator::opened(const Joint& joint, double time) {
-  tell({RunEvent::Kind::contact_opened, time, joint.name,
-        fmt::format("contact '{}' opens", joint.name), {{"release_impulse", joint.impulse}}});
+  tell({RunEvent::Kind::contact_opened,
+        time,
+        joint.name,
+        fmt::format("contact '{}' opens", joint.name),
+        {{"release_impulse", joint.impulse}}});
 }
 
 void Narrator::inside(const Joint& joint, const InternalContact::Change& change) {
   if (!change.closes)
     return tell({RunEvent::Kind::contact_opened, change.time, joint.name, "contact opens", {}});
-  tell({RunEvent::Kind::contact_closed, change.time, joint.name,
+  tell({RunEvent::Kind::contact_closed,
+        change.time,
+        joint.name,
         fmt::format("contact closes at {:.6g} m/s inside body {}", change.speed,
                     bodies_.describe(joint.sides[0].body).name),
         {{"closing_speed", change.speed}}});
 }
 
 void Narrator::lowered_step(const Joint& joint, double time, double limit) {
-  tell({RunEvent::Kind::warning, time, joint.name,
+  tell({RunEvent::Kind::warning,
+        time,
+        joint.name,
         fmt::format("the contact spring of '{}' lowers the stable step of body '{}' to {:.4g} s: "
                     "give it a smaller step, or its partner a softer contact_layer",
                     joint.name, bodies_.describe(joint.neumann_side().body).name, limit),
@@ -68,13 +77,14 @@ std::string Narrator::words_of(const EnergyGuard& guard) const {
   const std::string whose =
       guard.culprit() < 0 ? ""
                           : fmt::format(" of body '{}'", bodies_.describe(guard.culprit()).name);
-  return growth < 0.0
-             ? fmt::format("energy{} has fallen by {:.2g} % of the most there was in motion, and "
-                           "nothing in this scene takes any; give smaller steps",
-                           whose, -100.0 * growth)
-             : fmt::format("energy{} has grown by {:.2g} % of the most there was in motion, and "
-                           "contact makes none; give smaller steps, or contact_layer: massless",
-                           whose, 100.0 * growth);
+  return growth < 0.0 ? fmt::format(
+                            "energy{} has fallen by {:.2g} % of the most there was in motion, and "
+                            "nothing in this scene takes any; give smaller steps",
+                            whose, -100.0 * growth)
+                      : fmt::format(
+                            "energy{} has grown by {:.2g} % of the most there was in motion, and "
+                            "contact makes none; give smaller steps, or contact_layer: massless",
+                            whose, 100.0 * growth);
 }
 
 void Narrator::energy(const EnergyGuard& guard, double time) {

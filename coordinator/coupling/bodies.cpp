@@ -27,7 +27,7 @@ PortKernel along(const PortKernel& all, const PortGeometry& surface) {
       out[k / normals.size()] += normals[k % normals.size()] * values[k] / count;
     return out;
   };
-  return {all.step, all.support, 1, 1, mean(all.compliance), mean(all.displacement),
+  return {all.step,       all.support, 1, 1, mean(all.compliance), mean(all.displacement),
           mean(all.begin)};
 }
 
@@ -147,9 +147,8 @@ const PortKernel& Bodies::kernel(int body, int port, int count) {
   if (found->kernel.count() >= count) return found->kernel;
   const PortGeometry& surface = describe(body).ports[index(port)].geometry;
   const double step = describe(body).step;
-  found->kernel = along((*this)[body].probe(port, surface.normals,
-                                            step > 0.0 ? step : window_, count),
-                        surface);
+  found->kernel = along(
+      (*this)[body].probe(port, surface.normals, step > 0.0 ? step : window_, count), surface);
   ++exchanges_;
   return found->kernel;
 }

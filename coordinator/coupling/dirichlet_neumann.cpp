@@ -20,8 +20,7 @@ void DirichletNeumann::begin(const TimeWindow& window, const Joint& joint, Bodie
   // the guess holds the velocity after the impulse that this window begins with
   const PortResponse& port = port_of(bodies, n);
   if (port.recoil) {
-    v_begin_[0] -=
-        joint.normal_of(1 - joint.kinematic) * port.recoil->mobility * joint.impulse;
+    v_begin_[0] -= joint.normal_of(1 - joint.kinematic) * port.recoil->mobility * joint.impulse;
   }
   scale_.step = iterate_.steps.step;
   scale_.velocity = joint.closing_speed;

@@ -41,17 +41,17 @@ class Joint {
 
   std::string name;
   std::array<Side, 2> sides;
-  int width = 1;                              // values of a port's motion: points x dimension
+  int width = 1;  // values of a port's motion: points x dimension
   // Of one point: outward, +1 or -1. Of surfaces tied point by point: the signs with which their
   // components are compared.
   std::array<double, 2> normal = {0.0, 0.0};
-  double reference_gap = 0.0;                 // [m] along the normal of side 0, reference positions
-  std::unique_ptr<Transmission> how;          // null: contact inside a body
+  double reference_gap = 0.0;         // [m] along the normal of side 0, reference positions
+  std::unique_ptr<Transmission> how;  // null: contact inside a body
   Decision decision = Decision::every_substep;
-  int kinematic = 0;          // index of the kinematic (Dirichlet) side
-  bool role_fixed = false;    // by the scene; else by probe
-  bool roles_swap = false;    // published form: after every window in contact
-  bool projection = false;    // published form: plastic impact of the contact nodes at first touch
+  int kinematic = 0;        // index of the kinematic (Dirichlet) side
+  bool role_fixed = false;  // by the scene; else by probe
+  bool roles_swap = false;  // published form: after every window in contact
+  bool projection = false;  // published form: plastic impact of the contact nodes at first touch
 
   // What contact carries from window to window:
   State contact = State::apart;

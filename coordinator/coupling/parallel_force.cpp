@@ -49,8 +49,8 @@ void ParallelForce::predict(Eigen::Ref<Eigen::VectorXd> x) const {
   }
 }
 
-void ParallelForce::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
-                           const Joint& joint, Bodies& bodies) {
+void ParallelForce::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
+                           Bodies& bodies) {
   guess_.clear();
   guess_.width = iterate_.width;
   guess_.support = support_;

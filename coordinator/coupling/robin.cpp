@@ -96,8 +96,8 @@ void Robin::predict(Eigen::Ref<Eigen::VectorXd> x) const {
       const std::size_t c = index(i % other.grid.width);
       const bool first = i < other.grid.width;
       const double close = first ? overlap_[c] / (steps.time(1) - steps.time(0)) : 0.0;
-      x[at++] = known ? here.incoming[index(i)]
-                      : other.force[c] + here.impedance * (other.v[c] + close);
+      x[at++] =
+          known ? here.incoming[index(i)] : other.force[c] + here.impedance * (other.v[c] + close);
     }
   }
 }
@@ -171,7 +171,8 @@ FieldResiduals Robin::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
       const double difference = g[at] - x[at];
       const int substep = static_cast<int>(i / grid.width) + 1;
       double& left = overlap[index(i % grid.width)];
-      left += difference / impedance_sum_ * (grid.steps.time(substep) - grid.steps.time(substep - 1));
+      left +=
+          difference / impedance_sum_ * (grid.steps.time(substep) - grid.steps.time(substep - 1));
       r.displacement =
           std::max(r.displacement, scaled(left, scale_.velocity * scale_.step, scale_.roundoff));
       r.force = std::max(r.force, scaled(0.5 * difference, scale_.force,

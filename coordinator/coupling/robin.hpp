@@ -26,8 +26,8 @@ class Robin final : public Transmission {
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
-             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;

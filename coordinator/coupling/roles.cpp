@@ -24,8 +24,8 @@ constexpr double similar = 3.0;
 struct Wish {
   std::size_t joint = 0;
   int kinematic = 0;
-  bool fixed = false;     // by the scene, or because the other side cannot
-  double clarity = 0.0;   // how much there is to say for it
+  bool fixed = false;    // by the scene, or because the other side cannot
+  double clarity = 0.0;  // how much there is to say for it
 };
 
 /// Which bodies come before which: kinematic sides first.

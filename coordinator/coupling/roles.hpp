@@ -8,12 +8,12 @@
 namespace abut {
 
 /// Chooses the kinematic sides of all joints whose roles the scene leaves open, before the first
-/// window and for the whole run (docs/METHOD.md, roles): of contact the softer or lighter side, told
-/// by what a constant unit force moves over a window (port kernels); within a factor of 3 the one
-/// with the finer mesh, then the finer step, then the first. Of ties with unlike steps the side of
-/// the larger one: its force then varies no faster than it steps, and the other side's means of it
-/// take nothing away; with the roles exchanged the trapezoidal rule gains energy over 1e5 substeps.
-/// A side that takes no obstacles never is.
+/// window and for the whole run (docs/METHOD.md, roles): of contact the softer or lighter side,
+/// told by what a constant unit force moves over a window (port kernels); within a factor of 3 the
+/// one with the finer mesh, then the finer step, then the first. Of ties with unlike steps the side
+/// of the larger one: its force then varies no faster than it steps, and the other side's means of
+/// it take nothing away; with the roles exchanged the trapezoidal rule gains energy over 1e5
+/// substeps. A side that takes no obstacles never is.
 ///
 /// The roles are those of one order of all bodies: joints are settled one by one, the clearest
 /// first, and one that would close a circle is turned around. Throws InputError when roles that the

@@ -26,8 +26,8 @@ class Transmission {
   virtual int values() const = 0;
   virtual void predict(Eigen::Ref<Eigen::VectorXd> x) const = 0;
   /// Fills the request of one side's body.
-  virtual void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
-                      const Joint& joint, Bodies& bodies) = 0;
+  virtual void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
+                      Bodies& bodies) = 0;
   /// G(x), out of the responses of this sweep.
   virtual void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                      const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) = 0;
@@ -93,8 +93,8 @@ class Unilateral final : public Transmission {
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
-             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
@@ -105,9 +105,9 @@ class Unilateral final : public Transmission {
 
  private:
   Substeps kinematic_grid_;
-  IterateGrid iterate_;                  // of the Neumann port
+  IterateGrid iterate_;                    // of the Neumann port
   std::vector<double> u_begin_, v_begin_;  // (width) of the Neumann port
-  Waveform guess_;                        // last iterate: a window that is cut short starts from it
+  Waveform guess_;  // last iterate: a window that is cut short starts from it
   ReferenceScales scale_;
   double kinematic_compliance_ = 0.0, neumann_compliance_ = 0.0;  // [m/N] over one substep
   double roundoff_gain_ = 1.0;  // of displacements, through the reaction
@@ -136,8 +136,8 @@ class ParallelForce final : public Transmission {
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
-             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
@@ -146,7 +146,7 @@ class ParallelForce final : public Transmission {
   bool ordered() const override { return false; }
 
  private:
-  IterateGrid iterate_;   // of the force, compressive
+  IterateGrid iterate_;     // of the force, compressive
   bool unilateral_ = true;  // contact: every substep decides for itself
   bool projects_ = false;
   Eigen::VectorXd overlap_, force_;  // [m] [N] of the last image
@@ -171,8 +171,8 @@ class DirichletNeumann final : public Transmission {
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
-             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;

@@ -48,14 +48,14 @@ void Unilateral::find_inverse(const Joint& joint, double length) {
   const Substeps& neumann = iterate_.steps;
   const bool small = std::max(kinematic_grid_.count, neumann.count) <= KernelInverse::largest;
   if (alike_) {
-    inverse_ = inverses_.store(length,
-                               unilateral_jacobian_column(*kernel_k_, *kernel_n_, neumann.count));
+    inverse_ =
+        inverses_.store(length, unilateral_jacobian_column(*kernel_k_, *kernel_n_, neumann.count));
   } else if (small && joint.tied()) {
-    inverse_ = inverses_.store(length,
-                               unilateral_jacobian(*kernel_k_, kinematic_grid_, *kernel_n_, neumann));
+    inverse_ = inverses_.store(
+        length, unilateral_jacobian(*kernel_k_, kinematic_grid_, *kernel_n_, neumann));
   } else if (small) {
-    inverse_ = inverses_.store(length,
-                               contact_maps(*kernel_k_, kinematic_grid_, *kernel_n_, neumann));
+    inverse_ =
+        inverses_.store(length, contact_maps(*kernel_k_, kinematic_grid_, *kernel_n_, neumann));
   }
 }
 
@@ -99,8 +99,7 @@ void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Joint& jo
     }
   }
   if (unilateral_ && inverse_ != nullptr) see_contact(joint, bodies);
-  scale_.force =
-      std::max(joint.force_scale, largest(trace_of(bodies, joint.kinematic_side()).f));
+  scale_.force = std::max(joint.force_scale, largest(trace_of(bodies, joint.kinematic_side()).f));
   balance(scale_, kinematic_compliance_);
   const double travelled = g.tail(iterate_.width).lpNorm<Eigen::Infinity>();
   scale_.roundoff = roundoff_gain_ * roundoff_of(largest(u_begin_), travelled);
