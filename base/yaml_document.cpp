@@ -175,6 +175,17 @@ std::vector<std::string> Document::keys(std::string_view path) const {
   return names;
 }
 
+bool Document::chooses(std::string_view path, std::string_view name) const {
+  YAML::Node node(*root_);
+  for (const std::string& step : split_path(path)) {
+    const std::optional<Found> found = child(node, step);
+    if (!found) return false;
+    node.reset(found->node);
+  }
+  if (node.IsScalar()) return node.Scalar() == name;
+  return node.IsMap() && child(node, std::string(name)).has_value();
+}
+
 std::string Document::where(std::string_view path) const {
   const std::string text(path);
   for (auto it = overrides_.rbegin(); it != overrides_.rend(); ++it)

@@ -32,6 +32,8 @@ class Document {
   bool has(std::string_view path) const;
   /// Keys of the map at a path, in the file's order; empty when there is no map.
   std::vector<std::string> keys(std::string_view path) const;
+  /// Whether the choice at a path is this one: the bare word, or a map with this key.
+  bool chooses(std::string_view path, std::string_view name) const;
   /// For InputError::where: "scene.yaml:12: bodies.left", or "scene.yaml, from --set key=value:
   /// key". A path that is not there is located at its nearest ancestor.
   std::string where(std::string_view path) const;

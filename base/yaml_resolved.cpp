@@ -1,6 +1,7 @@
 #include "base/yaml_resolved.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cctype>
@@ -41,6 +42,22 @@ std::string written(double value) {
   return text;
 }
 
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char letter : text) {
+    const unsigned char code = static_cast<unsigned char>(letter);
+    if (letter == '"' || letter == '\\') {
+      out += '\\';
+      out += letter;
+    } else if (code < 0x20 || code == 0x7f) {
+      out += fmt::format("\\x{:02x}", code);
+    } else {
+      out += letter;
+    }
+  }
+  return out + '"';
+}
+
 /// Plain when no reader of YAML can take it for anything but text, else quoted.
 std::string written(const std::string& text) {
   const auto plain_letter = [](unsigned char c) {
@@ -54,20 +71,7 @@ std::string written(const std::string& text) {
   const bool plain = !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) &&
                      std::all_of(text.begin(), text.end(), plain_letter) &&
                      std::find(taken.begin(), taken.end(), lower) == taken.end();
-  if (plain) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) {
-    const unsigned char code = static_cast<unsigned char>(letter);
-    if (letter == '"' || letter == '\\') {
-      quoted += '\\';
-      quoted += letter;
-    } else if (code < 0x20 || code == 0x7f) {
-      quoted += fmt::format("\\x{:02x}", code);
-    } else {
-      quoted += letter;
-    }
-  }
-  return quoted + '"';
+  return plain ? text : quoted(text);
 }
 
 std::string written(bool value) { return value ? "true" : "false"; }
@@ -83,6 +87,28 @@ std::string written_list(const Values& values) {
 std::string written(const std::vector<double>& values) { return written_list(values); }
 std::string written(const std::vector<std::string>& values) { return written_list(values); }
 std::string written(const std::array<std::string, 2>& values) { return written_list(values); }
+
+/// A tree of somebody else in one line. A plain scalar stays plain, so that a number stays one.
+std::string flow(const YAML::Node& node) {
+  std::vector<std::string> items;
+  if (node.IsMap()) {
+    for (const auto& pair : node)
+      items.push_back(fmt::format("{}: {}", flow(pair.first), flow(pair.second)));
+    return fmt::format("{{{}}}", fmt::join(items, ", "));
+  }
+  if (node.IsSequence()) {
+    for (const YAML::Node& item : node) items.push_back(flow(item));
+    return fmt::format("[{}]", fmt::join(items, ", "));
+  }
+  if (!node.IsScalar()) return "null";
+  const std::string& text = node.Scalar();
+  const auto plain_letter = [](unsigned char c) {
+    return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '/' || c == '+';
+  };
+  const bool plain = node.Tag() != "!" && !text.empty() &&  // "!": it stood in quotes
+                     std::all_of(text.begin(), text.end(), plain_letter);
+  return plain ? text : quoted(text);
+}
 
 class Writer final : public Fields {
  public:
@@ -184,6 +210,17 @@ std::unique_ptr<Fields> ResolvedYaml::writer_at(std::string_view path) {
   Node* at = root_.get();
   for (const std::string& step : split_path(path)) at = &at->child(step);
   return std::make_unique<Writer>(*at);
+}
+
+void ResolvedYaml::copy(std::string_view path, const Document& document) {
+  Node* at = root_.get();
+  YAML::Node from(document.root());
+  for (const std::string& step : split_path(path)) {
+    at = &at->child(step);
+    from.reset(from[step]);
+  }
+  at->kind = Node::Kind::text;
+  at->text = flow(from);
 }
 
 std::string ResolvedYaml::text() const {

@@ -8,7 +8,13 @@
 
 #include "base/fields.hpp"
 
+namespace YAML {
+class Node;
+}
+
 namespace abut {
+
+class Document;
 
 /// The values in use, defaults included, as YAML that reads back to the same values: doubles in the
 /// shortest form that round-trips, units beside them. Structs that share a map are merged in it.
@@ -25,6 +31,8 @@ class ResolvedYaml {
     const std::unique_ptr<Fields> writer = writer_at(path);
     value.fields(*writer);
   }
+  /// What a document has at a path, whatever it is: keys that belong to another program.
+  void copy(std::string_view path, const Document& document);
   std::string text() const;
 
   struct Node;

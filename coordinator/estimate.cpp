@@ -80,9 +80,17 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
   Estimate e;
   const double span = scene.time.end - scene.time.begin;
   e.windows = count_of(std::ceil(span / scene.time.window - 1.0e-9));
-  for (const Description* body : bodies) {
+  std::vector<const Description*> known;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Description* body = bodies[b];
+    if (body == nullptr) {
+      e.bodies.push_back({scene.bodies[b].first, "external", false});
+      continue;
+    }
     const double steps = body->step > 0.0 ? span / body->step : static_cast<double>(e.windows);
-    e.bodies.push_back({body->name, body->model, body->dofs, count_of(steps), memory_mib(*body)});
+    e.bodies.push_back(
+        {body->name, body->model, true, body->dofs, count_of(steps), memory_mib(*body)});
+    known.push_back(body);
   }
   const std::int64_t count = static_cast<std::int64_t>(bodies.size());
   const std::int64_t joints = static_cast<std::int64_t>(scene.interfaces.size());
@@ -107,7 +115,7 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
       start + count * (flights + sweeps * e.contact_windows_high + 2 * per_event * joints);
   e.exchanges_high += e.exchanges_high / 20;  // contact that lasts a little longer, chatter
   if (joints == 0) {  // the begin, and free flight as far as one request goes
-    std::int64_t windows = windows_at_once(scene.time.window, bodies);
+    std::int64_t windows = windows_at_once(scene.time.window, known);
     if (scene.output.field_output)
       windows = std::min<std::int64_t>(windows, scene.output.field_output->every);
     e.exchanges_low = e.exchanges_high = count * (1 + (e.windows + windows - 1) / windows);
@@ -120,6 +128,13 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
 std::string to_text(const Estimate& e, bool verbose) {
   std::string text;
   for (const Estimate::Body& body : e.bodies) {
+    if (!body.known) {
+      text += fmt::format(
+          "  {}: external, not known before it connects; ports, steps and "
+          "expectations are checked then\n",
+          body.name);
+      continue;
+    }
     text +=
         fmt::format("  {}: {}; {} degrees of freedom, {} substeps, about {:.1f} MiB in a process\n",
                     body.name, body.model, body.dofs, body.substeps, body.memory_mib);

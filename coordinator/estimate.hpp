@@ -15,6 +15,7 @@ namespace abut {
 struct Estimate {
   struct Body {
     std::string name, model;
+    bool known = true;  // false: an external body that has not told yet what it is
     std::int64_t dofs = 0;
     std::int64_t substeps = 0;  // when nothing is repeated
     double memory_mib = 0.0;    // of its process
@@ -27,7 +28,8 @@ struct Estimate {
   std::vector<std::string> in_use, not_built;  // optional features
 };
 
-/// `contact_time` [s]: how long interfaces are closed, when a closed form tells it.
+/// `bodies` are in the scene's order, null where not known; `contact_time` [s]: how long interfaces
+/// are closed, when a closed form tells it.
 Estimate estimate(const Scene& scene, std::span<const Description* const> bodies,
                   std::optional<double> contact_time);
 

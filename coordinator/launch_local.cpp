@@ -12,6 +12,7 @@
 #include "base/index.hpp"
 #include "base/input_errors.hpp"
 #include "base/yaml_fields.hpp"
+#include "coordinator/external_body.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 #include "subdomain_solver/make/body_spec.hpp"
 
@@ -73,6 +74,14 @@ BarEnd end_of(const Scene& scene, const std::vector<const Description*>& bodies,
 }
 
 Row row_of(const Scene& scene, const Document& document) {
+  for (const auto& [name, entry] : scene.bodies) {
+    if (!entry.external) continue;
+    throw InputError(
+        fmt::format("describes bars and walls, but what the external body {} is nobody knows here",
+                    name),
+        document.where("meta.closed_form"),
+        "Leave out meta.closed_form and the expectations that need it.");
+  }
   const std::vector<std::unique_ptr<Subdomain>> built = launch_local(scene, document);
   std::vector<const Description*> bodies;
   for (const std::unique_ptr<Subdomain>& body : built) bodies.push_back(&body->describe());
@@ -130,6 +139,7 @@ struct Meeting {
 };
 
 Meeting meeting_of(const Document& document, const PortName& name) {
+  if (is_external(document, name.body)) return {};
   const BodySpec spec = read<BodySpec>(document, path_of(name.body));
   if (std::holds_alternative<BarPairSpec>(spec.model)) {
     const std::size_t member = name.port == "left_tip" ? 0 : 1;
@@ -193,8 +203,13 @@ std::vector<std::unique_ptr<Subdomain>> launch_local(const Scene& scene, const D
     if (interrupted != nullptr && interrupted->load())
       throw RunError("interrupted while a body was advancing", "", "start the run again");
   };
-  for (const auto& [name, entry] : scene.bodies)
-    errors.gather([&] { bodies.push_back(make_body(document, path_of(name), progress)); });
+  for (const auto& [name, entry] : scene.bodies) {
+    if (entry.external) {
+      bodies.push_back(nullptr);
+    } else {
+      errors.gather([&] { bodies.push_back(make_body(document, path_of(name), progress)); });
+    }
+  }
   errors.raise();
   return bodies;
 }
@@ -202,7 +217,13 @@ std::vector<std::unique_ptr<Subdomain>> launch_local(const Scene& scene, const D
 void check_body_keys(const Document& document) {
   InputErrors errors;
   for (const std::string& name : document.keys("bodies"))
-    errors.gather([&] { read<BodySpec>(document, path_of(name)); });
+    errors.gather([&] {
+      if (is_external(document, name)) {
+        read<ExternalBody>(document, path_of(name));
+      } else {
+        read<BodySpec>(document, path_of(name));
+      }
+    });
   errors.raise();
 }
 
@@ -222,12 +243,20 @@ std::optional<ClosedForm> make_closed_form(const Scene& scene, const Document& d
   }
 }
 
-void document_body_keys(Reference& reference) { reference.add<BodySpec>("bodies.<name>"); }
+void document_body_keys(Reference& reference) {
+  reference.add<BodySpec>("bodies.<name>");
+  reference.heading("A body of another program");
+  reference.add<ExternalBody>("bodies.<name>");
+}
 
 void resolve_body_keys(const Scene& scene, const Document& document, ResolvedYaml& resolved) {
   // The resolved scene lies in another folder than the scene, and means the same files.
   const std::filesystem::path folder = std::filesystem::absolute(document.name()).parent_path();
   for (const auto& [name, entry] : scene.bodies) {
+    if (entry.external) {
+      resolved.copy(path_of(name) + ".model", document);
+      continue;
+    }
     BodySpec spec = read<BodySpec>(document, path_of(name));
     spec.place_files((folder / "").string());
     resolved.add(path_of(name), spec);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -23,6 +24,7 @@
 #include "coordinator/command_line.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/estimate.hpp"
+#include "coordinator/external_body.hpp"
 #include "coordinator/external_verb.hpp"
 #include "coordinator/interrupt.hpp"
 #include "coordinator/launch.hpp"
@@ -52,10 +54,16 @@ struct Placement {
   std::unique_ptr<Launch> launch;  // null: this process
   std::vector<std::unique_ptr<Subdomain>> bodies;
 
+  /// Null: an external body that is not here.
   std::vector<const Description*> descriptions() const {
     std::vector<const Description*> all;
-    for (const std::unique_ptr<Subdomain>& body : bodies) all.push_back(&body->describe());
+    for (const std::unique_ptr<Subdomain>& body : bodies)
+      all.push_back(body != nullptr ? &body->describe() : nullptr);
     return all;
+  }
+  bool whole() const {
+    return std::all_of(bodies.begin(), bodies.end(),
+                       [](const std::unique_ptr<Subdomain>& body) { return body != nullptr; });
   }
   std::vector<Subdomain*> pointers() const {
     std::vector<Subdomain*> all;
@@ -74,6 +82,7 @@ Placement place(const Scene& scene, const Document& document, bool local,
                 const std::atomic<bool>& interrupted) {
   Placement placement;
   if (local) {
+    refuse_external_bodies(scene, document);
     placement.bodies = launch_local(scene, document, &interrupted);
     return placement;
   }
@@ -133,33 +142,48 @@ Scene read_all_keys(const Document& document) {
 struct Validated {
   std::optional<ClosedForm> form;
   Estimate estimate;
-  std::vector<Description> bodies;  // as they are here
+  std::vector<std::optional<Description>> bodies;  // as they are here; empty: external
 };
 
 /// Bodies that made themselves elsewhere are those of this scene and of these files.
-void validate_placed(const std::vector<Description>& own, const Placement& placement,
-                     const Document& document) {
+void validate_placed(const Validated& valid, const Placement& placement, const Document& document) {
   const std::vector<const Description*> theirs = placement.descriptions();
-  for (std::size_t b = 0; b < own.size(); ++b) {
-    const std::string difference = difference_of(own[b], *theirs[b]);
+  for (std::size_t b = 0; b < valid.bodies.size(); ++b) {
+    const std::optional<Description>& own = valid.bodies[b];
+    const std::string difference = own ? difference_of(*own, *theirs[b]) : std::string();
     if (difference.empty()) continue;
     throw InputError(fmt::format("its solver has made another body: {}", difference),
-                     document.where("bodies." + own[b].name),
+                     document.where("bodies." + own->name),
                      "Give the solver the files that lie beside the scene, and the same build.");
   }
+}
+
+/// Bodies of other programs are known now: what could not be said of the scene before is said here.
+void validate_joined(const Scene& scene, const Placement& placement, const Document& document,
+                     Validated& valid) {
+  validate_bodies(scene, placement.descriptions(), document);
+  validate_placed(valid, placement, document);
+  const auto here = [](const std::optional<Description>& body) { return body.has_value(); };
+  if (std::all_of(valid.bodies.begin(), valid.bodies.end(), here)) return;
+  validate_coupling(scene, placement, document);
+  validate_expectations(scene, placement.descriptions(), document);
+  valid.estimate = estimate(scene, placement.descriptions(), std::nullopt);
 }
 
 Validated validate_all(const Scene& scene, const Document& document) {
   const Placement here{nullptr, launch_local(scene, document)};
   validate_bodies(scene, here.descriptions(), document);
-  validate_coupling(scene, here, document);
-  validate_expectations(scene, here.descriptions(), document);
+  if (here.whole()) {
+    validate_coupling(scene, here, document);
+    validate_expectations(scene, here.descriptions(), document);
+  }
   check_speeds(scene, document);
   Validated valid{make_closed_form(scene, document), {}, {}};
   std::optional<double> contact;
   if (valid.form) contact = valid.form->contact_time();
   valid.estimate = estimate(scene, here.descriptions(), contact);
-  for (const Description* body : here.descriptions()) valid.bodies.push_back(*body);
+  for (const Description* body : here.descriptions())
+    valid.bodies.push_back(body != nullptr ? std::optional(*body) : std::nullopt);
   return valid;
 }
 
@@ -223,7 +247,7 @@ int run_verb(const RunCommand& command) {
   const std::atomic<bool>& interrupted = watch_for_interrupts();
   const Document document = Document::load(command.scene, command.overrides);
   const Scene scene = read_all_keys(document);
-  const Validated valid = validate_all(scene, document);
+  Validated valid = validate_all(scene, document);
   // Held until the last file is written.
   RunDirectory held(
       command.out.empty() ? default_run_directory(command.scene) : fs::path(command.out),
@@ -233,8 +257,7 @@ int run_verb(const RunCommand& command) {
   Placement placement;
   try {
     placement = place(scene, document, command.local, interrupted);
-    validate_bodies(scene, placement.descriptions(), document);
-    validate_placed(valid.bodies, placement, document);
+    validate_joined(scene, placement, document, valid);
   } catch (...) {  // a run that never begins leaves nothing behind
     held.abandon();
     throw;

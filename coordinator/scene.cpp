@@ -11,6 +11,7 @@
 #include "base/input_errors.hpp"
 #include "base/yaml_fields.hpp"
 #include "coordinator/coupling/joint.hpp"
+#include "coordinator/external_body.hpp"
 #include "coordinator/scene_times.hpp"
 
 namespace abut {
@@ -306,12 +307,12 @@ void validate_ports_used_once(const Scene& scene, const Document& document) {
   }
 }
 
-const Description& description_of(const Scene& scene, std::span<const Description* const> bodies,
+const Description* description_of(const Scene& scene, std::span<const Description* const> bodies,
                                   const std::string& name) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    if (scene.bodies[i].first == name) return *bodies[i];
+    if (scene.bodies[i].first == name) return bodies[i];
   ABUT_ASSERT(!"validate() has checked that the body exists");
-  return *bodies[0];
+  return nullptr;
 }
 
 const Port& require_port(const Description& body, const std::string& side,
@@ -336,9 +337,11 @@ void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
   std::array<const PortGeometry*, 2> ports{};
   for (std::size_t i = 0; i < ports.size(); ++i) {
     const std::string& side = interface.sides[i];
-    const Description& body = description_of(scene, bodies, split_port(side).body);
-    ports[i] = &require_port(body, side, document.where(fmt::format("{}[{}]", path, i))).geometry;
+    const Description* body = description_of(scene, bodies, split_port(side).body);
+    if (body == nullptr) continue;
+    ports[i] = &require_port(*body, side, document.where(fmt::format("{}[{}]", path, i))).geometry;
   }
+  if (ports[0] == nullptr || ports[1] == nullptr) return;
   if (ports[0]->dim != ports[1]->dim)
     throw InputError(fmt::format("join a port in {}D and one in {}D", ports[0]->dim, ports[1]->dim),
                      document.where(path), "Give both bodies the same dimension.");
@@ -366,9 +369,10 @@ void validate_members(const Scene& scene, std::span<const Description* const> bo
                       const Document& document) {
   std::map<std::string, std::string> owner;  // name in tables to body
   for (const Description* body : bodies) {
-    if (body->members.empty()) owner.emplace(body->name, body->name);
+    if (body != nullptr && body->members.empty()) owner.emplace(body->name, body->name);
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i] == nullptr) continue;
     for (const Member& member : bodies[i]->members) {
       const auto [entry, fresh] = owner.emplace(member.name, bodies[i]->name);
       if (!fresh)
@@ -394,7 +398,8 @@ std::vector<std::string> exact_interfaces(const Scene& scene) {
 }
 
 Scene read_scene(const Document& document) {
-  const Scene scene = read<Scene>(document);
+  Scene scene = read<Scene>(document);
+  for (auto& [name, entry] : scene.bodies) entry.external = is_external(document, name);
   validate(scene, document);
   return scene;
 }
@@ -404,6 +409,8 @@ void validate(const Scene& scene, const Document& document) {
   errors.gather([&] { check_times(scene.time, document); });
   if (scene.bodies.empty())
     errors.add({"has no body", document.where("bodies"), "Give at least one body."});
+  for (const auto& entry : scene.bodies)
+    errors.gather([&] { check_external_launch(entry.second, document); });
   for (const auto& entry : scene.interfaces)
     errors.gather([&] { validate_interface(scene, entry.second, document); });
   errors.gather([&] { validate_ports_used_once(scene, document); });
@@ -428,7 +435,9 @@ void validate_bodies(const Scene& scene, std::span<const Description* const> bod
   errors.gather([&] { check_steps(scene, bodies, document); });
   for (const auto& entry : scene.interfaces)
     errors.gather([&] { validate_geometry(entry.second, scene, bodies, document); });
-  const auto silent = [](const Description* body) { return body->fields.empty(); };
+  const auto silent = [](const Description* body) {
+    return body != nullptr && body->fields.empty();
+  };
   if (scene.output.field_output && std::all_of(bodies.begin(), bodies.end(), silent))
     errors.add({"asks for fields, but no body of the scene has any",
                 document.where("output.fields"), "Leave out output.fields."});

@@ -38,6 +38,7 @@ struct ConnectLaunch {  // the coordinator waits for a process that somebody els
 struct BodyEntry {
   std::string name;
   std::variant<SpawnLaunch, ConnectLaunch> launch;
+  bool external = false;  // of another program, which alone can describe it
   void fields(Fields& f);
 };
 
@@ -188,7 +189,7 @@ void validate(const Scene& scene, const Document& document);
 
 /// Rules that need the bodies: ports that exist and face each other across a gap, one dimension per
 /// interface, windows that hold a whole number of every body's steps. `bodies` are in the scene's
-/// order. Throws InputError.
+/// order; null: an external body that has not told yet what it is. Throws InputError.
 void validate_bodies(const Scene& scene, std::span<const Description* const> bodies,
                      const Document& document);
 

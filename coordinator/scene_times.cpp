@@ -61,15 +61,17 @@ struct Rules {
     return coupled(body) ? most_contact_steps : most_substeps;
   }
   double part() const { return 1.0 / scene.output.records_per_window; }
+  /// [s]; 0 where any step fits, or a body has not told yet what it is.
+  double step(std::size_t body) const { return bodies[body] != nullptr ? bodies[body]->step : 0.0; }
   bool window_holds(double step, double window) const {
     return divides(step, window) && (part() == 1.0 || divides(step, window * part()));
   }
   /// With another window, and for one body with another step.
   bool all_hold(double window, std::size_t changed, double its_step) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      const double step = i == changed ? its_step : bodies[i]->step;
-      if (step <= 0.0) continue;
-      if (!window_holds(step, window) || window / step > most_steps(i)) return false;
+      const double one = i == changed ? its_step : step(i);
+      if (one <= 0.0) continue;
+      if (!window_holds(one, window) || window / one > most_steps(i)) return false;
     }
     return true;
   }
@@ -78,7 +80,7 @@ struct Rules {
   /// Windows below and above the present one that every rule accepts, nearest first.
   std::vector<std::string> windows() const {
     double longest = 0.0;
-    for (const Description* body : bodies) longest = std::max(longest, body->step);
+    for (std::size_t i = 0; i < bodies.size(); ++i) longest = std::max(longest, step(i));
     const double unit = longest * scene.output.records_per_window;
     const double present = scene.time.window;
     const double run = scene.time.end - scene.time.begin;
@@ -185,10 +187,10 @@ void check_steps(const Scene& scene, std::span<const Description* const> bodies,
   const Rules rules{scene, bodies};
   InputErrors errors;
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (bodies[i]->step > 0.0) errors.gather([&] { check_count(rules, i, document); });
+    if (rules.step(i) > 0.0) errors.gather([&] { check_count(rules, i, document); });
   // One window cures them all: the first body that it does not fit tells of it.
   for (std::size_t i = 0; i < bodies.size() && errors.count() == 0; ++i)
-    if (bodies[i]->step > 0.0) errors.gather([&] { check_division(rules, i, document); });
+    if (rules.step(i) > 0.0) errors.gather([&] { check_division(rules, i, document); });
   errors.raise();
 }
 

@@ -20,13 +20,13 @@ bool parse_into(v1::Request& message, Bytes payload);
 bool parse_into(v1::Reply& message, Bytes payload);
 
 /// What a waveform of a surface may be wide.
-struct Shape {
+struct SurfaceSize {
   int points = 0, dim = 1;
   int width() const { return points * dim; }
 };
-Shape shape_of(const PortGeometry& surface);
+SurfaceSize size_of(const PortGeometry& surface);
 /// Of the surfaces that each port has met, by port and partner.
-using Partners = std::vector<std::vector<Shape>>;
+using Partners = std::vector<std::vector<SurfaceSize>>;
 
 /// Subdomain::meet as a value.
 struct Meeting {

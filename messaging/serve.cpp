@@ -254,7 +254,7 @@ void Server::meet(const v1::Meet& request) {
   Meeting meeting;
   decode(request, body_->describe(), meeting);
   body_->meet(meeting.port, meeting.partner, meeting.law);
-  partners_[index(meeting.port)].push_back(shape_of(meeting.partner));
+  partners_[index(meeting.port)].push_back(size_of(meeting.partner));
   reply_.mutable_met();
 }
 

@@ -36,7 +36,7 @@ void encode(const Want& from, v1::Want& to) {
   copy(from.points, *to.mutable_points());
 }
 
-void decode(const v1::Want& from, const Shape& port, const FieldPath& path, Want& to) {
+void decode(const v1::Want& from, const SurfaceSize& port, const FieldPath& path, Want& to) {
   to.u = from.u();
   to.v = from.v();
   to.a = from.a();
@@ -78,14 +78,14 @@ void decode(const v1::Advance& from, const Description& body, const Partners& me
   require_count(from.boundary_size(), ports, "ports", FieldPath{&path, "boundary"});
   to.boundary.resize(ports);
   for (int p = 0; p < from.boundary_size(); ++p) {
-    decode(from.boundary(p), shape_of(body.ports[index(p)].geometry), met[index(p)],
+    decode(from.boundary(p), size_of(body.ports[index(p)].geometry), met[index(p)],
            FieldPath{&path, "boundary", p}, to.boundary[index(p)]);
   }
   if (from.want_size() > 0)
     require_count(from.want_size(), ports, "ports", FieldPath{&path, "want"});
   to.want.resize(index(from.want_size()));
   for (int p = 0; p < from.want_size(); ++p) {
-    decode(from.want(p), shape_of(body.ports[index(p)].geometry), FieldPath{&path, "want", p},
+    decode(from.want(p), size_of(body.ports[index(p)].geometry), FieldPath{&path, "want", p},
            to.want[index(p)]);
   }
 }

@@ -29,7 +29,7 @@ void make_room(std::vector<T>& entries, int count) {
   if (entries.size() < index(count)) entries.resize(index(count));
 }
 
-void decode_motion(const v1::BoundaryData& from, const Shape& port, const FieldPath& path,
+void decode_motion(const v1::BoundaryData& from, const SurfaceSize& port, const FieldPath& path,
                    Waveform& to) {
   to.clear();
   if (!from.has_motion()) return;
@@ -38,7 +38,7 @@ void decode_motion(const v1::BoundaryData& from, const Shape& port, const FieldP
   require_field(to, to.u, "u", path);
 }
 
-void decode_forces(const v1::BoundaryData& from, const Shape& port, const FieldPath& parent,
+void decode_forces(const v1::BoundaryData& from, const SurfaceSize& port, const FieldPath& parent,
                    std::vector<Waveform>& to) {
   if (from.forces_size() > most_partners) FieldPath{&parent, "forces"}.fail("has too many entries");
   for (Waveform& force : to) force.clear();
@@ -51,7 +51,7 @@ void decode_forces(const v1::BoundaryData& from, const Shape& port, const FieldP
   }
 }
 
-void decode_obstacles(const v1::BoundaryData& from, const std::vector<Shape>& partners,
+void decode_obstacles(const v1::BoundaryData& from, const std::vector<SurfaceSize>& partners,
                       const FieldPath& parent, std::vector<Obstacle>& to) {
   if (index(from.obstacles_size()) > partners.size()) {
     FieldPath{&parent, "obstacles"}.fail(
@@ -105,8 +105,8 @@ void encode(const BoundaryData& from, v1::BoundaryData& to) {
   copy(from.impulse, *to.mutable_impulse());
 }
 
-void decode(const v1::BoundaryData& from, const Shape& port, const std::vector<Shape>& partners,
-            const FieldPath& path, BoundaryData& to) {
+void decode(const v1::BoundaryData& from, const SurfaceSize& port,
+            const std::vector<SurfaceSize>& partners, const FieldPath& path, BoundaryData& to) {
   decode_motion(from, port, FieldPath{&path, "motion"}, to.motion);
   decode_forces(from, port, path, to.forces);
   decode_obstacles(from, partners, path, to.obstacles);

@@ -52,7 +52,7 @@ void decode(const v1::Probe& from, const Description& body, Probing& to) {
     path.fail(fmt::format("of {} steps of {} s is out of range", to.count, to.step));
   }
   const FieldPath patterns{&path, "patterns"};
-  const std::size_t width = index(shape_of(body.ports[index(to.port)].geometry).width());
+  const std::size_t width = index(size_of(body.ports[index(to.port)].geometry).width());
   take(from.patterns(), patterns, to.patterns);
   if (to.patterns.empty() || width == 0 || to.patterns.size() % width != 0) {
     patterns.fail(fmt::format("has {} numbers, no whole number of patterns of {}",
@@ -74,7 +74,7 @@ void encode(const PortKernel& from, v1::PortKernel& to) {
 void decode(const v1::PortKernel& from, const Description& body, const Probing& asked,
             PortKernel& to) {
   const FieldPath path{nullptr, "kernel"};
-  const int width = shape_of(body.ports[index(asked.port)].geometry).width();
+  const int width = size_of(body.ports[index(asked.port)].geometry).width();
   decode(from, static_cast<int>(asked.patterns.size()) / width, width, path, to);
   if (to.count() == asked.count) return;
   FieldPath{&path, "displacement"}.fail(
@@ -90,7 +90,7 @@ void encode(const Yielding& from, v1::Yields& to) {
 void decode(const v1::Yields& from, const Partners& met, Yielding& to) {
   const FieldPath path{nullptr, "yields"};
   to.port = position(from.port(), met.size(), FieldPath{&path, "port"});
-  const std::vector<Shape>& partners = met[index(to.port)];
+  const std::vector<SurfaceSize>& partners = met[index(to.port)];
   to.partner = position(from.partner(), partners.size(), FieldPath{&path, "partner"});
   const FieldPath kernel{&path, "kernel"};
   if (!from.has_kernel()) kernel.fail("is missing");

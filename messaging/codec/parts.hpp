@@ -69,7 +69,8 @@ ForceSupport decode(v1::ForceSupport support, const FieldPath& path);
 
 void encode(const Waveform& from, v1::Waveform& to);
 /// Of the surface's points, or of those that it lists.
-void decode(const v1::Waveform& from, const Shape& surface, const FieldPath& path, Waveform& to);
+void decode(const v1::Waveform& from, const SurfaceSize& surface, const FieldPath& path,
+            Waveform& to);
 /// A field of a waveform that this message is for is there.
 void require_field(const Waveform& of, const std::vector<double>& field, const char* name,
                    const FieldPath& path);
@@ -78,8 +79,8 @@ void encode(const PortGeometry& from, v1::Surface& to);
 void decode(const v1::Surface& from, const FieldPath& path, PortGeometry& to);
 
 void encode(const BoundaryData& from, v1::BoundaryData& to);
-void decode(const v1::BoundaryData& from, const Shape& port, const std::vector<Shape>& partners,
-            const FieldPath& path, BoundaryData& to);
+void decode(const v1::BoundaryData& from, const SurfaceSize& port,
+            const std::vector<SurfaceSize>& partners, const FieldPath& path, BoundaryData& to);
 
 void encode(const BodyRecord& from, v1::BodyRecord& to);
 void decode(const v1::BodyRecord& from, const Description& body, const FieldPath& path,

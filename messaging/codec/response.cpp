@@ -78,7 +78,7 @@ void decode_trace(const v1::PortResponse& from, const Port& port, const Advance&
                   const Want& want, const FieldPath& path, Waveform& to) {
   to.clear();
   if (!from.has_trace()) return;
-  decode(from.trace(), shape_of(port.geometry), path, to);
+  decode(from.trace(), size_of(port.geometry), path, to);
   if (to.empty()) path.fail("is present but empty");
   if (to.points != want.points) FieldPath{&path, "points"}.fail("is not the list that was wanted");
   check_span(to, asked.window, path);
@@ -111,7 +111,7 @@ void decode_reactions(const v1::PortResponse& from, const BoundaryData& asked, i
     if (!there) path.fail("is missing");
     // Its points are those of the obstacle, which the list below holds it against.
     const int most = motion.points.empty() ? motion.width / dim : motion.points.back() + 1;
-    decode(from.reactions(k).force(), Shape{most, dim}, path, to[i].force);
+    decode(from.reactions(k).force(), SurfaceSize{most, dim}, path, to[i].force);
     if (to[i].force.empty()) path.fail("is present but empty");
     if (to[i].force.points != motion.points) {
       FieldPath{&path, "points"}.fail("is not that of the obstacle");

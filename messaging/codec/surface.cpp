@@ -32,7 +32,7 @@ void check_facets(const PortGeometry& surface, const FieldPath& path) {
 
 }  // namespace
 
-Shape shape_of(const PortGeometry& surface) { return {surface.count(), surface.dim}; }
+SurfaceSize size_of(const PortGeometry& surface) { return {surface.count(), surface.dim}; }
 
 void encode(const PortGeometry& from, v1::Surface& to) {
   to.set_dim(from.dim);

@@ -19,7 +19,8 @@ void encode(const Waveform& from, v1::Waveform& to) {
   copy(from.f, *to.mutable_f());
 }
 
-void decode(const v1::Waveform& from, const Shape& surface, const FieldPath& path, Waveform& to) {
+void decode(const v1::Waveform& from, const SurfaceSize& surface, const FieldPath& path,
+            Waveform& to) {
   take_points(from.points(), surface.points, FieldPath{&path, "points"}, to.points);
   const int points = to.points.empty() ? surface.points : static_cast<int>(to.points.size());
   if (from.width() != points * surface.dim) {

@@ -59,7 +59,7 @@ Advance full_advance() {
 }
 
 /// The first port has met two points on a line.
-const Partners met{{Shape{1, 1}, Shape{1, 1}}, {}};
+const Partners met{{SurfaceSize{1, 1}, SurfaceSize{1, 1}}, {}};
 
 /// The request that full_response() answers.
 Advance bare_advance() {

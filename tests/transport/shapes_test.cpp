@@ -52,7 +52,7 @@ class Dice {
     }
     return made;
   }
-  Waveform wave(const Shape& shape, const std::vector<std::int32_t>& listed,
+  Waveform wave(const SurfaceSize& shape, const std::vector<std::int32_t>& listed,
                 const TimeWindow& window) {
     Waveform made((listed.empty() ? shape.points : static_cast<int>(listed.size())) * shape.dim);
     made.points = listed;
@@ -97,7 +97,7 @@ struct Talk {
     for (std::size_t p = 0; p < met.size(); ++p)
       for (int k = dice.upto(3); k > 0; --k) {
         meetings.push_back({static_cast<int>(p), dice.surface(body.dim), {dice.coin()}});
-        met[p].push_back(shape_of(meetings.back().partner));
+        met[p].push_back(size_of(meetings.back().partner));
       }
     make_request();
     make_reply();
@@ -108,15 +108,15 @@ struct Talk {
     request.records = 1 + dice.upto(2);
     request.sampling = dice.coin() ? Sampling::substeps : Sampling::records;
     for (std::size_t p = 0; p < body.ports.size(); ++p) {
-      const Shape shape = shape_of(body.ports[p].geometry);
-      const auto any = [&](const Shape& of) {
+      const SurfaceSize shape = size_of(body.ports[p].geometry);
+      const auto any = [&](const SurfaceSize& of) {
         return dice.wave(of, dice.points(of.points), request.window);
       };
       BoundaryData& data = request.boundary.emplace_back();
       if (dice.coin()) data.motion = any(shape);
       for (int k = dice.upto(3); k > 0; --k)
         data.forces.push_back(dice.coin() ? any(shape) : Waveform());
-      for (const Shape& partner : met[p])
+      for (const SurfaceSize& partner : met[p])
         data.obstacles.push_back({dice.coin() ? any(partner) : Waveform()});
       if (dice.coin()) data.impedance = {1.0 + dice.value(), dice.coin()};
       if (dice.coin()) data.impulse = dice.values(index(shape.width()));
@@ -132,7 +132,7 @@ struct Talk {
       const std::vector<std::int32_t> listed =
           request.want.empty() ? std::vector<std::int32_t>() : request.want[p].points;
       if (dice.upto(3) > 0)
-        port.trace = dice.wave(shape_of(body.ports[p].geometry), listed, request.window);
+        port.trace = dice.wave(size_of(body.ports[p].geometry), listed, request.window);
       for (std::size_t k = 0; k < met[p].size(); ++k) {
         const Waveform& motion = request.boundary[p].obstacles[k].motion;
         port.reactions.emplace_back();
@@ -232,7 +232,7 @@ TEST(Shapes, KernelsOfPatternsComeBackAsTheyWereSent) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Dice& dice = talk.dice;
     const int port = dice.upto(static_cast<int>(talk.body.ports.size()) - 1);
-    const int width = shape_of(talk.body.ports[index(port)].geometry).width();
+    const int width = size_of(talk.body.ports[index(port)].geometry).width();
     const int patterns = 1 + dice.upto(3), count = 1 + dice.upto(4);
     const Probing probing{port, dice.values(index(patterns * width)), 0.5 + dice.value(), count};
     Probing asked;
@@ -314,7 +314,7 @@ struct Plane {
     meeting.partner = port.geometry;
     meeting.partner.points = {0, 1, 1, 1, 2, 1, 3, 1};
     meeting.partner.normals.assign(8, 0.0);
-    met = {{shape_of(meeting.partner)}};
+    met = {{size_of(meeting.partner)}};
     asked.window = {0, 0.0, 1.0};
     asked.boundary.resize(1);
     asked.boundary[0].forces = {flat(6)};

@@ -1,0 +1,43 @@
+#include "coordinator/external_body.hpp"
+
+#include <fmt/format.h>
+
+#include "base/input_errors.hpp"
+
+namespace abut {
+
+namespace {
+std::string model_of(const std::string& body) { return "bodies." + body + ".model"; }
+}  // namespace
+
+void ExternalBody::fields(Fields& f) {
+  f.ignore("launch");
+  f.choice("model", model,
+           "a body of another program: all keys below are that program's own and reach it as they "
+           "stand (proto/README.md)");
+}
+
+bool is_external(const Document& document, const std::string& body) {
+  return document.chooses(model_of(body), ExternalModel::name);
+}
+
+void check_external_launch(const BodyEntry& entry, const Document& document) {
+  if (!entry.external) return;
+  const SpawnLaunch* spawn = std::get_if<SpawnLaunch>(&entry.launch);
+  if (spawn == nullptr || !spawn->program.empty()) return;
+  throw InputError("is of another program, but abut-solver would be started for it",
+                   document.where(model_of(entry.name)),
+                   "Give launch: {connect: {}} and start that program yourself, or launch: "
+                   "{spawn: {program: its path}}.");
+}
+
+void refuse_external_bodies(const Scene& scene, const Document& document) {
+  InputErrors errors;
+  for (const auto& [name, entry] : scene.bodies)
+    if (entry.external)
+      errors.add({"is of another program, which cannot live in this process",
+                  document.where(model_of(name)), "Run without --local."});
+  errors.raise();
+}
+
+}  // namespace abut
