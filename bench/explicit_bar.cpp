@@ -55,6 +55,10 @@ double cost(int elements, int terms, bool closed, int repeats) {
   Advance request;
   request.sampling = closed ? Sampling::substeps : Sampling::records;
   request.boundary.resize(1);
+  if (closed) {
+    bar->meet(0, bar->describe().ports[0].geometry, {.tied = true});
+    request.boundary[0].obstacles.resize(1);
+  }
   std::vector<double> samples;
   double time = 0.0;
   for (int r = 0; r <= repeats; ++r) {
@@ -62,14 +66,12 @@ double cost(int elements, int terms, bool closed, int repeats) {
       for (int w = 0; w < windows; ++w) {
         request.window = {w, time, time + 1.0e-4};
         if (closed) {
-          Waveform& motion = request.boundary[0].obstacle.motion;
+          Waveform& motion = request.boundary[0].obstacles[0].motion;
           motion.clear();
           for (int i = 0; i <= steps; ++i) {
             motion.time.push_back(i == steps ? request.window.end : time + i * 1.0e-6);
             motion.u.push_back(0.0);
           }
-          request.boundary[0].obstacle.offset = {0.0};
-          request.boundary[0].obstacle.bilateral = true;
         }
         if (!std::holds_alternative<Advanced>(bar->advance(request, response))) std::abort();
         time += 1.0e-4;

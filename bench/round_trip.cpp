@@ -43,7 +43,7 @@ double microseconds(Clock::duration time) {
 }
 
 double quantile(std::vector<double> values, double part) {
-  const std::size_t at = index(part * static_cast<double>(values.size() - 1));
+  const std::size_t at = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
   return values[at];
 }

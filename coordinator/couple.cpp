@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -9,6 +11,7 @@
 #include "base/index.hpp"
 #include "coordinator/coupling/robin.hpp"
 #include "coordinator/coupling/roles.hpp"
+#include "coordinator/coupling/transmission.hpp"
 
 namespace abut {
 
@@ -46,12 +49,10 @@ void require(bool able, const Description& body, const std::string& where, const
 
 /// A node whose mass both sides share has one motion only where both step alike: at other steps
 /// roundings of the partner's path become accelerations that grow.
-void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies,
-                       const Interface& interface) {
-  const Description& a = bodies.describe(interface.sides[0].body);
-  const Description& b = bodies.describe(interface.sides[1].body);
-  const bool shared[] = {a.ports[index(interface.sides[0].port)].tied,
-                         b.ports[index(interface.sides[1].port)].tied};
+void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies, const Joint& joint) {
+  const Description& a = bodies.describe(joint.sides[0].body);
+  const Description& b = bodies.describe(joint.sides[1].body);
+  const bool shared[] = {bodies.port(joint.sides[0]).tied, bodies.port(joint.sides[1]).tied};
   if (!shared[0] && !shared[1]) return;
   const bool held = std::isinf(a.mass) || std::isinf(b.mass);
   const bool alike = a.step == b.step && std::isinf(a.stable_step) == std::isinf(b.stable_step);
@@ -64,51 +65,45 @@ void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies,
 }
 
 /// Sides of a tied interface are one as they stand: the rounding of their places is no gap.
-void join(const InterfaceSpec& spec, const Bodies& bodies, Interface& interface) {
-  double spacing = 0.0;
-  for (const Side& side : interface.sides) {
-    const Port& port = bodies.describe(side.body).ports[index(side.port)];
-    spacing = std::max(spacing, port.geometry.spacing);
-  }
-  if (interface.reference_gap > coincidence * spacing) {
-    throw InputError(fmt::format("its sides are {:g} m apart", interface.reference_gap),
+void tie(const InterfaceSpec& spec, const Bodies& bodies, Joint& joint) {
+  joint.decision = Decision::never;
+  const double spacing = std::max(bodies.port(joint.sides[0]).geometry.spacing,
+                                  bodies.port(joint.sides[1]).geometry.spacing);
+  if (joint.reference_gap > coincidence * spacing) {
+    throw InputError(fmt::format("its sides are {:g} m apart", joint.reference_gap),
                      "interfaces." + spec.name + ".tied",
                      "Move a body with initial.position until they coincide.");
   }
-  interface.reference_gap = 0.0;
-  check_shared_node(spec, bodies, interface);
+  joint.reference_gap = 0.0;
+  check_shared_node(spec, bodies, joint);
 }
 
-void refuse_joints(const InterfaceSpec& spec, const Bodies& bodies, const Interface& interface) {
-  for (const Side& side : interface.sides) {
-    const Description& body = bodies.describe(side.body);
-    const Port& port = body.ports[index(side.port)];
+void refuse_tied_ports(const InterfaceSpec& spec, const Bodies& bodies, const Joint& joint) {
+  for (const Side& side : joint.sides) {
+    const Port& port = bodies.port(side);
     if (!port.tied) continue;
-    throw InputError(
-        fmt::format("port '{}' of body '{}' is for tied interfaces", port.name, body.name),
-        "interfaces." + spec.name + ".contact",
-        "Give the interface tied: {}, or take tied off the port.");
+    throw InputError(fmt::format("port '{}' of body '{}' is for tied interfaces", port.name,
+                                 bodies.describe(side.body).name),
+                     "interfaces." + spec.name + ".contact",
+                     "Give the interface tied: {}, or take tied off the port.");
   }
 }
 
-void add_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how, bool parallel,
-                    Interface& interface, const Bodies& bodies, Coupling& coupling) {
+void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how, bool parallel,
+                    const Bodies& bodies, Joint& joint) {
   const std::string where = "interfaces." + spec.name;
-  Coupling::Rule rule;
-  for (const Side& side : interface.sides) {
+  for (const Side& side : joint.sides) {
     const Description& body = bodies.describe(side.body);
-    require(body.can.complete && body.can.force, body, where,
+    require(body.can.force && (body.can.kernel || !body.can.motion), body, where,
             "cannot stand on a unilateral interface: its contact layer is massive",
             "Give the body contact_layer massless or kick, or the interface the transmission "
             "dirichlet_neumann.");
     require(body.can.kernel, body, where, "does not answer for its port kernel",
             "Use a body that offers the kernel.");
   }
-  const bool able0 = bodies.describe(interface.sides[0].body).can.obstacle;
-  const bool able1 = bodies.describe(interface.sides[1].body).can.obstacle;
-  if (!able0 && !able1) {
-    const Description& one = bodies.describe(interface.sides[0].body);
-    const Description& other = bodies.describe(interface.sides[1].body);
+  const Description& one = bodies.describe(joint.sides[0].body);
+  const Description& other = bodies.describe(joint.sides[1].body);
+  if (!one.can.obstacle && !other.can.obstacle) {
     throw InputError(
         fmt::format(
             "joins '{}' ({}) and '{}' ({}), of which neither can follow the other's surface "
@@ -118,30 +113,27 @@ void add_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
         "Make one side a bar of equal elements and linear_elastic material, without points, "
         "constraints, loads and fields.");
   }
-  rule.role_fixed = how.kinematic != "auto";
-  if (rule.role_fixed) {
-    interface.kinematic =
-        index_of(spec, how.kinematic, where + ".transmission.unilateral.kinematic");
-    const Description& body = bodies.describe(interface.kinematic_side().body);
+  joint.role_fixed = how.kinematic != "auto";
+  if (joint.role_fixed) {
+    joint.kinematic = index_of(spec, how.kinematic, where + ".transmission.unilateral.kinematic");
+    const Description& body = bodies.describe(joint.kinematic_side().body);
     require(body.can.obstacle, body, where + ".transmission.unilateral.kinematic",
             "takes forces only and cannot be the kinematic side", "Name the other side, or auto.");
   }
   if (parallel) {
-    coupling.transmissions.push_back(std::make_unique<ParallelForce>());
+    joint.how = std::make_unique<ParallelForce>();
   } else {
-    coupling.transmissions.push_back(std::make_unique<Unilateral>());
+    joint.how = std::make_unique<Unilateral>();
   }
-  coupling.rules.push_back(rule);
 }
 
-void add_published(const InterfaceSpec& spec, const DirichletNeumannTransmission& how,
-                   const SchwarzSpec& schwarz, Interface& interface, const Bodies& bodies,
-                   Coupling& coupling) {
+void set_published(const InterfaceSpec& spec, const DirichletNeumannTransmission& how,
+                   const SchwarzSpec& schwarz, const Bodies& bodies, Joint& joint) {
   const std::string where = "interfaces." + spec.name + ".transmission.dirichlet_neumann";
-  interface.kinematic = index_of(spec, how.dirichlet, where + ".dirichlet");
+  joint.kinematic = index_of(spec, how.dirichlet, where + ".dirichlet");
   for (int s : {0, 1}) {
-    if (s != interface.kinematic && !how.swap_every_window) continue;
-    const Description& body = bodies.describe(interface.sides[index(s)].body);
+    if (s != joint.kinematic && !how.swap_every_window) continue;
+    const Description& body = bodies.describe(joint.sides[index(s)].body);
     require(body.can.motion, body, where, "does not take prescribed motion",
             "Give the body contact_layer: {massive: {}}.");
   }
@@ -150,27 +142,28 @@ void add_published(const InterfaceSpec& spec, const DirichletNeumannTransmission
         "the published form knows neither the parallel form nor port kernels", "schwarz",
         "Give form: alternating and an accelerator of none, relaxation, aitken or anderson.");
   }
-  coupling.transmissions.push_back(std::make_unique<DirichletNeumann>(how.swap_every_window));
-  coupling.rules.push_back(
-      {.published = true, .swap = how.swap_every_window, .projection = how.impact_projection});
+  joint.how = std::make_unique<DirichletNeumann>(how.swap_every_window);
+  joint.role_fixed = true;
+  if (!joint.tied()) joint.decision = Decision::window_begin;
+  joint.roles_swap = how.swap_every_window;
+  joint.projection = how.impact_projection;
 }
 
 /// Ports of a body that solves its contact itself show it and take nothing.
-void refuse_members(const Interface& interface, const Bodies& bodies, const std::string& where) {
-  for (const Side& side : interface.sides) {
+void refuse_members(const Joint& joint, const Bodies& bodies, const std::string& where) {
+  for (const Side& side : joint.sides) {
     const Description& body = bodies.describe(side.body);
     require(body.members.empty(), body, where, "solves its contact itself and takes nothing",
             "Join its two ports with transmission: {internal: {}}, or use single bars.");
   }
 }
 
-void add_robin(const InterfaceSpec& spec, const RobinTransmission& how, const SchwarzSpec& schwarz,
-               Interface& interface, const Bodies& bodies, Coupling& coupling) {
+void set_robin(const InterfaceSpec& spec, const RobinTransmission& how, const SchwarzSpec& schwarz,
+               const Bodies& bodies, Joint& joint) {
   const std::string where = "interfaces." + spec.name + ".transmission.robin";
-  for (const Side& side : interface.sides) {
+  for (const Side& side : joint.sides) {
     const Description& body = bodies.describe(side.body);
-    require(body.can.impedance && body.can.complete && body.can.kernel, body, where,
-            "does not take an impedance",
+    require(body.can.impedance && body.can.kernel, body, where, "does not take an impedance",
             "Give a bar contact_layer massless or kick, or the interface the transmission "
             "unilateral.");
   }
@@ -178,54 +171,45 @@ void add_robin(const InterfaceSpec& spec, const RobinTransmission& how, const Sc
     throw InputError("Robin conditions do not use port kernels as Jacobian", "schwarz.accelerator",
                      "Give an accelerator of none, relaxation, aitken or anderson.");
   }
-  interface.kinematic = coarser_side(interface, bodies);
+  joint.kinematic = coarser_side(joint, bodies);
+  joint.role_fixed = true;
   const Robin::Rule rule = how.impedance == "matched"  ? Robin::Rule::matched
                            : how.impedance == "kernel" ? Robin::Rule::kernel
                                                        : Robin::Rule::given;
-  coupling.transmissions.push_back(std::make_unique<Robin>(rule, how.number, schwarz.parallel));
-  coupling.rules.push_back({});
+  joint.how = std::make_unique<Robin>(rule, how.number, schwarz.parallel);
 }
 
 }  // namespace
 
-std::vector<Joint> Coupling::joints() {
+std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
   std::vector<Joint> joints;
-  for (std::size_t i = 0; i < interfaces.size(); ++i)
-    joints.push_back({&interfaces[i], transmissions[i].get()});
-  return joints;
-}
-
-Coupling make_coupling(const Scene& scene, const Bodies& bodies) {
-  Coupling coupling;
+  std::map<std::pair<int, int>, int> met;  // partners by body and port
   for (const auto& [name, spec] : scene.interfaces) {
     const std::string where = "interfaces." + name + ".sides";
-    const std::array<Side, 2> sides = {find_side(spec.sides[0], bodies, where),
-                                       find_side(spec.sides[1], bodies, where)};
-    Interface interface = make_interface(name, sides, bodies);
+    std::array<Side, 2> sides = {find_side(spec.sides[0], bodies, where),
+                                 find_side(spec.sides[1], bodies, where)};
+    for (Side& side : sides) side.partner = met[{side.body, side.port}]++;
+    Joint& joint = joints.emplace_back(make_joint(name, sides, bodies));
     if (std::holds_alternative<InternalTransmission>(spec.transmission)) {
-      coupling.transmissions.push_back(nullptr);  // never closed for the iteration
-      coupling.rules.push_back({.internal = true});
-      coupling.interfaces.push_back(std::move(interface));
+      joint.decision = Decision::inside;
       continue;
     }
-    refuse_members(interface, bodies, "interfaces." + name);
+    refuse_members(joint, bodies, "interfaces." + name);
     if (spec.tied) {
-      join(spec, bodies, interface);
+      tie(spec, bodies, joint);
     } else {
-      refuse_joints(spec, bodies, interface);
+      refuse_tied_ports(spec, bodies, joint);
     }
     if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
-      add_unilateral(spec, *unilateral, scene.schwarz.parallel, interface, bodies, coupling);
+      set_unilateral(spec, *unilateral, scene.schwarz.parallel, bodies, joint);
     } else if (const auto* robin = std::get_if<RobinTransmission>(&spec.transmission)) {
-      add_robin(spec, *robin, scene.schwarz, interface, bodies, coupling);
+      set_robin(spec, *robin, scene.schwarz, bodies, joint);
     } else {
-      add_published(spec, std::get<DirichletNeumannTransmission>(spec.transmission), scene.schwarz,
-                    interface, bodies, coupling);
+      set_published(spec, std::get<DirichletNeumannTransmission>(spec.transmission), scene.schwarz,
+                    bodies, joint);
     }
-    coupling.rules.back().tied = interface.bilateral = spec.tied.has_value();
-    coupling.interfaces.push_back(std::move(interface));
   }
-  return coupling;
+  return joints;
 }
 
 Schwarz make_schwarz(const SchwarzSpec& spec) {

@@ -48,7 +48,7 @@ void list_features(const Scene& scene, Estimate& e) {
   feature(coupled && !std::holds_alternative<KernelAcceleration>(scene.schwarz.accelerator) &&
               !std::holds_alternative<NoAcceleration>(scene.schwarz.accelerator),
           "relaxation or secants alone");
-  feature(scene.schwarz.on_nonconvergence == "halve", "halving of windows");
+  feature(scene.schwarz.on_nonconvergence == OnNonconvergence::halve, "halving of windows");
   feature(scene.meta.closed_form.has_value(), "closed form");
   feature(connected, "network");
 }

@@ -122,7 +122,7 @@ void validate_expectations(const Scene& scene, const std::vector<const Descripti
 /// Every interface can be joined as the scene says.
 void validate_coupling(const Scene& scene, const Placement& placement, const Document& document) {
   try {
-    make_coupling(scene, Bodies(placement.pointers()));
+    make_joints(scene, Bodies(placement.pointers()));
   } catch (const InputError& error) {
     throw InputError(error.what_is_wrong, document.where(error.where), error.remedy);
   }

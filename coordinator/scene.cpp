@@ -10,7 +10,7 @@
 #include "base/assert.hpp"
 #include "base/input_errors.hpp"
 #include "base/yaml_fields.hpp"
-#include "coordinator/coupling/interface.hpp"
+#include "coordinator/coupling/joint.hpp"
 #include "coordinator/external_body.hpp"
 #include "coordinator/scene_times.hpp"
 

@@ -124,6 +124,8 @@ struct KernelAcceleration {  // port kernels as interface Jacobian, plus secants
   void fields(Fields& f);
 };
 
+enum class OnNonconvergence { stop, halve, accept };
+
 struct SchwarzSpec {
   bool parallel = false;      // "form: alternating | parallel"
   double tolerance = 1.0e-6;  // scaled by reference velocity x step
@@ -131,7 +133,7 @@ struct SchwarzSpec {
   std::variant<KernelAcceleration, NoAcceleration, FixedRelaxation, AitkenAcceleration,
                AndersonAcceleration>
       accelerator;
-  std::string on_nonconvergence = "stop";  // stop | halve | accept
+  OnNonconvergence on_nonconvergence = OnNonconvergence::stop;
   double energy_guard = 0.01;  // of the most energy in motion: growth that ends the run
   void fields(Fields& f);
 };

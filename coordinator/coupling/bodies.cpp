@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 
@@ -16,6 +17,20 @@ namespace abut {
 namespace {
 /// Samples kept for the median of the overhead per exchange; later ones add nothing to it.
 constexpr std::size_t overhead_samples = 1u << 20;
+/// Means over a port's points of the responses of a kernel of one pattern, along the normals.
+PortKernel along(const PortKernel& all, const PortGeometry& surface) {
+  const std::vector<double>& normals = surface.normals;
+  ABUT_ASSERT(all.patterns == 1 && index(all.width) == normals.size());
+  const auto mean = [&normals, count = surface.count()](const std::vector<double>& values) {
+    std::vector<double> out(values.size() / normals.size(), 0.0);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      out[k / normals.size()] += normals[k % normals.size()] * values[k] / count;
+    return out;
+  };
+  return {all.step,       all.support, 1, 1, mean(all.compliance), mean(all.displacement),
+          mean(all.begin)};
+}
+
 /// A body in this process shares its memory: when that ends, the body is to be named.
 Outcome finish(Subdomain& body, Response& response) {
   try {
@@ -28,8 +43,9 @@ Outcome finish(Subdomain& body, Response& response) {
 
 }  // namespace
 
-Bodies::Bodies(std::vector<Subdomain*> subdomains)
+Bodies::Bodies(std::vector<Subdomain*> subdomains, double window)
     : subdomains_(std::move(subdomains)),
+      window_(window),
       requests_(subdomains_.size()),
       responses_(subdomains_.size()),
       everybody_(subdomains_.size()),
@@ -38,6 +54,30 @@ Bodies::Bodies(std::vector<Subdomain*> subdomains)
   for (std::size_t b = 0; b < subdomains_.size(); ++b) {
     requests_[b].boundary.resize(subdomains_[b]->describe().ports.size());
   }
+}
+
+Waveform& Bodies::force(const Side& side) {
+  std::vector<Waveform>& forces = boundary(side).forces;
+  if (forces.size() <= index(side.partner)) forces.resize(index(side.partner) + 1);
+  return forces[index(side.partner)];
+}
+
+Obstacle& Bodies::obstacle(const Side& side) {
+  std::vector<Obstacle>& obstacles = boundary(side).obstacles;
+  if (obstacles.size() <= index(side.partner)) obstacles.resize(index(side.partner) + 1);
+  return obstacles[index(side.partner)];
+}
+
+const Waveform& Bodies::reaction(const Side& side) const {
+  return response(side.body).ports[index(side.port)].reactions.at(index(side.partner)).force;
+}
+
+void Bodies::meet(const Side& side, const PortGeometry& partner, const ContactLaw& law) {
+  if (describe(side.body).can.obstacle) (*this)[side.body].meet(side.port, partner, law);
+}
+
+void Bodies::want(const Want& fields) {
+  for (Advance& request : requests_) request.want.assign(request.boundary.size(), fields);
 }
 
 void Bodies::save_all() {
@@ -86,16 +126,15 @@ std::optional<Failed> Bodies::advance_all() { return advance(everybody_); }
 
 void Bodies::strike_record(const Side& side, double impulse) {
   Response& response = responses_[index(side.body)];
-  PortResponse& port = response.ports[index(side.port)];
-  if (impulse == 0.0 || !port.recoil) return;
+  PortResponse& reply = response.ports[index(side.port)];
+  if (impulse == 0.0 || !reply.recoil) return;
   BodyRecord& record = response.records.back();
-  const double before = port.recoil->velocity;
-  port.recoil->velocity -= impulse * port.recoil->mobility;
-  const double work = -impulse * 0.5 * (before + port.recoil->velocity);
+  const double before = reply.recoil->velocity;
+  reply.recoil->velocity -= impulse * reply.recoil->mobility;
+  const double work = -impulse * 0.5 * (before + reply.recoil->velocity);
   record.energy.kinetic += work;
   struck_[index(side.body)] += work;
-  const Port& described = describe(side.body).ports[index(side.port)];
-  if (port.recoil->mobility > 0.0) record.momentum[0] -= impulse * described.geometry.normals[0];
+  if (reply.recoil->mobility > 0.0) record.momentum[0] -= impulse * port(side).geometry.normals[0];
 }
 
 const PortKernel& Bodies::kernel(int body, int port, int count) {
@@ -105,13 +144,27 @@ const PortKernel& Bodies::kernel(int body, int port, int count) {
     kernels_.push_back({body, port, {}});
     found = kernels_.end() - 1;
   }
-  if (static_cast<int>(found->kernel.displacement.size()) < count) {
-    const double step = describe(body).step;
-    found->kernel =
-        (*this)[body].kernel(port, step > 0.0 ? step : request(body).window.length(), count);
-    ++exchanges_;
-  }
+  if (found->kernel.count() >= count) return found->kernel;
+  const PortGeometry& surface = describe(body).ports[index(port)].geometry;
+  const double step = describe(body).step;
+  found->kernel = along(
+      (*this)[body].probe(port, surface.normals, step > 0.0 ? step : window_, count), surface);
+  ++exchanges_;
   return found->kernel;
+}
+
+double Bodies::shortest_step() const {
+  double shortest = window_;
+  for (int b = 0; b < count(); ++b) {
+    if (describe(b).step > 0.0) shortest = std::min(shortest, describe(b).step);
+  }
+  return shortest;
+}
+
+double Bodies::longest_step() const {
+  double longest = 0.0;
+  for (int b = 0; b < count(); ++b) longest = std::max(longest, describe(b).step);
+  return longest > 0.0 ? longest : window_;
 }
 
 double Bodies::overhead_median() const {

@@ -8,22 +8,41 @@
 
 #include "base/index.hpp"
 #include "contract/subdomain.hpp"
-#include "coordinator/coupling/side.hpp"
 
 namespace abut {
+
+/// One end of a joint.
+struct Side {
+  int body = 0, port = 0;
+  int partner = 0;  // number of the other end among those that the port meets
+};
 
 /// The bodies of a run with their requests and responses, by index. Every exchange passes through
 /// here, so this is where exchanges are counted and timed. Times never decide anything.
 class Bodies {
  public:
-  explicit Bodies(std::vector<Subdomain*> subdomains);
+  /// `window` [s]: a whole one, which is the step of bodies that have none.
+  explicit Bodies(std::vector<Subdomain*> subdomains, double window = 0.0);
 
   int count() const { return static_cast<int>(subdomains_.size()); }
   Subdomain& operator[](int body) { return *subdomains_[index(body)]; }
   const Description& describe(int body) const { return subdomains_[index(body)]->describe(); }
+  const Port& port(const Side& side) const { return describe(side.body).ports[index(side.port)]; }
   Advance& request(int body) { return requests_[index(body)]; }
   const Response& response(int body) const { return responses_[index(body)]; }
   std::span<const Response> responses() const { return responses_; }
+
+  /// What the next request imposes on one end of a joint.
+  BoundaryData& boundary(const Side& side) { return request(side.body).boundary[index(side.port)]; }
+  Waveform& force(const Side& side);
+  Obstacle& obstacle(const Side& side);
+  /// What the latest response of one end does to the other.
+  const Waveform& reaction(const Side& side) const;
+
+  /// Tells a side that takes obstacles whom it may meet.
+  void meet(const Side& side, const PortGeometry& partner, const ContactLaw& law);
+  /// Fields of the traces that later responses are to hold.
+  void want(const Want& fields);
 
   void save_all();
   void restore_all();
@@ -40,8 +59,12 @@ class Bodies {
   /// [J] by body, of such impulses: in the last records, and in the ports' work of the next window.
   std::span<const double> struck() const { return struck_; }
 
+  /// Mean response of a port's points along its outward normals to a unit force on every point
+  /// along them: one pattern of one value.
   const PortKernel& kernel(int body, int port, int count);
 
+  double shortest_step() const;  // [s] of all bodies, at most a window
+  double longest_step() const;   // [s] of those that have one; a window where none has
   std::int64_t exchanges() const { return exchanges_; }
   const std::vector<double>& compute_seconds() const { return compute_seconds_; }
   double overhead_median() const;  // [s] per exchange: wall minus compute
@@ -53,6 +76,7 @@ class Bodies {
   };
 
   std::vector<Subdomain*> subdomains_;
+  double window_;  // [s]
   std::vector<Advance> requests_;
   std::vector<Response> responses_;
   std::vector<double> struck_;

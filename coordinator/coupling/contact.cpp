@@ -15,26 +15,22 @@ double displacement_at(const Waveform& trace, double time) {
   return u;
 }
 
-double gap_at(const Interface& interface, const Bodies& bodies, double time) {
-  return interface.gap(displacement_at(trace_of(bodies, interface.sides[0]), time),
-                       displacement_at(trace_of(bodies, interface.sides[1]), time));
-}
-
-const PortResponse& port_of(const Bodies& bodies, const Side& side) {
-  return bodies.response(side.body).ports[index(side.port)];
+double gap_at(const Joint& joint, const Bodies& bodies, double time) {
+  return joint.gap(displacement_at(trace_of(bodies, joint.sides[0]), time),
+                       displacement_at(trace_of(bodies, joint.sides[1]), time));
 }
 
 }  // namespace
 
-std::optional<Touch> first_overlap(const Interface& interface, const Bodies& bodies,
+std::optional<Touch> first_overlap(const Joint& joint, const Bodies& bodies,
                                    double negligible) {
-  const Waveform& t0 = trace_of(bodies, interface.sides[0]);
-  const Waveform& t1 = trace_of(bodies, interface.sides[1]);
+  const Waveform& t0 = trace_of(bodies, joint.sides[0]);
+  const Waveform& t1 = trace_of(bodies, joint.sides[1]);
   const Waveform& finer = t0.size() >= t1.size() ? t0 : t1;
-  double before = interface.gap(t0.u.front(), t1.u.front());
+  double before = joint.gap(t0.u.front(), t1.u.front());
   for (std::size_t i = 1; i < finer.size(); ++i) {
     const double time = finer.time[i];
-    const double gap = gap_at(interface, bodies, time);
+    const double gap = gap_at(joint, bodies, time);
     // a gap that grows is a release, however little it overlaps
     if (gap < -negligible && gap < before) {
       const double length = time - finer.time[i - 1];
@@ -46,17 +42,17 @@ std::optional<Touch> first_overlap(const Interface& interface, const Bodies& bod
   return std::nullopt;
 }
 
-void ContactHistory::read(const Interface& interface, Bodies& bodies) {
-  const Side& here = interface.kinematic_side();
-  const Side& there = interface.neumann_side();
+void ContactHistory::read(const Joint& joint, Bodies& bodies) {
+  const Side& here = joint.kinematic_side();
+  const Side& there = joint.neumann_side();
   const Waveform& own = trace_of(bodies, here);
   const bool coarser = bodies.describe(there.body).step > bodies.describe(here.body).step;
   const std::vector<double>& t = coarser ? trace_of(bodies, there).time : own.time;
-  const double inward = -interface.normal_of(interface.kinematic);
+  const double inward = -joint.normal_of(joint.kinematic);
   kicks_ = own.support == ForceSupport::step;
   finer_.clear();
   for (std::size_t i = 0; coarser && i < own.size(); ++i)
-    finer_.push_back({own.time[i], inward * own.f[i], gap_at(interface, bodies, own.time[i])});
+    finer_.push_back({own.time[i], inward * own.f[i], gap_at(joint, bodies, own.time[i])});
   levels_.resize(t.size());
   for (std::size_t i = 0; i < t.size(); ++i) {
     double force = own.f[i > 0 && coarser ? 0 : i];
@@ -66,15 +62,15 @@ void ContactHistory::read(const Interface& interface, Bodies& bodies) {
       own.impulse(from, to, {&force, 1});
       force /= to - from;
     }
-    levels_[i] = {t[i], inward * force, gap_at(interface, bodies, t[i])};
+    levels_[i] = {t[i], inward * force, gap_at(joint, bodies, t[i])};
   }
   // the coordinator has seen the release at this instant already
-  if (interface.opened_at == t.front()) levels_.front().force = 0.0;
+  if (joint.opened_at == t.front()) levels_.front().force = 0.0;
   compliance_ = 0.0;
-  for (const Side& side : interface.sides)
+  for (const Side& side : joint.sides)
     compliance_ += bodies.kernel(side.body, side.port, 1).displacement.front();
   constexpr double units = 2.0 * std::numeric_limits<double>::epsilon();
-  const double moved = std::max(std::abs(own.u.back()), interface.reference_gap);
+  const double moved = std::max(std::abs(own.u.back()), joint.reference_gap);
   rounding_ = compliance_ > 0.0 ? units * moved / compliance_ : 0.0;
 }
 
@@ -126,13 +122,13 @@ double ContactHistory::crossing(std::size_t i, double bound) const {
   return a.time + (b.time - a.time) * std::clamp((bound - a.force) / (b.force - a.force), 0.0, 1.0);
 }
 
-double contact_work(const Interface& interface, const Bodies& bodies) {
-  return port_of(bodies, interface.sides[0]).work + port_of(bodies, interface.sides[1]).work;
+double contact_work(const Joint& joint, const Bodies& bodies) {
+  return port_of(bodies, joint.sides[0]).work + port_of(bodies, joint.sides[1]).work;
 }
 
-double peak_force(const Interface& interface, const Bodies& bodies) {
+double peak_force(const Joint& joint, const Bodies& bodies) {
   double peak = 0.0;
-  for (double f : trace_of(bodies, interface.kinematic_side()).f)
+  for (double f : trace_of(bodies, joint.kinematic_side()).f)
     peak = std::max(peak, std::abs(f));
   return peak;
 }
@@ -140,9 +136,9 @@ double peak_force(const Interface& interface, const Bodies& bodies) {
 namespace {
 
 /// Of both sides: how fast they approach each other, and what an impulse between them changes.
-std::optional<Recoil> joint_recoil(const Interface& interface, const Bodies& bodies) {
+std::optional<Recoil> joint_recoil(const Joint& joint, const Bodies& bodies) {
   Recoil sum;
-  for (const Side& side : interface.sides) {
+  for (const Side& side : joint.sides) {
     const std::optional<Recoil>& recoil = port_of(bodies, side).recoil;
     if (!recoil) return std::nullopt;
     sum.velocity += recoil->velocity;
@@ -153,28 +149,28 @@ std::optional<Recoil> joint_recoil(const Interface& interface, const Bodies& bod
 
 }  // namespace
 
-double closing_impulse(const Interface& interface, const Bodies& bodies) {
-  const std::optional<Recoil> recoil = joint_recoil(interface, bodies);
+double closing_impulse(const Joint& joint, const Bodies& bodies) {
+  const std::optional<Recoil> recoil = joint_recoil(joint, bodies);
   return recoil ? recoil->velocity / recoil->mobility : 0.0;
 }
 
-double release_impulse(const Interface& interface, const Bodies& bodies) {
-  const std::optional<Recoil> recoil = joint_recoil(interface, bodies);
-  if (!recoil || interface.debt <= 0.0) return 0.0;
+double release_impulse(const Joint& joint, const Bodies& bodies) {
+  const std::optional<Recoil> recoil = joint_recoil(joint, bodies);
+  if (!recoil || joint.debt <= 0.0) return 0.0;
   const double w = recoil->velocity;
-  return (w + std::sqrt(w * w + 2.0 * recoil->mobility * interface.debt)) / recoil->mobility;
+  return (w + std::sqrt(w * w + 2.0 * recoil->mobility * joint.debt)) / recoil->mobility;
 }
 
-double paying_impulse(const Interface& interface, const Bodies& bodies) {
+double paying_impulse(const Joint& joint, const Bodies& bodies) {
   // Of the energy of approach: a larger debt waits, its impulse would stir up more than it finds.
   constexpr double most = 3.0;
-  const std::optional<Recoil> recoil = joint_recoil(interface, bodies);
+  const std::optional<Recoil> recoil = joint_recoil(joint, bodies);
   if (!recoil) return 0.0;
   const double w = recoil->velocity;
-  const double owed = 2.0 * recoil->mobility * interface.debt;
+  const double owed = 2.0 * recoil->mobility * joint.debt;
   if (w == 0.0 || owed > most * w * w) return 0.0;
   if (owed < -w * w) return w / recoil->mobility;  // all that can be taken back this way
-  return -2.0 * interface.debt / (w + std::copysign(std::sqrt(w * w + owed), w));
+  return -2.0 * joint.debt / (w + std::copysign(std::sqrt(w * w + owed), w));
 }
 
 }  // namespace abut

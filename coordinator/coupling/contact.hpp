@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "coordinator/coupling/bodies.hpp"
-#include "coordinator/coupling/interface.hpp"
+#include "coordinator/coupling/joint.hpp"
 
 namespace abut {
 
@@ -18,7 +18,7 @@ struct Touch {
 
 /// Where an open interface overlaps by more than `negligible` [m] for the first time. Looks at
 /// every substep of both bodies after the window's begin, with motion linear between substeps.
-std::optional<Touch> first_overlap(const Interface& interface, const Bodies& bodies,
+std::optional<Touch> first_overlap(const Joint& joint, const Bodies& bodies,
                                    double negligible);
 
 /// One level of time of an interface in contact.
@@ -34,7 +34,7 @@ struct ContactLevel {
 class ContactHistory {
  public:
   /// Reads the latest responses. Reuse it: levels keep their memory.
-  void read(const Interface& interface, Bodies& bodies);
+  void read(const Joint& joint, Bodies& bodies);
 
   std::size_t size() const { return levels_.size(); }
   const ContactLevel& operator[](std::size_t i) const { return levels_[i]; }
@@ -68,23 +68,23 @@ class ContactHistory {
 };
 
 /// Largest contact force [N] on the kinematic side in the latest responses.
-double peak_force(const Interface& interface, const Bodies& bodies);
+double peak_force(const Joint& joint, const Bodies& bodies);
 
 /// [J] that contact did on both bodies in the latest responses  [M.23].
-double contact_work(const Interface& interface, const Bodies& bodies);
+double contact_work(const Joint& joint, const Bodies& bodies);
 
 /// Impulse [N s] that gives what impulses hit on both sides a common velocity: a plastic impact of
 /// massive contact nodes alone, exact in momentum; negative where they part. 0 when a side takes no
 /// impulses.
-double closing_impulse(const Interface& interface, const Bodies& bodies);
+double closing_impulse(const Joint& joint, const Bodies& bodies);
 
 /// Impulse [N s] that gives back, when massive contact nodes part that took kicks, what contact has
 /// taken from the bodies [M.13]. 0 when a side takes no impulses.
-double release_impulse(const Interface& interface, const Bodies& bodies);
+double release_impulse(const Joint& joint, const Bodies& bodies);
 
 /// Impulse [N s] between sides in contact, positive where it pushes them apart, that pays what
 /// contact owes the bodies  [M.26]. 0 where a side takes no impulses, or where their velocity of
 /// approach is too small to pay with: the debt waits.
-double paying_impulse(const Interface& interface, const Bodies& bodies);
+double paying_impulse(const Joint& joint, const Bodies& bodies);
 
 }  // namespace abut

@@ -9,11 +9,11 @@ namespace {
 struct Traces {
   const Waveform& t0;
   const Waveform& t1;
-  const Interface& interface;
+  const Joint& joint;
 
-  double force(std::size_t i) const { return -interface.normal_of(0) * t0.f[i]; }
-  double gap(std::size_t i) const { return interface.gap(t0.u[i], t1.u[i]); }
-  double approach(std::size_t i) const { return interface.normal_of(0) * (t0.v[i] - t1.v[i]); }
+  double force(std::size_t i) const { return -joint.normal_of(0) * t0.f[i]; }
+  double gap(std::size_t i) const { return joint.gap(t0.u[i], t1.u[i]); }
+  double approach(std::size_t i) const { return joint.normal_of(0) * (t0.v[i] - t1.v[i]); }
 
   /// The force is there at i and was not before. The motion before it is not yet braked and tells
   /// when the gap closes.
@@ -37,16 +37,16 @@ struct Traces {
 
 }  // namespace
 
-InternalContact watch_internal_contact(Interface& interface, const Bodies& bodies) {
-  const Traces traces{trace_of(bodies, interface.sides[0]), trace_of(bodies, interface.sides[1]),
-                      interface};
+InternalContact watch_internal_contact(Joint& joint, const Bodies& bodies) {
+  const Traces traces{trace_of(bodies, joint.sides[0]), trace_of(bodies, joint.sides[1]),
+                      joint};
   InternalContact seen;
   for (std::size_t i = 0; i < traces.t0.size(); ++i) {
     const bool pressed = traces.force(i) > 0.0;
     seen.pressed = seen.pressed || pressed;
-    if (pressed == interface.touching) continue;
+    if (pressed == joint.pressing()) continue;
     seen.changes.push_back(pressed ? traces.closing(i) : traces.opening(i));
-    interface.touching = pressed;
+    joint.contact = pressed ? Joint::State::pressing : Joint::State::apart;
   }
   return seen;
 }

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "coordinator/coupling/bodies.hpp"
-#include "coordinator/coupling/interface.hpp"
+#include "coordinator/coupling/joint.hpp"
 
 namespace abut {
 
@@ -19,7 +19,7 @@ struct InternalContact {
   std::vector<Change> changes;
 };
 
-/// Reads the latest traces of both sides, which hold every substep, and keeps interface.touching.
-InternalContact watch_internal_contact(Interface& interface, const Bodies& bodies);
+/// Reads the latest traces of both sides, which hold every substep, and keeps joint.touching.
+InternalContact watch_internal_contact(Joint& joint, const Bodies& bodies);
 
 }  // namespace abut

@@ -4,18 +4,15 @@
 #include <cmath>
 
 #include "base/assert.hpp"
-#include "base/count.hpp"
 #include "base/index.hpp"
 
 namespace abut {
 
 namespace {
 
-constexpr double remainder_tolerance = 1.0e-6;  // of a step: round-off of the window's length
-
 /// Boundaries of the intervals over which forces act; interval i is [bounds[i], bounds[i + 1]] and
 /// belongs to force `first + i`: dual cells of all nodes 0..n, or the substeps 1..n.
-std::vector<double> cells(const TimeGrid& grid, ForceSupport support) {
+std::vector<double> cells(const Substeps& grid, ForceSupport support) {
   std::vector<double> bounds;
   bounds.push_back(grid.begin);
   if (support == ForceSupport::nodal) {
@@ -47,7 +44,7 @@ Eigen::MatrixXd overlap_average(const std::vector<double>& to, const std::vector
 
 /// Values at the ends of the substeps 1..n of `to` from nodal values 1..m of `from`, linear in time
 /// (n, m); the value at the window's begin is known and has no column.
-Eigen::MatrixXd interpolation(const TimeGrid& to, const TimeGrid& from) {
+Eigen::MatrixXd interpolation(const Substeps& to, const Substeps& from) {
   Eigen::MatrixXd p = Eigen::MatrixXd::Zero(to.count, from.count);
   int j = 1;
   for (int i = 1; i <= to.count; ++i) {
@@ -72,15 +69,7 @@ Eigen::MatrixXd toeplitz(const std::vector<double>& c, int n) {
 
 }  // namespace
 
-TimeGrid::TimeGrid(double window_begin, double window_end, double body_step)
-    : begin(window_begin), end(window_end), step(body_step) {
-  const double length = end - begin;
-  if (step <= 0.0) step = length;
-  count = count_within(std::ceil(length / step - remainder_tolerance), 1,
-                       static_cast<int>(most_substeps));
-}
-
-Eigen::MatrixXd neumann_map(const PortKernel& kernel, const TimeGrid& here, const TimeGrid& source,
+Eigen::MatrixXd neumann_map(const PortKernel& kernel, const Substeps& here, const Substeps& source,
                             ForceSupport source_support) {
   const Eigen::MatrixXd response = toeplitz(kernel.displacement, here.count);
   if (here.same_as(source) && kernel.support == source_support) return response;
@@ -104,12 +93,12 @@ Eigen::MatrixXd neumann_map(const PortKernel& kernel, const TimeGrid& here, cons
       instant(i - 1, j - 1) = 1.0;
     }
   }
-  map += kernel.compliance * (instant - dynamic);
+  map += quasi_static(kernel) * (instant - dynamic);
   return map;
 }
 
-ContactMaps contact_maps(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
-                         const PortKernel& neumann, const TimeGrid& neumann_grid) {
+ContactMaps contact_maps(const PortKernel& kinematic, const Substeps& kinematic_grid,
+                         const PortKernel& neumann, const Substeps& neumann_grid) {
   ContactMaps maps;
   maps.motion = neumann_map(neumann, neumann_grid, kinematic_grid, kinematic.support);
   maps.seen = interpolation(kinematic_grid, neumann_grid);
@@ -135,8 +124,8 @@ Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::Vec
   return change;
 }
 
-Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
-                                    const PortKernel& neumann, const TimeGrid& neumann_grid) {
+Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const Substeps& kinematic_grid,
+                                    const PortKernel& neumann, const Substeps& neumann_grid) {
   const Eigen::MatrixXd pushed =
       neumann_map(neumann, neumann_grid, kinematic_grid, kinematic.support);
   const Eigen::MatrixXd own = toeplitz(kinematic.displacement, kinematic_grid.count);
@@ -201,7 +190,7 @@ std::vector<double> unilateral_jacobian_column(const PortKernel& kinematic,
 }
 
 Eigen::MatrixXd parallel_jacobian(const std::vector<const PortKernel*>& kernels,
-                                  const std::vector<TimeGrid>& grids, const TimeGrid& source,
+                                  const std::vector<Substeps>& grids, const Substeps& source,
                                   ForceSupport source_support) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(source.count, source.count);
   for (std::size_t s = 0; s < kernels.size(); ++s) {

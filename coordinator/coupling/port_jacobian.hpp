@@ -5,32 +5,26 @@
 #include <Eigen/Dense>
 
 #include "contract/port.hpp"
+#include "contract/substeps.hpp"
 
 namespace abut {
 
-/// How a body divides a window into substeps, as the contract prescribes it.
-struct TimeGrid {
-  double begin = 0.0, end = 0.0, step = 0.0;
-  int count = 0;
-
-  TimeGrid() = default;
-  /// step 0: one substep. Whole steps, the last one shortened when the window is no multiple.
-  TimeGrid(double window_begin, double window_end, double body_step);
-  double time(int i) const { return i == count ? end : begin + i * step; }  // i = 0..count
-  bool same_as(const TimeGrid& other) const { return count == other.count && step == other.step; }
-};
+/// [m/N] of a kernel of one pattern and value: what follows the force of the same instant.
+inline double quasi_static(const PortKernel& kernel) {
+  return kernel.compliance.empty() ? 0.0 : kernel.compliance.front();
+}
 
 /// Neumann map of one side: displacement along the push at the ends of its substeps 1..n for the
 /// partner's contact forces 1..m of unit size, with forces spread in time exactly as the body does
 /// it (n, m).
-Eigen::MatrixXd neumann_map(const PortKernel& kernel, const TimeGrid& here, const TimeGrid& source,
+Eigen::MatrixXd neumann_map(const PortKernel& kernel, const Substeps& here, const Substeps& source,
                             ForceSupport source_support);
 
 /// Interface Jacobian of the unilateral iteration, J = I + C_N R C_K^-1 P (n_N, n_N)  [M: port
 /// kernel]: change of the residual, with minus sign, for a change of the iterate (the Neumann
 /// side's motion).
-Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
-                                    const PortKernel& neumann, const TimeGrid& neumann_grid);
+Eigen::MatrixXd unilateral_jacobian(const PortKernel& kinematic, const Substeps& kinematic_grid,
+                                    const PortKernel& neumann, const Substeps& neumann_grid);
 
 /// The same when both bodies take the same substeps: J is a lower triangular Toeplitz matrix, given
 /// by its first column (n).
@@ -53,8 +47,8 @@ struct ContactMaps {
   Eigen::MatrixXd motion;   // [m/N] (n_N, n_K) motion of the Neumann side along the push
   Eigen::MatrixXd seen;     // (n_K, n_N) its motion, as the kinematic side's substeps see it
 };
-ContactMaps contact_maps(const PortKernel& kinematic, const TimeGrid& kinematic_grid,
-                         const PortKernel& neumann, const TimeGrid& neumann_grid);
+ContactMaps contact_maps(const PortKernel& kinematic, const Substeps& kinematic_grid,
+                         const PortKernel& neumann, const Substeps& neumann_grid);
 
 /// Change d of the contact forces f >= 0 that makes forces and gaps complementary  [M.20]:
 ///   0 <= f + d,   overlap - A d <= 0,   and one of both is zero at every substep.
@@ -70,7 +64,7 @@ Eigen::VectorXd solve_toeplitz(const std::vector<double>& column, const Eigen::V
 /// Jacobian of the parallel iteration on the contact force at the source grid's substeps (n, n):
 /// overlap removed there per unit force.
 Eigen::MatrixXd parallel_jacobian(const std::vector<const PortKernel*>& kernels,
-                                  const std::vector<TimeGrid>& grids, const TimeGrid& source,
+                                  const std::vector<Substeps>& grids, const Substeps& source,
                                   ForceSupport source_support);
 
 }  // namespace abut

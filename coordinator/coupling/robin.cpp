@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "base/assert.hpp"
+#include "coordinator/coupling/transmission_parts.hpp"
 
 namespace abut {
 
@@ -33,14 +35,15 @@ std::array<int, 2> Robin::iterated() const { return {kinematic_, 1 - kinematic_}
 
 int Robin::values() const {
   int count = 0;
-  for (int k = 0; k < parts(); ++k) count += partner(iterated()[index(k)]).grid.count;
+  for (int k = 0; k < parts(); ++k)
+    count += static_cast<int>(partner(iterated()[index(k)]).grid.size());
   return count;
 }
 
-void Robin::find_impedances(const Interface& interface, Bodies& bodies) {
+void Robin::find_impedances(const Joint& joint, Bodies& bodies) {
   for (std::size_t s : {0u, 1u}) {
-    const Side& other = interface.sides[1 - s];
-    const TimeGrid& grid = sides_[1 - s].grid;
+    const Side& other = joint.sides[1 - s];
+    const Substeps& grid = sides_[1 - s].grid.steps;
     double z = given_;
     if (rule_ == Rule::matched) z = characteristic_impedance(bodies, other, grid.step);
     if (rule_ == Rule::kernel)
@@ -50,32 +53,34 @@ void Robin::find_impedances(const Interface& interface, Bodies& bodies) {
   impedance_sum_ = sides_[0].impedance + sides_[1].impedance;
 }
 
-void Robin::begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) {
-  kinematic_ = interface.kinematic;
-  double u[2] = {0.0, 0.0};
-  double compliance = 0.0;
+void Robin::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
+  kinematic_ = joint.kinematic;
+  double compliance = 0.0, moved = joint.reference_gap;
+  std::array<std::vector<double>, 2> u;
   for (std::size_t s : {0u, 1u}) {
-    const Side& here = interface.sides[s];
+    const Side& here = joint.sides[s];
     const Waveform& trace = trace_of(bodies, here);
+    ABUT_ASSERT(trace.width == joint.width);
     const std::size_t now = index_at_begin(trace, window.begin);
-    const double n = interface.normal_of(static_cast<int>(s));
+    const double n = joint.normal_of(static_cast<int>(s));
     Begin& side = sides_[s];
-    side.grid = TimeGrid(window.begin, window.end, bodies.describe(here.body).step);
+    side.grid = {substeps_of(bodies, here, window), joint.width};
     side.support = trace.support;
-    u[s] = trace.u[now];
-    side.u = n * trace.u[now];
-    side.v = n * trace.v[now];
-    side.force = -n * trace.f[now];
+    keep_row(trace, trace.u, now, u[s]);
+    keep_row(trace, trace.v, now, side.v);
+    keep_row(trace, trace.f, now, side.force);
+    for (double& v : side.v) v *= n;
+    for (double& f : side.force) f *= -n;
+    moved = std::max(moved, largest(u[s]));
     compliance += bodies.kernel(here.body, here.port, 1).displacement.front();
   }
-  overlap_ = -interface.gap(u[0], u[1]);
-  if (impedance_sum_ == 0.0) find_impedances(interface, bodies);
-  scale_.step = std::max(sides_[0].grid.step, sides_[1].grid.step);
-  scale_.velocity =
-      std::max(interface.closing_speed, interface.force_scale * compliance / scale_.step);
-  scale_.force = interface.force_scale;
-  scale_.roundoff = 64.0 * std::numeric_limits<double>::epsilon() *
-                    std::max({std::abs(u[0]), std::abs(u[1]), interface.reference_gap});
+  overlap_.resize(u[0].size());
+  for (std::size_t c = 0; c < overlap_.size(); ++c) overlap_[c] = -joint.gap(u[0][c], u[1][c]);
+  if (impedance_sum_ == 0.0) find_impedances(joint, bodies);
+  scale_.step = std::max(sides_[0].grid.steps.step, sides_[1].grid.steps.step);
+  scale_.velocity = reference_velocity(joint, compliance, scale_.step);
+  scale_.force = joint.force_scale;
+  scale_.roundoff = roundoff_of(moved, 0.0);
 }
 
 void Robin::predict(Eigen::Ref<Eigen::VectorXd> x) const {
@@ -84,64 +89,71 @@ void Robin::predict(Eigen::Ref<Eigen::VectorXd> x) const {
     const int side = iterated()[index(k)];
     const Begin& here = sides_[index(side)];
     const Begin& other = partner(side);
-    const bool known = here.incoming_begin == other.grid.begin &&
-                       static_cast<int>(here.incoming.size()) >= other.grid.count;
-    for (int i = 0; i < other.grid.count; ++i) {
-      const double length = other.grid.time(i + 1) - other.grid.time(i);
-      const double close = i == 0 ? overlap_ / length : 0.0;
-      x[at++] = known ? here.incoming[index(i)] : other.force + here.impedance * (other.v + close);
+    const Substeps& steps = other.grid.steps;
+    const bool known = here.incoming_begin == steps.begin &&
+                       static_cast<Eigen::Index>(here.incoming.size()) >= other.grid.size();
+    for (Eigen::Index i = 0; i < other.grid.size(); ++i) {
+      const std::size_t c = index(i % other.grid.width);
+      const bool first = i < other.grid.width;
+      const double close = first ? overlap_[c] / (steps.time(1) - steps.time(0)) : 0.0;
+      x[at++] =
+          known ? here.incoming[index(i)] : other.force[c] + here.impedance * (other.v[c] + close);
     }
   }
 }
 
-void Robin::outgoing(int side, const Interface& interface, const Bodies& bodies,
+void Robin::outgoing(int side, const Joint& joint, const Bodies& bodies,
                      Eigen::Ref<Eigen::VectorXd> q) const {
-  const double n = interface.normal_of(1 - side);
+  const double n = joint.normal_of(1 - side);
   const double z = sides_[index(side)].impedance;
-  const Waveform& trace = trace_of(bodies, interface.sides[index(1 - side)]);
+  const Waveform& trace = trace_of(bodies, joint.sides[index(1 - side)]);
+  const std::size_t width = overlap_.size();
   for (std::size_t i = 1; i < trace.size(); ++i) {
     const double length = trace.time[i] - trace.time[i - 1];
-    double moved = n * (trace.u[i] - trace.u[i - 1]);
-    if (i == 1) moved += overlap_;
-    q[static_cast<Eigen::Index>(i) - 1] = -n * trace.f[i] + z * moved / length;
+    for (std::size_t c = 0; c < width; ++c) {
+      double moved = n * (trace.u[i * width + c] - trace.u[(i - 1) * width + c]);
+      if (i == 1) moved += overlap_[c];
+      q[static_cast<Eigen::Index>((i - 1) * width + c)] =
+          -n * trace.f[i * width + c] + z * moved / length;
+    }
   }
 }
 
-void Robin::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+void Robin::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                    Bodies& bodies) {
   Begin& here = sides_[index(side)];
   const Begin& other = partner(side);
-  const int count = other.grid.count;
-  Eigen::VectorXd q(count);
+  const Eigen::Index size = other.grid.size();
+  Eigen::VectorXd q(size);
   if (side == kinematic_) {
-    q = x.head(count);
+    q = x.head(size);
   } else if (parallel_) {
-    q = x.tail(count);
+    q = x.tail(size);
   } else {
-    outgoing(side, interface, bodies, q);
+    outgoing(side, joint, bodies, q);
   }
+  const Substeps& steps = other.grid.steps;
   here.incoming.assign(q.begin(), q.end());
-  here.incoming_begin = other.grid.begin;
-  const Side& port = interface.sides[index(side)];
-  BoundaryData& data = bodies.request(port.body).boundary[index(port.port)];
-  const double inward = -interface.normal_of(side);
-  data.force.clear();
-  data.force.support = other.support;
-  data.force.time.push_back(other.grid.begin);
-  data.force.f.push_back(inward * (other.force + here.impedance * other.v));
-  for (int i = 1; i <= count; ++i) {
-    data.force.time.push_back(other.grid.time(i));
-    data.force.f.push_back(inward * q[i - 1]);
-  }
-  data.impedance = {here.impedance, interface.bilateral};
+  here.incoming_begin = steps.begin;
+  const Side& port = joint.sides[index(side)];
+  const double inward = -joint.normal_of(side);
+  Waveform& force = bodies.force(port);
+  force.clear();
+  force.width = joint.width;
+  force.support = other.support;
+  for (int i = 0; i <= steps.count; ++i) force.time.push_back(steps.time(i));
+  for (std::size_t c = 0; c < overlap_.size(); ++c)
+    force.f.push_back(inward * (other.force[c] + here.impedance * other.v[c]));
+  for (double value : q) force.f.push_back(inward * value);
+  bodies.boundary(port).impedance = {here.impedance, joint.tied()};
 }
 
-void Robin::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+void Robin::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                   const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
-  const Eigen::Index first = partner(kinematic_).grid.count;
-  outgoing(kinematic_, interface, bodies, g.head(first));
-  if (parallel_) outgoing(1 - kinematic_, interface, bodies, g.tail(x.size() - first));
-  for (double f : trace_of(bodies, interface.kinematic_side()).f)
+  const Eigen::Index first = partner(kinematic_).grid.size();
+  outgoing(kinematic_, joint, bodies, g.head(first));
+  if (parallel_) outgoing(1 - kinematic_, joint, bodies, g.tail(x.size() - first));
+  for (double f : trace_of(bodies, joint.kinematic_side()).f)
     scale_.force = std::max(scale_.force, std::abs(f));
   scale_.velocity = std::max(scale_.velocity, scale_.force / impedance_sum_ * 1.0e-3);
   scale_.force = std::max(scale_.force, scale_.velocity * impedance_sum_ * 1.0e-3);
@@ -153,13 +165,16 @@ FieldResiduals Robin::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
   FieldResiduals r;
   Eigen::Index at = 0;
   for (int k = 0; k < parts(); ++k) {
-    const TimeGrid& grid = partner(iterated()[index(k)]).grid;
-    double overlap = 0.0;
-    for (int i = 0; i < grid.count; ++i, ++at) {
+    const IterateGrid& grid = partner(iterated()[index(k)]).grid;
+    std::vector<double> overlap(overlap_.size(), 0.0);
+    for (Eigen::Index i = 0; i < grid.size(); ++i, ++at) {
       const double difference = g[at] - x[at];
-      overlap += difference / impedance_sum_ * (grid.time(i + 1) - grid.time(i));
+      const int substep = static_cast<int>(i / grid.width) + 1;
+      double& left = overlap[index(i % grid.width)];
+      left +=
+          difference / impedance_sum_ * (grid.steps.time(substep) - grid.steps.time(substep - 1));
       r.displacement =
-          std::max(r.displacement, scaled(overlap, scale_.velocity * scale_.step, scale_.roundoff));
+          std::max(r.displacement, scaled(left, scale_.velocity * scale_.step, scale_.roundoff));
       r.force = std::max(r.force, scaled(0.5 * difference, scale_.force,
                                          scale_.roundoff / scale_.step * impedance_sum_));
     }

@@ -21,13 +21,13 @@ class Robin final : public Transmission {
   Robin(Rule rule, double impedance, bool parallel)
       : rule_(rule), given_(impedance), parallel_(parallel) {}
 
-  void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
+  void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
   int values() const override;
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
-  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
-             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
@@ -37,20 +37,20 @@ class Robin final : public Transmission {
  private:
   /// What is known of a side at the window's begin; displacements along its outward normal.
   struct Begin {
-    TimeGrid grid;
+    IterateGrid grid;  // of what it sends
     ForceSupport support = ForceSupport::nodal;
-    double u = 0.0, v = 0.0, force = 0.0;  // [m] [m/s] [N] compressive
-    double impedance = 0.0;                // [kg/s] that this side sees
-    std::vector<double> incoming;          // [N] last q of this side: the guess of a shorter window
-    double incoming_begin = 0.0;           // [s] begin of its window
+    std::vector<double> v, force;  // (width) [m/s] [N] compressive
+    double impedance = 0.0;        // [kg/s] that this side sees
+    std::vector<double> incoming;  // [N] last q of this side: the guess of a shorter window
+    double incoming_begin = 0.0;   // [s] begin of its window
   };
   /// Sides whose incoming force is iterated, in the order of the iterate.
   std::array<int, 2> iterated() const;
   int parts() const { return parallel_ ? 2 : 1; }
   const Begin& partner(int side) const { return sides_[index(1 - side)]; }
-  void find_impedances(const Interface& interface, Bodies& bodies);
+  void find_impedances(const Joint& joint, Bodies& bodies);
   /// q for a side out of its partner's latest response.
-  void outgoing(int side, const Interface& interface, const Bodies& bodies,
+  void outgoing(int side, const Joint& joint, const Bodies& bodies,
                 Eigen::Ref<Eigen::VectorXd> q) const;
 
   Rule rule_;
@@ -58,7 +58,7 @@ class Robin final : public Transmission {
   bool parallel_;
   int kinematic_ = 0;
   std::array<Begin, 2> sides_;
-  double overlap_ = 0.0;  // [m] at the window's begin
+  std::vector<double> overlap_;  // [m] (width) at the window's begin
   double impedance_sum_ = 0.0;
   ReferenceScales scale_;
 };

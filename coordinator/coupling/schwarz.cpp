@@ -4,50 +4,11 @@
 #include <bit>
 
 #include "base/archive.hpp"
-#include "base/assert.hpp"
-#include "base/error.hpp"
 #include "base/index.hpp"
 
 namespace abut {
 
 namespace {
-
-/// Bodies of an island by level: a body comes after the kinematic partners whose reactions it
-/// takes.
-std::vector<std::vector<int>> levels_of(const std::vector<int>& members,
-                                        std::span<const Joint> joints,
-                                        const std::vector<int>& island) {
-  std::vector<int> waiting = members;
-  std::vector<int> done;
-  std::vector<std::vector<int>> levels;
-  auto is_done = [&done](int body) {
-    return std::find(done.begin(), done.end(), body) != done.end();
-  };
-  while (!waiting.empty()) {
-    std::vector<int> level;
-    for (int body : waiting) {
-      const bool ready =
-          std::all_of(island.begin(), island.end(), [&joints, body, &is_done](int j) {
-            const Joint& joint = joints[index(j)];
-            const bool takes_force = joint.interface->neumann_side().body == body;
-            return !takes_force || !joint.transmission->ordered() ||
-                   is_done(joint.interface->kinematic_side().body);
-          });
-      if (ready) level.push_back(body);
-    }
-    if (level.empty()) {
-      throw InputError(
-          "the kinematic sides of its interfaces go round in a circle", "interfaces",
-          "Fix fewer roles: leave `kinematic: auto` on at least one interface of the circle.");
-    }
-    for (int body : level) {
-      done.push_back(body);
-      waiting.erase(std::find(waiting.begin(), waiting.end(), body));
-    }
-    levels.push_back(std::move(level));
-  }
-  return levels;
-}
 
 /// Tells window lengths and layouts apart; single precision, because ends of equal windows are
 /// rounded differently.
@@ -59,46 +20,12 @@ std::uint64_t layout_key(const TimeWindow& window, const std::vector<Eigen::Inde
 
 }  // namespace
 
-std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
-  std::vector<int> root(index(bodies));
-  for (int b = 0; b < bodies; ++b) root[index(b)] = b;
-  auto merge = [&root](int from, int to) {
-    for (int& r : root) {
-      if (r == from) r = to;
-    }
-  };
-  for (const Joint& joint : joints) {
-    if (!joint.interface->closed) continue;
-    const int a = root[index(joint.interface->sides[0].body)];
-    const int b = root[index(joint.interface->sides[1].body)];
-    merge(std::max(a, b), std::min(a, b));
-  }
-  std::vector<Island> islands;
-  for (int r = 0; r < bodies; ++r) {
-    Island island;
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      const Interface& interface = *joints[j].interface;
-      if (interface.closed && root[index(interface.sides[0].body)] == r) {
-        island.joints.push_back(static_cast<int>(j));
-      }
-    }
-    if (island.joints.empty()) continue;
-    std::vector<int> members;
-    for (int b = 0; b < bodies; ++b) {
-      if (root[index(b)] == r) members.push_back(b);
-    }
-    island.levels = levels_of(members, joints, island.joints);
-    islands.push_back(std::move(island));
-  }
-  return islands;
-}
-
 Eigen::VectorXd Schwarz::apply_inverses(const Eigen::VectorXd& r,
                                         std::span<const Joint> joints) const {
   Eigen::VectorXd out(r.size());
   for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
     const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
-    const Transmission& t = *joints[index(layout_.joints[i])].transmission;
+    const Transmission& t = *joints[index(layout_.joints[i])].how;
     out.segment(layout_.first[i], count) = t.apply_inverse(r.segment(layout_.first[i], count));
   }
   return out;
@@ -112,7 +39,7 @@ Accelerator& Schwarz::accelerator_of(const Island& island, std::span<const Joint
         Eigen::VectorXd out(r.size());
         for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
           const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
-          const Transmission& t = *joints[index(layout_.joints[i])].transmission;
+          const Transmission& t = *joints[index(layout_.joints[i])].how;
           // accelerators see scaled values; contact does not scale, its gaps and forces are given
           const auto unit = s_.segment(layout_.first[i], count);
           const Eigen::VectorXd plain = r.segment(layout_.first[i], count).cwiseQuotient(unit);
@@ -138,10 +65,10 @@ std::optional<Failed> Schwarz::sweep(const Island& island, std::span<const Joint
     for (std::size_t i = 0; i < layout.joints.size(); ++i) {
       const Joint& joint = joints[index(layout.joints[i])];
       for (int side : {0, 1}) {
-        const int body = joint.interface->sides[index(side)].body;
+        const int body = joint.sides[index(side)].body;
         if (std::find(level.begin(), level.end(), body) == level.end()) continue;
         const Eigen::Index count = layout.first[i + 1] - layout.first[i];
-        joint.transmission->impose(side, x.segment(layout.first[i], count), *joint.interface,
+        joint.how->impose(side, x.segment(layout.first[i], count), joint,
                                    bodies);
       }
     }
@@ -156,8 +83,8 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   layout_.first.assign(1, 0);
   for (int j : island.joints) {
     const Joint& joint = joints[index(j)];
-    joint.transmission->begin(window, *joint.interface, bodies);
-    layout_.first.push_back(layout_.first.back() + joint.transmission->values());
+    joint.how->begin(window, joint, bodies);
+    layout_.first.push_back(layout_.first.back() + joint.how->values());
   }
   const Eigen::Index size = layout_.first.back();
   for (Eigen::VectorXd* v : {&x_, &g_, &s_}) v->resize(size);
@@ -168,7 +95,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     return joints[index(island.joints[i])];
   };
   for (std::size_t i = 0; i < island.joints.size(); ++i)
-    joint_at(i).transmission->predict(part(x_, i));
+    joint_at(i).how->predict(part(x_, i));
   Accelerator& accelerator = accelerator_of(island, joints);
   accelerator.reset(layout_key(window, layout_.first));
 
@@ -183,14 +110,14 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     report.residual = {};
     for (std::size_t i = 0; i < island.joints.size(); ++i) {
       const Joint& joint = joint_at(i);
-      joint.transmission->image(part(x_, i), *joint.interface, bodies, part(g_, i));
-      report.residual.include(joint.transmission->measure(part(x_, i), part(g_, i)));
-      joint.transmission->scales(part(s_, i));
+      joint.how->image(part(x_, i), joint, bodies, part(g_, i));
+      report.residual.include(joint.how->measure(part(x_, i), part(g_, i)));
+      joint.how->scales(part(s_, i));
     }
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
     if (options_.kernels && std::ranges::any_of(island.joints, [&joints](int j) {
-          return joints[index(j)].transmission->projects();
+          return joints[index(j)].how->projects();
         })) {
       x_ += apply_inverses(g_ - x_, joints);
       continue;

@@ -11,7 +11,8 @@
 #include "coordinator/coupling/accelerator.hpp"
 #include "coordinator/coupling/bodies.hpp"
 #include "coordinator/coupling/convergence.hpp"
-#include "coordinator/coupling/interface.hpp"
+#include "coordinator/coupling/islands.hpp"
+#include "coordinator/coupling/joint.hpp"
 #include "coordinator/coupling/transmission.hpp"
 
 namespace abut {
@@ -21,22 +22,6 @@ struct SchwarzReport {
   int iterations = 0;       // sweeps: every body of the island advanced once in each
   FieldResiduals residual;  // of the last sweep
 };
-
-/// One closed interface with its way of transmission.
-struct Joint {
-  Interface* interface = nullptr;
-  Transmission* transmission = nullptr;
-};
-
-/// Closed interfaces that hang together, and their bodies: what is iterated together.
-struct Island {
-  std::vector<int> joints;               // indices into the run's joints
-  std::vector<std::vector<int>> levels;  // bodies; those of one level advance at once
-};
-
-/// Finds the islands of the closed interfaces and the order of sweeps inside them: kinematic sides
-/// first. Throws InputError when the roles go round in a circle.
-std::vector<Island> find_islands(std::span<const Joint> joints, int bodies);
 
 /// The alternating Schwarz iteration of one window.
 class Schwarz {

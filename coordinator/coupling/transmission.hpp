@@ -8,27 +8,28 @@
 #include "contract/time_window.hpp"
 #include "coordinator/coupling/bodies.hpp"
 #include "coordinator/coupling/convergence.hpp"
-#include "coordinator/coupling/interface.hpp"
+#include "coordinator/coupling/joint.hpp"
 #include "coordinator/coupling/port_jacobian.hpp"
 
 namespace abut {
 
-/// What the partner's response imposes on each side of a closed interface, and what is iterated. A
-/// window runs begin, predict, (impose side by side, image, measure)* x is the interface's part of
-/// the stacked iterate, in SI units.
+/// What the partner's response imposes on each side of a closed joint, and what is iterated: values
+/// of its ports' points and components at the substeps of a window, (substeps, width), in SI units.
+/// A window runs  begin, predict, (impose side by side, image, measure)*;  x is the joint's part of
+/// the stacked iterate.
 class Transmission {
  public:
   virtual ~Transmission() = default;
 
   /// Lays out the iterate of a window; the latest responses hold the state at its begin.
-  virtual void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) = 0;
+  virtual void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) = 0;
   virtual int values() const = 0;
   virtual void predict(Eigen::Ref<Eigen::VectorXd> x) const = 0;
   /// Fills the request of one side's body.
-  virtual void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
-                      const Interface& interface, Bodies& bodies) = 0;
+  virtual void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
+                      Bodies& bodies) = 0;
   /// G(x), out of the responses of this sweep.
-  virtual void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+  virtual void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                      const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) = 0;
   virtual FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                                  const Eigen::Ref<const Eigen::VectorXd>& g) const = 0;
@@ -43,8 +44,19 @@ class Transmission {
   /// True when contact came or went within the window at the last image, and apply_inverse answers
   /// that exactly for linear bodies: secants of other substeps in contact would spoil it.
   virtual bool projects() const { return false; }
+  /// True when motion is overwritten on a side: that does work of which nobody knows.
+  virtual bool overwrites_motion() const { return false; }
   /// True when the sides must be advanced one after the other, the kinematic one first.
   virtual bool ordered() const = 0;
+};
+
+/// Values of a port at the ends of the substeps of a window: where they are in an iterate.
+struct IterateGrid {
+  Substeps steps;
+  int width = 1;
+
+  Eigen::Index size() const { return Eigen::Index{steps.count} * width; }
+  Eigen::Index at(int substep) const { return Eigen::Index{substep - 1} * width; }  // from 1
 };
 
 /// Inverse interface Jacobians by window length: a Toeplitz column where both bodies take the same
@@ -76,13 +88,13 @@ class KernelInverse {
 /// side's motion, never the force, so momentum is exact in every iterate  [M.9].
 class Unilateral final : public Transmission {
  public:
-  void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
-  int values() const override { return neumann_grid_.count; }
+  void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
+  int values() const override { return static_cast<int>(iterate_.size()); }
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
-  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
-             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
@@ -92,16 +104,18 @@ class Unilateral final : public Transmission {
   bool ordered() const override { return true; }
 
  private:
-  TimeGrid kinematic_grid_, neumann_grid_;
-  double u_begin_ = 0.0, v_begin_ = 0.0;  // of the Neumann port
-  Waveform guess_;                        // last iterate: a window that is cut short starts from it
+  Substeps kinematic_grid_;
+  IterateGrid iterate_;                    // of the Neumann port
+  std::vector<double> u_begin_, v_begin_;  // (width) of the Neumann port
+  Waveform guess_;  // last iterate: a window that is cut short starts from it
   ReferenceScales scale_;
   double kinematic_compliance_ = 0.0, neumann_compliance_ = 0.0;  // [m/N] over one substep
   double roundoff_gain_ = 1.0;  // of displacements, through the reaction
   double first_factor_ = 1.0;
-  void see_contact(const Interface& interface, const Bodies& bodies);
+  void find_inverse(const Joint& joint, double length);
+  void see_contact(const Joint& joint, const Bodies& bodies);
 
-  // of contact: kernels, and what the last sweep left on K's side at its substeps
+  // of contact at one point: kernels, and what the last sweep left on K's side at its substeps
   bool unilateral_ = true;  // contact: every substep decides for itself
   bool projects_ = false;
   bool alike_ = false;  // both sides take the same substeps
@@ -117,13 +131,13 @@ class Unilateral final : public Transmission {
 /// side's substeps until no overlap is left  [M.12].
 class ParallelForce final : public Transmission {
  public:
-  void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
-  int values() const override { return force_grid_.count; }
+  void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
+  int values() const override { return static_cast<int>(iterate_.size()); }
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
-  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
-             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
@@ -132,12 +146,12 @@ class ParallelForce final : public Transmission {
   bool ordered() const override { return false; }
 
  private:
-  TimeGrid force_grid_;
+  IterateGrid iterate_;     // of the force, compressive
   bool unilateral_ = true;  // contact: every substep decides for itself
   bool projects_ = false;
   Eigen::VectorXd overlap_, force_;  // [m] [N] of the last image
   ForceSupport support_ = ForceSupport::nodal;
-  double force_begin_ = 0.0;  // [N] compressive, known at the window's begin
+  std::vector<double> force_begin_;  // [N] (width) known at the window's begin
   Waveform guess_;
   ReferenceScales scale_;
   double compliance_ = 0.0;  // [m/N] of both sides over one substep
@@ -152,24 +166,26 @@ class DirichletNeumann final : public Transmission {
   /// `roles_swap`: what is the Neumann side now was the Dirichlet side of the window before.
   explicit DirichletNeumann(bool roles_swap) : roles_swap_(roles_swap) {}
 
-  void begin(const TimeWindow& window, const Interface& interface, Bodies& bodies) override;
-  int values() const override { return 3 * grid_.count; }
+  void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
+  int values() const override { return static_cast<int>(3 * iterate_.size()); }
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
-  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
+  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Interface& interface,
-             const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
   Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override { return r; }
+  bool overwrites_motion() const override { return true; }
   bool ordered() const override { return true; }
 
  private:
   bool roles_swap_;
-  TimeGrid grid_;
-  double u_begin_ = 0.0, v_begin_ = 0.0, a_begin_ = 0.0;
-  double f_begin_ = 0.0;  // [N] on the Neumann side, as exchanged at the end of the last window
+  IterateGrid iterate_;                              // of each of u, v and a
+  std::vector<double> u_begin_, v_begin_, a_begin_;  // (width)
+  // [N] (width) on the Neumann side, as exchanged at the end of the last window
+  std::vector<double> f_begin_;
   ReferenceScales scale_;
 };
 

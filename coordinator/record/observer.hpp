@@ -61,6 +61,7 @@ struct RunEnd {
   double time = 0.0;                     // [s] how far the run came
   // over bodies and coordinator, equal in every placement; empty: the bodies were gone
   std::optional<std::uint64_t> state_hash;
+  std::vector<std::uint64_t> body_hashes;  // by body: those of the bodies alone
   std::int64_t windows = 0;              // accepted
   std::int64_t contact_windows = 0;      // accepted with a closed interface
   std::int64_t exchanges = 0;            // requests answered by bodies, kernels included

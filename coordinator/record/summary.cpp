@@ -184,6 +184,8 @@ std::string Summary::text(const RunEnd& end) const {
   if (form_ != nullptr) summary["closed_form"] = closed_form_object(*form_);
   summary["state_hash"] =
       end.state_hash ? Json(fmt::format("{:016x}", *end.state_hash)) : Json(nullptr);
+  for (std::size_t b = 0; b < end.body_hashes.size(); ++b)
+    summary["body_hashes"][start_.bodies[b]->name] = fmt::format("{:016x}", end.body_hashes[b]);
   summary["windows"] = end.windows;
   summary["contact_windows"] = end.contact_windows;
   summary["exchanges"] = end.exchanges;

@@ -141,8 +141,8 @@ class Contact {
   }
   Bodies& bodies() { return bodies_; }
   const TimeWindow& window() const { return window_; }
-  TimeGrid grid(int body) {
-    return TimeGrid(window_.begin, window_.end, bodies_.describe(body).step);
+  Substeps grid(int body) {
+    return Substeps(window_.begin, window_.end, bodies_.describe(body).step);
   }
 
  private:
@@ -168,7 +168,7 @@ TEST_P(PortJacobian, OfTheUnilateralMapIsItsDifference) {
   Unilateral transmission;
   Contact contact(GetParam(), transmission, 0);
   const Eigen::MatrixXd measured = contact.jacobian();
-  const TimeGrid k = contact.grid(0), n = contact.grid(1);
+  const Substeps k = contact.grid(0), n = contact.grid(1);
   const Eigen::MatrixXd closed = unilateral_jacobian(contact.bodies().kernel(0, 0, k.count), k,
                                                      contact.bodies().kernel(1, 0, n.count), n);
   ASSERT_EQ(closed.rows(), measured.rows());

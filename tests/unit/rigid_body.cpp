@@ -46,7 +46,7 @@ Advance pushed(const Subdomain& body, double from, double to, std::vector<double
   Advance request = free_request(body, from, to);
   const Port& port = body.describe().ports[0];
   const std::size_t dim = index(port.geometry.dim);
-  Waveform& imposed = request.boundary[0].force;
+  Waveform& imposed = request.boundary[0].forces.emplace_back();
   imposed.width = static_cast<int>(port.geometry.points.size());
   imposed.time = {from, to};
   for (std::size_t k = 0; k < 2 * port.geometry.points.size(); ++k)

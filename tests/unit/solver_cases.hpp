@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/index.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace abut {
@@ -94,14 +95,28 @@ inline std::vector<double> substep_times(double begin, double end, double step) 
   return times;
 }
 
+/// A port of one point meets another one, `distance` outside it; tied, or in contact.
+inline void meet_point(Subdomain& body, std::size_t port, bool tied, double distance = 0.0) {
+  PortGeometry point = body.describe().ports[port].geometry;
+  point.points[0] += distance * point.normals[0];
+  point.normals[0] *= -1.0;
+  body.meet(static_cast<int>(port), point, {tied});
+}
+
+/// The kernel of a port of one point along its outward normal.
+inline PortKernel normal_kernel(Subdomain& body, int port, double step, int count) {
+  const std::vector<double> normal = body.describe().ports[index(port)].geometry.normals;
+  PortKernel kernel = body.probe(port, normal, step, count);
+  for (std::vector<double>* values : {&kernel.compliance, &kernel.displacement, &kernel.begin})
+    for (double& value : *values) value *= normal[0];
+  return kernel;
+}
+
 /// A surface that starts where the port is and pushes it inwards, smoothly but not polynomially;
 /// inward displacement of size `depth` at the end.
 inline Obstacle pushing_surface(const Subdomain& body, std::size_t port,
-                                const std::vector<double>& times, double depth,
-                                bool bilateral = true) {
+                                const std::vector<double>& times, double depth) {
   Obstacle obstacle;
-  obstacle.offset = {0.0};
-  obstacle.bilateral = bilateral;
   const double length = times.back() - times.front();
   for (double t : times) {
     const double s = (t - times.front()) / length;

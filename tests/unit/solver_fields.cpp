@@ -57,8 +57,8 @@ TEST(BarFields, AFrontStandsWhereDAlembertPutsIt) {
   const std::unique_ptr<Subdomain> body =
       build(case_bar({"front", explicit_scheme(1.0), "kick: {}", {"right"}}, speed));
   Advance request = free_request(*body, 0.0, time);
-  Obstacle& wall = request.boundary[0].obstacle;
-  wall.offset = {0.0};
+  meet_point(*body, 0, false);
+  Obstacle& wall = request.boundary[0].obstacles.emplace_back();
   wall.motion.time = substep_times(0.0, time, 1.0);
   wall.motion.u.assign(wall.motion.time.size(), 0.0);
   Response response;
@@ -88,7 +88,8 @@ TEST_P(BarFieldsOf, AgreeWithTheTracesOfThePorts) {
   constexpr double end = 12.0;
   const std::vector<double> times = substep_times(0.0, end, case_step);
   Advance request = free_request(*body, 0.0, end);
-  request.boundary[0].obstacle = pushing_surface(*body, 0, times, 0.3);
+  meet_point(*body, 0, true);
+  request.boundary[0].obstacles = {pushing_surface(*body, 0, times, 0.3)};
   Response response;
   step(*body, request, response);
   const std::uint64_t hash = body->state_hash();

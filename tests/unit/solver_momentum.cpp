@@ -52,9 +52,10 @@ TEST_P(Impulses, MomentumGainedIsTheImpulseHandedInForAnyPairOfSteps) {
       double handed = 0.0;
       for (std::size_t p = 0; p < request.boundary.size(); ++p) {
         const double sign = (p == 0 ? -1.0 : -0.4) * outward(*body, p);
-        request.boundary[p].force = partner_force(length, quiet, r.partner, support, sign);
+        request.boundary[p].forces = {
+            partner_force(length, quiet, r.partner, support, sign)};
         double impulse = 0.0;
-        request.boundary[p].force.impulse(0.0, length, {&impulse, 1});
+        request.boundary[p].forces[0].impulse(0.0, length, {&impulse, 1});
         handed += impulse;
       }
       Response response;
@@ -117,7 +118,7 @@ TEST(Loads, AFixedEndStaysAndTheOtherEndFeelsIt) {
     text.length = 20.0;
     const std::unique_ptr<Subdomain> body = build(text);
     Advance request = free_request(*body, 0.0, 2000 * 0.6);
-    Waveform& force = request.boundary[0].force;
+    Waveform& force = request.boundary[0].forces.emplace_back();
     force.time = substep_times(0.0, 2000 * 0.6, 0.6);
     force.f.assign(force.time.size(), -0.01);
     Response response;

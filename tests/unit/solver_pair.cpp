@@ -106,7 +106,7 @@ TEST_P(PairBesideBars, MoveAsTwoBodiesUnderTheirContactForceWould) {
     const std::unique_ptr<Subdomain> bar = build(single(m, side));
     Advance request = free_request(*bar, 0.0, 60.0);
     const Waveform& seen = both.ports[index(side)].trace;
-    request.boundary[0].force = seen;
+    request.boundary[0].forces = {seen};
     Response alone;
     step(*bar, request, alone);
     const Waveform& own = alone.ports[0].trace;
@@ -207,7 +207,7 @@ TEST_P(Pair, IsDescribedByItsMembersAndOffersNothing) {
   EXPECT_EQ(d.ports[1].geometry.transit, 1.0);  // h / c
   EXPECT_EQ(d.mass, 50.0);
   EXPECT_FALSE(d.can.force || d.can.motion || d.can.obstacle || d.can.impulse || d.can.kernel);
-  EXPECT_THROW(pair->kernel(0, pair_step, 3), RunError);
+  EXPECT_THROW(pair->probe(0, std::vector<double>{1.0}, pair_step, 3), RunError);
 }
 
 TEST(PairEnergy, OfThePenaltySpringIsPartOfTheWhole) {

@@ -401,7 +401,7 @@ TEST(ReactionsInMotion, OfAPortUnderForceHoldAgainstIt) {
     part.more = "    ports: {lid: {side: top}}\n";
     const std::unique_ptr<Subdomain> body = part.build();
     Advance request = free_request(*body, 0.0, 1.0);
-    Waveform& push = request.boundary[0].force;
+    Waveform& push = request.boundary[0].forces.emplace_back();
     push.width = 6;  // three nodes
     push.time = {0.0, 1.0};
     push.f = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.1, 0.0, -0.2, 0.0, -0.1};

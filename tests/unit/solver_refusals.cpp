@@ -95,13 +95,13 @@ TEST(MakeBody, DescribesItself) {
   EXPECT_EQ(d.mass, 40.0);
   EXPECT_EQ(d.ports.at(0).geometry.points.at(0), 40.0);
   EXPECT_EQ(d.ports.at(0).geometry.normals.at(0), 1.0);
-  EXPECT_TRUE(d.can.obstacle && d.can.force && d.can.kernel && d.can.complete);
+  EXPECT_TRUE(d.can.obstacle && d.can.force && d.can.kernel && d.can.yielding);
   EXPECT_FALSE(d.can.motion);
   BarText massive = plain();
   massive.layer = "massive: {}";
   const Capabilities can = build(massive)->describe().can;
   EXPECT_TRUE(can.motion && can.force);
-  EXPECT_FALSE(can.obstacle || can.complete || can.kernel);
+  EXPECT_FALSE(can.obstacle || can.yielding || can.kernel);
 }
 
 }  // namespace

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "base/archive.hpp"
+#include "contract/time_window.hpp"
+#include "coordinator/coupling/contact.hpp"
+#include "coordinator/narrator.hpp"
+
+namespace abut {
+
+/// What contact makes of a run of windows: it closes and opens joints, says where a window must end
+/// because of that, and keeps the account of what contact gave the bodies and took from them
+/// (docs/METHOD.md, energy of events). Reads the latest responses.
+class ContactEvents {
+ public:
+  /// `tolerance`: of the iteration. All references must outlive it.
+  ContactEvents(std::span<Joint> joints, Bodies& bodies, Narrator& narrator, double tolerance)
+      : joints_(joints), bodies_(bodies), narrator_(narrator), tolerance_(tolerance) {}
+
+  /// Before the first window: closes tied joints.
+  void start();
+  /// Before a window: the published criteria of joints that decide there.
+  void begin(const TimeWindow& window);
+
+  // Of a window that was tried:
+
+  /// Lets sides that were free and met be iterated from now on; the end of the first substep in
+  /// which any did [s].
+  std::optional<double> engage_touching();
+  /// Where the window must end so that contact is paid what an event in it has moved, before more
+  /// happens: at the first common end of substeps. A release of kick layers gives its impulse at
+  /// the end of the last kick. `energy` [J]: the largest of the run.
+  std::optional<double> first_event(const TimeWindow& window, double energy);
+  /// First time in the window, from `time` on, at which substeps of all bodies end.
+  double common_end(const TimeWindow& window, double time) const;
+  /// Kick layers that end their contact at the window's begin part with what they were owed.
+  bool release_kicks(const TimeWindow& window);
+  /// An earlier end: fewer substeps at once, fewer kinks in the map that is iterated.
+  std::optional<double> earlier_end(const TimeWindow& window) const;
+
+  // Of a window that was accepted:
+
+  /// What contact did in it: its account, the impulse that pays it, and what is told of it.
+  void settle(const TimeWindow& window, double energy);
+  /// Contact inside a body is computed there: nothing is imposed, it is told what was seen.
+  void watch_inside(std::span<InterfaceReport> reports);
+  /// The published form exchanges roles after every window in contact.
+  void swap_roles();
+
+  void state(Archive& archive);
+
+ private:
+  void engage(Joint& joint, double speed);
+  void pay(Joint& joint, double energy);
+  void narrate(Joint& joint);
+  void disengage(Joint& joint, const TimeWindow& window) const;
+  double least_force(const Joint& joint) const;
+  double still() const;
+
+  std::span<Joint> joints_;
+  Bodies& bodies_;
+  Narrator& narrator_;
+  double tolerance_;
+  double fastest_touch_ = 0.0;    // [m/s] of all first touches
+  double force_reference_ = 0.0;  // [N] largest contact force of the run
+  ContactHistory history_;
+};
+
+}  // namespace abut

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "coordinator/coupling/joint.hpp"
+
+namespace abut {
+
+/// Closed joints that hang together, and their bodies: what is iterated together.
+struct Island {
+  std::vector<int> joints;               // indices into the run's joints
+  std::vector<std::vector<int>> levels;  // bodies; those of one level advance at once
+};
+
+/// Finds the islands of the closed joints and the order of sweeps inside them: kinematic sides
+/// first. Throws RunError when the roles go round in a circle, which choose_roles rules out.
+std::vector<Island> find_islands(std::span<const Joint> joints, int bodies);
+
+/// The bodies of a run by their closed joints; found again only when those change.
+class Partition {
+ public:
+  void update(std::span<const Joint> joints, int bodies);
+
+  const std::vector<Island>& islands() const { return islands_; }
+  const std::vector<int>& free() const { return free_; }  // bodies in no island
+
+ private:
+  std::vector<int> roles_;  // by joint: kinematic side, or -1 when open
+  std::vector<Island> islands_;
+  std::vector<int> free_;
+};
+
+}  // namespace abut

@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/assert.hpp"
+#include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/transmission_parts.hpp"
+
+namespace abut {
+
+void ParallelForce::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
+  std::vector<Substeps> grids;
+  std::vector<const PortKernel*> kernels;
+  compliance_ = 0.0;
+  projects_ = false;
+  unilateral_ = joint.unilateral();
+  for (const Side& side : joint.sides) {
+    grids.push_back(substeps_of(bodies, side, window));
+    kernels.push_back(&bodies.kernel(side.body, side.port, grids.back().count));
+    compliance_ += kernels.back()->displacement.front();
+  }
+  const std::size_t source = index(joint.kinematic);
+  iterate_ = {grids[source], joint.width};
+  support_ = kernels[source]->support;
+  const Waveform& trace = trace_of(bodies, joint.kinematic_side());
+  ABUT_ASSERT(trace.width == joint.width);
+  keep_row(trace, trace.f, index_at_begin(trace, window.begin), force_begin_);
+  const bool unknown = !joint.closed() || support_ == ForceSupport::step;
+  for (double& f : force_begin_) f = unknown ? 0.0 : -joint.normal_of(joint.kinematic) * f;
+  scale_.step = iterate_.steps.step;
+  scale_.velocity = reference_velocity(joint, compliance_, scale_.step);
+  scale_.force = joint.force_scale;
+  inverse_ = nullptr;
+  if (joint.width > 1) return;  // secants do it
+  inverse_ = inverses_.find(window.length());
+  if (inverse_ != nullptr) return;
+  if (std::max(grids[0].count, grids[1].count) > KernelInverse::largest) return;
+  Eigen::MatrixXd jacobian = parallel_jacobian(kernels, grids, iterate_.steps, support_);
+  inverse_ = unilateral_
+                 ? inverses_.store(window.length(), ContactMaps{std::move(jacobian), {}, {}})
+                 : inverses_.store(window.length(), jacobian / compliance_);
+}
+
+void ParallelForce::predict(Eigen::Ref<Eigen::VectorXd> x) const {
+  const bool known = covers(guess_, iterate_.steps);
+  for (int i = 1; i <= iterate_.steps.count; ++i) {
+    const std::span<double> to(&x[iterate_.at(i)], force_begin_.size());
+    std::ranges::copy(force_begin_, to.begin());
+    if (known) guess_.force_at(iterate_.steps.time(i), to);
+  }
+}
+
+void ParallelForce::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
+                           Bodies& bodies) {
+  guess_.clear();
+  guess_.width = iterate_.width;
+  guess_.support = support_;
+  guess_.time.push_back(iterate_.steps.begin);
+  for (int i = 1; i <= iterate_.steps.count; ++i) guess_.time.push_back(iterate_.steps.time(i));
+  guess_.f = force_begin_;
+  guess_.f.insert(guess_.f.end(), x.begin(), x.end());
+  Waveform& force = bodies.force(joint.sides[index(side)]);
+  force = guess_;
+  for (double& f : force.f) f *= -joint.normal_of(side);
+}
+
+void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
+                          const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
+  double travelled = 0.0;
+  overlap_.resize(iterate_.size());
+  std::array<std::vector<double>, 2> u;
+  for (std::vector<double>& values : u) values.resize(index(iterate_.width));
+  for (int i = 1; i <= iterate_.steps.count; ++i) {
+    for (std::size_t s : {0u, 1u}) {
+      const Waveform& trace = trace_of(bodies, joint.sides[s]);
+      trace.interpolate(trace.u, iterate_.steps.time(i), u[s]);
+      travelled = std::max(travelled, largest(u[s]));
+    }
+    for (std::size_t c = 0; c < u[0].size(); ++c)
+      overlap_[iterate_.at(i) + static_cast<Eigen::Index>(c)] = -joint.gap(u[0][c], u[1][c]);
+  }
+  g = x + overlap_ / compliance_;
+  if (unilateral_) g = g.cwiseMax(0.0);
+  force_ = x;
+  projects_ = unilateral_ && inverse_ != nullptr && g.minCoeff() <= 0.0;
+  scale_.force = std::max(joint.force_scale, x.lpNorm<Eigen::Infinity>());
+  balance(scale_, compliance_);
+  scale_.roundoff = roundoff_of(travelled, joint.reference_gap);
+}
+
+FieldResiduals ParallelForce::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                      const Eigen::Ref<const Eigen::VectorXd>& g) const {
+  const double mismatch = (g - x).lpNorm<Eigen::Infinity>();  // [N]
+  FieldResiduals r;
+  r.displacement = scaled(mismatch * compliance_, scale_.velocity * scale_.step, scale_.roundoff);
+  r.force = scaled(mismatch, scale_.force, scale_.roundoff / compliance_);
+  return r;
+}
+
+void ParallelForce::scales(Eigen::Ref<Eigen::VectorXd> s) const {
+  const double unit = scale_.velocity * scale_.step / compliance_;
+  s.setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
+}
+
+Eigen::VectorXd ParallelForce::apply_inverse(const Eigen::VectorXd& r) const {
+  if (inverse_ == nullptr) return r;
+  if (!unilateral_) return inverse_->solve(r);
+  return solve_complementarity(inverse_->maps.overlap, overlap_, force_);
+}
+
+}  // namespace abut

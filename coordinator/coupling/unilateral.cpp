@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/assert.hpp"
+#include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/transmission_parts.hpp"
+
+namespace abut {
+
+void Unilateral::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
+  const Side& k = joint.kinematic_side();
+  const Side& n = joint.neumann_side();
+  kinematic_grid_ = substeps_of(bodies, k, window);
+  iterate_ = {substeps_of(bodies, n, window), joint.width};
+  const Substeps& neumann = iterate_.steps;
+  const Waveform& trace = trace_of(bodies, n);
+  const std::size_t now = index_at_begin(trace, window.begin);
+  keep_row(trace, trace.u, now, u_begin_);
+  keep_row(trace, trace.v, now, v_begin_);
+  ABUT_ASSERT(trace.width == joint.width);
+  kernel_k_ = &bodies.kernel(k.body, k.port, kinematic_grid_.count);
+  kernel_n_ = &bodies.kernel(n.body, n.port, neumann.count);
+  kinematic_compliance_ = kernel_k_->displacement.front();
+  neumann_compliance_ = kernel_n_->displacement.front();
+  const double moved = *std::max_element(kernel_n_->displacement.begin(),
+                                         kernel_n_->displacement.begin() + neumann.count);
+  // The reaction is known to the round-off of a displacement over the compliance, and moves the
+  // Neumann side by that much.
+  roundoff_gain_ = 1.0 + moved / kinematic_compliance_;
+  scale_.step = bodies.describe(n.body).step > 0.0 ? neumann.step : kinematic_grid_.step;
+  scale_.velocity = reference_velocity(joint, kinematic_compliance_, scale_.step);
+  scale_.force = joint.force_scale;
+  first_factor_ = 1.0 / (1.0 + neumann_compliance_ / kinematic_compliance_);
+  alike_ = kinematic_grid_.same_as(neumann) && kernel_k_->support == kernel_n_->support;
+  projects_ = false;
+  unilateral_ = joint.unilateral();
+  outward_n_ = joint.normal_of(1 - joint.kinematic);
+  inverse_ = nullptr;
+  // A side that does not give way leaves nothing to iterate; of surfaces the inverse is the body's
+  // own that maps them, and secants do the rest.
+  if (!std::isinf(bodies.describe(n.body).mass) && joint.width == 1)
+    find_inverse(joint, window.length());
+}
+
+void Unilateral::find_inverse(const Joint& joint, double length) {
+  inverse_ = inverses_.find(length);
+  if (inverse_ != nullptr) return;
+  const Substeps& neumann = iterate_.steps;
+  const bool small = std::max(kinematic_grid_.count, neumann.count) <= KernelInverse::largest;
+  if (alike_) {
+    inverse_ =
+        inverses_.store(length, unilateral_jacobian_column(*kernel_k_, *kernel_n_, neumann.count));
+  } else if (small && joint.tied()) {
+    inverse_ = inverses_.store(
+        length, unilateral_jacobian(*kernel_k_, kinematic_grid_, *kernel_n_, neumann));
+  } else if (small) {
+    inverse_ =
+        inverses_.store(length, contact_maps(*kernel_k_, kinematic_grid_, *kernel_n_, neumann));
+  }
+}
+
+void Unilateral::predict(Eigen::Ref<Eigen::VectorXd> x) const {
+  const bool known = covers(guess_, iterate_.steps);
+  for (int i = 1; i <= iterate_.steps.count; ++i) {
+    const double time = iterate_.steps.time(i);
+    const std::span<double> to(&x[iterate_.at(i)], u_begin_.size());
+    for (std::size_t c = 0; c < to.size(); ++c)
+      to[c] = u_begin_[c] + v_begin_[c] * (time - iterate_.steps.begin);
+    if (known) guess_.interpolate(guess_.u, time, to);
+  }
+}
+
+void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
+                        Bodies& bodies) {
+  const Side& here = joint.sides[index(side)];
+  if (side != joint.kinematic) {
+    bodies.force(here) = bodies.reaction(joint.kinematic_side());
+    return;
+  }
+  guess_.clear();
+  guess_.width = iterate_.width;
+  guess_.time.push_back(iterate_.steps.begin);
+  guess_.u = u_begin_;
+  for (int i = 1; i <= iterate_.steps.count; ++i) guess_.time.push_back(iterate_.steps.time(i));
+  guess_.u.insert(guess_.u.end(), x.begin(), x.end());
+  bodies.obstacle(here).motion = guess_;
+}
+
+void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Joint& joint,
+                       const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
+  const Waveform& trace = trace_of(bodies, joint.neumann_side());
+  const bool same = static_cast<int>(trace.size()) == iterate_.steps.count + 1;
+  for (int i = 1; i <= iterate_.steps.count; ++i) {
+    const std::span<double> to(&g[iterate_.at(i)], index(iterate_.width));
+    if (same) {
+      std::ranges::copy(row(trace, trace.u, index(i)), to.begin());
+    } else {
+      trace.interpolate(trace.u, iterate_.steps.time(i), to);
+    }
+  }
+  if (unilateral_ && inverse_ != nullptr) see_contact(joint, bodies);
+  scale_.force = std::max(joint.force_scale, largest(trace_of(bodies, joint.kinematic_side()).f));
+  balance(scale_, kinematic_compliance_);
+  const double travelled = g.tail(iterate_.width).lpNorm<Eigen::Infinity>();
+  scale_.roundoff = roundoff_gain_ * roundoff_of(largest(u_begin_), travelled);
+}
+
+/// Overlap and force at K's substeps, against the iterate that it was given.
+void Unilateral::see_contact(const Joint& joint, const Bodies& bodies) {
+  const Waveform& reply = trace_of(bodies, joint.kinematic_side());
+  overlap_.resize(kinematic_grid_.count);
+  force_.resize(kinematic_grid_.count);
+  for (Eigen::Index i = 0; i < force_.size(); ++i) {
+    const std::size_t at = index(i) + 1;
+    double u[2];
+    u[joint.kinematic] = reply.u[at];
+    guess_.interpolate(guess_.u, kinematic_grid_.time(static_cast<int>(at)),
+                       {&u[1 - joint.kinematic], 1});
+    overlap_[i] = -joint.gap(u[0], u[1]);
+    force_[i] = -joint.normal_of(joint.kinematic) * reply.f[at];
+  }
+  projects_ = force_.minCoeff() <= 0.0;
+}
+
+FieldResiduals Unilateral::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                   const Eigen::Ref<const Eigen::VectorXd>& g) const {
+  const double mismatch = (g - x).lpNorm<Eigen::Infinity>();
+  FieldResiduals r;
+  r.displacement = scaled(mismatch, scale_.velocity * scale_.step, scale_.roundoff);
+  // The force that would close the mismatch, both sides giving way within a substep.
+  const double compliance = kinematic_compliance_ + neumann_compliance_;
+  r.force = scaled(mismatch / compliance, scale_.force, scale_.roundoff / compliance);
+  return r;
+}
+
+void Unilateral::scales(Eigen::Ref<Eigen::VectorXd> s) const {
+  const double unit = scale_.velocity * scale_.step;
+  s.setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
+}
+
+Eigen::VectorXd Unilateral::apply_inverse(const Eigen::VectorXd& r) const {
+  if (inverse_ == nullptr) return first_factor_ * r;
+  if (!unilateral_) return inverse_->solve(r);
+  if (alike_) {
+    return solve_unilateral(kernel_k_->displacement, kernel_n_->displacement, outward_n_, r,
+                            overlap_, force_);
+  }
+  const ContactMaps& maps = inverse_->maps;
+  const Eigen::VectorXd left = overlap_ + outward_n_ * (maps.seen * r);
+  return r - outward_n_ * (maps.motion * solve_complementarity(maps.overlap, left, force_));
+}
+
+}  // namespace abut

@@ -1,0 +1,119 @@
+#include "coordinator/narrator.hpp"
+
+#include <fmt/format.h>
+
+namespace abut {
+
+void Narrator::start(double begin, double end, std::span<const Joint> joints) {
+  RunStart start{begin, end, {}, {}};
+  for (int b = 0; b < bodies_.count(); ++b) start.bodies.push_back(&bodies_.describe(b));
+  for (const Joint& j : joints) {
+    start.interfaces.push_back({j.name,
+                                {j.sides[0].body, j.sides[1].body},
+                                {j.sides[0].port, j.sides[1].port},
+                                j.reference_gap,
+                                j.tied()});
+  }
+  for (Observer* observer : observers_) observer->on_start(start);
+}
+
+void Narrator::window(const WindowReport& report) {
+  for (Observer* observer : observers_) observer->on_window(report);
+}
+
+void Narrator::end(const RunEnd& end) {
+  for (Observer* observer : observers_) observer->on_end(end);
+}
+
+void Narrator::end_after_error(const RunEnd& end) {
+  for (Observer* observer : observers_) {
+    try {
+      observer->on_end(end);
+    } catch (const RunError&) {  // a full disk again: the first error is the one to tell
+    }
+  }
+}
+
+void Narrator::closed(const Joint& joint, double time, double speed) {
+  tell({RunEvent::Kind::contact_closed,
+        time,
+        joint.name,
+        fmt::format("contact '{}' closes at {:.6g} m/s; kinematic side: {}", joint.name, speed,
+                    bodies_.describe(joint.kinematic_side().body).name),
+        {{"closing_speed", speed}}});
+}
+
+void Narrator::opened(const Joint& joint, double time) {
+  tell({RunEvent::Kind::contact_opened,
+        time,
+        joint.name,
+        fmt::format("contact '{}' opens", joint.name),
+        {{"release_impulse", joint.impulse}}});
+}
+
+void Narrator::inside(const Joint& joint, const InternalContact::Change& change) {
+  if (!change.closes)
+    return tell({RunEvent::Kind::contact_opened, change.time, joint.name, "contact opens", {}});
+  tell({RunEvent::Kind::contact_closed,
+        change.time,
+        joint.name,
+        fmt::format("contact closes at {:.6g} m/s inside body {}", change.speed,
+                    bodies_.describe(joint.sides[0].body).name),
+        {{"closing_speed", change.speed}}});
+}
+
+void Narrator::lowered_step(const Joint& joint, double time, double limit) {
+  tell({RunEvent::Kind::warning,
+        time,
+        joint.name,
+        fmt::format("the contact spring of '{}' lowers the stable step of body '{}' to {:.4g} s: "
+                    "give it a smaller step, or its partner a softer contact_layer",
+                    joint.name, bodies_.describe(joint.neumann_side().body).name, limit),
+        {{"stable_step", limit}}});
+}
+
+std::string Narrator::words_of(const EnergyGuard& guard) const {
+  const double growth = guard.growth();
+  const std::string whose =
+      guard.culprit() < 0 ? ""
+                          : fmt::format(" of body '{}'", bodies_.describe(guard.culprit()).name);
+  return growth < 0.0 ? fmt::format(
+                            "energy{} has fallen by {:.2g} % of the most there was in motion, and "
+                            "nothing in this scene takes any; give smaller steps",
+                            whose, -100.0 * growth)
+                      : fmt::format(
+                            "energy{} has grown by {:.2g} % of the most there was in motion, and "
+                            "contact makes none; give smaller steps, or contact_layer: massless",
+                            whose, 100.0 * growth);
+}
+
+void Narrator::energy(const EnergyGuard& guard, double time) {
+  tell({RunEvent::Kind::warning, time, "", words_of(guard), {{"growth", guard.growth()}}});
+}
+
+void Narrator::warning(double time, const std::string& subject, const std::string& text) {
+  tell({RunEvent::Kind::warning, time, subject, text, {}});
+}
+
+void Narrator::failure(double time, const std::string& text) {
+  tell({RunEvent::Kind::failure, time, blamed(text), text, {}});
+}
+
+void Narrator::thrown(double time, const RunError& error) {
+  const std::string text = (error.where.empty() ? "" : error.where + ": ") + error.what_is_wrong;
+  tell({RunEvent::Kind::failure, time, blamed(text), text, {}, true});
+}
+
+void Narrator::tell(const RunEvent& event) {
+  for (Observer* observer : observers_) observer->on_event(event);
+}
+
+std::string Narrator::blamed(const std::string& text) const {
+  for (int b = 0; b < bodies_.count(); ++b) {
+    const std::string& name = bodies_.describe(b).name;
+    if (text.find("body '" + name + "'") != std::string::npos) return name;
+  }
+  return "";
+}
+
+}  // namespace abut

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "coordinator/coupling/internal_contact.hpp"
+#include "coordinator/energy_guard.hpp"
+#include "coordinator/record/observer.hpp"
+
+namespace abut {
+
+/// Puts what happens in a run into words, for its observers.
+class Narrator {
+ public:
+  /// Bodies and observers must outlive it.
+  Narrator(const Bodies& bodies, std::vector<Observer*> observers)
+      : bodies_(bodies), observers_(std::move(observers)) {}
+
+  void start(double begin, double end, std::span<const Joint> joints);
+  void window(const WindowReport& report);
+  void end(const RunEnd& end);
+  /// The same after an error: all observers still write what they can.
+  void end_after_error(const RunEnd& end);
+
+  void closed(const Joint& joint, double time, double speed);
+  void opened(const Joint& joint, double time);
+  void inside(const Joint& joint, const InternalContact::Change& change);
+  /// The contact spring of a joint lowers its Neumann side's stable step to a limit [s].
+  void lowered_step(const Joint& joint, double time, double limit);
+  void energy(const EnergyGuard& guard, double time);
+  void warning(double time, const std::string& subject, const std::string& text);
+  void failure(double time, const std::string& text);
+  /// An error that ends the program, which says it on the terminal as well.
+  void thrown(double time, const RunError& error);
+
+  std::string words_of(const EnergyGuard& guard) const;
+
+ private:
+  void tell(const RunEvent& event);
+  std::string blamed(const std::string& text) const;  // the body that a text names, or empty
+
+  const Bodies& bodies_;
+  std::vector<Observer*> observers_;
+};
+
+}  // namespace abut
