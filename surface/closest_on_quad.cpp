@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace abut {
 namespace {
@@ -50,22 +51,26 @@ std::optional<Shape4> stationary_on_quad(const Corners& quad, const Eigen::Vecto
                      0.25 * (-q[0] - q[1] + q[2] + q[3]), 0.25 * (q[0] - q[1] + q[2] - q[3])};
   Vector2d p(guess[1] + guess[2] - guess[0] - guess[3], guess[2] + guess[3] - guess[0] - guess[1]);
   double value = f.value(p);
-  constexpr int most_steps = 50;  // a few, quadratic; many only where Newton keeps being cut
+  // Values this near to each other are equal: the last steps improve the place, not the value.
+  const double noise = 8.0 * std::numeric_limits<double>::epsilon() *
+                       (f.c0.squaredNorm() + f.ca.squaredNorm() + f.cb.squaredNorm());
+  constexpr int most_steps = 50;     // a few, quadratic; many only where steps keep being cut
+  constexpr double settled = 1e-18;  // of the square of a step: the next one would be round-off
   for (int k = 0; k < most_steps; ++k) {
     Vector2d gradient;
     const Vector2d step = newton_step(f, p, gradient);
-    if (!step.allFinite() || step.squaredNorm() < 1e-32) break;
+    if (!step.allFinite()) break;
     double part = 1.0;
     Vector2d next = clamped(p + step);
-    while (f.value(next) > value && part > 1e-6) {
+    while (f.value(next) > value + noise && part > 1e-6) {
       part *= 0.5;
       next = clamped(p + part * step);
     }
-    if (f.value(next) > value) break;
+    if (f.value(next) > value + noise) break;
     const double moved = (next - p).squaredNorm();
     p = next;
     value = f.value(p);
-    if (moved < 1e-32) break;
+    if (moved < settled) break;
   }
   if (std::abs(p.x()) >= 1.0 || std::abs(p.y()) >= 1.0) return std::nullopt;
   const double a = p.x(), b = p.y();
