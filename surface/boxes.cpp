@@ -162,7 +162,11 @@ void overlapping_pairs(const BoxTree& first, const BoxTree& second, std::vector<
       stack[count++] = {a, b + 1};
     }
   }
-  std::sort(pairs.begin(), pairs.end());
+  const auto key = [](const FacetPair& pair) {  // two comparisons in one
+    return static_cast<std::uint64_t>(pair.k) << 32 | static_cast<std::uint32_t>(pair.n);
+  };
+  std::sort(pairs.begin(), pairs.end(),
+            [&key](const FacetPair& a, const FacetPair& b) { return key(a) < key(b); });
 }
 
 }  // namespace abut

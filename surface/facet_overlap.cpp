@@ -36,10 +36,10 @@ struct Integrand {
   FacetOverlap& overlap;
 
   void add(const Eigen::Vector2d& z, double weight) const {
-    const Shape4 own = weight * ground.shape(z), at_k = own / weight, at_n = partner.shape(z);
-    overlap.moments += own;
-    overlap.own += own * at_k.transpose();
-    overlap.mixed += own * at_n.transpose();
+    const Shape4 at_k = ground.shape(z), at_n = partner.shape(z), share = weight * at_k;
+    overlap.moments += share;
+    overlap.own += share * at_k.transpose();
+    overlap.mixed += share * at_n.transpose();
   }
 };
 

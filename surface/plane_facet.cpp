@@ -11,11 +11,6 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-Shape4 bilinear(double a, double b) {
-  return {0.25 * (1.0 - a) * (1.0 - b), 0.25 * (1.0 + a) * (1.0 - b), 0.25 * (1.0 + a) * (1.0 + b),
-          0.25 * (1.0 - a) * (1.0 + b)};
-}
-
 /// Coordinates of z in a quadrilateral. With r = z - c0, b solves
 ///   (cb x cab) b^2 + (cb x ca - r x cab) b - r x ca = 0,
 /// and the derivative of the left side there is -J, J the Jacobian of the map: so of the two roots
@@ -29,19 +24,6 @@ Eigen::Vector2d root(const PlaneFacet& f, const Eigen::Vector2d& r) {
   const double b = q < 0.0 ? 2.0 * c / (jacobian - q) : -(q + jacobian) / (2.0 * p);
   const Eigen::Vector2d along = f.ca + f.cab * b;
   return {along.dot(r - f.cb * b) / along.squaredNorm(), b};
-}
-
-Shape4 quadrilateral(const PlaneFacet& f, const Eigen::Vector2d& z) {
-  const Eigen::Vector2d r = z - f.c0;
-  if (f.affine) {
-    const double j = 1.0 / cross(f.ca, f.cb);
-    return bilinear(cross(r, f.cb) * j, cross(f.ca, r) * j);
-  }
-  const Eigen::Vector2d ab = root(f, r);
-  const Eigen::Vector2d rest = r - f.ca * ab.x() - f.cb * ab.y() - f.cab * (ab.x() * ab.y());
-  const Eigen::Vector2d da = f.ca + f.cab * ab.y(), db = f.cb + f.cab * ab.x();
-  const double j = 1.0 / cross(da, db);
-  return bilinear(ab.x() + cross(rest, db) * j, ab.y() + cross(da, rest) * j);
 }
 
 }  // namespace
@@ -60,33 +42,34 @@ PlaneFacet seen_in(const AuxiliaryPlane& plane, const Corners& facet) {
   PlaneFacet f;
   f.count = facet.count;
   for (int i = 0; i < facet.count; ++i) f.x[i] = plane.project(facet.x[i]);
-  if (f.count < 4) {
-    f.c0 = f.x[0];
-    f.ca = f.x[1] - f.x[0];
-    f.cb = f.count == 3 ? Eigen::Vector2d(f.x[2] - f.x[0]) : Eigen::Vector2d::Zero();
-    f.cab.setZero();
-    return f;
+  f.c0 = f.x[0];
+  f.ca = f.x[1] - f.x[0];
+  f.cb = {0.0, 1.0};  // of a segment: anything across
+  f.cab.setZero();
+  if (f.count == 2) f.ca.y() = 0.0;
+  if (f.count == 3) f.cb = f.x[2] - f.x[0];
+  if (f.count == 4) {
+    f.c0 = 0.25 * (f.x[0] + f.x[1] + f.x[2] + f.x[3]);
+    f.ca = 0.25 * (-f.x[0] + f.x[1] + f.x[2] - f.x[3]);
+    f.cb = 0.25 * (-f.x[0] - f.x[1] + f.x[2] + f.x[3]);
+    f.cab = 0.25 * (f.x[0] - f.x[1] + f.x[2] - f.x[3]);
+    // A parallelogram to round-off: its map is straight.
+    constexpr double straight = 16.0 * std::numeric_limits<double>::epsilon();
+    f.affine =
+        f.cab.squaredNorm() <= straight * straight * (f.ca.squaredNorm() + f.cb.squaredNorm());
   }
-  f.c0 = 0.25 * (f.x[0] + f.x[1] + f.x[2] + f.x[3]);
-  f.ca = 0.25 * (-f.x[0] + f.x[1] + f.x[2] - f.x[3]);
-  f.cb = 0.25 * (-f.x[0] - f.x[1] + f.x[2] + f.x[3]);
-  f.cab = 0.25 * (f.x[0] - f.x[1] + f.x[2] - f.x[3]);
-  // A parallelogram to round-off: its map is straight.
-  constexpr double straight = 16.0 * std::numeric_limits<double>::epsilon();
-  f.affine = f.cab.squaredNorm() <= straight * straight * (f.ca.squaredNorm() + f.cb.squaredNorm());
+  const double j = 1.0 / cross(f.ca, f.cb);
+  f.da = j * Eigen::Vector2d(f.cb.y(), -f.cb.x());
+  f.db = f.count == 2 ? Eigen::Vector2d::Zero() : Eigen::Vector2d(-j * f.ca.y(), j * f.ca.x());
   return f;
 }
 
-Shape4 PlaneFacet::shape(const Eigen::Vector2d& z) const {
-  if (count == 4) return quadrilateral(*this, z);
-  const Eigen::Vector2d r = z - c0;
-  if (count == 2) {
-    const double a = r.x() / ca.x();
-    return {1.0 - a, a, 0.0, 0.0};
-  }
-  const double j = 1.0 / cross(ca, cb);
-  const double a = cross(r, cb) * j, b = cross(ca, r) * j;
-  return {1.0 - a - b, a, b, 0.0};
+Eigen::Vector2d PlaneFacet::inverse(const Eigen::Vector2d& r) const {
+  const Eigen::Vector2d p = root(*this, r);
+  const Eigen::Vector2d rest = r - ca * p.x() - cb * p.y() - cab * (p.x() * p.y());
+  const Eigen::Vector2d along_a = ca + cab * p.y(), along_b = cb + cab * p.x();
+  const double j = 1.0 / cross(along_a, along_b);
+  return {p.x() + cross(rest, along_b) * j, p.y() + cross(along_a, rest) * j};
 }
 
 Polygon PlaneFacet::polygon() const {

@@ -31,15 +31,29 @@ using Shape4 = Eigen::Vector4d;
 /// A facet as it is seen in an auxiliary plane: the inverse of its projected map.
 struct PlaneFacet {
   int count = 0;
-  bool affine = true;                // shape functions are linear: no or a straight inverse
+  bool affine = true;                // shape functions have a straight inverse
   std::array<Eigen::Vector2d, 4> x;  // [m] corners
   Eigen::Vector2d c0, ca, cb, cab;   // x = c0 + ca a + cb b + cab a b
+  Eigen::Vector2d da, db;            // [1/m] a = da.(x - c0), b = db.(x - c0) when affine
 
-  /// Values at a point of the plane. For quadrilaterals the coordinates a, b of the point are found
-  /// in closed form and corrected by one Newton step; unique inside a convex quadrilateral.
-  Shape4 shape(const Eigen::Vector2d& z) const;
+  /// Values at a point of the plane; unique inside a convex quadrilateral.
+  Shape4 shape(const Eigen::Vector2d& z) const {
+    const Eigen::Vector2d r = z - c0;
+    if (!affine) return bilinear(inverse(r));
+    const Eigen::Vector2d ab(da.dot(r), db.dot(r));
+    if (count == 4) return bilinear(ab);
+    return {1.0 - ab.x() - ab.y(), ab.x(), ab.y(), 0.0};
+  }
   /// Corners counterclockwise, whichever way the facet turns in this plane.
   Polygon polygon() const;
+
+ private:
+  static Shape4 bilinear(const Eigen::Vector2d& p) {
+    const double a = 0.25 * p.x(), b = p.y(), low = 0.25 - a, high = 0.25 + a;
+    return {low * (1.0 - b), high * (1.0 - b), high * (1.0 + b), low * (1.0 + b)};
+  }
+  /// Coordinates a, b of c0 + r in a quadrilateral: closed form, corrected by one Newton step.
+  Eigen::Vector2d inverse(const Eigen::Vector2d& r) const;
 };
 
 PlaneFacet seen_in(const AuxiliaryPlane& plane, const Corners& facet);
