@@ -1,7 +1,6 @@
 #include "surface/boxes.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <span>
 
@@ -9,9 +8,6 @@
 
 namespace abut {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Box nothing{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
 
 Box united(const Box& a, const Box& b) {
   Box box;
@@ -22,34 +18,27 @@ Box united(const Box& a, const Box& b) {
   return box;
 }
 
+/// All in registers, margin included: a box that is stored coordinate by coordinate and loaded as a
+/// whole costs more than its extrema.
 template <int dim>
-void include_facet(Box& box, const PosedSurface& surface, int facet) {
-  for (std::int32_t node : surface.nodes(facet)) {
-    const double* x = surface.points.data() + static_cast<std::ptrdiff_t>(dim) * node;
-    for (int d = 0; d < dim; ++d) {
-      box.low[d] = std::min(box.low[d], x[d]);
-      box.high[d] = std::max(box.high[d], x[d]);
-    }
+inline Box hull(const PosedSurface& surface, int facet, double margin) {
+  const std::span<const std::int32_t> nodes = surface.nodes(facet);
+  const double* points = surface.points.data();
+  const double* x = points + static_cast<std::ptrdiff_t>(dim) * nodes[0];
+  double low0 = x[0], low1 = x[1], low2 = dim == 3 ? x[2] : 0.0;
+  double high0 = low0, high1 = low1, high2 = low2;
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    x = points + static_cast<std::ptrdiff_t>(dim) * nodes[i];
+    low0 = std::min(low0, x[0]);
+    high0 = std::max(high0, x[0]);
+    low1 = std::min(low1, x[1]);
+    high1 = std::max(high1, x[1]);
+    if (dim == 2) continue;
+    low2 = std::min(low2, x[2]);
+    high2 = std::max(high2, x[2]);
   }
-}
-
-Box hull(const PosedSurface& surface, int facet) {
-  Box box = nothing;
-  if (surface.dim == 3) {
-    include_facet<3>(box, surface, facet);
-  } else {
-    include_facet<2>(box, surface, facet);
-    box.low[2] = box.high[2] = 0.0;
-  }
-  return box;
-}
-
-Box grown(Box box, double margin) {
-  for (int d = 0; d < 3; ++d) {
-    box.low[d] -= margin;
-    box.high[d] += margin;
-  }
-  return box;
+  return {{low0 - margin, low1 - margin, low2 - margin},
+          {high0 + margin, high1 + margin, high2 + margin}};
 }
 
 /// Renews all boxes; `leaf_box` gives that of a facet.
@@ -115,7 +104,7 @@ double size(const Box& box) {
 }  // namespace
 
 Box facet_box(const PosedSurface& surface, int facet, double margin) {
-  return grown(hull(surface, facet), margin);
+  return surface.dim == 3 ? hull<3>(surface, facet, margin) : hull<2>(surface, facet, margin);
 }
 
 void build(BoxTree& tree, const PosedSurface& surface, double margin) {
@@ -125,12 +114,15 @@ void build(BoxTree& tree, const PosedSurface& surface, double margin) {
 }
 
 void refit(BoxTree& tree, const PosedSurface& surface, double margin) {
-  refit_by(tree, [&surface, margin](int facet) { return facet_box(surface, facet, margin); });
+  if (surface.dim == 3)
+    refit_by(tree, [&surface, margin](int facet) { return hull<3>(surface, facet, margin); });
+  else
+    refit_by(tree, [&surface, margin](int facet) { return hull<2>(surface, facet, margin); });
 }
 
 void refit(BoxTree& tree, const PosedSurface& from, const PosedSurface& to, double margin) {
   refit_by(tree, [&from, &to, margin](int facet) {
-    return grown(united(hull(from, facet), hull(to, facet)), margin);
+    return united(facet_box(from, facet, margin), facet_box(to, facet, margin));
   });
 }
 

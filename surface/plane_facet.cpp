@@ -1,7 +1,5 @@
 #include "surface/plane_facet.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace abut {
@@ -11,20 +9,8 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Coordinates of z in a quadrilateral. With r = z - c0, b solves
-///   (cb x cab) b^2 + (cb x ca - r x cab) b - r x ca = 0,
-/// and the derivative of the left side there is -J, J the Jacobian of the map: so of the two roots
-/// the one with that sign is meant, also where the quadratic term vanishes.
-Eigen::Vector2d root(const PlaneFacet& f, const Eigen::Vector2d& r) {
-  const double turn = cross(f.ca, f.cb) < 0.0 ? -1.0 : 1.0;
-  const double p = turn * cross(f.cb, f.cab);
-  const double q = turn * (cross(f.cb, f.ca) - cross(r, f.cab));
-  const double c = -turn * cross(r, f.ca);
-  const double jacobian = std::sqrt(std::max(0.0, q * q - 4.0 * p * c));
-  const double b = q < 0.0 ? 2.0 * c / (jacobian - q) : -(q + jacobian) / (2.0 * p);
-  const Eigen::Vector2d along = f.ca + f.cab * b;
-  return {along.dot(r - f.cb * b) / along.squaredNorm(), b};
-}
+/// r times `v` turned by a right angle is r x v.
+Eigen::Vector2d turned(const Eigen::Vector2d& v) { return {v.y(), -v.x()}; }
 
 }  // namespace
 
@@ -58,18 +44,22 @@ PlaneFacet seen_in(const AuxiliaryPlane& plane, const Corners& facet) {
     f.affine =
         f.cab.squaredNorm() <= straight * straight * (f.ca.squaredNorm() + f.cb.squaredNorm());
   }
-  const double j = 1.0 / cross(f.ca, f.cb);
-  f.da = j * Eigen::Vector2d(f.cb.y(), -f.cb.x());
-  f.db = f.count == 2 ? Eigen::Vector2d::Zero() : Eigen::Vector2d(-j * f.ca.y(), j * f.ca.x());
+  const double j = cross(f.ca, f.cb), turn = j < 0.0 ? -1.0 : 1.0;
+  f.da = turned(f.cb) / j;
+  f.db = f.count == 2 ? Eigen::Vector2d::Zero() : Eigen::Vector2d(turned(f.ca) / -j);
+  // r = ca a + cb b + cab a b, crossed with ca + cab b
+  f.square = turn * cross(f.cb, f.cab);
+  f.linear = -turn * j;
+  f.to_linear = -turn * turned(f.cab);
+  f.to_constant = -turn * turned(f.ca);
   return f;
 }
 
-Eigen::Vector2d PlaneFacet::inverse(const Eigen::Vector2d& r) const {
-  const Eigen::Vector2d p = root(*this, r);
-  const Eigen::Vector2d rest = r - ca * p.x() - cb * p.y() - cab * (p.x() * p.y());
-  const Eigen::Vector2d along_a = ca + cab * p.y(), along_b = cb + cab * p.x();
+Eigen::Vector2d PlaneFacet::corrected(const Eigen::Vector2d& r, const Eigen::Vector2d& ab) const {
+  const Eigen::Vector2d rest = r - ca * ab.x() - cb * ab.y() - cab * (ab.x() * ab.y());
+  const Eigen::Vector2d along_a = ca + cab * ab.y(), along_b = cb + cab * ab.x();
   const double j = 1.0 / cross(along_a, along_b);
-  return {p.x() + cross(rest, along_b) * j, p.y() + cross(along_a, rest) * j};
+  return {ab.x() + cross(rest, along_b) * j, ab.y() + cross(along_a, rest) * j};
 }
 
 Polygon PlaneFacet::polygon() const {
