@@ -94,8 +94,22 @@ void integrate_polygon(const Integrand& integrand, const Polygon& polygon,
   }
 }
 
+/// Whether the partner's extent in the plane tells that it has nothing in common with the ground:
+/// so for most candidates, because their boxes are larger than they.
+bool is_beside(const GroundFacet& ground, const Corners& partner) {
+  Eigen::Vector2d low = ground.plane.project(partner.x[0]), high = low;
+  for (int i = 1; i < partner.count; ++i) {
+    const Eigen::Vector2d x = ground.plane.project(partner.x[i]);
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  return low.x() >= ground.high.x() || low.y() >= ground.high.y() || high.x() <= ground.low.x() ||
+         high.y() <= ground.low.y();
+}
+
 bool integrate_surfaces(const GroundFacet& ground, const Corners& partner, double reach,
                         PieceQuadrature quadrature, FacetOverlap& overlap) {
+  if (is_beside(ground, partner)) return false;
   const PlaneFacet seen = seen_in(ground.plane, partner);
   const Polygon common = clip(seen.polygon(), ground.polygon);
   overlap.area = signed_area(common);
@@ -135,7 +149,14 @@ GroundFacet::GroundFacet(const Corners& facet)
       plane(auxiliary_plane(facet)),
       seen(seen_in(plane, facet)),
       polygon(seen.polygon()),
-      area(abut::area(facet)) {}
+      low(polygon.x[0]),
+      high(polygon.x[0]),
+      area(abut::area(facet)) {
+  for (int i = 1; i < polygon.count; ++i) {
+    low = low.cwiseMin(polygon.x[i]);
+    high = high.cwiseMax(polygon.x[i]);
+  }
+}
 
 bool integrate(const GroundFacet& ground, const Corners& partner, double reach,
                PieceQuadrature quadrature, FacetOverlap& overlap) {

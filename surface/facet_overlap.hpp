@@ -22,7 +22,8 @@ struct GroundFacet {
   AuxiliaryPlane plane;
   PlaneFacet seen;
   Polygon polygon;
-  double area = 0.0;  // [m^(dim-1)] of the whole facet
+  Eigen::Vector2d low, high;  // [m] its extent in the plane
+  double area = 0.0;          // [m^(dim-1)] of the whole facet
 
   explicit GroundFacet(const Corners& facet);
 };

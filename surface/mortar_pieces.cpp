@@ -12,7 +12,8 @@ bool dual_basis(const Eigen::Matrix4d& d, const Shape4& w, int count, Eigen::Mat
   for (int i = count; i < 4; ++i) full(i, i) = 1.0;
   const Eigen::LLT<Eigen::Matrix4d> factors(full);
   if (factors.info() != Eigen::Success) return false;
-  a = w.asDiagonal() * factors.solve(Eigen::Matrix4d::Identity());
+  for (int i = 0; i < 4; ++i) a.col(i) = factors.solve(Eigen::Vector4d::Unit(i));
+  a = w.asDiagonal() * a;
   return a.allFinite();
 }
 
