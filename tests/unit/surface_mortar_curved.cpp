@@ -247,19 +247,6 @@ TEST(PointRows, KeepTotalAndMomentExactlyWithFacetNormals) {
   }
 }
 
-TEST(PointRows, FailThePatchTestThatMortarRowsPass) {
-  const auto flat = [](double u, double v) { return Vector3d(u, v, 0.0); };
-  const CurvedPair pair{grid(6, 6, flat, false, true), grid(4, 4, flat, false, false)};
-  const SurfaceRows rows = closest_rows(pair, {});
-  EXPECT_EQ(rows.count(), pair.k.nodes());
-  std::vector<double> f(static_cast<std::size_t>(pair.n.nodes()), 0.0), consistent;
-  add_transposed(rows.n, 1, 1.0, rows.weights, f);
-  tributary_weights(pair.n.pose(), consistent);
-  const double miss = largest_difference(f, consistent) / largest_size(consistent);
-  EXPECT_GT(miss, 0.02);  // stress errors of 6 and 17 per cent are published for such meshes
-  for (double gap : rows.gaps) EXPECT_NEAR(gap, 0.0, exact);
-}
-
 TEST(PointRows, InterpolatedNormalsAreContinuousAcrossEdges) {
   const CurvedPair pair = sphere(2, false);
   const SurfaceRows rows = closest_rows(pair, {.normal = RowNormal::nodal});
