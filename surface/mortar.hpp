@@ -27,11 +27,12 @@ struct MortarBuffers {
 /// With dual functions Phi_j on what N covers of K, in the auxiliary planes of the facets of K:
 ///   w_j = int Phi_j,   (P y)_j = (1/w_j) int Phi_j y,   (T x)_j = (1/w_j) int Phi_j x = x_j,
 ///   n_j = (1/w_j) int Phi_j n_N, normalised,
-/// so T is the identity, except where rows with little support are merged with a neighbour or an
-/// overlap is too small for a dual basis. On flat faces T x = P y for any meshes and any linear
-/// field, and f = p w n passes a constant pressure to the consistent nodal forces of both sides.
-/// `pairs` are candidates, ordered by facets of K (overlapping_pairs, with boxes that know the
-/// reach). No allocation once `buffers` and `rows` have grown.
+/// so T is the identity, except where rows with little support are merged with a neighbour, and
+/// where the overlap with a facet is too small for a dual basis: there Phi_j = N_j, and T holds the
+/// integrals of N_j N_i, so that it is as exact. On flat faces T x = P y for any meshes and any
+/// linear field, and f = p w n passes a constant pressure to the consistent nodal forces of both
+/// sides. `pairs` are candidates, ordered by facets of K (overlapping_pairs, with boxes that know
+/// the reach). No allocation once `buffers` and `rows` have grown.
 void mortar_rows(const PosedSurface& k, const PosedSurface& n, std::span<const FacetPair> pairs,
                  const MortarOptions& options, MortarBuffers& buffers, SurfaceRows& rows);
 

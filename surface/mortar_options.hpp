@@ -9,7 +9,7 @@ namespace abut {
 struct MortarOptions {
   // [m] pairs whose gap at the overlap's middle is larger, of either sign, are not joined
   double reach = std::numeric_limits<double>::infinity();
-  // facets are joined when their mean normals have n_K.n_N <= -facing
+  // facets are joined when their mean normals have n_K.n_N <= -facing; above 0
   double facing = 0.5;
   // rows with less than this share of their node's full weight are merged; 0: none is
   double merge = 0.25;

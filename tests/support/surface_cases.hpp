@@ -82,6 +82,9 @@ inline std::vector<FlatCase> flat_cases() {
       {"corner_of_1e-4", k(4, shifted(0.7499, 0.7499), false), n(4, false), true, false},
       {"corner_of_1e-12", k(4, shifted(1.0 - 2.5e-7, 1.0 - 2.5e-7), false), n(4, false), true,
        false},
+      // dual functions would reach out from N to the corners of its facet of K, 37 times its size
+      {"partner_inside_one_facet", k(3, unit, false),
+       grid(2, 2, rectangle(0.48, 0.51), false, false), true, false},
   };
 }
 
