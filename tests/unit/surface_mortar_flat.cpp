@@ -142,7 +142,7 @@ TEST_P(FlatMortar, RowsDoNotDependOnWhereThePairLies) {
   }
 }
 
-TEST_P(FlatMortar, MergedRowsHaveNotablySupport) {
+TEST_P(FlatMortar, MergedRowsHaveSupportAndBoundedCoefficients) {
   const FlatCase c = posed();
   std::vector<double> full;
   tributary_weights(c.k.pose(), full);
