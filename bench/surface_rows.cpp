@@ -15,6 +15,7 @@
 
 #include "surface/mortar.hpp"
 #include "surface/point_rows.hpp"
+#include "base/index.hpp"
 #include "tests/support/surfaces.hpp"
 
 namespace abut {
@@ -33,7 +34,7 @@ double median(int repeats, const std::function<void()>& work) {
     samples.push_back(static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC / count);
   }
   std::nth_element(samples.begin(), samples.begin() + repeats / 2, samples.end());
-  return samples[static_cast<std::size_t>(repeats / 2)];
+  return samples[index(repeats / 2)];
 }
 
 struct Kind {
@@ -67,7 +68,7 @@ void run(const Kind& kind, int cells, int repeats) {
     mortar_rows(k.pose(), n.pose(), join.pairs, options, join.buffers, join.rows);
   });
   const double clipped = static_cast<double>(join.buffers.pieces.pieces.size());
-  std::vector<std::int32_t> nodes(static_cast<std::size_t>(k.nodes()));
+  std::vector<std::int32_t> nodes(index(k.nodes()));
   std::iota(nodes.begin(), nodes.end(), 0);
   PointRowBuffers buffers;
   SurfaceRows points;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 namespace {
@@ -46,9 +47,8 @@ template <typename LeafBox>
 void refit_by(BoxTree& tree, const LeafBox& leaf_box) {
   for (std::size_t i = tree.boxes.size(); i-- > 0;) {
     const std::int32_t second = tree.second[i];
-    tree.boxes[i] = second < 0
-                        ? leaf_box(-1 - second)
-                        : united(tree.boxes[i + 1], tree.boxes[static_cast<std::size_t>(second)]);
+    tree.boxes[i] =
+        second < 0 ? leaf_box(-1 - second) : united(tree.boxes[i + 1], tree.boxes[index(second)]);
   }
 }
 
@@ -57,9 +57,9 @@ class Builder {
   Builder(BoxTree& tree, const PosedSurface& surface) : tree_(tree) {
     const int count = surface.facet_count();
     tree_.second.clear();
-    tree_.second.reserve(static_cast<std::size_t>(std::max(0, 2 * count - 1)));
+    tree_.second.reserve(index(std::max(0, 2 * count - 1)));
     for (int f = 0; f < count; ++f) centres_.push_back(centre(corners(surface, f)));
-    std::vector<std::int32_t> order(static_cast<std::size_t>(count));
+    std::vector<std::int32_t> order(index(count));
     std::iota(order.begin(), order.end(), 0);
     if (count > 0) add(order);
   }

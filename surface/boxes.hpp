@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/index.hpp"
 #include "surface/posed_surface.hpp"
 
 namespace abut {
@@ -32,8 +33,8 @@ struct BoxTree {
   std::vector<std::int32_t> second;  // (2 m - 1) the second child; of a leaf -1 - its facet
 
   bool empty() const { return boxes.empty(); }
-  bool is_leaf(int node) const { return second[static_cast<std::size_t>(node)] < 0; }
-  int facet(int leaf) const { return -1 - second[static_cast<std::size_t>(leaf)]; }
+  bool is_leaf(int node) const { return second[index(node)] < 0; }
+  int facet(int leaf) const { return -1 - second[index(leaf)]; }
 };
 
 /// Structure and boxes of a tree: facets halved across the longest side of their centres' box.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
+
 namespace abut {
 namespace {
 
@@ -13,8 +15,7 @@ constexpr double least_area = 1.0e-12;
 /// The defect of the surface's arrays as such, before facets can be read.
 std::optional<UnsoundSurface> check_arrays(const PosedSurface& s) {
   if (s.dim != 2 && s.dim != 3) return UnsoundSurface{SurfaceDefect::dimension};
-  if (s.points.size() % static_cast<std::size_t>(s.dim) != 0)
-    return UnsoundSurface{SurfaceDefect::points};
+  if (s.points.size() % index(s.dim) != 0) return UnsoundSurface{SurfaceDefect::points};
   if (s.offsets.empty() && s.facets.empty()) return std::nullopt;
   if (s.offsets.empty() || s.offsets.front() != 0 ||
       s.offsets.back() != static_cast<std::ptrdiff_t>(s.facets.size()))

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -11,7 +12,7 @@ void mortar_rows(const PosedSurface& k, const PosedSurface& n, std::span<const F
   ABUT_ASSERT(k.dim == n.dim);
   mortar_pieces(k, n, pairs, options, buffers.pieces);
   tributary_weights(k, buffers.full);
-  buffers.weight.assign(static_cast<std::size_t>(k.node_count()), 0.0);
+  buffers.weight.assign(index(k.node_count()), 0.0);
   for (const MortarFacet& facet : buffers.pieces.facets) {
     const std::span<const std::int32_t> nodes = k.nodes(facet.facet);
     for (std::size_t i = 0; i < nodes.size(); ++i)

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/index.hpp"
+
 namespace abut {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr double resolution = 1.0e-6;
 void merged_rows(const PosedSurface& k, const MortarPieces& pieces, std::span<const double> weight,
                  std::span<const double> full, double share, MergeBuffers& buffers,
                  std::vector<std::int32_t>& root) {
-  const std::size_t count = static_cast<std::size_t>(k.node_count());
+  const std::size_t count = index(k.node_count());
   buffers.rank.resize(count);
   root.resize(count);
   for (std::size_t j = 0; j < count; ++j) {

@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/index.hpp"
+
 namespace abut {
 namespace {
 
@@ -67,7 +69,7 @@ void mortar_pieces(const PosedSurface& k, const PosedSurface& n, std::span<const
     facet.last = static_cast<std::int32_t>(out.pieces.size());
     if (facet.first == facet.last) continue;
     to_dual(ground, covered, options.dual_from, facet,
-            std::span(out.pieces).subspan(static_cast<std::size_t>(facet.first)));
+            std::span(out.pieces).subspan(index(facet.first)));
     out.facets.push_back(facet);
   }
 }

@@ -1,5 +1,7 @@
 #include "surface/posed_surface.hpp"
 
+#include "base/index.hpp"
+
 namespace abut {
 
 void nodal_normals(const PosedSurface& surface, std::vector<double>& normals) {
@@ -8,7 +10,7 @@ void nodal_normals(const PosedSurface& surface, std::vector<double>& normals) {
   for (int f = 0; f < surface.facet_count(); ++f) {
     const Eigen::Vector3d a = area_vector(corners(surface, f));
     for (std::int32_t node : surface.nodes(f))
-      for (int d = 0; d < dim; ++d) normals[static_cast<std::size_t>(dim * node + d)] += a[d];
+      for (int d = 0; d < dim; ++d) normals[index(dim * node + d)] += a[d];
   }
   for (int node = 0; node < surface.node_count(); ++node) {
     Eigen::Map<Eigen::VectorXd> n(normals.data() + dim * node, dim);
@@ -18,12 +20,12 @@ void nodal_normals(const PosedSurface& surface, std::vector<double>& normals) {
 }
 
 void tributary_weights(const PosedSurface& surface, std::vector<double>& weights) {
-  weights.assign(static_cast<std::size_t>(surface.node_count()), 0.0);
+  weights.assign(index(surface.node_count()), 0.0);
   for (int f = 0; f < surface.facet_count(); ++f) {
     const Corners c = corners(surface, f);
     const std::span<const std::int32_t> nodes = surface.nodes(f);
     if (c.count < 4) {
-      for (std::int32_t node : nodes) weights[static_cast<std::size_t>(node)] += area(c) / c.count;
+      for (std::int32_t node : nodes) weights[index(node)] += area(c) / c.count;
       continue;
     }
     // x = c0 + ca a + cb b + cab a b; its Jacobian along the mean normal is j0 + ja a + jb b, and
@@ -36,7 +38,7 @@ void tributary_weights(const PosedSurface& surface, std::vector<double>& weights
     const double j0 = ca.cross(cb).dot(n);
     const double ja = ca.cross(cab).dot(n) / 3.0, jb = cab.cross(cb).dot(n) / 3.0;
     const double parts[4] = {j0 - ja - jb, j0 + ja - jb, j0 + ja + jb, j0 - ja + jb};
-    for (int i = 0; i < 4; ++i) weights[static_cast<std::size_t>(nodes[i])] += parts[i];
+    for (int i = 0; i < 4; ++i) weights[index(nodes[i])] += parts[i];
   }
 }
 

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "base/index.hpp"
+
 namespace abut {
 
 /// A surface in one pose: a view, nothing is owned. Facets are segments in the plane, triangles and
@@ -22,8 +24,8 @@ struct PosedSurface {
   int node_count() const { return static_cast<int>(points.size()) / dim; }
   int facet_count() const { return offsets.empty() ? 0 : static_cast<int>(offsets.size()) - 1; }
   std::span<const std::int32_t> nodes(int facet) const {
-    const std::size_t begin = static_cast<std::size_t>(offsets[facet]);
-    return facets.subspan(begin, static_cast<std::size_t>(offsets[facet + 1]) - begin);
+    const std::size_t begin = index(offsets[facet]);
+    return facets.subspan(begin, index(offsets[facet + 1]) - begin);
   }
   /// [m] three components always, so that one code serves plane and space: the plane is z = 0.
   Eigen::Vector3d point(int node) const {

@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/index.hpp"
+
 namespace abut {
 namespace {
 
 /// Which corners of which facets go into which row: a counting sort.
 void sort_parts(const PosedSurface& k, const MortarPieces& pieces,
                 std::span<const std::int32_t> root, RowBuffers& b) {
-  b.begin.assign(static_cast<std::size_t>(k.node_count()) + 1, 0);
+  b.begin.assign(index(k.node_count()) + 1, 0);
   const auto each_part = [&k, &pieces, &root](const auto& visit) {
     for (std::size_t f = 0; f < pieces.facets.size(); ++f) {
       const std::span<const std::int32_t> nodes = k.nodes(pieces.facets[f].facet);
       for (std::size_t i = 0; i < nodes.size(); ++i)
-        if (root[nodes[i]] >= 0) visit(f, i, static_cast<std::size_t>(root[nodes[i]]));
+        if (root[nodes[i]] >= 0) visit(f, i, index(root[nodes[i]]));
     }
   };
   each_part([&b](std::size_t, std::size_t, std::size_t row) { ++b.begin[row]; });
@@ -23,7 +25,7 @@ void sort_parts(const PosedSurface& k, const MortarPieces& pieces,
     sum += begin;
     begin = sum;  // the end of the row; filled from there downwards
   }
-  b.parts.resize(static_cast<std::size_t>(sum));
+  b.parts.resize(index(sum));
   each_part([&b](std::size_t f, std::size_t i, std::size_t row) {
     b.parts[--b.begin[row]] = {static_cast<std::int32_t>(f), static_cast<std::int32_t>(i)};
   });
@@ -52,8 +54,8 @@ double add_part(const PosedSurface& k, const PosedSurface& n, const MortarPieces
 }  // namespace
 
 void RowSum::resize(int nodes) {
-  values.resize(static_cast<std::size_t>(nodes));
-  used.assign(static_cast<std::size_t>(nodes), 0);
+  values.resize(index(nodes));
+  used.assign(index(nodes), 0);
   columns.clear();
 }
 

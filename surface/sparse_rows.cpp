@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -14,7 +15,7 @@ void SparseRows::clear() {
 }
 
 void apply(const SparseRows& rows, int dim, std::span<const double> x, std::span<double> out) {
-  ABUT_ASSERT(out.size() == static_cast<std::size_t>(rows.count() * dim));
+  ABUT_ASSERT(out.size() == index(rows.count() * dim));
   std::fill(out.begin(), out.end(), 0.0);
   for (int r = 0; r < rows.count(); ++r)
     for (std::int32_t e = rows.offsets[r]; e < rows.offsets[r + 1]; ++e)
@@ -24,7 +25,7 @@ void apply(const SparseRows& rows, int dim, std::span<const double> x, std::span
 
 void add_transposed(const SparseRows& rows, int dim, double factor, std::span<const double> f,
                     std::span<double> out) {
-  ABUT_ASSERT(f.size() == static_cast<std::size_t>(rows.count() * dim));
+  ABUT_ASSERT(f.size() == index(rows.count() * dim));
   for (int r = 0; r < rows.count(); ++r)
     for (std::int32_t e = rows.offsets[r]; e < rows.offsets[r + 1]; ++e)
       for (int d = 0; d < dim; ++d)

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "base/assert.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 namespace {
@@ -28,7 +29,7 @@ void SurfaceRows::clear() {
 
 void gaps(const SurfaceRows& rows, std::span<const double> x, std::span<const double> y,
           std::span<double> out) {
-  ABUT_ASSERT(out.size() == static_cast<std::size_t>(rows.count()));
+  ABUT_ASSERT(out.size() == index(rows.count()));
   for (int r = 0; r < rows.count(); ++r) {
     out[r] = 0.0;
     for (int d = 0; d < rows.dim; ++d)

@@ -10,6 +10,7 @@
 
 #include "surface/boxes.hpp"
 #include "surface/mortar.hpp"
+#include "base/index.hpp"
 #include "surface/posed_surface.hpp"
 
 namespace abut {
@@ -119,7 +120,7 @@ inline Eigen::Matrix3d some_rotation() {
 
 /// Coefficients of one row as a dense list over the nodes.
 inline std::vector<double> dense(const SparseRows& rows, int row, int nodes) {
-  std::vector<double> values(static_cast<std::size_t>(nodes), 0.0);
+  std::vector<double> values(index(nodes), 0.0);
   for (std::int32_t e = rows.offsets[row]; e < rows.offsets[row + 1]; ++e)
     values[rows.columns[e]] = rows.values[e];
   return values;

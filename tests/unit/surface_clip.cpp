@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "surface/clip.hpp"
+#include "base/index.hpp"
 #include "tests/support/surfaces.hpp"
 
 namespace abut {
@@ -36,7 +37,7 @@ Polygon box(double x0, double y0, double x1, double y1) {
 
 /// Corners on an ellipse, anywhere, counterclockwise: convex.
 Polygon random_polygon(int corners, Draw& draw) {
-  std::vector<double> angles = draw.many(static_cast<std::size_t>(corners), 0.0, 6.283);
+  std::vector<double> angles = draw.many(index(corners), 0.0, 6.283);
   std::sort(angles.begin(), angles.end());
   const Vector2d middle(draw(-0.5, 0.5), draw(-0.5, 0.5));
   const double a = draw(0.1, 1.0), b = draw(0.1, 1.0), turn = draw(0.0, 3.0);

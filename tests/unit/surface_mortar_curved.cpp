@@ -11,6 +11,7 @@
 
 #include "surface/point_rows.hpp"
 #include "tests/support/surfaces.hpp"
+#include "base/index.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -170,7 +171,7 @@ TEST(CurvedMortar, SameInputGivesSameBitsAndBuffersDoNotMatter) {
 
 /// The same facets in another order.
 SurfaceMesh shuffled(const SurfaceMesh& mesh, unsigned seed) {
-  std::vector<int> order(static_cast<std::size_t>(mesh.pose().facet_count()));
+  std::vector<int> order(index(mesh.pose().facet_count()));
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::mt19937_64(seed));
   SurfaceMesh other{mesh.dim, mesh.points, {}, {0}};
@@ -221,7 +222,7 @@ TEST(CurvedMortar, FacetsThatDoNotFaceEachOtherAreNotJoined) {
 }
 
 SurfaceRows closest_rows(const CurvedPair& pair, const PointRowOptions& options) {
-  std::vector<std::int32_t> nodes(static_cast<std::size_t>(pair.k.nodes()));
+  std::vector<std::int32_t> nodes(index(pair.k.nodes()));
   std::iota(nodes.begin(), nodes.end(), 0);
   BoxTree tree;
   build(tree, pair.n.pose(), 0.0);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/surface_cases.hpp"
+#include "base/index.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -38,7 +39,7 @@ TEST_P(FlatMortar, RowsSumUpToOne) {
   const SurfaceRows rows = mortar(c.k, c.n);
   ASSERT_GT(rows.count(), 0);
   const std::vector<double> k_ones(c.k.points.size(), 1.0), n_ones(c.n.points.size(), 1.0);
-  std::vector<double> sums(static_cast<std::size_t>(rows.count() * rows.dim));
+  std::vector<double> sums(index(rows.count() * rows.dim));
   apply(rows.k, rows.dim, k_ones, sums);
   for (double sum : sums) EXPECT_NEAR(sum, 1.0, exact);
   apply(rows.n, rows.dim, n_ones, sums);
@@ -48,7 +49,7 @@ TEST_P(FlatMortar, RowsSumUpToOne) {
 TEST_P(FlatMortar, LinearFieldsAndPositionsPassExactly) {
   const FlatCase c = posed();
   const SurfaceRows rows = mortar(c.k, c.n);
-  std::vector<double> tx(static_cast<std::size_t>(rows.count() * rows.dim)), py = tx;
+  std::vector<double> tx(index(rows.count() * rows.dim)), py = tx;
   apply(rows.k, rows.dim, c.k.points, tx);
   apply(rows.n, rows.dim, c.n.points, py);
   EXPECT_LE(largest_difference(tx, py), exact);
@@ -60,8 +61,8 @@ TEST_P(FlatMortar, ConstantPressureIsThatOfTheConsistentNodalForces) {
   MortarOptions options;
   options.quadrature = PieceQuadrature::four_times_seven;
   const SurfaceRows rows = mortar(c.k, c.n, options);
-  std::vector<double> f_k(static_cast<std::size_t>(c.k.nodes()), 0.0), consistent;
-  std::vector<double> f_n(static_cast<std::size_t>(c.n.nodes()), 0.0), other = f_n;
+  std::vector<double> f_k(index(c.k.nodes()), 0.0), consistent;
+  std::vector<double> f_n(index(c.n.nodes()), 0.0), other = f_n;
   add_transposed(rows.k, 1, 1.0, rows.weights, f_k);
   add_transposed(rows.n, 1, 1.0, rows.weights, f_n);
   // N as the ground: its weights are the integrals of its shape functions over the same overlap
@@ -83,7 +84,7 @@ TEST_P(FlatMortar, AnyForcesBalanceInTotalMomentAndWork) {
   const SurfaceRows rows = mortar(c.k, c.n);
   Draw draw(11);
   const int dim = rows.dim;
-  const std::size_t size = static_cast<std::size_t>(rows.count() * dim);
+  const std::size_t size = index(rows.count() * dim);
   const std::vector<double> f = draw.many(size, -1.0, 1.0);
   std::vector<double> f_k(c.k.points.size(), 0.0), f_n(c.n.points.size(), 0.0);
   add_transposed(rows.k, dim, 1.0, f, f_k);

@@ -11,6 +11,7 @@
 #include "surface/point_rows.hpp"
 #include "surface/sharp_nodes.hpp"
 #include "tests/support/surfaces.hpp"
+#include "base/index.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -30,7 +31,7 @@ SurfaceRows rows_at(const SurfaceMesh& k, const std::vector<std::int32_t>& nodes
 }
 
 std::vector<std::int32_t> all_nodes(const SurfaceMesh& mesh) {
-  std::vector<std::int32_t> nodes(static_cast<std::size_t>(mesh.nodes()));
+  std::vector<std::int32_t> nodes(index(mesh.nodes()));
   std::iota(nodes.begin(), nodes.end(), 0);
   return nodes;
 }
@@ -51,7 +52,7 @@ TEST(PointRows, FailThePatchTestThatMortarRowsPass) {
   const SurfaceMesh k = grid(6, 6, flat, false, true), n = grid(4, 4, flat, false, false);
   const SurfaceRows rows = rows_at(k, all_nodes(k), n, {});
   EXPECT_EQ(rows.count(), k.nodes());
-  std::vector<double> f(static_cast<std::size_t>(n.nodes()), 0.0), consistent;
+  std::vector<double> f(index(n.nodes()), 0.0), consistent;
   add_transposed(rows.n, 1, 1.0, rows.weights, f);
   tributary_weights(n.pose(), consistent);
   const double miss = largest_difference(f, consistent) / largest_size(consistent);
