@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "base/archive.hpp"
-#include "base/assert.hpp"
 
 namespace abut {
 
@@ -22,7 +21,6 @@ void save_state(State& state, std::vector<std::byte>& kept) {
 /// Returns to it, bit for bit.
 template <class State>
 void restore_state(State& state, const std::vector<std::byte>& kept) {
-  ABUT_ASSERT(!kept.empty());
   Archive archive = Archive::reader(kept, Archive::Form::bare);
   state.state(archive);
 }
@@ -36,14 +34,12 @@ std::vector<std::byte> checkpoint_of(State& state) {
   return bytes;
 }
 
-/// A state from its durable form. Throws RunError when the fields are others.
+/// Reads it back. Throws RunError when the fields are others.
 template <class State>
-State state_of_checkpoint(std::span<const std::byte> bytes) {
+void read_checkpoint(State& state, std::span<const std::byte> bytes) {
   Archive archive = Archive::reader(bytes, Archive::Form::named);
-  State state;
   state.state(archive);
   archive.finish();
-  return state;
 }
 
 }  // namespace abut
