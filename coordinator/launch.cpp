@@ -55,10 +55,11 @@ std::string solver_beside_this_program() {
 }
 
 /// What somebody types to start the solver of a body that is waited for.
-std::string command_for(std::string endpoint, const std::string& body) {
+std::string command_for(std::string endpoint, const std::string& body, bool external) {
   const std::size_t wildcard = endpoint.find("//0.0.0.0:");
   if (wildcard != std::string::npos) endpoint.replace(wildcard + 2, 7, "HOST");  // this machine
-  return fmt::format("abut-solver --connect {} --body {}", endpoint, body);
+  return fmt::format("{} --connect {} --body {}", external ? "ITS_PROGRAM" : "abut-solver",
+                     endpoint, body);
 }
 
 }  // namespace
@@ -67,6 +68,7 @@ std::string command_for(std::string endpoint, const std::string& body) {
 struct Launch::Member {
   std::string name;
   bool spawned = true;
+  bool external = false;  // no abut-solver can be this body
   Milliseconds patience{0};
   int peer = 0;
   std::unique_ptr<ChildProcess> child;
@@ -106,6 +108,7 @@ void Launch::add_members(const Scene& scene) {
     member->name = name;
     const ConnectLaunch* connect = std::get_if<ConnectLaunch>(&entry.launch);
     member->spawned = connect == nullptr;
+    member->external = entry.external;
     member->patience =
         milliseconds(connect != nullptr ? connect->patience : scene.network.startup_deadline);
     member->peer = hub_->add_peer(name);
@@ -124,7 +127,7 @@ void Launch::listen(const Scene& scene) {
     }
     if (!member->spawned) {
       log_info(fmt::format("waiting for body '{}': {}", member->name,
-                           command_for(tcp_endpoint_, member->name)));
+                           command_for(tcp_endpoint_, member->name, member->external)));
     }
   }
 }
@@ -264,7 +267,8 @@ void Launch::check_startup(Member& member, TimePoint begin) {
   if (member.spawned) {
     throw RunError(what, "", "raise network.startup_deadline on a slow machine");
   }
-  throw RunError(what, "", fmt::format("start `{}`", command_for(endpoint, member.name)));
+  throw RunError(what, "",
+                 fmt::format("start `{}`", command_for(endpoint, member.name, member.external)));
 }
 
 std::vector<std::unique_ptr<Subdomain>> Launch::take_bodies() {

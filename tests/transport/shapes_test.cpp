@@ -164,7 +164,7 @@ struct Talk {
   Response reply;
 };
 
-/// What is left of `fields` of a trace when only the wanted ones travel.
+/// Only the wanted fields of a trace travel.
 void drop_unwanted(const Advance& request, Response& reply) {
   for (std::size_t p = 0; p < request.want.size(); ++p) {
     Waveform& trace = reply.ports[p].trace;
@@ -214,11 +214,8 @@ TEST(Shapes, EveryMessageComesBackAsItWasSent) {
 
     const std::string answered = bytes_of<v1::Advanced>(talk.reply, talk.request);
     decode(parsed<v1::Advanced>(answered), body, talk.request, reply);
-    const Advance all = [&talk] {
-      Advance without = talk.request;
-      without.want.clear();
-      return without;
-    }();
+    Advance all = talk.request;
+    all.want.clear();
     for (std::size_t p = 0; p < reply.ports.size(); ++p)  // room is kept, so there may be more
       reply.ports[p].reactions.resize(talk.reply.ports[p].reactions.size());
     drop_unwanted(talk.request, talk.reply);
@@ -290,8 +287,7 @@ TEST(Shapes, AnythingThatParsesIsTakenOrRefusedInWords) {
         act();
         ++taken;
       } catch (const CodecError& error) {
-        EXPECT_NE(std::string(error.what()), "");
-        ++refused;
+        refused += std::string(error.what()).empty() ? 0 : 1;
       }
     }
   }
