@@ -246,7 +246,7 @@ void BarInterior::set_obstacle(const Window& window, int i, std::size_t port, En
 }
 
 /// What the surface has given way by the reactions so far, and how much it does per newton of this
-/// substep's [M.82].
+/// substep's [M.82], [M.83].
 void BarInterior::give_way(const PortKernel& kernel, const Waveform& motion, int i,
                            std::size_t port, EndAction& action) {
   std::vector<double>& excess = imposed_[port].excess;
