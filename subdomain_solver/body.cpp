@@ -12,7 +12,6 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/life_signs.hpp"
-#include "subdomain_solver/saved_state.hpp"
 
 namespace abut {
 
@@ -33,6 +32,19 @@ void append(std::span<const double> port, const std::vector<std::int32_t>& point
     const std::span<const double> one = port.subspan(index(point) * dim, dim);
     to.insert(to.end(), one.begin(), one.end());
   }
+}
+
+void write(Interior& interior, std::vector<std::byte>& bytes, Archive::Form form) {
+  Archive archive = Archive::writer(bytes, form);
+  interior.state(archive);
+  archive.finish();
+}
+
+/// Throws RunError when the fields are others (Form::named).
+void read(Interior& interior, std::span<const std::byte> bytes, Archive::Form form) {
+  Archive archive = Archive::reader(bytes, form);
+  interior.state(archive);
+  archive.finish();
 }
 
 /// A value that is not finite anywhere in a state reaches one of these sums.
@@ -71,21 +83,25 @@ void Body::yields(int port, int partner, const PortKernel& kernel) {
   partners_.at(index(port)).at(index(partner)).kernel = kernel;
 }
 
-void Body::save() { save_state(*interior_, saved_); }
+void Body::save() { write(*interior_, saved_, Archive::Form::bare); }
 
 void Body::restore() {
-  restore_state(*interior_, saved_);
+  read(*interior_, saved_, Archive::Form::bare);
   interior_->restored();
 }
 
-std::vector<std::byte> Body::checkpoint() { return checkpoint_of(*interior_); }
+std::vector<std::byte> Body::checkpoint() {
+  std::vector<std::byte> bytes;
+  write(*interior_, bytes, Archive::Form::named);
+  return bytes;
+}
 
 void Body::resume(std::span<const std::byte> bytes) {
   const std::size_t own = interior_->coordinates();
   std::vector<std::byte> before;
-  save_state(*interior_, before);
+  write(*interior_, before, Archive::Form::bare);
   try {
-    read_checkpoint(*interior_, bytes);
+    read(*interior_, bytes, Archive::Form::named);
     if (interior_->coordinates() != own) {
       throw RunError(fmt::format("the checkpoint holds {} coordinates, but the body has {}",
                                  interior_->coordinates(), own),
@@ -93,7 +109,7 @@ void Body::resume(std::span<const std::byte> bytes) {
                      "Resume with the mesh that wrote the checkpoint.");
     }
   } catch (...) {
-    restore_state(*interior_, before);
+    read(*interior_, before, Archive::Form::bare);
     throw;
   }
   interior_->restored();
@@ -164,8 +180,8 @@ void Body::begin_replies(const Advance& request, Response& response) const {
     port.trace.clear();
     port.trace.support = interior_->support(p);
     port.trace.points = want_of(request, p).points;
-    const int points = port.trace.points.empty() ? geometry.count()
-                                                 : static_cast<int>(port.trace.points.size());
+    const int points =
+        port.trace.points.empty() ? geometry.count() : static_cast<int>(port.trace.points.size());
     port.trace.width = points * geometry.dim;
     port.reactions.resize(obstacles.size());
     for (std::size_t k = 0; k < obstacles.size(); ++k) {
@@ -262,10 +278,15 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
   const std::size_t p = index(port), width = describe().ports.at(p).geometry.points.size();
   ABUT_ASSERT(step > 0.0 && patterns.size() % width == 0);
   std::vector<std::byte> kept;
-  save_state(*interior_, kept);
+  write(*interior_, kept, Archive::Form::bare);
   const Substeps grid{0.0, count * step, step, step, count};
-  PortKernel kernel{step, interior_->support(p), static_cast<int>(patterns.size() / width),
-                    static_cast<int>(width), {}, {}, {}};
+  PortKernel kernel{step,
+                    interior_->support(p),
+                    static_cast<int>(patterns.size() / width),
+                    static_cast<int>(width),
+                    {},
+                    {},
+                    {}};
   kernel.displacement.assign(index(count) * patterns.size(), 0.0);
   const bool nodal = kernel.support == ForceSupport::nodal;
   if (nodal) kernel.begin = kernel.displacement;
@@ -295,7 +316,7 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
     }
   }
   interior_->wake();
-  restore_state(*interior_, kept);
+  read(*interior_, kept, Archive::Form::bare);
   interior_->restored();
   if (!failed) return kernel;
   throw RunError("has no port kernel: " + failed->detail, where,

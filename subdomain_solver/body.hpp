@@ -53,8 +53,8 @@ class Body final : public Subdomain {
 
   std::unique_ptr<Interior> interior_;
   std::function<void()> progress_;
-  std::vector<std::size_t> first_;               // where a port's values begin
-  std::vector<std::vector<Partner>> partners_;   // by port
+  std::vector<std::size_t> first_;              // where a port's values begin
+  std::vector<std::vector<Partner>> partners_;  // by port
   const Advance* request_ = nullptr;
   const PortValues* seen_ = nullptr;
   std::vector<Sweep> sweeps_;  // by port

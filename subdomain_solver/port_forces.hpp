@@ -10,10 +10,10 @@
 
 namespace abut {
 
-/// Forces imposed by partners on the ports of a body over a window, as its own substeps take them: values at
-/// their ends, equal to those of the waveform where it is sampled there, else means over the dual
-/// cells [M.8], so that the impulse is exact; linear in between. Lists of values are
-/// those of PortMap.
+/// Forces imposed by partners on the ports of a body over a window, as its own substeps take them:
+/// values at their ends, equal to those of the waveform where it is sampled there, else means over
+/// the dual cells [M.8], so that the impulse is exact; linear in between. Lists of values are those
+/// of PortMap.
 class PortForces final : public Load {
  public:
   /// The map must outlive the load.

@@ -60,8 +60,7 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   description_.stable_step = parts_.scheme.stable_step;
   description_.can.force = true;
   const bool linear = parts_.problem->model->is_linear() && (parts_.deforms || mesh.dim == 1);
-  description_.can.kernel =
-      linear && parts_.scheme.integrator->has_inertia() && !ports.empty();
+  description_.can.kernel = linear && parts_.scheme.integrator->has_inertia() && !ports.empty();
   for (const PortNodes& p : ports) {
     ports_.push_back({p.name, mesh.nodes_of(p.side)});
     Port port = port_of(p, ports_.back().nodes);
@@ -264,9 +263,8 @@ std::vector<double> SolidInterior::measure() {
   see_nodes();
   std::vector<double> q(nodal_values());
   parts_.map->displacement(state_.motion.q, q);
-  std::vector<double> out =
-      solid_measures(*parts_.model,
-                     {parts_.deforms, q, v_, state_.motion.history, energy(), momentum_}, ports_);
+  std::vector<double> out = solid_measures(
+      *parts_.model, {parts_.deforms, q, v_, state_.motion.history, energy(), momentum_}, ports_);
   for (const std::vector<double>& more :
        {reaction_measures(description_.dim, reactions()),
         parts_.scheme.integrator->measure(state_.motion),

@@ -91,7 +91,7 @@ class SolidInterior final : public Interior {
   std::unique_ptr<Problem> loaded_;  // while the body is probed: the problem with its loads
   // Of the nodes (nodes, dim) along the axes of space, as see_nodes() left them.
   std::vector<double> u_, v_;
-  Vector momentum_;  // [kg m/s]
+  Vector momentum_;                   // [kg m/s]
   std::vector<double> before_, now_;  // [m], [N] (port values)
   Vector change_;                     // [N] (coordinates)
 };

@@ -38,8 +38,8 @@ struct SolidState {
 std::vector<double> solid_measures(FeModel& model, const SolidState& state,
                                    const std::vector<NamedNodes>& ports);
 
-/// Writes [kg m^2/s] about the origin of space, from displacements [m] and the nodes' momenta [kg m/s]
-/// (nodes, dim); about the axis out of the plane in two dimensions, none in one.
+/// Writes [kg m^2/s] about the origin of space, from displacements [m] and the nodes' momenta
+/// [kg m/s] (nodes, dim); about the axis out of the plane in two dimensions, none in one.
 void angular_momentum(const Mesh& mesh, std::span<const double> u, const Vector& nodal_momentum,
                       std::vector<double>& out);
 

@@ -23,10 +23,7 @@ constexpr double usual_work = 2.0e7;
 
 BarInterior::BarInterior(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
                          const std::vector<End>& ends)
-    : bar_(std::move(bar)),
-      scheme_(std::move(scheme)),
-      imposed_(ends.size()),
-      shown_(ends.size()) {
+    : bar_(std::move(bar)), scheme_(std::move(scheme)), imposed_(ends.size()), shown_(ends.size()) {
   const std::size_t n = index(bar_->nodes());
   state_.u.assign(n, 0.0);
   state_.v.assign(n, bar_->data().velocity);
@@ -233,7 +230,8 @@ void BarInterior::set_obstacle(const Window& window, int i, std::size_t port, En
   const Partner& partner = window.partners[port][index(imposed.obstacle)];
   const Waveform& motion = window.request.boundary[port].obstacles[index(imposed.obstacle)].motion;
   const double n = Bar::outward(ends_[port]);
-  const double apart = n * (partner.surface.points[0] - description_.ports[port].geometry.points[0]);
+  const double apart =
+      n * (partner.surface.points[0] - description_.ports[port].geometry.points[0]);
   double u = 0.0;
   if (imposed.same_motion) {
     u = motion.u[index(i)];
@@ -248,7 +246,7 @@ void BarInterior::set_obstacle(const Window& window, int i, std::size_t port, En
 }
 
 /// What the surface has given way by the reactions so far, and how much it does per newton of this
-/// substep's [M.82].
+/// substep's [M.82], [M.83].
 void BarInterior::give_way(const PortKernel& kernel, const Waveform& motion, int i,
                            std::size_t port, EndAction& action) {
   std::vector<double>& excess = imposed_[port].excess;
@@ -257,10 +255,11 @@ void BarInterior::give_way(const PortKernel& kernel, const Waveform& motion, int
   const double reaction = n * state_.end[index(ends_[port])].force;  // on the partner
   if (!imposed_[port].same_motion || under.size() != motion.size() ||
       kernel.count() + 1 < static_cast<int>(under.size())) {
-    throw RunError("an obstacle that gives way has other times than the body's substeps, no force, "
-                   "or a kernel that is too short",
-                   fmt::format("body '{}'", description_.name),
-                   "Give its motion and its force at every substep.");
+    throw RunError(
+        "an obstacle that gives way has other times than the body's substeps, no force, "
+        "or a kernel that is too short",
+        fmt::format("body '{}'", description_.name),
+        "Give its motion and its force at every substep.");
   }
   const std::size_t now = index(i);
   excess.resize(under.size());
@@ -274,7 +273,7 @@ void BarInterior::give_way(const PortKernel& kernel, const Waveform& motion, int
 }
 
 void BarInterior::resist(const Impedance& impedance, const Substeps& grid, int i, int end,
-                     EndAction& action) const {
+                         EndAction& action) const {
   // A dashpot over a substep is a spring from where the port was at its begin.
   action.kind = EndAction::Kind::obstacle;
   action.target = Bar::outward(end) * scheme_.integrator->port_displacement(state_, end);
@@ -284,7 +283,7 @@ void BarInterior::resist(const Impedance& impedance, const Substeps& grid, int i
 
 /// Forces of several partners add up.
 void BarInterior::add_force(const Waveform& imposed, bool same_grid, const Substeps& grid, int i,
-                        int end, EndAction& action) const {
+                            int end, EndAction& action) const {
   const double inward = -Bar::outward(end);
   const auto add = [&action](double force, double dynamic) {
     const bool first = action.kind != EndAction::Kind::force;

@@ -2,7 +2,6 @@
 
 #include <limits>
 
-
 namespace abut {
 
 RigidWall::RigidWall(std::string name, double position, std::string port, double normal)
@@ -12,11 +11,8 @@ RigidWall::RigidWall(std::string name, double position, std::string port, double
   description_.mass = std::numeric_limits<double>::infinity();
   description_.stable_step = std::numeric_limits<double>::infinity();
   description_.conserves = true;
-  description_.can = {.motion = false,
-                      .force = true,
-                      .obstacle = false,
-                      .impulse = true,
-                      .kernel = true};
+  description_.can = {
+      .motion = false, .force = true, .obstacle = false, .impulse = true, .kernel = true};
   Port p;
   p.name = std::move(port);
   p.geometry.points = {position};

@@ -43,7 +43,8 @@ std::string bar(const std::string& integrator, const std::string& more) {
 
 std::string solid(const std::string& model, const std::string& law, const std::string& integrator) {
   return fmt::format(
-      "model: {{{}dimension: 3, mesh: {{box: {{lengths: [3.0, 2.0, 2.0], elements: [3, 2, 2]}}}}}}}}"
+      "model: {{{}dimension: 3, mesh: {{box: {{lengths: [3.0, 2.0, 2.0], elements: [3, 2, "
+      "2]}}}}}}}}"
       ", material: {{{}}}, integrator: {{{}}}, initial: {{velocity: [0.1, 0.0, 0.0]}}, "
       "ports: {{face: {{side: right}}}}",
       model, law, integrator);
@@ -54,7 +55,8 @@ std::vector<Counted> counted() {
   const std::string linear = "linear_elastic: " + elastic, rubber = "neo_hookean: " + elastic;
   const std::string explicit_step = "central_difference: {step: 0.1}";
   const std::string pair =
-      "model: {{bar_pair: {{contact: {{lagrange_multiplier: {{}}}}, left: {{length: 20.0, elements: 20, area: "
+      "model: {{bar_pair: {{contact: {{lagrange_multiplier: {{}}}}, left: {{length: 20.0, "
+      "elements: 20, area: "
       "1.0, position: -20.0, velocity: 0.1}}, right: {{length: 20.0, elements: 20, area: 1.0, "
       "position: 0.0}}}}}}, material: {{linear_elastic: {{youngs_modulus: 1.0, density: 1.0}}}}, "
       "integrator: {{{}}}";
@@ -90,9 +92,8 @@ void push(const Port& port, const TimeWindow& window, Waveform& force) {
 
 TEST_P(Allocations, AreNoneFromTheSecondWindowOn) {
   for (const bool obstructed : {false, true}) {
-    const std::unique_ptr<Subdomain> body =
-        make_body(Document::from_text("test", "bodies: {it: {" + GetParam().body + "}}"),
-                  "bodies.it");
+    const std::unique_ptr<Subdomain> body = make_body(
+        Document::from_text("test", "bodies: {it: {" + GetParam().body + "}}"), "bodies.it");
     const Description& d = body->describe();
     if (obstructed && !d.can.obstacle) continue;
     if (obstructed) body->meet(0, d.ports[0].geometry, {});
