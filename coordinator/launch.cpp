@@ -175,12 +175,13 @@ void Launch::greet_all(const Specification& scene_text) {
 /// The last Hello that has come: an earlier one may be of a solver that has been restarted since.
 bool Launch::greet(Member& member) {
   v1::Reply reply;
+  Bytes bulk;
   bool came = false;
   while (const std::optional<Bytes> frame = hub_->channel(member.peer).receive(Milliseconds(0))) {
     came = true;
     const std::optional<Bytes> payload = open_frame(*frame);
     const bool sound =
-        frame->size() <= options_.limits.frame_bytes && payload && parse_into(reply, *payload);
+        frame->size() <= options_.limits.frame_bytes && payload && parse_into(reply, *payload, bulk);
     if (sound && reply.has_hello()) continue;
     throw RunError(
         fmt::format("body '{}' did not say hello: its first frame, of {} bytes (limit {}), "
@@ -242,8 +243,9 @@ void Launch::refuse_strangers() {
     }
     // Where its session cannot be read, the refusal has none.
     v1::Reply hello;
+    Bytes bulk;
     const std::optional<Bytes> payload = open_frame(stranger->second);
-    if (!payload || !parse_into(hello, *payload)) hello.Clear();
+    if (!payload || !parse_into(hello, *payload, bulk)) hello.Clear();
     refuse(stranger->first, hello.hello().session(),
            "the scene has no body of this name, only " + names);
   }
