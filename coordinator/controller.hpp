@@ -58,7 +58,6 @@ class Controller {
     int longest = 1;        // (flight_work.hpp)
     int limit = 1;          // at present
     bool grounded = false;  // came too near: step once
-    void state(Archive& archive);
   };
 
   void start();

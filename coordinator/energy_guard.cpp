@@ -12,17 +12,6 @@ EnergyGuard::EnergyGuard(double share, std::vector<bool> conserves)
       all_conserve_(std::ranges::all_of(conserves_, [](bool yes) { return yes; })),
       bodies_(conserves_.size()) {}
 
-void EnergyGuard::state(Archive& archive) {
-  archive.field("begun", begun_);
-  archive.field("warned", warned_);
-  archive.field("first", first_);
-  archive.field("most", most_);
-  for (Account& account : bodies_) {
-    archive.field("body_first", account.first);
-    archive.field("body_ports", account.ports);
-  }
-}
-
 EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
                                        std::span<const double> struck) {
   double own = 0.0, motion = 0.0;

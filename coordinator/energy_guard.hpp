@@ -3,7 +3,6 @@
 #include <span>
 #include <vector>
 
-#include "base/archive.hpp"
 #include "contract/subdomain.hpp"
 
 namespace abut {
@@ -28,8 +27,6 @@ class EnergyGuard {
   double growth() const { return growth_; }  // as a fraction, at the last look
   double most() const { return most_; }      // [J] largest kinetic and stored energy so far
   int culprit() const { return culprit_; }   // body that a verdict is about; -1: all together
-
-  void state(Archive& archive);
 
  private:
   struct Account {
