@@ -180,8 +180,8 @@ bool Launch::greet(Member& member) {
   while (const std::optional<Bytes> frame = hub_->channel(member.peer).receive(Milliseconds(0))) {
     came = true;
     const std::optional<Bytes> payload = open_frame(*frame);
-    const bool sound =
-        frame->size() <= options_.limits.frame_bytes && payload && parse_into(reply, *payload, bulk);
+    const bool sound = frame->size() <= options_.limits.frame_bytes && payload &&
+                       parse_into(reply, *payload, bulk);
     if (sound && reply.has_hello()) continue;
     throw RunError(
         fmt::format("body '{}' did not say hello: its first frame, of {} bytes (limit {}), "
