@@ -43,7 +43,6 @@ void start_log(const std::string& program, LogLevel level) {
   logger() = make_logger(program, level);
 }
 
-void log_debug(const std::string& text) { logger()->log(spdlog::level::debug, text); }
 void log_info(const std::string& text) { logger()->log(spdlog::level::info, text); }
 void log_warning(const std::string& text) { logger()->log(spdlog::level::warn, text); }
 void log_error(const std::string& text) { logger()->log(spdlog::level::err, text); }

@@ -28,14 +28,6 @@ void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substep
   }
 }
 
-void PortForces::impose(std::vector<double> at_begin, std::vector<double> in_first,
-                        const Substeps& grid) {
-  grid_ = grid;
-  forces_ = std::move(at_begin);
-  forces_.insert(forces_.end(), in_first.begin(), in_first.end());
-  forces_.resize(index(grid.count + 1) * map_.values(), 0.0);
-}
-
 void PortForces::add_sampled(const Waveform& imposed, std::size_t port, bool first) {
   forces_.resize(index(grid_.count + 1) * map_.values(), 0.0);
   const std::size_t width = index(imposed.width);
@@ -73,9 +65,9 @@ void PortForces::add(const Waveform& imposed, const double* values, bool first,
   }
 }
 
-std::vector<double> PortForces::at(double time) const {
-  std::vector<double> out(map_.values(), 0.0);
-  if (forces_.empty()) return out;
+void PortForces::at(double time, std::vector<double>& out) const {
+  out.assign(map_.values(), 0.0);
+  if (forces_.empty()) return;
   const double place = grid_.count > 0 ? (time - grid_.begin) / grid_.step : 0.0;
   const int near = count_within(place, 0, grid_.count);
   const double length = std::max(grid_.step, 0.0);
@@ -83,18 +75,19 @@ std::vector<double> PortForces::at(double time) const {
   const auto instant = [this](int i) { return i == 0 ? grid_.begin : grid_.time(i); };
   if (grid_.count == 0 || std::abs(time - instant(near)) <= rounding * length) {
     std::copy_n(row(near), map_.values(), out.begin());
-    return out;
+    return;
   }
   const int after = count_within(std::ceil(place), 1, grid_.count);
   const double share =
       std::clamp((time - instant(after - 1)) / (instant(after) - instant(after - 1)), 0.0, 1.0);
   for (std::size_t k = 0; k < map_.values(); ++k)
     out[k] = (1.0 - share) * row(after - 1)[k] + share * row(after)[k];
-  return out;
 }
 
 void PortForces::add(double time, std::span<const double> q, Vector& force) const {
-  if (!forces_.empty()) map_.lift(q, at(time), force);
+  if (forces_.empty()) return;
+  at(time, now_);
+  map_.lift(q, now_, force);
 }
 
 }  // namespace abut

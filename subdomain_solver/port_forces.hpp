@@ -10,10 +10,10 @@
 
 namespace abut {
 
-/// Forces imposed by partners on the ports of a body over a window, as its own substeps take them: values at
-/// their ends, equal to those of the waveform where it is sampled there, else means over the dual
-/// cells [M.8], so that the impulse is exact; linear in between. Lists of values are
-/// those of PortMap.
+/// Forces imposed by partners on the ports of a body over a window, as its own substeps take them:
+/// values at their ends, equal to those of the waveform where it is sampled there, else means over
+/// the dual cells [M.8], so that the impulse is exact; linear in between. Lists of values are those
+/// of PortMap.
 class PortForces final : public Load {
  public:
   /// The map must outlive the load.
@@ -21,12 +21,10 @@ class PortForces final : public Load {
 
   /// What is imposed over a window that the body divides like this.
   void impose(const std::vector<BoundaryData>& boundary, const Substeps& grid);
-  /// One force [N] (values) at the window's begin and one at the end of its first substep.
-  void impose(std::vector<double> at_begin, std::vector<double> in_first, const Substeps& grid);
   bool acts() const { return !forces_.empty(); }
 
   /// [N] (values) at a time; zeros where nothing is imposed.
-  std::vector<double> at(double time) const;
+  void at(double time, std::vector<double>& out) const;
   void add(double time, std::span<const double> q, Vector& force) const override;
 
  private:
@@ -37,6 +35,7 @@ class PortForces final : public Load {
   Substeps grid_;
   std::vector<double> forces_;  // [N] (substeps + 1, values); empty: none imposed
   std::vector<double> mean_;    // [N] of a waveform over a dual cell
+  mutable std::vector<double> now_;
 };
 
 }  // namespace abut

@@ -37,16 +37,23 @@ void PortMap::acceleration(std::span<const double> q, std::span<const double> v,
   turn(out, false);
 }
 
-void PortMap::lift(std::span<const double> q, std::vector<double> forces, Vector& force) const {
-  turn(forces, true);
-  map_->lift(q, forces, force);
+void PortMap::lift(std::span<const double> q, const std::vector<double>& forces,
+                   Vector& force) const {
+  turned_ = forces;
+  turn(turned_, true);
+  map_->lift(q, turned_, force);
 }
 
 void PortMap::turn(std::vector<double>& values, bool into_frames) const {
   for (const auto& [first, frame] : frames_) {
+    const auto axes = frame.topLeftCorner(dim_, dim_);
     Eigen::Map<Vector> local(values.data() + first, dim_);
-    const Eigen::MatrixXd axes = frame.topLeftCorner(dim_, dim_);
-    local = (into_frames ? (axes.transpose() * local).eval() : (axes * local).eval());
+    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> given = local;
+    if (into_frames) {
+      local.noalias() = axes.transpose() * given;
+    } else {
+      local.noalias() = axes * given;
+    }
   }
 }
 

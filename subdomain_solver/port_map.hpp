@@ -30,7 +30,7 @@ class PortMap {
   void acceleration(std::span<const double> q, std::span<const double> v, std::span<const double> a,
                     std::vector<double>& out) const;  // [m/s^2]
   /// Adds the generalised force of port forces [N] at coordinates q.
-  void lift(std::span<const double> q, std::vector<double> forces, Vector& force) const;
+  void lift(std::span<const double> q, const std::vector<double>& forces, Vector& force) const;
 
  private:
   void turn(std::vector<double>& values, bool into_frames) const;
@@ -41,6 +41,7 @@ class PortMap {
   std::vector<std::pair<std::size_t, Matrix3>>
       frames_;  // of nodes that have one, and where they begin
   std::unique_ptr<NodalMap> map_;
+  mutable std::vector<double> turned_;
 };
 
 }  // namespace abut

@@ -37,8 +37,8 @@ NodalReactions::NodalReactions(const FeModel& model, const Problem& problem,
 
 /// Forces on ports are among the problem's loads.
 Vector NodalReactions::forces(const Motion& motion, double time, const Vector&) const {
-  const Vector external = problem_.external_force(time, motion.q);
   const Vector inertia = mass_ * integrator_.acceleration(motion, time, step_);
+  const Vector& external = problem_.external_force(time, motion.q);
   Vector forces = Vector::Zero(external.size());
   int k = 0;
   for (const Prescribed& p : problem_.supports)

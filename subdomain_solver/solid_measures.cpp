@@ -95,9 +95,10 @@ void add_stress_at(const NamedNodes& port, int dim, const std::vector<StressEntr
 
 }  // namespace
 
-std::vector<double> angular_momentum(const Mesh& mesh, const std::vector<double>& u,
-                                     const Vector& nodal_momentum) {
-  if (mesh.dim == 1) return {};
+void angular_momentum(const Mesh& mesh, std::span<const double> u, const Vector& nodal_momentum,
+                      std::vector<double>& out) {
+  out.clear();
+  if (mesh.dim == 1) return;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int node = 0; node < mesh.node_count(); ++node) {
     Eigen::Vector3d x = Eigen::Vector3d::Zero(), p = Eigen::Vector3d::Zero();
@@ -108,8 +109,7 @@ std::vector<double> angular_momentum(const Mesh& mesh, const std::vector<double>
     }
     sum += x.cross(p);
   }
-  if (mesh.dim == 2) return {sum(2)};
-  return {sum(0), sum(1), sum(2)};
+  out.insert(out.end(), mesh.dim == 2 ? sum.data() + 2 : sum.data(), sum.data() + 3);
 }
 
 std::vector<std::string> solid_measure_names(int dim, bool deforms,
@@ -161,7 +161,7 @@ std::vector<double> solid_measures(FeModel& model, const SolidState& state,
                                    const std::vector<NamedNodes>& ports) {
   const int dim = model.mesh().dim;
   const Energy& energy = state.energy;
-  const std::vector<double>& v = state.velocity;
+  const std::vector<double> v(state.velocity.begin(), state.velocity.end());
   std::vector<double> out, u(state.q.begin(), state.q.end());
   model.to_space(u);
   summarise(u, dim, out);
@@ -175,7 +175,8 @@ std::vector<double> solid_measures(FeModel& model, const SolidState& state,
   out.insert(out.end(), {energy.kinetic, energy.stored, energy.dissipated, energy.external_work});
   for (int i = 0; i < dim; ++i)
     out.push_back(state.nodal_momentum(Eigen::seqN(i, model.mesh().node_count(), dim)).sum());
-  const std::vector<double> angular = angular_momentum(model.mesh(), u, state.nodal_momentum);
+  std::vector<double> angular;
+  angular_momentum(model.mesh(), u, state.nodal_momentum, angular);
   out.insert(out.end(), angular.begin(), angular.end());
   for (const NamedNodes& port : ports) {
     for (const std::vector<double>* field : {&std::as_const(u), &v}) {

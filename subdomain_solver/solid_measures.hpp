@@ -26,10 +26,10 @@ std::vector<std::string> solid_measure_names(int dim, bool deforms,
 struct SolidState {
   bool deforms = true;
   std::span<const double> q;     // [m] coordinates of the mesh's model
-  std::vector<double> velocity;  // [m/s] (nodes, dim) along the axes of space, as below
+  std::span<const double> velocity;  // [m/s] (nodes, dim) along the axes of space, as below
   std::span<const double> history;
   Energy energy;
-  Vector nodal_momentum;  // [kg m/s] (nodes, dim)
+  const Vector& nodal_momentum;  // [kg m/s] (nodes, dim)
 };
 
 /// Their values. Means are over nodes (displacement, velocity; of ports also stress) and over the
@@ -38,10 +38,10 @@ struct SolidState {
 std::vector<double> solid_measures(FeModel& model, const SolidState& state,
                                    const std::vector<NamedNodes>& ports);
 
-/// [kg m^2/s] about the origin of space, from displacements [m] and the nodes' momenta [kg m/s]
-/// (nodes, dim); about the axis out of the plane in two dimensions, none in one.
-std::vector<double> angular_momentum(const Mesh& mesh, const std::vector<double>& u,
-                                     const Vector& nodal_momentum);
+/// Writes [kg m^2/s] about the origin of space, from displacements [m] and the nodes' momenta
+/// [kg m/s] (nodes, dim); about the axis out of the plane in two dimensions, none in one.
+void angular_momentum(const Mesh& mesh, std::span<const double> u, const Vector& nodal_momentum,
+                      std::vector<double>& out);
 
 /// Cauchy stress [Pa] from first Piola-Kirchhoff stress and deformation gradient; P itself where
 /// the law is one of small strain.

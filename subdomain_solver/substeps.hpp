@@ -1,23 +1,9 @@
 #pragma once
 
-#include <vector>
-
 #include "contract/subdomain.hpp"
+#include "contract/substeps.hpp"
 
 namespace abut {
-
-/// How a body divides a window.
-struct Substeps {
-  double begin = 0.0, end = 0.0, step = 0.0, last = 0.0;  // [s]
-  int count = 0;
-
-  /// Whole substeps, and a shorter last one where they do not fill the window. Throws RunError for
-  /// more than most_substeps.
-  static Substeps divide(double begin, double end, double step);
-  double length(int i) const { return i == count ? last : step; }  // i = 1..count
-  double time(int i) const { return i == count ? end : begin + i * step; }
-  bool matches(const std::vector<double>& times) const;  // the same instants, i = 0..count
-};
 
 /// Records at the ends of equal parts of a window, on the substeps nearest to them. Their times are
 /// computed alike by all bodies.

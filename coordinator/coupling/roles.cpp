@@ -57,6 +57,8 @@ Wish wish_of(const Joint& joint, Bodies& bodies, double window) {
     if (bodies.describe(joint.sides[s].body).can.obstacle) continue;
     wish.kinematic = 1 - static_cast<int>(s);
     wish.fixed = true;
+    // the whole window's kernel will be needed: one probe instead of one per length
+    moved_over(joint.sides[1 - s], bodies, window);
     return wish;
   }
   const double step[2] = {bodies.describe(joint.sides[0].body).step,

@@ -18,7 +18,6 @@ struct EndState {
   double force = 0.0;    // [N] contact force at the present time, as exchanged
   double dynamic = 0.0;  // [N] the force that moves the body: its mean over the dual cell
   double work = 0.0;     // [J] done on the bar by this end's force since the window began
-  double swept_low = 0.0, swept_high = 0.0;  // [m] range of the port, reset for every part
 
   void state(Archive& archive);
 };

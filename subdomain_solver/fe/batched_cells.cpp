@@ -1,6 +1,7 @@
 #include "subdomain_solver/fe/batched_cells.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <cmath>
 
 #include "base/assert.hpp"
@@ -122,12 +123,14 @@ void BatchedCells::evaluate(std::size_t p, Copies& copies, std::span<const doubl
 }
 
 bool BatchedCells::evaluate(std::span<const double> q, std::span<double> force, double& stored) {
-  threads_.run(patches_.list().size(), [this, q, force](std::size_t patch, int worker) {
+  // Handed on by reference: a copy of what the lambdas hold would be allocated.
+  const auto ask = [this, q, force](std::size_t patch, int worker) {
     evaluate(patch, copies_[index(worker)], q, force);
-  });
+  };
+  threads_.run(patches_.list().size(), std::ref(ask));
   const std::size_t dim = index(dim_), count = patches_.shared_count();
   constexpr std::size_t each = 4096;  // shared nodes of one task
-  threads_.run((count + each - 1) / each, [this, force, dim, count](std::size_t task, int) {
+  const auto add = [this, force, dim, count](std::size_t task, int) {
     for (std::size_t s = task * each; s < std::min(count, (task + 1) * each); ++s) {
       const CellPatches::SharedNode node = patches_.shared(s);
       for (std::size_t i = 0; i < dim; ++i) {
@@ -136,7 +139,8 @@ bool BatchedCells::evaluate(std::span<const double> q, std::span<double> force, 
         force[index(node.node) * dim + i] = sum;
       }
     }
-  });
+  };
+  threads_.run((count + each - 1) / each, std::ref(add));
   stored = 0.0;
   for (const double energy : stored_) stored += energy;
   return std::isfinite(stored) && std::find(answers_.begin(), answers_.end(), 0) == answers_.end();
@@ -152,7 +156,7 @@ void BatchedCells::ask_all(std::span<const double> q, std::span<const double> sc
     scale += list[p].batches * batch_lanes;
   }
   ABUT_ASSERT(scale == scales.data() + scales.size());
-  threads_.run(list.size(), [this, q](std::size_t p, int worker) {
+  const auto ask = [this, q](std::size_t p, int worker) {
     const CellPatch& patch = patches_.list()[p];
     Copies& copies = copies_[index(worker)];
     copy_displacement(patch, copies, q);
@@ -163,7 +167,8 @@ void BatchedCells::ask_all(std::span<const double> q, std::span<const double> sc
                          nullptr,
                          {}};
     frequencies_[index(patch.block)](view, parameters_, questions_[p]);
-  });
+  };
+  threads_.run(list.size(), std::ref(ask));
 }
 
 double BatchedCells::bound_frequencies(std::span<const double> q, double from,

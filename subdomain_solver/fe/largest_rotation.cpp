@@ -2,7 +2,7 @@
 #include "base/index.hpp"
 
 #include <algorithm>
-#include <vector>
+#include <array>
 
 #include <Eigen/Dense>
 
@@ -10,15 +10,23 @@ namespace abut {
 
 namespace {
 
+// Bounded by the largest element: asked for at every record, they shall allocate nothing.
+constexpr int most_nodes = 27;
+using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_nodes, 3>;
+using Places = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, most_nodes>;
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+
 /// Derivatives of an element's shape functions at the mean of its corners: (nodes, dim).
-Eigen::MatrixXd slopes_at_centre(const Element& element) {
+Slopes slopes_at_centre(const Element& element) {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const int corners = element.corner_count();
   const Eigen::Map<const Rows> places(element.corners.data(), corners, element.dim);
-  const Eigen::VectorXd centre = places.colwise().mean();
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> centre = places.colwise().mean();
   const std::size_t nodes = index(element.nodes);
-  std::vector<double> n(nodes), dn(nodes * index(element.dim));
-  element.evaluate({centre.data(), index(centre.size())}, n, dn);
+  std::array<double, most_nodes> n;
+  std::array<double, 3 * most_nodes> dn;
+  element.evaluate({centre.data(), index(centre.size())}, std::span(n).first(nodes),
+                   std::span(dn).first(nodes * index(element.dim)));
   return Eigen::Map<const Rows>(dn.data(), element.nodes, element.dim);
 }
 
@@ -33,13 +41,14 @@ double largest_rotation(const Mesh& mesh, std::span<const double> u, int stride)
   int next = 0;  // cells to pass by
   for (const CellBlock& cells : mesh.blocks) {
     const int nodes = cells.element->nodes;
-    const Eigen::MatrixXd slopes = slopes_at_centre(*cells.element);
+    const Slopes slopes = slopes_at_centre(*cells.element);
     for (int c = 0; c < cells.count(); ++c) {
       if (next-- > 0) continue;
       next = stride - 1;
       const Eigen::Map<const Eigen::VectorXi> own(cells.nodes.data() + c * nodes, nodes);
-      const Eigen::MatrixXd jacobian = points(Eigen::all, own) * slopes;
-      const Eigen::MatrixXd gradient = moved(Eigen::all, own) * slopes * jacobian.inverse();
+      const Places x = points(Eigen::all, own), v = moved(Eigen::all, own);
+      const Square jacobian = x * slopes, change = v * slopes, inverse = jacobian.inverse();
+      const Square gradient = change * inverse;
       // The axial vector has half the norm of gradient - gradient^T over sqrt(2).
       most = std::max(most, (gradient - gradient.transpose()).squaredNorm() / 8.0);
     }

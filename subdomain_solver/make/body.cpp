@@ -7,9 +7,10 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/yaml_fields.hpp"
-#include "subdomain_solver/bars/bar_body.hpp"
+#include "subdomain_solver/bars/bar_interior.hpp"
 #include "subdomain_solver/bars/central_difference.hpp"
 #include "subdomain_solver/bars/generalized_alpha.hpp"
+#include "subdomain_solver/body.hpp"
 #include "subdomain_solver/fe/element_limit.hpp"
 #include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/make/mass_range.hpp"
@@ -29,8 +30,8 @@ constexpr double limit_slack = 1.0e-12;
 
 int end_of(const std::string& side) { return side == "left" ? 0 : side == "right" ? 1 : -1; }
 
-std::vector<BarBody::BodyPort> ports_of(const BodySpec& spec, const Place& place) {
-  std::vector<BarBody::BodyPort> ports;
+std::vector<BarInterior::End> ports_of(const BodySpec& spec, const Place& place) {
+  std::vector<BarInterior::End> ports;
   for (const auto& [name, port] : spec.ports) {
     const int end = end_of(port.side);
     const std::string key = "ports." + name + ".side";
@@ -38,7 +39,7 @@ std::vector<BarBody::BodyPort> ports_of(const BodySpec& spec, const Place& place
       refuse(place, key, fmt::format("side '{}' does not exist", port.side),
              "Give left or right, the sides of this body.");
     }
-    for (const BarBody::BodyPort& other : ports) {
+    for (const BarInterior::End& other : ports) {
       if (other.end != end) continue;
       refuse(place, key, fmt::format("side '{}' is the port '{}' already", port.side, other.name),
              "Let each side be one port.");
@@ -62,7 +63,7 @@ struct SchemeMaker {
   const Bar& bar;
   const Place& place;
 
-  BarBody::Scheme operator()(const CentralDifferenceSpec& s) const {
+  BarInterior::Scheme operator()(const CentralDifferenceSpec& s) const {
     const double limit = bar.stable_step();
     if (s.step > limit * (1.0 + limit_slack)) {
       refuse(place, "integrator.central_difference.step",
@@ -83,25 +84,25 @@ struct SchemeMaker {
     return {std::make_unique<CentralDifference>(bar, s.step, s.dispersion_terms), s.step, true,
             words};
   }
-  BarBody::Scheme operator()(const NewmarkSpec& s) const {
+  BarInterior::Scheme operator()(const NewmarkSpec& s) const {
     return implicit(AlphaWeights::newmark(s.beta, s.gamma), s.step, "newmark");
   }
-  BarBody::Scheme operator()(const HhtAlphaSpec& s) const {
+  BarInterior::Scheme operator()(const HhtAlphaSpec& s) const {
     return implicit(AlphaWeights::hht(s.alpha), s.step, "HHT-alpha");
   }
-  BarBody::Scheme operator()(const GeneralizedAlphaSpec& s) const {
+  BarInterior::Scheme operator()(const GeneralizedAlphaSpec& s) const {
     return implicit(AlphaWeights::spectral_radius(s.spectral_radius), s.step, "generalised alpha");
   }
-  BarBody::Scheme operator()(const QuasiStaticSpec&) const {
+  BarInterior::Scheme operator()(const QuasiStaticSpec&) const {
     refuse(place, "integrator", "quasi_static is not offered to a bar",
            "Use newmark or another implicit integrator.");
   }
-  BarBody::Scheme operator()(const RigidMotionSpec&) const { return {}; }  // refused before
-  BarBody::Scheme operator()(const BackwardEulerSpec&) const {
+  BarInterior::Scheme operator()(const RigidMotionSpec&) const { return {}; }  // refused before
+  BarInterior::Scheme operator()(const BackwardEulerSpec&) const {
     refuse(place, "integrator", "backward_euler is offered to bar_pair only",
            "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");
   }
-  BarBody::Scheme implicit(const AlphaWeights& weights, double step, const char* words) const {
+  BarInterior::Scheme implicit(const AlphaWeights& weights, double step, const char* words) const {
     return {std::make_unique<GeneralizedAlpha>(bar, weights), step, false,
             fmt::format("{}, step {:g} s", words, step),
             weights.is_newmark() && weights.beta == 0.25 && weights.gamma == 0.5};
@@ -184,20 +185,19 @@ BarProperties fe_bar_properties(const BodySpec& spec) {
 
 namespace {
 
-std::unique_ptr<Subdomain> build(const Document& document, const std::string& path,
-                                 std::function<void()> progress) {
+std::unique_ptr<Interior> build(const Document& document, const std::string& path) {
   BodySpec spec = read<BodySpec>(document, path);
   spec.place_files(document.name().substr(0, document.name().rfind('/') + 1));
   const Place place{document, path};
   const std::string name = path.substr(path.rfind('.') + 1);
   if (std::holds_alternative<BarPairSpec>(spec.model))
-    return make_pair_body(spec, document, path, std::move(progress));
+    return make_pair(spec, document, path);
   if (std::holds_alternative<ModalModelSpec>(spec.model))
-    return make_modal_body(spec, document, path, std::move(progress));
+    return make_modal(spec, document, path);
   if (std::holds_alternative<RigidModelSpec>(spec.model))
-    return make_rigid_body(spec, document, path, std::move(progress));
-  if (spec.is_solid()) return make_solid_body(spec, document, path, std::move(progress));
-  std::vector<BarBody::BodyPort> ports = ports_of(spec, place);
+    return make_rigid(spec, document, path);
+  if (spec.is_solid()) return make_solid(spec, document, path);
+  std::vector<BarInterior::End> ports = ports_of(spec, place);
   if (std::holds_alternative<RigidWallSpec>(spec.model)) {
     return std::make_unique<RigidWall>(name, spec.initial.position[0], ports[0].name,
                                        Bar::outward(ports[0].end));
@@ -209,11 +209,8 @@ std::unique_ptr<Subdomain> build(const Document& document, const std::string& pa
                document.where(path + ".model.fe.mesh.bar.elements"));
   check_layers(spec, properties, place);
   std::unique_ptr<Bar> bar = std::make_unique<Bar>(properties);
-  BarBody::Scheme scheme = std::visit(SchemeMaker{*bar, place}, *spec.integrator);
-  std::unique_ptr<BarBody> body =
-      std::make_unique<BarBody>(name, std::move(bar), std::move(scheme), ports);
-  body->set_progress(std::move(progress));
-  return body;
+  BarInterior::Scheme scheme = std::visit(SchemeMaker{*bar, place}, *spec.integrator);
+  return std::make_unique<BarInterior>(name, std::move(bar), std::move(scheme), ports);
 }
 
 }  // namespace
@@ -225,7 +222,7 @@ std::unique_ptr<Subdomain> make_body(const Document& document, const std::string
                       "Make the mesh coarser, or run on a machine with more memory.");
   };
   try {
-    return build(document, path, std::move(progress));
+    return std::make_unique<Body>(build(document, path), std::move(progress));
   } catch (const std::bad_alloc&) {
     throw too_large();
   } catch (const std::length_error&) {  // more than any container can hold

@@ -8,8 +8,6 @@
 
 namespace abut {
 
-namespace {}  // namespace
-
 void BarMeshSpec::fields(Fields& f) {
   f.required("length", length, "m", "length of the bar", positive);
   f.required("area", area, "m^2", "cross section", positive);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "subdomain_solver/interior.hpp"
 #include "subdomain_solver/make/body_spec.hpp"
 
 namespace abut {
@@ -8,13 +9,13 @@ namespace abut {
 // InputError with file, line and key.
 
 /// Of finite elements in two and three dimensions.
-std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document& document,
-                                           const std::string& path, std::function<void()> progress);
-std::unique_ptr<Subdomain> make_modal_body(const BodySpec& spec, const Document& document,
-                                           const std::string& path, std::function<void()> progress);
-std::unique_ptr<Subdomain> make_rigid_body(const BodySpec& spec, const Document& document,
-                                           const std::string& path, std::function<void()> progress);
-std::unique_ptr<Subdomain> make_pair_body(const BodySpec& spec, const Document& document,
-                                          const std::string& path, std::function<void()> progress);
+std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Document& document,
+                                     const std::string& path);
+std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Document& document,
+                                     const std::string& path);
+std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Document& document,
+                                     const std::string& path);
+std::unique_ptr<Interior> make_pair(const BodySpec& spec, const Document& document,
+                                    const std::string& path);
 
 }  // namespace abut

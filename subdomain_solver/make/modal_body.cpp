@@ -16,7 +16,7 @@
 #include "subdomain_solver/modal/modal_map.hpp"
 #include "subdomain_solver/modal/modal_model.hpp"
 #include "subdomain_solver/modal/modal_reactions.hpp"
-#include "subdomain_solver/solid_body.hpp"
+#include "subdomain_solver/solid_interior.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -41,9 +41,9 @@ WantedModes wanted_of(const ModalModelSpec& spec) {
   return wanted;
 }
 
-std::vector<int> dofs_of(const Mesh& mesh, const std::vector<SolidBody::PortNodes>& ports) {
+std::vector<int> dofs_of(const Mesh& mesh, const std::vector<SolidInterior::PortNodes>& ports) {
   std::vector<int> out;
-  for (const SolidBody::PortNodes& port : ports) {
+  for (const SolidInterior::PortNodes& port : ports) {
     for (std::int32_t node : mesh.nodes_of(port.side)) {
       for (int i = 0; i < mesh.dim; ++i) out.push_back(node * mesh.dim + i);
     }
@@ -94,17 +94,16 @@ Motion modal_start(Motion nodes, const std::vector<Prescribed>& supports, const 
 
 }  // namespace
 
-std::unique_ptr<Subdomain> make_modal_body(const BodySpec& spec, const Document& document,
-                                           const std::string& path,
-                                           std::function<void()> progress) {
+std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Document& document,
+                                     const std::string& path) {
   const Place place{document, path};
   const ModalModelSpec& modal = std::get<ModalModelSpec>(spec.model);
   Mesh mesh = make_mesh(modal, spec.initial.position, place, "model.modal");
   name_points(spec, place, mesh);
-  const std::vector<SolidBody::PortNodes> ports = make_ports(spec, place, mesh);
+  const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
   const Constraints constraints = make_constraints(spec, place, mesh);
   check_formulation(modal, mesh, place, "model.modal");
-  SolidBody::Parts parts;
+  SolidInterior::Parts parts;
   parts.model = std::make_unique<FeModel>(
       std::move(mesh), make_material(*spec.material, document, path + ".material", modal.dimension),
       FeOptions{.plane = modal.plane,
@@ -148,9 +147,7 @@ std::unique_ptr<Subdomain> make_modal_body(const BodySpec& spec, const Document&
   }
   parts.map = std::move(map);
   const std::string name = path.substr(path.rfind('.') + 1);
-  std::unique_ptr<SolidBody> body = std::make_unique<SolidBody>(name, std::move(parts), ports);
-  body->set_progress(std::move(progress));
-  return body;
+  return std::make_unique<SolidInterior>(name, std::move(parts), ports);
 }
 
 }  // namespace abut

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "subdomain_solver/bars/pair_body.hpp"
+#include "subdomain_solver/bars/pair_interior.hpp"
 #include "subdomain_solver/fe/element_limit.hpp"
 #include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/make/mass_range.hpp"
@@ -21,7 +21,7 @@ using Refuse =
 
 /// Scheme and step of a pair; refuses what only single bars offer.
 struct PairScheme {
-  PairBody::Parameters& parameters;
+  PairInterior::Parameters& parameters;
   const Refuse& refuse;
 
   void operator()(const CentralDifferenceSpec& s) const {
@@ -94,8 +94,8 @@ std::array<BarProperties, 2> pair_properties(const BodySpec& spec) {
   return bars;
 }
 
-std::unique_ptr<Subdomain> make_pair_body(const BodySpec& spec, const Document& document,
-                                          const std::string& path, std::function<void()> progress) {
+std::unique_ptr<Interior> make_pair(const BodySpec& spec, const Document& document,
+                                    const std::string& path) {
   const Refuse refuse = [&document, &path](const std::string& key, const std::string& what,
                                            const std::string& remedy) {
     throw InputError(what, document.where(path + "." + key), remedy);
@@ -106,7 +106,7 @@ std::unique_ptr<Subdomain> make_pair_body(const BodySpec& spec, const Document& 
                document.where(path + ".model.bar_pair.left.elements"));
   require_room(pair.right.elements, bytes_of_bar_element,
                document.where(path + ".model.bar_pair.right.elements"));
-  PairBody::Parameters parameters;
+  PairInterior::Parameters parameters;
   parameters.bars = pair_properties(spec);
   for (const BarProperties& bar : parameters.bars) {
     const double node = bar.mass_total() / bar.elements;
@@ -122,10 +122,7 @@ std::unique_ptr<Subdomain> make_pair_body(const BodySpec& spec, const Document& 
       pair.current_lengths ? ", current lengths" : "");
   std::visit(PairScheme{parameters, refuse}, *spec.integrator);
   parameters.words += fmt::format(", step {:g} s", parameters.step);
-  std::unique_ptr<PairBody> body =
-      std::make_unique<PairBody>(path.substr(path.rfind('.') + 1), parameters);
-  body->set_progress(std::move(progress));
-  return body;
+  return std::make_unique<PairInterior>(path.substr(path.rfind('.') + 1), parameters);
 }
 
 }  // namespace abut

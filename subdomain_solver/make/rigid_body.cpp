@@ -12,7 +12,7 @@
 #include "subdomain_solver/make/scheme.hpp"
 #include "subdomain_solver/rigid/rigid_fit.hpp"
 #include "subdomain_solver/rigid/rigid_motion.hpp"
-#include "subdomain_solver/solid_body.hpp"
+#include "subdomain_solver/solid_interior.hpp"
 
 namespace abut {
 
@@ -57,16 +57,15 @@ Motion rigid_start(const Motion& nodes, const FeModel& mesh, MassForm form, cons
 
 }  // namespace
 
-std::unique_ptr<Subdomain> make_rigid_body(const BodySpec& spec, const Document& document,
-                                           const std::string& path,
-                                           std::function<void()> progress) {
+std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Document& document,
+                                     const std::string& path) {
   const Place place{document, path};
   const RigidModelSpec& model = std::get<RigidModelSpec>(spec.model);
   const RigidMotionSpec& integrator = std::get<RigidMotionSpec>(*spec.integrator);
   Mesh mesh = make_mesh(model, spec.initial.position, place, "model.rigid");
   name_points(spec, place, mesh);
-  const std::vector<SolidBody::PortNodes> ports = make_ports(spec, place, mesh);
-  SolidBody::Parts parts;
+  const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
+  SolidInterior::Parts parts;
   FeOptions options;
   options.plane = model.plane;
   options.thickness = model.thickness;
@@ -93,9 +92,7 @@ std::unique_ptr<Subdomain> make_rigid_body(const BodySpec& spec, const Document&
   parts.rung = "rigid" + on_file(model);
   parts.deforms = false;
   const std::string name = path.substr(path.rfind('.') + 1);
-  std::unique_ptr<SolidBody> made = std::make_unique<SolidBody>(name, std::move(parts), ports);
-  made->set_progress(std::move(progress));
-  return made;
+  return std::make_unique<SolidInterior>(name, std::move(parts), ports);
 }
 
 }  // namespace abut

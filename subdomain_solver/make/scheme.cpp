@@ -25,7 +25,7 @@ struct SchemeMaker {
   const std::function<double()>& stable_limit;
   const MakeWatch& watch;
 
-  SolidBody::Scheme operator()(const CentralDifferenceSpec& s) const {
+  SolidInterior::Scheme operator()(const CentralDifferenceSpec& s) const {
     const double limit = stable_limit();
     const std::string key = "integrator.central_difference.step";
     if (std::isnan(limit)) {
@@ -55,26 +55,26 @@ struct SchemeMaker {
             fmt::format("central difference, step {:.4g} s, stable limit {:.4g} s{}", step, limit,
                         parts > 1.0 ? fmt::format(" ({:.10g} to one of the scene)", parts) : "")};
   }
-  SolidBody::Scheme operator()(const NewmarkSpec& s) const {
+  SolidInterior::Scheme operator()(const NewmarkSpec& s) const {
     return implicit(AlphaWeights::newmark(s.beta, s.gamma), s.step, s.mass, "newmark");
   }
-  SolidBody::Scheme operator()(const HhtAlphaSpec& s) const {
+  SolidInterior::Scheme operator()(const HhtAlphaSpec& s) const {
     return implicit(AlphaWeights::hht(s.alpha), s.step, s.mass, "HHT-alpha");
   }
-  SolidBody::Scheme operator()(const GeneralizedAlphaSpec& s) const {
+  SolidInterior::Scheme operator()(const GeneralizedAlphaSpec& s) const {
     return implicit(AlphaWeights::spectral_radius(s.spectral_radius), s.step, s.mass,
                     "generalised alpha");
   }
-  SolidBody::Scheme operator()(const QuasiStaticSpec& s) const {
+  SolidInterior::Scheme operator()(const QuasiStaticSpec& s) const {
     return {std::make_unique<QuasiStatic>(problem, QuasiStatic::Options{newton(), s.halvings},
                                           linear(Pivots::with_digits)),
             s.step, std::numeric_limits<double>::infinity(), MassForm::lumped,
             fmt::format("quasi-static, step {:g} s", s.step)};
   }
-  SolidBody::Scheme operator()(const RigidMotionSpec&) const { return {}; }    // refused before
-  SolidBody::Scheme operator()(const BackwardEulerSpec&) const { return {}; }  // refused before
+  SolidInterior::Scheme operator()(const RigidMotionSpec&) const { return {}; }    // refused before
+  SolidInterior::Scheme operator()(const BackwardEulerSpec&) const { return {}; }  // refused before
 
-  SolidBody::Scheme implicit(const AlphaWeights& weights, double step, MassForm mass,
+  SolidInterior::Scheme implicit(const AlphaWeights& weights, double step, MassForm mass,
                              const char* words) const {
     return {std::make_unique<ImplicitDynamics>(
                 problem, ImplicitDynamics::Options{weights, mass, newton()}, linear(Pivots::every)),
@@ -91,9 +91,9 @@ struct SchemeMaker {
 
 }  // namespace
 
-std::vector<SolidBody::PortNodes> make_ports(const BodySpec& spec, const Place& place,
+std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Place& place,
                                              const Mesh& mesh) {
-  std::vector<SolidBody::PortNodes> ports;
+  std::vector<SolidInterior::PortNodes> ports;
   for (const auto& [name, port] : spec.ports) {
     named(place, "ports." + name + ".side", [&] { return mesh.nodes_of(port.side); });
     ports.push_back({name, port.side});
@@ -109,7 +109,7 @@ MassForm mass_form(const BodySpec::Integrator& integrator) {
   return std::visit(find, integrator);
 }
 
-SolidBody::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
+SolidInterior::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
                               const std::function<double()>& stable_limit, const MakeWatch& watch) {
   return std::visit(SchemeMaker{spec, place, problem, stable_limit, watch}, *spec.integrator);
 }

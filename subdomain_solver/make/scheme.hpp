@@ -4,13 +4,13 @@
 
 #include "subdomain_solver/make/body_spec.hpp"
 #include "subdomain_solver/place.hpp"
-#include "subdomain_solver/solid_body.hpp"
+#include "subdomain_solver/solid_interior.hpp"
 #include "subdomain_solver/time/frequency_watch.hpp"
 
 namespace abut {
 
 /// The ports that a scene gives a solid: sides or node sets of its mesh. Throws InputError.
-std::vector<SolidBody::PortNodes> make_ports(const BodySpec& spec, const Place& place,
+std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Place& place,
                                              const Mesh& mesh);
 
 /// The mass matrix that a scheme takes.
@@ -21,7 +21,7 @@ MassForm mass_form(const BodySpec::Integrator& integrator);
 /// asked of no other scheme. `watch` makes what holds them below their limit while the body
 /// deforms; none: the limit stays. The problem must outlive the scheme. Throws InputError.
 using MakeWatch = std::function<std::unique_ptr<FrequencyWatch>()>;
-SolidBody::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
+SolidInterior::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
                               const std::function<double()>& stable_limit,
                               const MakeWatch& watch = {});
 

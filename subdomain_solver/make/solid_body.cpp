@@ -10,22 +10,21 @@
 #include "subdomain_solver/make/mesh.hpp"
 #include "subdomain_solver/make/scheme.hpp"
 #include "subdomain_solver/place.hpp"
-#include "subdomain_solver/solid_body.hpp"
+#include "subdomain_solver/solid_interior.hpp"
 
 namespace abut {
 
-std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document& document,
-                                           const std::string& path,
-                                           std::function<void()> progress) {
+std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Document& document,
+                                     const std::string& path) {
   const Place place{document, path};
   const FeModelSpec& fe = std::get<FeModelSpec>(spec.model);
   Mesh mesh = make_mesh(fe, spec.initial.position, place, "model.fe");
   name_points(spec, place, mesh);
-  const std::vector<SolidBody::PortNodes> ports = make_ports(spec, place, mesh);
+  const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
   Constraints constraints = make_constraints(spec, place, mesh);
   check_formulation(fe, mesh, place, "model.fe");
   const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
-  SolidBody::Parts parts;
+  SolidInterior::Parts parts;
   parts.model = std::make_unique<FeModel>(
       std::move(mesh), make_material(*spec.material, document, path + ".material", fe.dimension),
       FeOptions{fe.plane, fe.formulation, fe.thickness, fe.hourglass, explicit_in_time, fe.threads,
@@ -58,9 +57,7 @@ std::unique_ptr<Subdomain> make_solid_body(const BodySpec& spec, const Document&
     parts.constraints = std::move(constraints.held);
   }
   const std::string name = path.substr(path.rfind('.') + 1);
-  std::unique_ptr<SolidBody> body = std::make_unique<SolidBody>(name, std::move(parts), ports);
-  body->set_progress(std::move(progress));
-  return body;
+  return std::make_unique<SolidInterior>(name, std::move(parts), ports);
 }
 
 }  // namespace abut

@@ -47,18 +47,18 @@ std::optional<Failed> RigidMotion::step(Motion& motion, double time, double dt) 
 /// Rates of v under the loads at a time.
 void RigidMotion::load(Motion& motion, double time) const {
   if (problem_.loads.empty()) return;
-  const Vector force = problem_.external_force(time, motion.q);
+  const Vector& force = problem_.external_force(time, motion.q);
   view(motion.a) = force.cwiseQuotient(body_.lumped_mass());
 }
 
 /// Changes the momenta by forces over a time. At one place v is linear in the forces, and so is the
 /// power: its mean is exact.
-void RigidMotion::kick(Motion& motion, double time) const {
+void RigidMotion::kick(Motion& motion, double time) {
   if (problem_.loads.empty()) return;
-  const Vector force = body_.lumped_mass().cwiseProduct(view(motion.a));
-  const double before = body_.power(motion.q, motion.v, force);
+  force_ = body_.lumped_mass().cwiseProduct(view(motion.a));
+  const double before = body_.power(motion.q, motion.v, force_);
   view(motion.v) += time * view(motion.a);
-  const double after = body_.power(motion.q, motion.v, force);
+  const double after = body_.power(motion.q, motion.v, force_);
   motion.external_work += 0.5 * time * (before + after);
 }
 

@@ -22,11 +22,12 @@ class RigidMotion final : public Integrator {
 
  private:
   void load(Motion& motion, double time) const;
-  void kick(Motion& motion, double time) const;
+  void kick(Motion& motion, double time);
 
   const Problem& problem_;
   const RigidModel& body_;
   Motion next_;
+  Vector force_;  // [N]
 };
 
 }  // namespace abut

@@ -16,10 +16,10 @@ double one_sided_acceleration(const Prescribed& p, double time, double step) {
 
 }  // namespace
 
-Vector Problem::external_force(double time, std::span<const double> q) const {
-  Vector force = Vector::Zero(model->dofs());
-  for (const std::unique_ptr<Load>& load : loads) load->add(time, q, force);
-  return force;
+const Vector& Problem::external_force(double time, std::span<const double> q) const {
+  external_.setZero(model->dofs());
+  for (const std::unique_ptr<Load>& load : loads) load->add(time, q, external_);
+  return external_;
 }
 
 void Problem::set_rates(double time, double step, Motion& motion) const {

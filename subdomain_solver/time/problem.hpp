@@ -32,7 +32,8 @@ struct Problem {
   std::vector<Prescribed> supports;  // one per coordinate at most, sorted by dof
   std::vector<std::unique_ptr<Load>> loads;
 
-  Vector external_force(double time, std::span<const double> q) const;
+  /// [N] (dofs); good until it is asked for again.
+  const Vector& external_force(double time, std::span<const double> q) const;
   /// Velocities and accelerations of prescribed coordinates at the start, by differences of second
   /// order over thousandths of a step [s] and over steps: others would make an implicit scheme
   /// ring.
@@ -40,6 +41,9 @@ struct Problem {
   /// Accelerations of prescribed coordinates by differences over a step [s] to both sides of the
   /// time: those of central differences. To one side where an expression has no value on the other.
   void set_accelerations(double time, double step, Vector& acceleration) const;
+
+ private:
+  mutable Vector external_;
 };
 
 /// Free and prescribed coordinates, and the rows and columns of a matrix that belong to free ones.

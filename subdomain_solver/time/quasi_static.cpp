@@ -51,7 +51,7 @@ class QuasiStatic::Balance final : public Equations {
     for (int i = 0; i < o_.free_.count(); ++i) q_(o_.free_.list()[index(i)]) = x(i);
     Model& model = *o_.problem_.model;
     if (!model.evaluate(span_of(q_), motion_.history, Model::Want::force, response)) return false;
-    const Vector external = o_.problem_.external_force(time_, span_of(q_));
+    const Vector& external = o_.problem_.external_force(time_, span_of(q_));
     r = o_.free_.pick(response.force - external);
     scale = std::max({response.force.norm(), external.norm(),
                       model.roundoff(span_of(q_)) / o_.options_.newton.tolerance});

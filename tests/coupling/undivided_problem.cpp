@@ -65,19 +65,19 @@ class Pieces {
     bodies_ = std::make_unique<Bodies>(pointers);
     bodies_->prepare({0, 0.0, 0.0}, 1, Sampling::substeps);
     EXPECT_FALSE(bodies_->advance_all());
-    interfaces_.resize(kinematic.size());
     for (std::size_t i = 0; i < kinematic.size(); ++i) {
       const int left = static_cast<int>(i);
-      interfaces_[i] = make_interface("i", {Side{left, 1}, Side{left + 1, 0}}, *bodies_);
-      interfaces_[i].kinematic = kinematic[i];
-      interfaces_[i].closed = interfaces_[i].bilateral = true;
-      interfaces_[i].closing_speed = blow;
+      Joint& joint =
+          joints_.emplace_back(make_joint("i", {Side{left, 1}, Side{left + 1, 0}}, *bodies_));
+      joint.kinematic = kinematic[i];
+      joint.decision = Decision::never;
+      joint.engage(blow);
       if (parallel) {
-        transmissions_.push_back(std::make_unique<ParallelForce>());
+        joint.how = std::make_unique<ParallelForce>();
       } else {
-        transmissions_.push_back(std::make_unique<Unilateral>());
+        joint.how = std::make_unique<Unilateral>();
       }
-      joints_.push_back({&interfaces_[i], transmissions_[i].get()});
+      introduce(joint, *bodies_);
     }
     SchwarzSpec spec;
     spec.tolerance = tolerance;
@@ -97,8 +97,8 @@ class Pieces {
       EXPECT_TRUE(report != nullptr && report->converged);
       if (report != nullptr) iterations_ = std::max(iterations_, report->iterations);
       schwarz_->accept(islands[0]);
-      for (Interface& i : interfaces_)
-        i.force_scale = std::max(i.force_scale, peak_force(i, *bodies_));
+      for (Joint& joint : joints_)
+        joint.force_scale = std::max(joint.force_scale, peak_force(joint, *bodies_));
       append(bodies_->response(0).ports[0].trace.u, ends.left);
       append(bodies_->response(bodies_->count() - 1).ports[1].trace.u, ends.right);
     }
@@ -118,8 +118,6 @@ class Pieces {
   double step_;
   std::vector<std::unique_ptr<Subdomain>> owned_;
   std::unique_ptr<Bodies> bodies_;
-  std::vector<Interface> interfaces_;
-  std::vector<std::unique_ptr<Transmission>> transmissions_;
   std::vector<Joint> joints_;
   std::unique_ptr<Schwarz> schwarz_;
   int iterations_ = 0;

@@ -42,7 +42,7 @@ class Layers(unittest.TestCase):
         self.check(1, contract__port_dot_hpp=text)
 
     def test_coupling_must_not_see_solver_nor_messages(self) -> None:
-        text = '#include "subdomain_solver/bars/bar_body.hpp"\n#include "abut/v1/subdomain.pb.h"\n'
+        text = '#include "subdomain_solver/bars/bar.hpp"\n#include "abut/v1/subdomain.pb.h"\n'
         self.check(2, coordinator__coupling__schwarz_dot_cpp=text)
 
     def test_only_launch_sees_messaging(self) -> None:
@@ -51,7 +51,7 @@ class Layers(unittest.TestCase):
         self.check(1, coordinator__controller_dot_cpp=text)
 
     def test_only_launch_local_sees_the_solver(self) -> None:
-        text = '#include "subdomain_solver/bars/bar_body.hpp"\n'
+        text = '#include "subdomain_solver/bars/bar.hpp"\n'
         self.check(0, coordinator__launch_local_dot_cpp=text)
         self.check(1, coordinator__launch_dot_cpp=text)
 

@@ -1,6 +1,7 @@
 // Goal: a waveform gives back what was stored, and hands impulses on without loss.
 // Oracle: identities of interpolation and of additive integrals.
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -135,15 +136,18 @@ TEST(Waveform, ClearForgetsValues) {
   w.clear();
   EXPECT_TRUE(w.empty());
   EXPECT_TRUE(w.f.empty());
-  EXPECT_TRUE(same_times(w, Waveform()));
 }
 
-TEST(Waveform, SameTimesMeansTheSameBits) {
-  const Waveform w = uneven(ForceSupport::nodal);
-  Waveform other = w;
-  EXPECT_TRUE(same_times(w, other));
-  other.time[2] = std::nextafter(other.time[2], 2.0);
-  EXPECT_FALSE(same_times(w, other));
+TEST(Waveform, TellsNoMoreValuesThanItHasRoomFor) {
+  // A width above the room of the reader was written behind it once.
+  Waveform w = uneven(ForceSupport::nodal);
+  w.width = 2;
+  w.u.assign(2 * w.size(), 1.0);
+  w.f = w.u;
+  std::array<double, 1> room{};
+  EXPECT_DEATH(w.interpolate(w.u, 1.5, room), "");
+  EXPECT_DEATH(w.force_at(1.5, room), "");
+  EXPECT_DEATH(w.impulse(1.2, 1.5, room), "");
 }
 
 TEST(Outcome, EveryCauseHasItsWords) {

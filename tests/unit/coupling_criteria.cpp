@@ -1,8 +1,7 @@
-// Goal: contact closes, opens, and is ruled out where geometry and forces say so; roles and islands
-// follow from what the bodies are. Oracles: hand-made traces and bodies.
+// Goal: contact closes, opens, and is ruled out where geometry and forces say so. Oracles:
+// hand-made traces.
 
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,92 +11,31 @@
 #include "base/index.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/horizon.hpp"
-#include "coordinator/coupling/roles.hpp"
-#include "coordinator/coupling/schwarz.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/scripted.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
 
-/// A body whose reply is written down beforehand.
-class Scripted : public Subdomain {
- public:
-  Scripted(double place, double normal, double step, int ports = 1) {
-    description_.step = step;
-    description_.mass = 1.0;
-    for (int p = 0; p < ports; ++p) {
-      Port port;
-      port.geometry.points = {place + p};
-      port.geometry.normals = {p == 0 ? normal : -normal};
-      description_.ports.push_back(port);
-    }
-    reply.ports.resize(index(ports));
-  }
-  /// u at the times of a window and, if any, forces.
-  void trace(std::vector<double> time, std::vector<double> u, std::vector<double> f = {}) {
-    Waveform& w = reply.ports[0].trace;
-    w.time = std::move(time);
-    w.u = std::move(u);
-    w.f = std::move(f);
-  }
-  const Description& describe() const override { return description_; }
-  void save() override {}
-  void restore() override {}
-  void start(const Advance&) override {}
-  [[nodiscard]] Outcome finish(Response& response) override {
-    response = reply;
-    return Advanced{};
-  }
-  PortKernel kernel(int, double step, int count) override {
-    PortKernel kernel;
-    kernel.step = step;
-    kernel.displacement.assign(index(count), compliance);
-    return kernel;
-  }
-  std::vector<std::byte> checkpoint() override { return {}; }
-  void resume(std::span<const std::byte>) override {}
-  std::uint64_t state_hash() override { return 0; }
-
-  Response reply;
-  double compliance = 0.0;  // [m/N]
-
- private:
-  Description description_;
-};
-
-/// Two scripted bodies, the left one looking right, 1 m apart.
-struct Meeting {
-  Scripted left, right;
-  Bodies bodies;
-  Interface interface;
-
-  explicit Meeting(double left_step = 1.0, double right_step = 1.0)
-      : left(-1.0, 1.0, left_step), right(0.0, -1.0, right_step), bodies({&left, &right}) {
-    interface = make_interface("meeting", {Side{0, 0}, Side{1, 0}}, bodies);
-  }
-  void reply() { EXPECT_FALSE(bodies.advance_all()); }
-};
-
-TEST(Interface, KnowsItsGapAndOffsets) {
+TEST(Joints, KnowsItsGapAndOffsets) {
   const Meeting m;
-  EXPECT_EQ(m.interface.reference_gap, 1.0);
-  EXPECT_EQ(m.interface.gap(0.25, -0.25), 0.5);
-  EXPECT_EQ(m.interface.offset(0), 1.0);
-  EXPECT_EQ(m.interface.offset(1), -1.0);
+  EXPECT_EQ(m.joint.reference_gap, 1.0);
+  EXPECT_EQ(m.joint.gap(0.25, -0.25), 0.5);
+  EXPECT_EQ(m.joint.offset(0), 1.0);
+  EXPECT_EQ(m.joint.offset(1), -1.0);
 }
 
-TEST(Interface, RefusesPortsThatLookTheSameWay) {
+TEST(Joints, RefusesPortsThatLookTheSameWay) {
   Scripted a(0.0, 1.0, 1.0), b(1.0, 1.0, 1.0);
   const Bodies bodies({&a, &b});
-  EXPECT_THROW(make_interface("i", {Side{0, 0}, Side{1, 0}}, bodies), InputError);
+  EXPECT_THROW(make_joint("i", {Side{0, 0}, Side{1, 0}}, bodies), InputError);
 }
 
-TEST(Interface, RefusesSidesThatOverlapAtTheStart) {
+TEST(Joints, RefusesSidesThatOverlapAtTheStart) {
   Scripted a(0.5, 1.0, 1.0), b(0.0, -1.0, 1.0);
   const Bodies bodies({&a, &b});
   try {
-    make_interface("i", {Side{0, 0}, Side{1, 0}}, bodies);
+    make_joint("i", {Side{0, 0}, Side{1, 0}}, bodies);
     FAIL() << "was accepted";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("0.5"), std::string::npos) << error.what();
@@ -109,7 +47,7 @@ TEST(FirstOverlap, LocatesTheTouchOnTheFinerSide) {
   m.left.trace({0, 1, 2, 3, 4}, {0.0, 0.25, 0.5, 0.75, 1.0});
   m.right.trace({0, 4}, {0.0, -1.0});  // closing at 0.5 m/s: the gap of 1 m is gone at 2
   m.reply();
-  const std::optional<Touch> touch = first_overlap(m.interface, m.bodies, 0.0);
+  const std::optional<Touch> touch = first_overlap(m.joint, m.bodies, 0.0);
   ASSERT_TRUE(touch);
   EXPECT_EQ(touch->time, 2.0);
   EXPECT_EQ(touch->speed, 0.5);
@@ -121,7 +59,7 @@ TEST(FirstOverlap, InterpolatesWithinASubstep) {
   m.left.trace({0, 1, 2}, {0.0, 0.8, 1.6});
   m.right.trace({0, 2}, {0.0, 0.0});
   m.reply();
-  const std::optional<Touch> touch = first_overlap(m.interface, m.bodies, 0.0);
+  const std::optional<Touch> touch = first_overlap(m.joint, m.bodies, 0.0);
   ASSERT_TRUE(touch);
   EXPECT_NEAR(touch->time, 1.25, roundoff(8, 2.0));
   EXPECT_NEAR(touch->speed, 0.8, roundoff(8, 2.0));
@@ -132,7 +70,7 @@ TEST(FirstOverlap, SidesThatOnlyMeetAreNotApartAndDoNotOverlap) {
   m.left.trace({0, 1}, {0.0, 1.0});
   m.right.trace({0, 1}, {0.0, 0.0});
   m.reply();
-  EXPECT_FALSE(first_overlap(m.interface, m.bodies, 0.0));
+  EXPECT_FALSE(first_overlap(m.joint, m.bodies, 0.0));
 }
 
 TEST(FirstOverlap, WhatIsNegligibleIsNone) {
@@ -140,8 +78,8 @@ TEST(FirstOverlap, WhatIsNegligibleIsNone) {
   m.left.trace({0, 1}, {0.0, 1.0 + 1e-13});  // numerical forerunners
   m.right.trace({0, 1}, {0.0, 0.0});
   m.reply();
-  EXPECT_TRUE(first_overlap(m.interface, m.bodies, 0.0));
-  EXPECT_FALSE(first_overlap(m.interface, m.bodies, 1e-12));
+  EXPECT_TRUE(first_overlap(m.joint, m.bodies, 0.0));
+  EXPECT_FALSE(first_overlap(m.joint, m.bodies, 1e-12));
 }
 
 TEST(FirstOverlap, AnOverlapThatGetsSmallerIsARelease) {
@@ -149,7 +87,7 @@ TEST(FirstOverlap, AnOverlapThatGetsSmallerIsARelease) {
   m.left.trace({0, 1, 2}, {1.01, 1.005, 0.99});
   m.right.trace({0, 2}, {0.0, 0.0});
   m.reply();
-  EXPECT_FALSE(first_overlap(m.interface, m.bodies, 0.0));
+  EXPECT_FALSE(first_overlap(m.joint, m.bodies, 0.0));
 }
 
 /// What the interface of two scripted bodies shows. Both give way by half a metre per newton.
@@ -157,7 +95,7 @@ ContactHistory history(Meeting& m) {
   m.left.compliance = m.right.compliance = 0.5;
   m.reply();
   ContactHistory h;
-  h.read(m.interface, m.bodies);
+  h.read(m.joint, m.bodies);
   return h;
 }
 
@@ -232,8 +170,8 @@ TEST(PayingImpulse, GivesExactlyWhatIsOwed) {
       m.left.reply.ports[0].recoil = Recoil{approach, 1.0 / 2.0};
       m.right.reply.ports[0].recoil = Recoil{0.0, 1.0 / 3.0};
       m.reply();
-      m.interface.debt = debt;
-      const double j = paying_impulse(m.interface, m.bodies);
+      m.joint.debt = debt;
+      const double j = paying_impulse(m.joint, m.bodies);
       const auto energy = [](double mass, double v) { return 0.5 * mass * v * v; };
       const double left = approach - j / 2.0, right = -j / 3.0;
       EXPECT_NEAR(energy(2.0, left) + energy(3.0, right) - energy(2.0, approach), debt,
@@ -248,10 +186,10 @@ TEST(PayingImpulse, TakesBackNoMoreThanThereIsAndWaitsWhereItWouldStirUpMore) {
   m.left.reply.ports[0].recoil = Recoil{2.0, 0.5};
   m.right.reply.ports[0].recoil = Recoil{};  // a wall
   m.reply();
-  m.interface.debt = -100.0;
-  EXPECT_EQ(paying_impulse(m.interface, m.bodies), 4.0);  // stops it: 4 J of the 100
-  m.interface.debt = 100.0;
-  EXPECT_EQ(paying_impulse(m.interface, m.bodies), 0.0);
+  m.joint.debt = -100.0;
+  EXPECT_EQ(paying_impulse(m.joint, m.bodies), 4.0);  // stops it: 4 J of the 100
+  m.joint.debt = 100.0;
+  EXPECT_EQ(paying_impulse(m.joint, m.bodies), 0.0);
 }
 
 TEST(ReleaseImpulse, GivesBackAllThatContactTook) {
@@ -259,8 +197,8 @@ TEST(ReleaseImpulse, GivesBackAllThatContactTook) {
   m.left.reply.ports[0].recoil = Recoil{0.5, 0.5};
   m.right.reply.ports[0].recoil = Recoil{};
   m.reply();
-  m.interface.debt = 2.0;
-  const double j = release_impulse(m.interface, m.bodies);
+  m.joint.debt = 2.0;
+  const double j = release_impulse(m.joint, m.bodies);
   EXPECT_NEAR(0.5 * 2.0 * std::pow(0.5 - j / 2.0, 2) - 0.5 * 2.0 * 0.25, 2.0, roundoff(16, 2.0));
   EXPECT_GT(j, 0.0);  // apart
 }
@@ -269,10 +207,10 @@ TEST(Horizon, IsTheGapOverTheBoundOfTheClosingSpeedAndAMargin) {
   Meeting m;
   m.left.trace({0.0}, {0.2});
   m.right.trace({0.0}, {-0.3});
-  m.left.reply.ports[0].approach_bound = 2.0;
-  m.right.reply.ports[0].approach_bound = 3.0;
+  m.left.reply.ports[0].speed_bound = 2.0;
+  m.right.reply.ports[0].speed_bound = 3.0;
   m.reply();
-  const double horizon = free_flight_horizon({&m.interface, 1}, m.bodies);
+  const double horizon = free_flight_horizon({&m.joint, 1}, m.bodies);
   EXPECT_LE(horizon, 0.5 / 5.0);  // never later than the touch
   EXPECT_GE(horizon, 0.9 * 0.5 / 5.0);
 }
@@ -281,15 +219,14 @@ TEST(Horizon, CountsTheAccelerationOfBodyForces) {
   Meeting m;
   m.left.trace({0.0}, {0.0});
   m.right.trace({0.0}, {0.0});
-  m.left.reply.ports[0].approach_acceleration = 2.0;
+  m.left.reply.ports[0].acceleration_bound = 2.0;
   m.reply();
-  const double horizon = free_flight_horizon({&m.interface, 1}, m.bodies);
+  const double horizon = free_flight_horizon({&m.joint, 1}, m.bodies);
   EXPECT_LE(horizon, 1.0);  // 1 m at 2 m/s^2 from rest
   EXPECT_GE(horizon, 0.9);
-  m.left.reply.ports[0].approach_bound =
-      -1.0;  // moving apart first: back after 1 s, there at 1.618
+  m.left.reply.ports[0].speed_bound = -1.0;  // moving apart first: back after 1 s, there at 1.618
   m.reply();
-  const double later = free_flight_horizon({&m.interface, 1}, m.bodies);
+  const double later = free_flight_horizon({&m.joint, 1}, m.bodies);
   EXPECT_GT(later, 1.0);
   EXPECT_LE(later, 0.5 * (1.0 + std::sqrt(5.0)));
 }
@@ -298,162 +235,28 @@ TEST(Horizon, IsEndlessForBodiesThatPartAndNothingForContact) {
   Meeting m;
   m.left.trace({0.0}, {0.0});
   m.right.trace({0.0}, {0.0});
-  m.left.reply.ports[0].approach_bound = -1.0;
+  m.left.reply.ports[0].speed_bound = -1.0;
   m.reply();
-  EXPECT_TRUE(std::isinf(free_flight_horizon({&m.interface, 1}, m.bodies)));
-  m.interface.closed = true;
-  EXPECT_EQ(free_flight_horizon({&m.interface, 1}, m.bodies), 0.0);
-  m.interface.closed = false;
+  EXPECT_TRUE(std::isinf(free_flight_horizon({&m.joint, 1}, m.bodies)));
+  m.joint.engage(1.0);
+  EXPECT_EQ(free_flight_horizon({&m.joint, 1}, m.bodies), 0.0);
+  m.joint.disengage();
   m.left.trace({0.0}, {1.0});
   m.reply();
-  EXPECT_EQ(free_flight_horizon({&m.interface, 1}, m.bodies), 0.0);
+  EXPECT_EQ(free_flight_horizon({&m.joint, 1}, m.bodies), 0.0);
 }
 
-TEST(Horizon, SweptRangesThatMeetInAnyPartAreSeen) {
+TEST(Horizon, SweptBoxesThatMeetInAnyPartAreSeen) {
   Meeting m;
-  m.left.reply.ports[0].lower = {0.0, 0.0};
-  m.left.reply.ports[0].upper = {0.4, 0.9};
+  m.left.reply.ports[0].lower = {-1.0, -1.0};
+  m.left.reply.ports[0].upper = {-0.6, -0.1};
   m.right.reply.ports[0].lower = {-0.5, -0.05};
   m.right.reply.ports[0].upper = {0.0, 0.0};
   m.reply();
-  EXPECT_TRUE(stayed_apart({&m.interface, 1}, m.bodies));
-  m.left.reply.ports[0].upper = {0.5, 0.9};  // 0.5 + 0.5 = the gap
+  EXPECT_TRUE(stayed_apart({&m.joint, 1}, m.bodies));
+  m.left.reply.ports[0].upper = {-0.5, -0.1};  // in the first part
   m.reply();
-  EXPECT_FALSE(stayed_apart({&m.interface, 1}, m.bodies));
-}
-
-int kinematic_of(const BarText& left, const BarText& right) {
-  const std::unique_ptr<Subdomain> a = build(left), b = build(right);
-  Bodies bodies({a.get(), b.get()});
-  const Interface interface = make_interface("i", {Side{0, 0}, Side{1, 0}}, bodies);
-  return kinematic_side(interface, bodies, 1e-5);
-}
-
-BarText right_bar() {
-  BarText bar;
-  bar.name = "right";
-  bar.position = 0.02;
-  bar.sides = {"left"};
-  return bar;
-}
-
-TEST(Roles, TheSofterSideIsKinematic) {
-  BarText soft = right_bar();
-  soft.modulus = 1e8;
-  soft.density = 100.0;
-  EXPECT_EQ(kinematic_of(BarText(), soft), 1);
-  BarText hard = right_bar();
-  hard.modulus = 1e10;
-  hard.density = 1e4;
-  EXPECT_EQ(kinematic_of(BarText(), hard), 0);
-}
-
-TEST(Roles, AmongEqualsTheFinerMeshThenTheFinerStepThenTheFirst) {
-  EXPECT_EQ(kinematic_of(BarText(), right_bar()), 0);
-  BarText finer = right_bar();
-  finer.elements = 250;
-  EXPECT_EQ(kinematic_of(BarText(), finer), 1);
-  BarText quicker = right_bar();
-  quicker.integrator = explicit_scheme(5e-8, 6);
-  EXPECT_EQ(kinematic_of(BarText(), quicker), 1);
-}
-
-TEST(Roles, TheContactSpringLowersTheStableStepOfAMassiveNode) {
-  // Half a cell's mass between two springs k, the node beside it the same: 2 / w = h / c alone, and
-  // w^2 = (2 k + k) / (m / 2) with the partner's spring.
-  BarText soft, graded = right_bar();
-  soft.layer = "massless: {stiffness_factor: 1.0}";
-  soft.integrator = explicit_scheme(1.0e-7);  // without dispersion terms its spring is k
-  graded.solid = true;
-  graded.layer = "massless: {}";
-  graded.integrator = explicit_scheme(1.0e-6);
-  const std::unique_ptr<Subdomain> a = build(soft), b = build(graded);
-  Bodies bodies({a.get(), b.get()});
-  Interface interface = make_interface("i", {Side{0, 0}, Side{1, 0}}, bodies);
-  interface.kinematic = 0;
-  const double alone = bodies.describe(1).stable_step;
-  EXPECT_NEAR(stable_step_in_contact(interface, bodies, 1.0e-5) / alone, std::sqrt(4.0 / 6.0),
-              1.0e-3);  // the bound of solids is sharp to 1e-4
-  const std::unique_ptr<Subdomain> core = build(right_bar());
-  Bodies cores({a.get(), core.get()});
-  EXPECT_TRUE(std::isinf(stable_step_in_contact(interface, cores, 1.0e-5)));  // massless as well
-}
-
-TEST(Roles, AWallNeverIsKinematic) {
-  const std::unique_ptr<Subdomain> wall = build_wall(0.0, "left");
-  const std::unique_ptr<Subdomain> bar = build(BarText());
-  for (bool wall_first : {true, false}) {
-    Bodies bodies(wall_first ? std::vector<Subdomain*>{wall.get(), bar.get()}
-                             : std::vector<Subdomain*>{bar.get(), wall.get()});
-    const Interface interface = make_interface("i", {Side{0, 0}, Side{1, 0}}, bodies);
-    EXPECT_EQ(kinematic_side(interface, bodies, 1e-5), wall_first ? 1 : 0);
-  }
-}
-
-TEST(Roles, TheForceOfTheParallelFormLivesOnTheLongerSteps) {
-  EXPECT_EQ(coarser_side(Meeting(1.0, 2.0).interface, Meeting(1.0, 2.0).bodies), 1);
-  EXPECT_EQ(coarser_side(Meeting(2.0, 1.0).interface, Meeting(2.0, 1.0).bodies), 0);
-}
-
-/// A row of bodies with an interface between neighbours.
-struct Row {
-  std::vector<Interface> interfaces;
-  std::vector<std::unique_ptr<Transmission>> transmissions;
-  std::vector<Joint> joints;
-
-  explicit Row(const std::vector<std::array<int, 2>>& pairs, bool ordered = true)
-      : interfaces(pairs.size()) {
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      interfaces[i].sides = {Side{pairs[i][0], 0}, Side{pairs[i][1], 0}};
-      interfaces[i].closed = true;
-      if (ordered) {
-        transmissions.push_back(std::make_unique<Unilateral>());
-      } else {
-        transmissions.push_back(std::make_unique<ParallelForce>());
-      }
-      joints.push_back({&interfaces[i], transmissions[i].get()});
-    }
-  }
-};
-
-TEST(Islands, AreTheBodiesThatClosedInterfacesJoin) {
-  Row row({{0, 1}, {1, 2}, {3, 4}});
-  std::vector<Island> islands = find_islands(row.joints, 6);
-  ASSERT_EQ(islands.size(), 2u);
-  EXPECT_EQ(islands[0].joints, (std::vector<int>{0, 1}));
-  EXPECT_EQ(islands[1].joints, (std::vector<int>{2}));
-  row.interfaces[1].closed = false;
-  islands = find_islands(row.joints, 6);
-  ASSERT_EQ(islands.size(), 2u);
-  EXPECT_EQ(islands[0].joints, (std::vector<int>{0}));
-  for (Interface& i : row.interfaces) i.closed = false;
-  EXPECT_TRUE(find_islands(row.joints, 6).empty());
-}
-
-TEST(Islands, KinematicBodiesAdvanceBeforeThoseThatTakeTheirReactions) {
-  Row row({{0, 1}, {1, 2}});  // 0 is kinematic to 1, 1 to 2
-  const std::vector<std::vector<int>> chain = {{0}, {1}, {2}};
-  EXPECT_EQ(find_islands(row.joints, 3)[0].levels, chain);
-  row.interfaces[0].kinematic = 1;  // the middle one is kinematic to both
-  const std::vector<std::vector<int>> middle = {{1}, {0, 2}};
-  EXPECT_EQ(find_islands(row.joints, 3)[0].levels, middle);
-  row.interfaces[0].kinematic = 0;
-  row.interfaces[1].kinematic = 1;  // the outer ones are
-  const std::vector<std::vector<int>> outer = {{0, 2}, {1}};
-  EXPECT_EQ(find_islands(row.joints, 3)[0].levels, outer);
-}
-
-TEST(Islands, TheParallelFormAdvancesAllAtOnce) {
-  Row row({{0, 1}, {1, 2}}, false);
-  const std::vector<std::vector<int>> levels = {{0, 1, 2}};
-  EXPECT_EQ(find_islands(row.joints, 3)[0].levels, levels);
-}
-
-TEST(Islands, RolesThatGoRoundInACircleAreRefused) {
-  Row row({{0, 1}, {1, 2}, {2, 0}});
-  EXPECT_THROW(find_islands(row.joints, 3), InputError);
-  row.interfaces[2].kinematic = 1;
-  EXPECT_NO_THROW(find_islands(row.joints, 3));
+  EXPECT_FALSE(stayed_apart({&m.joint, 1}, m.bodies));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "base/index.hpp"
-#include "coordinator/coupling/interface.hpp"
+#include "coordinator/coupling/joint.hpp"
 #include "coordinator/coupling/transmission.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
@@ -95,14 +95,19 @@ class Contact {
     bodies_.prepare({0, 0.0, 0.0}, 1, Sampling::substeps);
     EXPECT_FALSE(bodies_.advance_all());
     bodies_.save_all();
-    interface_ = make_interface("impact", {Side{0, 0}, Side{1, 0}}, bodies_);
-    interface_.bilateral = !gap;
-    interface_.reference_gap = gap.value_or(0.0);
-    interface_.kinematic = kinematic;
-    interface_.closed = true;
-    interface_.closing_speed = 0.03;
+    joint_ = make_joint("impact", {Side{0, 0}, Side{1, 0}}, bodies_);
+    if (!gap) joint_.decision = Decision::never;
+    joint_.reference_gap = gap.value_or(0.0);
+    joint_.kinematic = kinematic;
+    joint_.engage(0.03);
+    for (std::size_t s : {0u, 1u}) {  // the bodies see the gap in the places of the surfaces
+      PortGeometry partner = bodies_.port(joint_.sides[1 - s]).geometry;
+      partner.points[0] = bodies_.port(joint_.sides[s]).geometry.points[0] +
+                          joint_.offset(static_cast<int>(s));
+      bodies_.meet(joint_.sides[s], partner, {joint_.tied()});
+    }
     bodies_.prepare(window_, 1, Sampling::substeps);
-    transmission_.begin(window_, interface_, bodies_);
+    transmission_.begin(window_, joint_, bodies_);
   }
 
   Eigen::VectorXd predict() const {
@@ -113,18 +118,18 @@ class Contact {
   Eigen::VectorXd image(const Eigen::VectorXd& x) {
     bodies_.restore_all();
     bodies_.prepare(window_, 1, Sampling::substeps);
-    const int k = interface_.kinematic;
+    const int k = joint_.kinematic;
     if (transmission_.ordered()) {
       for (int side : {k, 1 - k}) {
-        transmission_.impose(side, x, interface_, bodies_);
+        transmission_.impose(side, x, joint_, bodies_);
         EXPECT_FALSE(bodies_.advance(std::span<const int>(&side, 1)));
       }
     } else {
-      for (int side : {0, 1}) transmission_.impose(side, x, interface_, bodies_);
+      for (int side : {0, 1}) transmission_.impose(side, x, joint_, bodies_);
       EXPECT_FALSE(bodies_.advance_all());
     }
     Eigen::VectorXd g(x.size());
-    transmission_.image(x, interface_, bodies_, g);
+    transmission_.image(x, joint_, bodies_, g);
     return g;
   }
   /// J = -d(G - x) / dx, column by column, with differences of size 1.
@@ -142,13 +147,13 @@ class Contact {
   Bodies& bodies() { return bodies_; }
   const TimeWindow& window() const { return window_; }
   Substeps grid(int body) {
-    return Substeps(window_.begin, window_.end, bodies_.describe(body).step);
+    return Substeps::divide(window_.begin, window_.end, bodies_.describe(body).step);
   }
 
  private:
   std::unique_ptr<Subdomain> left_, right_;
   Bodies bodies_;
-  Interface interface_;
+  Joint joint_;
   Transmission& transmission_;
   TimeWindow window_{0, 0.0, 3.6};
 };

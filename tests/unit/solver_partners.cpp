@@ -29,11 +29,11 @@ std::vector<Meeting> meetings() {
                    explicit_scheme(case_step, terms), "massless: {stiffness_factor: 1.4}"});
   all.push_back({"explicit1_kick", explicit_scheme(case_step), "kick: {}"});
   for (int terms : {1, 6})
-    all.push_back({"explicit" + std::to_string(terms) + "_tied", explicit_scheme(case_step, terms),
-                   ""});
+    all.push_back(
+        {"explicit" + std::to_string(terms) + "_tied", explicit_scheme(case_step, terms), ""});
   for (const char* scheme : {"newmark", "hht_alpha", "generalized_alpha"}) {
-    all.push_back({std::string(scheme) + "_massless", implicit_scheme(scheme, case_step),
-                   "massless: {}"});
+    all.push_back(
+        {std::string(scheme) + "_massless", implicit_scheme(scheme, case_step), "massless: {}"});
     all.push_back({std::string(scheme) + "_tied", implicit_scheme(scheme, case_step), ""});
   }
   return all;

@@ -26,7 +26,8 @@ struct Probed {
     const char* meshes[] = {"bar: {length: 1.0, elements: 4, area: 1.0, grading: 1.1}",
                             "rectangle: {lengths: [1.0, 1.0], elements: [2, 3]}",
                             "box: {lengths: [1.0, 1.0, 1.0], elements: [2, 1, 2]}"};
-    const char* motions[] = {"[\"0.3\"]", "[\"0.1 * x\", \"0.2\"]", "[\"0\", \"0.1 * z\", \"0.2\"]"};
+    const char* motions[] = {"[\"0.3\"]", "[\"0.1 * x\", \"0.2\"]",
+                             "[\"0\", \"0.1 * z\", \"0.2\"]"};
     const char* forces[] = {"[1.0]", "[1.0, 2.0]", "[1.0, 2.0, 3.0]"};
     const std::size_t d = index(dim) - 1;
     std::string text = fmt::format(
@@ -34,8 +35,7 @@ struct Probed {
         "    integrator: {{{}}}\n    constraints: {{clamp: {{on: left, fixed: true}}}}\n"
         "    ports: {{lid: {{side: right}}}}\n",
         model, dim, meshes[d],
-        law_in(dim,
-               "linear_elastic: {youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0}"),
+        law_in(dim, "linear_elastic: {youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0}"),
         integrator);
     if (more)
       text += fmt::format("    initial: {{velocity_field: {}}}\n    body_force: {}\n", motions[d],
@@ -104,10 +104,11 @@ TEST_P(Probe, Superposes) {
 }
 
 TEST_P(Probe, LeavesNoTraceAndSeesNoOtherLoad) {
-  const std::unique_ptr<Subdomain> moving = GetParam().build(true), resting = GetParam().build(false);
+  const std::unique_ptr<Subdomain> moving = GetParam().build(true),
+                                   resting = GetParam().build(false);
   Response response;
-  ASSERT_TRUE(std::holds_alternative<Advanced>(
-      moving->advance(free_request(*moving, 0.0, 0.3), response)));
+  ASSERT_TRUE(
+      std::holds_alternative<Advanced>(moving->advance(free_request(*moving, 0.0, 0.3), response)));
   const std::uint64_t hash = moving->state_hash();
   const std::size_t width = moving->describe().ports[0].geometry.points.size();
   const PortKernel one = moving->probe(0, unit_patterns(width), substep, count);

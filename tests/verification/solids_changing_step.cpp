@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "base/archive.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/fe/highest_frequency.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
-#include "subdomain_solver/saved_state.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/solid_runs.hpp"
 
@@ -166,10 +166,12 @@ TEST_P(PressedOrPulled, GoesOnFromASavedStateAsWithoutIt) {
   };
   go(whole, 0, 370);
   std::vector<std::byte> saved;
-  save_state(motion, saved);
+  Archive kept = Archive::writer(saved, Archive::Form::bare);
+  motion.state(kept);
   go(whole, 370, 700);
   const Motion once = motion;
-  restore_state(motion, saved);
+  Archive back = Archive::reader(saved, Archive::Form::bare);
+  motion.state(back);
   StableSteps other = body.steps(true);
   go(other, 370, 700);
   EXPECT_EQ(motion.q, once.q);

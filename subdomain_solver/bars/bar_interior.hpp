@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subdomain_solver/bars/bar_integrator.hpp"
+#include "subdomain_solver/interior.hpp"
+
+namespace abut {
+
+/// A bar, its integrator and its ends: tells the integrator what acts on the ends in each substep.
+class BarInterior final : public Interior {
+ public:
+  struct End {
+    std::string name;
+    int end = 0;  // 0 left, 1 right
+    bool tied = false;
+  };
+  struct Scheme {
+    std::unique_ptr<BarIntegrator> integrator;
+    double step = 0.0;  // [s]
+    bool explicit_in_time = true;
+    std::string words;      // for people
+    bool conserves = true;  // the energies that its integrator tells
+  };
+
+  BarInterior(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
+              const std::vector<End>& ends);
+
+  void state(Archive& archive) override { state_.state(archive); }
+  std::size_t coordinates() const override;
+  std::optional<Failed> begin(const Window& window) override;
+  void set_off(const Window& window) override;
+  std::optional<Failed> step(const Window& window, int i) override;
+  void settle(const Window& window, int i) override;
+  const PortValues& see(const Window& window, double time, bool all) override;
+  void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;
+  std::optional<Failed> record(BodyRecord& record) override;
+  void finish(std::size_t port, PortResponse& reply) const override;
+  bool takes(int port, const PortKernel& kernel) const override;
+  ForceSupport support(std::size_t port) const override;
+  double compliance(std::size_t port) const override;
+  bool rest(std::size_t port) override;
+  void wake() override { probed_ = -1; }
+  double effort() const override;
+  Grid grid() override;
+  std::vector<FieldValues> fields() override;
+
+ private:
+  /// What an end does in the present window.
+  struct Imposed {
+    std::vector<char> same_grid;  // by partner: a force is sampled at our own substeps
+    int obstacle = -1;            // the partner behind it; -1: none
+    bool same_motion = false;     // its motion is sampled at our own substeps
+    std::vector<double> excess;   // [N] by substep: reaction minus that of the obstacle's motion
+  };
+  struct EndPlace {
+    double outward = 0.0;  // [m] displacement of the end's node along its normal
+    double force = 0.0;    // [N] compressive, that moves the body
+  };
+  using EndPlaces = std::array<EndPlace, 2>;
+  struct Shown {
+    double time = 0.0, u = 0.0;  // of the last entry of a port's trace
+  };
+
+  void describe(std::string name, const std::vector<End>& ends);
+  void see_imposed(const Window& window);
+  void set_actions(const Window& window, int i);
+  void add_force(const Waveform& imposed, bool same_grid, const Substeps& grid, int i, int end,
+                 EndAction& action) const;
+  void set_obstacle(const Window& window, int i, std::size_t port, EndAction& action);
+  void give_way(const PortKernel& kernel, const Waveform& motion, int i, std::size_t port,
+                EndAction& action);
+  void resist(const Impedance& impedance, const Substeps& grid, int i, int end,
+              EndAction& action) const;
+  EndPlaces end_places() const;
+  void add_work();
+  double force_on_body(int end, const BoundaryData& data) const;
+  void approach(int end, PortResponse& reply) const;
+
+  std::unique_ptr<Bar> bar_;
+  Scheme scheme_;
+  std::vector<int> ends_;  // by port
+  BarState state_;
+  EndActions actions_;
+  std::vector<Imposed> imposed_;  // by port
+  bool driven_ = false;           // something is imposed
+  bool open_ = false;             // v is of a half step
+  EndPlaces places_{};
+  std::vector<Shown> shown_;  // by port
+  PortValues seen_;
+  int probed_ = -1;  // the port that is held
+};
+
+}  // namespace abut

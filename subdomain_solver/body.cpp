@@ -1,0 +1,359 @@
+#include "subdomain_solver/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "base/index.hpp"
+#include "base/life_signs.hpp"
+
+namespace abut {
+
+namespace {
+
+constexpr std::chrono::milliseconds life_interval{250};
+const Want everything;
+
+const Want& want_of(const Advance& request, std::size_t port) {
+  return request.want.empty() ? everything : request.want[port];
+}
+
+/// Of a port's values, those of the points that are listed; all, where none is.
+void append(std::span<const double> port, const std::vector<std::int32_t>& points, std::size_t dim,
+            std::vector<double>& to) {
+  if (points.empty()) to.insert(to.end(), port.begin(), port.end());
+  for (const std::int32_t point : points) {
+    const std::span<const double> one = port.subspan(index(point) * dim, dim);
+    to.insert(to.end(), one.begin(), one.end());
+  }
+}
+
+void write(Interior& interior, std::vector<std::byte>& bytes, Archive::Form form) {
+  Archive archive = Archive::writer(bytes, form);
+  interior.state(archive);
+  archive.finish();
+}
+
+/// Throws RunError when the fields are others (Form::named).
+void read(Interior& interior, std::span<const std::byte> bytes, Archive::Form form) {
+  Archive archive = Archive::reader(bytes, form);
+  interior.state(archive);
+  archive.finish();
+}
+
+/// A value that is not finite anywhere in a state reaches one of these sums.
+bool finite(const BodyRecord& r) {
+  double sum = r.energy.total() + r.energy.external_work;
+  for (const std::vector<double>* told : {&r.momentum, &r.angular_momentum, &r.columns})
+    sum = std::accumulate(told->begin(), told->end(), sum);
+  return std::isfinite(sum);
+}
+
+}  // namespace
+
+Body::Body(std::unique_ptr<Interior> interior, std::function<void()> progress)
+    : interior_(std::move(interior)), progress_(std::move(progress)) {
+  std::size_t values = 0;
+  for (const Port& port : describe().ports) {
+    first_.push_back(values);
+    values += port.geometry.points.size();
+  }
+  partners_.resize(first_.size());
+  sweeps_.resize(first_.size());
+}
+
+void Body::meet(int port, const PortGeometry& partner, const ContactLaw& law) {
+  partners_.at(index(port)).push_back({partner, law, {}});
+}
+
+void Body::yields(int port, int partner, const PortKernel& kernel) {
+  if (!interior_->takes(port, kernel)) {
+    throw RunError(fmt::format("gives way by a kernel that this body cannot take: steps of {:g} s, "
+                               "where its own are {:g} s, or another support of forces",
+                               kernel.step, describe().step),
+                   fmt::format("a partner of body '{}'", describe().name),
+                   "Let obstacles give way only with kernels of this body's step and support.");
+  }
+  partners_.at(index(port)).at(index(partner)).kernel = kernel;
+}
+
+void Body::save() { write(*interior_, saved_, Archive::Form::bare); }
+
+void Body::restore() {
+  read(*interior_, saved_, Archive::Form::bare);
+  interior_->restored();
+}
+
+std::vector<std::byte> Body::checkpoint() {
+  std::vector<std::byte> bytes;
+  write(*interior_, bytes, Archive::Form::named);
+  return bytes;
+}
+
+void Body::resume(std::span<const std::byte> bytes) {
+  const std::size_t own = interior_->coordinates();
+  std::vector<std::byte> before;
+  write(*interior_, before, Archive::Form::bare);
+  try {
+    read(*interior_, bytes, Archive::Form::named);
+    if (interior_->coordinates() != own) {
+      throw RunError(fmt::format("the checkpoint holds {} coordinates, but the body has {}",
+                                 interior_->coordinates(), own),
+                     fmt::format("body '{}'", describe().name),
+                     "Resume with the mesh that wrote the checkpoint.");
+    }
+  } catch (...) {
+    read(*interior_, before, Archive::Form::bare);
+    throw;
+  }
+  interior_->restored();
+}
+
+/// That of a body without a state is 0.
+std::uint64_t Body::state_hash() {
+  return interior_->coordinates() == 0 ? 0 : hash_state(*interior_);
+}
+
+Outcome Body::finish(Response& response) {
+  ABUT_ASSERT(request_ != nullptr);
+  const Advance& request = *std::exchange(request_, nullptr);
+  const auto began = std::chrono::steady_clock::now();
+  const Window window{request, divide(request), partners_};
+  begin_replies(request, response);
+  recorded_ = 0;
+  if (std::optional<Failed> failed = advance(window, response)) return *failed;
+  for (std::size_t p = 0; p < first_.size(); ++p) interior_->finish(p, response.ports[p]);
+  response.steps = window.grid.count;
+  response.compute_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return Advanced{};
+}
+
+/// The window loop of all bodies.
+std::optional<Failed> Body::advance(const Window& window, Response& response) {
+  const Substeps& grid = window.grid;
+  if (auto failed = patiently([&] { return interior_->begin(window); })) return failed;
+  follow(window, grid.begin, true, response);
+  interior_->set_off(window);
+  begin_sweep();
+  RecordClock clock(window.request, grid.count);
+  for (int i = 1; i <= grid.count; ++i) {
+    if (auto failed = patiently([&] { return interior_->step(window, i); })) return failed;
+    const bool due = i == clock.substep();
+    if (due) interior_->settle(window, i);
+    if (window.request.sampling == Sampling::substeps) {
+      follow(window, grid.time(i), true, response);
+    } else {
+      follow(window, due ? clock.time() : grid.time(i), due, response);
+    }
+    report_progress();
+    for (; i == clock.substep(); clock.next())
+      if (auto failed = record(clock.time(), response)) return failed;
+  }
+  for (; !clock.done(); clock.next())  // a window of no length
+    if (auto failed = record(clock.time(), response)) return failed;
+  return std::nullopt;
+}
+
+/// A body without a step of its own goes from record to record.
+Substeps Body::divide(const Advance& request) const {
+  const TimeWindow& window = request.window;
+  const double step = describe().step;
+  return Substeps::divide(window.begin, window.end,
+                          step > 0.0 ? step : window.length() / std::max(1, request.records));
+}
+
+void Body::begin_replies(const Advance& request, Response& response) const {
+  ABUT_ASSERT(request.boundary.size() == first_.size());
+  response.records.resize(index(std::max(1, request.records)));
+  response.ports.resize(first_.size());
+  for (std::size_t p = 0; p < first_.size(); ++p) {
+    const PortGeometry& geometry = describe().ports[p].geometry;
+    const std::vector<Obstacle>& obstacles = request.boundary[p].obstacles;
+    PortResponse& port = response.ports[p];
+    port.trace.clear();
+    port.trace.support = interior_->support(p);
+    port.trace.points = want_of(request, p).points;
+    const int points =
+        port.trace.points.empty() ? geometry.count() : static_cast<int>(port.trace.points.size());
+    port.trace.width = points * geometry.dim;
+    port.reactions.resize(obstacles.size());
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+      Waveform& force = port.reactions[k].force;
+      force.clear();
+      force.support = port.trace.support;
+      force.width = obstacles[k].motion.width;
+      force.points = obstacles[k].motion.points;
+    }
+    port.lower.clear();
+    port.upper.clear();
+    port.speed_bound = std::numeric_limits<double>::infinity();
+    port.acceleration_bound = port.work = 0.0;
+    port.recoil.reset();
+  }
+}
+
+void Body::follow(const Window& window, double time, bool shown, Response& response) {
+  seen_ = &interior_->see(window, time, shown);
+  widen_sweep();
+  for (std::size_t p = 0; shown && p < first_.size(); ++p)
+    push_trace(window.request, time, p, response);
+}
+
+void Body::push_trace(const Advance& request, double time, std::size_t p,
+                      Response& response) const {
+  const PortGeometry& geometry = describe().ports[p].geometry;
+  const Want& want = want_of(request, p);
+  PortResponse& port = response.ports[p];
+  port.trace.time.push_back(time);
+  const auto push = [&](bool wanted, const std::vector<double>& from, std::vector<double>& to) {
+    const std::span<const double> own = std::span(from).subspan(first_[p], geometry.points.size());
+    if (wanted) append(own, want.points, index(geometry.dim), to);
+  };
+  push(want.u, seen_->u, port.trace.u);
+  push(want.v, seen_->v, port.trace.v);
+  push(want.a, seen_->a, port.trace.a);
+  push(want.f, seen_->f, port.trace.f);
+  for (std::size_t k = 0; k < port.reactions.size(); ++k) {
+    if (request.boundary[p].obstacles[k].empty()) continue;
+    port.reactions[k].force.time.push_back(time);
+    interior_->react(p, k, port.reactions[k].force.f);
+  }
+}
+
+void Body::begin_sweep() {
+  for (std::size_t p = 0; p < sweeps_.size(); ++p) {
+    const std::size_t dim = index(describe().ports[p].geometry.dim);
+    sweeps_[p].lower.assign(dim, std::numeric_limits<double>::infinity());
+    sweeps_[p].upper.assign(dim, -std::numeric_limits<double>::infinity());
+  }
+  widen_sweep();
+}
+
+void Body::widen_sweep() {
+  for (std::size_t p = 0; p < sweeps_.size(); ++p) {
+    const PortGeometry& geometry = describe().ports[p].geometry;
+    const double* u = seen_->u.data() + first_[p];
+    Sweep& sweep = sweeps_[p];
+    const std::size_t dim = sweep.lower.size();
+    for (std::size_t k = 0; k < geometry.points.size() && dim > 0; ++k) {
+      const double at = geometry.points[k] + u[k];
+      sweep.lower[k % dim] = std::min(sweep.lower[k % dim], at);
+      sweep.upper[k % dim] = std::max(sweep.upper[k % dim], at);
+    }
+  }
+}
+
+std::optional<Failed> Body::record(double time, Response& response) {
+  for (std::size_t p = 0; p < sweeps_.size(); ++p) {
+    PortResponse& port = response.ports[p];
+    const Sweep& sweep = sweeps_[p];
+    port.lower.insert(port.lower.end(), sweep.lower.begin(), sweep.lower.end());
+    port.upper.insert(port.upper.end(), sweep.upper.begin(), sweep.upper.end());
+  }
+  begin_sweep();
+  BodyRecord& r = response.records[recorded_++];
+  r.time = time;
+  if (std::optional<Failed> failed = interior_->record(r)) return failed;
+  if (finite(r)) return std::nullopt;
+  return Failed{
+      Failed::Cause::non_finite, time,
+      fmt::format("the state of body '{}' is no longer finite; its step of {:g} s may be unstable "
+                  "or a value out of range: give a smaller step, check the scene's values",
+                  describe().name, describe().step)};
+}
+
+PortKernel Body::probe(int port, std::span<const double> patterns, double step, int count) {
+  const std::string where = fmt::format("body '{}'", describe().name);
+  if (!describe().can.kernel) {
+    throw RunError("does not answer for port kernels", where,
+                   "Ask bodies for kernels only when they offer them.");
+  }
+  const std::size_t p = index(port), width = describe().ports.at(p).geometry.points.size();
+  ABUT_ASSERT(step > 0.0 && patterns.size() % width == 0);
+  std::vector<std::byte> kept;
+  write(*interior_, kept, Archive::Form::bare);
+  const Substeps grid{0.0, count * step, step, step, count};
+  PortKernel kernel{step,
+                    interior_->support(p),
+                    static_cast<int>(patterns.size() / width),
+                    static_cast<int>(width),
+                    {},
+                    {},
+                    {}};
+  kernel.displacement.assign(index(count) * patterns.size(), 0.0);
+  const bool nodal = kernel.support == ForceSupport::nodal;
+  if (nodal) kernel.begin = kernel.displacement;
+  if (const double compliance = interior_->compliance(p); compliance > 0.0)
+    for (const double value : patterns) kernel.compliance.push_back(compliance * value);
+  Advance request;
+  request.window = {0, grid.begin, grid.end};
+  request.boundary.resize(first_.size());
+  Waveform& force = request.boundary[p].forces.emplace_back(static_cast<int>(width));
+  force.support = kernel.support;
+  for (int i = 0; i <= count; ++i) force.time.push_back(i == 0 ? grid.begin : grid.time(i));
+  std::vector<double> alone, moved;
+  std::optional<Failed> failed;
+  force.f.assign(force.time.size() * width, 0.0);
+  if (interior_->rest(p)) failed = respond(request, grid, p, alone);
+  alone.resize(index(count) * width, 0.0);
+  for (std::size_t from = 0; from < patterns.size() && !failed; from += width) {
+    for (const std::size_t at : {0u, 1u}) {  // at the begin, at the end of the first substep
+      if (at == 0 && !nodal) continue;
+      std::vector<double>& to = at == 0 ? kernel.begin : kernel.displacement;
+      force.f.assign(force.time.size() * width, 0.0);
+      std::copy_n(patterns.data() + from, width, force.f.data() + at * width);
+      interior_->rest(p);
+      failed = respond(request, grid, p, moved);
+      for (std::size_t k = 0; k < moved.size(); ++k)
+        to[k / width * patterns.size() + from + k % width] = moved[k] - alone[k];
+    }
+  }
+  interior_->wake();
+  read(*interior_, kept, Archive::Form::bare);
+  interior_->restored();
+  if (!failed) return kernel;
+  throw RunError("has no port kernel: " + failed->detail, where,
+                 "Give the body inertia or supports that hold it.");
+}
+
+/// Displacements (substeps, values) of a port under the forces of a request [m].
+std::optional<Failed> Body::respond(const Advance& request, const Substeps& grid, std::size_t port,
+                                    std::vector<double>& displacement) {
+  const Window window{request, grid, partners_};
+  const std::size_t width = describe().ports[port].geometry.points.size();
+  displacement.clear();
+  if (std::optional<Failed> failed = interior_->begin(window)) return failed;
+  interior_->set_off(window);
+  for (int i = 1; i <= grid.count; ++i) {
+    if (std::optional<Failed> failed = interior_->step(window, i)) return failed;
+    const double* u = interior_->see(window, grid.time(i), false).u.data() + first_[port];
+    displacement.insert(displacement.end(), u, u + width);
+  }
+  return std::nullopt;
+}
+
+/// With signs of life meanwhile, where a single call may take long.
+template <class Call>
+std::optional<Failed> Body::patiently(const Call& call) const {
+  if (!progress_ || !interior_->slow()) return call();
+  LifeSigns life(progress_, life_interval);
+  std::optional<Failed> outcome = call();
+  life.end();
+  return outcome;
+}
+
+void Body::report_progress() {
+  effort_ += interior_->effort();
+  if (effort_ < 1.0) return;
+  effort_ = 0.0;
+  if (progress_) progress_();
+}
+
+}  // namespace abut

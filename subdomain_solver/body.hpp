@@ -1,0 +1,66 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+
+#include "subdomain_solver/interior.hpp"
+
+namespace abut {
+
+/// Our subdomains, all of them: takes an interior through windows, keeps who its ports have met,
+/// collects traces, swept boxes and records, saves and restores, and answers probes. A window costs
+/// no allocation once buffers have grown.
+class Body final : public Subdomain {
+ public:
+  /// `progress` is called now and then during a long advance, so that the caller can tell others
+  /// that the body lives.
+  explicit Body(std::unique_ptr<Interior> interior, std::function<void()> progress = {});
+
+  const Description& describe() const override { return interior_->describe(); }
+  void meet(int port, const PortGeometry& partner, const ContactLaw& law) override;
+  void yields(int port, int partner, const PortKernel& kernel) override;
+  void save() override;
+  void restore() override;
+  void start(const Advance& request) override { request_ = &request; }
+  [[nodiscard]] Outcome finish(Response& response) override;
+  PortKernel probe(int port, std::span<const double> patterns, double step, int count) override;
+  std::vector<std::byte> checkpoint() override;
+  void resume(std::span<const std::byte> bytes) override;
+  std::uint64_t state_hash() override;
+  std::vector<double> measure() override { return interior_->measure(); }
+  Grid grid() override { return interior_->grid(); }
+  std::vector<FieldValues> fields() override { return interior_->fields(); }
+
+ private:
+  struct Sweep {
+    std::vector<double> lower, upper;  // [m] (dim) positions since the last record
+  };
+
+  std::optional<Failed> advance(const Window& window, Response& response);
+  Substeps divide(const Advance& request) const;
+  void begin_replies(const Advance& request, Response& response) const;
+  void follow(const Window& window, double time, bool shown, Response& response);
+  void push_trace(const Advance& request, double time, std::size_t port, Response& response) const;
+  void begin_sweep();
+  void widen_sweep();
+  std::optional<Failed> record(double time, Response& response);
+  std::optional<Failed> respond(const Advance& request, const Substeps& grid, std::size_t port,
+                                std::vector<double>& displacement);
+  template <class Call>
+  std::optional<Failed> patiently(const Call& call) const;
+  void report_progress();
+
+  std::unique_ptr<Interior> interior_;
+  std::function<void()> progress_;
+  std::vector<std::size_t> first_;              // where a port's values begin
+  std::vector<std::vector<Partner>> partners_;  // by port
+  const Advance* request_ = nullptr;
+  const PortValues* seen_ = nullptr;
+  std::vector<Sweep> sweeps_;  // by port
+  std::size_t recorded_ = 0;   // records of the window so far
+  std::vector<std::byte> saved_;
+  double effort_ = 0.0;  // since the last sign of life
+};
+
+}  // namespace abut

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/archive.hpp"
+#include "contract/subdomain.hpp"
+#include "subdomain_solver/substeps.hpp"
+
+namespace abut {
+
+/// A partner that a port has met.
+struct Partner {
+  PortGeometry surface;
+  ContactLaw law;
+  PortKernel kernel;  // empty: its surface gives way to nothing
+};
+
+/// What is asked for over a window, and how the body divides it.
+struct Window {
+  const Advance& request;
+  Substeps grid;
+  std::span<const std::vector<Partner>> partners;  // by port, in the order in which they were met
+
+  double begin_of(int i) const { return i == 1 ? grid.begin : grid.time(i - 1); }  // of a substep
+};
+
+/// Motion and force of all points of all ports at one time, port after port (values) [SI units].
+struct PortValues {
+  std::vector<double> u, v, a, f;
+};
+
+/// What makes one body differ from another; the rest is Body's. Called as Body::advance shows.
+class Interior {
+ public:
+  virtual ~Interior() = default;
+  const Description& describe() const { return description_; }
+
+  /// The one list of all that changes during a step.
+  virtual void state(Archive& archive) = 0;
+  /// Coordinates of the state; 0: its parts do not fit each other.
+  virtual std::size_t coordinates() const = 0;
+  /// The state came back: what follows from it.
+  virtual void restored() {}
+
+  /// Takes what is imposed over a window; the ports then show its begin.
+  [[nodiscard]] virtual std::optional<Failed> begin(const Window&) { return std::nullopt; }
+  /// Impulses and the first half of a step, which the ports do not show at the window's begin.
+  virtual void set_off(const Window&) {}
+  [[nodiscard]] virtual std::optional<Failed> step(const Window& window, int i) = 0;
+  /// Brings the state of the last substep to one time, for records.
+  virtual void settle(const Window&, int) {}
+  /// Ports now; the displacements alone, unless all is wanted for their traces at `time`.
+  virtual const PortValues& see(const Window& window, double time, bool all) = 0;
+  /// Appends the force on the points that a partner's obstacle lists [N].
+  virtual void react(std::size_t, std::size_t, std::vector<double>&) const {}
+  /// Fills a record whose time is given. Values may be anything: Body looks at them.
+  [[nodiscard]] virtual std::optional<Failed> record(BodyRecord& record) = 0;
+  /// Completes a port's reply at the window's end: bounds, work, recoil.
+  virtual void finish(std::size_t, PortResponse&) const {}
+
+  /// A partner whose surface gives way: whether the body can take it.
+  virtual bool takes(int, const PortKernel&) const { return false; }
+  virtual ForceSupport support(std::size_t) const { return ForceSupport::nodal; }
+  /// Quasi-static compliance of a port of one point [m/N]; 0: none.
+  virtual double compliance(std::size_t) const { return 0.0; }
+  /// Puts the body at rest, a port held and loads away; true: one stays that moves it.
+  virtual bool rest(std::size_t) { return false; }
+  /// Brings the loads back; the state is restored by others.
+  virtual void wake() {}
+
+  /// Parts of 10 ms that a substep takes, about.
+  virtual double effort() const { return 0.0; }
+  /// A single substep may take seconds.
+  virtual bool slow() const { return false; }
+  virtual std::vector<double> measure() { return {}; }
+  virtual Grid grid() = 0;
+  virtual std::vector<FieldValues> fields() = 0;
+
+ protected:
+  Description description_;
+};
+
+}  // namespace abut

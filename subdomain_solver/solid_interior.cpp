@@ -1,0 +1,325 @@
+#include "subdomain_solver/solid_interior.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/index.hpp"
+#include "subdomain_solver/bars/compressed_bar.hpp"
+#include "subdomain_solver/fe/loads.hpp"
+#include "subdomain_solver/solid_fields.hpp"
+#include "subdomain_solver/time/motion_views.hpp"
+#include "subdomain_solver/validity_measures.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Cell-steps in about 10 ms.
+constexpr double usual_work = 1.0e3;
+
+/// Degrees of freedom from which on a factorisation may take more than a moment.
+constexpr std::int64_t long_factorisation = 30'000;
+
+/// Speed [m/s] of the fastest wave at the undeformed state: of dilatation, or along a bar.
+double fastest_wave(const FeModel& model) {
+  const Moduli moduli = model.material().moduli();
+  const double stiffness = model.mesh().dim == 1 ? moduli.youngs() : moduli.p_wave();
+  return std::sqrt(stiffness / model.material().density());
+}
+
+}  // namespace
+
+SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<PortNodes>& ports)
+    : parts_(std::move(parts)), mass_(mass_matrix(*parts_.model, parts_.scheme.mass)) {
+  state_.motion = std::move(parts_.motion);
+  describe(std::move(name), ports);
+  if (!ports_.empty()) {
+    port_map_ = std::make_unique<PortMap>(*parts_.model, *parts_.map, ports_);
+    std::unique_ptr<PortForces> forces = std::make_unique<PortForces>(*port_map_);
+    port_forces_ = forces.get();
+    before_ = now_ = seen_.u = state_.port_force = std::vector<double>(port_map_->values(), 0.0);
+    change_.setZero(parts_.problem->model->dofs());
+    parts_.problem->loads.push_back(std::move(forces));
+  }
+}
+
+void SolidInterior::describe(std::string name, const std::vector<PortNodes>& ports) {
+  const Mesh& mesh = parts_.model->mesh();
+  description_.name = std::move(name);
+  std::string cells;
+  for (const CellBlock& block : mesh.blocks)
+    cells +=
+        fmt::format("{}{} {}", cells.empty() ? "" : " and ", block.count(), block.element->name);
+  description_.model = fmt::format("{}, {}, {}", parts_.rung, cells, parts_.scheme.words);
+  description_.dim = mesh.dim;
+  description_.dofs = parts_.problem->model->dofs();
+  description_.mass = parts_.model->material().density() * parts_.model->volume();
+  description_.step = parts_.scheme.step;
+  description_.stable_step = parts_.scheme.stable_step;
+  description_.can.force = true;
+  const bool linear = parts_.problem->model->is_linear() && (parts_.deforms || mesh.dim == 1);
+  description_.can.kernel = linear && parts_.scheme.integrator->has_inertia() && !ports.empty();
+  for (const PortNodes& p : ports) {
+    ports_.push_back({p.name, mesh.nodes_of(p.side)});
+    Port port = port_of(p, ports_.back().nodes);
+    if (parts_.deforms) port.geometry.transit = port.geometry.spacing / fastest_wave(*parts_.model);
+    description_.ports.push_back(std::move(port));
+  }
+  description_.measures = solid_measure_names(mesh.dim, parts_.deforms, ports_);
+  const auto also = [this](const std::vector<std::string>& names) {
+    description_.measures.insert(description_.measures.end(), names.begin(), names.end());
+  };
+  also(reaction_measure_names(mesh.dim, parts_.constraints));
+  also(parts_.scheme.integrator->measure_names());
+  also(validity_measure_names(*parts_.model, parts_.deforms));
+  description_.columns = reaction_columns(mesh.dim, parts_.constraints);
+  description_.frequencies = parts_.frequencies;
+  description_.fields = solid_fields(parts_.model->material(), parts_.deforms);
+  if (parts_.reactions) description_.fields.push_back({"reaction", FieldPlace::nodes, 3});
+}
+
+/// Points, facets and area-averaged normals of a side; a node set has no normals, the end of a bar
+/// no facets.
+Port SolidInterior::port_of(const PortNodes& nodes, const std::vector<std::int32_t>& list) const {
+  const Mesh& mesh = parts_.model->mesh();
+  const std::size_t dim = index(mesh.dim);
+  Port port;
+  port.name = nodes.name;
+  port.geometry.dim = mesh.dim;
+  for (std::int32_t node : list) {
+    const double* x = mesh.points.data() + index(node) * dim;
+    port.geometry.points.insert(port.geometry.points.end(), x, x + dim);
+  }
+  port.geometry.normals.assign(list.size() * dim, 0.0);
+  if (!mesh.sides.contains(nodes.side)) return port;
+  std::vector<double>& normals = port.geometry.normals;
+  port.geometry.offsets.push_back(0);
+  double area = 0.0;
+  const SidePoints side = SidePoints::of(*parts_.model, nodes.side);
+  for (const SidePoints::FacetPoints& facet : side.facets) {
+    for (std::size_t a = 0; a < facet.nodes.size(); ++a) {
+      const auto place = std::lower_bound(list.begin(), list.end(), facet.nodes[a]) - list.begin();
+      port.geometry.facets.push_back(static_cast<std::int32_t>(place));
+      for (const SidePoints::Point& point : facet.points) {
+        for (std::size_t i = 0; i < dim; ++i)
+          normals[index(place) * dim + i] +=
+              point.area * point.n[a] * point.normal(static_cast<Eigen::Index>(i));
+      }
+    }
+    port.geometry.offsets.push_back(static_cast<std::int32_t>(port.geometry.facets.size()));
+    for (const SidePoints::Point& point : facet.points) area += point.area;
+  }
+  for (std::size_t k = 0; k < normals.size(); k += dim) {
+    double length = 0.0;
+    for (std::size_t i = 0; i < dim; ++i) length = std::hypot(length, normals[k + i]);
+    for (std::size_t i = 0; i < dim && length > 0.0; ++i) normals[k + i] /= length;
+  }
+  if (dim == 1) {
+    port.geometry.facets.clear();
+    port.geometry.offsets.clear();
+    const Facet& end = mesh.side(nodes.side).front();
+    const CellBlock& cells = mesh.blocks[index(end.block)];
+    const std::int32_t* cell = cells.nodes.data() + end.cell * cells.element->nodes;
+    port.geometry.spacing = mesh.points[index(cell[1])] - mesh.points[index(cell[0])];
+    return port;
+  }
+  const double facets = static_cast<double>(std::max<std::size_t>(1, side.facets.size()));
+  port.geometry.spacing =
+      std::pow(area / facets, 1.0 / std::max(1.0, static_cast<double>(dim) - 1.0));
+  return port;
+}
+
+void SolidInterior::state(Archive& archive) {
+  archive.field("time", state_.time);
+  state_.motion.state(archive);
+  archive.field("begun", state_.begun);
+  archive.field("port_force", state_.port_force);
+  archive.field("port_work", state_.port_work);
+  archive.field("turned", state_.turned);
+}
+
+double SolidInterior::effort() const { return parts_.model->mesh().cell_count() / usual_work; }
+
+/// It may factor a large matrix.
+bool SolidInterior::slow() const {
+  return std::isinf(description_.stable_step) && description_.dofs >= long_factorisation;
+}
+
+std::optional<Failed> SolidInterior::begin(const Window& window) {
+  const double time = window.request.window.begin;
+  if (description_.dim == 1) {  // of the window's begin, which is accepted
+    see_nodes();
+    std::optional<Failed> failed =
+        compressed_to_nothing(u_, parts_.model->mesh(), time, description_.name);
+    if (failed) return failed;
+  }
+  if (port_forces_ != nullptr) port_forces_->impose(window.request.boundary, window.grid);
+  meet_port_forces(time);
+  if (!state_.begun) {
+    parts_.problem->set_rates(time, parts_.scheme.step, state_.motion);
+    if (std::optional<Failed> failed = parts_.scheme.integrator->begin(state_.motion, time))
+      return failed;
+    state_.begun = true;
+    state_.time = time;
+  }
+  if (port_map_) port_map_->displacement(state_.motion.q, seen_.u);
+  return std::nullopt;
+}
+
+std::optional<Failed> SolidInterior::step(const Window& window, int i) {
+  Integrator& integrator = *parts_.scheme.integrator;
+  const double dt = window.grid.length(i);
+  if (std::optional<Failed> failed = integrator.step(state_.motion, window.begin_of(i), dt))
+    return failed;
+  state_.time = window.grid.time(i);
+  if (port_map_) follow_ports(state_.time);
+  return std::nullopt;
+}
+
+/// Where the nodes are and how they move now.
+void SolidInterior::see_nodes() {
+  u_.resize(nodal_values());
+  v_.resize(nodal_values());
+  parts_.map->displacement(state_.motion.q, u_);
+  parts_.map->velocity(state_.motion.q, state_.motion.v, v_);
+  momentum_.noalias() = mass_ * view(v_);
+  parts_.model->to_space(u_);
+  parts_.model->to_space(v_);
+  parts_.model->to_space({momentum_.data(), nodal_values()});
+}
+
+const PortValues& SolidInterior::see(const Window&, double time, bool all) {
+  if (!all || !port_map_) return seen_;
+  const Motion& motion = state_.motion;
+  port_map_->velocity(motion.q, motion.v, seen_.v);
+  port_map_->acceleration(motion.q, motion.v, motion.a, seen_.a);
+  port_forces_->at(time, seen_.f);
+  return seen_;
+}
+
+/// Forces on ports begin and end between windows: accelerations follow at once.
+void SolidInterior::meet_port_forces(double time) {
+  if (port_forces_ == nullptr) return;
+  port_forces_->at(time, now_);
+  if (state_.begun && now_ != state_.port_force) {
+    before_ = now_;
+    for (std::size_t k = 0; k < now_.size(); ++k) before_[k] -= state_.port_force[k];
+    change_.setZero(parts_.problem->model->dofs());
+    port_map_->lift(state_.motion.q, before_, change_);
+    parts_.scheme.integrator->jump(state_.motion, change_);
+  }
+  state_.port_force = now_;
+}
+
+/// After a substep: where the ports are, and the work that the forces on them have done.
+void SolidInterior::follow_ports(double time) {
+  before_.swap(seen_.u);
+  port_map_->displacement(state_.motion.q, seen_.u);
+  if (!port_forces_->acts()) return;
+  port_forces_->at(time, now_);
+  for (std::size_t k = 0; k < now_.size(); ++k)
+    state_.port_work += 0.5 * (state_.port_force[k] + now_[k]) * (seen_.u[k] - before_[k]);
+  state_.port_force = now_;
+}
+
+std::optional<Failed> SolidInterior::record(BodyRecord& r) {
+  see_nodes();
+  r.energy = energy();
+  state_.turned = std::max(state_.turned, rotation_on_the_way(*parts_.model, parts_.deforms, u_));
+  r.momentum.assign(index(description_.dim), 0.0);
+  for (Eigen::Index k = 0; k < momentum_.size(); ++k)
+    r.momentum[index(k) % r.momentum.size()] += momentum_(k);
+  angular_momentum(parts_.model->mesh(), u_, momentum_, r.angular_momentum);
+  r.columns = reactions();
+  return std::nullopt;
+}
+
+/// Forces on ports now, as those of nodes (nodes, dim) in their own frames [N].
+Vector SolidInterior::forces_on_ports() const {
+  Vector all = Vector::Zero(static_cast<Eigen::Index>(nodal_values()));
+  if (port_forces_ == nullptr || !port_forces_->acts()) return all;
+  std::vector<double> values;
+  port_forces_->at(state_.time, values);
+  std::size_t k = 0;
+  for (const NamedNodes& port : ports_) {
+    for (std::int32_t node : port.nodes) {
+      for (int i = 0; i < description_.dim; ++i) all(node * description_.dim + i) += values[k++];
+    }
+  }
+  parts_.model->to_frames({all.data(), nodal_values()});
+  return all;
+}
+
+/// [N] (constraints, dim) along the axes of space; none before the begin.
+std::vector<double> SolidInterior::reactions() const {
+  if (!parts_.reactions) return {};
+  if (!state_.begun) return std::vector<double>(description_.columns.size(), 0.0);
+  return parts_.reactions->sums(state_.motion, state_.time, forces_on_ports());
+}
+
+std::vector<double> SolidInterior::measure() {
+  see_nodes();
+  std::vector<double> q(nodal_values());
+  parts_.map->displacement(state_.motion.q, q);
+  std::vector<double> out = solid_measures(
+      *parts_.model, {parts_.deforms, q, v_, state_.motion.history, energy(), momentum_}, ports_);
+  for (const std::vector<double>& more :
+       {reaction_measures(description_.dim, reactions()),
+        parts_.scheme.integrator->measure(state_.motion),
+        validity_measures(*parts_.model, parts_.deforms, u_, state_.motion.stored, state_.turned)})
+    out.insert(out.end(), more.begin(), more.end());
+  return out;
+}
+
+Grid SolidInterior::grid() { return grid_of(parts_.model->mesh()); }
+
+std::vector<FieldValues> SolidInterior::fields() {
+  see_nodes();
+  std::vector<double> q(nodal_values());
+  parts_.map->displacement(state_.motion.q, q);
+  std::vector<FieldValues> values =
+      solid_field_values(*parts_.model, {q, u_, v_, state_.motion.history}, parts_.deforms);
+  if (!parts_.reactions) return values;
+  Vector forces = Vector::Zero(static_cast<Eigen::Index>(nodal_values()));
+  if (state_.begun)
+    forces = parts_.reactions->forces(state_.motion, state_.time, forces_on_ports());
+  parts_.model->to_space({forces.data(), nodal_values()});
+  values.push_back(in_space(span_of(forces), description_.dim));
+  return values;
+}
+
+Energy SolidInterior::energy() const {
+  const Motion& motion = state_.motion;
+  return {parts_.scheme.integrator->kinetic(motion), motion.stored, motion.dissipated,
+          motion.external_work - state_.port_work};  // partners account for what ports exchange
+}
+
+bool SolidInterior::rest(std::size_t) {
+  Motion& motion = state_.motion;
+  const std::size_t coordinates = motion.q.size(), rates = motion.v.size();
+  state_ = State{};
+  motion.q.assign(coordinates, 0.0);
+  motion.v.assign(rates, 0.0);
+  state_.port_force.assign(port_map_->values(), 0.0);
+  if (loaded_) return false;
+  Problem& problem = *parts_.problem;  // others refer to it
+  loaded_ = std::make_unique<Problem>();
+  loaded_->loads.swap(problem.loads);
+  loaded_->supports = problem.supports;
+  problem.loads.push_back(std::move(loaded_->loads.back()));  // the forces on ports
+  loaded_->loads.pop_back();
+  for (Prescribed& support : problem.supports) support.value = [](double) { return 0.0; };
+  return false;
+}
+
+void SolidInterior::wake() {
+  Problem& problem = *parts_.problem;
+  loaded_->loads.push_back(std::move(problem.loads.back()));
+  problem.loads.swap(loaded_->loads);
+  problem.supports = std::move(loaded_->supports);
+  loaded_.reset();
+}
+
+}  // namespace abut

@@ -1,0 +1,99 @@
+#include "surface/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/index.hpp"
+
+namespace abut {
+namespace {
+
+/// Far below any cell that a solver survives, far above what round-off leaves of three points on a
+/// line (some 1e-16).
+constexpr double least_area = 1.0e-12;
+
+/// The defect of the surface's arrays as such, before facets can be read.
+std::optional<UnsoundSurface> check_arrays(const PosedSurface& s) {
+  if (s.dim != 2 && s.dim != 3) return UnsoundSurface{SurfaceDefect::dimension};
+  if (s.points.size() % index(s.dim) != 0) return UnsoundSurface{SurfaceDefect::points};
+  if (s.offsets.empty() && s.facets.empty()) return std::nullopt;
+  if (s.offsets.empty() || s.offsets.front() != 0 ||
+      s.offsets.back() != static_cast<std::ptrdiff_t>(s.facets.size()))
+    return UnsoundSurface{SurfaceDefect::offsets};
+  for (int f = 0; f < s.facet_count(); ++f)
+    if (s.offsets[f + 1] < s.offsets[f]) return UnsoundSurface{SurfaceDefect::offsets, f};
+  return std::nullopt;
+}
+
+std::optional<SurfaceDefect> check_nodes(const PosedSurface& s, int facet) {
+  const std::span<const std::int32_t> nodes = s.nodes(facet);
+  const bool fits = s.dim == 2 ? nodes.size() == 2 : nodes.size() == 3 || nodes.size() == 4;
+  if (!fits) return SurfaceDefect::node_count;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i] < 0 || nodes[i] >= s.node_count()) return SurfaceDefect::missing_node;
+    if (std::find(nodes.begin(), nodes.begin() + i, nodes[i]) != nodes.begin() + i)
+      return SurfaceDefect::repeated_node;
+  }
+  for (std::int32_t node : nodes)
+    if (!s.point(node).allFinite()) return SurfaceDefect::not_finite;
+  return std::nullopt;
+}
+
+std::optional<SurfaceDefect> check_shape(const Corners& c) {
+  double longest = 0.0;
+  for (int i = 0; i < c.count; ++i)
+    longest = std::max(longest, (c.x[(i + 1) % c.count] - c.x[i]).squaredNorm());
+  if (c.count == 2) return longest > 0.0 ? std::nullopt : std::optional(SurfaceDefect::no_area);
+  if (!(area(c) > least_area * longest)) return SurfaceDefect::no_area;
+  if (c.count == 3) return std::nullopt;
+  const Eigen::Vector3d n = mean_normal(c);
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector3d before = c.x[i] - c.x[(i + 3) % 4], after = c.x[(i + 1) % 4] - c.x[i];
+    if (!(before.cross(after).dot(n) > least_area * longest)) return SurfaceDefect::folded;
+  }
+  return std::nullopt;
+}
+
+const char* words_of(SurfaceDefect defect) {
+  switch (defect) {
+    case SurfaceDefect::dimension:
+      return "is neither in the plane nor in space";
+    case SurfaceDefect::points:
+      return "has no whole number of points";
+    case SurfaceDefect::offsets:
+      return "has offsets that do not grow from 0 to the list's end";
+    case SurfaceDefect::node_count:
+      return "has a wrong number of nodes";
+    case SurfaceDefect::missing_node:
+      return "has a node that is not there";
+    case SurfaceDefect::repeated_node:
+      return "has a node twice";
+    case SurfaceDefect::not_finite:
+      return "has a node whose coordinates are not finite";
+    case SurfaceDefect::no_area:
+      return "has no area";
+    case SurfaceDefect::folded:
+      return "is not convex";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::optional<UnsoundSurface> check(const PosedSurface& surface) {
+  if (const std::optional<UnsoundSurface> unsound = check_arrays(surface)) return unsound;
+  for (int f = 0; f < surface.facet_count(); ++f) {
+    std::optional<SurfaceDefect> defect = check_nodes(surface, f);
+    if (!defect) defect = check_shape(corners(surface, f));
+    if (defect) return UnsoundSurface{*defect, f};
+  }
+  return std::nullopt;
+}
+
+std::string words(const UnsoundSurface& unsound) {
+  const std::string who =
+      unsound.facet < 0 ? "the surface" : "facet " + std::to_string(unsound.facet);
+  return who + " " + words_of(unsound.defect);
+}
+
+}  // namespace abut

@@ -1,0 +1,55 @@
+#include "surface/sharp_nodes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <compare>
+#include <cstddef>
+#include <span>
+
+namespace abut {
+namespace {
+
+/// One facet's part in an edge: its nodes ascending. In the plane an edge is a node, named twice.
+struct HalfEdge {
+  std::int32_t a, b, facet;
+
+  auto operator<=>(const HalfEdge&) const = default;
+  bool same_edge(const HalfEdge& other) const { return a == other.a && b == other.b; }
+};
+
+std::vector<HalfEdge> sorted_edges(const PosedSurface& surface) {
+  std::vector<HalfEdge> edges;
+  for (std::int32_t f = 0; f < surface.facet_count(); ++f) {
+    const std::span<const std::int32_t> nodes = surface.nodes(f);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const std::int32_t a = nodes[i];
+      const std::int32_t b = surface.dim == 2 ? a : nodes[(i + 1) % nodes.size()];
+      edges.push_back({std::min(a, b), std::max(a, b), f});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> sharp_nodes(const PosedSurface& surface, double angle) {
+  const std::vector<HalfEdge> edges = sorted_edges(surface);
+  const double limit = std::cos(angle);
+  std::vector<std::int32_t> nodes;
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    if (!edges[i].same_edge(edges[i - 1])) continue;
+    const Corners one = corners(surface, edges[i - 1].facet);
+    const Corners other = corners(surface, edges[i].facet);
+    const Eigen::Vector3d n = mean_normal(one);
+    const bool convex = n.dot(centre(other) - centre(one)) < 0.0;
+    if (!convex || n.dot(mean_normal(other)) >= limit) continue;
+    nodes.push_back(edges[i].a);
+    nodes.push_back(edges[i].b);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+}  // namespace abut

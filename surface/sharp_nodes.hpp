@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "surface/posed_surface.hpp"
+
+namespace abut {
+
+/// Nodes at convex edges (in the plane: corners) whose two facets turn by more than `angle` [rad],
+/// ascending: where averaged normals mean nothing and a row of its own takes the node to the
+/// partner's closest point (point_rows with nodal normals). Edges of one facet, a surface's rim,
+/// and hollow edges are not sharp. For setting up: it allocates.
+std::vector<std::int32_t> sharp_nodes(const PosedSurface& surface, double angle);
+
+}  // namespace abut

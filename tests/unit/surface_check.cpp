@@ -1,0 +1,81 @@
+// Goal: every way in which a surface can be unsound is named with its facet.
+// Oracle: the words, and silence for what is sound.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "surface/check.hpp"
+#include "tests/support/surfaces.hpp"
+
+namespace abut {
+namespace {
+
+/// Two squares and a triangle side by side.
+SurfaceMesh three_facets() {
+  SurfaceMesh mesh;
+  mesh.points = {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0, 3, 0, 0};
+  mesh.add_facet({0, 1, 4, 3}, false);
+  mesh.add_facet({1, 2, 5, 4}, false);
+  mesh.add_facet({2, 6, 5}, false);
+  return mesh;
+}
+
+std::string verdict(const SurfaceMesh& mesh) {
+  const std::optional<UnsoundSurface> unsound = check(mesh.pose());
+  return unsound ? words(*unsound) : "";
+}
+
+TEST(SurfaceCheck, NamesTheDefectAndItsFacet) {
+  const auto spoilt = [](const std::function<void(SurfaceMesh&)>& spoil) {
+    SurfaceMesh mesh = three_facets();
+    spoil(mesh);
+    return verdict(mesh);
+  };
+  EXPECT_EQ(verdict(three_facets()), "");
+  EXPECT_EQ(verdict(SurfaceMesh{}), "");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.dim = 1; }),
+            "the surface is neither in the plane nor in space");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.points.pop_back(); }),
+            "the surface has no whole number of points");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.offsets.back() = 10; }),
+            "the surface has offsets that do not grow from 0 to the list's end");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) {
+              m.offsets = {0, 8, 4, 11};
+            }),
+            "facet 1 has offsets that do not grow from 0 to the list's end");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) {
+              m.offsets = {0, 4, 9, 11};
+            }),
+            "facet 1 has a wrong number of nodes");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.facets[4] = 7; }),
+            "facet 1 has a node that is not there");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.facets[4] = -1; }),
+            "facet 1 has a node that is not there");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.facets[10] = 2; }), "facet 2 has a node twice");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.points[19] = std::numeric_limits<double>::infinity(); }),
+            "facet 2 has a node whose coordinates are not finite");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.points[18] = 2.0; }), "facet 2 has no area");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.points[0] = 2.0, m.points[1] = 2.0; }),
+            "facet 0 is not convex");
+  EXPECT_EQ(spoilt([](SurfaceMesh& m) { std::swap(m.facets[5], m.facets[6]); }),
+            "facet 1 has no area");  // a bow
+}
+
+TEST(SurfaceCheck, KnowsSegments) {
+  const auto segments = [](std::vector<double> points, std::vector<std::int32_t> nodes) {
+    SurfaceMesh mesh;
+    mesh.dim = 2;
+    mesh.points = std::move(points);
+    mesh.add_facet(std::move(nodes), false);
+    return verdict(mesh);
+  };
+  EXPECT_EQ(segments({0, 0, 1, 0}, {0, 1}), "");
+  EXPECT_EQ(segments({0, 0, 0, 0}, {0, 1}), "facet 0 has no area");
+  EXPECT_EQ(segments({0, 0, 1, 0, 0, 1}, {0, 1, 2}), "facet 0 has a wrong number of nodes");
+}
+
+}  // namespace
+}  // namespace abut
