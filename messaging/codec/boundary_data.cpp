@@ -61,7 +61,7 @@ Impedance decode_impedance(Bytes bytes, const FieldPath& path) {
 }
 
 void decode_force(Bytes from, const SurfaceSize& port, const FieldPath& path, Waveform& to) {
-  if (from.empty()) return;  // absent
+  if (from.empty()) return to.clear();  // absent
   decode(from, port, path, to);
   require_field(to, to.f, "f", path);
 }
@@ -75,7 +75,7 @@ void decode_motion(Bytes from, const SurfaceSize& surface, const FieldPath& path
 void decode_obstacle(Bytes from, const std::vector<SurfaceSize>& partners, std::size_t place,
                      const FieldPath& path, Waveform& to) {
   const Bytes bytes = motion_of(from, path);
-  if (bytes.empty()) return;  // absent
+  if (bytes.empty()) return to.clear();  // absent
   decode_motion(bytes, partners[place], FieldPath{&path, "motion"}, to);
 }
 
@@ -107,14 +107,18 @@ void encode(const BoundaryData& from, WireWriter& to) {
 
 void decode(Bytes bytes, const SurfaceSize& port, const std::vector<SurfaceSize>& partners,
             const FieldPath& path, BoundaryData& to) {
-  to.clear();
+  // Waveforms are overwritten where they are: clearing them first would cost a pass over each.
+  to.impedance = {};
+  to.impulse.clear();
   std::size_t forces = 0, obstacles = 0;
+  bool moved = false;
   for (WireReader from(bytes, path); from.next();) {
     const FieldPath force{&path, "forces", static_cast<int>(forces)};
     const FieldPath obstacle{&path, "obstacles", static_cast<int>(obstacles)};
     switch (from.field()) {
       case Wire::kMotionFieldNumber:
         decode_motion(from.message(), port, FieldPath{&path, "motion"}, to.motion);
+        moved = true;
         break;
       case Wire::kForcesFieldNumber:
         if (forces >= most_partners) FieldPath{&path, "forces"}.fail("has too many entries");
@@ -139,6 +143,9 @@ void decode(Bytes bytes, const SurfaceSize& port, const std::vector<SurfaceSize>
         from.skip();
     }
   }
+  if (!moved) to.motion.clear();
+  for (; forces < to.forces.size(); ++forces) to.forces[forces].clear();
+  for (; obstacles < to.obstacles.size(); ++obstacles) to.obstacles[obstacles].motion.clear();
   check(to.impulse, index(port.width()), true, FieldPath{&path, "impulse"});
 }
 

@@ -84,7 +84,7 @@ Bytes force_of(Bytes reaction, const FieldPath& path) {
 void decode_reaction(Bytes bytes, const Waveform& motion, int dim, const TimeWindow& window,
                      const FieldPath& parent, Waveform& to) {
   const Bytes from = force_of(bytes, parent);
-  if (from.empty()) return;  // absent
+  if (from.empty()) return to.clear();  // absent
   const FieldPath path{&parent, "force"};
   if (motion.empty()) path.fail("answers an obstacle that is absent");
   // Its points are those of the obstacle, which the list below holds it against.
@@ -120,10 +120,8 @@ Recoil decode_recoil(Bytes bytes, const FieldPath& path) {
   return to;
 }
 
-/// Forgets the values and keeps the memory.
+/// Forgets all but the waveforms, which are overwritten where they are.
 void clear(PortResponse& port, std::size_t obstacles) {
-  port.trace.clear();
-  for (Reaction& reaction : port.reactions) reaction.force.clear();
   if (port.reactions.size() < obstacles) port.reactions.resize(obstacles);
   port.lower.clear();
   port.upper.clear();
@@ -136,11 +134,13 @@ void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance
   const std::vector<Obstacle>& obstacles = asked.boundary[place].obstacles;
   clear(to, obstacles.size());
   std::size_t reactions = 0;
+  bool traced = false;
   for (WireReader from(bytes, path); from.next();) {
     switch (from.field()) {
       case Wire::kTraceFieldNumber:
         decode_trace(from.message(), port, asked, wanted(asked, place), FieldPath{&path, "trace"},
                      to.trace);
+        traced = true;
         break;
       case Wire::kReactionsFieldNumber:
         if (reactions >= obstacles.size()) {
@@ -175,6 +175,8 @@ void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance
         from.skip();
     }
   }
+  if (!traced) to.trace.clear();
+  for (; reactions < to.reactions.size(); ++reactions) to.reactions[reactions].force.clear();
   require_reactions(asked.boundary[place], path, to.reactions);
   check(to.lower, index(asked.records * port.geometry.dim), true, FieldPath{&path, "lower"});
   check(to.upper, to.lower.size(), false, FieldPath{&path, "upper"});

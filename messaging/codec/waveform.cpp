@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "base/index.hpp"
 #include "messaging/codec/parts.hpp"
 
@@ -27,7 +29,8 @@ namespace {
 
 /// What the bytes hold, whatever it is worth; the support.
 std::int64_t read(WireReader from, Waveform& to) {
-  to.clear();
+  to.points.clear();
+  bool time = false, u = false, v = false, a = false, f = false;
   std::int64_t support = 0, width = 0;
   while (from.next()) {
     switch (from.field()) {
@@ -38,19 +41,19 @@ std::int64_t read(WireReader from, Waveform& to) {
         support = from.integer();
         break;
       case W::kTimeFieldNumber:
-        from.numbers(to.time);
+        from.numbers(to.time, time);
         break;
       case W::kUFieldNumber:
-        from.numbers(to.u);
+        from.numbers(to.u, u);
         break;
       case W::kVFieldNumber:
-        from.numbers(to.v);
+        from.numbers(to.v, v);
         break;
       case W::kAFieldNumber:
-        from.numbers(to.a);
+        from.numbers(to.a, a);
         break;
       case W::kFFieldNumber:
-        from.numbers(to.f);
+        from.numbers(to.f, f);
         break;
       case W::kPointsFieldNumber:
         from.integers(to.points);
@@ -58,6 +61,10 @@ std::int64_t read(WireReader from, Waveform& to) {
       default:
         from.skip();
     }
+  }
+  for (const auto& [there, field] :
+       {std::pair{time, &to.time}, {u, &to.u}, {v, &to.v}, {a, &to.a}, {f, &to.f}}) {
+    if (!there) field->clear();
   }
   to.width = static_cast<int>(width);
   return support;

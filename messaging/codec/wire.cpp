@@ -140,6 +140,19 @@ void WireReader::numbers(std::vector<double>& to) {
   if (count > 0) std::memcpy(to.data() + before, packed.data(), packed.size());
 }
 
+void WireReader::numbers(std::vector<double>& to, bool& begun) {
+  if (begun || type_ != length_type) {
+    if (!begun) to.clear();
+    begun = true;
+    return numbers(to);
+  }
+  begun = true;
+  const Bytes packed = message();
+  if (packed.size() % sizeof(double) != 0) path_.fail("is no sound message: a number is cut");
+  to.resize(packed.size() / sizeof(double));
+  if (!to.empty()) std::memcpy(to.data(), packed.data(), packed.size());
+}
+
 void WireReader::integers(std::vector<std::int32_t>& to) {
   if (type_ == varint_type) {
     to.push_back(static_cast<std::int32_t>(integer()));

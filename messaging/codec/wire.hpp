@@ -59,6 +59,9 @@ class WireReader {
   double number();
   /// Appends: packed or one by one.
   void numbers(std::vector<double>& to);
+  /// The same, in place of what an earlier message left there: a vector of the right size costs
+  /// nothing but the copy.
+  void numbers(std::vector<double>& to, bool& begun);
   void integers(std::vector<std::int32_t>& to);
   Bytes message();
   void skip();

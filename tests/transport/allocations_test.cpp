@@ -1,0 +1,88 @@
+// Goal: once buffers have grown, what an exchange writes and reads allocates nothing.
+// Oracle: the count of calls of operator new.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <utility>
+
+#include "base/index.hpp"
+#include "messaging/frame.hpp"
+#include "tests/transport/wire_bytes.hpp"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+void* operator new(std::size_t size) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace abut {
+namespace {
+
+Waveform wave(int width) {
+  Waveform made(width);
+  for (int i = 0; i <= 50; ++i) made.time.push_back(0.02 * i);
+  made.time.back() = 1.0;
+  for (std::vector<double>* field : {&made.u, &made.v, &made.a, &made.f})
+    field->assign(made.time.size() * index(width), 0.5);
+  return made;
+}
+
+TEST(Allocations, AWindowThatIsWrittenAndReadTakesNoMemory) {
+  Description body;
+  body.dim = 2;
+  body.ports.resize(1);
+  body.ports[0].geometry.dim = 2;
+  body.ports[0].geometry.points.assign(40, 0.0);
+  const Partners met{{SurfaceSize{30, 2}}};
+  Advance advance;
+  advance.window = {3, 0.0, 1.0};
+  advance.boundary.resize(1);
+  advance.boundary[0].forces = {wave(40)};
+  advance.boundary[0].obstacles = {Obstacle{wave(60)}};
+  advance.want.resize(1);
+  Response response;
+  response.ports.resize(1);
+  response.ports[0].trace = wave(40);
+  response.ports[0].reactions = {Reaction{wave(60)}};
+  response.records.resize(1);
+  response.records[0].momentum = {1.0, 2.0};
+
+  Frame request, reply;
+  v1::Request asked;
+  v1::Reply answered;
+  Advance got_advance;
+  Response got_response;
+  Waveform spare;
+  long before = 0;
+  for (int window = 0; window < 10; ++window) {
+    if (window == 3) before = allocations;
+    Bytes bulk;
+    WireWriter& there = request.open();
+    encode(advance, there);
+    there.close(v1::Request::kAdvanceFieldNumber, 0);
+    request.seal();
+    ASSERT_TRUE(parse_into(asked, *open_frame(request.bytes()), bulk));
+    decode(bulk, body, met, got_advance);
+    WireWriter& back = reply.open();
+    encode(response, got_advance, back);
+    back.close(v1::Reply::kAdvancedFieldNumber, 0);
+    reply.seal();
+    ASSERT_TRUE(parse_into(answered, *open_frame(reply.bytes()), bulk));
+    decode(bulk, body, advance, got_response);
+    // Free flight between windows in contact: what is absent keeps its memory.
+    std::swap(advance.boundary[0].forces[0], spare);
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(got_response.ports[0].trace.u, response.ports[0].trace.u);
+}
+
+}  // namespace
+}  // namespace abut
