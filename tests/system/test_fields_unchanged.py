@@ -1,5 +1,5 @@
-"""Goal: `output.fields` changes nothing that a run of a scene computes, and leaves the same files in
-every placement.
+"""Goal: `output.fields` changes nothing that a run of a scene computes, and leaves the same files
+in every placement.
 
 Oracles: equality of state hashes and of files; the run without fields is that of RUNS, which CTest
 makes first (tests/system/CMakeLists.txt).
