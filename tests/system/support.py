@@ -24,17 +24,29 @@ FILES = {"scene.resolved.yaml", "history.csv", "events.jsonl", "summary.json"}
 MARK = "ABUT_SYSTEM_TEST"  # in the environment of every process that a test starts
 
 
-def shipped() -> list:
-    """The scenes that `abut run` starts by itself, and that this program was built for."""
-    return [path for path in sorted((ROOT / "configs").rglob("*.yaml"))
-            if path.stem != CONNECTED and path.parent.name != "invalid"
-            and not (path.parent.name == "optional" and lacks_library(path))]
-
-
 def lacks_library(scene: Path) -> bool:
     """Whether the scene is refused because an optional library was not there at build time."""
+    if scene.parent.name != "optional":
+        return False
     said = subprocess.run([ABUT, "check", scene], capture_output=True, text=True, check=False)
     return said.returncode == 2 and "this program was built without" in said.stderr
+
+
+def shared_run(scene: str) -> Path:
+    """The run of a shipped scene, named as below configs/, that CTest has made before this test."""
+    return Path(sys.argv[3]).resolve() / scene
+
+
+def measures_of(scene: str) -> dict:
+    summary = (shared_run(scene) / "summary.json").read_text(encoding="utf-8")
+    return strict_json(summary)["measures"]
+
+
+def bits(folder: Path) -> tuple:
+    """What must not depend on anything but the scene."""
+    summary = strict_json((folder / "summary.json").read_text(encoding="utf-8"))
+    return (summary["state_hash"], summary["measures"], summary["exchanges"],
+            (folder / "history.csv").read_bytes(), (folder / "events.jsonl").read_bytes())
 
 
 def free_port() -> int:

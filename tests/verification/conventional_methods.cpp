@@ -1,17 +1,14 @@
-// Goal: the conventional contact methods have their published figures, for the published reasons.
-// Oracles: the figures that the scenes hold, the mechanics of a penalty spring, equality over
-// windows.
+// Goal: the conventional contact methods have their published figures for the published reasons.
+// Oracles: the mechanics of a penalty spring, the energy of a contact cell, equality over windows.
+// The figures themselves are held by the scenes (tests/system/test_scenes.py).
 
-#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "coordinator/record/expectations.hpp"
 #include "tests/support/runs.hpp"
-#include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
@@ -29,14 +26,6 @@ INSTANTIATE_TEST_SUITE_P(Methods, Conventional,
                                          "penalty_explicit_current_lengths",
                                          "lagrange_explicit_current_lengths",
                                          "lagrange_implicit_current_lengths"));
-
-TEST_P(Conventional, HasThePublishedFigures) {
-  const Scene scene = read_scene(Document::load(path_of(GetParam()), {}));
-  const std::unique_ptr<RunResult> r = run_file(path_of(GetParam()));
-  ASSERT_TRUE(r->completed());
-  for (const ExpectationResult& e : evaluate(scene.meta.expect, r->measures))
-    EXPECT_TRUE(e.pass) << e.measure << ": " << e.got << ", expected " << e.expected;
-}
 
 TEST_P(Conventional, DoesNotDependOnTheWindow) {
   const std::unique_ptr<RunResult> one = run_file(path_of(GetParam()), {"time.window=1.0e-7"});
@@ -72,16 +61,6 @@ TEST(ConventionalMethods, ExplicitMultiplierLosesTheEnergyOfTheContactCells) {
     const double expected = -1.0 / (2.0 * elements);
     // 2 %: the release loses a little more or less than the impact
     EXPECT_NEAR(r->measure("energy.total.relative_drift_end"), expected, 0.02 * -expected);
-  }
-}
-
-TEST(ConventionalMethods, TheEnergyLossAscribedToThemComesFromTheLengths) {
-  const char* error = "energy.left.relative_error_max";
-  for (const std::string& method : {std::string("penalty_explicit"),
-                                    std::string("lagrange_explicit")}) {
-    const double reference = run_file(path_of(method))->measure(error);
-    const double current = run_file(path_of(method + "_current_lengths"))->measure(error);
-    EXPECT_GT(current, 3.0 * reference) << method;
   }
 }
 
