@@ -18,8 +18,7 @@ namespace abut {
 
 /// Visitor over the configuration keys of a struct. Each struct lists its keys once, in
 /// `void fields(Fields& f)`; the same list reads and validates, echoes the values in use and
-/// documents the keys. Absent optional keys keep the value that the member has. Implementations:
-/// base/yaml_fields.cpp.
+/// documents the keys. Absent optional keys keep the member's value (base/yaml_fields.cpp).
 class Fields {
  public:
   enum class Purpose { read, write, document };

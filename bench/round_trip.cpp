@@ -24,6 +24,8 @@
 
 #include "base/index.hpp"
 #include "messaging/codec.hpp"
+#include "messaging/codec/wire.hpp"
+#include "messaging/frame.hpp"
 #include "messaging/liveness.hpp"
 #include "messaging/remote_subdomain.hpp"
 #include "messaging/serve.hpp"
@@ -63,6 +65,7 @@ class InstantBody : public Subdomain {
  public:
   InstantBody() {
     description_.ports.resize(1);
+    description_.ports[0].name = "tip";
     description_.ports[0].geometry.points = {0.0};
     description_.ports[0].geometry.normals = {1.0};
   }
@@ -72,7 +75,7 @@ class InstantBody : public Subdomain {
   void start(const Advance& request) override { request_ = &request; }
   Outcome finish(Response& response) override {
     const Clock::time_point begin = Clock::now();
-    const int substeps = static_cast<int>(request_->boundary[0].force.size()) - 1;
+    const int substeps = static_cast<int>(request_->boundary[0].forces[0].size()) - 1;
     if (response.steps != substeps) {
       response.ports.resize(1);
       response.ports[0].trace = wave(substeps);
@@ -84,7 +87,9 @@ class InstantBody : public Subdomain {
     response.compute_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     return Advanced{};
   }
-  PortKernel kernel(int, double, int) override { return {}; }
+  void meet(int, const PortGeometry&, const ContactLaw&) override {}
+  void yields(int, int, const PortKernel&) override {}
+  PortKernel probe(int, std::span<const double>, double, int) override { return {}; }
   std::vector<std::byte> checkpoint() override { return {}; }
   void resume(std::span<const std::byte>) override {}
   std::uint64_t state_hash() override { return 0; }
@@ -153,8 +158,13 @@ class OurExchange {
         caller_("body", CallContext{hub_.channel(peer_), liveness_, nullptr, limits_, Deadlines{}}),
         body_(caller_) {
     hub_.bind(endpoint);
-    while (!hub_.channel(peer_).receive(Milliseconds(100))) {
+    std::optional<Bytes> frame;
+    while (!(frame = hub_.channel(peer_).receive(Milliseconds(100)))) {
     }
+    v1::Reply hello;
+    Bytes bulk;
+    if (!parse_into(hello, *open_frame(*frame), bulk)) std::abort();
+    caller_.accept_session(hello.session());
     body_.start_configure(Specification{});
     body_.finish_configure();
   }
@@ -162,18 +172,18 @@ class OurExchange {
   std::pair<std::size_t, std::size_t> prepare(int substeps) {
     advance_.window = TimeWindow{0, 0.0, 1.0e-7 * substeps};
     advance_.boundary.resize(1);
-    advance_.boundary[0].force = wave(substeps);
-    advance_.boundary[0].force.u.clear();  // one field there, four back: as two bars do it
-    advance_.boundary[0].force.v.clear();
-    advance_.boundary[0].force.a.clear();
+    advance_.boundary[0].forces = {wave(substeps)};
+    Waveform& force = advance_.boundary[0].forces[0];
+    for (std::vector<double>* field : {&force.u, &force.v, &force.a})
+      field->clear();  // one field there, four back: as two bars do it
     once();
-    v1::Request request;
-    request.set_number(1);
-    encode(advance_, *request.mutable_advance());
-    v1::Reply reply;
-    reply.set_number(1);
-    encode(response_, *reply.mutable_advanced());
-    return {request.ByteSizeLong() + frame_header_bytes, reply.ByteSizeLong() + frame_header_bytes};
+    Frame request, reply;
+    encode(advance_, request.open());
+    request.seal();
+    encode(response_, advance_, reply.open());
+    reply.seal();
+    constexpr std::size_t envelope = 20;  // number, session, the length inside
+    return {request.bytes().size() + envelope, reply.bytes().size() + envelope};
   }
   double once() {
     const Clock::time_point begin = Clock::now();

@@ -13,8 +13,8 @@ std::string model_of(const std::string& body) { return "bodies." + body + ".mode
 void ExternalBody::fields(Fields& f) {
   f.ignore("launch");
   f.choice("model", model,
-           "a body of another program: all keys below are that program's own and reach it as they "
-           "stand (proto/README.md)");
+           "model of the body; the keys of external are those of another program and reach it as "
+           "they stand (proto/README.md)");
 }
 
 bool is_external(const Document& document, const std::string& body) {

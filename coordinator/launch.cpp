@@ -55,10 +55,11 @@ std::string solver_beside_this_program() {
 }
 
 /// What somebody types to start the solver of a body that is waited for.
-std::string command_for(std::string endpoint, const std::string& body) {
+std::string command_for(std::string endpoint, const std::string& body, bool external) {
   const std::size_t wildcard = endpoint.find("//0.0.0.0:");
   if (wildcard != std::string::npos) endpoint.replace(wildcard + 2, 7, "HOST");  // this machine
-  return fmt::format("abut-solver --connect {} --body {}", endpoint, body);
+  return fmt::format("{} --connect {} --body {}", external ? "ITS_PROGRAM" : "abut-solver",
+                     endpoint, body);
 }
 
 }  // namespace
@@ -67,6 +68,7 @@ std::string command_for(std::string endpoint, const std::string& body) {
 struct Launch::Member {
   std::string name;
   bool spawned = true;
+  bool external = false;  // no abut-solver can be this body
   Milliseconds patience{0};
   int peer = 0;
   std::unique_ptr<ChildProcess> child;
@@ -106,6 +108,7 @@ void Launch::add_members(const Scene& scene) {
     member->name = name;
     const ConnectLaunch* connect = std::get_if<ConnectLaunch>(&entry.launch);
     member->spawned = connect == nullptr;
+    member->external = entry.external;
     member->patience =
         milliseconds(connect != nullptr ? connect->patience : scene.network.startup_deadline);
     member->peer = hub_->add_peer(name);
@@ -124,7 +127,7 @@ void Launch::listen(const Scene& scene) {
     }
     if (!member->spawned) {
       log_info(fmt::format("waiting for body '{}': {}", member->name,
-                           command_for(tcp_endpoint_, member->name)));
+                           command_for(tcp_endpoint_, member->name, member->external)));
     }
   }
 }
@@ -172,12 +175,13 @@ void Launch::greet_all(const Specification& scene_text) {
 /// The last Hello that has come: an earlier one may be of a solver that has been restarted since.
 bool Launch::greet(Member& member) {
   v1::Reply reply;
+  Bytes bulk;
   bool came = false;
   while (const std::optional<Bytes> frame = hub_->channel(member.peer).receive(Milliseconds(0))) {
     came = true;
     const std::optional<Bytes> payload = open_frame(*frame);
-    const bool sound =
-        frame->size() <= options_.limits.frame_bytes && payload && parse_into(reply, *payload);
+    const bool sound = frame->size() <= options_.limits.frame_bytes && payload &&
+                       parse_into(reply, *payload, bulk);
     if (sound && reply.has_hello()) continue;
     throw RunError(
         fmt::format("body '{}' did not say hello: its first frame, of {} bytes (limit {}), "
@@ -239,8 +243,9 @@ void Launch::refuse_strangers() {
     }
     // Where its session cannot be read, the refusal has none.
     v1::Reply hello;
+    Bytes bulk;
     const std::optional<Bytes> payload = open_frame(stranger->second);
-    if (!payload || !parse_into(hello, *payload)) hello.Clear();
+    if (!payload || !parse_into(hello, *payload, bulk)) hello.Clear();
     refuse(stranger->first, hello.hello().session(),
            "the scene has no body of this name, only " + names);
   }
@@ -264,7 +269,8 @@ void Launch::check_startup(Member& member, TimePoint begin) {
   if (member.spawned) {
     throw RunError(what, "", "raise network.startup_deadline on a slow machine");
   }
-  throw RunError(what, "", fmt::format("start `{}`", command_for(endpoint, member.name)));
+  throw RunError(what, "",
+                 fmt::format("start `{}`", command_for(endpoint, member.name, member.external)));
 }
 
 std::vector<std::unique_ptr<Subdomain>> Launch::take_bodies() {

@@ -77,7 +77,8 @@ Row row_of(const Scene& scene, const Document& document) {
   for (const auto& [name, entry] : scene.bodies) {
     if (!entry.external) continue;
     throw InputError(
-        fmt::format("describes bars and walls, but what the external body {} is nobody knows here",
+        fmt::format("describes bars and walls, but what the external body {} is, only its own "
+                    "program knows",
                     name),
         document.where("meta.closed_form"),
         "Leave out meta.closed_form and the expectations that need it.");

@@ -8,6 +8,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "messaging/codec.hpp"
+#include "messaging/codec/wire.hpp"
 
 namespace abut {
 
@@ -24,26 +25,49 @@ std::string Caller::under_way_text() const {
   return fmt::format("{} (request {})", verb_, number_);
 }
 
-void Caller::post(const char* verb) {
+void Caller::number_request(const char* verb) {
   ABUT_ASSERT(!under_way_ && session_ != 0);
   verb_ = verb;
   request_.set_number(++number_);
   request_.set_session(session_);
-  if (request_.ByteSizeLong() + frame_header_bytes > context_.limits.frame_bytes) {
+}
+
+void Caller::post(const char* verb) {
+  number_request(verb);
+  frame_.seal(request_);
+  send_request();
+}
+
+void Caller::post(const Advance& advance) {
+  number_request("advance");
+  request_.mutable_advance();  // the mark of its kind
+  WireWriter& out = frame_.open();
+  encode(advance, out);
+  out.close(v1::Request::kAdvanceFieldNumber, 0);
+  out.integer(v1::Request::kSessionFieldNumber, static_cast<std::int64_t>(session_));
+  out.integer(v1::Request::kSaveFirstFieldNumber, request_.save_first());
+  out.integer(v1::Request::kRestoreFirstFieldNumber, request_.restore_first());
+  out.integer(v1::Request::kNumberFieldNumber, static_cast<std::int64_t>(number_));
+  frame_.seal();
+  send_request();
+}
+
+void Caller::send_request() {
+  const std::size_t size = frame_.bytes().size();
+  if (size > context_.limits.frame_bytes) {
     throw RunError(
         fmt::format("{} for body '{}' would be a frame of {} bytes, above the limit of {}",
-                    under_way_text(), body_, request_.ByteSizeLong() + frame_header_bytes,
-                    context_.limits.frame_bytes),
+                    under_way_text(), body_, size, context_.limits.frame_bytes),
         "", remedy_of_large_frame(request_));
   }
-  frame_.seal(request_);
   under_way_ = true;
   corrupt_ = 0;
   begun_ = context_.channel.now();
   deadline_ = begun_ + context_.deadlines.request;
   pause_ = context_.deadlines.repeat;
   repeat_at_ = begun_ + pause_;
-  context_.channel.send(frame_.bytes());  // what the transport refuses now is repeated later
+  // What the transport refuses now is repeated later.
+  context_.channel.send(frame_.bytes(), frame_.owner());
 }
 
 const v1::Reply& Caller::call(const char* verb) {
@@ -91,7 +115,7 @@ bool Caller::is_reply(Bytes frame) {
         "", remedy_of_large_frame(request_));
   }
   const std::optional<Bytes> payload = open_frame(frame);
-  if (!payload || !parse_into(reply_, *payload)) {
+  if (!payload || !parse_into(reply_, *payload, bulk_)) {
     // Taken for lost. A peer that sends nothing else is given up.
     corrupt_bytes_ = frame.size();
     if (++corrupt_ < context_.limits.corrupt_frames) {
@@ -134,7 +158,7 @@ void Caller::greeted_again(const v1::Hello& hello) {
 }
 
 void Caller::repeat() {
-  context_.channel.send(frame_.bytes());
+  context_.channel.send(frame_.bytes(), frame_.owner());
   repeat_at_ = context_.channel.now() + pause_;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "abut/v1/subdomain.pb.h"
+#include "contract/subdomain.hpp"
 #include "messaging/channel.hpp"
 #include "messaging/frame.hpp"
 #include "messaging/liveness.hpp"
@@ -33,9 +34,13 @@ class Caller {
   /// Numbers, encodes and sends the request; `verb` names it in error messages and must be a
   /// literal.
   void post(const char* verb);
+  /// The same of an Advance, with the flags of request(): its waveforms go straight into the frame.
+  void post(const Advance& advance);
   /// Waits for the reply to the request under way. Throws RunError when it will not come, and the
   /// error that the body reports, if it reports one.
   const v1::Reply& await();
+  /// What the reply holds of an Advanced, as it came; valid until the next request.
+  Bytes advanced() const { return bulk_; }
   /// post and await.
   const v1::Reply& call(const char* verb);
   /// Like await, but gives up silently after `time`; false when no sound reply came.
@@ -53,6 +58,8 @@ class Caller {
   [[noreturn]] void refuse_reply(const std::string& why) const;
 
  private:
+  void number_request(const char* verb);
+  void send_request();
   bool is_reply(Bytes frame);
   void greeted_again(const v1::Hello& hello);
   void look_around();
@@ -64,6 +71,7 @@ class Caller {
   CallContext context_;
   v1::Request request_;
   v1::Reply reply_;
+  Bytes bulk_;  // of the reply, in the channel's memory
   Frame frame_;
   const char* verb_ = "";
   std::uint64_t number_ = 0;

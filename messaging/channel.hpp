@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -18,6 +19,11 @@ class Channel {
   virtual ~Channel() = default;
   /// Hands a frame to the transport; false when there is nobody to hand it to at present.
   virtual bool send(Bytes frame) = 0;
+  /// The same of a frame whose bytes stay as they are while `owner` is held: no copy is needed.
+  virtual bool send(Bytes frame, std::shared_ptr<const void> owner) {
+    owner.reset();
+    return send(frame);
+  }
   /// The next frame, or nothing when none came within `wait`. The bytes are valid until the next
   /// call.
   virtual std::optional<Bytes> receive(Milliseconds wait) = 0;

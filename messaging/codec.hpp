@@ -8,16 +8,19 @@
 
 namespace abut {
 
+class WireWriter;
+
 /// A message that is well-formed protobuf but not a sound contract value: which field, and why.
 class CodecError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Parses into a message that is used again and again: the arrays of an Advance or Advanced that it
-/// holds keep their memory. False when the bytes are no such message.
-bool parse_into(v1::Request& message, Bytes payload);
-bool parse_into(v1::Reply& message, Bytes payload);
+/// Parses a message that is used again and again. What it carries of an Advance or Advanced is left
+/// where it is, in `bulk`, and only marked: whoever decodes it takes the arrays from there, once.
+/// False when the bytes are no such message.
+bool parse_into(v1::Request& message, Bytes payload, Bytes& bulk);
+bool parse_into(v1::Reply& message, Bytes payload, Bytes& bulk);
 
 /// What a waveform of a surface may be wide.
 struct SurfaceSize {
@@ -50,9 +53,9 @@ struct Probing {
 
 // Contract to wire. The target may hold an earlier message: every field is overwritten, memory is
 // kept.
-void encode(const Advance& from, v1::Advance& to);
+void encode(const Advance& from, WireWriter& to);
 /// Fields that the request does not want are left out.
-void encode(const Response& from, const Advance& asked, v1::Advanced& to);
+void encode(const Response& from, const Advance& asked, WireWriter& to);
 void encode(const Failed& from, v1::Failed& to);
 void encode(const Description& from, v1::Description& to);
 void encode(const Meeting& from, v1::Meet& to);
@@ -64,9 +67,9 @@ void encode(const std::vector<FieldValues>& from, v1::FieldsReply& to);
 
 // Wire to contract. Shapes, counts, enums and finite numbers are checked; throws CodecError.
 /// `body` and `met` tell how wide the waveforms of ports and partners are.
-void decode(const v1::Advance& from, const Description& body, const Partners& met, Advance& to);
+void decode(Bytes advance, const Description& body, const Partners& met, Advance& to);
 /// Held against the request that it answers.
-void decode(const v1::Advanced& from, const Description& body, const Advance& asked, Response& to);
+void decode(Bytes advanced, const Description& body, const Advance& asked, Response& to);
 void decode(const v1::Failed& from, Failed& to);
 void decode(const v1::Description& from, Description& to);
 void decode(const v1::Meet& from, const Description& body, Meeting& to);

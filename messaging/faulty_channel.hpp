@@ -25,6 +25,7 @@ class FaultyChannel : public Channel {
   };
 
   FaultyChannel(Channel& inner, const Chances& chances, std::uint64_t seed);
+  using Channel::send;
   bool send(Bytes frame) override;
   std::optional<Bytes> receive(Milliseconds wait) override;
   TimePoint now() const override { return inner_.now(); }

@@ -19,19 +19,27 @@ constexpr char magic[4] = {'a', 'b', 't', '\x01'};
 }  // namespace
 
 void Frame::seal(const google::protobuf::MessageLite& message) {
+  out_.clear();
   const std::size_t payload = message.ByteSizeLong();
-  ABUT_ASSERT(payload <= UINT32_MAX / 2);  // protobuf's own limit
-  size_ = frame_header_bytes + payload;
-  if (storage_.size() < size_) storage_.resize(size_);
-  std::byte* data = storage_.data();
   // The sizes that ByteSizeLong has just cached are still valid.
-  message.SerializeWithCachedSizesToArray(
-      reinterpret_cast<std::uint8_t*>(data + frame_header_bytes));
-  const std::uint32_t size = static_cast<std::uint32_t>(payload);
-  const std::uint64_t checksum = hash_bytes(Bytes(data + frame_header_bytes, payload));
-  std::memcpy(data, magic, sizeof magic);
-  std::memcpy(data + 4, &size, sizeof size);
-  std::memcpy(data + 8, &checksum, sizeof checksum);
+  message.SerializeWithCachedSizesToArray(reinterpret_cast<std::uint8_t*>(out_.space(payload)));
+  seal();
+}
+
+WireWriter& Frame::open() {
+  out_.clear();
+  return out_;
+}
+
+void Frame::seal() {
+  const Bytes payload = out_.bytes();
+  ABUT_ASSERT(payload.size() <= UINT32_MAX / 2);  // protobuf's own limit
+  const std::uint32_t size = static_cast<std::uint32_t>(payload.size());
+  const std::uint64_t checksum = hash_bytes(payload);
+  std::byte* header = out_.space(frame_header_bytes);
+  std::memcpy(header, magic, sizeof magic);
+  std::memcpy(header + 4, &size, sizeof size);
+  std::memcpy(header + 8, &checksum, sizeof checksum);
 }
 
 std::optional<Bytes> open_frame(Bytes frame) {

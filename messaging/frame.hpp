@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "messaging/channel.hpp"
+#include "messaging/codec/wire.hpp"
 
 namespace google::protobuf {
 class MessageLite;
@@ -21,11 +21,15 @@ inline constexpr std::size_t frame_header_bytes = 16;
 class Frame {
  public:
   void seal(const google::protobuf::MessageLite& message);
-  Bytes bytes() const { return Bytes(storage_.data(), size_); }
+  /// For messages with waveforms, which are written where they are sent from: open, write, seal.
+  WireWriter& open();
+  void seal();
+  Bytes bytes() const { return out_.bytes(); }
+  /// As long as it is held, the bytes stay as they are: a transport need not copy them.
+  std::shared_ptr<const void> owner() const { return out_.owner(); }
 
  private:
-  std::vector<std::byte> storage_;
-  std::size_t size_ = 0;
+  WireWriter out_;
 };
 
 /// The payload of a frame, or nothing when the frame is damaged or not ours.

@@ -32,6 +32,7 @@ class MemoryLink {
   class End : public Channel {
    public:
     End(MemoryLink& link, Queue& in, Queue& out) : link_(link), in_(in), out_(out) {}
+    using Channel::send;
     bool send(Bytes frame) override;
     std::optional<Bytes> receive(Milliseconds wait) override;
     TimePoint now() const override;

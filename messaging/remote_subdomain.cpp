@@ -58,17 +58,16 @@ void RemoteSubdomain::carry_flags() {
 }
 
 void RemoteSubdomain::start(const Advance& request) {
-  encode(request, *caller_.request().mutable_advance());
   asked_ = &request;
   carry_flags();
-  caller_.post("advance");
+  caller_.post(request);
 }
 
 Outcome RemoteSubdomain::finish(Response& response) {
   const v1::Reply& reply = caller_.await();
   try {
     if (reply.has_advanced()) {
-      decode(reply.advanced(), description_, *asked_, response);
+      decode(caller_.advanced(), description_, *asked_, response);
       return Advanced{};
     }
     if (reply.has_failed()) {

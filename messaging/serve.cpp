@@ -12,6 +12,7 @@
 #include "base/index.hpp"
 #include "base/life_signs.hpp"
 #include "messaging/codec.hpp"
+#include "messaging/codec/wire.hpp"
 
 namespace abut {
 
@@ -87,7 +88,7 @@ void Server::check_coordinator() {
 bool Server::handle(Bytes frame) {
   if (frame.size() > limits_.frame_bytes) return true;  // as a damaged one: the coordinator repeats
   const std::optional<Bytes> payload = open_frame(frame);
-  if (!payload || !parse_into(request_, *payload)) return true;
+  if (!payload || !parse_into(request_, *payload, bulk_)) return true;
   if (!is_mine()) {
     ++foreign_;
     return true;
@@ -96,7 +97,7 @@ bool Server::handle(Bytes frame) {
   welcome_ = true;  // a request says as much as a Welcome that was lost
   if (request_.number() < executed_ || request_.number() == 0) return true;  // late: long answered
   if (request_.number() > executed_) execute();
-  channel_.send(reply_frame_.bytes());
+  channel_.send(reply_frame_.bytes(), reply_frame_.owner());
   return !finished_;
 }
 
@@ -154,14 +155,13 @@ void Server::execute() {
 }
 
 void Server::seal_reply() {
-  const std::size_t size = reply_.ByteSizeLong() + frame_header_bytes;
-  if (size > reply_limit_) {
-    fault(v1::FAULT_KIND_RUN,
-          fmt::format("the reply would be a frame of {} bytes, above the limit of {}", size,
-                      reply_limit_),
-          name_, remedy_of_large_frame(request_));
-    reply_.set_number(executed_);
-  }
+  if (!reply_.has_advanced()) reply_frame_.seal(reply_);
+  const std::size_t size = reply_frame_.bytes().size();
+  if (size <= reply_limit_) return;
+  fault(v1::FAULT_KIND_RUN,
+        fmt::format("the reply would be a frame of {} bytes, above the limit of {}", size,
+                    reply_limit_),
+        name_, remedy_of_large_frame(request_));
   reply_frame_.seal(reply_);
 }
 
@@ -196,7 +196,7 @@ void Server::dispatch() {
   saved_ = saved_ || request_.save_first();
   switch (request_.body_case()) {
     case v1::Request::kAdvance:
-      advance(request_.advance());
+      advance();
       return;
     case v1::Request::kMeet:
       meet(request_.meet());
@@ -280,14 +280,20 @@ void Server::probe(const v1::Probe& request) {
          *reply_.mutable_kernel());
 }
 
-void Server::advance(const v1::Advance& request) {
-  decode(request, body_->describe(), partners_, advance_);
+void Server::advance() {
+  decode(bulk_, body_->describe(), partners_, advance_);
   const Outcome outcome = body_->advance(advance_, response_);
   if (const Failed* failed = std::get_if<Failed>(&outcome)) {
     encode(*failed, *reply_.mutable_failed());
-  } else {
-    encode(response_, advance_, *reply_.mutable_advanced());
+    return;
   }
+  reply_.mutable_advanced();  // the mark of its kind: the frame is written here
+  WireWriter& out = reply_frame_.open();
+  encode(response_, advance_, out);
+  out.close(v1::Reply::kAdvancedFieldNumber, 0);
+  out.integer(v1::Reply::kSessionFieldNumber, static_cast<std::int64_t>(session_));
+  out.integer(v1::Reply::kNumberFieldNumber, static_cast<std::int64_t>(request_.number()));
+  reply_frame_.seal();
 }
 
 void Server::show_progress() {

@@ -63,7 +63,7 @@ class Server {
   void meet(const v1::Meet& request);
   void yields(const v1::Yields& request);
   void probe(const v1::Probe& request);
-  void advance(const v1::Advance& request);
+  void advance();
   void fault(v1::FaultKind kind, const std::string& what, const std::string& where,
              const std::string& remedy);
   void seal_reply();
@@ -80,6 +80,7 @@ class Server {
   Partners partners_;   // that the body has met
   bool saved_ = false;  // there is a state to restore
   v1::Request request_;
+  Bytes bulk_;  // the Advance of the request, in the channel's memory
   v1::Reply reply_;
   Frame reply_frame_, progress_frame_;
   Advance advance_;

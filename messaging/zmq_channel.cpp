@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
@@ -56,6 +57,26 @@ bool send_part(zmq::socket_t& socket, const void* data, std::size_t size, int fl
   return zmq_send(socket.handle(), data, size, flags | ZMQ_DONTWAIT) >= 0;
 }
 
+/// Below this a copy costs less than the bookkeeping of two threads.
+constexpr std::size_t worth_sharing = 8192;
+
+void release(void*, void* hint) { delete static_cast<std::shared_ptr<const void>*>(hint); }
+
+/// The same without a copy: libzmq's thread sends from where the bytes are, and lets them go then.
+bool send_part(zmq::socket_t& socket, Bytes frame, std::shared_ptr<const void> owner) {
+  if (frame.size() < worth_sharing) return send_part(socket, frame.data(), frame.size(), 0);
+  auto held = std::make_unique<std::shared_ptr<const void>>(std::move(owner));
+  zmq_msg_t message;
+  void* data = const_cast<std::byte*>(frame.data());  // libzmq only reads what it sends
+  if (zmq_msg_init_data(&message, data, frame.size(), &release, held.get()) != 0) return false;
+  (void)held.release();
+  if (zmq_msg_send(&message, socket.handle(), ZMQ_DONTWAIT) >= 0) return true;
+  const int error = zmq_errno();
+  zmq_msg_close(&message);
+  errno = error;
+  return false;
+}
+
 /// libzmq removes whatever lies where its socket is to be: a file of somebody else.
 void refuse_existing_file(const std::string& endpoint) {
   constexpr std::string_view local = "ipc://";
@@ -82,9 +103,12 @@ struct ZmqHub::Peer : Channel {
   Peer(ZmqHub& owner, int number, std::string routing_id)
       : hub(owner), index(number), name(std::move(routing_id)) {}
 
-  bool send(Bytes frame) override {
-    // The ROUTER knows best who can be reached: this also sees a connection that has come back.
-    const bool sent = hub.send_to(name, frame);
+  bool send(Bytes frame) override { return note(hub.send_to(name, frame)); }
+  bool send(Bytes frame, std::shared_ptr<const void> owner) override {
+    return note(hub.send_to(name, frame, std::move(owner)));
+  }
+  /// The ROUTER knows best who can be reached: this also sees a connection that has come back.
+  bool note(bool sent) {
     if (sent) {
       gone.reset();
     } else if (zmq_errno() == EHOSTUNREACH && !gone) {
@@ -146,6 +170,12 @@ Channel& ZmqHub::channel(int peer) { return *peers_.at(index(peer)); }
 bool ZmqHub::send_to(const std::string& routing_id, Bytes frame) {
   return send_part(socket_, routing_id.data(), routing_id.size(), ZMQ_SNDMORE) &&
          send_part(socket_, frame.data(), frame.size(), 0);
+}
+
+bool ZmqHub::send_to(const std::string& routing_id, Bytes frame,
+                     std::shared_ptr<const void> owner) {
+  return send_part(socket_, routing_id.data(), routing_id.size(), ZMQ_SNDMORE) &&
+         send_part(socket_, frame, std::move(owner));
 }
 
 bool ZmqHub::receive_message(Milliseconds wait) {
@@ -259,6 +289,10 @@ ZmqDealer::ZmqDealer(const std::string& endpoint, const std::string& body, const
 ZmqDealer::~ZmqDealer() = default;
 
 bool ZmqDealer::send(Bytes frame) { return send_part(socket_, frame.data(), frame.size(), 0); }
+
+bool ZmqDealer::send(Bytes frame, std::shared_ptr<const void> owner) {
+  return send_part(socket_, frame, std::move(owner));
+}
 
 std::optional<Bytes> ZmqDealer::receive(Milliseconds wait) {
   set_receive_timeout(socket_, wait, receive_timeout_);

@@ -37,6 +37,7 @@ class ZmqHub {
   /// A frame from a routing id that is no peer's, or nothing.
   std::optional<std::pair<std::string, std::vector<std::byte>>> take_stranger();
   bool send_to(const std::string& routing_id, Bytes frame);
+  bool send_to(const std::string& routing_id, Bytes frame, std::shared_ptr<const void> owner);
 
   /// How often a peer's connection has ended since `since`.
   int disconnects(int peer, TimePoint since);
@@ -66,6 +67,7 @@ class ZmqDealer : public Channel {
   ZmqDealer(const std::string& endpoint, const std::string& body, const Limits& limits);
   ~ZmqDealer() override;
   bool send(Bytes frame) override;
+  bool send(Bytes frame, std::shared_ptr<const void> owner) override;
   std::optional<Bytes> receive(Milliseconds wait) override;
 
   bool connected();

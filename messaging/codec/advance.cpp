@@ -13,81 +13,150 @@ static_assert(sizeof(Want) == sizeof(double) + sizeof(std::vector<std::int32_t>)
 static_assert(sizeof(Advance) ==
               sizeof(TimeWindow) + sizeof(double) + 2 * sizeof(std::vector<double>));
 
-void encode(const TimeWindow& from, v1::TimeWindow& to) {
-  to.set_index(from.index);
-  to.set_begin(from.begin);
-  to.set_end(from.end);
+using Wire = v1::Advance;
+
+void encode(const TimeWindow& from, WireWriter& to) {
+  const std::size_t before = to.size();
+  to.number(v1::TimeWindow::kEndFieldNumber, from.end);
+  to.number(v1::TimeWindow::kBeginFieldNumber, from.begin);
+  to.integer(v1::TimeWindow::kIndexFieldNumber, from.index);
+  to.close(Wire::kWindowFieldNumber, before);
 }
 
-void decode(const v1::Advance& from, const FieldPath& parent, TimeWindow& to) {
-  const FieldPath path{&parent, "window"};
-  if (!from.has_window()) path.fail("is missing");
-  to.index = from.window().index();
-  to.begin = number(from.window().begin(), path);
-  to.end = number(from.window().end(), path);
+void decode_window(Bytes bytes, const FieldPath& path, TimeWindow& to) {
+  to = {};
+  for (WireReader from(bytes, path); from.next();) {
+    switch (from.field()) {
+      case v1::TimeWindow::kIndexFieldNumber:
+        to.index = from.integer();
+        break;
+      case v1::TimeWindow::kBeginFieldNumber:
+        to.begin = number(from.number(), path);
+        break;
+      case v1::TimeWindow::kEndFieldNumber:
+        to.end = number(from.number(), path);
+        break;
+      default:
+        from.skip();
+    }
+  }
   if (to.end < to.begin) path.fail("ends before its begin");
 }
 
-void encode(const Want& from, v1::Want& to) {
-  to.set_u(from.u);
-  to.set_v(from.v);
-  to.set_a(from.a);
-  to.set_f(from.f);
-  copy(from.points, *to.mutable_points());
+void encode(const Want& from, WireWriter& to) {
+  const std::size_t before = to.size();
+  to.integers(v1::Want::kPointsFieldNumber, from.points);
+  to.integer(v1::Want::kFFieldNumber, from.f);
+  to.integer(v1::Want::kAFieldNumber, from.a);
+  to.integer(v1::Want::kVFieldNumber, from.v);
+  to.integer(v1::Want::kUFieldNumber, from.u);
+  to.close(Wire::kWantFieldNumber, before);
 }
 
-void decode(const v1::Want& from, const SurfaceSize& port, const FieldPath& path, Want& to) {
-  to.u = from.u();
-  to.v = from.v();
-  to.a = from.a();
-  to.f = from.f();
-  take_points(from.points(), port.points, FieldPath{&path, "points"}, to.points);
+void decode_want(Bytes bytes, const SurfaceSize& port, const FieldPath& path, Want& to) {
+  to.u = to.v = to.a = to.f = false;
+  to.points.clear();
+  for (WireReader from(bytes, path); from.next();) {
+    switch (from.field()) {
+      case v1::Want::kUFieldNumber:
+        to.u = from.integer() != 0;
+        break;
+      case v1::Want::kVFieldNumber:
+        to.v = from.integer() != 0;
+        break;
+      case v1::Want::kAFieldNumber:
+        to.a = from.integer() != 0;
+        break;
+      case v1::Want::kFFieldNumber:
+        to.f = from.integer() != 0;
+        break;
+      case v1::Want::kPointsFieldNumber:
+        from.integers(to.points);
+        break;
+      default:
+        from.skip();
+    }
+  }
+  check_points(to.points, port.points, FieldPath{&path, "points"});
 }
 
-Sampling decode(v1::Sampling from, const FieldPath& path) {
+Sampling decode_sampling(std::int64_t from, const FieldPath& path) {
   if (from == v1::SAMPLING_SUBSTEPS) return Sampling::substeps;
   if (from == v1::SAMPLING_RECORDS) return Sampling::records;
   path.fail("has an unknown value");
 }
 
-}  // namespace
-
-void encode(const Advance& from, v1::Advance& to) {
-  encode(from.window, *to.mutable_window());
-  to.set_records(from.records);
-  to.set_sampling(from.sampling == Sampling::substeps ? v1::SAMPLING_SUBSTEPS
-                                                      : v1::SAMPLING_RECORDS);
-  resize(*to.mutable_boundary(), from.boundary.size());
-  for (int i = 0; i < to.boundary_size(); ++i) {
-    encode(from.boundary[index(i)], *to.mutable_boundary(i));
-  }
-  resize(*to.mutable_want(), from.want.size());
-  for (int i = 0; i < to.want_size(); ++i) encode(from.want[index(i)], *to.mutable_want(i));
+int decode_records(std::int64_t from, const FieldPath& path) {
+  if (from >= 1 && from <= most_records) return static_cast<int>(from);
+  path.fail(fmt::format("is {}, not 1 to {}", from, most_records));
 }
 
-void decode(const v1::Advance& from, const Description& body, const Partners& met, Advance& to) {
+/// The surface of the port that an entry of this place is for.
+SurfaceSize surface_at(const Description& body, std::size_t place, const FieldPath& path) {
+  if (place < body.ports.size()) return size_of(body.ports[place].geometry);
+  path.fail(fmt::format("has more entries than the body's {} ports", body.ports.size()));
+}
+
+}  // namespace
+
+void encode(const Advance& from, WireWriter& to) {
+  for (std::size_t i = from.want.size(); i-- > 0;) encode(from.want[i], to);
+  for (std::size_t i = from.boundary.size(); i-- > 0;) {
+    const std::size_t before = to.size();
+    encode(from.boundary[i], to);
+    to.close(Wire::kBoundaryFieldNumber, before);
+  }
+  to.integer(Wire::kSamplingFieldNumber,
+             from.sampling == Sampling::substeps ? v1::SAMPLING_SUBSTEPS : v1::SAMPLING_RECORDS);
+  to.integer(Wire::kRecordsFieldNumber, from.records);
+  encode(from.window, to);
+}
+
+void decode(Bytes bytes, const Description& body, const Partners& met, Advance& to) {
   const FieldPath path{nullptr, "advance"};
-  decode(from, path, to.window);
-  if (from.records() < 1 || from.records() > most_records) {
-    FieldPath{&path, "records"}.fail(
-        fmt::format("is {}, not 1 to {}", from.records(), most_records));
-  }
-  to.records = from.records();
-  to.sampling = decode(from.sampling(), FieldPath{&path, "sampling"});
+  const FieldPath boundary{&path, "boundary"}, want{&path, "want"};
   const std::size_t ports = body.ports.size();
-  require_count(from.boundary_size(), ports, "ports", FieldPath{&path, "boundary"});
   to.boundary.resize(ports);
-  for (int p = 0; p < from.boundary_size(); ++p) {
-    decode(from.boundary(p), size_of(body.ports[index(p)].geometry), met[index(p)],
-           FieldPath{&path, "boundary", p}, to.boundary[index(p)]);
+  if (to.want.size() < ports) to.want.resize(ports);  // whose memory is kept
+  std::size_t boundaries = 0, wants = 0;
+  std::int64_t records = 0, sampling = 0;
+  bool windowed = false;
+  for (WireReader from(bytes, path); from.next();) {
+    switch (from.field()) {
+      case Wire::kWindowFieldNumber:
+        decode_window(from.message(), FieldPath{&path, "window"}, to.window);
+        windowed = true;
+        break;
+      case Wire::kRecordsFieldNumber:
+        records = from.integer();
+        break;
+      case Wire::kSamplingFieldNumber:
+        sampling = from.integer();
+        break;
+      case Wire::kBoundaryFieldNumber: {
+        const SurfaceSize surface = surface_at(body, boundaries, boundary);
+        decode(from.message(), surface, met[boundaries],
+               FieldPath{&path, "boundary", static_cast<int>(boundaries)}, to.boundary[boundaries]);
+        ++boundaries;
+        break;
+      }
+      case Wire::kWantFieldNumber: {
+        const SurfaceSize surface = surface_at(body, wants, want);
+        decode_want(from.message(), surface, FieldPath{&path, "want", static_cast<int>(wants)},
+                    to.want[wants]);
+        ++wants;
+        break;
+      }
+      default:
+        from.skip();
+    }
   }
-  if (from.want_size() > 0)
-    require_count(from.want_size(), ports, "ports", FieldPath{&path, "want"});
-  to.want.resize(index(from.want_size()));
-  for (int p = 0; p < from.want_size(); ++p) {
-    decode(from.want(p), size_of(body.ports[index(p)].geometry), FieldPath{&path, "want", p},
-           to.want[index(p)]);
-  }
+  if (!windowed) FieldPath{&path, "window"}.fail("is missing");
+  to.records = decode_records(records, FieldPath{&path, "records"});
+  to.sampling = decode_sampling(sampling, FieldPath{&path, "sampling"});
+  require_count(boundaries, ports, "ports", boundary);
+  if (wants > 0) require_count(wants, ports, "ports", want);
+  to.want.resize(wants);
 }
 
 }  // namespace abut

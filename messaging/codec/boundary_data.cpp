@@ -15,6 +15,8 @@ static_assert(sizeof(Impedance) == 2 * sizeof(double));
 static_assert(sizeof(BoundaryData) ==
               sizeof(Waveform) + sizeof(Impedance) + 3 * sizeof(std::vector<double>));
 
+using Wire = v1::BoundaryData;
+
 /// Entries up to the last that is there; one between them that is absent has no times.
 template <class T>
 std::size_t filled(const std::vector<T>& entries) {
@@ -23,100 +25,121 @@ std::size_t filled(const std::vector<T>& entries) {
   return count;
 }
 
-/// Room for so many entries; never less than before, so that their memory is kept.
+/// The next entry, which keeps the memory of an earlier message.
 template <class T>
-void make_room(std::vector<T>& entries, int count) {
-  if (entries.size() < index(count)) entries.resize(index(count));
+T& entry(std::vector<T>& entries, std::size_t place) {
+  if (place == entries.size()) entries.emplace_back();
+  return entries[place];
 }
 
-void decode_motion(const v1::BoundaryData& from, const SurfaceSize& port, const FieldPath& path,
-                   Waveform& to) {
-  to.clear();
-  if (!from.has_motion()) return;
-  decode(from.motion(), port, path, to);
+/// The waveform inside an obstacle; empty: absent.
+Bytes motion_of(Bytes obstacle, const FieldPath& path) {
+  Bytes motion;
+  for (WireReader from(obstacle, path); from.next();) {
+    if (from.field() == v1::Obstacle::kMotionFieldNumber) {
+      motion = from.message();
+    } else {
+      from.skip();
+    }
+  }
+  return motion;
+}
+
+Impedance decode_impedance(Bytes bytes, const FieldPath& path) {
+  Impedance to{0.0, false};
+  for (WireReader from(bytes, path); from.next();) {
+    if (from.field() == v1::Impedance::kValueFieldNumber) {
+      to.value = abut::number(from.number(), path);
+    } else if (from.field() == v1::Impedance::kBilateralFieldNumber) {
+      to.bilateral = from.integer() != 0;
+    } else {
+      from.skip();
+    }
+  }
+  if (to.value <= 0.0) path.fail("is not positive");
+  return to;
+}
+
+void decode_force(Bytes from, const SurfaceSize& port, const FieldPath& path, Waveform& to) {
+  if (from.empty()) return;  // absent
+  decode(from, port, path, to);
+  require_field(to, to.f, "f", path);
+}
+
+void decode_motion(Bytes from, const SurfaceSize& surface, const FieldPath& path, Waveform& to) {
+  decode(from, surface, path, to);
   if (to.empty()) path.fail("is present but empty");
   require_field(to, to.u, "u", path);
 }
 
-void decode_forces(const v1::BoundaryData& from, const SurfaceSize& port, const FieldPath& parent,
-                   std::vector<Waveform>& to) {
-  if (from.forces_size() > most_partners) FieldPath{&parent, "forces"}.fail("has too many entries");
-  for (Waveform& force : to) force.clear();
-  make_room(to, from.forces_size());
-  for (int i = 0; i < from.forces_size(); ++i) {
-    if (from.forces(i).time().empty()) continue;
-    const FieldPath path{&parent, "forces", i};
-    decode(from.forces(i), port, path, to[index(i)]);
-    require_field(to[index(i)], to[index(i)].f, "f", path);
-  }
-}
-
-void decode_obstacles(const v1::BoundaryData& from, const std::vector<SurfaceSize>& partners,
-                      const FieldPath& parent, std::vector<Obstacle>& to) {
-  if (index(from.obstacles_size()) > partners.size()) {
-    FieldPath{&parent, "obstacles"}.fail(
-        fmt::format("has {} entries, but the port has met {} partners", from.obstacles_size(),
-                    partners.size()));
-  }
-  for (Obstacle& obstacle : to) obstacle.motion.clear();
-  make_room(to, from.obstacles_size());
-  for (int i = 0; i < from.obstacles_size(); ++i) {
-    if (from.obstacles(i).motion().time().empty()) continue;
-    const FieldPath obstacle{&parent, "obstacles", i};
-    const FieldPath path{&obstacle, "motion"};
-    Waveform& motion = to[index(i)].motion;
-    decode(from.obstacles(i).motion(), partners[index(i)], path, motion);
-    require_field(motion, motion.u, "u", path);
-  }
+void decode_obstacle(Bytes from, const std::vector<SurfaceSize>& partners, std::size_t place,
+                     const FieldPath& path, Waveform& to) {
+  const Bytes bytes = motion_of(from, path);
+  if (bytes.empty()) return;  // absent
+  decode_motion(bytes, partners[place], FieldPath{&path, "motion"}, to);
 }
 
 }  // namespace
 
-void encode(const BoundaryData& from, v1::BoundaryData& to) {
-  if (from.motion.empty()) {
-    to.clear_motion();
-  } else {
-    encode(from.motion, *to.mutable_motion());
+void encode(const BoundaryData& from, WireWriter& to) {
+  if (!from.impedance.empty()) {
+    const std::size_t before = to.size();
+    to.integer(v1::Impedance::kBilateralFieldNumber, from.impedance.bilateral);
+    to.number(v1::Impedance::kValueFieldNumber, from.impedance.value);
+    to.close(Wire::kImpedanceFieldNumber, before);
   }
-  resize(*to.mutable_forces(), filled(from.forces));
-  for (int i = 0; i < to.forces_size(); ++i) {
-    const Waveform& force = from.forces[index(i)];
-    if (force.empty()) {
-      to.mutable_forces(i)->Clear();
+  to.numbers(Wire::kImpulseFieldNumber, from.impulse);
+  for (std::size_t i = filled(from.obstacles); i-- > 0;) {
+    const std::size_t before = to.size();
+    const Waveform& motion = from.obstacles[i].motion;
+    if (!motion.empty()) encode(motion, Want{}, v1::Obstacle::kMotionFieldNumber, to);
+    to.close(Wire::kObstaclesFieldNumber, before);
+  }
+  for (std::size_t i = filled(from.forces); i-- > 0;) {
+    if (from.forces[i].empty()) {
+      to.close(Wire::kForcesFieldNumber, to.size());
     } else {
-      encode(force, *to.mutable_forces(i));
+      encode(from.forces[i], Want{}, Wire::kForcesFieldNumber, to);
     }
   }
-  resize(*to.mutable_obstacles(), filled(from.obstacles));
-  for (int i = 0; i < to.obstacles_size(); ++i) {
-    const Obstacle& obstacle = from.obstacles[index(i)];
-    if (obstacle.empty()) {
-      to.mutable_obstacles(i)->clear_motion();
-    } else {
-      encode(obstacle.motion, *to.mutable_obstacles(i)->mutable_motion());
-    }
-  }
-  if (from.impedance.empty()) {
-    to.clear_impedance();
-  } else {
-    to.mutable_impedance()->set_value(from.impedance.value);
-    to.mutable_impedance()->set_bilateral(from.impedance.bilateral);
-  }
-  copy(from.impulse, *to.mutable_impulse());
+  if (!from.motion.empty()) encode(from.motion, Want{}, Wire::kMotionFieldNumber, to);
 }
 
-void decode(const v1::BoundaryData& from, const SurfaceSize& port,
-            const std::vector<SurfaceSize>& partners, const FieldPath& path, BoundaryData& to) {
-  decode_motion(from, port, FieldPath{&path, "motion"}, to.motion);
-  decode_forces(from, port, path, to.forces);
-  decode_obstacles(from, partners, path, to.obstacles);
-  to.impedance = {};
-  if (from.has_impedance()) {
-    const FieldPath impedance{&path, "impedance"};
-    to.impedance = {number(from.impedance().value(), impedance), from.impedance().bilateral()};
-    if (to.impedance.value <= 0.0) impedance.fail("is not positive");
+void decode(Bytes bytes, const SurfaceSize& port, const std::vector<SurfaceSize>& partners,
+            const FieldPath& path, BoundaryData& to) {
+  to.clear();
+  std::size_t forces = 0, obstacles = 0;
+  for (WireReader from(bytes, path); from.next();) {
+    const FieldPath force{&path, "forces", static_cast<int>(forces)};
+    const FieldPath obstacle{&path, "obstacles", static_cast<int>(obstacles)};
+    switch (from.field()) {
+      case Wire::kMotionFieldNumber:
+        decode_motion(from.message(), port, FieldPath{&path, "motion"}, to.motion);
+        break;
+      case Wire::kForcesFieldNumber:
+        if (forces >= most_partners) FieldPath{&path, "forces"}.fail("has too many entries");
+        decode_force(from.message(), port, force, entry(to.forces, forces));
+        ++forces;
+        break;
+      case Wire::kObstaclesFieldNumber:
+        if (obstacles >= partners.size()) {
+          obstacle.fail(fmt::format("is of nobody: the port has met {} partners", partners.size()));
+        }
+        decode_obstacle(from.message(), partners, obstacles, obstacle,
+                        entry(to.obstacles, obstacles).motion);
+        ++obstacles;
+        break;
+      case Wire::kImpulseFieldNumber:
+        from.numbers(to.impulse);
+        break;
+      case Wire::kImpedanceFieldNumber:
+        to.impedance = decode_impedance(from.message(), FieldPath{&path, "impedance"});
+        break;
+      default:
+        from.skip();
+    }
   }
-  take(from.impulse(), index(port.width()), true, FieldPath{&path, "impulse"}, to.impulse);
+  check(to.impulse, index(port.width()), true, FieldPath{&path, "impulse"});
 }
 
 }  // namespace abut

@@ -34,38 +34,38 @@ std::string FieldPath::text() const {
 
 void FieldPath::fail(const std::string& why) const { throw CodecError(text() + ' ' + why); }
 
-void take(const google::protobuf::RepeatedField<double>& from, const FieldPath& path,
-          std::vector<double>& to) {
-  const std::size_t count = index(from.size());
-  if (!all_finite(from.data(), count)) {
-    int first = 0;
-    while (std::isfinite(from.Get(first))) ++first;
-    path.fail(fmt::format("is not finite: entry {} is {}", first, from.Get(first)));
+void check(const std::vector<double>& values, std::size_t expected, bool may_be_empty,
+           const FieldPath& path) {
+  const std::size_t count = values.size();
+  if (count != expected && !(may_be_empty && count == 0)) {
+    path.fail(fmt::format("has {} numbers where {} belong", count, expected));
   }
-  to.assign(from.data(), from.data() + count);
+  if (all_finite(values.data(), count)) return;
+  std::size_t first = 0;
+  while (std::isfinite(values[first])) ++first;
+  path.fail(fmt::format("is not finite: entry {} is {}", first, values[first]));
 }
 
 void take(const google::protobuf::RepeatedField<double>& from, std::size_t expected,
           bool may_be_empty, const FieldPath& path, std::vector<double>& to) {
-  const std::size_t count = index(from.size());
-  if (count != expected && !(may_be_empty && count == 0)) {
-    path.fail(fmt::format("has {} numbers where {} belong", count, expected));
-  }
-  take(from, path, to);
+  to.assign(from.begin(), from.end());
+  check(to, expected, may_be_empty, path);
 }
 
-void take_points(const google::protobuf::RepeatedField<std::int32_t>& from, int count,
-                 const FieldPath& path, std::vector<std::int32_t>& to) {
+void take(const google::protobuf::RepeatedField<double>& from, const FieldPath& path,
+          std::vector<double>& to) {
+  take(from, index(from.size()), true, path, to);
+}
+
+void check_points(const std::vector<std::int32_t>& points, int count, const FieldPath& path) {
   std::int32_t least = 0;
-  for (int i = 0; i < from.size(); ++i) {
-    const std::int32_t point = from.Get(i);
-    if (point < 0 || point >= count) {
-      path.fail(fmt::format("names point {}, but the surface has {}", point, count));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i] < 0 || points[i] >= count) {
+      path.fail(fmt::format("names point {}, but the surface has {}", points[i], count));
     }
-    if (point < least) path.fail(fmt::format("does not ascend at entry {}", i));
-    least = point + 1;
+    if (points[i] < least) path.fail(fmt::format("does not ascend at entry {}", i));
+    least = points[i] + 1;
   }
-  to.assign(from.begin(), from.end());
 }
 
 void take_names(const google::protobuf::RepeatedPtrField<std::string>& from, const FieldPath& path,
@@ -95,8 +95,8 @@ int dimension(int dim, const FieldPath& path) {
   return dim;
 }
 
-void require_count(int count, std::size_t expected, const char* of, const FieldPath& path) {
-  if (index(count) == expected) return;
+void require_count(std::size_t count, std::size_t expected, const char* of, const FieldPath& path) {
+  if (count == expected) return;
   path.fail(fmt::format("has {} entries for {} {}", count, expected, of));
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "messaging/codec.hpp"
+#include "messaging/codec/wire.hpp"
 
 namespace abut {
 
@@ -30,9 +31,9 @@ enum class Allow {
 };
 
 inline constexpr int most_ports = 4096;
-inline constexpr int most_partners = 65'536;  // of one port
-inline constexpr int most_names = 4096;       // members, measures, columns
-inline constexpr int most_width = 1 << 24;    // points x dimension of one surface
+inline constexpr std::size_t most_partners = 65'536;  // of one port
+inline constexpr int most_names = 4096;               // members, measures, columns
+inline constexpr int most_width = 1 << 24;            // points x dimension of one surface
 
 template <class T>
 void copy(const std::vector<T>& from, google::protobuf::RepeatedField<T>& to) {
@@ -53,24 +54,26 @@ void take(const google::protobuf::RepeatedField<double>& from, const FieldPath& 
 /// The same, and the count is `expected`, or 0 where `may_be_empty`.
 void take(const google::protobuf::RepeatedField<double>& from, std::size_t expected,
           bool may_be_empty, const FieldPath& path, std::vector<double>& to);
-/// Points of a surface, ascending; empty: all of them.
-void take_points(const google::protobuf::RepeatedField<std::int32_t>& from, int count,
-                 const FieldPath& path, std::vector<std::int32_t>& to);
+/// The same of values that are where they belong.
+void check(const std::vector<double>& values, std::size_t expected, bool may_be_empty,
+           const FieldPath& path);
+/// Points of a surface of so many ascend; empty: all of them.
+void check_points(const std::vector<std::int32_t>& points, int count, const FieldPath& path);
 void take_names(const google::protobuf::RepeatedPtrField<std::string>& from, const FieldPath& path,
                 std::vector<std::string>& to);
 double number(double value, const FieldPath& path, Allow allow = Allow::finite);
 /// A number from 0 that is less than `count`.
 int position(int value, std::size_t count, const FieldPath& path);
 int dimension(int dim, const FieldPath& path);
-void require_count(int count, std::size_t expected, const char* of, const FieldPath& path);
+void require_count(std::size_t count, std::size_t expected, const char* of, const FieldPath& path);
 
 v1::ForceSupport encode(ForceSupport support);
 ForceSupport decode(v1::ForceSupport support, const FieldPath& path);
 
-void encode(const Waveform& from, v1::Waveform& to);
+/// The fields that are wanted, as a field of the message that is being written.
+void encode(const Waveform& from, const Want& want, int field, WireWriter& to);
 /// Of the surface's points, or of those that it lists.
-void decode(const v1::Waveform& from, const SurfaceSize& surface, const FieldPath& path,
-            Waveform& to);
+void decode(Bytes from, const SurfaceSize& surface, const FieldPath& path, Waveform& to);
 /// A field of a waveform that this message is for is there.
 void require_field(const Waveform& of, const std::vector<double>& field, const char* name,
                    const FieldPath& path);
@@ -78,13 +81,12 @@ void require_field(const Waveform& of, const std::vector<double>& field, const c
 void encode(const PortGeometry& from, v1::Surface& to);
 void decode(const v1::Surface& from, const FieldPath& path, PortGeometry& to);
 
-void encode(const BoundaryData& from, v1::BoundaryData& to);
-void decode(const v1::BoundaryData& from, const SurfaceSize& port,
-            const std::vector<SurfaceSize>& partners, const FieldPath& path, BoundaryData& to);
+void encode(const BoundaryData& from, WireWriter& to);
+void decode(Bytes from, const SurfaceSize& port, const std::vector<SurfaceSize>& partners,
+            const FieldPath& path, BoundaryData& to);
 
-void encode(const BodyRecord& from, v1::BodyRecord& to);
-void decode(const v1::BodyRecord& from, const Description& body, const FieldPath& path,
-            BodyRecord& to);
+void encode(const BodyRecord& from, WireWriter& to);
+void decode(Bytes from, const Description& body, const FieldPath& path, BodyRecord& to);
 
 /// Description::fields alone.
 void encode(const std::vector<FieldInfo>& from, v1::Description& to);

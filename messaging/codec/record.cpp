@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "base/index.hpp"
 #include "messaging/codec/parts.hpp"
 
@@ -11,56 +13,114 @@ static_assert(sizeof(BodyRecord) ==
               sizeof(Energy) + sizeof(double) + 4 * sizeof(std::vector<double>));
 static_assert(sizeof(MemberRecord) == sizeof(Energy) + sizeof(std::vector<double>));
 
-/// Of a body's record or a member's: both have the same fields.
-template <class Wire>
-void encode_energy(const Energy& from, Wire& to) {
-  to.set_kinetic(from.kinetic);
-  to.set_stored(from.stored);
-  to.set_dissipated(from.dissipated);
-  to.set_external_work(from.external_work);
+using Wire = v1::BodyRecord;
+using MemberWire = v1::MemberRecord;
+
+// Both kinds of record have the same energies; their fields differ in number.
+struct EnergyFields {
+  int kinetic, stored, dissipated, external_work;
+};
+constexpr EnergyFields of_body{Wire::kKineticFieldNumber, Wire::kStoredFieldNumber,
+                               Wire::kDissipatedFieldNumber, Wire::kExternalWorkFieldNumber};
+constexpr EnergyFields of_member{MemberWire::kKineticFieldNumber, MemberWire::kStoredFieldNumber,
+                                 MemberWire::kDissipatedFieldNumber,
+                                 MemberWire::kExternalWorkFieldNumber};
+
+void encode(const Energy& from, const EnergyFields& fields, WireWriter& to) {
+  to.number(fields.external_work, from.external_work);
+  to.number(fields.dissipated, from.dissipated);
+  to.number(fields.stored, from.stored);
+  to.number(fields.kinetic, from.kinetic);
 }
 
-template <class Wire>
-Energy decode_energy(const Wire& from, const FieldPath& path) {
-  return Energy{.kinetic = number(from.kinetic(), FieldPath{&path, "kinetic"}),
-                .stored = number(from.stored(), FieldPath{&path, "stored"}),
-                .dissipated = number(from.dissipated(), FieldPath{&path, "dissipated"}),
-                .external_work = number(from.external_work(), FieldPath{&path, "external_work"})};
+/// False where the present field is none of them.
+bool read(WireReader& from, const EnergyFields& fields, const FieldPath& path, Energy& to) {
+  const int field = from.field();
+  if (field == fields.kinetic) {
+    to.kinetic = number(from.number(), FieldPath{&path, "kinetic"});
+  } else if (field == fields.stored) {
+    to.stored = number(from.number(), FieldPath{&path, "stored"});
+  } else if (field == fields.dissipated) {
+    to.dissipated = number(from.number(), FieldPath{&path, "dissipated"});
+  } else if (field == fields.external_work) {
+    to.external_work = number(from.number(), FieldPath{&path, "external_work"});
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void decode_member(Bytes bytes, std::size_t dim, const FieldPath& path, MemberRecord& to) {
+  to.energy = {};
+  to.momentum.clear();
+  for (WireReader from(bytes, path); from.next();) {
+    if (read(from, of_member, path, to.energy)) continue;
+    if (from.field() == MemberWire::kMomentumFieldNumber) {
+      from.numbers(to.momentum);
+    } else {
+      from.skip();
+    }
+  }
+  check(to.momentum, dim, true, FieldPath{&path, "momentum"});
 }
 
 }  // namespace
 
-void encode(const BodyRecord& from, v1::BodyRecord& to) {
-  to.set_time(from.time);
-  encode_energy(from.energy, to);
-  copy(from.momentum, *to.mutable_momentum());
-  copy(from.angular_momentum, *to.mutable_angular_momentum());
-  copy(from.columns, *to.mutable_columns());
-  resize(*to.mutable_members(), from.members.size());
-  for (std::size_t m = 0; m < from.members.size(); ++m) {
-    v1::MemberRecord& member = *to.mutable_members(static_cast<int>(m));
-    encode_energy(from.members[m].energy, member);
-    copy(from.members[m].momentum, *member.mutable_momentum());
+void encode(const BodyRecord& from, WireWriter& to) {
+  to.numbers(Wire::kColumnsFieldNumber, from.columns);
+  to.numbers(Wire::kAngularMomentumFieldNumber, from.angular_momentum);
+  for (std::size_t m = from.members.size(); m-- > 0;) {
+    const std::size_t before = to.size();
+    to.numbers(MemberWire::kMomentumFieldNumber, from.members[m].momentum);
+    encode(from.members[m].energy, of_member, to);
+    to.close(Wire::kMembersFieldNumber, before);
   }
+  to.numbers(Wire::kMomentumFieldNumber, from.momentum);
+  encode(from.energy, of_body, to);
+  to.number(Wire::kTimeFieldNumber, from.time);
 }
 
-void decode(const v1::BodyRecord& from, const Description& body, const FieldPath& path,
-            BodyRecord& to) {
+void decode(Bytes bytes, const Description& body, const FieldPath& path, BodyRecord& to) {
   const std::size_t dim = index(body.dim);
-  to.time = number(from.time(), FieldPath{&path, "time"});
-  to.energy = decode_energy(from, path);
-  take(from.momentum(), dim, true, FieldPath{&path, "momentum"}, to.momentum);
-  take(from.angular_momentum(), dim < 3 ? dim - 1 : dim, true, FieldPath{&path, "angular_momentum"},
-       to.angular_momentum);
-  take(from.columns(), body.columns.size(), false, FieldPath{&path, "columns"}, to.columns);
-  require_count(from.members_size(), body.members.size(), "members", FieldPath{&path, "members"});
+  const FieldPath all_members{&path, "members"};
+  to.time = 0.0;
+  to.energy = {};
+  to.momentum.clear();
+  to.angular_momentum.clear();
+  to.columns.clear();
   to.members.resize(body.members.size());
-  for (std::size_t i = 0; i < to.members.size(); ++i) {
-    const v1::MemberRecord& wire = from.members(static_cast<int>(i));
-    const FieldPath member{&path, "members", static_cast<int>(i)};
-    to.members[i].energy = decode_energy(wire, member);
-    take(wire.momentum(), dim, true, FieldPath{&member, "momentum"}, to.members[i].momentum);
+  std::size_t members = 0;
+  for (WireReader from(bytes, path); from.next();) {
+    if (read(from, of_body, path, to.energy)) continue;
+    switch (from.field()) {
+      case Wire::kTimeFieldNumber:
+        to.time = number(from.number(), FieldPath{&path, "time"});
+        break;
+      case Wire::kMomentumFieldNumber:
+        from.numbers(to.momentum);
+        break;
+      case Wire::kAngularMomentumFieldNumber:
+        from.numbers(to.angular_momentum);
+        break;
+      case Wire::kColumnsFieldNumber:
+        from.numbers(to.columns);
+        break;
+      case Wire::kMembersFieldNumber:
+        if (members >= to.members.size()) {
+          all_members.fail(fmt::format("has more entries than the body's {} members", members));
+        }
+        decode_member(from.message(), dim, FieldPath{&path, "members", static_cast<int>(members)},
+                      to.members[members]);
+        ++members;
+        break;
+      default:
+        from.skip();
+    }
   }
+  require_count(members, body.members.size(), "members", all_members);
+  check(to.momentum, dim, true, FieldPath{&path, "momentum"});
+  check(to.angular_momentum, dim < 3 ? dim - 1 : dim, true, FieldPath{&path, "angular_momentum"});
+  check(to.columns, body.columns.size(), false, FieldPath{&path, "columns"});
 }
 
 }  // namespace abut

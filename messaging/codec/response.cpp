@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "base/index.hpp"
 #include "messaging/codec/parts.hpp"
 
@@ -13,6 +15,8 @@ static_assert(sizeof(Reaction) == sizeof(Waveform));
 static_assert(sizeof(PortResponse) == sizeof(Waveform) + 3 * sizeof(std::vector<double>) +
                                           3 * sizeof(double) + sizeof(std::optional<Recoil>));
 
+using Wire = v1::PortResponse;
+
 const Want everything;
 
 /// What is wanted of a port's trace.
@@ -20,50 +24,27 @@ const Want& wanted(const Advance& asked, std::size_t port) {
   return asked.want.empty() ? everything : asked.want[port];
 }
 
-/// A trace without the fields that nobody wants.
-void encode_trace(const Waveform& from, const Want& want, v1::Waveform& to) {
-  to.set_width(from.width);
-  to.set_support(encode(from.support));
-  copy(from.points, *to.mutable_points());
-  copy(from.time, *to.mutable_time());
-  const auto choose = [](bool chosen, const std::vector<double>& values,
-                         google::protobuf::RepeatedField<double>& wire) {
-    if (chosen) {
-      copy(values, wire);
-    } else {
-      wire.Clear();
-    }
-  };
-  choose(want.u, from.u, *to.mutable_u());
-  choose(want.v, from.v, *to.mutable_v());
-  choose(want.a, from.a, *to.mutable_a());
-  choose(want.f, from.f, *to.mutable_f());
-}
-
-void encode(const PortResponse& from, const Want& want, v1::PortResponse& to) {
-  if (from.trace.empty()) {
-    to.clear_trace();
-  } else {
-    encode_trace(from.trace, want, *to.mutable_trace());
+void encode(const PortResponse& from, const Want& want, WireWriter& to) {
+  std::size_t reactions = from.reactions.size();
+  while (reactions > 0 && from.reactions[reactions - 1].force.empty()) --reactions;
+  while (reactions-- > 0) {
+    const std::size_t before = to.size();
+    const Waveform& force = from.reactions[reactions].force;
+    if (!force.empty()) encode(force, Want{}, v1::Reaction::kForceFieldNumber, to);
+    to.close(Wire::kReactionsFieldNumber, before);
   }
-  resize(*to.mutable_reactions(), from.reactions.size());
-  for (int i = 0; i < to.reactions_size(); ++i) {
-    const Waveform& force = from.reactions[index(i)].force;
-    if (force.empty()) {
-      to.mutable_reactions(i)->clear_force();
-    } else {
-      encode(force, *to.mutable_reactions(i)->mutable_force());
-    }
+  to.number(Wire::kWorkFieldNumber, from.work);
+  if (from.recoil) {
+    const std::size_t before = to.size();
+    to.number(v1::Recoil::kMobilityFieldNumber, from.recoil->mobility);
+    to.number(v1::Recoil::kVelocityFieldNumber, from.recoil->velocity);
+    to.close(Wire::kRecoilFieldNumber, before);
   }
-  copy(from.lower, *to.mutable_lower());
-  copy(from.upper, *to.mutable_upper());
-  to.set_speed_bound(from.speed_bound);
-  to.set_acceleration_bound(from.acceleration_bound);
-  to.set_work(from.work);
-  to.clear_recoil();
-  if (!from.recoil) return;
-  to.mutable_recoil()->set_velocity(from.recoil->velocity);
-  to.mutable_recoil()->set_mobility(from.recoil->mobility);
+  to.number(Wire::kAccelerationBoundFieldNumber, from.acceleration_bound);
+  to.number(Wire::kSpeedBoundFieldNumber, from.speed_bound);
+  to.numbers(Wire::kUpperFieldNumber, from.upper);
+  to.numbers(Wire::kLowerFieldNumber, from.lower);
+  if (!from.trace.empty()) encode(from.trace, want, Wire::kTraceFieldNumber, to);
 }
 
 /// A body tells of the whole window and of nothing else.
@@ -74,11 +55,9 @@ void check_span(const Waveform& wave, const TimeWindow& window, const FieldPath&
                                             window.end));
 }
 
-void decode_trace(const v1::PortResponse& from, const Port& port, const Advance& asked,
-                  const Want& want, const FieldPath& path, Waveform& to) {
-  to.clear();
-  if (!from.has_trace()) return;
-  decode(from.trace(), size_of(port.geometry), path, to);
+void decode_trace(Bytes from, const Port& port, const Advance& asked, const Want& want,
+                  const FieldPath& path, Waveform& to) {
+  decode(from, size_of(port.geometry), path, to);
   if (to.empty()) path.fail("is present but empty");
   if (to.points != want.points) FieldPath{&path, "points"}.fail("is not the list that was wanted");
   check_span(to, asked.window, path);
@@ -88,92 +67,179 @@ void decode_trace(const v1::PortResponse& from, const Port& port, const Advance&
   if (want.f) require_field(to, to.f, "f", path);
 }
 
-/// Each obstacle has its reaction, on the points that it listed.
-void decode_reactions(const v1::PortResponse& from, const BoundaryData& asked, int dim,
-                      const TimeWindow& window, const FieldPath& parent,
-                      std::vector<Reaction>& to) {
-  if (index(from.reactions_size()) > asked.obstacles.size()) {
-    FieldPath{&parent, "reactions"}.fail(fmt::format(
-        "has {} entries for {} obstacles", from.reactions_size(), asked.obstacles.size()));
+/// The force inside a reaction; empty: absent.
+Bytes force_of(Bytes reaction, const FieldPath& path) {
+  Bytes force;
+  for (WireReader from(reaction, path); from.next();) {
+    if (from.field() == v1::Reaction::kForceFieldNumber) {
+      force = from.message();
+    } else {
+      from.skip();
+    }
   }
-  for (Reaction& reaction : to) reaction.force.clear();
-  if (to.size() < asked.obstacles.size()) to.resize(asked.obstacles.size());
+  return force;
+}
+
+/// The reaction to one obstacle of the request, on the points that it listed.
+void decode_reaction(Bytes bytes, const Waveform& motion, int dim, const TimeWindow& window,
+                     const FieldPath& parent, Waveform& to) {
+  const Bytes from = force_of(bytes, parent);
+  if (from.empty()) return;  // absent
+  const FieldPath path{&parent, "force"};
+  if (motion.empty()) path.fail("answers an obstacle that is absent");
+  // Its points are those of the obstacle, which the list below holds it against.
+  const int most = motion.points.empty() ? motion.width / dim : motion.points.back() + 1;
+  decode(from, SurfaceSize{most, dim}, path, to);
+  if (to.empty()) path.fail("is present but empty");
+  if (to.points != motion.points) FieldPath{&path, "points"}.fail("is not that of the obstacle");
+  require_field(to, to.f, "f", path);
+  check_span(to, window, path);
+}
+
+/// Each obstacle of the request has its reaction.
+void require_reactions(const BoundaryData& asked, const FieldPath& path,
+                       const std::vector<Reaction>& reactions) {
   for (std::size_t i = 0; i < asked.obstacles.size(); ++i) {
-    const int k = static_cast<int>(i);
-    const FieldPath reaction{&parent, "reactions", k};
-    const FieldPath path{&reaction, "force"};
-    const bool there = k < from.reactions_size() && from.reactions(k).has_force();
-    const Waveform& motion = asked.obstacles[i].motion;
-    if (motion.empty()) {
-      if (there) path.fail("answers an obstacle that is absent");
-      continue;
-    }
-    if (!there) path.fail("is missing");
-    // Its points are those of the obstacle, which the list below holds it against.
-    const int most = motion.points.empty() ? motion.width / dim : motion.points.back() + 1;
-    decode(from.reactions(k).force(), SurfaceSize{most, dim}, path, to[i].force);
-    if (to[i].force.empty()) path.fail("is present but empty");
-    if (to[i].force.points != motion.points) {
-      FieldPath{&path, "points"}.fail("is not that of the obstacle");
-    }
-    require_field(to[i].force, to[i].force.f, "f", path);
-    check_span(to[i].force, window, path);
+    if (asked.obstacles[i].empty() || !reactions[i].force.empty()) continue;
+    const FieldPath reaction{&path, "reactions", static_cast<int>(i)};
+    FieldPath{&reaction, "force"}.fail("is missing");
   }
 }
 
-void decode(const v1::PortResponse& from, const Port& port, std::size_t place, const Advance& asked,
-            const FieldPath& path, PortResponse& to) {
-  decode_trace(from, port, asked, wanted(asked, place), FieldPath{&path, "trace"}, to.trace);
-  const std::size_t dim = index(port.geometry.dim);
-  decode_reactions(from, asked.boundary[place], port.geometry.dim, asked.window, path,
-                   to.reactions);
-  const std::size_t boxes = index(asked.records) * dim;
-  take(from.lower(), boxes, true, FieldPath{&path, "lower"}, to.lower);
-  take(from.upper(), to.lower.size(), false, FieldPath{&path, "upper"}, to.upper);
-  to.speed_bound = number(from.speed_bound(), FieldPath{&path, "speed_bound"}, Allow::infinite);
-  to.acceleration_bound =
-      number(from.acceleration_bound(), FieldPath{&path, "acceleration_bound"}, Allow::infinite);
-  to.work = number(from.work(), FieldPath{&path, "work"});
-  to.recoil.reset();
-  if (!from.has_recoil()) return;
-  const FieldPath at{&path, "recoil"};
-  to.recoil = Recoil{.velocity = number(from.recoil().velocity(), at),
-                     .mobility = number(from.recoil().mobility(), at, Allow::not_negative)};
+Recoil decode_recoil(Bytes bytes, const FieldPath& path) {
+  Recoil to;
+  for (WireReader from(bytes, path); from.next();) {
+    if (from.field() == v1::Recoil::kVelocityFieldNumber) {
+      to.velocity = number(from.number(), path);
+    } else if (from.field() == v1::Recoil::kMobilityFieldNumber) {
+      to.mobility = number(from.number(), path, Allow::not_negative);
+    } else {
+      from.skip();
+    }
+  }
+  return to;
+}
+
+/// Forgets the values and keeps the memory.
+void clear(PortResponse& port, std::size_t obstacles) {
+  port.trace.clear();
+  for (Reaction& reaction : port.reactions) reaction.force.clear();
+  if (port.reactions.size() < obstacles) port.reactions.resize(obstacles);
+  port.lower.clear();
+  port.upper.clear();
+  port.speed_bound = port.acceleration_bound = port.work = 0.0;
+  port.recoil.reset();
+}
+
+void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance& asked,
+                 const FieldPath& path, PortResponse& to) {
+  const std::vector<Obstacle>& obstacles = asked.boundary[place].obstacles;
+  clear(to, obstacles.size());
+  std::size_t reactions = 0;
+  for (WireReader from(bytes, path); from.next();) {
+    switch (from.field()) {
+      case Wire::kTraceFieldNumber:
+        decode_trace(from.message(), port, asked, wanted(asked, place), FieldPath{&path, "trace"},
+                     to.trace);
+        break;
+      case Wire::kReactionsFieldNumber:
+        if (reactions >= obstacles.size()) {
+          FieldPath{&path, "reactions"}.fail(
+              fmt::format("has more entries than the {} obstacles", obstacles.size()));
+        }
+        decode_reaction(from.message(), obstacles[reactions].motion, port.geometry.dim,
+                        asked.window, FieldPath{&path, "reactions", static_cast<int>(reactions)},
+                        to.reactions[reactions].force);
+        ++reactions;
+        break;
+      case Wire::kLowerFieldNumber:
+        from.numbers(to.lower);
+        break;
+      case Wire::kUpperFieldNumber:
+        from.numbers(to.upper);
+        break;
+      case Wire::kSpeedBoundFieldNumber:
+        to.speed_bound = number(from.number(), FieldPath{&path, "speed_bound"}, Allow::infinite);
+        break;
+      case Wire::kAccelerationBoundFieldNumber:
+        to.acceleration_bound =
+            number(from.number(), FieldPath{&path, "acceleration_bound"}, Allow::infinite);
+        break;
+      case Wire::kRecoilFieldNumber:
+        to.recoil = decode_recoil(from.message(), FieldPath{&path, "recoil"});
+        break;
+      case Wire::kWorkFieldNumber:
+        to.work = number(from.number(), FieldPath{&path, "work"});
+        break;
+      default:
+        from.skip();
+    }
+  }
+  require_reactions(asked.boundary[place], path, to.reactions);
+  check(to.lower, index(asked.records * port.geometry.dim), true, FieldPath{&path, "lower"});
+  check(to.upper, to.lower.size(), false, FieldPath{&path, "upper"});
 }
 
 }  // namespace
 
-void encode(const Response& from, const Advance& asked, v1::Advanced& to) {
-  resize(*to.mutable_ports(), from.ports.size());
-  for (std::size_t i = 0; i < from.ports.size(); ++i) {
-    encode(from.ports[i], wanted(asked, i), *to.mutable_ports(static_cast<int>(i)));
+void encode(const Response& from, const Advance& asked, WireWriter& to) {
+  to.number(v1::Advanced::kComputeSecondsFieldNumber, from.compute_seconds);
+  to.integer(v1::Advanced::kStepsFieldNumber, from.steps, Zero::told);
+  for (std::size_t i = from.records.size(); i-- > 0;) {
+    const std::size_t before = to.size();
+    encode(from.records[i], to);
+    to.close(v1::Advanced::kRecordsFieldNumber, before);
   }
-  resize(*to.mutable_records(), from.records.size());
-  for (std::size_t i = 0; i < from.records.size(); ++i) {
-    encode(from.records[i], *to.mutable_records(static_cast<int>(i)));
+  for (std::size_t i = from.ports.size(); i-- > 0;) {
+    const std::size_t before = to.size();
+    encode(from.ports[i], wanted(asked, i), to);
+    to.close(v1::Advanced::kPortsFieldNumber, before);
   }
-  to.set_steps(from.steps);
-  to.set_compute_seconds(from.compute_seconds);
 }
 
-void decode(const v1::Advanced& from, const Description& body, const Advance& asked, Response& to) {
+void decode(Bytes bytes, const Description& body, const Advance& asked, Response& to) {
   const FieldPath path{nullptr, "advanced"};
-  if (!from.has_steps()) FieldPath{&path, "steps"}.fail("is missing");
-  if (from.steps() < 0) FieldPath{&path, "steps"}.fail("is negative");
-  require_count(from.ports_size(), body.ports.size(), "ports", FieldPath{&path, "ports"});
+  const FieldPath all_ports{&path, "ports"}, all_records{&path, "records"};
   to.ports.resize(body.ports.size());
-  for (int p = 0; p < from.ports_size(); ++p) {
-    decode(from.ports(p), body.ports[index(p)], index(p), asked, FieldPath{&path, "ports", p},
-           to.ports[index(p)]);
+  to.records.resize(index(asked.records));
+  to.compute_seconds = 0.0;
+  std::size_t ports = 0, records = 0;
+  std::int64_t steps = -1;
+  for (WireReader from(bytes, path); from.next();) {
+    switch (from.field()) {
+      case v1::Advanced::kPortsFieldNumber:
+        if (ports >= to.ports.size()) {
+          all_ports.fail(fmt::format("has more entries than the body's {} ports", ports));
+        }
+        decode_port(from.message(), body.ports[ports], ports, asked,
+                    FieldPath{&path, "ports", static_cast<int>(ports)}, to.ports[ports]);
+        ++ports;
+        break;
+      case v1::Advanced::kRecordsFieldNumber:
+        if (records >= to.records.size()) {
+          all_records.fail(fmt::format("has more entries than the {} asked for", records));
+        }
+        decode(from.message(), body, FieldPath{&path, "records", static_cast<int>(records)},
+               to.records[records]);
+        ++records;
+        break;
+      case v1::Advanced::kStepsFieldNumber:
+        steps = from.integer();
+        if (steps < 0 || steps > std::numeric_limits<int>::max()) {
+          FieldPath{&path, "steps"}.fail(fmt::format("is {}", steps));
+        }
+        break;
+      case v1::Advanced::kComputeSecondsFieldNumber:
+        to.compute_seconds = number(from.number(), FieldPath{&path, "compute_seconds"});
+        break;
+      default:
+        from.skip();
+    }
   }
-  require_count(from.records_size(), index(asked.records), "records that were asked for",
-                FieldPath{&path, "records"});
-  to.records.resize(index(from.records_size()));
-  for (int i = 0; i < from.records_size(); ++i) {
-    decode(from.records(i), body, FieldPath{&path, "records", i}, to.records[index(i)]);
-  }
-  to.steps = from.steps();
-  to.compute_seconds = number(from.compute_seconds(), FieldPath{&path, "compute_seconds"});
+  if (steps < 0) FieldPath{&path, "steps"}.fail("is missing");
+  require_count(ports, body.ports.size(), "ports", all_ports);
+  require_count(records, to.records.size(), "records that were asked for", all_records);
+  to.steps = static_cast<int>(steps);
 }
 
 }  // namespace abut

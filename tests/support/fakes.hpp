@@ -29,8 +29,8 @@ class FakeSubdomain : public Subdomain {
     int substeps = 10;        // per window
   };
   struct Counts {
-    int advances = 0, saves = 0, restores = 0, kernels = 0, grids = 0, fields = 0;
-    int meetings = 0, yieldings = 0;
+    int advances = 0, saves = 0, restores = 0, kernels = 0, grids = 0, fields = 0, meetings = 0,
+        yieldings = 0;
   };
 
   FakeSubdomain() : FakeSubdomain(Options{}) {}
@@ -54,8 +54,7 @@ class FakeSubdomain : public Subdomain {
 
   /// Called once per substep: a test may sleep, fail or report progress here.
   std::function<void()> during_substep;
-  /// A test may make the grid or the fields unsound here.
-  std::function<void(Grid&)> spoil_grid;
+  std::function<void(Grid&)> spoil_grid;  // a test may make the grid or the fields unsound here
   std::function<void(std::vector<FieldValues>&)> spoil_fields;
   Counts counts;
 
@@ -93,11 +92,10 @@ class FakeSubdomain : public Subdomain {
     for (int i = 1; i <= options_.substeps; ++i) {
       if (during_substep) during_substep();
       const double time = i == options_.substeps ? window.end : window.begin + i * step;
-      double force = 0.0;
+      double force = 0.0, part = 0.0;
       for (const Waveform& given : boundary.forces) {
-        double part = 0.0;
         if (!given.empty()) given.force_at(time, std::span<double>(&part, 1));
-        force += part;
+        force += given.empty() ? 0.0 : part;
       }
       v_ += step * (force - options_.stiffness * u_) / options_.mass;
       u_ += step * v_;
@@ -123,11 +121,9 @@ class FakeSubdomain : public Subdomain {
     kernel.step = step;
     kernel.support = ForceSupport::step;
     kernel.patterns = static_cast<int>(patterns.size());
-    for (int i = 1; i <= count; ++i) {
-      for (const double force : patterns) {
+    for (int i = 1; i <= count; ++i)
+      for (const double force : patterns)
         kernel.displacement.push_back(force * step * step * i / options_.mass);
-      }
-    }
     return kernel;
   }
 
@@ -175,10 +171,8 @@ class FakeSubdomain : public Subdomain {
     port.reactions.resize(boundary.obstacles.size());
     for (std::size_t i = 0; i < port.reactions.size(); ++i) {
       const Waveform& motion = boundary.obstacles[i].motion;
-      Waveform& force = port.reactions[i].force;
-      force.clear();
+      Waveform& force = port.reactions[i].force = Waveform(motion.width);
       if (motion.empty()) continue;
-      force.width = motion.width;
       force.points = motion.points;
       force.time = {window.begin, window.end};
       force.f.assign(2 * index(motion.width), 0.0);

@@ -29,7 +29,9 @@ def imported(text: str) -> list[tuple[int, str]]:
 
 def check(root: Path) -> list[Finding]:
     sources = [name for name in project_files(root) if name.endswith(".py")]
-    ours = {part for name in sources for part in Path(name).with_suffix("").parts}
+    schemas = [name for name in project_files(root) if name.endswith(".proto")]  # protoc's modules
+    schemas = [name.removeprefix("proto/") for name in schemas]
+    ours = {part for name in sources + schemas for part in Path(name).with_suffix("").parts}
     packages = listed(root)
     found = []
     for name in sources:

@@ -11,6 +11,7 @@
 #include "messaging/codec.hpp"
 #include "messaging/frame.hpp"
 #include "tests/support/fakes.hpp"
+#include "tests/transport/wire_bytes.hpp"
 
 namespace abut {
 namespace {

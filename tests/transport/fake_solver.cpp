@@ -24,6 +24,7 @@ using namespace abut;
 class Spoiler : public Channel {
  public:
   Spoiler(Channel& inner, std::string manners) : inner_(inner), manners_(std::move(manners)) {}
+  using Channel::send;
   bool send(Bytes frame) override {
     if (!spoiling) return inner_.send(frame);
     std::vector<std::byte> bytes(frame.begin(), frame.end());

@@ -9,6 +9,7 @@
 #include "messaging/remote_subdomain.hpp"
 #include "messaging/serve.hpp"
 #include "tests/support/fakes.hpp"
+#include "tests/transport/wire_bytes.hpp"
 
 namespace abut {
 

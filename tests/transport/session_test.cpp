@@ -183,7 +183,7 @@ TEST(Remote, AnObstacleThatWasNeverMetIsAFaultThatNamesTheField) {
   } catch (const RunError& error) {
     EXPECT_EQ(error.what_is_wrong,
               "body 'fake' failed at advance (request 2): unsound request: "
-              "advance.boundary[0].obstacles has 1 entries, but the port has met 0 partners");
+              "advance.boundary[0].obstacles[0] is of nobody: the port has met 0 partners");
   }
 }
 

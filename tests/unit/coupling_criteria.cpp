@@ -1,9 +1,7 @@
-// Goal: contact closes, opens, and is ruled out where geometry and forces say so; roles and islands
-// follow from what the bodies are. Oracles: hand-made traces and bodies.
+// Goal: contact closes, opens, and is ruled out where geometry and forces say so. Oracles:
+// hand-made traces.
 
-#include <array>
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,75 +11,11 @@
 #include "base/index.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/horizon.hpp"
-#include "coordinator/coupling/roles.hpp"
-#include "coordinator/coupling/islands.hpp"
-#include "coordinator/coupling/transmission.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/scripted.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
-
-/// A body whose reply is written down beforehand.
-class Scripted : public Subdomain {
- public:
-  Scripted(double place, double normal, double step, int ports = 1) {
-    description_.step = step;
-    description_.mass = 1.0;
-    for (int p = 0; p < ports; ++p) {
-      Port port;
-      port.geometry.points = {place + p};
-      port.geometry.normals = {p == 0 ? normal : -normal};
-      description_.ports.push_back(port);
-    }
-    reply.ports.resize(index(ports));
-  }
-  /// u at the times of a window and, if any, forces.
-  void trace(std::vector<double> time, std::vector<double> u, std::vector<double> f = {}) {
-    Waveform& w = reply.ports[0].trace;
-    w.time = std::move(time);
-    w.u = std::move(u);
-    w.f = std::move(f);
-  }
-  const Description& describe() const override { return description_; }
-  void save() override {}
-  void restore() override {}
-  void start(const Advance&) override {}
-  [[nodiscard]] Outcome finish(Response& response) override {
-    response = reply;
-    return Advanced{};
-  }
-  void meet(int, const PortGeometry&, const ContactLaw&) override {}
-  void yields(int, int, const PortKernel&) override {}
-  PortKernel probe(int, std::span<const double> patterns, double step, int count) override {
-    PortKernel kernel;
-    kernel.width = static_cast<int>(patterns.size());
-    kernel.step = step;
-    kernel.displacement.assign(index(count), patterns[0] * compliance);
-    return kernel;
-  }
-  std::vector<std::byte> checkpoint() override { return {}; }
-  void resume(std::span<const std::byte>) override {}
-  std::uint64_t state_hash() override { return 0; }
-
-  Response reply;
-  double compliance = 0.0;  // [m/N]
-
-  Description description_;
-};
-
-/// Two scripted bodies, the left one looking right, 1 m apart.
-struct Meeting {
-  Scripted left, right;
-  Bodies bodies;
-  Joint joint;
-
-  explicit Meeting(double left_step = 1.0, double right_step = 1.0)
-      : left(-1.0, 1.0, left_step), right(0.0, -1.0, right_step), bodies({&left, &right}) {
-    joint = make_joint("meeting", {Side{0, 0}, Side{1, 0}}, bodies);
-  }
-  void reply() { EXPECT_FALSE(bodies.advance_all()); }
-};
 
 TEST(Joints, KnowsItsGapAndOffsets) {
   const Meeting m;
@@ -290,8 +224,7 @@ TEST(Horizon, CountsTheAccelerationOfBodyForces) {
   const double horizon = free_flight_horizon({&m.joint, 1}, m.bodies);
   EXPECT_LE(horizon, 1.0);  // 1 m at 2 m/s^2 from rest
   EXPECT_GE(horizon, 0.9);
-  m.left.reply.ports[0].speed_bound =
-      -1.0;  // moving apart first: back after 1 s, there at 1.618
+  m.left.reply.ports[0].speed_bound = -1.0;  // moving apart first: back after 1 s, there at 1.618
   m.reply();
   const double later = free_flight_horizon({&m.joint, 1}, m.bodies);
   EXPECT_GT(later, 1.0);
@@ -324,183 +257,6 @@ TEST(Horizon, SweptBoxesThatMeetInAnyPartAreSeen) {
   m.left.reply.ports[0].upper = {-0.5, -0.1};  // in the first part
   m.reply();
   EXPECT_FALSE(stayed_apart({&m.joint, 1}, m.bodies));
-}
-
-int kinematic_of(const BarText& left, const BarText& right) {
-  const std::unique_ptr<Subdomain> a = build(left), b = build(right);
-  Bodies bodies({a.get(), b.get()});
-  Joint joint = make_joint("i", {Side{0, 0}, Side{1, 0}}, bodies);
-  joint.how = std::make_unique<Unilateral>();
-  choose_roles({&joint, 1}, bodies, 1e-5, false);
-  return joint.kinematic;
-}
-
-BarText right_bar() {
-  BarText bar;
-  bar.name = "right";
-  bar.position = 0.02;
-  bar.sides = {"left"};
-  return bar;
-}
-
-TEST(Roles, TheSofterSideIsKinematic) {
-  BarText soft = right_bar();
-  soft.modulus = 1e8;
-  soft.density = 100.0;
-  EXPECT_EQ(kinematic_of(BarText(), soft), 1);
-  BarText hard = right_bar();
-  hard.modulus = 1e10;
-  hard.density = 1e4;
-  EXPECT_EQ(kinematic_of(BarText(), hard), 0);
-}
-
-TEST(Roles, AmongEqualsTheFinerMeshThenTheFinerStepThenTheFirst) {
-  EXPECT_EQ(kinematic_of(BarText(), right_bar()), 0);
-  BarText finer = right_bar();
-  finer.elements = 250;
-  EXPECT_EQ(kinematic_of(BarText(), finer), 1);
-  BarText quicker = right_bar();
-  quicker.integrator = explicit_scheme(5e-8, 6);
-  EXPECT_EQ(kinematic_of(BarText(), quicker), 1);
-}
-
-TEST(Roles, TheContactSpringLowersTheStableStepOfAMassiveNode) {
-  // Half a cell's mass between two springs k, the node beside it the same: 2 / w = h / c alone, and
-  // w^2 = (2 k + k) / (m / 2) with the partner's spring.
-  BarText soft, graded = right_bar();
-  soft.layer = "massless: {stiffness_factor: 1.0}";
-  soft.integrator = explicit_scheme(1.0e-7);  // without dispersion terms its spring is k
-  graded.solid = true;
-  graded.layer = "massless: {}";
-  graded.integrator = explicit_scheme(1.0e-6);
-  const std::unique_ptr<Subdomain> a = build(soft), b = build(graded);
-  Bodies bodies({a.get(), b.get()});
-  Joint joint = make_joint("i", {Side{0, 0}, Side{1, 0}}, bodies);
-  joint.kinematic = 0;
-  const double alone = bodies.describe(1).stable_step;
-  EXPECT_NEAR(stable_step_in_contact(joint, bodies, 1.0e-5) / alone, std::sqrt(4.0 / 6.0),
-              1.0e-3);  // the bound of solids is sharp to 1e-4
-  const std::unique_ptr<Subdomain> core = build(right_bar());
-  Bodies cores({a.get(), core.get()});
-  EXPECT_TRUE(std::isinf(stable_step_in_contact(joint, cores, 1.0e-5)));  // massless as well
-}
-
-TEST(Roles, AWallNeverIsKinematic) {
-  const std::unique_ptr<Subdomain> wall = build_wall(0.0, "left");
-  const std::unique_ptr<Subdomain> bar = build(BarText());
-  for (bool wall_first : {true, false}) {
-    Bodies bodies(wall_first ? std::vector<Subdomain*>{wall.get(), bar.get()}
-                             : std::vector<Subdomain*>{bar.get(), wall.get()});
-    Joint joint = make_joint("i", {Side{0, 0}, Side{1, 0}}, bodies);
-    joint.how = std::make_unique<Unilateral>();
-    choose_roles({&joint, 1}, bodies, 1e-5, false);
-    EXPECT_EQ(joint.kinematic, wall_first ? 1 : 0);
-  }
-}
-
-TEST(Roles, TheForceOfTheParallelFormLivesOnTheLongerSteps) {
-  EXPECT_EQ(coarser_side(Meeting(1.0, 2.0).joint, Meeting(1.0, 2.0).bodies), 1);
-  EXPECT_EQ(coarser_side(Meeting(2.0, 1.0).joint, Meeting(2.0, 1.0).bodies), 0);
-}
-
-/// Bodies with closed joints between pairs of them.
-std::vector<Joint> joined(const std::vector<std::array<int, 2>>& pairs, bool ordered = true) {
-  std::vector<Joint> joints(pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    joints[i].sides = {Side{pairs[i][0], 0}, Side{pairs[i][1], 0}};
-    joints[i].engage(1.0);
-    if (ordered) {
-      joints[i].how = std::make_unique<Unilateral>();
-    } else {
-      joints[i].how = std::make_unique<ParallelForce>();
-    }
-  }
-  return joints;
-}
-
-TEST(Islands, AreTheBodiesThatClosedJointsJoin) {
-  std::vector<Joint> joints = joined({{0, 1}, {1, 2}, {3, 4}});
-  std::vector<Island> islands = find_islands(joints, 6);
-  ASSERT_EQ(islands.size(), 2u);
-  EXPECT_EQ(islands[0].joints, (std::vector<int>{0, 1}));
-  EXPECT_EQ(islands[1].joints, (std::vector<int>{2}));
-  joints[1].disengage();
-  islands = find_islands(joints, 6);
-  ASSERT_EQ(islands.size(), 2u);
-  EXPECT_EQ(islands[0].joints, (std::vector<int>{0}));
-  for (Joint& joint : joints) joint.disengage();
-  EXPECT_TRUE(find_islands(joints, 6).empty());
-}
-
-TEST(Islands, KinematicBodiesAdvanceBeforeThoseThatTakeTheirReactions) {
-  std::vector<Joint> joints = joined({{0, 1}, {1, 2}});  // 0 is kinematic to 1, 1 to 2
-  const std::vector<std::vector<int>> chain = {{0}, {1}, {2}};
-  EXPECT_EQ(find_islands(joints, 3)[0].levels, chain);
-  joints[0].kinematic = 1;  // the middle one is kinematic to both
-  const std::vector<std::vector<int>> middle = {{1}, {0, 2}};
-  EXPECT_EQ(find_islands(joints, 3)[0].levels, middle);
-  joints[0].kinematic = 0;
-  joints[1].kinematic = 1;  // the outer ones are
-  const std::vector<std::vector<int>> outer = {{0, 2}, {1}};
-  EXPECT_EQ(find_islands(joints, 3)[0].levels, outer);
-}
-
-TEST(Islands, TheParallelFormAdvancesAllAtOnce) {
-  const std::vector<std::vector<int>> levels = {{0, 1, 2}};
-  EXPECT_EQ(find_islands(joined({{0, 1}, {1, 2}}, false), 3)[0].levels, levels);
-}
-
-/// Three bodies, each of which could meet the two others: what a bar cannot, surfaces can.
-struct Triangle {
-  std::vector<Scripted> bodies;
-  std::vector<Joint> joints = joined({{0, 1}, {1, 2}, {2, 0}});
-
-  explicit Triangle(const std::array<double, 3>& compliance) {
-    for (double c : compliance) {
-      Scripted& body = bodies.emplace_back(0.0, 1.0, 1.0);
-      body.compliance = c;
-      body.description_.can.obstacle = true;
-    }
-  }
-  void choose() {
-    Bodies all({&bodies[0], &bodies[1], &bodies[2]});
-    choose_roles(joints, all, 4.0, false);
-  }
-};
-
-TEST(Roles, ThatWouldGoRoundInACircleAreThoseOfAnOrder) {
-  // Pair by pair 2 > 1, 1 > 0 by the mesh and 0 > 2 by the compliance, which says more.
-  Triangle t({4.0, 2.0, 1.0});
-  for (int b : {0, 1, 2})
-    t.bodies[index(b)].description_.ports[0].geometry.spacing = 3.0 - b;
-  t.choose();
-  EXPECT_NO_THROW(find_islands(t.joints, 3));
-  EXPECT_EQ(t.joints[2].kinematic_side().body, 0);
-  EXPECT_EQ(find_islands(t.joints, 3)[0].levels.size(), 3u);
-}
-
-TEST(Roles, OfAnyBodiesAreThoseOfAnOrder) {
-  // Whatever bodies differ in, there is one that moves first and one that moves last.
-  for (int trial = 0; trial < 729; ++trial) {
-    Triangle t({1.0, 1.0, 1.0});
-    int code = trial;
-    for (Scripted& body : t.bodies) {
-      body.compliance = std::array{1.0, 2.0, 5.0}[index(code % 3)];
-      body.description_.ports[0].geometry.spacing = std::array{1.0, 2.0, 3.0}[index(code / 3 % 3)];
-      code /= 9;
-    }
-    t.choose();
-    EXPECT_NO_THROW(find_islands(t.joints, 3)) << trial;
-  }
-}
-
-TEST(Roles, ThatTheSceneFixesInACircleAreRefusedBeforeTheRun) {
-  Triangle t({1.0, 1.0, 1.0});
-  for (Joint& joint : t.joints) joint.role_fixed = true;
-  EXPECT_THROW(t.choose(), InputError);
-  t.joints[2].role_fixed = false;
-  EXPECT_NO_THROW(t.choose());
-  EXPECT_EQ(t.joints[2].kinematic_side().body, 0);
 }
 
 }  // namespace

@@ -1,0 +1,242 @@
+"""Goal: a stranger's program, made from the .proto alone, is a body like any other: its motion is
+right, its keys are its own, and whatever becomes of it ends in words and leaves nothing behind.
+
+The oracle of the motion is the closed form: until its wave comes back, a bar is a dashpot to what
+it meets. usage: test_python_body.py ABUT ROOT PROTOC [CLASS...]
+"""
+
+import csv
+import math
+import signal
+import subprocess
+import sys
+import time
+
+import yaml
+from support import ABUT, ROOT, SystemTest, free_port, main
+
+PROTOC = sys.argv[3]
+FOLDER = ROOT / "examples" / "python_body"
+PROGRAM = FOLDER / "mass_on_spring.py"
+SCENE = FOLDER / "bar_meets_mass.yaml"
+LONG = ["--set", "time.end=10.0", "--set", "meta.expect=[]"]  # minutes; ended long before
+
+MASS, STIFFNESS = 0.2, 8.0e5              # [kg] [N/m]
+IMPEDANCE, SPEED = 1000.0 * 1000.0 * 1.0e-4, 1.0  # [kg/s] rho c A; [m/s]
+TOUCH, TRANSIT = 1.0e-4, 1.0e-3           # [s] gap over speed; 2 L / c
+
+
+def dashpot(t: float) -> tuple:
+    """u and v of m x'' + Z x' + k x = Z V from rest."""
+    decay = IMPEDANCE / (2.0 * MASS)
+    omega = math.sqrt(STIFFNESS / MASS - decay**2)
+    fade, c, s = math.exp(-decay * t), math.cos(omega * t), math.sin(omega * t)
+    rest = IMPEDANCE * SPEED / STIFFNESS
+    return (rest * (1.0 - fade * (c + decay / omega * s)),
+            rest * fade * (decay**2 / omega + omega) * s)
+
+
+def exact(time_of_run: float) -> tuple:
+    """u and v of the mass: at rest, pushed by the bar, alone on its spring."""
+    t = time_of_run - TOUCH
+    if t <= 0.0:
+        return 0.0, 0.0
+    u, v = dashpot(min(t, TRANSIT))
+    if t <= TRANSIT:
+        return u, v
+    omega = math.sqrt(STIFFNESS / MASS)
+    c, s = math.cos(omega * (t - TRANSIT)), math.sin(omega * (t - TRANSIT))
+    return c * u + s * v / omega, c * v - s * omega * u
+
+
+class PythonTest(SystemTest):
+    def setUp(self):
+        super().setUp()
+        made = self.folder / "made"
+        made.mkdir()
+        subprocess.run([PROTOC, f"-I{ROOT / 'proto'}", f"--python_out={made}",
+                        "abut/v1/subdomain.proto"], check=True)
+        self.environment["PYTHONPATH"] = str(made)
+        self.environment["PYTHONDONTWRITEBYTECODE"] = "1"
+        self.endpoint = f"tcp://127.0.0.1:{free_port()}"
+
+    def run_scene(self, *arguments: object, scene=SCENE) -> subprocess.Popen:
+        return self.start(ABUT, "run", scene, "--out", self.out,
+                          "--set", f"network.endpoint={self.endpoint}", *arguments)
+
+    def body(self) -> subprocess.Popen:
+        return self.start(sys.executable, PROGRAM, "--connect", self.endpoint, "--body", "mass")
+
+    def scene_with(self, old: str, new: str):
+        text = SCENE.read_text(encoding="utf-8")
+        self.assertIn(old, text)
+        scene = self.folder / "scene.yaml"
+        scene.write_text(text.replace(old, new), encoding="utf-8")
+        return scene
+
+    def wait_for_windows(self):
+        until = time.monotonic() + 20.0
+        events = self.out / "history.csv"
+        while time.monotonic() < until:
+            if events.exists() and events.stat().st_size > 0:
+                return
+            time.sleep(0.01)
+        self.fail("no window has come")
+
+    def assert_error(self, run: subprocess.Popen, code: int, seconds: float, *words: str):
+        result = self.end(run, seconds)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+
+
+class Motion(PythonTest):
+    def test_the_mass_moves_as_the_closed_form_says(self):
+        run, body = self.run_scene(), self.body()
+        self.succeed(self.end(run))
+        ended = self.end(body)
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "", ""))
+        self.assert_whole(self.out)
+        with (self.out / "history.csv").open(encoding="utf-8", newline="") as file:
+            rows = [tuple(float(row[name]) for name in
+                          ("time [s]", "mass.face.u [m]", "mass.face.v [m/s]"))
+                    for row in csv.DictReader(file)]
+        self.assertGreater(len(rows), 400)
+        for column, what in ((1, "displacement"), (2, "velocity")):
+            pairs = [(row[column], exact(row[0])[column - 1]) for row in rows]
+            scale = max(abs(right) for _, right in pairs)
+            error = max(abs(got - right) for got, right in pairs) / scale
+            # measured 3.5e-4, first order in the length of an element; the goal is 1e-3
+            self.assertLess(error, 1.0e-3, what)
+
+    def test_the_order_of_starting_changes_nothing(self):
+        body = self.body()
+        time.sleep(0.5)
+        self.succeed(self.end(self.run_scene()))
+        self.assertEqual(self.end(body).returncode, 0)
+
+    def test_the_program_can_be_spawned(self):
+        program = self.folder / "program"
+        program.write_text(f'#!/bin/sh\nexec {sys.executable} {PROGRAM} "$@"\n', encoding="utf-8")
+        program.chmod(0o755)
+        scene = self.scene_with("connect: {}", f"spawn: {{program: {program}}}")
+        text = scene.read_text(encoding="utf-8").splitlines()
+        scene.write_text("\n".join(line for line in text if not line.startswith("network")),
+                         encoding="utf-8")
+        self.succeed(self.abut("run", scene, "--out", self.out))
+
+
+class Keys(PythonTest):
+    def test_check_says_that_the_body_is_not_known_yet(self):
+        said = self.succeed(self.abut("check", SCENE)).stdout
+        self.assertIn("mass: external, not known before it connects", said)
+
+    def test_the_keys_are_never_read_as_ours_and_are_written_as_they_stand(self):
+        keys = ('{mass: 0.2, stiffness: 8.0e+5, position: 0.0, step: 5.0e-6, '
+                'words: [a b, "1", {deep: null}], fe: "a, b", text: "tab\\tand \\"quotes\\""}')
+        scene = self.scene_with(
+            "{mass: 0.2, stiffness: 8.0e+5, position: 0.0, step: 5.0e-6}", keys)
+        run, body = self.run_scene(scene=scene), self.body()
+        self.succeed(self.end(run))
+        self.end(body)
+        resolved = self.out / "scene.resolved.yaml"
+        written = yaml.safe_load(resolved.read_text(encoding="utf-8"))
+        self.assertEqual(written["bodies"]["mass"]["model"]["external"], yaml.safe_load(keys))
+        self.succeed(self.abut("check", resolved))
+
+    def test_a_key_that_its_program_misses_is_the_users_error(self):
+        scene = self.scene_with("stiffness: 8.0e+5, ", "")
+        run, body = self.run_scene(scene=scene), self.body()
+        self.assert_error(run, 2, 20.0, "error: mass: KeyError: 'stiffness'")
+        self.assertFalse(self.out.exists())
+        self.assertEqual(self.end(body).returncode, 1)
+
+    def test_what_the_body_tells_is_held_against_the_scene(self):
+        cases = {"mass.face]": ("mass.tail]", "is mass.tail, but mass has no port tail. Choose "
+                                 "one of its ports: face."),
+                 "step: 5.0e-6": ("step: 3.0e-6", "time.window: must hold a whole number of steps "
+                                  "of body mass"),
+                 "momentum.mass.end": ("momentum.mas.end", "meta.expect[1].measure"),
+                 "position: 0.0": ("position: -1.0", "interfaces.impact.sides: overlap by")}
+        for old, (new, words) in cases.items():
+            with self.subTest(new=new):
+                scene = self.scene_with(old, new)
+                run, body = self.run_scene(scene=scene), self.body()
+                self.assert_error(run, 2, 20.0, str(scene), words)
+                self.assertFalse(self.out.exists(), "a run that never begins leaves nothing")
+                self.end(body)
+
+    def test_it_cannot_live_in_this_process(self):
+        result = self.abut("run", SCENE, "--local", "--out", self.out)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("bodies.mass.model: is of another program, which cannot live in this "
+                      "process. Run without --local.", result.stderr)
+        self.assertFalse(self.out.exists())
+
+    def test_abut_solver_is_no_such_body(self):
+        run = self.run_scene()
+        solver = self.start(ABUT.with_name("abut-solver"), "--connect", self.endpoint,
+                            "--body", "mass")
+        self.assert_error(run, 2, 20.0, "bodies.mass.model", "external")
+        self.end(solver)
+
+
+class Faults(PythonTest):
+    def test_a_body_that_never_connects_is_named_with_what_to_type(self):
+        scene = self.scene_with("connect: {}", "connect: {patience: 0.5}")
+        self.assert_error(
+            self.run_scene(scene=scene), 3, 10.0,
+            f"body 'mass' did not connect to {self.endpoint} within 0.5 s. Start `ITS_PROGRAM "
+            f"--connect {self.endpoint} --body mass`.")
+        self.assertFalse(self.out.exists())
+
+    def test_an_endpoint_that_cannot_be_had_is_the_users_error(self):
+        self.endpoint = "tcp://192.0.2.1:5555"  # reserved for documentation: no machine's own
+        self.assert_error(self.run_scene(), 2, 10.0, "cannot listen at tcp://192.0.2.1:5555")
+
+    def test_a_body_that_dies_in_the_run_is_named(self):
+        run, body = self.run_scene(*LONG), self.body()
+        self.wait_for_windows()
+        body.send_signal(signal.SIGKILL)
+        self.end(body)
+        self.assert_error(run, 3, 20.0, "body 'mass' closed its connection and did not come back "
+                          "within 10 s while at advance", "tart the run again",
+                          f"The run up to there is in {self.out}")
+
+    def test_a_second_body_of_that_name_is_named(self):
+        run, first = self.run_scene(*LONG), self.body()
+        self.wait_for_windows()
+        second = self.body()
+        self.assert_error(run, 3, 20.0,
+                          "a second solver with the name of body 'mass' has connected")
+        for body in (first, second):
+            self.assertEqual(self.end(body).returncode, 1)
+
+    def test_an_error_in_its_program_is_told(self):
+        scene = self.scene_with("stiffness: 8.0e+5", "stiffness: 0.0")  # its turning divides by it
+        run, body = self.run_scene(scene=scene), self.body()
+        result = self.end(run, 20.0)
+        self.assertIn(result.returncode, (2, 3), result.stdout + result.stderr)
+        self.assertIn("ZeroDivisionError", result.stderr)
+        self.end(body)
+
+    def test_it_leaves_when_its_coordinator_is_killed(self):
+        run, body = self.run_scene(*LONG), self.body()
+        self.wait_for_windows()
+        run.kill()
+        self.end(run)
+        ended = self.end(body, 10.0)
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn("body mass: no coordinator (any more)", ended.stderr)
+        self.leaves_sockets = True  # of the spawned bar
+
+    def test_it_is_told_of_an_interrupted_run(self):
+        run, body = self.run_scene(*LONG), self.body()
+        self.wait_for_windows()
+        run.terminate()
+        self.assertEqual(self.end(run, 10.0).returncode, 128 + signal.SIGTERM)
+        self.assertIn("body mass is refused: the run has ended early", self.end(body, 10.0).stderr)
+
+
+if __name__ == "__main__":
+    main(3)
