@@ -22,8 +22,6 @@ struct Window {
   const Advance& request;
   Substeps grid;
   std::span<const std::vector<Partner>> partners;  // by port, in the order in which they were met
-
-  double begin_of(int i) const { return i == 1 ? grid.begin : grid.time(i - 1); }  // of a substep
 };
 
 /// Motion and force of all points of all ports at one time, port after port (values) [SI units].

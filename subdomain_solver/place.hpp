@@ -12,6 +12,7 @@ struct Place {
   const Document& document;
   std::string path;  // bodies.left
 
+  std::string name() const { return path.substr(path.rfind('.') + 1); }
   std::string where(const std::string& key) const { return document.where(path + "." + key); }
 };
 

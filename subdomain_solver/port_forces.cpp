@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/assert.hpp"
 #include "base/count.hpp"
 #include "base/index.hpp"
 
@@ -30,7 +31,8 @@ void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substep
 
 void PortForces::add_sampled(const Waveform& imposed, std::size_t port, bool first) {
   forces_.resize(index(grid_.count + 1) * map_.values(), 0.0);
-  const std::size_t width = index(imposed.width);
+  const std::size_t width = index(imposed.width), listed = imposed.points.size();
+  ABUT_ASSERT(width == (listed == 0 ? map_.width(port) : listed * index(map_.dim())));
   const bool same = imposed.support == ForceSupport::nodal && grid_.matches(imposed.time);
   mean_.resize(width);
   for (int i = 0; i <= grid_.count; ++i) {

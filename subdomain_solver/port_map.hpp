@@ -21,8 +21,11 @@ class PortMap {
   int dim() const { return dim_; }
   std::size_t values() const { return values_; }
   std::size_t ports() const { return first_.size(); }
-  /// Where the values of a port begin.
+  /// Where the values of a port begin, and how many they are.
   std::size_t first(std::size_t port) const { return first_[port]; }
+  std::size_t width(std::size_t port) const {
+    return (port + 1 < first_.size() ? first_[port + 1] : values_) - first_[port];
+  }
 
   void displacement(std::span<const double> q, std::vector<double>& out) const;  // [m]
   void velocity(std::span<const double> q, std::span<const double> v,

@@ -170,9 +170,8 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
 
 std::optional<Failed> SolidInterior::step(const Window& window, int i) {
   Integrator& integrator = *parts_.scheme.integrator;
-  const double dt = window.grid.length(i);
-  if (std::optional<Failed> failed = integrator.step(state_.motion, window.begin_of(i), dt))
-    return failed;
+  const double begin = window.grid.time(i - 1), dt = window.grid.length(i);
+  if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);
   if (port_map_) follow_ports(state_.time);
   return std::nullopt;

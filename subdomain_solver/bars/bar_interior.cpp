@@ -24,13 +24,8 @@ constexpr double usual_work = 2.0e7;
 BarInterior::BarInterior(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
                          const std::vector<End>& ends)
     : bar_(std::move(bar)), scheme_(std::move(scheme)), imposed_(ends.size()), shown_(ends.size()) {
-  const std::size_t n = index(bar_->nodes());
-  state_.u.assign(n, 0.0);
-  state_.v.assign(n, bar_->data().velocity);
-  state_.a.assign(n, 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (bar_->inverse_mass()[i] > 0.0) state_.a[i] = bar_->data().body_force;
-  }
+  lie_down();
+  std::fill(state_.v.begin(), state_.v.end(), bar_->data().velocity);
   for (int end : {0, 1}) {
     if (bar_->data().fixed[index(end)]) state_.v[index(bar_->node_of(end))] = 0.0;
   }
@@ -389,16 +384,19 @@ void BarInterior::approach(int end, PortResponse& reply) const {
   reply.acceleration_bound = std::abs(bar_->data().body_force);
 }
 
-/// The body force stays: it is in the bar's properties.
-bool BarInterior::rest(std::size_t port) {
-  const std::size_t n = state_.u.size();
+/// At rest, under the body force.
+void BarInterior::lie_down() {
+  const std::size_t n = index(bar_->nodes());
   state_ = BarState{};
-  state_.u.assign(n, 0.0);
-  state_.v.assign(n, 0.0);
-  state_.a.assign(n, 0.0);
+  for (std::vector<double>* values : {&state_.u, &state_.v, &state_.a}) values->assign(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
     if (bar_->inverse_mass()[i] > 0.0) state_.a[i] = bar_->data().body_force;
   }
+}
+
+/// The body force stays: it is in the bar's properties.
+bool BarInterior::rest(std::size_t port) {
+  lie_down();
   probed_ = static_cast<int>(port);
   state_.end[index(ends_[port])].closed = true;
   return bar_->data().body_force != 0.0;

@@ -67,6 +67,7 @@ class BarInterior final : public Interior {
   };
 
   void describe(std::string name, const std::vector<End>& ends);
+  void lie_down();
   void see_imposed(const Window& window);
   void set_actions(const Window& window, int i);
   void add_force(const Waveform& imposed, bool same_grid, const Substeps& grid, int i, int end,

@@ -14,6 +14,7 @@
 #include "subdomain_solver/fe/element_limit.hpp"
 #include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/make/mass_range.hpp"
+#include "subdomain_solver/make/scheme.hpp"
 #include "subdomain_solver/rigid/rigid_wall.hpp"
 
 namespace abut {
@@ -159,12 +160,7 @@ BarProperties fe_bar_properties(const BodySpec& spec) {
   bar.velocity = spec.initial.velocity[0];
   bar.body_force = spec.body_force[0];
   bar.fixed = {spec.supports.left_fixed, spec.supports.right_fixed};
-  bar.mass = std::visit(
-      [](const auto& scheme) {
-        if constexpr (requires { scheme.mass; }) return scheme.mass;
-        return MassForm::lumped;
-      },
-      *spec.integrator);
+  bar.mass = mass_form(*spec.integrator);
   if (const auto* s = std::get_if<CentralDifferenceSpec>(&*spec.integrator)) {
     bar.bulk_viscosity = s->bulk_viscosity;
     bar.tchamwa = s->tchamwa;
@@ -189,28 +185,27 @@ std::unique_ptr<Interior> build(const Document& document, const std::string& pat
   BodySpec spec = read<BodySpec>(document, path);
   spec.place_files(document.name().substr(0, document.name().rfind('/') + 1));
   const Place place{document, path};
-  const std::string name = path.substr(path.rfind('.') + 1);
   if (std::holds_alternative<BarPairSpec>(spec.model))
-    return make_pair(spec, document, path);
+    return make_pair(spec, place);
   if (std::holds_alternative<ModalModelSpec>(spec.model))
-    return make_modal(spec, document, path);
+    return make_modal(spec, place);
   if (std::holds_alternative<RigidModelSpec>(spec.model))
-    return make_rigid(spec, document, path);
-  if (spec.is_solid()) return make_solid(spec, document, path);
+    return make_rigid(spec, place);
+  if (spec.is_solid()) return make_solid(spec, place);
   std::vector<BarInterior::End> ports = ports_of(spec, place);
   if (std::holds_alternative<RigidWallSpec>(spec.model)) {
-    return std::make_unique<RigidWall>(name, spec.initial.position[0], ports[0].name,
+    return std::make_unique<RigidWall>(place.name(), spec.initial.position[0], ports[0].name,
                                        Bar::outward(ports[0].end));
   }
   const BarProperties properties = fe_bar_properties(spec);
   const double node = properties.mass_total() / properties.elements;
   check_mass(node, node, spec, place);
   require_room(properties.elements, bytes_of_bar_element,
-               document.where(path + ".model.fe.mesh.bar.elements"));
+               place.where("model.fe.mesh.bar.elements"));
   check_layers(spec, properties, place);
   std::unique_ptr<Bar> bar = std::make_unique<Bar>(properties);
   BarInterior::Scheme scheme = std::visit(SchemeMaker{*bar, place}, *spec.integrator);
-  return std::make_unique<BarInterior>(name, std::move(bar), std::move(scheme), ports);
+  return std::make_unique<BarInterior>(place.name(), std::move(bar), std::move(scheme), ports);
 }
 
 }  // namespace

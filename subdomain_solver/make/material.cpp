@@ -56,8 +56,8 @@ struct LawMaker {
 
 }  // namespace
 
-std::unique_ptr<const Material> make_material(const MaterialSpec& spec, const Document& document,
-                                              const std::string& path, int dimension) {
+std::unique_ptr<const Material> make_material(const MaterialSpec& spec, const Place& place,
+                                              int dimension) {
   try {
     const LinearElasticSpec* elastic = std::get_if<LinearElasticSpec>(&spec);
     if (dimension == 1 && elastic != nullptr) return LawMaker{}(of_a_bar(*elastic));
@@ -65,7 +65,7 @@ std::unique_ptr<const Material> make_material(const MaterialSpec& spec, const Do
   } catch (const InputError& error) {  // `where` is the constant's name
     const std::string law = std::visit([](const auto& s) { return std::string(s.name); }, spec);
     const std::string key = error.where.empty() ? "" : "." + error.where;
-    throw InputError(error.what_is_wrong, document.where(path + "." + law + key), error.remedy);
+    throw InputError(error.what_is_wrong, place.where("material." + law + key), error.remedy);
   }
 }
 

@@ -94,9 +94,7 @@ Motion modal_start(Motion nodes, const std::vector<Prescribed>& supports, const 
 
 }  // namespace
 
-std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Document& document,
-                                     const std::string& path) {
-  const Place place{document, path};
+std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
   const ModalModelSpec& modal = std::get<ModalModelSpec>(spec.model);
   Mesh mesh = make_mesh(modal, spec.initial.position, place, "model.modal");
   name_points(spec, place, mesh);
@@ -105,7 +103,7 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Document& docum
   check_formulation(modal, mesh, place, "model.modal");
   SolidInterior::Parts parts;
   parts.model = std::make_unique<FeModel>(
-      std::move(mesh), make_material(*spec.material, document, path + ".material", modal.dimension),
+      std::move(mesh), make_material(*spec.material, place, modal.dimension),
       FeOptions{.plane = modal.plane,
                 .formulation = modal.formulation,
                 .thickness = modal.thickness,
@@ -146,8 +144,7 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Document& docum
     parts.constraints = constraints.held;
   }
   parts.map = std::move(map);
-  const std::string name = path.substr(path.rfind('.') + 1);
-  return std::make_unique<SolidInterior>(name, std::move(parts), ports);
+  return std::make_unique<SolidInterior>(place.name(), std::move(parts), ports);
 }
 
 }  // namespace abut

@@ -8,6 +8,7 @@
 #include "subdomain_solver/fe/element_limit.hpp"
 #include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/make/mass_range.hpp"
+#include "subdomain_solver/make/scheme.hpp"
 
 namespace abut {
 
@@ -84,33 +85,27 @@ std::array<BarProperties, 2> pair_properties(const BodySpec& spec) {
     bar.velocity = from.velocity;
     bar.youngs_modulus = *material.youngs_modulus;
     bar.density = material.density;
-    bar.mass = std::visit(
-        [](const auto& scheme) {
-          if constexpr (requires { scheme.mass; }) return scheme.mass;
-          return MassForm::lumped;
-        },
-        *spec.integrator);
+    bar.mass = mass_form(*spec.integrator);
   }
   return bars;
 }
 
-std::unique_ptr<Interior> make_pair(const BodySpec& spec, const Document& document,
-                                    const std::string& path) {
-  const Refuse refuse = [&document, &path](const std::string& key, const std::string& what,
+std::unique_ptr<Interior> make_pair(const BodySpec& spec, const Place& place) {
+  const Refuse refuse = [&place](const std::string& key, const std::string& what,
                                            const std::string& remedy) {
-    throw InputError(what, document.where(path + "." + key), remedy);
+    throw InputError(what, place.where(key), remedy);
   };
   const BarPairSpec& pair = std::get<BarPairSpec>(spec.model);
   check_bars(pair, refuse);
   require_room(pair.left.elements, bytes_of_bar_element,
-               document.where(path + ".model.bar_pair.left.elements"));
+               place.where("model.bar_pair.left.elements"));
   require_room(pair.right.elements, bytes_of_bar_element,
-               document.where(path + ".model.bar_pair.right.elements"));
+               place.where("model.bar_pair.right.elements"));
   PairInterior::Parameters parameters;
   parameters.bars = pair_properties(spec);
   for (const BarProperties& bar : parameters.bars) {
     const double node = bar.mass_total() / bar.elements;
-    check_mass(node, node, spec, Place{document, path});
+    check_mass(node, node, spec, place);
   }
   if (const PenaltySpec* penalty = std::get_if<PenaltySpec>(&pair.contact))
     parameters.contact.penalty = penalty->stiffness;
@@ -122,7 +117,7 @@ std::unique_ptr<Interior> make_pair(const BodySpec& spec, const Document& docume
       pair.current_lengths ? ", current lengths" : "");
   std::visit(PairScheme{parameters, refuse}, *spec.integrator);
   parameters.words += fmt::format(", step {:g} s", parameters.step);
-  return std::make_unique<PairInterior>(path.substr(path.rfind('.') + 1), parameters);
+  return std::make_unique<PairInterior>(place.name(), parameters);
 }
 
 }  // namespace abut

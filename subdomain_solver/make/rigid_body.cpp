@@ -57,9 +57,7 @@ Motion rigid_start(const Motion& nodes, const FeModel& mesh, MassForm form, cons
 
 }  // namespace
 
-std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Document& document,
-                                     const std::string& path) {
-  const Place place{document, path};
+std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Place& place) {
   const RigidModelSpec& model = std::get<RigidModelSpec>(spec.model);
   const RigidMotionSpec& integrator = std::get<RigidMotionSpec>(*spec.integrator);
   Mesh mesh = make_mesh(model, spec.initial.position, place, "model.rigid");
@@ -71,7 +69,7 @@ std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Document& docum
   options.thickness = model.thickness;
   options.area = model.area();
   parts.model = std::make_unique<FeModel>(
-      std::move(mesh), make_material(*spec.material, document, path + ".material", model.dimension),
+      std::move(mesh), make_material(*spec.material, place, model.dimension),
       options);
   const FeModel& nodes = *parts.model;
   check_mass(nodes.lumped_mass().minCoeff(), nodes.lumped_mass().maxCoeff(), spec, place);
@@ -91,8 +89,7 @@ std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Document& docum
   parts.reduced = std::move(body);
   parts.rung = "rigid" + on_file(model);
   parts.deforms = false;
-  const std::string name = path.substr(path.rfind('.') + 1);
-  return std::make_unique<SolidInterior>(name, std::move(parts), ports);
+  return std::make_unique<SolidInterior>(place.name(), std::move(parts), ports);
 }
 
 }  // namespace abut

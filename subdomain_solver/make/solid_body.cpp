@@ -14,9 +14,7 @@
 
 namespace abut {
 
-std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Document& document,
-                                     const std::string& path) {
-  const Place place{document, path};
+std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   const FeModelSpec& fe = std::get<FeModelSpec>(spec.model);
   Mesh mesh = make_mesh(fe, spec.initial.position, place, "model.fe");
   name_points(spec, place, mesh);
@@ -26,7 +24,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Document& docum
   const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
   SolidInterior::Parts parts;
   parts.model = std::make_unique<FeModel>(
-      std::move(mesh), make_material(*spec.material, document, path + ".material", fe.dimension),
+      std::move(mesh), make_material(*spec.material, place, fe.dimension),
       FeOptions{fe.plane, fe.formulation, fe.thickness, fe.hourglass, explicit_in_time, fe.threads,
                 fe.area()},
       constraints.frames);
@@ -56,8 +54,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Document& docum
         parts.scheme.step, constraints.held);
     parts.constraints = std::move(constraints.held);
   }
-  const std::string name = path.substr(path.rfind('.') + 1);
-  return std::make_unique<SolidInterior>(name, std::move(parts), ports);
+  return std::make_unique<SolidInterior>(place.name(), std::move(parts), ports);
 }
 
 }  // namespace abut

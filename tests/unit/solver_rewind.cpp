@@ -155,7 +155,9 @@ TEST(Rewind, ACheckpointOfAnotherMeshIsRefused) {
   finer.elements = 50;
   const std::unique_ptr<Subdomain> body = build(case_bar(c));
   const std::unique_ptr<Subdomain> other = build(finer);
+  const std::uint64_t hash = other->state_hash();
   EXPECT_THROW(other->resume(body->checkpoint()), RunError);
+  EXPECT_EQ(other->state_hash(), hash);  // it is as before
 }
 
 TEST(Rewind, AStateThatIsNotFiniteIsAFailedValue) {
