@@ -40,6 +40,7 @@ void ContactEvents::state(Archive& archive) {
 double ContactEvents::still() const { return still_share * fastest_touch_; }
 
 void ContactEvents::start() {
+  roles_.start(joints_);
   for (Joint& joint : joints_) {
     if (!joint.tied()) continue;
     joint.press();
@@ -56,7 +57,7 @@ void ContactEvents::begin(const TimeWindow& window) {
     if (!joint.closed()) {
       if (joint.gap(t0.u.back(), t1.u.back()) >= 0.0) continue;
       const double speed = std::abs(t0.v.back() - t1.v.back());
-      engage(joint, speed);
+      engage(joint, speed, window.begin);
       joint.press();
       if (joint.projection) joint.impulse = std::max(0.0, closing_impulse(joint, bodies_));
       narrator_.closed(joint, window.begin, speed);
@@ -73,22 +74,26 @@ void ContactEvents::begin(const TimeWindow& window) {
 
 // ---- in a window that was tried -----------------------------------------------------------------
 
-std::optional<double> ContactEvents::engage_touching() {
+std::optional<double> ContactEvents::engage_touching(const TimeWindow& window) {
   std::optional<double> first;
   const double negligible = still() * bodies_.shortest_step();
   for (Joint& joint : joints_) {
     if (!joint.unilateral() || joint.closed()) continue;
     const std::optional<Touch> touch = first_overlap(joint, bodies_, negligible);
     if (!touch) continue;
-    engage(joint, touch->speed);
+    engage(joint, touch->speed, window.begin);
     first = std::min(first.value_or(touch->state), touch->state);
   }
   return first;
 }
 
-void ContactEvents::engage(Joint& joint, double speed) {
+void ContactEvents::engage(Joint& joint, double speed, double time) {
   fastest_touch_ = std::max(fastest_touch_, speed);
   joint.engage(std::max(speed, still()));
+  if (!roles_.choose(joint) || !joint.unilateral()) return;
+  const double limit = stable_step_in_contact(joint, bodies_, window_);
+  if (bodies_.describe(joint.neumann_side().body).step > limit)
+    narrator_.lowered_step(joint, time, limit);
 }
 
 /// [N] of the window in history_: what the iteration leaves open is no force.

@@ -6,6 +6,7 @@
 #include "base/archive.hpp"
 #include "contract/time_window.hpp"
 #include "coordinator/coupling/contact.hpp"
+#include "coordinator/coupling/roles.hpp"
 #include "coordinator/narrator.hpp"
 
 namespace abut {
@@ -15,11 +16,17 @@ namespace abut {
 /// (docs/METHOD.md, energy of events). Reads the latest responses.
 class ContactEvents {
  public:
-  /// `tolerance`: of the iteration. All references must outlive it.
-  ContactEvents(std::span<Joint> joints, Bodies& bodies, Narrator& narrator, double tolerance)
-      : joints_(joints), bodies_(bodies), narrator_(narrator), tolerance_(tolerance) {}
+  /// `tolerance`: of the iteration; `window` [s]: a whole one. All references must outlive it.
+  ContactEvents(std::span<Joint> joints, Bodies& bodies, Roles& roles, Narrator& narrator,
+                double tolerance, double window)
+      : joints_(joints),
+        bodies_(bodies),
+        roles_(roles),
+        narrator_(narrator),
+        tolerance_(tolerance),
+        window_(window) {}
 
-  /// Before the first window: closes tied joints.
+  /// Before the first window: settles the roles that are not open, and closes tied joints.
   void start();
   /// Before a window: the published criteria of joints that decide there.
   void begin(const TimeWindow& window);
@@ -28,7 +35,7 @@ class ContactEvents {
 
   /// Lets sides that were free and met be iterated from now on; the end of the first substep in
   /// which any did [s].
-  std::optional<double> engage_touching();
+  std::optional<double> engage_touching(const TimeWindow& window);
   /// Where the window must end so that contact is paid what an event in it has moved, before more
   /// happens: at the first common end of substeps. A release of kick layers gives its impulse at
   /// the end of the last kick. `energy` [J]: the largest of the run.
@@ -52,7 +59,7 @@ class ContactEvents {
   void state(Archive& archive);
 
  private:
-  void engage(Joint& joint, double speed);
+  void engage(Joint& joint, double speed, double time);
   void pay(Joint& joint, double energy);
   void narrate(Joint& joint);
   void disengage(Joint& joint, const TimeWindow& window) const;
@@ -61,8 +68,9 @@ class ContactEvents {
 
   std::span<Joint> joints_;
   Bodies& bodies_;
+  Roles& roles_;
   Narrator& narrator_;
-  double tolerance_;
+  double tolerance_, window_;
   double fastest_touch_ = 0.0;    // [m/s] of all first touches
   double force_reference_ = 0.0;  // [N] largest contact force of the run
   ContactHistory history_;

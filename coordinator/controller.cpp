@@ -14,7 +14,6 @@
 #include "base/index.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/horizon.hpp"
-#include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/transmission.hpp"
 #include "coordinator/flight_work.hpp"
 #include "coordinator/record/validity_notes.hpp"
@@ -42,7 +41,8 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       joints_(make_joints(scene, bodies_)),
       schwarz_(make_schwarz(scene.schwarz)),
       clock_(scene.time.begin, scene.time.end, scene.time.window),
-      events_(joints_, bodies_, narrator_, scene.schwarz.tolerance),
+      roles_(bodies_, scene.time.window, scene.schwarz.parallel),
+      events_(joints_, bodies_, roles_, narrator_, scene.schwarz.tolerance, scene.time.window),
       guard_(scene.schwarz.energy_guard, conserving_bodies()),
       reports_(joints_.size()) {
   end_.status = "completed";
@@ -89,13 +89,6 @@ void Controller::start() {
   prepare(instant, 1, Sampling::substeps);
   if (std::optional<Failed> failed = bodies_.advance_all())
     return fail(failed->time, failed->detail);
-  choose_roles(joints_, bodies_, scene_.time.window, scene_.schwarz.parallel);
-  for (const Joint& joint : joints_) {
-    if (!joint.unilateral() || joint.role_fixed) continue;
-    const double limit = stable_step_in_contact(joint, bodies_, scene_.time.window);
-    if (bodies_.describe(joint.neumann_side().body).step > limit)
-      narrator_.lowered_step(joint, clock_.time(), limit);
-  }
   events_.start();
   watch_energy(guard_.look(bodies_.responses()));
   fill_reports(true);
@@ -170,7 +163,7 @@ Controller::Judgement Controller::judge(const TimeWindow& window) {
     const Judgement trouble = judge_trouble(window);
     if (trouble.verdict != Verdict::accept) return trouble;
   }
-  if (const std::optional<double> touch = events_.engage_touching())
+  if (const std::optional<double> touch = events_.engage_touching(window))
     return {Verdict::cut, events_.common_end(window, *touch), {}};
   const std::optional<double> event = events_.first_event(window, guard_.most());
   if (!event || *event >= window.end) return {};

@@ -88,6 +88,7 @@ class Controller {
   Partition partition_;
   Schwarz schwarz_;
   WindowClock clock_;
+  Roles roles_;
   ContactEvents events_;
   EnergyGuard guard_;
   Flight flight_;

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <vector>
-
-#include <fmt/format.h>
+#include <optional>
 
 #include "base/error.hpp"
 #include "contract/substeps.hpp"
@@ -20,29 +18,6 @@ namespace {
 /// Compliances within this factor count as similar: the mesh decides.
 constexpr double similar = 3.0;
 
-/// A joint's kinematic side as its two bodies alone would have it.
-struct Wish {
-  std::size_t joint = 0;
-  int kinematic = 0;
-  bool fixed = false;    // by the scene, or because the other side cannot
-  double clarity = 0.0;  // how much there is to say for it
-};
-
-/// Which bodies come before which: kinematic sides first.
-class Order {
- public:
-  explicit Order(int bodies) : after_(index(bodies)) {}
-  void add(int before, int after) { after_[index(before)].push_back(after); }
-  bool comes_before(int before, int after) const {
-    if (before == after) return true;
-    return std::ranges::any_of(after_[index(before)],
-                               [this, after](int next) { return comes_before(next, after); });
-  }
-
- private:
-  std::vector<std::vector<int>> after_;  // by body: without circles
-};
-
 /// What a constant unit force moves over a window, summed over its substeps [m/N].
 double moved_over(const Side& side, Bodies& bodies, double window) {
   const Substeps grid = Substeps::divide(0.0, window, bodies.describe(side.body).step);
@@ -51,75 +26,80 @@ double moved_over(const Side& side, Bodies& bodies, double window) {
                          0.0);
 }
 
-Wish wish_of(const Joint& joint, Bodies& bodies, double window) {
-  Wish wish;
-  for (std::size_t s : {0u, 1u}) {
-    if (bodies.describe(joint.sides[s].body).can.obstacle) continue;
-    wish.kinematic = 1 - static_cast<int>(s);
-    wish.fixed = true;
-    // the whole window's kernel will be needed: one probe instead of one per length
-    moved_over(joint.sides[1 - s], bodies, window);
-    return wish;
+/// The side that alone takes obstacles; none: both do.
+std::optional<int> only_side(const Joint& joint, const Bodies& bodies) {
+  for (int s : {0, 1}) {
+    if (!bodies.describe(joint.sides[index(s)].body).can.obstacle) return 1 - s;
   }
-  const double step[2] = {bodies.describe(joint.sides[0].body).step,
-                          bodies.describe(joint.sides[1].body).step};
-  if (joint.tied() && step[0] != step[1]) {
-    wish.kinematic = coarser_side(joint, bodies);
-    wish.clarity = std::numeric_limits<double>::infinity();
-    return wish;
-  }
-  const double moved[2] = {moved_over(joint.sides[0], bodies, window),
-                           moved_over(joint.sides[1], bodies, window)};
-  const double spacing[2] = {bodies.port(joint.sides[0]).geometry.spacing,
-                             bodies.port(joint.sides[1]).geometry.spacing};
-  wish.clarity = std::abs(std::log(moved[0] / moved[1]));
-  if (moved[0] > similar * moved[1]) {
-    wish.kinematic = 0;
-  } else if (moved[1] > similar * moved[0]) {
-    wish.kinematic = 1;
-  } else if (spacing[0] != spacing[1]) {
-    wish.kinematic = spacing[0] < spacing[1] ? 0 : 1;
-  } else {
-    wish.kinematic = step[1] < step[0] ? 1 : 0;
-  }
-  return wish;
+  return std::nullopt;
 }
 
 }  // namespace
 
-void choose_roles(std::span<Joint> joints, Bodies& bodies, double window, bool parallel) {
-  std::vector<Wish> wishes;
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    Joint& joint = joints[j];
-    if (joint.how == nullptr) continue;
-    if (!joint.how->ordered()) {
-      if (parallel && !joint.role_fixed) joint.kinematic = coarser_side(joint, bodies);
-      continue;
-    }
-    Wish wish{0, joint.kinematic, true, 0.0};
-    if (!joint.role_fixed) wish = wish_of(joint, bodies, window);
-    wish.joint = j;
-    wishes.push_back(wish);
+bool BodyOrder::comes_before(int before, int after) const {
+  return before == after || std::ranges::any_of(after_[index(before)], [this, after](int next) {
+           return comes_before(next, after);
+         });
+}
+
+/// As its two bodies alone would have it; both take obstacles.
+int Roles::wish(const Joint& joint) {
+  double moved[2], spacing[2], step[2];
+  for (std::size_t s : {0u, 1u}) step[s] = bodies_.describe(joint.sides[s].body).step;
+  if (joint.tied() && step[0] != step[1]) return coarser_side(joint, bodies_);
+  for (std::size_t s : {0u, 1u}) {
+    moved[s] = moved_over(joint.sides[s], bodies_, window_);
+    spacing[s] = bodies_.port(joint.sides[s]).geometry.spacing;
   }
-  std::ranges::stable_sort(wishes, [](const Wish& a, const Wish& b) {
-    return a.fixed != b.fixed ? a.fixed : a.clarity > b.clarity;
-  });
-  Order order(bodies.count());
-  for (const Wish& wish : wishes) {
-    Joint& joint = joints[wish.joint];
-    joint.kinematic = wish.kinematic;
-    const int before = joint.kinematic_side().body, after = joint.neumann_side().body;
-    if (order.comes_before(after, before)) {
-      if (wish.fixed) {
-        throw InputError(
-            "closes a circle of bodies of which each would have to move before the next",
-            "interfaces." + joint.name,
-            "Fix fewer roles: leave `kinematic: auto` on at least one interface of the circle.");
-      }
-      joint.kinematic = 1 - joint.kinematic;
+  if (moved[0] > similar * moved[1]) return 0;
+  if (moved[1] > similar * moved[0]) return 1;
+  if (spacing[0] != spacing[1]) return spacing[0] < spacing[1] ? 0 : 1;
+  return step[1] < step[0] ? 1 : 0;
+}
+
+void Roles::settle(Joint& joint, int kinematic, bool may_turn) {
+  joint.kinematic = kinematic;
+  if (order_.comes_before(joint.neumann_side().body, joint.kinematic_side().body)) {
+    if (!may_turn) {
+      throw InputError(
+          "closes a circle of bodies of which each would have to move before the next",
+          "interfaces." + joint.name,
+          "Fix fewer roles: leave `kinematic: auto` on at least one interface of the circle.");
     }
-    order.add(joint.kinematic_side().body, joint.neumann_side().body);
+    joint.kinematic = 1 - kinematic;
   }
+  order_.add(joint.kinematic_side().body, joint.neumann_side().body);
+}
+
+void Roles::start(std::span<Joint> joints) {
+  const auto ordered = [](const Joint& joint) {
+    return joint.how != nullptr && joint.how->ordered();
+  };
+  for (Joint& joint : joints) {
+    const std::optional<int> only = only_side(joint, bodies_);
+    if (joint.role_fixed && ordered(joint)) {
+      settle(joint, joint.kinematic, false);
+    } else if (only && ordered(joint)) {
+      settle(joint, *only, false);
+    }
+  }
+  for (Joint& joint : joints) {
+    if (joint.tied()) choose(joint);
+  }
+}
+
+bool Roles::choose(Joint& joint) {
+  if (joint.role_fixed) return false;
+  joint.role_fixed = true;
+  if (parallel_) {
+    joint.kinematic = coarser_side(joint, bodies_);
+  } else if (const std::optional<int> only = only_side(joint, bodies_)) {
+    // settled at the start; the whole window's kernel will be needed, so that one probe is enough
+    moved_over(joint.sides[index(*only)], bodies_, window_);
+  } else {
+    settle(joint, wish(joint), true);
+  }
+  return true;
 }
 
 double stable_step_in_contact(const Joint& joint, Bodies& bodies, double length) {

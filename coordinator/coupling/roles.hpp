@@ -1,25 +1,54 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "coordinator/coupling/bodies.hpp"
 #include "coordinator/coupling/joint.hpp"
 
 namespace abut {
 
-/// Chooses the kinematic sides of all joints whose roles the scene leaves open, before the first
-/// window and for the whole run (docs/METHOD.md, roles): of contact the softer or lighter side,
-/// told by what a constant unit force moves over a window (port kernels); within a factor of 3 the
-/// one with the finer mesh, then the finer step, then the first. Of ties with unlike steps the side
-/// of the larger one: its force then varies no faster than it steps, and the other side's means of
-/// it take nothing away; with the roles exchanged the trapezoidal rule gains energy over 1e5
-/// substeps. A side that takes no obstacles never is.
+/// Which bodies come before which in a sweep: kinematic sides first.
+class BodyOrder {
+ public:
+  explicit BodyOrder(int bodies) : after_(index(bodies)) {}
+  void add(int before, int after) { after_[index(before)].push_back(after); }
+  bool comes_before(int before, int after) const;  // a body comes before itself
+
+ private:
+  std::vector<std::vector<int>> after_;  // by body, without circles
+};
+
+/// Chooses the kinematic sides of joints whose roles the scene leaves open (docs/METHOD.md, roles):
+/// of contact the softer or lighter side, told by what a constant unit force moves over a window
+/// (port kernels); within a factor of 3 the one with the finer mesh, then the finer step, then the
+/// first. Of ties with unlike steps the side of the larger one: its force then varies no faster
+/// than it steps, and the other side's means of it take nothing away; with the roles exchanged the
+/// trapezoidal rule gains energy over 1e5 substeps. A side that takes no obstacles never is.
 ///
-/// The roles are those of one order of all bodies: joints are settled one by one, the clearest
-/// first, and one that would close a circle is turned around. Throws InputError when roles that the
-/// scene fixes, or that only one side can take, go round in a circle.
-/// `window` [s]: a whole one; `parallel`: forces are iterated, at the coarser side's substeps.
-void choose_roles(std::span<Joint> joints, Bodies& bodies, double window, bool parallel);
+/// The roles are those of one order of the bodies: a joint that would close a circle is turned
+/// around.
+class Roles {
+ public:
+  /// `window` [s]: a whole one; `parallel`: forces are iterated, at the coarser side's substeps.
+  Roles(Bodies& bodies, double window, bool parallel)
+      : bodies_(bodies), window_(window), parallel_(parallel), order_(bodies.count()) {}
+
+  /// Before the first window: what the scene fixes, what only one side can take, and ties. Throws
+  /// InputError where that goes round in a circle.
+  void start(std::span<Joint> joints);
+  /// At first touch, for the rest of the run; true when the role was open.
+  bool choose(Joint& joint);
+
+ private:
+  int wish(const Joint& joint);
+  void settle(Joint& joint, int kinematic, bool may_turn);
+
+  Bodies& bodies_;
+  double window_;
+  bool parallel_;
+  BodyOrder order_;
+};
 
 /// Index of the side whose substeps carry the force in the parallel form: the one with the longer
 /// steps.
