@@ -329,10 +329,11 @@ std::optional<Failed> Body::respond(const Advance& request, const Substeps& grid
   const Window window{request, grid, partners_};
   const std::size_t width = describe().ports[port].geometry.points.size();
   displacement.clear();
-  if (std::optional<Failed> failed = interior_->begin(window)) return failed;
+  if (auto failed = patiently([&] { return interior_->begin(window); })) return failed;
   interior_->set_off(window);
   for (int i = 1; i <= grid.count; ++i) {
-    if (std::optional<Failed> failed = interior_->step(window, i)) return failed;
+    if (auto failed = patiently([&] { return interior_->step(window, i); })) return failed;
+    report_progress();
     const double* u = interior_->see(window, grid.time(i), false).u.data() + first_[port];
     displacement.insert(displacement.end(), u, u + width);
   }

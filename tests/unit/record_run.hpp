@@ -89,6 +89,7 @@ class HandMadeRun {
     end.status = "completed";
     end.time = 3.0;
     end.state_hash = 0xabcULL;
+    end.body_hashes = {0x1ULL, 0x2ULL};
     end.windows = index;
     end.contact_windows = 20;
     end.exchanges = 142;

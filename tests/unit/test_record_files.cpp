@@ -206,6 +206,7 @@ TEST_F(RecordFiles, SummaryHoldsMeasuresTimingHashAndClosedForm) {
   EXPECT_EQ(summary_file.status(), "completed");
   EXPECT_EQ(json["title"], "two bars");
   EXPECT_EQ(json["state_hash"], "0000000000000abc");
+  EXPECT_EQ(json["body_hashes"]["right"], "0000000000000002");
   EXPECT_EQ(json["measures"]["schwarz.iterations_max"], 2.0);
   EXPECT_EQ(json["measures"].size(), recorder.measures().values.size());
   EXPECT_EQ(json["timing"]["compute_s"]["right"], 0.25);
