@@ -1,9 +1,10 @@
-#include "base/index.hpp"
 #include "contract/field.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
+
+#include "base/index.hpp"
 
 namespace abut {
 
