@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 MIB = 1024.0 * 1024.0
+LOADED_MIB = 4.0
 
 
 @dataclass
@@ -80,5 +81,5 @@ def run(command: list[str], limit: float, stop: threading.Event) -> Ended:
         log.seek(0)
         said = log.read().decode("utf-8", "replace").strip()
     memory = sum(peaks.values()) / MIB
-    # No program that has come to life is smaller: this one was seen only as it was loaded.
-    return Ended(code, said, memory if memory > 1.0 else None)
+    # With its libraries no program is smaller: this one was seen only as they were loaded.
+    return Ended(code, said, memory if memory > LOADED_MIB else None)
