@@ -20,7 +20,8 @@ const char* const damaged = "The file is cut short or damaged: write it again.";
 }  // namespace
 
 NetcdfFile::NetcdfFile(const std::string& path) : path_(path) {
-  check_input_file(path, index(0.5 * machine_memory()), "Check the path of the mesh.");
+  check_input_file(path, static_cast<std::size_t>(0.5 * machine_memory()),
+                   "Check the path of the mesh.");
   // Deflate packs a byte of zeros in 1/1032 byte at best: a header that promises more lies.
   most_ = static_cast<std::uint64_t>(std::filesystem::file_size(path)) * 1032;
   check(nc_open(path.c_str(), NC_NOWRITE, &id_), "is not a NetCDF file, so no Exodus file");
