@@ -27,6 +27,7 @@ const Want& want_of(const Advance& request, std::size_t port) {
 /// Of a port's values, those of the points that are listed; all, where none is.
 void append(std::span<const double> port, const std::vector<std::int32_t>& points, std::size_t dim,
             std::vector<double>& to) {
+  if (points.empty() && port.size() == 1) return to.push_back(port[0]);
   if (points.empty()) to.insert(to.end(), port.begin(), port.end());
   for (const std::int32_t point : points) {
     const std::span<const double> one = port.subspan(index(point) * dim, dim);
@@ -63,9 +64,10 @@ Body::Body(std::unique_ptr<Interior> interior, std::function<void()> progress)
   for (const Port& port : describe().ports) {
     first_.push_back(values);
     values += port.geometry.points.size();
+    const std::size_t dim = index(port.geometry.dim);
+    sweeps_.push_back({std::vector<double>(dim), std::vector<double>(dim)});
   }
   partners_.resize(first_.size());
-  sweeps_.resize(first_.size());
 }
 
 void Body::meet(int port, const PortGeometry& partner, const ContactLaw& law) {
@@ -240,12 +242,15 @@ void Body::widen_sweep() {
   for (std::size_t p = 0; p < sweeps_.size(); ++p) {
     const PortGeometry& geometry = describe().ports[p].geometry;
     const double* u = seen_->u.data() + first_[p];
-    Sweep& sweep = sweeps_[p];
-    const std::size_t dim = sweep.lower.size();
-    for (std::size_t k = 0; k < geometry.points.size() && dim > 0; ++k) {
-      const double at = geometry.points[k] + u[k];
-      sweep.lower[k % dim] = std::min(sweep.lower[k % dim], at);
-      sweep.upper[k % dim] = std::max(sweep.upper[k % dim], at);
+    const double* place = geometry.points.data();
+    double* lower = sweeps_[p].lower.data();
+    double* upper = sweeps_[p].upper.data();
+    for (const double* end = place + geometry.points.size(); place < end; place += geometry.dim) {
+      for (int i = 0; i < geometry.dim; ++i) {
+        const double at = place[i] + *u++;
+        lower[i] = std::min(lower[i], at);
+        upper[i] = std::max(upper[i], at);
+      }
     }
   }
 }

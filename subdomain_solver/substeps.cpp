@@ -7,11 +7,14 @@
 namespace abut {
 
 RecordClock::RecordClock(const Advance& request, int substeps)
-    : window_(request.window), records_(std::max(1, request.records)), substeps_(substeps) {}
+    : window_(request.window), records_(std::max(1, request.records)), substeps_(substeps) {
+  next();
+}
 
-int RecordClock::substep() const {
-  if (done()) return -1;
-  return count_within(static_cast<double>(next_) * substeps_ / records_, 0, substeps_);
+void RecordClock::next() {
+  ++next_;
+  due_ =
+      done() ? -1 : count_within(static_cast<double>(next_) * substeps_ / records_, 0, substeps_);
 }
 
 double RecordClock::time() const {

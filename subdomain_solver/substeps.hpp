@@ -11,14 +11,15 @@ class RecordClock {
  public:
   RecordClock(const Advance& request, int substeps);
   bool done() const { return next_ > records_; }
-  int substep() const;  // after which the next record is due; -1: no more
+  int substep() const { return due_; }  // after which the next record is due; -1: no more
   double time() const;
-  void next() { ++next_; }
+  void next();
 
  private:
   TimeWindow window_;
   int records_, substeps_;
-  int next_ = 1;
+  int next_ = 0;
+  int due_ = -1;  // kept: every substep asks for it
 };
 
 }  // namespace abut
