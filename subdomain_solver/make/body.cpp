@@ -140,13 +140,6 @@ void check_layers(const BodySpec& spec, const BarProperties& bar, const Place& p
 
 }  // namespace
 
-std::optional<BarProperties> bar_properties(const BodySpec& spec, const std::string& port) {
-  if (std::holds_alternative<BarPairSpec>(spec.model))
-    return pair_properties(spec)[port == "left_tip" ? 0 : 1];
-  if (spec.is_bar()) return fe_bar_properties(spec);
-  return std::nullopt;
-}
-
 BarProperties fe_bar_properties(const BodySpec& spec) {
   const BarMeshSpec& mesh = std::get<BarMeshSpec>(std::get<FeModelSpec>(spec.model).mesh);
   const LinearElasticSpec& material = std::get<LinearElasticSpec>(*spec.material);

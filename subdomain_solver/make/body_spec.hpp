@@ -165,9 +165,7 @@ struct BodySpec {
   void idle_of_integrators(Fields& f) const;
 };
 
-/// Properties of the bar on which a port lies; empty for a wall. For closed forms and estimates.
-std::optional<BarProperties> bar_properties(const BodySpec& spec, const std::string& port);
-/// The same of a body that is one bar.
+/// Properties of a body that is one bar. For closed forms and estimates.
 BarProperties fe_bar_properties(const BodySpec& spec);
 /// Left and right bar of a pair.
 std::array<BarProperties, 2> pair_properties(const BodySpec& spec);
