@@ -101,14 +101,13 @@ LiftedLoad::LiftedLoad(std::unique_ptr<const Load> load, const NodalMap& map, st
     : load_(std::move(load)), map_(map), nodal_(nodal) {}
 
 void LiftedLoad::add(double time, std::span<const double> q, Vector& force) const {
-  std::vector<double> u;
   if (load_->follows()) {
-    u.resize(nodal_);
-    map_.displacement(q, u);
+    u_.resize(nodal_);
+    map_.displacement(q, u_);
   }
-  Vector on_nodes = Vector::Zero(static_cast<Eigen::Index>(nodal_));
-  load_->add(time, u, on_nodes);
-  map_.lift(q, {on_nodes.data(), nodal_}, force);
+  on_nodes_.setZero(static_cast<Eigen::Index>(nodal_));
+  load_->add(time, u_, on_nodes_);
+  map_.lift(q, {on_nodes_.data(), nodal_}, force);
 }
 
 }  // namespace abut

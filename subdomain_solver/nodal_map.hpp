@@ -54,6 +54,8 @@ class LiftedLoad final : public Load {
   std::unique_ptr<const Load> load_;
   const NodalMap& map_;
   std::size_t nodal_;
+  mutable std::vector<double> u_;
+  mutable Vector on_nodes_;
 };
 
 }  // namespace abut

@@ -36,26 +36,25 @@ NodalReactions::NodalReactions(const FeModel& model, const Problem& problem,
 }
 
 /// Forces on ports are among the problem's loads.
-Vector NodalReactions::forces(const Motion& motion, double time, const Vector&) const {
-  const Vector inertia = mass_ * integrator_.acceleration(motion, time, step_);
+void NodalReactions::forces(const Motion& motion, double time, const Vector&, Vector& out) {
+  integrator_.acceleration(motion, time, step_, acceleration_);
+  inertia_.noalias() = mass_ * acceleration_;
   const Vector& external = problem_.external_force(time, motion.q);
-  Vector forces = Vector::Zero(external.size());
+  out.setZero(external.size());
   int k = 0;
   for (const Prescribed& p : problem_.supports)
-    forces(p.dof) = inertia(k++) + motion.force[index(p.dof)] - external(p.dof);
-  return forces;
+    out(p.dof) = inertia_(k++) + motion.force[index(p.dof)] - external(p.dof);
 }
 
-std::vector<double> NodalReactions::sums(const Motion& motion, double time,
-                                         const Vector& on_ports) const {
-  const Vector forces = this->forces(motion, time, on_ports);
-  std::vector<double> sums;
+void NodalReactions::sums(const Motion& motion, double time, const Vector& on_ports,
+                          std::vector<double>& out) {
+  forces(motion, time, on_ports, forces_);
+  out.clear();
   for (const HeldCoordinates& constraint : constraints_) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const int dof : constraint.dofs) sum += forces(dof) * direction_of(model_, dof);
-    sums.insert(sums.end(), sum.data(), sum.data() + model_.mesh().dim);
+    for (const int dof : constraint.dofs) sum += forces_(dof) * direction_of(model_, dof);
+    out.insert(out.end(), sum.data(), sum.data() + model_.mesh().dim);
   }
-  return sums;
 }
 
 std::vector<std::string> reaction_columns(int dim,

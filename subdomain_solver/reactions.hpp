@@ -21,11 +21,12 @@ class Reactions {
   virtual ~Reactions() = default;
   /// [N] (dofs of the mesh) in the nodes' own frames, zero where nothing is held, at a time [s] of
   /// the motion. `on_ports`: forces on ports then, [N] (dofs of the mesh) alike.
-  virtual Vector forces(const Motion& motion, double time, const Vector& on_ports) const = 0;
+  virtual void forces(const Motion& motion, double time, const Vector& on_ports, Vector& out) = 0;
   /// Their sum for every constraint, [N] (constraints, dim) along the axes of space. Bodies of
   /// revolution: over the whole circumference, radial forces added as if they had one direction.
-  virtual std::vector<double> sums(const Motion& motion, double time,
-                                   const Vector& on_ports) const = 0;
+  /// Records ask for them: nothing is allocated once buffers have grown.
+  virtual void sums(const Motion& motion, double time, const Vector& on_ports,
+                    std::vector<double>& out) = 0;
 };
 
 /// Those of a body whose coordinates are its nodes' displacements.
@@ -35,9 +36,9 @@ class NodalReactions final : public Reactions {
   /// this.
   NodalReactions(const FeModel& model, const Problem& problem, const Integrator& integrator,
                  const SparseMatrix& mass, double step, std::vector<HeldCoordinates> constraints);
-  Vector forces(const Motion& motion, double time, const Vector& on_ports) const override;
-  std::vector<double> sums(const Motion& motion, double time,
-                           const Vector& on_ports) const override;
+  void forces(const Motion& motion, double time, const Vector& on_ports, Vector& out) override;
+  void sums(const Motion& motion, double time, const Vector& on_ports,
+            std::vector<double>& out) override;
 
  private:
   const FeModel& model_;
@@ -46,6 +47,7 @@ class NodalReactions final : public Reactions {
   SparseMatrix mass_;  // (supports, dofs)
   double step_;
   std::vector<HeldCoordinates> constraints_;
+  Vector acceleration_, inertia_, forces_;
 };
 
 /// Direction in space of a coordinate of the mesh's model.

@@ -231,20 +231,20 @@ std::optional<Failed> SolidInterior::record(BodyRecord& r) {
   for (Eigen::Index k = 0; k < momentum_.size(); ++k)
     r.momentum[index(k) % r.momentum.size()] += momentum_(k);
   angular_momentum(parts_.model->mesh(), u_, momentum_, r.angular_momentum);
-  r.columns = reactions();
+  reactions(r.columns);
   return std::nullopt;
 }
 
 /// Forces on ports now, as those of nodes (nodes, dim) in their own frames [N].
-Vector SolidInterior::forces_on_ports() const {
-  Vector all = Vector::Zero(static_cast<Eigen::Index>(nodal_values()));
+const Vector& SolidInterior::forces_on_ports() {
+  Vector& all = on_ports_;
+  all.setZero(static_cast<Eigen::Index>(nodal_values()));
   if (port_forces_ == nullptr || !port_forces_->acts()) return all;
-  std::vector<double> values;
-  port_forces_->at(state_.time, values);
+  port_forces_->at(state_.time, now_);
   std::size_t k = 0;
   for (const NamedNodes& port : ports_) {
     for (std::int32_t node : port.nodes) {
-      for (int i = 0; i < description_.dim; ++i) all(node * description_.dim + i) += values[k++];
+      for (int i = 0; i < description_.dim; ++i) all(node * description_.dim + i) += now_[k++];
     }
   }
   parts_.model->to_frames({all.data(), nodal_values()});
@@ -252,10 +252,14 @@ Vector SolidInterior::forces_on_ports() const {
 }
 
 /// [N] (constraints, dim) along the axes of space; none before the begin.
-std::vector<double> SolidInterior::reactions() const {
-  if (!parts_.reactions) return {};
-  if (!state_.begun) return std::vector<double>(description_.columns.size(), 0.0);
-  return parts_.reactions->sums(state_.motion, state_.time, forces_on_ports());
+void SolidInterior::reactions(std::vector<double>& out) {
+  if (!parts_.reactions) {
+    out.clear();
+  } else if (!state_.begun) {
+    out.assign(description_.columns.size(), 0.0);
+  } else {
+    parts_.reactions->sums(state_.motion, state_.time, forces_on_ports(), out);
+  }
 }
 
 std::vector<double> SolidInterior::measure() {
@@ -264,8 +268,10 @@ std::vector<double> SolidInterior::measure() {
   parts_.map->displacement(state_.motion.q, q);
   std::vector<double> out = solid_measures(
       *parts_.model, {parts_.deforms, q, v_, state_.motion.history, energy(), momentum_}, ports_);
+  std::vector<double> sums;
+  reactions(sums);
   for (const std::vector<double>& more :
-       {reaction_measures(description_.dim, reactions()),
+       {reaction_measures(description_.dim, sums),
         parts_.scheme.integrator->measure(state_.motion),
         validity_measures(*parts_.model, parts_.deforms, u_, state_.motion.stored, state_.turned)})
     out.insert(out.end(), more.begin(), more.end());
@@ -283,7 +289,7 @@ std::vector<FieldValues> SolidInterior::fields() {
   if (!parts_.reactions) return values;
   Vector forces = Vector::Zero(static_cast<Eigen::Index>(nodal_values()));
   if (state_.begun)
-    forces = parts_.reactions->forces(state_.motion, state_.time, forces_on_ports());
+    parts_.reactions->forces(state_.motion, state_.time, forces_on_ports(), forces);
   parts_.model->to_space({forces.data(), nodal_values()});
   values.push_back(in_space(span_of(forces), description_.dim));
   return values;

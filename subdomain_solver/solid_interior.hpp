@@ -78,8 +78,8 @@ class SolidInterior final : public Interior {
   void see_nodes();
   void meet_port_forces(double time);
   void follow_ports(double time);
-  Vector forces_on_ports() const;
-  std::vector<double> reactions() const;
+  const Vector& forces_on_ports();
+  void reactions(std::vector<double>& out);
 
   Parts parts_;
   SparseMatrix mass_;  // [kg] of the nodes, in the form of the scheme
@@ -94,6 +94,7 @@ class SolidInterior final : public Interior {
   Vector momentum_;                   // [kg m/s]
   std::vector<double> before_, now_;  // [m], [N] (port values)
   Vector change_;                     // [N] (coordinates)
+  Vector on_ports_;                   // [N] (nodes, dim)
 };
 
 }  // namespace abut

@@ -29,7 +29,8 @@ void CellKernel::add_hourglass(const CellGeometry& cell, std::span<const double>
   for (int i = 0; i < cell.dim; ++i) {
     const double* first = cell.hourglass.data() + (alike ? 0 : index(i) * n * n);
     const Eigen::Map<const Eigen::MatrixXd> k(first, cell.nodes, cell.nodes);
-    const Eigen::RowVectorXd own = moved.row(i) * k;
+    Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 8> own;  // cells are linear
+    own.noalias() = moved.row(i) * k;
     out.stored += 0.5 * own.dot(moved.row(i));
     force.row(i) += own;
     if (want != Need::tangent) continue;
@@ -219,12 +220,13 @@ void CellKernel::couple_fields(Eigen::MatrixXd& tangent) {
   }
   swelling_ /= volume_;
   const Eigen::Map<const Eigen::MatrixXd> fields(fields_.data(), points, count);
-  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(count, count);
+  stiffness_.setZero(count, count);
   for (Eigen::Index p = 0; p < points; ++p) {
     const double own = points_[index(p)].stiffness;
-    stiffness += own * fields.row(p).transpose() * fields.row(p);
+    stiffness_.noalias() += own * fields.row(p).transpose() * fields.row(p);
   }
-  coupling_ += 0.5 * swelling_ * stiffness;
+  added_.noalias() = 0.5 * swelling_ * stiffness_;
+  coupling_ += added_;
   tangent.noalias() += coupling_ * swelling_.transpose();
   tangent.noalias() += swelling_ * coupling_.transpose();
 }

@@ -108,7 +108,8 @@ class CellKernel {
       fields_;                // (fields, points) of the cell's volume change; empty: pointwise
   Eigen::VectorXd amounts_;   // (fields) what of each there is
   Eigen::MatrixXd swelling_;  // (nodes x dim, fields) their derivatives by displacement
-  Eigen::MatrixXd coupling_;  // work space (nodes x dim, fields)
+  Eigen::MatrixXd coupling_, added_;  // work space (nodes x dim, fields)
+  Eigen::MatrixXd stiffness_;         // [J] (fields, fields) second derivatives by theta
   Eigen::VectorXd entries_;   // work space (3 x points)
   Eigen::MatrixXd scaled_;    // work space (nodes, 3 x points)
   Eigen::MatrixXd part_;      // work space (nodes, nodes)

@@ -13,6 +13,14 @@ namespace abut {
 
 namespace {
 
+// Parts of one node, and what it shares with all nodes of a cell: bounded, so that they need no
+// allocation.
+constexpr int most_values = 3 * 27;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+using Axes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, most_values>;
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_values, 3>;
+
 /// Nodes of one cell.
 std::span<const std::int32_t> nodes_of(const CellBlock& cells, int cell) {
   const std::size_t n = index(cells.element->nodes);
@@ -314,7 +322,8 @@ void FeModel::gather(const CellBlock& cells, int cell, std::span<const double> q
     for (int i = 0; i < dim; ++i) u.push_back(q[index(node * dim + i)]);
     if (const Matrix3* axes = frame(node)) {
       Eigen::Map<Vector> local(u.data() + u.size() - index(dim), dim);
-      local = (axes->topLeftCorner(dim, dim) * local).eval();
+      const SmallVector given = local;
+      local.noalias() = axes->topLeftCorner(dim, dim) * given;
     }
   }
 }
@@ -364,8 +373,13 @@ void FeModel::rotate(std::span<double> values, bool into_frames) const {
   const int dim = mesh_.dim;
   for (const NodeFrame& f : frames_) {
     Eigen::Map<Vector> local(values.data() + index(f.node * dim), dim);
-    const Eigen::MatrixXd axes = f.axes.topLeftCorner(dim, dim);
-    local = (into_frames ? (axes.transpose() * local).eval() : (axes * local).eval());
+    const Axes axes = f.axes.topLeftCorner(dim, dim);
+    const SmallVector given = local;
+    if (into_frames) {
+      local.noalias() = axes.transpose() * given;
+    } else {
+      local.noalias() = axes * given;
+    }
   }
 }
 
@@ -379,16 +393,20 @@ void FeModel::turn(std::span<const std::int32_t> nodes, Eigen::VectorXd* force,
     const int at = dim * a++;
     const Matrix3* f = frame(node);
     if (f == nullptr) continue;
-    const Eigen::MatrixXd axes = f->topLeftCorner(dim, dim);
-    if (force != nullptr)
-      force->segment(at, dim) = (axes.transpose() * force->segment(at, dim)).eval();
+    const Axes axes = f->topLeftCorner(dim, dim);
+    if (force != nullptr) {
+      const SmallVector given = force->segment(at, dim);
+      force->segment(at, dim).noalias() = axes.transpose() * given;
+    }
     if (matrix == nullptr) continue;
-    matrix->middleRows(at, dim) = (axes.transpose() * matrix->middleRows(at, dim)).eval();
-    matrix->middleCols(at, dim) = (matrix->middleCols(at, dim) * axes).eval();
+    const Rows rows = matrix->middleRows(at, dim);
+    matrix->middleRows(at, dim).noalias() = axes.transpose() * rows;
+    const Columns columns = matrix->middleCols(at, dim);
+    matrix->middleCols(at, dim).noalias() = columns * axes;
   }
 }
 
-void FeModel::add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::MatrixXd local,
+void FeModel::add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::MatrixXd& local,
                              SparseMatrix& tangent) const {
   const int dim = mesh_.dim;
   turn(nodes, nullptr, &local);

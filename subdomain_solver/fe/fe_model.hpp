@@ -54,8 +54,9 @@ class FeModel final : public Model {
   void to_space(std::span<double> values) const { rotate(values, false); }
   void to_frames(std::span<double> values) const { rotate(values, true); }
 
-  /// Adds a matrix of some nodes of one cell (nodes x dim), in the axes of space, to a tangent.
-  void add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::MatrixXd local,
+  /// Adds a matrix of some nodes of one cell (nodes x dim), in the axes of space, to a tangent;
+  /// turns it into the nodes' frames.
+  void add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::MatrixXd& local,
                       SparseMatrix& tangent) const;
 
   /// Tangent of one cell at q (nodes x dim), in the axes of space. False: inadmissible.

@@ -13,7 +13,8 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 
 /// Normal times area per unit of reference area: cross product of the tangents, or the tangent
 /// turned clockwise. Columns of `tangents` (3, facet dimension).
-Eigen::Vector3d directed_area(const Eigen::Matrix<double, 3, Eigen::Dynamic>& tangents) {
+template <class Tangents>
+Eigen::Vector3d directed_area(const Tangents& tangents) {
   if (tangents.cols() == 2)
     return Eigen::Vector3d(tangents.col(0)).cross(Eigen::Vector3d(tangents.col(1)));
   return {tangents(1, 0), -tangents(0, 0), 0.0};
@@ -27,8 +28,8 @@ double depth(const FeModel& model, double radius) {
   return model.options().depth(model.mesh().dim, radius);
 }
 
-/// Adds forces on nodes given in the axes of space.
-void add_nodal(const FeModel& model, Vector nodal, Vector& force) {
+/// Adds forces on nodes given in the axes of space; turns them.
+void add_nodal(const FeModel& model, Vector& nodal, Vector& force) {
   model.to_frames({nodal.data(), index(nodal.size())});
   force += nodal;
 }
@@ -57,8 +58,8 @@ SidePoints SidePoints::of(const FeModel& model, const std::string& side) {
       const Eigen::Vector3d position = x * Eigen::Map<const Vector>(n, table.nodes);
       point.position = {position(0), position(1), position(2)};
       const Eigen::Vector3d end(facet.local == 0 ? -1.0 : 1.0, 0.0, 0.0);  // of a line
-      const Eigen::Vector3d area =
-          dim == 1 ? end : directed_area(x * Eigen::Map<const Rows>(dn, table.nodes, table.dim));
+      const Eigen::MatrixXd tangents = x * Eigen::Map<const Rows>(dn, table.nodes, table.dim);
+      const Eigen::Vector3d area = dim == 1 ? end : directed_area(tangents);
       point.area = area.norm() * point.weight * depth(model, position(0));
       point.normal = area.normalized();
       f.points.push_back(std::move(point));
@@ -83,7 +84,8 @@ BodyForce::BodyForce(const FeModel& model, VectorField acceleration, Mass mass)
 void BodyForce::add(double time, std::span<const double>, Vector& force) const {
   const Mesh& mesh = model_.mesh();
   const int dim = mesh.dim;
-  Vector b = Vector::Zero(model_.dofs());
+  Vector& b = nodal_;
+  b.setZero(model_.dofs());
   for (int node = 0; node < mesh.node_count(); ++node) {
     std::array<double, 3> at = {0.0, 0.0, 0.0};
     for (int i = 0; i < dim; ++i) at[index(i)] = mesh.points[index(node * dim + i)];
@@ -93,7 +95,7 @@ void BodyForce::add(double time, std::span<const double>, Vector& force) const {
   if (mass_ == Mass::lumped) {
     force += model_.lumped_mass().cwiseProduct(b);
   } else {
-    force += model_.mass() * b;
+    force.noalias() += model_.mass() * b;
   }
 }
 
@@ -102,7 +104,8 @@ Traction::Traction(const FeModel& model, const std::string& side, VectorField tr
 
 void Traction::add(double time, std::span<const double>, Vector& force) const {
   const int dim = model_.mesh().dim;
-  Vector nodal = Vector::Zero(model_.dofs());
+  Vector& nodal = nodal_;
+  nodal.setZero(model_.dofs());
   for (const SidePoints::FacetPoints& facet : side_.facets) {
     for (const SidePoints::Point& point : facet.points) {
       for (int i = 0; i < dim; ++i) {
@@ -112,7 +115,7 @@ void Traction::add(double time, std::span<const double>, Vector& force) const {
       }
     }
   }
-  add_nodal(model_, std::move(nodal), force);
+  add_nodal(model_, nodal, force);
 }
 
 Pressure::Pressure(const FeModel& model, const std::string& side, ScalarField pressure,
@@ -126,39 +129,35 @@ Pressure::Pressure(const FeModel& model, const std::string& side, ScalarField pr
                      "Leave follows out: the pressure acts on the reference area.");
 }
 
-/// Present positions of a facet's nodes (3, nodes).
-Eigen::MatrixXd Pressure::present(const SidePoints::FacetPoints& facet,
-                                  std::span<const double> q) const {
+/// Present positions of a facet's nodes.
+void Pressure::find_present(const SidePoints::FacetPoints& facet, std::span<const double> u) const {
   const Mesh& mesh = model_.mesh();
   const int dim = mesh.dim;
-  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(3, static_cast<Eigen::Index>(facet.nodes.size()));
+  present_.setZero(3, static_cast<Eigen::Index>(facet.nodes.size()));
   for (std::size_t a = 0; a < facet.nodes.size(); ++a) {
     for (int i = 0; i < dim; ++i) {
       const std::size_t at = index(facet.nodes[a] * dim + i);
-      x(i, static_cast<Eigen::Index>(a)) = mesh.points[at] + q[at];
+      present_(i, static_cast<Eigen::Index>(a)) = mesh.points[at] + u[at];
     }
   }
-  return x;
 }
 
 void Pressure::add(double time, std::span<const double> q, Vector& force) const {
   const int dim = model_.mesh().dim;
-  std::vector<double> u;
   if (follows_) {
-    u.assign(q.begin(), q.end());
-    model_.to_space(u);
+    u_.assign(q.begin(), q.end());
+    model_.to_space(u_);
   }
-  Vector nodal = Vector::Zero(model_.dofs());
+  Vector& nodal = nodal_;
+  nodal.setZero(model_.dofs());
   for (const SidePoints::FacetPoints& facet : side_.facets) {
-    const Eigen::MatrixXd x = follows_ ? present(facet, u) : Eigen::MatrixXd();
+    if (follows_) find_present(facet, u_);
     const int nodes = static_cast<int>(facet.nodes.size());
     for (const SidePoints::Point& point : facet.points) {
       Eigen::Vector3d area = point.area * point.normal;
       if (follows_) {
-        const Rows dn = Eigen::Map<const Rows>(point.dn.data(), nodes,
-                                               static_cast<int>(point.dn.size()) / nodes);
-        const double radius = x.row(0).dot(Eigen::Map<const Vector>(point.n.data(), nodes));
-        area = directed_area(x * dn) * point.weight * depth(model_, radius);
+        const double radius = present_.row(0).dot(Eigen::Map<const Vector>(point.n.data(), nodes));
+        area = directed_area(tangents_at(point)) * point.weight * depth(model_, radius);
       }
       const Eigen::Vector3d f = -value(pressure_, point.position, time) * area;
       for (std::size_t a = 0; a < facet.nodes.size(); ++a) {
@@ -166,43 +165,55 @@ void Pressure::add(double time, std::span<const double> q, Vector& force) const 
       }
     }
   }
-  add_nodal(model_, std::move(nodal), force);
+  add_nodal(model_, nodal, force);
+}
+
+/// Derivatives of the present positions at a point.
+Pressure::Tangents Pressure::tangents_at(const SidePoints::Point& point) const {
+  const int nodes = static_cast<int>(point.n.size());
+  const int along = static_cast<int>(point.dn.size()) / nodes;
+  const Eigen::Map<const Rows> dn(point.dn.data(), nodes, along);
+  return present_ * dn;
 }
 
 /// -df/dq of f_a = -p N_a (x,1 cross x,2) w; in the plane of (x2,1 , -x1,1) w depth.
 void Pressure::add_tangent(double time, std::span<const double> q, SparseMatrix& tangent) const {
   if (!follows_) return;
   const int dim = model_.mesh().dim;
-  std::vector<double> u(q.begin(), q.end());
-  model_.to_space(u);
+  u_.assign(q.begin(), q.end());
+  model_.to_space(u_);
   for (const SidePoints::FacetPoints& facet : side_.facets) {
-    const Eigen::MatrixXd x = present(facet, u);
-    const int nodes = static_cast<int>(facet.nodes.size());
-    Eigen::MatrixXd local = Eigen::MatrixXd::Zero(nodes * dim, nodes * dim);
-    for (const SidePoints::Point& point : facet.points) {
-      const int along = static_cast<int>(point.dn.size()) / nodes;
-      const Rows dn = Eigen::Map<const Rows>(point.dn.data(), nodes, along);
-      const Eigen::Matrix<double, 3, Eigen::Dynamic> tangents = x * dn;
-      const double radius = x.row(0).dot(Eigen::Map<const Vector>(point.n.data(), nodes));
-      const double p =
-          value(pressure_, point.position, time) * point.weight * depth(model_, radius);
-      for (int b = 0; b < nodes; ++b) {
-        for (int k = 0; k < dim; ++k) {
-          Eigen::Vector3d change = Eigen::Vector3d::Zero();  // of the directed area
-          for (int d = 0; d < along; ++d) {
-            Eigen::Matrix<double, 3, Eigen::Dynamic> moved = tangents;
-            moved.col(d) = Eigen::Vector3d::Unit(k) * dn(b, d);
-            change += directed_area(moved);
-          }
-          for (int a = 0; a < nodes; ++a) {
-            for (int i = 0; i < dim; ++i)
-              local(a * dim + i, b * dim + k) += p * point.n[index(a)] * change(i);
-          }
-        }
+    find_present(facet, u_);
+    const int size = static_cast<int>(facet.nodes.size()) * dim;
+    local_.setZero(size, size);
+    for (const SidePoints::Point& point : facet.points) add_stiffness(point, time);
+    transposed_ = local_.transpose();
+    local_ = 0.5 * (local_ + transposed_);
+    model_.add_to_tangent(facet.nodes, local_, tangent);
+  }
+}
+
+/// A point's part of the stiffness of its facet, whose present positions are known.
+void Pressure::add_stiffness(const SidePoints::Point& point, double time) const {
+  const int dim = model_.mesh().dim, nodes = static_cast<int>(point.n.size());
+  const int along = static_cast<int>(point.dn.size()) / nodes;
+  const Eigen::Map<const Rows> dn(point.dn.data(), nodes, along);
+  const Tangents tangents = tangents_at(point);
+  const double radius = present_.row(0).dot(Eigen::Map<const Vector>(point.n.data(), nodes));
+  const double p = value(pressure_, point.position, time) * point.weight * depth(model_, radius);
+  for (int b = 0; b < nodes; ++b) {
+    for (int k = 0; k < dim; ++k) {
+      Eigen::Vector3d change = Eigen::Vector3d::Zero();  // of the directed area
+      for (int d = 0; d < along; ++d) {
+        Tangents moved = tangents;
+        moved.col(d) = Eigen::Vector3d::Unit(k) * dn(b, d);
+        change += directed_area(moved);
+      }
+      for (int a = 0; a < nodes; ++a) {
+        for (int i = 0; i < dim; ++i)
+          local_(a * dim + i, b * dim + k) += p * point.n[index(a)] * change(i);
       }
     }
-    local = (0.5 * (local + local.transpose())).eval();
-    model_.add_to_tangent(facet.nodes, local, tangent);
   }
 }
 

@@ -48,6 +48,7 @@ class BodyForce final : public Load {
   const FeModel& model_;
   VectorField acceleration_;
   Mass mass_;
+  mutable Vector nodal_;  // [m/s^2] (dofs)
 };
 
 /// Dead traction on a side: force per reference area [Pa], in the axes of space.
@@ -61,6 +62,7 @@ class Traction final : public Load {
   const FeModel& model_;
   SidePoints side_;
   VectorField traction_;
+  mutable Vector nodal_;  // [N] (dofs)
 };
 
 /// Pressure on a side [Pa], positive towards the body. Dead: along the reference normal, per
@@ -75,12 +77,20 @@ class Pressure final : public Load {
   void add_tangent(double time, std::span<const double> q, SparseMatrix& tangent) const override;
 
  private:
-  Eigen::MatrixXd present(const SidePoints::FacetPoints& facet, std::span<const double> q) const;
+  using Tangents = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 2>;
+
+  Tangents tangents_at(const SidePoints::Point& point) const;
+  void find_present(const SidePoints::FacetPoints& facet, std::span<const double> u) const;
+  void add_stiffness(const SidePoints::Point& point, double time) const;
 
   const FeModel& model_;
   SidePoints side_;
   ScalarField pressure_;
   bool follows_;
+  mutable std::vector<double> u_;             // [m] (dofs) in the axes of space
+  mutable Vector nodal_;                      // [N] (dofs)
+  mutable Eigen::Matrix3Xd present_;          // [m] (3, nodes of a facet)
+  mutable Eigen::MatrixXd local_, transposed_;  // [N/m] of a facet
 };
 
 }  // namespace abut

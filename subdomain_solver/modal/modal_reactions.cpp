@@ -60,36 +60,39 @@ ModalReactions::ModalReactions(Body body, const std::vector<int>& supports,
 Vector ModalReactions::at_rest(const Vector& force) const {
   Vector u = Vector::Zero(force.size());
   if (held_.count() == 0) return u;
-  Vector free;
-  const bool solved = solver_->solve(held_.pick(force), free);
+  Vector on_free, free;
+  held_.pick(force, on_free);
+  const bool solved = solver_->solve(on_free, free);
   ABUT_ASSERT(solved);  // it has been factored
   held_.add(free, u);
   return u;
 }
 
 /// What the stiffness carries to the supports: loads less inertia [N] (dofs).
-Vector ModalReactions::carried(const Motion& motion, double time, const Vector& on_ports) const {
-  Vector force = on_ports;
-  for (const std::unique_ptr<Load>& load : body_.loads) load->add(time, {}, force);
-  const Vector rates = body_.integrator.acceleration(motion, time, body_.step);
-  std::vector<double> acceleration(index(force.size()));
-  body_.map.acceleration(motion.q, motion.v, span_of(rates), acceleration);
-  return force - body_.mass * view(acceleration);
+const Vector& ModalReactions::carried(const Motion& motion, double time, const Vector& on_ports) {
+  force_ = on_ports;
+  for (const std::unique_ptr<Load>& load : body_.loads) load->add(time, {}, force_);
+  body_.integrator.acceleration(motion, time, body_.step, rates_);
+  acceleration_.resize(index(force_.size()));
+  body_.map.acceleration(motion.q, motion.v, span_of(rates_), acceleration_);
+  force_.noalias() -= body_.mass * view(acceleration_);
+  return force_;
 }
 
-Vector ModalReactions::forces(const Motion& motion, double time, const Vector& on_ports) const {
-  const Vector force = carried(motion, time, on_ports);
+void ModalReactions::forces(const Motion& motion, double time, const Vector& on_ports,
+                            Vector& out) {
+  const Vector& force = carried(motion, time, on_ports);
   const Vector whole = stiffness_ * at_rest(force) - force;
-  Vector forces = Vector::Zero(force.size());
-  for (const int dof : supports_) forces(dof) = whole(dof);
-  return forces;
+  out.setZero(force.size());
+  for (const int dof : supports_) out(dof) = whole(dof);
 }
 
 /// By Betti's theorem: no solve, for records in every window.
-std::vector<double> ModalReactions::sums(const Motion& motion, double time,
-                                         const Vector& on_ports) const {
-  const Vector sums = -(shapes_.transpose() * carried(motion, time, on_ports));
-  return {sums.data(), sums.data() + sums.size()};
+void ModalReactions::sums(const Motion& motion, double time, const Vector& on_ports,
+                          std::vector<double>& out) {
+  sums_.noalias() = shapes_.transpose() * carried(motion, time, on_ports);
+  sums_ = -sums_;
+  store(sums_, out);
 }
 
 }  // namespace abut

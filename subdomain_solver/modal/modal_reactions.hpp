@@ -28,12 +28,12 @@ class ModalReactions final : public Reactions {
   /// singular beyond rigid motions.
   ModalReactions(Body body, const std::vector<int>& supports,
                  const std::vector<HeldCoordinates>& constraints, const std::string& where);
-  Vector forces(const Motion& motion, double time, const Vector& on_ports) const override;
-  std::vector<double> sums(const Motion& motion, double time,
-                           const Vector& on_ports) const override;
+  void forces(const Motion& motion, double time, const Vector& on_ports, Vector& out) override;
+  void sums(const Motion& motion, double time, const Vector& on_ports,
+            std::vector<double>& out) override;
 
  private:
-  Vector carried(const Motion& motion, double time, const Vector& on_ports) const;
+  const Vector& carried(const Motion& motion, double time, const Vector& on_ports);
   Vector at_rest(const Vector& force) const;
 
   Body body_;
@@ -42,6 +42,8 @@ class ModalReactions final : public Reactions {
   FreeCoordinates held_;    // less rigid motions that the supports allow
   std::unique_ptr<LinearSolver> solver_;
   Eigen::MatrixXd shapes_;  // (dofs, constraints x dim) of unit displacements of the constraints
+  Vector rates_, force_, sums_;
+  std::vector<double> acceleration_;
 };
 
 }  // namespace abut

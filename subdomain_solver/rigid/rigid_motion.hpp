@@ -15,8 +15,8 @@ class RigidMotion final : public Integrator {
   RigidMotion(const Problem& problem, const RigidModel& body) : problem_(problem), body_(body) {}
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  Vector acceleration(const Motion& motion, double, double) const override {
-    return view(motion.a);
+  void acceleration(const Motion& motion, double, double, Vector& out) const override {
+    out = view(motion.a);
   }
   double kinetic(const Motion& motion) const override { return body_.kinetic(motion.q, motion.v); }
 

@@ -12,9 +12,12 @@ namespace abut {
 
 namespace {
 
-/// Shows the pivots: squares of the diagonal of L, in the order of the elimination.
+/// Shows the pivots: squares of the diagonal of L, in the order of the elimination. Factors and
+/// answers are new memory of the library every time.
 class Supernodal : public Eigen::CholmodSupernodalLLT<SparseMatrix> {
  public:
+  void solve_into(const Vector& b, Vector& x) const { x = solve(b); }
+
   /// Calls `see` for each, with the row of the matrix that it belongs to.
   template <class See>
   void visit_pivots(See see) const {

@@ -15,7 +15,7 @@ inline bool pivot_holds(double pivot, double diagonal, Eigen::Index coordinates)
   return std::abs(pivot) > lost * std::abs(diagonal);
 }
 
-/// Any of Eigen's direct sparse solvers, its own or wrapped ones.
+/// Any of Eigen's direct sparse solvers, its own or wrapped ones, with `solve_into(b, x)` beside.
 template <class Solver>
 class EigenSolver : public LinearSolver {
  public:
@@ -27,10 +27,13 @@ class EigenSolver : public LinearSolver {
     analysed_ = true;
     solver_.factorize(matrix);
     if (solver_.info() != Eigen::Success) return false;
-    return pivots_ == Pivots::every || pivots_hold(matrix.diagonal());
+    if (pivots_ == Pivots::every) return true;
+    diagonal_ = matrix.diagonal();
+    return pivots_hold(diagonal_);
   }
   [[nodiscard]] bool solve(const Vector& b, Vector& x) override {
-    x = b.rows() == 0 ? b : solver_.solve(b).eval();
+    x.resize(b.rows());
+    if (b.rows() > 0) solver_.solve_into(b, x);
     return x.allFinite();
   }
   [[nodiscard]] bool solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) override {
@@ -46,6 +49,7 @@ class EigenSolver : public LinearSolver {
 
  private:
   Pivots pivots_;
+  Vector diagonal_;
   bool analysed_ = false;
 };
 

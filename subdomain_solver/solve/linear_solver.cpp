@@ -1,7 +1,10 @@
 #include "subdomain_solver/solve/linear_solver.hpp"
 
+#include <vector>
+
 #include <Eigen/SparseCholesky>
 
+#include "base/assert.hpp"
 #include "subdomain_solver/solve/cholmod_solver.hpp"
 #include "subdomain_solver/solve/eigen_solver.hpp"
 
@@ -9,16 +12,56 @@ namespace abut {
 
 namespace {
 
-class Ldlt final : public EigenSolver<Eigen::SimplicialLDLT<SparseMatrix>> {
+/// Eigen's LDL^T, digit by digit, that keeps the permuted matrix from factorisation to
+/// factorisation and solves in place. Up to 16384 coordinates, whose three lists fit onto the
+/// stack, neither allocates.
+class KeptLdlt : public Eigen::SimplicialLDLT<SparseMatrix> {
+ public:
+  void factorize(const SparseMatrix& matrix) {
+    if (from_.empty()) find_places(matrix);
+    ABUT_ASSERT(entries_ == matrix.nonZeros());
+    for (std::size_t k = 0; k < from_.size(); ++k)
+      permuted_.valuePtr()[k] = matrix.valuePtr()[from_[k]];
+    factorize_preordered<true>(permuted_);
+  }
+  void solve_into(const Vector& b, Vector& x) {
+    between_ = m_P * b;
+    matrixL().solveInPlace(between_);
+    between_ = m_diag.asDiagonal().inverse() * between_;
+    matrixU().solveInPlace(between_);
+    x = m_Pinv * between_;
+  }
+  const Vector& pivots() const { return m_diag; }
+
+ private:
+  /// Where each entry of the permuted matrix comes from: a matrix of numbers takes its way.
+  void find_places(const SparseMatrix& matrix) {
+    ABUT_ASSERT(matrix.isCompressed());
+    entries_ = matrix.nonZeros();
+    SparseMatrix numbered = matrix;
+    for (Eigen::Index k = 0; k < entries_; ++k) numbered.valuePtr()[k] = static_cast<double>(k);
+    permuted_.resize(matrix.rows(), matrix.cols());
+    permuted_.selfadjointView<Eigen::Upper>() =
+        numbered.selfadjointView<Eigen::Lower>().twistedBy(m_P);
+    for (Eigen::Index k = 0; k < permuted_.nonZeros(); ++k)
+      from_.push_back(static_cast<Eigen::Index>(permuted_.valuePtr()[k]));
+  }
+
+  SparseMatrix permuted_;           // its upper half
+  std::vector<Eigen::Index> from_;  // of its entries
+  Eigen::Index entries_ = 0;
+  Vector between_;
+};
+
+class Ldlt final : public EigenSolver<KeptLdlt> {
  public:
   using EigenSolver::EigenSolver;
 
  private:
   bool pivots_hold(const Vector& diagonal) const override {
-    const Vector pivots = solver_.vectorD();
     const auto& place = solver_.permutationP().indices();
     for (Eigen::Index i = 0; i < diagonal.size(); ++i)
-      if (!pivot_holds(pivots(place(i)), diagonal(i), diagonal.size())) return false;
+      if (!pivot_holds(solver_.pivots()(place(i)), diagonal(i), diagonal.size())) return false;
     return true;
   }
 };

@@ -12,9 +12,10 @@ constexpr double allowed_growth = 2.0;
 
 }  // namespace
 
-NewtonReport solve_newton(Equations& equations, Vector& x, const NewtonOptions& options) {
+NewtonReport solve_newton(Equations& equations, Vector& x, const NewtonOptions& options,
+                          NewtonVectors& vectors) {
   NewtonReport report;
-  Vector r, dx, trial;
+  auto& [r, dx, trial] = vectors;
   double scale = 0.0;
   if (!equations.residual(x, r, scale)) {
     report.end = NewtonReport::End::inadmissible;

@@ -28,8 +28,14 @@ struct NewtonReport {
   bool converged() const { return end == End::converged; }
 };
 
+/// What Newton's method works with, kept from solve to solve.
+struct NewtonVectors {
+  Vector r, dx, trial;
+};
+
 /// Newton's method with a line search that halves: a step is shortened while it leads to an
 /// inadmissible x or to a larger residual. x holds the first guess, and the answer when converged.
-NewtonReport solve_newton(Equations& equations, Vector& x, const NewtonOptions& options);
+NewtonReport solve_newton(Equations& equations, Vector& x, const NewtonOptions& options,
+                          NewtonVectors& vectors);
 
 }  // namespace abut

@@ -127,10 +127,10 @@ void ExplicitDynamics::jump(Motion& motion, const Vector& change) {
 }
 
 /// Steps keep none of prescribed coordinates: they move from value to value.
-Vector ExplicitDynamics::acceleration(const Motion& motion, double time, double step) const {
-  Vector a = view(motion.a);
-  problem_.set_accelerations(time, step, a);
-  return a;
+void ExplicitDynamics::acceleration(const Motion& motion, double time, double step,
+                                    Vector& out) const {
+  out = view(motion.a);
+  problem_.set_accelerations(time, step, out);
 }
 
 double ExplicitDynamics::kinetic(const Motion& motion) const {

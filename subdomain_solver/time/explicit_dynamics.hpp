@@ -15,7 +15,7 @@ class ExplicitDynamics final : public Integrator {
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
   void jump(Motion& motion, const Vector& change) override;
-  Vector acceleration(const Motion& motion, double time, double step) const override;
+  void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
   double kinetic(const Motion& motion) const override;
 
  private:

@@ -13,34 +13,45 @@ namespace abut {
 class ImplicitDynamics::Balance final : public Equations {
  public:
   Balance(ImplicitDynamics& owner, const Motion& motion, double time, double dt)
-      : o_(owner), w_(owner.options_.weights), motion_(motion), end_(time + dt), dt_(dt) {
+      : o_(owner),
+        b_(owner.buffers_),
+        w_(owner.options_.weights),
+        motion_(motion),
+        end_(time + dt),
+        dt_(dt) {
     const auto q = view(motion.q), v = view(motion.v), a = view(motion.a);
-    q_start_ = q + dt * v + (0.5 - w_.beta) * dt * dt * a;  // for no acceleration at the end
-    v_start_ = v + (1.0 - w_.gamma) * dt * a;
-    a_ = a;
+    b_.q_start = q + dt * v + (0.5 - w_.beta) * dt * dt * a;  // for no acceleration at the end
+    b_.v_start = v + (1.0 - w_.gamma) * dt * a;
+    b_.a = a;
     for (const Prescribed& p : o_.problem_.supports)
-      a_(p.dof) = (p.value(end_) - q_start_(p.dof)) / (w_.beta * dt * dt);
-    past_ = w_.alpha_m * o_.times_mass(a);
+      b_.a(p.dof) = (p.value(end_) - b_.q_start(p.dof)) / (w_.beta * dt * dt);
+    o_.times_mass(a, b_.inertia);
+    b_.past = w_.alpha_m * b_.inertia;
     if (!w_.is_newmark()) {
-      external_start_ = o_.problem_.external_force(time, motion.q);
-      past_ += w_.alpha_f * (view(motion.force) - external_start_);
+      b_.external_start = o_.problem_.external_force(time, motion.q);
+      b_.past += w_.alpha_f * (view(motion.force) - b_.external_start);
     }
   }
 
-  Vector first_guess() const { return o_.free_.pick(a_); }
+  Vector& first_guess() {
+    o_.free_.pick(b_.a, b_.x);
+    return b_.x;
+  }
 
   [[nodiscard]] bool residual(const Vector& x, Vector& r, double& scale) override {
-    for (int i = 0; i < o_.free_.count(); ++i) a_(o_.free_.list()[index(i)]) = x(i);
-    q_ = q_start_ + w_.beta * dt_ * dt_ * a_;
+    for (int i = 0; i < o_.free_.count(); ++i) b_.a(o_.free_.list()[index(i)]) = x(i);
+    b_.q = b_.q_start + w_.beta * dt_ * dt_ * b_.a;
     Model& model = *o_.problem_.model;
-    const std::span<const double> q = span_of(q_);
-    if (!model.evaluate(q, motion_.history, Model::Want::force, response)) return false;
-    external_ = o_.problem_.external_force(end_, q);
-    const Vector inertia = (1.0 - w_.alpha_m) * o_.times_mass(a_);
-    const Vector inner = (1.0 - w_.alpha_f) * response.force;
-    const Vector outer = (1.0 - w_.alpha_f) * external_;
-    r = o_.free_.pick(inertia + inner - outer + past_);
-    scale = std::max({inertia.norm(), inner.norm(), outer.norm(), past_.norm(),
+    const std::span<const double> q = span_of(b_.q);
+    if (!model.evaluate(q, motion_.history, Model::Want::force, b_.response)) return false;
+    b_.external = o_.problem_.external_force(end_, q);
+    o_.times_mass(b_.a, b_.inertia);
+    b_.inertia *= 1.0 - w_.alpha_m;
+    b_.inner = (1.0 - w_.alpha_f) * b_.response.force;
+    b_.outer = (1.0 - w_.alpha_f) * b_.external;
+    b_.sum = b_.inertia + b_.inner - b_.outer + b_.past;
+    o_.free_.pick(b_.sum, r);
+    scale = std::max({b_.inertia.norm(), b_.inner.norm(), b_.outer.norm(), b_.past.norm(),
                       model.roundoff(q) / o_.options_.newton.tolerance});
     return true;
   }
@@ -48,13 +59,14 @@ class ImplicitDynamics::Balance final : public Equations {
   [[nodiscard]] bool correct(const Vector& r, Vector& dx) override {
     Model& model = *o_.problem_.model;
     if (!model.is_linear() || o_.factored_dt_ != dt_) {
-      ModelResponse here;
-      const std::span<const double> q = span_of(q_);
+      ModelResponse& here = b_.tangent;
+      const std::span<const double> q = span_of(b_.q);
       if (!model.evaluate(q, motion_.history, Model::Want::tangent, here)) return false;
       for (const std::unique_ptr<Load>& load : o_.problem_.loads)
         load->add_tangent(end_, q, here.tangent);
-      const SparseMatrix whole =
-          (1.0 - w_.alpha_m) * o_.mass_ + (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_ * here.tangent;
+      const SparseMatrix& whole =
+          o_.whole_.of(1.0 - w_.alpha_m, o_.mass_, (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_,
+                       here.tangent);
       o_.free_.extract(whole, o_.matrix_);
       o_.factored_dt_ = 0.0;
       if (!o_.solver_->factor(o_.matrix_)) return false;
@@ -69,44 +81,46 @@ class ImplicitDynamics::Balance final : public Equations {
     return 4.0 * std::numeric_limits<double>::epsilon() * x.lpNorm<Eigen::Infinity>();
   }
 
-  void finish(Motion& motion) const {
-    const Vector v = v_start_ + w_.gamma * dt_ * a_;
+  void finish(Motion& motion) {
+    b_.v = b_.v_start + w_.gamma * dt_ * b_.a;
     motion.external_work += external_work();
-    motion.dissipated += response.dissipation;
-    motion.stored = response.stored;
-    motion.history = response.history;
-    store(q_, motion.q);
-    store(v, motion.v);
-    store(a_, motion.a);
-    store(response.force, motion.force);
+    motion.dissipated += b_.response.dissipation;
+    motion.stored = b_.response.stored;
+    motion.history = b_.response.history;
+    store(b_.q, motion.q);
+    store(b_.v, motion.v);
+    store(b_.a, motion.a);
+    store(b_.response.force, motion.force);
   }
-
-  ModelResponse response;
 
  private:
   /// [J] of the step, by loads and supports: what inertia and internal force take. With other
   /// weights than Newmark's these take damping too, and accelerations lag by (alpha_f - alpha_m)
   /// dt, so free coordinates are worked on by the loads, and supports see the lag made good.
-  double external_work() const {
-    const Vector moved = q_ - view(motion_.q);
-    const Vector a = view(motion_.a);
+  double external_work() {
+    const auto a = view(motion_.a), force = view(motion_.force);
+    b_.moved = b_.q - view(motion_.q);
     if (w_.is_newmark()) {
-      const Vector now = response.force + o_.times_mass(a_);
-      const Vector before = view(motion_.force) + o_.times_mass(a);
-      return 0.5 * (now + before).dot(moved);
+      o_.times_mass(b_.a, b_.inner);
+      o_.times_mass(a, b_.outer);
+      b_.inner = b_.response.force + b_.inner;
+      b_.outer = force + b_.outer;
+      return 0.5 * (b_.inner + b_.outer).dot(b_.moved);
     }
     const double late = 0.5 - w_.alpha_m + w_.alpha_f;
-    Vector mean =
-        0.5 * (response.force + view(motion_.force)) + o_.times_mass(late * a_ + (1.0 - late) * a);
-    for (int i : o_.free_.list()) mean(i) = 0.5 * (external_(i) + external_start_(i));
-    return mean.dot(moved);
+    b_.inner = late * b_.a + (1.0 - late) * a;
+    o_.times_mass(b_.inner, b_.inertia);
+    Vector& mean = b_.sum;
+    mean = 0.5 * (b_.response.force + force) + b_.inertia;
+    for (int i : o_.free_.list()) mean(i) = 0.5 * (b_.external(i) + b_.external_start(i));
+    return mean.dot(b_.moved);
   }
 
   ImplicitDynamics& o_;
+  Buffers& b_;
   const AlphaWeights& w_;
   const Motion& motion_;
   double end_, dt_;
-  Vector q_start_, v_start_, a_, q_, past_, external_, external_start_;
 };
 
 ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& options,
@@ -118,7 +132,9 @@ ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& option
   mass_ = mass_matrix(*problem.model, options.mass);
 }
 
-Vector ImplicitDynamics::times_mass(const Vector& x) const { return mass_ * x; }
+void ImplicitDynamics::times_mass(const Eigen::Ref<const Vector>& x, Vector& out) const {
+  out.noalias() = mass_ * x;
+}
 
 /// Adds the solution of M a = f on the free coordinates.
 bool ImplicitDynamics::solve_mass(const Vector& force, Vector& acceleration) const {
@@ -128,14 +144,15 @@ bool ImplicitDynamics::solve_mass(const Vector& force, Vector& acceleration) con
     mass_solver_ = make_direct_solver();
     if (!mass_solver_->factor(free_mass)) return false;
   }
-  Vector a;
-  if (!mass_solver_->solve(free_.pick(force), a)) return false;
-  free_.add(a, acceleration);
+  free_.pick(force, of_mass_.force);
+  if (!mass_solver_->solve(of_mass_.force, of_mass_.free)) return false;
+  free_.add(of_mass_.free, acceleration);
   return true;
 }
 
 void ImplicitDynamics::jump(Motion& motion, const Vector& change) {
-  Vector a = view(motion.a);
+  Vector& a = of_mass_.acceleration;
+  a = view(motion.a);
   const bool solved = solve_mass(change, a);
   ABUT_ASSERT(solved);  // as at the begin
   store(a, motion.a);
@@ -143,14 +160,18 @@ void ImplicitDynamics::jump(Motion& motion, const Vector& change) {
 
 /// Newmark's are those of the balance at every step's end. With other weights they lag: the balance
 /// is solved for them.
-Vector ImplicitDynamics::acceleration(const Motion& motion, double time, double step) const {
-  if (options_.weights.is_newmark()) return view(motion.a);
-  Vector a = Vector::Zero(static_cast<Eigen::Index>(motion.q.size()));
-  problem_.set_accelerations(time, step, a);
-  const Vector rest = problem_.external_force(time, motion.q) - view(motion.force) - times_mass(a);
-  const bool solved = solve_mass(rest, a);
+void ImplicitDynamics::acceleration(const Motion& motion, double time, double step,
+                                    Vector& out) const {
+  if (options_.weights.is_newmark()) {
+    out = view(motion.a);
+    return;
+  }
+  out.setZero(static_cast<Eigen::Index>(motion.q.size()));
+  problem_.set_accelerations(time, step, out);
+  times_mass(out, of_mass_.rest);
+  of_mass_.rest = problem_.external_force(time, motion.q) - view(motion.force) - of_mass_.rest;
+  const bool solved = solve_mass(of_mass_.rest, out);
   ABUT_ASSERT(solved);  // as at the begin
-  return a;
 }
 
 /// Accelerations from the balance at the begin: M a = f - r on the free coordinates. Those of
@@ -160,14 +181,17 @@ std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
   ModelResponse response;
   motion.history.resize(model.history_size(), 0.0);
   motion.a.resize(motion.q.size(), 0.0);
-  Vector a = Vector::Zero(model.dofs());
+  Vector& a = of_mass_.acceleration;  // jump finds it grown
+  a.setZero(model.dofs());
   for (const Prescribed& p : problem_.supports) {
     motion.q[index(p.dof)] = p.value(time);
     a(p.dof) = motion.a[index(p.dof)];
   }
   if (!model.evaluate(motion.q, motion.history, Model::Want::force, response))
     return failed_newton({NewtonReport::End::inadmissible}, time);
-  const Vector r = problem_.external_force(time, motion.q) - response.force - times_mass(a);
+  Vector r;
+  times_mass(a, r);
+  r = problem_.external_force(time, motion.q) - response.force - r;
   if (!r.allFinite()) return not_finite(time);
   if (!solve_mass(r, a))
     return Failed{Failed::Cause::no_convergence, time, "the mass matrix is singular"};
@@ -179,8 +203,8 @@ std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
 
 std::optional<Failed> ImplicitDynamics::step(Motion& motion, double time, double dt) {
   Balance balance(*this, motion, time, dt);
-  Vector a = balance.first_guess();
-  const NewtonReport report = solve_newton(balance, a, options_.newton);
+  const NewtonReport report =
+      solve_newton(balance, balance.first_guess(), options_.newton, buffers_.newton);
   iterations_ += report.iterations;
   if (!report.converged()) return failed_newton(report, time + dt);
   balance.finish(motion);
@@ -189,7 +213,8 @@ std::optional<Failed> ImplicitDynamics::step(Motion& motion, double time, double
 
 double ImplicitDynamics::kinetic(const Motion& motion) const {
   const auto v = view(motion.v);
-  return 0.5 * v.dot(times_mass(v));
+  times_mass(v, of_mass_.rest);
+  return 0.5 * v.dot(of_mass_.rest);
 }
 
 }  // namespace abut

@@ -2,6 +2,7 @@
 
 #include "subdomain_solver/mass_form.hpp"
 #include "subdomain_solver/solve/linear_solver.hpp"
+#include "subdomain_solver/solve/matrix_sum.hpp"
 #include "subdomain_solver/solve/newton.hpp"
 #include "subdomain_solver/time/alpha_weights.hpp"
 #include "subdomain_solver/time/integrator.hpp"
@@ -10,7 +11,8 @@ namespace abut {
 
 /// The generalised-alpha family on any model [M.46]: one Newton solve per step, one factorisation
 /// per step length when the model is linear. Newmark 1/4, 1/2 conserves 1/2 v M v + stored energy
-/// of linear models. Unknowns are accelerations, so that small steps lose nothing to round-off.
+/// of linear models. Unknowns are accelerations, so that small steps lose nothing to round-off. A
+/// step allocates nothing itself once its buffers have grown.
 class ImplicitDynamics final : public Integrator {
  public:
   struct Options {
@@ -25,13 +27,24 @@ class ImplicitDynamics final : public Integrator {
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
   void jump(Motion& motion, const Vector& change) override;
-  Vector acceleration(const Motion& motion, double time, double step) const override;
+  void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
   double kinetic(const Motion& motion) const override;
 
  private:
   class Balance;
 
-  Vector times_mass(const Vector& x) const;
+  struct Buffers {  // of one step at a time
+    Vector q_start, v_start, q, v, a, x;
+    Vector past, external, external_start;  // [N]
+    Vector inertia, inner, outer, sum, moved;
+    ModelResponse response, tangent;
+    NewtonVectors newton;
+  };
+  struct MassBuffers {  // of what is asked for between steps
+    Vector force, acceleration, free, rest;
+  };
+
+  void times_mass(const Eigen::Ref<const Vector>& x, Vector& out) const;
   [[nodiscard]] bool solve_mass(const Vector& force, Vector& acceleration) const;
 
   const Problem& problem_;
@@ -39,8 +52,11 @@ class ImplicitDynamics final : public Integrator {
   std::unique_ptr<LinearSolver> solver_;
   FreeCoordinates free_;
   SparseMatrix mass_;
+  MatrixSum whole_;
   SparseMatrix matrix_;  // of the free coordinates
   double factored_dt_ = 0.0;
+  Buffers buffers_;
+  mutable MassBuffers of_mass_;
   mutable std::unique_ptr<LinearSolver> mass_solver_;  // of the free coordinates, when needed
 };
 

@@ -22,7 +22,7 @@ class Integrator {
   virtual void jump(Motion&, const Vector&) {}
   /// [m/s^2] (dofs) at a time of the motion, prescribed coordinates included, as the balance of
   /// forces at this time has them; step [s]: of the scheme.
-  virtual Vector acceleration(const Motion& motion, double time, double step) const = 0;
+  virtual void acceleration(const Motion& motion, double time, double step, Vector& out) const = 0;
   /// Whether the body answers a force in time: statics do not.
   virtual bool has_inertia() const { return true; }
   /// [J] in the form that the scheme conserves where it conserves one.

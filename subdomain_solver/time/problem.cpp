@@ -55,10 +55,9 @@ FreeCoordinates::FreeCoordinates(int dofs, const std::vector<Prescribed>& suppor
   }
 }
 
-Vector FreeCoordinates::pick(const Vector& all) const {
-  Vector out(count());
-  for (int i = 0; i < count(); ++i) out(i) = all(free_[index(i)]);
-  return out;
+void FreeCoordinates::pick(const Vector& all, Vector& free) const {
+  free.resize(count());
+  for (int i = 0; i < count(); ++i) free(i) = all(free_[index(i)]);
 }
 
 void FreeCoordinates::add(const Vector& free, Vector& all) const {

@@ -53,7 +53,7 @@ class FreeCoordinates {
 
   int count() const { return static_cast<int>(free_.size()); }
   const std::vector<int>& list() const { return free_; }
-  Vector pick(const Vector& all) const;
+  void pick(const Vector& all, Vector& free) const;
   void add(const Vector& free, Vector& all) const;
   void extract(const SparseMatrix& all, SparseMatrix& free);
 

@@ -25,46 +25,53 @@ constexpr int most_bisections = 12;
 class QuasiStatic::Balance final : public Equations {
  public:
   Balance(QuasiStatic& owner, const Motion& motion, double time)
-      : o_(owner), motion_(motion), time_(time), q_(view(motion.q)) {
-    for (const Prescribed& p : o_.problem_.supports) q_(p.dof) = p.value(time);
+      : o_(owner), b_(owner.buffers_), motion_(motion), time_(time) {
+    b_.q = view(motion.q);
+    for (const Prescribed& p : o_.problem_.supports) b_.q(p.dof) = p.value(time);
   }
 
-  Vector first_guess() const { return o_.free_.pick(q_); }
-  bool finite() const { return q_.allFinite(); }
+  Vector& first_guess() {
+    o_.free_.pick(b_.q, b_.x);
+    return b_.x;
+  }
+  bool finite() const { return b_.q.allFinite(); }
 
   /// The change of the prescribed coordinates drags the body along linearly, from the tangent at
   /// the begin: else the elements beside them would take all of it at once.
   [[nodiscard]] bool drag(Vector& x) {
-    const Vector jump = q_ - view(motion_.q);
-    if (jump.isZero(0.0)) return true;
-    ModelResponse here;
+    b_.moved = b_.q - view(motion_.q);
+    if (b_.moved.isZero(0.0)) return true;
+    ModelResponse& here = b_.tangent;
     Model& model = *o_.problem_.model;
     if (!model.evaluate(motion_.q, motion_.history, Model::Want::tangent, here)) return false;
-    Vector dx;
-    if (!factor(here.tangent) || !o_.solver_->solve(o_.free_.pick(here.tangent * jump), dx))
-      return false;
-    x -= dx;
+    b_.sum.noalias() = here.tangent * b_.moved;
+    o_.free_.pick(b_.sum, b_.pull);
+    if (!factor(here.tangent) || !o_.solver_->solve(b_.pull, b_.dx)) return false;
+    x -= b_.dx;
     return true;
   }
 
   [[nodiscard]] bool residual(const Vector& x, Vector& r, double& scale) override {
-    for (int i = 0; i < o_.free_.count(); ++i) q_(o_.free_.list()[index(i)]) = x(i);
+    for (int i = 0; i < o_.free_.count(); ++i) b_.q(o_.free_.list()[index(i)]) = x(i);
     Model& model = *o_.problem_.model;
-    if (!model.evaluate(span_of(q_), motion_.history, Model::Want::force, response)) return false;
-    const Vector& external = o_.problem_.external_force(time_, span_of(q_));
-    r = o_.free_.pick(response.force - external);
-    scale = std::max({response.force.norm(), external.norm(),
-                      model.roundoff(span_of(q_)) / o_.options_.newton.tolerance});
+    const std::span<const double> q = span_of(b_.q);
+    if (!model.evaluate(q, motion_.history, Model::Want::force, b_.response)) return false;
+    const Vector& external = o_.problem_.external_force(time_, q);
+    b_.sum = b_.response.force - external;
+    o_.free_.pick(b_.sum, r);
+    scale = std::max({b_.response.force.norm(), external.norm(),
+                      model.roundoff(q) / o_.options_.newton.tolerance});
     return true;
   }
 
   [[nodiscard]] bool correct(const Vector& r, Vector& dx) override {
     Model& model = *o_.problem_.model;
     if (!model.is_linear() || !o_.factored_) {
-      ModelResponse here;
-      if (!model.evaluate(span_of(q_), motion_.history, Model::Want::tangent, here)) return false;
+      ModelResponse& here = b_.tangent;
+      const std::span<const double> q = span_of(b_.q);
+      if (!model.evaluate(q, motion_.history, Model::Want::tangent, here)) return false;
       for (const std::unique_ptr<Load>& load : o_.problem_.loads)
-        load->add_tangent(time_, span_of(q_), here.tangent);
+        load->add_tangent(time_, q, here.tangent);
       if (!factor(here.tangent)) return false;
     }
     if (!o_.solver_->solve(r, dx)) return false;
@@ -81,15 +88,13 @@ class QuasiStatic::Balance final : public Equations {
     double work = 0.0;
     if (!work_of_step(work)) return false;
     motion.external_work += work;
-    motion.dissipated += response.dissipation;
-    motion.stored = response.stored;
-    motion.history = response.history;
-    store(q_, motion.q);
-    store(response.force, motion.force);
+    motion.dissipated += b_.response.dissipation;
+    motion.stored = b_.response.stored;
+    motion.history = b_.response.history;
+    store(b_.q, motion.q);
+    store(b_.response.force, motion.force);
     return true;
   }
-
-  ModelResponse response;
 
  private:
   bool factor(const SparseMatrix& tangent) {
@@ -101,8 +106,9 @@ class QuasiStatic::Balance final : public Equations {
   /// [J] that loads and supports do in the step: the integral [M.70] of the internal force along
   /// the straight way. False: an element is inverted on it.
   [[nodiscard]] bool work_of_step(double& work) {
-    moved_ = q_ - view(motion_.q);
-    const Part whole{0.0, 1.0, view(motion_.force).dot(moved_), response.force.dot(moved_)};
+    b_.moved = b_.q - view(motion_.q);
+    const Part whole{0.0, 1.0, view(motion_.force).dot(b_.moved),
+                     b_.response.force.dot(b_.moved)};
     work = 0.5 * (whole.at_begin + whole.at_end);
     if (o_.problem_.model->is_linear()) return true;
     work = 0.0;
@@ -142,19 +148,19 @@ class QuasiStatic::Balance final : public Equations {
 
   /// [J] internal force at a part of the way, times the whole way.
   [[nodiscard]] bool power(double part, double& value) {
-    const Vector q = view(motion_.q) + part * moved_;
-    if (!o_.problem_.model->evaluate(span_of(q), motion_.history, Model::Want::force, between_))
+    b_.between = view(motion_.q) + part * b_.moved;
+    ModelResponse& there = b_.on_the_way;
+    if (!o_.problem_.model->evaluate(span_of(b_.between), motion_.history, Model::Want::force,
+                                     there))
       return false;
-    value = between_.force.dot(moved_);
+    value = there.force.dot(b_.moved);
     return true;
   }
 
   QuasiStatic& o_;
+  Buffers& b_;
   const Motion& motion_;
   double time_;
-  Vector q_;
-  Vector moved_;           // of the step
-  ModelResponse between_;  // on its way
 };
 
 QuasiStatic::QuasiStatic(const Problem& problem, const Options& options,
@@ -176,16 +182,16 @@ std::optional<Failed> QuasiStatic::begin(Motion& motion, double time) {
 NewtonReport QuasiStatic::part(Motion& motion, double end) {
   Balance balance(*this, motion, end);
   if (!balance.finite()) return {.residual = std::numeric_limits<double>::infinity()};
-  Vector x = balance.first_guess();
+  Vector& x = balance.first_guess();
   if (!balance.drag(x)) return {NewtonReport::End::singular};
-  const NewtonReport report = solve_newton(balance, x, options_.newton);
+  const NewtonReport report = solve_newton(balance, x, options_.newton, buffers_.newton);
   iterations_ += report.iterations;
   if (report.converged() && !balance.finish(motion)) return {NewtonReport::End::inadmissible};
   return report;
 }
 
 std::optional<Failed> QuasiStatic::step(Motion& motion, double time, double dt) {
-  const Motion before = motion;
+  before_ = motion;
   const double smallest = std::ldexp(dt, -options_.most_halvings);
   double done = 0.0, length = dt;
   while (done < dt) {
@@ -200,11 +206,11 @@ std::optional<Failed> QuasiStatic::step(Motion& motion, double time, double dt) 
     }
     length *= 0.5;
     if (length < smallest) {
-      motion = before;
+      motion = before_;
       return failed_newton(report, end);
     }
   }
-  view(motion.v) = (view(motion.q) - view(before.q)) / dt;
+  view(motion.v) = (view(motion.q) - view(before_.q)) / dt;
   return std::nullopt;
 }
 

@@ -8,7 +8,8 @@ namespace abut {
 
 /// Equilibrium r(q) = f(t) at the end of every step; loads and supports change with time, inertia
 /// is left out. A step that Newton's method does not solve is halved, down to a smallest part, and
-/// parts grow again after quick solves.
+/// parts grow again after quick solves. A step allocates nothing itself once its buffers have
+/// grown.
 class QuasiStatic final : public Integrator {
  public:
   struct Options {
@@ -20,14 +21,21 @@ class QuasiStatic final : public Integrator {
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  Vector acceleration(const Motion& motion, double, double) const override {
-    return Vector::Zero(static_cast<Eigen::Index>(motion.q.size()));
+  void acceleration(const Motion& motion, double, double, Vector& out) const override {
+    out.setZero(static_cast<Eigen::Index>(motion.q.size()));
   }
   bool has_inertia() const override { return false; }
   double kinetic(const Motion&) const override { return 0.0; }
 
  private:
   class Balance;
+
+  struct Buffers {  // of one part of a step at a time
+    Vector q, x, dx, moved, between, sum, pull;
+    ModelResponse response, tangent, on_the_way;
+    NewtonVectors newton;
+  };
+
   [[nodiscard]] NewtonReport part(Motion& motion, double end);
 
   const Problem& problem_;
@@ -36,6 +44,8 @@ class QuasiStatic final : public Integrator {
   FreeCoordinates free_;
   SparseMatrix matrix_;  // of the free coordinates
   bool factored_ = false;
+  Buffers buffers_;
+  Motion before_;  // the step
 };
 
 }  // namespace abut

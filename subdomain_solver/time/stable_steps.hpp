@@ -24,8 +24,8 @@ class StableSteps final : public Integrator {
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
   void jump(Motion& motion, const Vector& change) override { steps_.jump(motion, change); }
-  Vector acceleration(const Motion& motion, double time, double step) const override {
-    return steps_.acceleration(motion, time, step);
+  void acceleration(const Motion& motion, double time, double step, Vector& out) const override {
+    steps_.acceleration(motion, time, step, out);
   }
   double kinetic(const Motion& motion) const override { return steps_.kinetic(motion); }
   /// stable_step.min [s], of all bounds so far; stable_step.parts, the most of a step.
