@@ -70,7 +70,7 @@ double Bar::stable_step() const {
   return 2.0 / std::sqrt(omega_squared) * (std::sqrt(1.0 + b * b) - b) / forward;
 }
 
-void Bar::internal_force(const std::vector<double>& x, std::vector<double>& out) const {
+void Bar::internal_force(std::span<const double> x, std::vector<double>& out) const {
   const std::size_t n = index(nodes());
   out.resize(n);
   double from_left = 0.0;  // tension of the element to the left

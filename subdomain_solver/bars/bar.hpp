@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "subdomain_solver/mass_form.hpp"
@@ -73,7 +74,7 @@ class Bar {
   double stable_step() const;
 
   /// Internal force K x [N] (nodes).
-  void internal_force(const std::vector<double>& x, std::vector<double>& out) const;
+  void internal_force(std::span<const double> x, std::vector<double>& out) const;
 
   double kinetic(const std::vector<double>& v) const;   // [J] 1/2 v M v
   double stored(const std::vector<double>& x) const;    // [J] 1/2 x K x

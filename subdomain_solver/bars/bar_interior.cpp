@@ -326,7 +326,8 @@ double BarInterior::force_on_body(int end, const BoundaryData& data) const {
 const PortValues& BarInterior::see(const Window& window, double time, bool all) {
   for (std::size_t p = 0; p < ends_.size(); ++p) {
     const int end = ends_[p];
-    seen_.u[p] = scheme_.integrator->port_displacement(state_, end);
+    const double u = scheme_.integrator->port_displacement(state_, end);
+    seen_.u[p] = u;
     if (!all) continue;
     const std::size_t node = index(bar_->node_of(end));
     seen_.v[p] = state_.v[node];
@@ -336,8 +337,8 @@ const PortValues& BarInterior::see(const Window& window, double time, bool all) 
     // velocity.
     const bool kicked = support(p) == ForceSupport::step && state_.end[index(end)].closed;
     if (kicked && time > window.grid.begin)
-      seen_.v[p] = (seen_.u[p] - shown_[p].u) / (time - shown_[p].time);
-    shown_[p] = {time, seen_.u[p]};
+      seen_.v[p] = (u - shown_[p].u) / (time - shown_[p].time);
+    shown_[p] = {time, u};
   }
   return seen_;
 }

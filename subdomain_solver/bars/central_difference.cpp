@@ -7,13 +7,6 @@
 
 namespace abut {
 
-double CentralDifference::Row::force(const double* x) const {
-  double force = 0.0;
-  if (left > 0.0) force += left * (x[node] - x[node - 1]);
-  if (right > 0.0) force -= right * (x[node + 1] - x[node]);
-  return force;
-}
-
 CentralDifference::CentralDifference(const Bar& bar, double step, int terms)
     : BarIntegrator(bar), step_(step), terms_(terms) {
   const double r = step_ / (bar_.spacing() / bar_.data().wave_speed());
@@ -22,11 +15,14 @@ CentralDifference::CentralDifference(const Bar& bar, double step, int terms)
   }
   const std::size_t n = index(bar_.nodes());
   const std::vector<double>& k = bar_.stiffness();
+  const double cell = bar_.spacing() / bar_.data().wave_speed();
   for (std::size_t i : {std::size_t{0}, std::size_t{1}, n - 2, n - 1}) {
     const bool listed =
         std::any_of(outer_.begin(), outer_.end(), [i](const Row& row) { return row.node == i; });
     if (listed) continue;
-    outer_.push_back({i, i > 0 ? k[i - 1] : 0.0, i + 1 < n ? k[i] : 0.0, bar_.inverse_mass()[i]});
+    const double inverse = bar_.inverse_mass()[i];
+    outer_.push_back({i, i > 0 ? i - 1 : i, i + 1 < n ? i + 1 : i, i > 0 ? k[i - 1] : 0.0,
+                      i + 1 < n ? k[i] : 0.0, inverse, cell * cell * inverse});
   }
   for (int end : {0, 1}) {
     if (!is(end, ContactLayer::massless)) continue;
@@ -36,43 +32,46 @@ CentralDifference::CentralDifference(const Bar& bar, double step, int terms)
     unit.u.assign(n, 0.0);
     unit.u[index(bar_.node_of(end))] = 1.0;
     unit.end[0].closed = unit.end[1].closed = true;
-    smooth(unit, unit.u, e.response);
+    const double* response = smooth(unit, unit.u, asked_[0]);
+    e.response.assign(response, response + n);
     e.compliance = 1.0 / (e.spring * (1.0 - e.response[index(bar_.inner_of(end))]));
     if (end == 1) std::reverse(e.response.begin(), e.response.end());
     e.response.resize(std::min(n, index(terms_)));
   }
 }
 
-void CentralDifference::smooth(const BarState& state, const std::vector<double>& u,
-                               std::vector<double>& s) const {
+/// Returns u~ (nodes), one of the places.
+double* CentralDifference::smooth(const BarState& state, const std::vector<double>& u,
+                                  Smoothing& places) const {
   const std::size_t n = u.size();
-  const double cell = bar_.spacing() / bar_.data().wave_speed();
+  double* const a = placed_like(u.data(), n, places.a);
+  double* const b = placed_like(u.data(), n, places.b);
+  // A contact node is held by its partner: its row alone, without the contact force, is not what
+  // moves it.
+  std::array<std::size_t, 2> held;
+  std::size_t holds = 0;
+  for (int end : {0, 1}) {
+    if (is(end, ContactLayer::kick) && state.end[index(end)].closed)
+      held[holds++] = index(bar_.node_of(end));
+  }
+  if (ratio_.empty()) std::copy(u.begin(), u.end(), a);
   const double* t = u.data();
-  double* const a = placed_like(u.data(), n, work_a_);
-  double* const b = placed_like(u.data(), n, work_b_);
+  double* out = a;
   for (std::size_t pass = ratio_.size(); pass-- > 0;) {
-    double* const out = t == a ? b : a;
+    out = t == a ? b : a;
     if (n > 4) smooth_nodes(u.data(), t, out, 2, n - 2, ratio_[pass]);
-    for (const Row& row : outer_) {
-      const double d = cell * cell * row.inverse_mass * row.force(t);
-      out[row.node] = u[row.node] + ratio_[pass] * d;
-    }
-    for (int end : {0, 1}) {
-      const bool closed = state.end[index(end)].closed;
-      const std::size_t node = index(bar_.node_of(end));
-      // a contact node is held by its partner: its row alone, without the contact force, is not
-      // what moves it
-      if (is(end, ContactLayer::kick) && closed) out[node] = u[node];
-    }
+    for (const Row& row : outer_)
+      out[row.node] = u[row.node] + ratio_[pass] * (row.smoothing * row.force(t));
+    for (std::size_t k = 0; k < holds; ++k) out[held[k]] = u[held[k]];
     t = out;
   }
-  s.assign(t, t + n);
+  return out;
 }
 
-void CentralDifference::kick_end_nodes(BarState& state, const std::vector<double>& s, double kick) {
+void CentralDifference::kick_end_nodes(BarState& state, const double* s, double kick) {
   for (const Row& row : outer_) {
     if (row.inverse_mass == 0.0) continue;
-    state.v[row.node] += kick * (bar_.data().body_force - row.inverse_mass * row.force(s.data()));
+    state.v[row.node] += kick * (bar_.data().body_force - row.inverse_mass * row.force(s));
   }
   for (int end : {0, 1}) {
     if (!is(end, ContactLayer::massive)) continue;
@@ -92,7 +91,7 @@ void CentralDifference::kick_drift(BarState& state, double kick, double dt) {
   const std::size_t n = state.u.size();
   const double g = kick * bar_.element_stiffness() / bar_.element_mass();
   const double shift = kick * bar_.data().body_force;
-  const std::vector<double>& s = simple() ? state.u : smoothed_;
+  const double* s = smoothed(state);
   if (viscous()) {
     viscous_.assign(n, 0.0);
     add_viscous_force(state.v, viscous_);
@@ -103,7 +102,7 @@ void CentralDifference::kick_drift(BarState& state, double kick, double dt) {
   if (n > 4 && simple()) {
     kick_drift_nodes(state.u.data(), state.v.data(), 2, n - 2, g, shift, dt);
   } else if (n > 4) {
-    kick_nodes(s.data(), state.v.data(), 2, n - 2, g, shift);
+    kick_nodes(s, state.v.data(), 2, n - 2, g, shift);
     drift_nodes(state.u.data(), state.v.data(), 2, n - 2, dt);
   }
   drift_end_nodes(state, dt);
@@ -136,8 +135,8 @@ void CentralDifference::drift(BarState& state, double dt) {
 }
 
 void CentralDifference::acceleration(BarState& state) {
-  const std::vector<double>& s = simple() ? state.u : smoothed_;
-  bar_.internal_force(s, force_);
+  const double* s = smoothed(state);
+  bar_.internal_force({s, state.u.size()}, force_);
   if (viscous()) add_viscous_force(state.v, force_);
   const std::vector<double>& inverse = bar_.inverse_mass();
   const double body_force = bar_.data().body_force;
@@ -154,7 +153,7 @@ void CentralDifference::acceleration(BarState& state) {
 }
 
 double CentralDifference::reaction_of(const BarState& state, int end) const {
-  const std::vector<double>& s = simple() ? state.u : smoothed_;
+  const double* s = smoothed(state);
   const std::size_t node = index(bar_.node_of(end));
   const std::size_t inner = index(bar_.inner_of(end));
   return ends_[index(end)].spring * Bar::outward(end) * (s[inner] - s[node]);
@@ -204,7 +203,7 @@ void CentralDifference::resolve_massless(BarState& state, const EndActions& acti
     }
     if (dt > 0.0) state.v[node] = (state.u[node] - before) / dt;
   }
-  if (!simple()) smooth(state, state.u, smoothed_);
+  if (!simple()) smoothed_ = smooth(state, state.u, present_);
   if (!any) return;
   for (int end : {0, 1}) {
     const EndAction& action = actions[index(end)];
@@ -238,13 +237,12 @@ void CentralDifference::resolve_kick(BarState& state, int end, const EndAction& 
 /// 1/2 u K d.
 double CentralDifference::work_of_switch(BarState& state, int end, double dt) const {
   EndState& e = state.end[index(end)];
-  std::vector<double> was, is;
-  smooth(state, state.u, was);
+  const double* was = smooth(state, state.u, asked_[0]);
   e.closed = !e.closed;
-  smooth(state, state.u, is);
+  const double* is = smooth(state, state.u, asked_[1]);
   e.closed = !e.closed;
   double sum = 0.0;
-  for (std::size_t i = 0; i + 1 < is.size(); ++i) {
+  for (std::size_t i = 0; i + 1 < state.u.size(); ++i) {
     const double stretch = (state.u[i + 1] - state.u[i]) - dt * (state.v[i + 1] - state.v[i]);
     sum += bar_.stiffness()[i] * stretch * ((is[i + 1] - was[i + 1]) - (is[i] - was[i]));
   }
@@ -364,10 +362,9 @@ double CentralDifference::kinetic(const BarState& state) const {
 
 double CentralDifference::stored(const BarState& state) const {
   if (simple()) return bar_.stored(state.u);
-  std::vector<double>& s = work_s_;
-  smooth(state, state.u, s);
+  const double* s = smooth(state, state.u, asked_[0]);
   double sum = 0.0;
-  for (std::size_t e = 0; e + 1 < s.size(); ++e) {
+  for (std::size_t e = 0; e + 1 < state.u.size(); ++e) {
     sum += bar_.stiffness()[e] * (state.u[e + 1] - state.u[e]) * (s[e + 1] - s[e]);
   }
   return 0.5 * sum;

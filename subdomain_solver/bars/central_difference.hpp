@@ -40,19 +40,26 @@ class CentralDifference final : public BarIntegrator {
 
   /// A node near an end, whose row of K and M differs from the interior ones.
   struct Row {
-    std::size_t node = 0;
-    double left = 0.0, right = 0.0;  // stiffness of the elements beside it [N/m]
+    std::size_t node = 0, before = 0, after = 0;  // neighbours; where there is none, the node
+    double left = 0.0, right = 0.0;  // stiffness of the elements beside it [N/m]; 0: none
     double inverse_mass = 0.0;       // [1/kg]
+    double smoothing = 0.0;          // [m/N] (h/c)^2 of it
 
-    double force(const double* x) const;  // of K x [N]
+    double force(const double* x) const {  // of K x [N]; no branches: every pass asks
+      return 0.0 + left * (x[node] - x[before]) - right * (x[after] - x[node]);
+    }
+  };
+
+  struct Smoothing {  // the places of two passes, one of which holds the answer
+    std::vector<double> a, b;
   };
 
   void kick_drift(BarState& state, double kick, double dt);
   void drift(BarState& state, double dt);
-  void kick_end_nodes(BarState& state, const std::vector<double>& s, double kick);
+  void kick_end_nodes(BarState& state, const double* s, double kick);
   void drift_end_nodes(BarState& state, double dt);
   void push_on(BarState& state, double kick, double dt) const;
-  void smooth(const BarState& state, const std::vector<double>& u, std::vector<double>& s) const;
+  double* smooth(const BarState& state, const std::vector<double>& u, Smoothing& places) const;
   void acceleration(BarState& state);
   void kick_nodes_with(BarState& state, double kick) const;
   void place_massless(BarState& state, int end, const EndAction& action, double dt);
@@ -61,6 +68,9 @@ class CentralDifference final : public BarIntegrator {
   void resolve_kick(BarState& state, int end, const EndAction& action, double dt);
   double work_of_switch(BarState& state, int end, double dt) const;
   double reaction_of(const BarState& state, int end) const;
+  const double* smoothed(const BarState& state) const {
+    return simple() ? state.u.data() : smoothed_;
+  }
   bool simple() const { return terms_ == 1; }
   bool forward() const { return bar_.data().tchamwa > 1.0; }
   bool viscous() const { return bar_.data().bulk_viscosity > 0.0; }
@@ -72,8 +82,9 @@ class CentralDifference final : public BarIntegrator {
   std::array<End, 2> ends_;
   std::vector<Row> outer_;        // the outer two nodes at both ends, each once
   std::vector<double> ratio_;     // c_q / c_{q-1}, q = 2..P
-  std::vector<double> smoothed_;  // u~ at the present substep (scratch; equals u when P = 1)
-  mutable std::vector<double> work_a_, work_b_, work_s_;
+  double* smoothed_ = nullptr;    // u~ at the present substep (scratch; none when P = 1)
+  Smoothing present_;             // that it is one of
+  mutable std::array<Smoothing, 2> asked_;  // beside the substeps
   std::vector<double> force_, viscous_;
   EndActions prescribed_;  // last actions of the run: close() overwrites prescribed motion
 };
