@@ -27,7 +27,6 @@ const Want& want_of(const Advance& request, std::size_t port) {
 /// Of a port's values, those of the points that are listed; all, where none is.
 void append(std::span<const double> port, const std::vector<std::int32_t>& points, std::size_t dim,
             std::vector<double>& to) {
-  if (points.empty() && port.size() == 1) return to.push_back(port[0]);
   if (points.empty()) to.insert(to.end(), port.begin(), port.end());
   for (const std::int32_t point : points) {
     const std::span<const double> one = port.subspan(index(point) * dim, dim);
@@ -62,12 +61,16 @@ Body::Body(std::unique_ptr<Interior> interior, std::function<void()> progress)
     : interior_(std::move(interior)), progress_(std::move(progress)) {
   std::size_t values = 0;
   for (const Port& port : describe().ports) {
-    first_.push_back(values);
-    values += port.geometry.points.size();
-    const std::size_t dim = index(port.geometry.dim);
-    sweeps_.push_back({std::vector<double>(dim), std::vector<double>(dim)});
+    Watched& watched = ports_.emplace_back();
+    watched.geometry = &port.geometry;
+    watched.first = values;
+    watched.width = port.geometry.points.size();
+    values += watched.width;
+    watched.lower.resize(index(port.geometry.dim));
+    watched.upper.resize(index(port.geometry.dim));
   }
-  partners_.resize(first_.size());
+  partners_.resize(ports_.size());
+  step_effort_ = interior_->effort();
 }
 
 void Body::meet(int port, const PortGeometry& partner, const ContactLaw& law) {
@@ -130,7 +133,7 @@ Outcome Body::finish(Response& response) {
   begin_replies(request, response);
   recorded_ = 0;
   if (std::optional<Failed> failed = advance(window, response)) return *failed;
-  for (std::size_t p = 0; p < first_.size(); ++p) interior_->finish(p, response.ports[p]);
+  for (std::size_t p = 0; p < ports_.size(); ++p) interior_->finish(p, response.ports[p]);
   response.steps = window.grid.count;
   response.compute_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -141,7 +144,7 @@ Outcome Body::finish(Response& response) {
 std::optional<Failed> Body::advance(const Window& window, Response& response) {
   const Substeps& grid = window.grid;
   if (auto failed = patiently([&] { return interior_->begin(window); })) return failed;
-  follow(window, grid.begin, true, response);
+  follow(window, grid.begin, true);
   interior_->set_off(window);
   begin_sweep();
   RecordClock clock(window.request, grid.count);
@@ -150,9 +153,9 @@ std::optional<Failed> Body::advance(const Window& window, Response& response) {
     const bool due = i == clock.substep();
     if (due) interior_->settle(window, i);
     if (window.request.sampling == Sampling::substeps) {
-      follow(window, grid.time(i), true, response);
+      follow(window, grid.time(i), true);
     } else {
-      follow(window, due ? clock.time() : grid.time(i), due, response);
+      follow(window, due ? clock.time() : grid.time(i), due);
     }
     report_progress();
     for (; i == clock.substep(); clock.next())
@@ -171,14 +174,17 @@ Substeps Body::divide(const Advance& request) const {
                           step > 0.0 ? step : window.length() / std::max(1, request.records));
 }
 
-void Body::begin_replies(const Advance& request, Response& response) const {
-  ABUT_ASSERT(request.boundary.size() == first_.size());
+void Body::begin_replies(const Advance& request, Response& response) {
+  ABUT_ASSERT(request.boundary.size() == ports_.size());
   response.records.resize(index(std::max(1, request.records)));
-  response.ports.resize(first_.size());
-  for (std::size_t p = 0; p < first_.size(); ++p) {
-    const PortGeometry& geometry = describe().ports[p].geometry;
+  response.ports.resize(ports_.size());
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    const PortGeometry& geometry = *ports_[p].geometry;
     const std::vector<Obstacle>& obstacles = request.boundary[p].obstacles;
     PortResponse& port = response.ports[p];
+    ports_[p].want = &want_of(request, p);
+    ports_[p].obstacles = &obstacles;
+    ports_[p].reply = &port;
     port.trace.clear();
     port.trace.support = interior_->support(p);
     port.trace.points = want_of(request, p).points;
@@ -201,52 +207,72 @@ void Body::begin_replies(const Advance& request, Response& response) const {
   }
 }
 
-void Body::follow(const Window& window, double time, bool shown, Response& response) {
+void Body::follow(const Window& window, double time, bool shown) {
   seen_ = &interior_->see(window, time, shown);
   widen_sweep();
-  for (std::size_t p = 0; shown && p < first_.size(); ++p)
-    push_trace(window.request, time, p, response);
+  if (!shown) return;
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    push_trace(ports_[p], time);
+    if (!ports_[p].reply->reactions.empty()) push_reactions(p, time);
+  }
 }
 
-void Body::push_trace(const Advance& request, double time, std::size_t p,
-                      Response& response) const {
-  const PortGeometry& geometry = describe().ports[p].geometry;
-  const Want& want = want_of(request, p);
-  PortResponse& port = response.ports[p];
-  port.trace.time.push_back(time);
+void Body::push_trace(const Watched& port, double time) const {
+  const Want& want = *port.want;
+  Waveform& trace = port.reply->trace;
+  const std::size_t first = port.first;
+  trace.time.push_back(time);
+  if (port.width == 1 && want.points.empty()) {  // the end of a bar, whose substeps are short
+    if (want.u) trace.u.push_back(seen_->u[first]);
+    if (want.v) trace.v.push_back(seen_->v[first]);
+    if (want.a) trace.a.push_back(seen_->a[first]);
+    if (want.f) trace.f.push_back(seen_->f[first]);
+    return;
+  }
   const auto push = [&](bool wanted, const std::vector<double>& from, std::vector<double>& to) {
-    const std::span<const double> own = std::span(from).subspan(first_[p], geometry.points.size());
-    if (wanted) append(own, want.points, index(geometry.dim), to);
+    const std::span<const double> own = std::span(from).subspan(first, port.width);
+    if (wanted) append(own, want.points, index(port.geometry->dim), to);
   };
-  push(want.u, seen_->u, port.trace.u);
-  push(want.v, seen_->v, port.trace.v);
-  push(want.a, seen_->a, port.trace.a);
-  push(want.f, seen_->f, port.trace.f);
-  for (std::size_t k = 0; k < port.reactions.size(); ++k) {
-    if (request.boundary[p].obstacles[k].empty()) continue;
-    port.reactions[k].force.time.push_back(time);
-    interior_->react(p, k, port.reactions[k].force.f);
+  push(want.u, seen_->u, trace.u);
+  push(want.v, seen_->v, trace.v);
+  push(want.a, seen_->a, trace.a);
+  push(want.f, seen_->f, trace.f);
+}
+
+void Body::push_reactions(std::size_t p, double time) const {
+  const Watched& port = ports_[p];
+  for (std::size_t k = 0; k < port.reply->reactions.size(); ++k) {
+    if ((*port.obstacles)[k].empty()) continue;
+    Waveform& force = port.reply->reactions[k].force;
+    force.time.push_back(time);
+    interior_->react(p, k, force.f);
   }
 }
 
 void Body::begin_sweep() {
-  for (std::size_t p = 0; p < sweeps_.size(); ++p) {
-    const std::size_t dim = index(describe().ports[p].geometry.dim);
-    sweeps_[p].lower.assign(dim, std::numeric_limits<double>::infinity());
-    sweeps_[p].upper.assign(dim, -std::numeric_limits<double>::infinity());
+  for (Watched& port : ports_) {
+    const std::size_t dim = index(port.geometry->dim);
+    port.lower.assign(dim, std::numeric_limits<double>::infinity());
+    port.upper.assign(dim, -std::numeric_limits<double>::infinity());
   }
   widen_sweep();
 }
 
 void Body::widen_sweep() {
-  for (std::size_t p = 0; p < sweeps_.size(); ++p) {
-    const PortGeometry& geometry = describe().ports[p].geometry;
-    const double* u = seen_->u.data() + first_[p];
-    const double* place = geometry.points.data();
-    double* lower = sweeps_[p].lower.data();
-    double* upper = sweeps_[p].upper.data();
-    for (const double* end = place + geometry.points.size(); place < end; place += geometry.dim) {
-      for (int i = 0; i < geometry.dim; ++i) {
+  for (Watched& port : ports_) {
+    const double* u = seen_->u.data() + port.first;
+    const double* place = port.geometry->points.data();
+    double* lower = port.lower.data();
+    double* upper = port.upper.data();
+    if (port.width == 1) {
+      const double at = *place + *u;
+      *lower = std::min(*lower, at);
+      *upper = std::max(*upper, at);
+      continue;
+    }
+    const int dim = port.geometry->dim;
+    for (const double* end = place + port.width; place < end; place += dim) {
+      for (int i = 0; i < dim; ++i) {
         const double at = place[i] + *u++;
         lower[i] = std::min(lower[i], at);
         upper[i] = std::max(upper[i], at);
@@ -256,11 +282,10 @@ void Body::widen_sweep() {
 }
 
 std::optional<Failed> Body::record(double time, Response& response) {
-  for (std::size_t p = 0; p < sweeps_.size(); ++p) {
-    PortResponse& port = response.ports[p];
-    const Sweep& sweep = sweeps_[p];
-    port.lower.insert(port.lower.end(), sweep.lower.begin(), sweep.lower.end());
-    port.upper.insert(port.upper.end(), sweep.upper.begin(), sweep.upper.end());
+  for (const Watched& port : ports_) {
+    PortResponse& reply = *port.reply;
+    reply.lower.insert(reply.lower.end(), port.lower.begin(), port.lower.end());
+    reply.upper.insert(reply.upper.end(), port.upper.begin(), port.upper.end());
   }
   begin_sweep();
   BodyRecord& r = response.records[recorded_++];
@@ -299,7 +324,7 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
     for (const double value : patterns) kernel.compliance.push_back(compliance * value);
   Advance request;
   request.window = {0, grid.begin, grid.end};
-  request.boundary.resize(first_.size());
+  request.boundary.resize(ports_.size());
   Waveform& force = request.boundary[p].forces.emplace_back(static_cast<int>(width));
   force.support = kernel.support;
   for (int i = 0; i <= count; ++i) force.time.push_back(i == 0 ? grid.begin : grid.time(i));
@@ -339,7 +364,7 @@ std::optional<Failed> Body::respond(const Advance& request, const Substeps& grid
   for (int i = 1; i <= grid.count; ++i) {
     if (auto failed = patiently([&] { return interior_->step(window, i); })) return failed;
     report_progress();
-    const double* u = interior_->see(window, grid.time(i), false).u.data() + first_[port];
+    const double* u = interior_->see(window, grid.time(i), false).u.data() + ports_[port].first;
     displacement.insert(displacement.end(), u, u + width);
   }
   return std::nullopt;
@@ -356,7 +381,7 @@ std::optional<Failed> Body::patiently(const Call& call) const {
 }
 
 void Body::report_progress() {
-  effort_ += interior_->effort();
+  effort_ += step_effort_;
   if (effort_ < 1.0) return;
   effort_ = 0.0;
   if (progress_) progress_();

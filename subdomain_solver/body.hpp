@@ -33,15 +33,23 @@ class Body final : public Subdomain {
   std::vector<FieldValues> fields() override { return interior_->fields(); }
 
  private:
-  struct Sweep {
+  /// A port as substeps see it.
+  struct Watched {
+    const PortGeometry* geometry = nullptr;
+    std::size_t first = 0, width = 0;  // of its values
     std::vector<double> lower, upper;  // [m] (dim) positions since the last record
+    // Of the window:
+    const Want* want = nullptr;
+    const std::vector<Obstacle>* obstacles = nullptr;
+    PortResponse* reply = nullptr;
   };
 
   std::optional<Failed> advance(const Window& window, Response& response);
   Substeps divide(const Advance& request) const;
-  void begin_replies(const Advance& request, Response& response) const;
-  void follow(const Window& window, double time, bool shown, Response& response);
-  void push_trace(const Advance& request, double time, std::size_t port, Response& response) const;
+  void begin_replies(const Advance& request, Response& response);
+  void follow(const Window& window, double time, bool shown);
+  void push_trace(const Watched& port, double time) const;
+  void push_reactions(std::size_t port, double time) const;
   void begin_sweep();
   void widen_sweep();
   std::optional<Failed> record(double time, Response& response);
@@ -53,14 +61,14 @@ class Body final : public Subdomain {
 
   std::unique_ptr<Interior> interior_;
   std::function<void()> progress_;
-  std::vector<std::size_t> first_;              // where a port's values begin
+  std::vector<Watched> ports_;
   std::vector<std::vector<Partner>> partners_;  // by port
   const Advance* request_ = nullptr;
   const PortValues* seen_ = nullptr;
-  std::vector<Sweep> sweeps_;  // by port
-  std::size_t recorded_ = 0;   // records of the window so far
+  std::size_t recorded_ = 0;  // records of the window so far
   std::vector<std::byte> saved_;
-  double effort_ = 0.0;  // since the last sign of life
+  double step_effort_ = 0.0;  // of a substep
+  double effort_ = 0.0;       // since the last sign of life
 };
 
 }  // namespace abut

@@ -68,7 +68,7 @@ class Interior {
   /// Brings the loads back; the state is restored by others.
   virtual void wake() {}
 
-  /// Parts of 10 ms that a substep takes, about.
+  /// Parts of 10 ms that a substep takes, about; always the same.
   virtual double effort() const { return 0.0; }
   /// A single substep may take seconds.
   virtual bool slow() const { return false; }
