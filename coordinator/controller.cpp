@@ -83,7 +83,7 @@ void Controller::start() {
   const bool accelerations = std::ranges::any_of(joints_, [](const Joint& joint) {
     return joint.how != nullptr && joint.how->overwrites_motion();
   });
-  bodies_.want({.a = accelerations});
+  bodies_.want({.a = accelerations, .points = {}});
   const TimeWindow instant{0, clock_.time(), clock_.time()};
   bodies_.save_all();
   prepare(instant, 1, Sampling::substeps);

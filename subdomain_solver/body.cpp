@@ -328,6 +328,7 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
   Waveform& force = request.boundary[p].forces.emplace_back(static_cast<int>(width));
   force.support = kernel.support;
   for (int i = 0; i <= count; ++i) force.time.push_back(i == 0 ? grid.begin : grid.time(i));
+  const double light = interior_->light_force(p);
   std::vector<double> alone, moved;
   std::optional<Failed> failed;
   force.f.assign(force.time.size() * width, 0.0);
@@ -338,11 +339,11 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
       if (at == 0 && !nodal) continue;
       std::vector<double>& to = at == 0 ? kernel.begin : kernel.displacement;
       force.f.assign(force.time.size() * width, 0.0);
-      std::copy_n(patterns.data() + from, width, force.f.data() + at * width);
+      for (std::size_t k = 0; k < width; ++k) force.f[at * width + k] = light * patterns[from + k];
       interior_->rest(p);
       failed = respond(request, grid, p, moved);
       for (std::size_t k = 0; k < moved.size(); ++k)
-        to[k / width * patterns.size() + from + k % width] = moved[k] - alone[k];
+        to[k / width * patterns.size() + from + k % width] = (moved[k] - alone[k]) / light;
     }
   }
   interior_->wake();

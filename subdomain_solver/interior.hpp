@@ -63,6 +63,8 @@ class Interior {
   virtual ForceSupport support(std::size_t) const { return ForceSupport::nodal; }
   /// Quasi-static compliance of a port of one point [m/N]; 0: none.
   virtual double compliance(std::size_t) const { return 0.0; }
+  /// A force [N] on a port to which the body answers linearly: probes press with it.
+  virtual double light_force(std::size_t) const { return 1.0; }
   /// Puts the body at rest, a port held and loads away; true: one stays that moves it.
   virtual bool rest(std::size_t) { return false; }
   /// Brings the loads back; the state is restored by others.

@@ -1,6 +1,20 @@
 #include "subdomain_solver/model.hpp"
 
+#include "base/assert.hpp"
+
 namespace abut {
+
+const std::vector<int>& Model::massless() const {
+  static const std::vector<int> none;
+  return none;
+}
+
+bool Model::evaluate_layer(std::span<const double>, std::span<const double>, LayerResponse& out) {
+  ABUT_ASSERT(massless().empty());  // who has a layer says how it answers
+  out.force.resize(0);
+  out.tangent.resize(0, 0);
+  return true;
+}
 
 SparseMatrix mass_matrix(const Model& model, MassForm form) {
   if (form == MassForm::consistent) return model.mass();

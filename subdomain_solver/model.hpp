@@ -46,6 +46,12 @@ struct ModelResponse {
   double dissipation = 0.0;     // [J] since the history it started from
 };
 
+/// What a model answers for its massless coordinates alone, in their order.
+struct LayerResponse {
+  Vector force;             // [N]
+  Eigen::MatrixXd tangent;  // [N/m] dr/dq among them
+};
+
 /// Semi-discrete body in its own coordinates q:   M q'' + r(q) = f(t)   [M.40]. Integrators see
 /// nothing else of a body. The fidelity ladder is made of models under the same integrators.
 class Model {
@@ -66,6 +72,12 @@ class Model {
   /// (an inverted element, a material point without an answer), and out undefined.
   [[nodiscard]] virtual bool evaluate(std::span<const double> q, std::span<const double> history,
                                       Want want, ModelResponse& out) = 0;
+
+  /// Coordinates without mass, ascending: the surface layer [M.84]. Usually none.
+  virtual const std::vector<int>& massless() const;
+  /// Of these alone, which costs as much as they are many. False: q is inadmissible.
+  [[nodiscard]] virtual bool evaluate_layer(std::span<const double> q,
+                                            std::span<const double> history, LayerResponse& out);
 };
 
 /// [kg] in the form that a scheme asks for; averaged is half lumped, half consistent.

@@ -42,7 +42,25 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
     before_ = now_ = seen_.u = state_.port_force = std::vector<double>(port_map_->values(), 0.0);
     change_.setZero(parts_.problem->model->dofs());
     parts_.problem->loads.push_back(std::move(forces));
+    find_contacts();
   }
+}
+
+/// Ports of one massless point meet obstacles.
+void SolidInterior::find_contacts() {
+  if (description_.dim != 1) return;
+  const std::vector<int>& massless = parts_.problem->model->massless();
+  std::vector<PointContact::Point> points;
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    const int dof = ports_[p].nodes.front();
+    const PortGeometry& geometry = description_.ports[p].geometry;
+    if (std::ranges::binary_search(massless, dof))
+      points.push_back({p, dof, geometry.points[0], geometry.normals[0]});
+  }
+  if (points.empty()) return;
+  contact_ = std::make_unique<PointContact>(points, description_.name);
+  description_.can.obstacle = points.size() == ports_.size();
+  description_.can.yielding = description_.can.obstacle;
 }
 
 void SolidInterior::describe(std::string name, const std::vector<PortNodes>& ports) {
@@ -59,11 +77,12 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   description_.step = parts_.scheme.step;
   description_.stable_step = parts_.scheme.stable_step;
   description_.can.force = true;
-  const bool linear = parts_.problem->model->is_linear() && (parts_.deforms || mesh.dim == 1);
-  description_.can.kernel = linear && parts_.scheme.integrator->has_inertia() && !ports.empty();
+  const bool small = parts_.problem->model->is_linear() && parts_.deforms;
+  description_.can.kernel = (small || mesh.dim == 1) && parts_.scheme.integrator->has_inertia() && !ports.empty();
   for (const PortNodes& p : ports) {
     ports_.push_back({p.name, mesh.nodes_of(p.side)});
     Port port = port_of(p, ports_.back().nodes);
+    port.tied = p.tied;
     if (parts_.deforms) port.geometry.transit = port.geometry.spacing / fastest_wave(*parts_.model);
     description_.ports.push_back(std::move(port));
   }
@@ -156,7 +175,10 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
     if (failed) return failed;
   }
   if (port_forces_ != nullptr) port_forces_->impose(window.request.boundary, window.grid);
-  meet_port_forces(time);
+  if (contact_) contact_->impose(window);
+  parts_.problem->contact = contact_ && contact_->acts() ? contact_.get() : nullptr;
+  if (std::optional<Failed> failed = meet_port_forces(time)) return failed;
+  if (parts_.problem->contact != nullptr) contact_->aim(0, state_.port_force);
   if (!state_.begun) {
     parts_.problem->set_rates(time, parts_.scheme.step, state_.motion);
     if (std::optional<Failed> failed = parts_.scheme.integrator->begin(state_.motion, time))
@@ -171,6 +193,7 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
 std::optional<Failed> SolidInterior::step(const Window& window, int i) {
   Integrator& integrator = *parts_.scheme.integrator;
   const double begin = window.grid.time(i - 1), dt = window.grid.length(i);
+  if (parts_.problem->contact != nullptr) contact_->aim(i, state_.port_force);
   if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);
   if (port_map_) follow_ports(state_.time);
@@ -195,31 +218,64 @@ const PortValues& SolidInterior::see(const Window&, double time, bool all) {
   port_map_->velocity(motion.q, motion.v, seen_.v);
   port_map_->acceleration(motion.q, motion.v, motion.a, seen_.a);
   port_forces_->at(time, seen_.f);
+  for (std::size_t p = 0; contact_ && p < ports_.size(); ++p)
+    if (contact_->acts(p)) seen_.f[p] = state_.port_force[p];
   return seen_;
 }
 
-/// Forces on ports begin and end between windows: accelerations follow at once.
-void SolidInterior::meet_port_forces(double time) {
-  if (port_forces_ == nullptr) return;
+void SolidInterior::react(std::size_t port, std::size_t, std::vector<double>& force) const {
+  force.push_back(-state_.port_force[port]);
+}
+
+bool SolidInterior::takes(int port, const PortKernel& kernel) const {
+  return contact_ && contact_->has(index(port)) && kernel.step == description_.step &&
+         kernel.support == ForceSupport::nodal && kernel.per_step() == 1;
+}
+
+double SolidInterior::compliance(std::size_t port) const {
+  if (!contact_ || !contact_->has(port)) return 0.0;
+  return parts_.scheme.integrator->compliance(state_.motion, ports_[port].nodes.front());
+}
+
+/// Forces on ports begin and end between windows: accelerations follow at once, and ports without
+/// mass. What presses on a port goes on pressing where the obstacle stays.
+std::optional<Failed> SolidInterior::meet_port_forces(double time) {
+  if (port_forces_ == nullptr) return std::nullopt;
   port_forces_->at(time, now_);
+  for (std::size_t p = 0; contact_ && p < ports_.size(); ++p)
+    if (contact_->acts(p)) now_[p] = state_.port_force[p];
   if (state_.begun && now_ != state_.port_force) {
     before_ = now_;
     for (std::size_t k = 0; k < now_.size(); ++k) before_[k] -= state_.port_force[k];
     change_.setZero(parts_.problem->model->dofs());
     port_map_->lift(state_.motion.q, before_, change_);
-    parts_.scheme.integrator->jump(state_.motion, change_);
+    if (contact_) port_map_->displacement(state_.motion.q, before_);
+    if (auto failed = parts_.scheme.integrator->jump(state_.motion, time, change_)) return failed;
+    if (contact_) {
+      port_map_->displacement(state_.motion.q, seen_.u);
+      add_port_work();
+    }
   }
   state_.port_force = now_;
+  return std::nullopt;
+}
+
+/// Of the forces on ports, which change from those of the state to now_ while the ports move from
+/// before_ to where they are seen.
+void SolidInterior::add_port_work() {
+  for (std::size_t k = 0; k < now_.size(); ++k)
+    state_.port_work += 0.5 * (state_.port_force[k] + now_[k]) * (seen_.u[k] - before_[k]);
 }
 
 /// After a substep: where the ports are, and the work that the forces on them have done.
 void SolidInterior::follow_ports(double time) {
   before_.swap(seen_.u);
   port_map_->displacement(state_.motion.q, seen_.u);
-  if (!port_forces_->acts()) return;
+  const bool pressed = parts_.problem->contact != nullptr;
+  if (!port_forces_->acts() && !pressed) return;
   port_forces_->at(time, now_);
-  for (std::size_t k = 0; k < now_.size(); ++k)
-    state_.port_work += 0.5 * (state_.port_force[k] + now_[k]) * (seen_.u[k] - before_[k]);
+  if (pressed) contact_->add_to(now_);
+  add_port_work();
   state_.port_force = now_;
 }
 
@@ -239,12 +295,12 @@ std::optional<Failed> SolidInterior::record(BodyRecord& r) {
 const Vector& SolidInterior::forces_on_ports() {
   Vector& all = on_ports_;
   all.setZero(static_cast<Eigen::Index>(nodal_values()));
-  if (port_forces_ == nullptr || !port_forces_->acts()) return all;
-  port_forces_->at(state_.time, now_);
+  if (port_forces_ == nullptr) return all;
   std::size_t k = 0;
   for (const NamedNodes& port : ports_) {
     for (std::int32_t node : port.nodes) {
-      for (int i = 0; i < description_.dim; ++i) all(node * description_.dim + i) += now_[k++];
+      for (int i = 0; i < description_.dim; ++i)
+        all(node * description_.dim + i) += state_.port_force[k++];
     }
   }
   parts_.model->to_frames({all.data(), nodal_values()});
@@ -299,6 +355,14 @@ Energy SolidInterior::energy() const {
   const Motion& motion = state_.motion;
   return {parts_.scheme.integrator->kinetic(motion), motion.stored, motion.dissipated,
           motion.external_work - state_.port_work};  // partners account for what ports exchange
+}
+
+/// Of a nonlinear body: far above the rounding of strains, far below where they matter.
+double SolidInterior::light_force(std::size_t) const {
+  const FeModel& model = *parts_.model;
+  if (parts_.problem->model->is_linear()) return 1.0;
+  constexpr double strain = 1.0e-7;
+  return strain * model.material().moduli().youngs() * model.options().area;
 }
 
 bool SolidInterior::rest(std::size_t) {

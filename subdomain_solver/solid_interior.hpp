@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/index.hpp"
+#include "subdomain_solver/contact/point_contact.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/interior.hpp"
 #include "subdomain_solver/nodal_map.hpp"
@@ -17,12 +18,13 @@ namespace abut {
 
 /// A solid in one, two or three dimensions: a mesh, the rung of the fidelity ladder whose
 /// coordinates move it, what acts on it, an integrator, and ports, which are sides or node sets of
-/// the mesh. Ports take forces; linear bodies answer for their port kernels too. A node of a port
-/// keeps its mass.
+/// the mesh. Ports take forces; linear bodies answer for their port kernels too. A port that is one
+/// massless point meets obstacles; nodes of other ports keep their mass.
 class SolidInterior final : public Interior {
  public:
   struct PortNodes {
     std::string name, side;
+    bool tied = false;
   };
   struct Scheme {
     std::unique_ptr<Integrator> integrator;
@@ -53,6 +55,10 @@ class SolidInterior final : public Interior {
   std::optional<Failed> step(const Window& window, int i) override;
   const PortValues& see(const Window& window, double time, bool all) override;
   std::optional<Failed> record(BodyRecord& record) override;
+  void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;
+  bool takes(int port, const PortKernel& kernel) const override;
+  double compliance(std::size_t port) const override;
+  double light_force(std::size_t port) const override;
   bool rest(std::size_t port) override;
   void wake() override;
   double effort() const override;
@@ -76,8 +82,10 @@ class SolidInterior final : public Interior {
   Energy energy() const;
   std::size_t nodal_values() const { return index(parts_.model->dofs()); }
   void see_nodes();
-  void meet_port_forces(double time);
+  std::optional<Failed> meet_port_forces(double time);
+  void find_contacts();
   void follow_ports(double time);
+  void add_port_work();
   const Vector& forces_on_ports();
   void reactions(std::vector<double>& out);
 
@@ -85,6 +93,7 @@ class SolidInterior final : public Interior {
   SparseMatrix mass_;  // [kg] of the nodes, in the form of the scheme
   std::vector<NamedNodes> ports_;
   std::unique_ptr<PortMap> port_map_;  // null: no ports
+  std::unique_ptr<PointContact> contact_;  // null: no port meets obstacles
   PortForces* port_forces_ = nullptr;  // owned by the problem, the last of its loads
   State state_;
   PortValues seen_;

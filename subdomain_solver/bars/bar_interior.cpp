@@ -23,7 +23,7 @@ constexpr double usual_work = 2.0e7;
 
 BarInterior::BarInterior(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
                          const std::vector<End>& ends)
-    : bar_(std::move(bar)), scheme_(std::move(scheme)), imposed_(ends.size()), shown_(ends.size()) {
+    : bar_(std::move(bar)), scheme_(std::move(scheme)), shown_(ends.size()) {
   lie_down();
   std::fill(state_.v.begin(), state_.v.end(), bar_->data().velocity);
   for (int end : {0, 1}) {
@@ -62,6 +62,7 @@ void BarInterior::describe(std::string name, const std::vector<End>& ends) {
     port.geometry.normals = {Bar::outward(e.end)};
     port.geometry.spacing = bar_->spacing();
     port.geometry.transit = bar_->spacing() / data.wave_speed();
+    imposed_.push_back({{}, {port.geometry.points[0], Bar::outward(e.end), description_.name}});
     description_.ports.push_back(std::move(port));
   }
   for (std::vector<double>* values : {&seen_.u, &seen_.v, &seen_.a, &seen_.f})
@@ -181,17 +182,7 @@ void BarInterior::see_imposed(const Window& window) {
       imposed.same_grid.push_back(!force.empty() && window.grid.matches(force.time) &&
                                   force.support == support(p));
     }
-    imposed.obstacle = -1;
-    for (std::size_t k = 0; k < data.obstacles.size(); ++k) {
-      if (data.obstacles[k].empty()) continue;
-      if (imposed.obstacle >= 0 || data.pushed() || k >= window.partners[p].size()) {
-        throw RunError("an end of a bar takes one obstacle at a time, of a partner that it has met",
-                       fmt::format("body '{}'", description_.name),
-                       "Give one of the partners the other role.");
-      }
-      imposed.obstacle = static_cast<int>(k);
-      imposed.same_motion = window.grid.matches(data.obstacles[k].motion.time);
-    }
+    imposed.obstacle.impose(data, window.partners[p], window.grid);
   }
 }
 
@@ -202,8 +193,8 @@ void BarInterior::set_actions(const Window& window, int i) {
     const BoundaryData& data = window.request.boundary[p];
     EndAction& action = actions_[index(ends_[p])];
     action.held = description_.ports[p].tied || probed_ == static_cast<int>(p);
-    if (imposed_[p].obstacle >= 0) {
-      set_obstacle(window, i, p, action);
+    if (imposed_[p].obstacle.acts()) {
+      set_obstacle(i, p, action);
     } else if (!data.motion.empty()) {
       action.kind = EndAction::Kind::motion;
       data.motion.interpolate(data.motion.u, time, {&action.u, 1});
@@ -220,51 +211,15 @@ void BarInterior::set_actions(const Window& window, int i) {
   }
 }
 
-void BarInterior::set_obstacle(const Window& window, int i, std::size_t port, EndAction& action) {
-  const Imposed& imposed = imposed_[port];
-  const Partner& partner = window.partners[port][index(imposed.obstacle)];
-  const Waveform& motion = window.request.boundary[port].obstacles[index(imposed.obstacle)].motion;
-  const double n = Bar::outward(ends_[port]);
-  const double apart =
-      n * (partner.surface.points[0] - description_.ports[port].geometry.points[0]);
-  double u = 0.0;
-  if (imposed.same_motion) {
-    u = motion.u[index(i)];
-  } else {
-    motion.interpolate(motion.u, i == 0 ? window.grid.begin : window.grid.time(i), {&u, 1});
-  }
+void BarInterior::set_obstacle(int i, std::size_t port, EndAction& action) {
+  const int end = ends_[port];
+  const PointObstacle::Surface surface =
+      imposed_[port].obstacle.at(i, Bar::outward(end) * state_.end[index(end)].force);
   action.kind = EndAction::Kind::obstacle;
-  action.yield = action.give = 0.0;
-  action.target = n * ((partner.law.tied ? 0.0 : std::max(0.0, apart)) * n + u);
-  action.bilateral = partner.law.tied;
-  if (partner.kernel.count() > 0) give_way(partner.kernel, motion, i, port, action);
-}
-
-/// What the surface has given way by the reactions so far, and how much it does per newton of this
-/// substep's [M.82], [M.83].
-void BarInterior::give_way(const PortKernel& kernel, const Waveform& motion, int i,
-                           std::size_t port, EndAction& action) {
-  std::vector<double>& excess = imposed_[port].excess;
-  const std::vector<double>& under = motion.f;
-  const double n = Bar::outward(ends_[port]);
-  const double reaction = n * state_.end[index(ends_[port])].force;  // on the partner
-  if (!imposed_[port].same_motion || under.size() != motion.size() ||
-      kernel.count() + 1 < static_cast<int>(under.size())) {
-    throw RunError(
-        "an obstacle that gives way has other times than the body's substeps, no force, "
-        "or a kernel that is too short",
-        fmt::format("body '{}'", description_.name),
-        "Give its motion and its force at every substep.");
-  }
-  const std::size_t now = index(i);
-  excess.resize(under.size());
-  if (i != 1) excess[now > 0 ? now - 1 : 0] = reaction - under[now > 0 ? now - 1 : 0];
-  if (i == 0) return;  // that of the begin is known
-  double moved = -kernel.displacement[0] * under[now];
-  if (!kernel.begin.empty()) moved += kernel.begin[now - 1] * excess[0];
-  for (std::size_t j = 1; j < now; ++j) moved += kernel.displacement[now - j] * excess[j];
-  action.target += n * moved;
-  action.give = kernel.displacement[0];
+  action.yield = 0.0;
+  action.target = surface.target;
+  action.give = surface.give;
+  action.bilateral = surface.bilateral;
 }
 
 void BarInterior::resist(const Impedance& impedance, const Substeps& grid, int i, int end,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subdomain_solver/bars/bar_integrator.hpp"
+#include "subdomain_solver/contact/point_obstacle.hpp"
 #include "subdomain_solver/interior.hpp"
 
 namespace abut {
@@ -53,9 +54,7 @@ class BarInterior final : public Interior {
   /// What an end does in the present window.
   struct Imposed {
     std::vector<char> same_grid;  // by partner: a force is sampled at our own substeps
-    int obstacle = -1;            // the partner behind it; -1: none
-    bool same_motion = false;     // its motion is sampled at our own substeps
-    std::vector<double> excess;   // [N] by substep: reaction minus that of the obstacle's motion
+    PointObstacle obstacle;
   };
   struct EndPlace {
     double outward = 0.0;  // [m] displacement of the end's node along its normal
@@ -72,9 +71,7 @@ class BarInterior final : public Interior {
   void set_actions(const Window& window, int i);
   void add_force(const Waveform& imposed, bool same_grid, const Substeps& grid, int i, int end,
                  EndAction& action) const;
-  void set_obstacle(const Window& window, int i, std::size_t port, EndAction& action);
-  void give_way(const PortKernel& kernel, const Waveform& motion, int i, std::size_t port,
-                EndAction& action);
+  void set_obstacle(int i, std::size_t port, EndAction& action);
   void resist(const Impedance& impedance, const Substeps& grid, int i, int end,
               EndAction& action) const;
   EndPlaces end_places() const;

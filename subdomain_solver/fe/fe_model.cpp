@@ -183,7 +183,9 @@ void FeModel::lump_mass() {
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const CellBlock& cells = mesh_.blocks[k];
     for (int c = 0; c < cells.count(); ++c) {
-      const Vector nodal = cell_mass(static_cast<int>(k), c);
+      Eigen::MatrixXd diagonal = cell_mass(static_cast<int>(k), c).asDiagonal();
+      if (!massless_.empty()) hand_over(nodes_of(cells, c), diagonal);
+      const Vector nodal = diagonal.diagonal();
       int a = 0;
       for (std::int32_t node : nodes_of(cells, c)) {
         lumped_.segment(node * dim, dim).array() += nodal(a);
@@ -206,7 +208,8 @@ void FeModel::assemble_mass(SparseMatrix& out) const {
     const CellBlock& cells = mesh_.blocks[k];
     const Tabulation& t = blocks_[k].mass_table;
     for (int c = 0; c < cells.count(); ++c) {
-      const Eigen::MatrixXd nodal = nodal_mass(k, c);
+      Eigen::MatrixXd nodal = nodal_mass(k, c);
+      if (!massless_.empty()) hand_over(nodes_of(cells, c), nodal);
       Eigen::MatrixXd local = Eigen::MatrixXd::Zero(t.nodes * dim, t.nodes * dim);
       for (int a = 0; a < t.nodes; ++a) {
         for (int b = 0; b < t.nodes; ++b) {
@@ -429,8 +432,9 @@ CellMeasures FeModel::cell_measures(int block, int cell) const {
   return measures;
 }
 
-bool FeModel::cell_tangent(int block, int cell, std::span<const double> q,
-                           std::span<const double> history, Eigen::MatrixXd& tangent) {
+/// One cell's force and tangent, left in local_.
+bool FeModel::respond(int block, int cell, std::span<const double> q,
+                      std::span<const double> history) {
   CellMeasures own;
   if (!assembly_) own = cell_measures(block, cell);
   const CellGeometry geometry = assembly_ ? assembly_->measures[index(block)].of(cell) : own.of(0);
@@ -438,9 +442,13 @@ bool FeModel::cell_tangent(int block, int cell, std::span<const double> q,
   const std::size_t first = blocks_[index(block)].history + index(cell) * each;
   after_.resize(each);
   gather(mesh_.blocks[index(block)], cell, q, u_);
-  if (!kernel_.evaluate(geometry, u_, history.subspan(first, each), after_, Need::tangent,
-                        local_))
-    return false;
+  return kernel_.evaluate(geometry, u_, history.subspan(first, each), after_, Need::tangent,
+                          local_);
+}
+
+bool FeModel::cell_tangent(int block, int cell, std::span<const double> q,
+                           std::span<const double> history, Eigen::MatrixXd& tangent) {
+  if (!respond(block, cell, q, history)) return false;
   tangent = local_.tangent;
   return true;
 }

@@ -41,6 +41,13 @@ class FeModel final : public Model {
   double roundoff(std::span<const double> q) const override;
   [[nodiscard]] bool evaluate(std::span<const double> q, std::span<const double> history, Want want,
                               ModelResponse& out) override;
+  const std::vector<int>& massless() const override { return massless_; }
+  [[nodiscard]] bool evaluate_layer(std::span<const double> q, std::span<const double> history,
+                                    LayerResponse& out) override;
+
+  /// Moves the mass of these nodes to the others of their cells (the surface layer, [M.84]), once,
+  /// before anything asks for a mass. Throws InputError where a cell has no other node.
+  void make_massless(const std::vector<std::int32_t>& nodes);
 
   const Mesh& mesh() const { return mesh_; }
   const Material& material() const { return *material_; }
@@ -62,7 +69,8 @@ class FeModel final : public Model {
   /// Tangent of one cell at q (nodes x dim), in the axes of space. False: inadmissible.
   [[nodiscard]] bool cell_tangent(int block, int cell, std::span<const double> q,
                                   std::span<const double> history, Eigen::MatrixXd& tangent);
-  /// Its share of the lumped mass [kg] (nodes).
+  /// Its share of the lumped mass [kg] (nodes), that of massless nodes still theirs: stable steps
+  /// that hold with it hold with a layer, which only adds to the masses inside.
   Vector cell_mass(int block, int cell) const;
   /// Its reference geometry, as that of one cell.
   CellMeasures cell_measures(int block, int cell) const;
@@ -107,8 +115,11 @@ class FeModel final : public Model {
   void assemble_mass(SparseMatrix& out) const;
   void lump_mass();
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
+  void hand_over(std::span<const std::int32_t> nodes, Eigen::MatrixXd& nodal) const;
   void spring_force(std::span<const double> q, ModelResponse& out) const;
   [[nodiscard]] bool batched_force(std::span<const double> q, ModelResponse& out);
+  [[nodiscard]] bool respond(int block, int cell, std::span<const double> q,
+                             std::span<const double> history);
   void gather(const CellBlock& cells, int cell, std::span<const double> q,
               std::vector<double>& u) const;
   void scatter(std::size_t block, int cell, Want want, CellResponse& local,
@@ -125,6 +136,8 @@ class FeModel final : public Model {
   std::vector<Block> blocks_;
   std::size_t history_size_ = 0;
   std::vector<NodeFrame> frames_;  // sorted by node; usually none
+  std::vector<int> massless_;      // dofs, ascending; usually none
+  std::vector<std::pair<int, int>> layer_cells_;  // (block, cell) that touch them
   mutable std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<BatchedCells> batched_;  // null: cell by cell
   Vector lumped_;

@@ -60,19 +60,26 @@ void BodySpec::idle_of_bars(Fields& f) const {
   const bool rigid = std::holds_alternative<RigidModelSpec>(model);
   all_idle(f, is_bar(), {"integrator.central_difference.above_limit", "equations"},
            "it is for solids");
+  const bool still = integrator && std::holds_alternative<QuasiStaticSpec>(*integrator);
+  const bool fe_bar = solid && !flat && !modal && !rigid && !still;
+  f.idle(solid && (!fe_bar || contact_layer.index() != 0), "contact_layer",
+         fe_bar ? "a bar by the model of solids has a massless layer or, where its port is tied, none"
+                : "contact of this body has no layer yet");
+  f.idle(fe_bar, "contact_layer.massless.stiffness_factor",
+         "it is for bars of equal elements of linear_elastic material");
   all_idle(
       f, solid,
-      {"contact_layer", "integrator.central_difference.dispersion_terms",
+      {"integrator.central_difference.dispersion_terms",
        "integrator.central_difference.bulk_viscosity", "integrator.central_difference.tchamwa"},
       "it is for bars of linear_elastic material without points, constraints, loads, fields "
       "and grading");
   for (const auto& [name, port] : ports)
-    f.idle(solid, "ports." + name + ".tied", "it is for bars of equal elements");
+    f.idle(solid && !fe_bar, "ports." + name + ".tied", "no node of the body gives its mass away");
   f.idle(flat || rigid, "supports",
          flat ? "they are for the ends of bars" : "a rigid body has no ends of its own to hold");
   bool contact = false;
   for (const auto& [name, port] : ports) contact = contact || !port.tied;
-  f.idle(is_bar() && !contact, "contact_layer", "the body has no port for contact");
+  f.idle((is_bar() || fe_bar) && !contact, "contact_layer", "the body has no port for contact");
   f.idle(rigid || (modal && !is_implicit()), "equations",
          "nothing of the body is solved by iteration");
 }

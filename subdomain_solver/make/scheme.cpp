@@ -96,7 +96,7 @@ std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Pla
   std::vector<SolidInterior::PortNodes> ports;
   for (const auto& [name, port] : spec.ports) {
     named(place, "ports." + name + ".side", [&] { return mesh.nodes_of(port.side); });
-    ports.push_back({name, port.side});
+    ports.push_back({name, port.side, port.tied});
   }
   return ports;
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "subdomain_solver/fe/highest_frequency.hpp"
@@ -13,6 +15,28 @@
 #include "subdomain_solver/solid_interior.hpp"
 
 namespace abut {
+
+namespace {
+
+/// Nodes of the contact layer: in one dimension the ends at which ports may touch. Ends that are
+/// held touch nothing, those of tied ports keep their mass.
+std::vector<std::int32_t> layer_nodes(const FeModel& model, const BodySpec& spec,
+                                      const std::vector<SolidInterior::PortNodes>& ports,
+                                      const std::vector<Prescribed>& supports) {
+  std::vector<std::int32_t> nodes;
+  const Mesh& mesh = model.mesh();
+  if (mesh.dim != 1 || std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return nodes;
+  for (const SolidInterior::PortNodes& port : ports) {
+    if (port.tied || !mesh.sides.contains(port.side)) continue;
+    const std::int32_t node = mesh.nodes_of(port.side).front();
+    const bool held =
+        std::ranges::any_of(supports, [node](const Prescribed& p) { return p.dof == node; });
+    if (!held && std::ranges::find(nodes, node) == nodes.end()) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+}  // namespace
 
 std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   const FeModelSpec& fe = std::get<FeModelSpec>(spec.model);
@@ -34,6 +58,8 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
     throw InputError("have no effect: one thread computes the elements of this law or formulation",
                      place.where("model.fe.threads"), "Leave threads out.");
   }
+  const std::vector<std::int32_t> layer = layer_nodes(model, spec, ports, constraints.supports);
+  if (!layer.empty()) named(place, "model.fe.mesh", [&] { model.make_massless(layer); return 0; });
   check_statics(spec, place, model, constraints.supports);
   parts.map = std::make_unique<IdentityMap>();
   parts.problem = std::make_unique<Problem>();

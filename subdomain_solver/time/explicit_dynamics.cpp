@@ -9,7 +9,10 @@
 namespace abut {
 
 ExplicitDynamics::ExplicitDynamics(const Problem& problem)
-    : problem_(problem), inverse_mass_(problem.model->lumped_mass().cwiseInverse()) {
+    : problem_(problem),
+      layer_(problem),
+      inverse_mass_(problem.model->lumped_mass().cwiseInverse()) {
+  for (const int dof : layer_.dofs()) inverse_mass_(dof) = 0.0;
   for (const Prescribed& p : problem_.supports) inverse_mass_(p.dof) = 0.0;
 }
 
@@ -37,6 +40,10 @@ void ExplicitDynamics::find_loads(double time, std::span<const double> q) {
 std::optional<Failed> ExplicitDynamics::begin(Motion& motion, double time) {
   motion.history.resize(problem_.model->history_size(), 0.0);
   for (const Prescribed& p : problem_.supports) motion.q[index(p.dof)] = p.value(time);
+  if (!layer_.empty()) {
+    find_loads(time, motion.q);
+    if (auto failed = layer_.settle(time, motion.q, motion.history, loads_, nullptr)) return failed;
+  }
   if (!problem_.model->evaluate(motion.q, motion.history, Model::Want::force, response_))
     return failed_newton({NewtonReport::End::inadmissible}, time);
   store(response_.force, motion.force);
@@ -100,6 +107,19 @@ double ExplicitDynamics::correct_supports(Motion& motion, double dt) const {
   return work;
 }
 
+/// What acts on coordinates without mass is what the body answers there. Their velocity is that of
+/// the step: nothing but traces reads it.
+double ExplicitDynamics::correct_layer(Motion& motion, double dt) const {
+  double work = 0.0;
+  for (const int dof : layer_.dofs()) {
+    const std::size_t i = index(dof);
+    const double moved = next_[i] - motion.q[i];
+    motion.v[i] = moved / dt;
+    work += 0.5 * (motion.force[i] + response_.force(dof)) * moved;
+  }
+  return work;
+}
+
 std::optional<Failed> ExplicitDynamics::step(Motion& motion, double time, double dt) {
   next_.resize(motion.q.size());
   update_all(motion.q.size(), [&](std::size_t, Range range) { predict(motion, dt, range); });
@@ -108,10 +128,17 @@ std::optional<Failed> ExplicitDynamics::step(Motion& motion, double time, double
     if (!std::isfinite(value)) return not_finite(time + dt);
     next_[index(p.dof)] = value;
   }
+  if (!layer_.empty()) {
+    const double end = time + dt;
+    find_loads(end, next_);
+    if (auto failed = layer_.settle(end, next_, motion.history, loads_, problem_.contact))
+      return failed;
+  }
   if (!problem_.model->evaluate(next_, motion.history, Model::Want::force, response_))
     return failed_newton({NewtonReport::End::inadmissible}, time + dt);
   find_loads(time + dt, next_);
   motion.external_work += correct_supports(motion, dt);
+  if (!layer_.empty()) motion.external_work += correct_layer(motion, dt);
   update_all(motion.q.size(),
              [&](std::size_t k, Range range) { work_[k] = correct(motion, dt, range); });
   for (const double work : work_) motion.external_work += work;
@@ -122,8 +149,16 @@ std::optional<Failed> ExplicitDynamics::step(Motion& motion, double time, double
   return std::nullopt;
 }
 
-void ExplicitDynamics::jump(Motion& motion, const Vector& change) {
+std::optional<Failed> ExplicitDynamics::jump(Motion& motion, double time, const Vector& change) {
   view(motion.a) += inverse_mass_.cwiseProduct(change);
+  if (layer_.empty()) return std::nullopt;
+  if (auto failed = layer_.jump(time, motion, change, answer_)) return failed;
+  view(motion.a) -= inverse_mass_.cwiseProduct(answer_);
+  return std::nullopt;
+}
+
+double ExplicitDynamics::compliance(const Motion& motion, int dof) {
+  return layer_.compliance(motion.q, motion.history, dof);
 }
 
 /// Steps keep none of prescribed coordinates: they move from value to value.

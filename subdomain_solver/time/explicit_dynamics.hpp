@@ -1,20 +1,24 @@
 #pragma once
 
 #include "subdomain_solver/time/integrator.hpp"
+#include "subdomain_solver/time/massless_layer.hpp"
 
 namespace abut {
 
 /// Central differences on any model with lumped mass, in the form that has positions, velocities
 /// and accelerations at the same times (velocity Verlet) [M.48]. Conserves momentum exactly and,
 /// below the stable step, an energy that differs from 1/2 v M v + stored by terms of second order
-/// in dt. A step is two passes over the motion around the model's force, and allocates nothing.
+/// in dt. Coordinates without mass lie where their forces balance at the end of every step, and take
+/// contact there [M.84, M.85]. A step is two passes over the motion around the model's force, and allocates nothing.
 class ExplicitDynamics final : public Integrator {
  public:
   explicit ExplicitDynamics(const Problem& problem);
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  void jump(Motion& motion, const Vector& change) override;
+  [[nodiscard]] std::optional<Failed> jump(Motion& motion, double time,
+                                           const Vector& change) override;
+  double compliance(const Motion& motion, int dof) override;
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
   double kinetic(const Motion& motion) const override;
 
@@ -29,10 +33,13 @@ class ExplicitDynamics final : public Integrator {
   void predict(const Motion& motion, double dt, Range range);
   double correct(Motion& motion, double dt, Range range) const;
   double correct_supports(Motion& motion, double dt) const;
+  double correct_layer(Motion& motion, double dt) const;
 
   const Problem& problem_;
-  Vector inverse_mass_;       // [1/kg] (dofs) zero where the motion is prescribed
+  MasslessLayer layer_;
+  Vector inverse_mass_;       // [1/kg] (dofs) zero where the motion is prescribed, or no mass
   std::vector<double> next_;  // (dofs) q at the step's end
+  Vector answer_;             // [N] (dofs) to a jump
   Vector loads_;              // [N] (dofs) at the step's end; empty without loads
   std::vector<double> work_;  // [J] (ranges) external
   ModelResponse response_;

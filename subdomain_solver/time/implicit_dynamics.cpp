@@ -5,9 +5,17 @@
 
 #include "base/assert.hpp"
 #include "base/index.hpp"
+#include "subdomain_solver/time/contact.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
+
+namespace {
+
+/// Of the balance and contact, before a step fails.
+constexpr int most_turns = 50;
+
+}  // namespace
 
 /// Balance of momentum at the end of a step, with the free accelerations as unknowns.
 class ImplicitDynamics::Balance final : public Equations {
@@ -15,6 +23,7 @@ class ImplicitDynamics::Balance final : public Equations {
   Balance(ImplicitDynamics& owner, const Motion& motion, double time, double dt)
       : o_(owner),
         b_(owner.buffers_),
+        p_(owner.pressed_),
         w_(owner.options_.weights),
         motion_(motion),
         end_(time + dt),
@@ -30,6 +39,8 @@ class ImplicitDynamics::Balance final : public Equations {
     if (!w_.is_newmark()) {
       b_.external_start = o_.problem_.external_force(time, motion.q);
       b_.past += w_.alpha_f * (view(motion.force) - b_.external_start);
+      // Without mass there was balance at the begin, contact included.
+      for (const int dof : o_.layer_.dofs()) b_.past(dof) = 0.0;
     }
   }
 
@@ -45,6 +56,10 @@ class ImplicitDynamics::Balance final : public Equations {
     const std::span<const double> q = span_of(b_.q);
     if (!model.evaluate(q, motion_.history, Model::Want::force, b_.response)) return false;
     b_.external = o_.problem_.external_force(end_, q);
+    if (const Contact* contact = o_.problem_.contact) {
+      for (std::size_t k = 0; k < contact->coordinates().size(); ++k)
+        b_.external(contact->coordinates()[k]) += p_.force(static_cast<Eigen::Index>(k));
+    }
     o_.times_mass(b_.a, b_.inertia);
     b_.inertia *= 1.0 - w_.alpha_m;
     b_.inner = (1.0 - w_.alpha_f) * b_.response.force;
@@ -53,27 +68,50 @@ class ImplicitDynamics::Balance final : public Equations {
     o_.free_.pick(b_.sum, r);
     scale = std::max({b_.inertia.norm(), b_.inner.norm(), b_.outer.norm(), b_.past.norm(),
                       model.roundoff(q) / o_.options_.newton.tolerance});
+    b_.scale = scale;
     return true;
   }
 
   [[nodiscard]] bool correct(const Vector& r, Vector& dx) override {
-    Model& model = *o_.problem_.model;
-    if (!model.is_linear() || o_.factored_dt_ != dt_) {
-      ModelResponse& here = b_.tangent;
-      const std::span<const double> q = span_of(b_.q);
-      if (!model.evaluate(q, motion_.history, Model::Want::tangent, here)) return false;
-      for (const std::unique_ptr<Load>& load : o_.problem_.loads)
-        load->add_tangent(end_, q, here.tangent);
-      const SparseMatrix& whole =
-          o_.whole_.of(1.0 - w_.alpha_m, o_.mass_, (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_,
-                       here.tangent);
-      o_.free_.extract(whole, o_.matrix_);
-      o_.factored_dt_ = 0.0;
-      if (!o_.solver_->factor(o_.matrix_)) return false;
-      o_.factored_dt_ = dt_;
-    }
+    const bool kept = o_.problem_.model->is_linear() && o_.factored_dt_ == dt_;
+    if (!kept && !factor()) return false;
     if (!o_.solver_->solve(r, dx)) return false;
     dx = -dx;
+    return true;
+  }
+
+  [[nodiscard]] bool factor() {
+    Model& model = *o_.problem_.model;
+    ModelResponse& here = b_.tangent;
+    const std::span<const double> q = span_of(b_.q);
+    if (!model.evaluate(q, motion_.history, Model::Want::tangent, here)) return false;
+    for (const std::unique_ptr<Load>& load : o_.problem_.loads)
+      load->add_tangent(end_, q, here.tangent);
+    const SparseMatrix& whole =
+        o_.whole_.of(1.0 - w_.alpha_m, o_.mass_, (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_,
+                     here.tangent);
+    o_.free_.extract(whole, o_.matrix_);
+    o_.factored_dt_ = 0.0;
+    if (!o_.solver_->factor(o_.matrix_)) return false;
+    o_.factored_dt_ = dt_;
+    p_.of_step = 0.0;
+    return true;
+  }
+
+  /// Contact forces for where the balance without change of them has led, and the accelerations x
+  /// that they make by the present factors. False: there are no factors.
+  [[nodiscard]] bool press(Vector& x, double& change) {
+    Contact& contact = *o_.problem_.contact;
+    if (o_.factored_dt_ != dt_ && !factor()) return false;
+    if (p_.of_step != dt_ && !find_columns()) return false;
+    const Eigen::Index n = p_.force.size();
+    for (Eigen::Index k = 0; k < n; ++k) p_.free(k) = b_.q(contact.coordinates()[index(k)]);
+    p_.free.noalias() -= p_.compliance * p_.force;
+    const Vector& force = contact.solve(end_, p_.free, p_.compliance);
+    change = (force - p_.force).norm();
+    for (Eigen::Index k = 0; k < n; ++k)
+      x.noalias() += p_.columns.col(k) * (force(k) - p_.force(k));
+    p_.force = force;
     return true;
   }
 
@@ -91,9 +129,30 @@ class ImplicitDynamics::Balance final : public Equations {
     store(b_.v, motion.v);
     store(b_.a, motion.a);
     store(b_.response.force, motion.force);
+    // Their velocity is that of the step: nothing but traces reads it.
+    for (const int dof : o_.layer_.dofs()) {
+      motion.v[index(dof)] = b_.moved(dof) / dt_;
+      motion.a[index(dof)] = 0.0;
+    }
   }
 
  private:
+  /// Accelerations by unit contact forces, and the displacements among them.
+  [[nodiscard]] bool find_columns() {
+    const std::vector<int>& touched = p_.touched;
+    const Eigen::Index n = static_cast<Eigen::Index>(touched.size());
+    p_.unit.setZero(o_.free_.count(), n);
+    for (Eigen::Index k = 0; k < n; ++k)
+      p_.unit(o_.free_.place(touched[index(k)]), k) = 1.0 - w_.alpha_f;
+    if (!o_.solver_->solve_columns(p_.unit, p_.columns)) return false;
+    p_.compliance.resize(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      p_.compliance.row(i) =
+          w_.beta * dt_ * dt_ * p_.columns.row(o_.free_.place(touched[index(i)]));
+    p_.of_step = dt_;
+    return true;
+  }
+
   /// [J] of the step, by loads and supports: what inertia and internal force take. With other
   /// weights than Newmark's these take damping too, and accelerations lag by (alpha_f - alpha_m)
   /// dt, so free coordinates are worked on by the loads, and supports see the lag made good.
@@ -112,12 +171,13 @@ class ImplicitDynamics::Balance final : public Equations {
     o_.times_mass(b_.inner, b_.inertia);
     Vector& mean = b_.sum;
     mean = 0.5 * (b_.response.force + force) + b_.inertia;
-    for (int i : o_.free_.list()) mean(i) = 0.5 * (b_.external(i) + b_.external_start(i));
+    for (int i : o_.inertial_.list()) mean(i) = 0.5 * (b_.external(i) + b_.external_start(i));
     return mean.dot(b_.moved);
   }
 
   ImplicitDynamics& o_;
   Buffers& b_;
+  Pressed& p_;
   const AlphaWeights& w_;
   const Motion& motion_;
   double end_, dt_;
@@ -128,7 +188,9 @@ ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& option
     : problem_(problem),
       options_(options),
       solver_(std::move(solver)),
-      free_(problem.model->dofs(), problem.supports) {
+      free_(problem.model->dofs(), problem.supports),
+      inertial_(problem.model->dofs(), problem.supports, problem.model->massless()),
+      layer_(problem) {
   mass_ = mass_matrix(*problem.model, options.mass);
 }
 
@@ -136,26 +198,38 @@ void ImplicitDynamics::times_mass(const Eigen::Ref<const Vector>& x, Vector& out
   out.noalias() = mass_ * x;
 }
 
-/// Adds the solution of M a = f on the free coordinates.
+/// Adds the solution of M a = f on the free coordinates that have mass.
 bool ImplicitDynamics::solve_mass(const Vector& force, Vector& acceleration) const {
   if (!mass_solver_) {
     SparseMatrix free_mass;
-    FreeCoordinates(problem_.model->dofs(), problem_.supports).extract(mass_, free_mass);
+    FreeCoordinates(problem_.model->dofs(), problem_.supports, layer_.dofs())
+        .extract(mass_, free_mass);
     mass_solver_ = make_direct_solver();
     if (!mass_solver_->factor(free_mass)) return false;
   }
-  free_.pick(force, of_mass_.force);
+  inertial_.pick(force, of_mass_.force);
   if (!mass_solver_->solve(of_mass_.force, of_mass_.free)) return false;
-  free_.add(of_mass_.free, acceleration);
+  inertial_.add(of_mass_.free, acceleration);
   return true;
 }
 
-void ImplicitDynamics::jump(Motion& motion, const Vector& change) {
+std::optional<Failed> ImplicitDynamics::jump(Motion& motion, double time, const Vector& change) {
+  Vector& rest = of_mass_.rest;
+  rest = change;
+  if (!layer_.empty()) {
+    if (auto failed = layer_.jump(time, motion, change, of_mass_.answer)) return failed;
+    rest -= of_mass_.answer;
+  }
   Vector& a = of_mass_.acceleration;
   a = view(motion.a);
-  const bool solved = solve_mass(change, a);
+  const bool solved = solve_mass(rest, a);
   ABUT_ASSERT(solved);  // as at the begin
   store(a, motion.a);
+  return std::nullopt;
+}
+
+double ImplicitDynamics::compliance(const Motion& motion, int dof) {
+  return layer_.compliance(motion.q, motion.history, dof);
 }
 
 /// Newmark's are those of the balance at every step's end. With other weights they lag: the balance
@@ -187,6 +261,10 @@ std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
     motion.q[index(p.dof)] = p.value(time);
     a(p.dof) = motion.a[index(p.dof)];
   }
+  if (!layer_.empty()) {
+    const Vector& loads = problem_.external_force(time, motion.q);
+    if (auto failed = layer_.settle(time, motion.q, motion.history, loads, nullptr)) return failed;
+  }
   if (!model.evaluate(motion.q, motion.history, Model::Want::force, response))
     return failed_newton({NewtonReport::End::inadmissible}, time);
   Vector r;
@@ -201,11 +279,35 @@ std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
   return std::nullopt;
 }
 
+/// The balance and contact in turns: exact factors, as of linear models, need two. What the
+/// coordinates without mass bear at the begin is the first guess of what presses on them.
+NewtonReport ImplicitDynamics::solve(Balance& balance, const Motion& motion) {
+  Contact* contact = problem_.contact;
+  Vector& x = balance.first_guess();
+  const Eigen::Index n =
+      contact != nullptr ? static_cast<Eigen::Index>(contact->coordinates().size()) : 0;
+  pressed_.force.resize(n);
+  pressed_.free.resize(n);
+  for (Eigen::Index k = 0; k < n; ++k)
+    pressed_.force(k) = motion.force[index(contact->coordinates()[index(k)])];
+  if (contact != nullptr && pressed_.touched != contact->coordinates()) {
+    pressed_.touched = contact->coordinates();
+    pressed_.of_step = 0.0;
+  }
+  for (int turn = 0;; ++turn) {
+    const NewtonReport report = solve_newton(balance, x, options_.newton, buffers_.newton);
+    iterations_ += report.iterations;
+    if (!report.converged() || contact == nullptr) return report;
+    double change = 0.0;
+    if (!balance.press(x, change)) return {NewtonReport::End::singular};
+    if (change <= options_.newton.tolerance * buffers_.scale) return report;
+    if (turn == most_turns) return {NewtonReport::End::not_converged, turn, change / buffers_.scale};
+  }
+}
+
 std::optional<Failed> ImplicitDynamics::step(Motion& motion, double time, double dt) {
   Balance balance(*this, motion, time, dt);
-  const NewtonReport report =
-      solve_newton(balance, balance.first_guess(), options_.newton, buffers_.newton);
-  iterations_ += report.iterations;
+  const NewtonReport report = solve(balance, motion);
   if (!report.converged()) return failed_newton(report, time + dt);
   balance.finish(motion);
   return std::nullopt;

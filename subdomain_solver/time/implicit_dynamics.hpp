@@ -6,13 +6,15 @@
 #include "subdomain_solver/solve/newton.hpp"
 #include "subdomain_solver/time/alpha_weights.hpp"
 #include "subdomain_solver/time/integrator.hpp"
+#include "subdomain_solver/time/massless_layer.hpp"
 
 namespace abut {
 
 /// The generalised-alpha family on any model [M.46]: one Newton solve per step, one factorisation
 /// per step length when the model is linear. Newmark 1/4, 1/2 conserves 1/2 v M v + stored energy
-/// of linear models. Unknowns are accelerations, so that small steps lose nothing to round-off. A
-/// step allocates nothing itself once its buffers have grown.
+/// of linear models. Unknowns are accelerations, so that small steps lose nothing to round-off.
+/// Coordinates without mass take part as they are; contact presses with a force of the step's end
+/// [M.86]. A step allocates nothing itself once its buffers have grown.
 class ImplicitDynamics final : public Integrator {
  public:
   struct Options {
@@ -26,22 +28,32 @@ class ImplicitDynamics final : public Integrator {
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  void jump(Motion& motion, const Vector& change) override;
+  [[nodiscard]] std::optional<Failed> jump(Motion& motion, double time,
+                                           const Vector& change) override;
+  double compliance(const Motion& motion, int dof) override;
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
   double kinetic(const Motion& motion) const override;
 
  private:
   class Balance;
+  [[nodiscard]] NewtonReport solve(Balance& balance, const Motion& motion);
 
   struct Buffers {  // of one step at a time
     Vector q_start, v_start, q, v, a, x;
     Vector past, external, external_start;  // [N]
     Vector inertia, inner, outer, sum, moved;
     ModelResponse response, tangent;
+    double scale = 0.0;  // [N] of the balance
     NewtonVectors newton;
   };
   struct MassBuffers {  // of what is asked for between steps
-    Vector force, acceleration, free, rest;
+    Vector force, acceleration, free, rest, answer;
+  };
+  struct Pressed {           // by contact
+    std::vector<int> touched;  // its coordinates
+    Vector force, free;      // [N], [m] (contact)
+    Eigen::MatrixXd unit, columns, compliance;
+    double of_step = 0.0;  // [s] that columns are for
   };
 
   void times_mass(const Eigen::Ref<const Vector>& x, Vector& out) const;
@@ -50,12 +62,14 @@ class ImplicitDynamics final : public Integrator {
   const Problem& problem_;
   Options options_;
   std::unique_ptr<LinearSolver> solver_;
-  FreeCoordinates free_;
+  FreeCoordinates free_, inertial_;  // those among them that have mass
+  MasslessLayer layer_;
   SparseMatrix mass_;
   MatrixSum whole_;
   SparseMatrix matrix_;  // of the free coordinates
   double factored_dt_ = 0.0;
   Buffers buffers_;
+  Pressed pressed_;
   mutable MassBuffers of_mass_;
   mutable std::unique_ptr<LinearSolver> mass_solver_;  // of the free coordinates, when needed
 };

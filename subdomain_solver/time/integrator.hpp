@@ -18,8 +18,13 @@ class Integrator {
   /// From `time` to `time + dt`. When it fails, the motion is as before.
   [[nodiscard]] virtual std::optional<Failed> step(Motion& motion, double time, double dt) = 0;
   /// A load sets in or ends at the present time and changes the force by this much [N] (dofs):
-  /// accelerations follow at once. Schemes that keep none have nothing to do.
-  virtual void jump(Motion&, const Vector&) {}
+  /// accelerations follow at once, and so do coordinates without mass. Schemes that keep neither
+  /// have nothing to do.
+  [[nodiscard]] virtual std::optional<Failed> jump(Motion&, double, const Vector&) {
+    return std::nullopt;
+  }
+  /// Quasi-static compliance of a coordinate without mass [m/N]; 0: it has mass.
+  virtual double compliance(const Motion&, int) { return 0.0; }
   /// [m/s^2] (dofs) at a time of the motion, prescribed coordinates included, as the balance of
   /// forces at this time has them; step [s]: of the scheme.
   virtual void acceleration(const Motion& motion, double time, double step, Vector& out) const = 0;

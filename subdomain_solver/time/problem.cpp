@@ -44,9 +44,11 @@ void Problem::set_accelerations(double time, double step, Vector& acceleration) 
   }
 }
 
-FreeCoordinates::FreeCoordinates(int dofs, const std::vector<Prescribed>& supports)
+FreeCoordinates::FreeCoordinates(int dofs, const std::vector<Prescribed>& supports,
+                                 const std::vector<int>& without)
     : place_(index(dofs), 0) {
   for (const Prescribed& p : supports) place_[index(p.dof)] = -1;
+  for (const int dof : without) place_[index(dof)] = -1;
   for (int i = 0; i < dofs; ++i) {
     int& place = place_[index(i)];
     if (place < 0) continue;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/index.hpp"
 #include "subdomain_solver/model.hpp"
 
 namespace abut {
@@ -26,9 +27,12 @@ struct Prescribed {
   std::function<double(double)> value;  // [m] of time [s]
 };
 
+class Contact;
+
 /// A model with what acts on it.
 struct Problem {
   Model* model = nullptr;
+  Contact* contact = nullptr;        // null: nothing may press on it now
   std::vector<Prescribed> supports;  // one per coordinate at most, sorted by dof
   std::vector<std::unique_ptr<Load>> loads;
 
@@ -49,10 +53,13 @@ struct Problem {
 /// Free and prescribed coordinates, and the rows and columns of a matrix that belong to free ones.
 class FreeCoordinates {
  public:
-  FreeCoordinates(int dofs, const std::vector<Prescribed>& supports);
+  /// `without`: others that are not free.
+  FreeCoordinates(int dofs, const std::vector<Prescribed>& supports,
+                  const std::vector<int>& without = {});
 
   int count() const { return static_cast<int>(free_.size()); }
   const std::vector<int>& list() const { return free_; }
+  int place(int dof) const { return place_[index(dof)]; }  // among the free ones; -1: it is none
   void pick(const Vector& all, Vector& free) const;
   void add(const Vector& free, Vector& all) const;
   void extract(const SparseMatrix& all, SparseMatrix& free);

@@ -23,7 +23,13 @@ class StableSteps final : public Integrator {
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  void jump(Motion& motion, const Vector& change) override { steps_.jump(motion, change); }
+  [[nodiscard]] std::optional<Failed> jump(Motion& motion, double time,
+                                           const Vector& change) override {
+    return steps_.jump(motion, time, change);
+  }
+  double compliance(const Motion& motion, int dof) override {
+    return steps_.compliance(motion, dof);
+  }
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override {
     steps_.acceleration(motion, time, step, out);
   }

@@ -157,6 +157,7 @@ TEST(GeneralBar, RefusesWhatItDoesNotKnow) {
   text.layer = "kick: {}";
   EXPECT_NE(refusal(text.text() + clamp).find("contact_layer"), std::string::npos);
   text = bare();
+  text.integrator = "quasi_static: {step: 1.0}";
   text.tied = "right";
   EXPECT_NE(refusal(text.text() + clamp).find("ports.right.tied"), std::string::npos);
 }

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "contract/outcome.hpp"
+#include "subdomain_solver/time/problem.hpp"
+
+namespace abut {
+
+/// The coordinates of a model that have no mass: wherever the others are, these lie where their
+/// forces balance [M.84], and what presses on them is solved for there [M.85].
+class MasslessLayer {
+ public:
+  /// The problem must outlive it.
+  explicit MasslessLayer(const Problem& problem);
+
+  bool empty() const { return dofs_.empty(); }
+  const std::vector<int>& dofs() const { return dofs_; }
+  /// Moves the layer of `q` to balance at a time, under `loads` [N] (dofs; empty: none) and what
+  /// `contact` presses (null: nothing). Other coordinates stay.
+  [[nodiscard]] std::optional<Failed> settle(double time, std::vector<double>& q,
+                                             std::span<const double> history, const Vector& loads,
+                                             Contact* contact);
+  /// The forces on the layer change by `change` [N] (dofs) at once: it moves, and the body's answer
+  /// with it, by `answer` [N] (dofs).
+  [[nodiscard]] std::optional<Failed> jump(double time, Motion& motion, const Vector& change,
+                                           Vector& answer);
+  /// Compliance of one of its coordinates [m/N] at q.
+  double compliance(std::span<const double> q, std::span<const double> history, int dof);
+
+ private:
+  [[nodiscard]] bool respond(std::span<const double> q, std::span<const double> history);
+  void find_compliance();
+  void press(double time, std::span<const double> q, Contact& contact);
+  double move(std::vector<double>& q, double part);
+
+  const Problem& problem_;
+  std::vector<int> dofs_;
+  LayerResponse response_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+  Eigen::MatrixXd inverse_;  // [m/N] of the tangent
+  bool inverted_ = false;    // for good: the model is linear
+  Vector step_, rest_;       // [m], [N] (layer)
+  Vector free_, pressed_;    // [m], [N] (contact)
+  Eigen::MatrixXd give_;     // [m/N] (contact)
+  std::vector<int> place_;   // of the contact's coordinates in the layer
+  std::vector<double> moved_;  // [m] (dofs) by a jump
+  Vector loads_;               // [N] (dofs) after it
+  ModelResponse whole_;
+};
+
+}  // namespace abut
