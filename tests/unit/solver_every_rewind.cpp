@@ -193,6 +193,7 @@ void rewind(const Maker& maker, bool obstructed) {
     EXPECT_EQ(first.ports[p].lower, third.ports[p].lower);
   }
   EXPECT_EQ(first.records[1].energy.total(), third.records[1].energy.total());
+  EXPECT_EQ(first.records[1].energy.external_work, third.records[1].energy.external_work);
   EXPECT_EQ(first.records[1].columns, third.records[1].columns);
   EXPECT_EQ(body->measure(), twin->measure());
 }
