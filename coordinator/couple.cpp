@@ -110,8 +110,8 @@ void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
             "yet",
             one.name, one.model, other.name, other.model),
         where,
-        "Make one side a bar of equal elements and linear_elastic material, without points, "
-        "constraints, loads and fields.");
+        "Make one side a bar of equal elements and linear_elastic material, without "
+        "constraints and ports inside.");
   }
   joint.role_fixed = how.kinematic != "auto";
   if (joint.role_fixed) {

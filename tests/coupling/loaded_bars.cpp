@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.hpp"
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -108,6 +109,20 @@ TEST(LoadedBar, PushesAnotherOneAhead) {
       EXPECT_NEAR(r->velocity(1), 0.08 / 1.75, 0.02);
       EXPECT_LT(std::abs(r->measure("energy.total.relative_drift_max")), 1.0e-3);
     }
+  }
+}
+
+TEST(LoadedBar, HasNoExactSolution) {
+  SceneText scene = two_bars();
+  EXPECT_NO_THROW(run_document(Document::from_text("test", scene.text())));
+  std::string text = scene.text();
+  give(text, "left", "    loads: {push: {on: left, pressure: '1'}}\n");
+  try {
+    run_document(Document::from_text("test", text));
+    ADD_FAILURE() << "was accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("meta.closed_form"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("the body left is neither"), std::string::npos);
   }
 }
 
