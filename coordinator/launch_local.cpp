@@ -89,8 +89,10 @@ Row row_of(const Scene& scene, const Document& document) {
   Row row;
   for (const auto& [name, entry] : scene.bodies) {
     const BodySpec spec = read<BodySpec>(document, path_of(name));
-    if (spec.is_solid() && !spec.is_uniform_bar()) {
-      throw InputError(fmt::format("describes bars and walls, but the body {} is neither", name),
+    if (spec.shape() != nullptr && !spec.is_uniform_bar()) {
+      throw InputError(fmt::format("describes bars and walls without loads, initial fields, points "
+                                   "and constraints, but the body {} is neither",
+                                   name),
                        document.where("meta.closed_form"),
                        "Leave out meta.closed_form and the expectations that need it.");
     }

@@ -73,7 +73,7 @@ class Model {
   [[nodiscard]] virtual bool evaluate(std::span<const double> q, std::span<const double> history,
                                       Want want, ModelResponse& out) = 0;
 
-  /// Coordinates without mass, ascending: the surface layer [M.84]. Usually none.
+  /// Coordinates without mass, ascending: the surface layer [M.85]. Usually none.
   virtual const std::vector<int>& massless() const;
   /// Of these alone, which costs as much as they are many. False: q is inadmissible.
   [[nodiscard]] virtual bool evaluate_layer(std::span<const double> q,

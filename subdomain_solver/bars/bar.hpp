@@ -65,6 +65,10 @@ class Bar {
 
   bool lumped() const { return data_.mass == MassForm::lumped; }
   int node_of(int end) const { return end == 0 ? 0 : nodes() - 1; }
+  double place_of(int node) const {  // [m] in the reference
+    const double along = node < data_.elements ? node * spacing() : data_.length;
+    return data_.position + along;
+  }
   int inner_of(int end) const { return end == 0 ? 1 : nodes() - 2; }
   static double outward(int end) { return end == 0 ? -1.0 : 1.0; }
 

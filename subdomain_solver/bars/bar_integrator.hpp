@@ -46,6 +46,12 @@ struct EndAction {
 };
 using EndActions = std::array<EndAction, 2>;
 
+/// Forces on the nodes besides those on ports [N] (nodes), along x; empty: there are none.
+struct NodeForces {
+  std::vector<double> before;  // at the begin of the present substep
+  std::vector<double> now;     // at its end; before the first one, at the begin of the run
+};
+
 /// Advances a bar by substeps. Every scheme is affine in the contact force of the substep: the
 /// outward displacement of a closed end is x = x_free - C lambda (docs/METHOD.md, port line), so
 /// that the one-body unilateral problem is solved in closed form.
@@ -58,6 +64,13 @@ class BarIntegrator {
   virtual ~BarIntegrator() = default;
   BarIntegrator(const BarIntegrator&) = delete;
   BarIntegrator& operator=(const BarIntegrator&) = delete;
+
+  /// What loads do: to be set before everything else that is asked for.
+  NodeForces& loads() { return loads_; }
+  const NodeForces& loads() const { return loads_; }
+  /// Completes a state of the start: places of massless ends and accelerations that are in balance
+  /// with the loads and with obstacles at the ends.
+  virtual void begin(BarState& state, const EndActions& actions) = 0;
 
   /// Starts a run of substeps: `opening` tells what acts at both ends at its first instant.
   virtual void open(BarState& state, double dt, const EndActions& opening) = 0;
@@ -101,6 +114,7 @@ class BarIntegrator {
   bool update_closed(BarState& state, const EndActions& actions) const;
 
   const Bar& bar_;
+  NodeForces loads_;
 
  private:
   const std::vector<double> no_blow_;

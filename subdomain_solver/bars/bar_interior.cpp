@@ -22,14 +22,55 @@ constexpr double usual_work = 2.0e7;
 }  // namespace
 
 BarInterior::BarInterior(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
-                         const std::vector<End>& ends)
-    : bar_(std::move(bar)), scheme_(std::move(scheme)), shown_(ends.size()) {
+                         const std::vector<End>& ends, Extras extras)
+    : bar_(std::move(bar)),
+      scheme_(std::move(scheme)),
+      shown_(ends.size()),
+      loads_(std::move(extras.loads)),
+      late_(loads_ != nullptr || !extras.displacement.empty()),
+      begun_(!late_) {
   lie_down();
   std::fill(state_.v.begin(), state_.v.end(), bar_->data().velocity);
-  for (int end : {0, 1}) {
-    if (bar_->data().fixed[index(end)]) state_.v[index(bar_->node_of(end))] = 0.0;
-  }
+  set_fields(extras);
   describe(std::move(name), ends);
+}
+
+void BarInterior::set_fields(const Extras& extras) {
+  for (std::size_t i = 0; i < extras.velocity.size(); ++i) state_.v[i] += extras.velocity[i];
+  for (std::size_t i = 0; i < extras.displacement.size(); ++i) state_.u[i] = extras.displacement[i];
+  for (int end : {0, 1}) {
+    if (!bar_->data().fixed[index(end)]) continue;
+    state_.u[index(bar_->node_of(end))] = state_.v[index(bar_->node_of(end))] = 0.0;
+  }
+  lifted_ = bar_->momentum(state_.u);
+  const bool damped = bar_->data().bulk_viscosity > 0.0 && !extras.velocity.empty();
+  if (begun_ && damped) scheme_.integrator->begin(state_, {});
+}
+
+/// The state of the start, which the first substep leaves. Where an obstacle is met at once, the
+/// end stands against it from the begin; the energy that this takes is told as work.
+void BarInterior::start(const Window& window) {
+  scheme_.integrator->begin(state_, {});
+  if (window.grid.count == 0) return;
+  begun_ = true;
+  actions_ = {};
+  bool pressed = false;
+  for (std::size_t p = 0; p < ends_.size(); ++p) {
+    if (!imposed_[p].obstacle.acts()) continue;
+    set_obstacle(0, p, actions_[index(ends_[p])]);
+    pressed = true;
+  }
+  if (!pressed) return;
+  const double alone = scheme_.integrator->kinetic(state_) + scheme_.integrator->stored(state_);
+  scheme_.integrator->begin(state_, actions_);
+  load_work_ += scheme_.integrator->kinetic(state_) + scheme_.integrator->stored(state_) - alone;
+}
+
+void BarInterior::state(Archive& archive) {
+  state_.state(archive);
+  if (!late_) return;
+  archive.field("begun", begun_);
+  archive.field("load_work", load_work_);
 }
 
 void BarInterior::describe(std::string name, const std::vector<End>& ends) {
@@ -109,6 +150,8 @@ std::vector<FieldValues> BarInterior::fields() {
 /// partners see them: they are the contact elements' own.
 std::optional<Failed> BarInterior::begin(const Window& window) {
   see_imposed(window);
+  if (loaded()) meet_loads(window.request.window.begin);
+  if (!begun_) start(window);
   for (EndState& e : state_.end) e.work = 0.0;
   const double left = state_.u.front(), right = state_.u.back();
   state_.u.front() = scheme_.integrator->port_displacement(state_, 0);
@@ -130,9 +173,11 @@ void BarInterior::set_off(const Window& window) {
   places_ = end_places();
   open_ = false;
   if (window.grid.count == 0) return;
+  if (loaded()) worked_ = state_.u;
   scheme_.integrator->open(state_, window.grid.length(1), actions_);
   open_ = true;
   if (driven_) add_work();
+  if (loaded()) add_load_work();
 }
 
 std::optional<Failed> BarInterior::step(const Window& window, int i) {
@@ -140,8 +185,10 @@ std::optional<Failed> BarInterior::step(const Window& window, int i) {
   if (!open_) scheme_.integrator->open(state_, dt, actions_);
   open_ = true;
   if (driven_) set_actions(window, i);
+  if (loaded()) bear_loads(window.grid.time(i));
   scheme_.integrator->substep(state_, dt, actions_);
   if (driven_) add_work();
+  if (loaded()) add_load_work();
   return std::nullopt;
 }
 
@@ -169,6 +216,31 @@ void BarInterior::add_work() {
         0.5 * (places_[e].force + now[e].force) * (now[e].outward - places_[e].outward);
   }
   places_ = now;
+}
+
+/// Of a window's begin.
+void BarInterior::meet_loads(double time) {
+  NodeForces& forces = scheme_.integrator->loads();
+  loads_->at(time, forces.now);
+  forces.before = forces.now;
+}
+
+/// Of a substep that ends at `time`.
+void BarInterior::bear_loads(double time) {
+  NodeForces& forces = scheme_.integrator->loads();
+  forces.before.swap(forces.now);
+  loads_->at(time, forces.now);
+}
+
+/// Of the loads since they were last seen: the mean of theirs at both ends [M.84]. When a window
+/// opens nothing but a massless end moves, under the loads of that instant.
+void BarInterior::add_load_work() {
+  const NodeForces& forces = scheme_.integrator->loads();
+  double work = 0.0;
+  for (std::size_t i = 0; i < worked_.size(); ++i)
+    work += 0.5 * (forces.before[i] + forces.now[i]) * (state_.u[i] - worked_[i]);
+  load_work_ += work;
+  worked_ = state_.u;
 }
 
 void BarInterior::see_imposed(const Window& window) {
@@ -269,10 +341,11 @@ double BarInterior::force_on_body(int end, const BoundaryData& data) const {
     // As published: what is handed over is the internal force of the contact node, without its
     // inertia. A complete reaction holds both.
     if (!data.closed()) return 0.0;
-    const double internal = scheme_.integrator->internal_force(state_, end);
+    const std::size_t node = index(bar_->node_of(end));
+    double internal = scheme_.integrator->internal_force(state_, end);
+    if (loaded()) internal -= scheme_.integrator->loads().now[node];  // goes on to the partner
     if (!bar_->data().complete_reaction) return internal;
     if (data.motion.empty()) return -Bar::outward(end) * state_.end[index(end)].force;
-    const std::size_t node = index(bar_->node_of(end));
     return internal + bar_->row_mass()[node] * (state_.a[node] - bar_->data().body_force);
   }
   return -Bar::outward(end) * state_.end[index(end)].force;
@@ -306,17 +379,24 @@ std::optional<Failed> BarInterior::record(BodyRecord& r) {
   r.energy = {};
   r.energy.kinetic = scheme_.integrator->kinetic(state_);
   r.energy.stored = scheme_.integrator->stored(state_);
-  const double body_force = bar_->data().body_force;
-  if (body_force != 0.0) r.energy.external_work = body_force * bar_->momentum(state_.u);  // f . u
+  r.energy.external_work = external_work();
   r.momentum.assign(1, bar_->momentum(state_.v) + scheme_.integrator->momentum_lag(state_));
   return std::nullopt;
+}
+
+double BarInterior::external_work() const {
+  const double body_force = bar_->data().body_force;
+  double work = load_work_;
+  if (body_force != 0.0) work += body_force * (bar_->momentum(state_.u) - lifted_);  // f . u
+  return work;
 }
 
 void BarInterior::finish(std::size_t port, PortResponse& reply) const {
   const int end = ends_[port];
   reply.work = state_.end[index(end)].work;
   reply.recoil = scheme_.integrator->recoil(state_, end);
-  if (state_.end[index(end)].force == 0.0) approach(end, reply);
+  // nobody knows what loads will do: no bound
+  if (state_.end[index(end)].force == 0.0 && !loaded()) approach(end, reply);
 }
 
 void BarInterior::approach(int end, PortResponse& reply) const {
@@ -350,9 +430,12 @@ void BarInterior::lie_down() {
   }
 }
 
-/// The body force stays: it is in the bar's properties.
+/// Loads are put away. The body force stays: it is in the bar's properties.
 bool BarInterior::rest(std::size_t port) {
   lie_down();
+  scheme_.integrator->loads() = {};
+  begun_ = true;
+  load_work_ = 0.0;
   probed_ = static_cast<int>(port);
   state_.end[index(ends_[port])].closed = true;
   return bar_->data().body_force != 0.0;

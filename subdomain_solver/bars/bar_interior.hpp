@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subdomain_solver/bars/bar_integrator.hpp"
+#include "subdomain_solver/bars/bar_loads.hpp"
 #include "subdomain_solver/contact/point_obstacle.hpp"
 #include "subdomain_solver/interior.hpp"
 
@@ -27,11 +28,17 @@ class BarInterior final : public Interior {
     std::string words;      // for people
     bool conserves = true;  // the energies that its integrator tells
   };
+  /// What a bar starts with besides its uniform velocity, and what acts on it besides its body
+  /// force: absent where there is none.
+  struct Extras {
+    std::vector<double> displacement, velocity;  // [m] [m/s] (nodes)
+    std::unique_ptr<BarLoads> loads;
+  };
 
   BarInterior(std::string name, std::unique_ptr<Bar> bar, Scheme scheme,
-              const std::vector<End>& ends);
+              const std::vector<End>& ends, Extras extras);
 
-  void state(Archive& archive) override { state_.state(archive); }
+  void state(Archive& archive) override;
   std::size_t coordinates() const override;
   std::optional<Failed> begin(const Window& window) override;
   void set_off(const Window& window) override;
@@ -66,7 +73,14 @@ class BarInterior final : public Interior {
   };
 
   void describe(std::string name, const std::vector<End>& ends);
+  void set_fields(const Extras& extras);
   void lie_down();
+  bool loaded() const { return loads_ != nullptr && probed_ < 0; }
+  void start(const Window& window);
+  void meet_loads(double time);
+  void bear_loads(double time);
+  void add_load_work();
+  double external_work() const;
   void see_imposed(const Window& window);
   void set_actions(const Window& window, int i);
   void add_force(const Waveform& imposed, bool same_grid, const Substeps& grid, int i, int end,
@@ -91,6 +105,13 @@ class BarInterior final : public Interior {
   std::vector<Shown> shown_;  // by port
   PortValues seen_;
   int probed_ = -1;  // the port that is held
+
+  std::unique_ptr<BarLoads> loads_;  // null: none
+  bool late_ = false;                // the start waits for the loads and obstacles that it finds
+  bool begun_ = true;                // it has found them
+  double load_work_ = 0.0;           // [J] done by the loads
+  double lifted_ = 0.0;              // [kg m] M u of the start, from which weight's work counts
+  std::vector<double> worked_;       // [m] (nodes) places up to which the loads' work is told
 };
 
 }  // namespace abut

@@ -97,7 +97,10 @@ void CentralDifference::kick_drift(BarState& state, double kick, double dt) {
     add_viscous_force(state.v, viscous_);
     for (std::size_t i = 0; i < n; ++i) state.v[i] -= kick * bar_.inverse_mass()[i] * viscous_[i];
   }
-  if (forward()) acceleration(state);  // before the places move on
+  if (forward()) acceleration(state, loads_.before);  // before the places move on
+  const std::vector<double>& load = loads_.before;
+  for (std::size_t i = 0; i < load.size(); ++i)
+    state.v[i] += kick * bar_.inverse_mass()[i] * load[i];
   kick_end_nodes(state, s, kick);
   if (n > 4 && simple()) {
     kick_drift_nodes(state.u.data(), state.v.data(), 2, n - 2, g, shift, dt);
@@ -134,7 +137,7 @@ void CentralDifference::drift(BarState& state, double dt) {
   drift_end_nodes(state, dt);
 }
 
-void CentralDifference::acceleration(BarState& state) {
+void CentralDifference::acceleration(BarState& state, const std::vector<double>& load) {
   const double* s = smoothed(state);
   bar_.internal_force({s, state.u.size()}, force_);
   if (viscous()) add_viscous_force(state.v, force_);
@@ -143,6 +146,7 @@ void CentralDifference::acceleration(BarState& state) {
   for (std::size_t i = 0; i < force_.size(); ++i) {
     state.a[i] = inverse[i] > 0.0 ? body_force - inverse[i] * force_[i] : 0.0;
   }
+  for (std::size_t i = 0; i < load.size(); ++i) state.a[i] += inverse[i] * load[i];
   for (int end : {0, 1}) {
     const std::size_t node = index(bar_.node_of(end));
     const EndState& e = state.end[index(end)];
@@ -152,11 +156,13 @@ void CentralDifference::acceleration(BarState& state) {
   }
 }
 
+/// Compressive force [N] that keeps a massless end where it is.
 double CentralDifference::reaction_of(const BarState& state, int end) const {
   const double* s = smoothed(state);
   const std::size_t node = index(bar_.node_of(end));
   const std::size_t inner = index(bar_.inner_of(end));
-  return ends_[index(end)].spring * Bar::outward(end) * (s[inner] - s[node]);
+  const double internal = ends_[index(end)].spring * Bar::outward(end) * (s[inner] - s[node]);
+  return loads_.now.empty() ? internal : internal + Bar::outward(end) * loads_.now[node];
 }
 
 void CentralDifference::place_massless(BarState& state, int end, const EndAction& action,
@@ -249,6 +255,11 @@ double CentralDifference::work_of_switch(BarState& state, int end, double dt) co
   return 0.5 * sum;
 }
 
+void CentralDifference::begin(BarState& state, const EndActions& actions) {
+  resolve_massless(state, actions, 0.0);
+  acceleration(state, loads_.now);
+}
+
 void CentralDifference::open(BarState& state, double dt, const EndActions& opening) {
   // Contact that comes or goes moves nothing by itself: a massless port that is free stands where
   // its force is zero. A force that sets in moves the port at once.
@@ -269,7 +280,7 @@ void CentralDifference::open(BarState& state, double dt, const EndActions& openi
       held[e].force = held[e].dynamic = state.end[e].dynamic;
     }
     resolve_massless(state, held, 0.0);
-    acceleration(state);
+    acceleration(state, loads_.now);
   }
   for (int end : {0, 1}) {
     const std::size_t node = index(bar_.node_of(end));
@@ -294,7 +305,7 @@ void CentralDifference::substep(BarState& state, double dt, const EndActions& ac
     push_on(state, dt, dt);
   } else if (bar_.data().stabilised) {
     // the next predictor must not see the accelerations that close() drops
-    close(state, previous_dt_);
+    close_under(state, previous_dt_, loads_.before);
     kick_nodes_with(state, 0.5 * dt);
     drift(state, dt);
     push_on(state, dt, dt);
@@ -324,8 +335,10 @@ void CentralDifference::resolve_massive(BarState& state, int end, const EndActio
   prescribed_[index(end)] = action;
 }
 
-void CentralDifference::close(BarState& state, double dt) {
-  acceleration(state);
+void CentralDifference::close(BarState& state, double dt) { close_under(state, dt, loads_.now); }
+
+void CentralDifference::close_under(BarState& state, double dt, const std::vector<double>& load) {
+  acceleration(state, load);
   kick_nodes_with(state, 0.5 * dt);
   for (int end : {0, 1}) {
     const std::size_t node = index(bar_.node_of(end));

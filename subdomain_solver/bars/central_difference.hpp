@@ -21,6 +21,7 @@ class CentralDifference final : public BarIntegrator {
  public:
   CentralDifference(const Bar& bar, double step, int terms);
 
+  void begin(BarState& state, const EndActions& actions) override;
   void open(BarState& state, double dt, const EndActions& opening) override;
   void substep(BarState& state, double dt, const EndActions& actions) override;
   void close(BarState& state, double dt) override;
@@ -60,7 +61,8 @@ class CentralDifference final : public BarIntegrator {
   void drift_end_nodes(BarState& state, double dt);
   void push_on(BarState& state, double kick, double dt) const;
   double* smooth(const BarState& state, const std::vector<double>& u, Smoothing& places) const;
-  void acceleration(BarState& state);
+  void acceleration(BarState& state, const std::vector<double>& load);
+  void close_under(BarState& state, double dt, const std::vector<double>& load);
   void kick_nodes_with(BarState& state, double kick) const;
   void place_massless(BarState& state, int end, const EndAction& action, double dt);
   void resolve_massless(BarState& state, const EndActions& actions, double dt);

@@ -79,6 +79,7 @@ void GeneralizedAlpha::initial_acceleration(BarState& state) const {
   for (std::size_t i = 0; i < state.a.size(); ++i) {
     state.a[i] = bar_.row_mass()[i] * bar_.data().body_force - state.a[i];
   }
+  for (std::size_t i = 0; i < loads_.now.size(); ++i) state.a[i] += loads_.now[i];
   for (int end : {0, 1}) {
     const std::size_t node = index(bar_.node_of(end));
     // a closed massless end is in balance with its force: nothing is left over there
@@ -90,6 +91,22 @@ void GeneralizedAlpha::initial_acceleration(BarState& state) const {
     if (bar_.inverse_mass()[i] == 0.0) state.a[i] = 0.0;
   }
   mass_matrix_.solve(state.a);
+}
+
+void GeneralizedAlpha::begin(BarState& state, const EndActions& actions) {
+  for (int end : {0, 1}) {
+    if (!is(end, ContactLayer::massless)) continue;
+    const std::size_t node = index(bar_.node_of(end));
+    const EndAction& action = actions[index(end)];
+    const double n = Bar::outward(end), compliance = static_compliance(end);
+    double free_position = n * state.u[index(bar_.inner_of(end))];
+    if (!loads_.now.empty()) free_position += n * compliance * loads_.now[node];
+    EndState& e = state.end[index(end)];
+    const bool pressed = action.kind == EndAction::Kind::obstacle;
+    e.force = e.dynamic = pressed ? end_reaction(free_position, compliance, action) : 0.0;
+    state.u[node] = n * (free_position - compliance * e.dynamic);
+  }
+  initial_acceleration(state);
 }
 
 void GeneralizedAlpha::open(BarState& state, double, const EndActions& opening) {
@@ -132,6 +149,9 @@ void GeneralizedAlpha::right_hand_side(const BarState& state, double dt,
   if (body_force != 0.0) {
     for (std::size_t i = 0; i < n; ++i) rhs_[i] += bar_.row_mass()[i] * body_force;
   }
+  const double late = 1.0 - w_.alpha_f;
+  for (std::size_t i = 0; i < loads_.now.size(); ++i)
+    rhs_[i] += late * loads_.now[i] + w_.alpha_f * loads_.before[i];
   bar_.internal_force(state.u, work_);
   for (std::size_t i = 0; i < n; ++i) rhs_[i] -= work_[i];
   for (int end : {0, 1}) {
@@ -196,6 +216,7 @@ double GeneralizedAlpha::momentum_lag(const BarState& state) const {
     if (fixed || is(end, ContactLayer::massive)) return 0.0;
   }
   double unbalanced = bar_.momentum(state.a) - bar_.data().body_force * bar_.data().mass_total();
+  for (const double load : loads_.now) unbalanced -= load;
   for (int end : {0, 1}) unbalanced += Bar::outward(end) * state.end[index(end)].dynamic;
   return (0.5 - w_.alpha_f) * factored_dt_ * unbalanced;
 }

@@ -15,6 +15,7 @@ class GeneralizedAlpha final : public BarIntegrator {
  public:
   GeneralizedAlpha(const Bar& bar, const AlphaWeights& weights);
 
+  void begin(BarState& state, const EndActions& actions) override;
   void open(BarState& state, double dt, const EndActions& opening) override;
   void substep(BarState& state, double dt, const EndActions& actions) override;
   void close(BarState& state, double dt) override;

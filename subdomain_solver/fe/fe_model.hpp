@@ -45,7 +45,7 @@ class FeModel final : public Model {
   [[nodiscard]] bool evaluate_layer(std::span<const double> q, std::span<const double> history,
                                     LayerResponse& out) override;
 
-  /// Moves the mass of these nodes to the others of their cells (the surface layer, [M.84]), once,
+  /// Moves the mass of these nodes to the others of their cells (the surface layer, [M.85]), once,
   /// before anything asks for a mass. Throws InputError where a cell has no other node.
   void make_massless(const std::vector<std::int32_t>& nodes);
 

@@ -12,6 +12,7 @@
 #include "subdomain_solver/bars/generalized_alpha.hpp"
 #include "subdomain_solver/body.hpp"
 #include "subdomain_solver/fe/element_limit.hpp"
+#include "subdomain_solver/make/bar_extras.hpp"
 #include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/make/mass_range.hpp"
 #include "subdomain_solver/make/scheme.hpp"
@@ -29,12 +30,10 @@ constexpr double limit_slack = 1.0e-12;
   throw InputError(what, place.where(key), remedy);
 }
 
-int end_of(const std::string& side) { return side == "left" ? 0 : side == "right" ? 1 : -1; }
-
 std::vector<BarInterior::End> ports_of(const BodySpec& spec, const Place& place) {
   std::vector<BarInterior::End> ports;
   for (const auto& [name, port] : spec.ports) {
-    const int end = end_of(port.side);
+    const int end = spec.end_of(port.side);
     const std::string key = "ports." + name + ".side";
     if (end < 0) {
       refuse(place, key, fmt::format("side '{}' does not exist", port.side),
@@ -166,7 +165,7 @@ BarProperties fe_bar_properties(const BodySpec& spec) {
     bar.stiffness_factor = massless->stiffness_factor;
   }
   for (const auto& [name, port] : spec.ports) {
-    const int end = end_of(port.side);
+    const int end = spec.end_of(port.side);
     if (end >= 0) bar.layer[index(end)] = layer_of(spec, port);
   }
   return bar;
@@ -185,6 +184,7 @@ std::unique_ptr<Interior> build(const Document& document, const std::string& pat
   if (std::holds_alternative<RigidModelSpec>(spec.model))
     return make_rigid(spec, place);
   if (spec.is_solid()) return make_solid(spec, place);
+  check_points(spec, place);
   std::vector<BarInterior::End> ports = ports_of(spec, place);
   if (std::holds_alternative<RigidWallSpec>(spec.model)) {
     return std::make_unique<RigidWall>(place.name(), spec.initial.position[0], ports[0].name,
@@ -198,7 +198,9 @@ std::unique_ptr<Interior> build(const Document& document, const std::string& pat
   check_layers(spec, properties, place);
   std::unique_ptr<Bar> bar = std::make_unique<Bar>(properties);
   BarInterior::Scheme scheme = std::visit(SchemeMaker{*bar, place}, *spec.integrator);
-  return std::make_unique<BarInterior>(place.name(), std::move(bar), std::move(scheme), ports);
+  BarInterior::Extras extras = make_extras(spec, place, *bar);
+  return std::make_unique<BarInterior>(place.name(), std::move(bar), std::move(scheme), ports,
+                                       std::move(extras));
 }
 
 }  // namespace

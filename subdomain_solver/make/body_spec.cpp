@@ -1,6 +1,7 @@
 #include "subdomain_solver/make/body_spec.hpp"
 #include "base/index.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -134,9 +135,9 @@ void InitialSpec::fields(Fields& f) {
   f.optional("velocity", velocity, "m/s",
              "uniform velocity at the start, one number per dimension");
   f.optional("displacement_field", displacement_field, "m",
-             "initial displacement of a solid, one expression in x, y, z per dimension");
+             "initial displacement, one expression in x, y, z per dimension");
   f.optional("velocity_field", velocity_field, "m/s",
-             "initial velocity of a solid, added to velocity, one expression per dimension");
+             "initial velocity, added to velocity, one expression per dimension");
 }
 
 void SupportsSpec::fields(Fields& f) {
@@ -146,7 +147,8 @@ void SupportsSpec::fields(Fields& f) {
 
 void PortSpec::fields(Fields& f) {
   f.required("side", side, "",
-             "side of the body that the port is: left or right for a bar or a wall");
+             "side of the body that the port is: left or right for a bar or a wall; or the name of "
+             "a point");
   f.optional("tied", tied, "",
              "whether the port is joined to another body from the start: its node then keeps its "
              "share of the joint's mass, whatever the contact_layer, and takes no contact");
@@ -165,11 +167,13 @@ void BodySpec::fields(Fields& f) {
   f.map("ports", ports, "named boundary sets through which motion and force pass",
         Presence::optional);
   f.map("points", points,
-        "nodes of a solid under names of their own, for ports and constraints beside the names "
-        "that the mesh has",
+        "nodes under names of their own, for ports and constraints beside the names that the mesh "
+        "has; a bar with a port on a node inside runs as a solid",
         Presence::optional);
-  f.map("constraints", constraints, "prescribed displacements of a solid", Presence::optional);
-  f.map("loads", loads, "forces on a solid", Presence::optional);
+  f.map("constraints", constraints,
+        "prescribed displacements of a solid; a bar with constraints runs as one",
+        Presence::optional);
+  f.map("loads", loads, "forces on the body", Presence::optional);
   f.defaulted("equations", equations, "solution of the equations of an implicit or static solid");
   check_dimensions(f);
   idle_keys(f);
@@ -219,20 +223,54 @@ const SolidShapeSpec* BodySpec::shape() const {
   return std::visit(find, model);
 }
 
-bool BodySpec::is_uniform_bar() const {
+bool BodySpec::is_linear_bar() const {
   const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
   const LinearElasticSpec* elastic =
       material ? std::get_if<LinearElasticSpec>(&*material) : nullptr;
-  const bool known = fe != nullptr && std::holds_alternative<BarMeshSpec>(fe->mesh) &&
-                     elastic != nullptr && elastic->youngs_modulus && integrator &&
-                     !std::holds_alternative<QuasiStaticSpec>(*integrator);
-  return known && points.empty() && constraints.empty() && loads.empty() &&
+  return fe != nullptr && std::holds_alternative<BarMeshSpec>(fe->mesh) && elastic != nullptr &&
+         elastic->youngs_modulus && integrator &&
+         !std::holds_alternative<QuasiStaticSpec>(*integrator);
+}
+
+bool BodySpec::is_uniform_bar() const {
+  return is_linear_bar() && points.empty() && constraints.empty() && loads.empty() &&
          initial.displacement_field.empty() && initial.velocity_field.empty();
 }
 
 bool BodySpec::is_bar() const {
-  return is_uniform_bar() &&
+  return is_linear_bar() && constraints.empty() && !has_port_inside() &&
          std::get<BarMeshSpec>(std::get<FeModelSpec>(model).mesh).grading == 1.0;
+}
+
+std::string BodySpec::why_general() const {
+  if (!is_linear_bar() || std::get<BarMeshSpec>(std::get<FeModelSpec>(model).mesh).grading != 1.0)
+    return "";
+  if (!constraints.empty()) return "constraints";
+  return has_port_inside() ? "a port inside the bar" : "";
+}
+
+/// The node is the nearest one: whether it is at the point is checked where points are made.
+int BodySpec::end_of(const std::string& side) const {
+  if (side == "left") return 0;
+  if (side == "right") return 1;
+  if (!is_linear_bar()) return -1;
+  const BarMeshSpec& mesh = std::get<BarMeshSpec>(std::get<FeModelSpec>(model).mesh);
+  for (const auto& [name, point] : points) {
+    if (name != side || point.at.size() != 1) continue;
+    const double nodes = (point.at[0] - initial.position[0]) / mesh.length * mesh.elements;
+    if (nodes < 0.5) return 0;
+    if (nodes > mesh.elements - 0.5) return 1;
+  }
+  return -1;
+}
+
+bool BodySpec::has_port_inside() const {
+  for (const auto& [name, port] : ports) {
+    const std::string& side = port.side;
+    const auto named = [&side](const auto& point) { return point.first == side; };
+    if (std::any_of(points.begin(), points.end(), named) && end_of(side) < 0) return true;
+  }
+  return false;
 }
 
 bool BodySpec::is_solid() const { return shape() != nullptr && !is_bar(); }

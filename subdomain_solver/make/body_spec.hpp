@@ -106,7 +106,7 @@ struct MassiveSpec {
 
 struct InitialSpec {
   std::vector<double> position = {0.0}, velocity = {0.0};  // [m] [m/s] (dim)
-  // of solids: one expression per dimension, added to the uniform values
+  // one expression per dimension, added to the uniform values
   std::vector<std::string> displacement_field, velocity_field;
   void fields(Fields& f);
 };
@@ -133,7 +133,6 @@ struct BodySpec {
   SupportsSpec supports;
   std::vector<double> body_force = {0.0};  // [m/s^2] (dim)
   std::vector<std::pair<std::string, PortSpec>> ports;
-  // of solids
   std::vector<std::pair<std::string, PointSpec>> points;
   std::vector<std::pair<std::string, ConstraintSpec>> constraints;
   std::vector<std::pair<std::string, LoadSpec>> loads;
@@ -146,14 +145,22 @@ struct BodySpec {
   /// fe in one dimension, linear_elastic with Young's modulus, integrated in time, without points,
   /// constraints, loads and fields: what exact solutions are of.
   bool is_uniform_bar() const;
-  /// The same of equal elements: for the bars' own core, which knows no more.
+  /// For the bars' own core: fe in one dimension, of equal elements, linear_elastic with Young's
+  /// modulus, integrated in time, without constraints, and with ports at its ends alone.
   bool is_bar() const;
+  /// End of a bar or wall that a side's name means, or that of a point at the end of a bar: 0 left,
+  /// 1 right; -1: none.
+  int end_of(const std::string& side) const;
+  /// For people: why a linear bar of equal elements is no bar of the bars' own core; else empty.
+  std::string why_general() const;
   /// Any other body with a mesh: fe in one to three dimensions, other rungs of the fidelity ladder.
   bool is_solid() const;
   /// Of the rungs of the fidelity ladder; null: the body is something else.
   const SolidShapeSpec* shape() const;
 
  private:
+  bool is_linear_bar() const;
+  bool has_port_inside() const;
   void check_dimensions(Fields& f) const;
   void check_solid(Fields& f) const;
   void check_modal(Fields& f) const;

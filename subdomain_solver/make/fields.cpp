@@ -9,9 +9,6 @@
 
 namespace abut {
 
-namespace {
-
-/// One expression per dimension; an empty list is no field.
 VectorField field_of(const std::vector<std::string>& texts, int dim, const std::string& where) {
   if (texts.size() != index(dim)) {
     throw InputError(fmt::format("has {} expressions", texts.size()), where,
@@ -21,8 +18,6 @@ VectorField field_of(const std::vector<std::string>& texts, int dim, const std::
   for (int i = 0; i < dim; ++i) field[index(i)] = expression(texts[index(i)], where);
   return field;
 }
-
-}  // namespace
 
 std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node) {
   std::array<double, 3> at = {0.0, 0.0, 0.0};

@@ -12,6 +12,9 @@ namespace abut {
 
 // What a scene says of a solid's space: loads and the state of the start.
 
+/// One expression per dimension, read. Throws InputError.
+VectorField field_of(const std::vector<std::string>& texts, int dim, const std::string& where);
+
 /// [m] reference position of a node.
 std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node);
 

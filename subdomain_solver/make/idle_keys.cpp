@@ -71,8 +71,8 @@ void BodySpec::idle_of_bars(Fields& f) const {
       f, solid,
       {"integrator.central_difference.dispersion_terms",
        "integrator.central_difference.bulk_viscosity", "integrator.central_difference.tchamwa"},
-      "it is for bars of linear_elastic material without points, constraints, loads, fields "
-      "and grading");
+      "it is for bars of linear_elastic material and equal elements, without constraints and "
+      "ports inside");
   for (const auto& [name, port] : ports)
     f.idle(solid && !fe_bar, "ports." + name + ".tied", "no node of the body gives its mass away");
   f.idle(flat || rigid, "supports",

@@ -71,6 +71,8 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
     return stable_step(model, parts.motion.q, std::vector<double>(model.history_size(), 0.0));
   };
   parts.rung += on_file(fe);
+  if (const std::string why = spec.why_general(); !why.empty())
+    parts.rung += " in place of the bars' own core, for " + why;
   MakeWatch watch;  // the tangent of linear bodies stays
   if (!model.is_linear()) watch = [&] { return std::make_unique<HighestFrequency>(model); };
   parts.scheme = make_scheme(spec, place, *parts.problem, limit, watch);

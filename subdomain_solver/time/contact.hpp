@@ -7,7 +7,7 @@
 namespace abut {
 
 /// What may press on some coordinates of a body at the end of a step. Every scheme is affine in
-/// such forces, x = free + compliance * force (the port line, [M.85]); who owns the geometry solves
+/// such forces, x = free + compliance * force (the port line, [M.86]); who owns the geometry solves
 /// for them.
 class Contact {
  public:

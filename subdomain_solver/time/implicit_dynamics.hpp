@@ -14,7 +14,7 @@ namespace abut {
 /// per step length when the model is linear. Newmark 1/4, 1/2 conserves 1/2 v M v + stored energy
 /// of linear models. Unknowns are accelerations, so that small steps lose nothing to round-off.
 /// Coordinates without mass take part as they are; contact presses with a force of the step's end
-/// [M.86]. A step allocates nothing itself once its buffers have grown.
+/// [M.87]. A step allocates nothing itself once its buffers have grown.
 class ImplicitDynamics final : public Integrator {
  public:
   struct Options {

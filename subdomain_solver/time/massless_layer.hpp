@@ -11,7 +11,7 @@
 namespace abut {
 
 /// The coordinates of a model that have no mass: wherever the others are, these lie where their
-/// forces balance [M.84], and what presses on them is solved for there [M.85].
+/// forces balance [M.85], and what presses on them is solved for there [M.86].
 class MasslessLayer {
  public:
   /// The problem must outlive it.

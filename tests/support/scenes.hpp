@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,7 +38,7 @@ struct BarText {
   std::vector<std::string> sides = {"right"};
   std::string fixed;   // side held at rest, or empty
   std::string tied;    // sides among them that are joints
-  bool solid = false;  // by the model of solids: its velocity is a field
+  bool solid = false;  // by the model of solids: its elements differ by a rounding
 
   std::string text() const {
     std::string ports;
@@ -50,16 +51,17 @@ struct BarText {
     std::string out = fmt::format("  {}:\n", name);
     out += fmt::format(
         "    model: {{fe: {{dimension: 1, mesh: {{bar: {{length: {}, elements: {}, area: "
-        "{}}}}}}}}}\n"
+        "{}{}}}}}}}}}\n"
         "    material: {{linear_elastic: {{youngs_modulus: {}, density: {}}}}}\n"
         "    integrator: {{{}}}\n",
-        number(length), elements, number(area), number(modulus), number(density), integrator);
+        number(length), elements, number(area),
+        solid ? ", grading: " + number(1.0 + std::numeric_limits<double>::epsilon()) : "",
+        number(modulus), number(density), integrator);
     // What has no effect is refused.
     if (contact && !solid && !layer.empty())
       out += fmt::format("    contact_layer: {{{}}}\n", layer);
     out += fmt::format("    initial: {{position: [{}]", number(position));
-    if (solid || velocity != 0.0)
-      out += fmt::format(", {}: [{}]", solid ? "velocity_field" : "velocity", number(velocity));
+    if (velocity != 0.0) out += fmt::format(", velocity: [{}]", number(velocity));
     out += "}\n";
     if (body_force != 0.0) out += fmt::format("    body_force: [{}]\n", number(body_force));
     if (!fixed.empty()) out += fmt::format("    supports: {{{}: fixed}}\n", fixed);

@@ -180,6 +180,8 @@ void add_formulations(std::vector<Counted>& out) {
 
 std::vector<Counted> counted() {
   const std::string explicit_step = "central_difference: {step: 0.1}";
+  const std::string loads =
+      ", loads: {pull: {on: left, traction: ['0.01 * t']}, wind: {acceleration: ['0.001 * x']}}";
   const std::string pair =
       "model: {{bar_pair: {{contact: {{lagrange_multiplier: {{}}}}, left: {{length: 20.0, "
       "elements: 20, area: "
@@ -190,6 +192,8 @@ std::vector<Counted> counted() {
       {"bar_explicit", bar(explicit_scheme(0.6), "")},
       {"bar_explicit_terms", bar(explicit_scheme(0.6, 6), ", contact_layer: {kick: {}}")},
       {"bar_implicit", bar("newmark: {step: 0.6}", "")},
+      {"bar_loaded", bar(explicit_scheme(0.6, 6), loads)},
+      {"bar_loaded_implicit", bar("newmark: {step: 0.6}", loads)},
       {"pair_explicit", fmt::format(fmt::runtime(pair), "central_difference: {step: 0.6}")},
       {"pair_implicit", fmt::format(fmt::runtime(pair), "newmark: {step: 0.6}")},
       {"rigid", solid("rigid: {", 3, linear, "rigid_motion: {step: 0.1}", "")},

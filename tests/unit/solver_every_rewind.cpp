@@ -93,6 +93,16 @@ std::vector<Maker> bars() {
   std::vector<Maker> all;
   for (const SolverCase& c : all_cases(substep))
     all.push_back({c.name, [c] { return build(case_bar(c, 0.02)); }});
+  for (const SolverCase& c : all_cases(substep)) {
+    const std::string text = case_bar(c, 0.02).text();
+    const std::string more =
+        "    loads: {pull: {on: right, traction: ['0.2 * t']}, push: {on: left, pressure: '0.1'}, "
+        "wind: {acceleration: ['0.01 * x * t']}}\n";
+    all.push_back({"loaded " + c.name, [text, more] {
+                     return make_body(Document::from_text("test", "bodies:\n" + text + more),
+                                      "bodies.bar");
+                   }});
+  }
   for (const std::string& scheme :
        {explicit_scheme(substep, 6), implicit_scheme("newmark", substep)}) {
     BarText bar = case_bar({"", scheme, "", {"left", "right"}}, 0.02);
@@ -183,6 +193,7 @@ void rewind(const Maker& maker, bool obstructed) {
     EXPECT_EQ(first.ports[p].lower, third.ports[p].lower);
   }
   EXPECT_EQ(first.records[1].energy.total(), third.records[1].energy.total());
+  EXPECT_EQ(first.records[1].energy.external_work, third.records[1].energy.external_work);
   EXPECT_EQ(first.records[1].columns, third.records[1].columns);
   EXPECT_EQ(body->measure(), twin->measure());
 }

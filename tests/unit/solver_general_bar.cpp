@@ -130,7 +130,7 @@ TEST(GeneralBar, IsWhatTheCoreDoesNotKnow) {
   EXPECT_TRUE(is_solid(with(text, "linear_elastic: {", "neo_hookean: {poissons_ratio: 0.3, ")));
   EXPECT_TRUE(is_solid(with(text, ", area", ", grading: 1.01, area")));
   EXPECT_TRUE(is_solid(text + "    constraints: {wall: {on: left, fixed: true}}\n"));
-  EXPECT_TRUE(is_solid(text + "    loads: {pull: {on: right, traction: ['0.1 * t']}}\n"));
+  EXPECT_FALSE(is_solid(text + "    loads: {pull: {on: right, traction: ['0.1 * t']}}\n"));
   const std::string held = text + "    supports: {left: fixed}\n";  // statics needs it
   EXPECT_FALSE(is_solid(held));
   EXPECT_TRUE(is_solid(with(held, explicit_scheme(0.6), "quasi_static: {step: 0.6}")));

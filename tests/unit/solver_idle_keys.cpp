@@ -40,6 +40,14 @@ std::string body_of(const std::string& context) {
            (steel + explicit_steps);
   }
   if (context == "bar") return in_line + steel + explicit_steps;
+  if (context == "loaded bar")
+    return in_line + steel + explicit_steps +
+           ", loads: {l: {acceleration: [x]}}, initial: {velocity_field: [x]}, "
+           "points: {p: {at: [1]}}, ports: {q: {side: p}}";
+  if (context == "bar with a port inside")
+    return in_line + steel + explicit_steps + ", points: {p: {at: [0.5]}}, ports: {q: {side: p}}";
+  if (context == "held bar")
+    return in_line + steel + explicit_steps + ", constraints: {c: {on: left, x: '0'}}";
   if (context == "implicit bar") return in_line + steel + implicit_steps;
   if (context == "graded bar")
     return "model: {fe: {dimension: 1, mesh: {bar: {length: 1, area: 1, elements: 4, grading: "
@@ -97,6 +105,11 @@ const std::vector<Idle> table = {
       "integrator.central_difference.above_limit=clamp",
       "material.linear_elastic.poissons_ratio=0.3", "material.linear_elastic.shear_modulus=1",
       "material.linear_elastic.bulk_modulus=1", "material.linear_elastic.lame_modulus=1"}},
+    {"loaded bar", {"equations={}", "integrator.central_difference.above_limit=clamp"}},
+    {"bar with a port inside",
+     {"contact_layer=kick", "ports.q.tied=true",
+      "integrator.central_difference.dispersion_terms=1"}},
+    {"held bar", {"integrator.central_difference.tchamwa=1.1", "constraints.c.value=0"}},
     {"implicit bar", {"model.fe.threads=2", "equations.max_iterations=3"}},
     {"graded bar",
      {"integrator.central_difference.dispersion_terms=1",
@@ -144,6 +157,15 @@ TEST(IdleKeys, AreRefusedWhereTheyAreGiven) {
       }
     }
   }
+}
+
+/// Loads, fields and points at the ends take nothing away from a bar.
+TEST(IdleKeys, OfABarAreNotThoseThatItsLoadsLeaveAnEffect) {
+  for (const char* setting : {"contact_layer=kick", "ports.q.tied=true",
+                              "integrator.central_difference.dispersion_terms=1",
+                              "integrator.central_difference.bulk_viscosity=0.1",
+                              "integrator.central_difference.tchamwa=1.1"})
+    EXPECT_TRUE(spec_of("loaded bar", {std::string("bodies.b.") + setting}).is_bar()) << setting;
 }
 
 /// The resolved scene of a run is a scene: what it says must have an effect as well.
