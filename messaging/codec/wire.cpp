@@ -30,7 +30,7 @@ std::byte* WireWriter::space(std::size_t count) {
   if (count > begin_) {
     const std::size_t used = size();
     std::vector<std::byte> larger(std::max(least_storage, 2 * (used + count)));
-    std::memcpy(larger.data() + larger.size() - used, storage_->data() + begin_, used);
+    std::copy_n(storage_->data() + begin_, used, larger.data() + larger.size() - used);
     storage_->swap(larger);
     begin_ = storage_->size() - used;
   }
