@@ -19,6 +19,7 @@ constexpr double rounding = 1.0e-6;
 void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substeps& grid) {
   grid_ = grid;
   forces_.clear();
+  swings_.clear();
   for (std::size_t p = 0; p < std::min(boundary.size(), map_.ports()); ++p) {
     bool first = true;
     for (const Waveform& force : boundary[p].forces) {
@@ -52,7 +53,17 @@ void PortForces::add_sampled(const Waveform& imposed, std::size_t port, bool fir
       for (double& f : mean_) f /= until - from;
     }
     add(imposed, mean_.data(), first, row);
+    if (keeps_swings_) add_swing(imposed, now, index(i) * map_.values() + map_.first(port));
   }
+}
+
+/// What lies at the port alone follows the instant (Waveform at its own times), the body the mean.
+void PortForces::add_swing(const Waveform& imposed, double now, std::size_t row) {
+  swings_.resize(forces_.size(), 0.0);
+  instant_.resize(mean_.size());
+  imposed.force_at(now, instant_);
+  for (std::size_t k = 0; k < mean_.size(); ++k) instant_[k] -= mean_[k];
+  add(imposed, instant_.data(), false, swings_.data() + row);
 }
 
 /// The values of the points that a waveform lists to those of all points of its port. The first

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "base/index.hpp"
 #include "contract/boundary_data.hpp"
 #include "subdomain_solver/port_map.hpp"
 #include "subdomain_solver/substeps.hpp"
@@ -23,18 +24,29 @@ class PortForces final : public Load {
   void impose(const std::vector<BoundaryData>& boundary, const Substeps& grid);
   bool acts() const { return !forces_.empty(); }
 
+  /// From now on, instants are kept beside the means.
+  void keep_swings() { keeps_swings_ = true; }
+  /// [N] of one value at the end of substep i: what its instant adds to the mean that at() tells.
+  double swing(int i, std::size_t value) const {
+    return swings_.empty() ? 0.0 : swings_[index(i) * map_.values() + value];
+  }
+
   /// [N] (values) at a time; zeros where nothing is imposed.
   void at(double time, std::vector<double>& out) const;
   void add(double time, std::span<const double> q, Vector& force) const override;
 
  private:
   void add_sampled(const Waveform& imposed, std::size_t port, bool first);
+  void add_swing(const Waveform& imposed, double now, std::size_t row);
   void add(const Waveform& imposed, const double* values, bool first, double* row) const;
 
   const PortMap& map_;
   Substeps grid_;
   std::vector<double> forces_;  // [N] (substeps + 1, values); empty: none imposed
+  bool keeps_swings_ = false;
+  std::vector<double> swings_;  // [N] the same; empty: means are the instants' values
   std::vector<double> mean_;    // [N] of a waveform over a dual cell
+  std::vector<double> instant_;
   mutable std::vector<double> now_;
 };
 

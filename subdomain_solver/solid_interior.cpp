@@ -39,7 +39,8 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
     port_map_ = std::make_unique<PortMap>(*parts_.model, *parts_.map, ports_);
     std::unique_ptr<PortForces> forces = std::make_unique<PortForces>(*port_map_);
     port_forces_ = forces.get();
-    before_ = now_ = seen_.u = state_.port_force = std::vector<double>(port_map_->values(), 0.0);
+    places_.assign(port_map_->values(), 0.0);
+    before_ = now_ = seen_.u = state_.port_force = places_;
     change_.setZero(parts_.problem->model->dofs());
     parts_.problem->loads.push_back(std::move(forces));
     find_contacts();
@@ -59,6 +60,7 @@ void SolidInterior::find_contacts() {
   }
   if (points.empty()) return;
   contact_ = std::make_unique<PointContact>(points, description_.name);
+  port_forces_->keep_swings();
   description_.can.obstacle = points.size() == ports_.size();
   description_.can.yielding = description_.can.obstacle;
 }
@@ -78,7 +80,8 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   description_.stable_step = parts_.scheme.stable_step;
   description_.can.force = true;
   const bool small = parts_.problem->model->is_linear() && parts_.deforms;
-  description_.can.kernel = (small || mesh.dim == 1) && parts_.scheme.integrator->has_inertia() && !ports.empty();
+  description_.can.kernel =
+      (small || mesh.dim == 1) && parts_.scheme.integrator->has_inertia() && !ports.empty();
   for (const PortNodes& p : ports) {
     ports_.push_back({p.name, mesh.nodes_of(p.side)});
     Port port = port_of(p, ports_.back().nodes);
@@ -175,6 +178,7 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
     if (failed) return failed;
   }
   if (port_forces_ != nullptr) port_forces_->impose(window.request.boundary, window.grid);
+  substep_ = 0;
   if (contact_) contact_->impose(window);
   parts_.problem->contact = contact_ && contact_->acts() ? contact_.get() : nullptr;
   if (std::optional<Failed> failed = meet_port_forces(time)) return failed;
@@ -186,13 +190,14 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
     state_.begun = true;
     state_.time = time;
   }
-  if (port_map_) port_map_->displacement(state_.motion.q, seen_.u);
+  if (port_map_) port_map_->displacement(state_.motion.q, places_);
   return std::nullopt;
 }
 
 std::optional<Failed> SolidInterior::step(const Window& window, int i) {
   Integrator& integrator = *parts_.scheme.integrator;
   const double begin = window.grid.time(i - 1), dt = window.grid.length(i);
+  substep_ = i;
   if (parts_.problem->contact != nullptr) contact_->aim(i, state_.port_force);
   if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);
@@ -212,8 +217,20 @@ void SolidInterior::see_nodes() {
   parts_.model->to_space({momentum_.data(), nodal_values()});
 }
 
+/// Partners see a port without mass where the force of the instant holds it; the body is moved by
+/// the mean.
+void SolidInterior::see_places() {
+  seen_.u = places_;
+  for (std::size_t p = 0; contact_ && p < ports_.size(); ++p) {
+    const double swing = contact_->has(p) ? port_forces_->swing(substep_, p) : 0.0;
+    if (swing != 0.0) seen_.u[p] += compliance(p) * swing;
+  }
+}
+
 const PortValues& SolidInterior::see(const Window&, double time, bool all) {
-  if (!all || !port_map_) return seen_;
+  if (!port_map_) return seen_;
+  see_places();
+  if (!all) return seen_;
   const Motion& motion = state_.motion;
   port_map_->velocity(motion.q, motion.v, seen_.v);
   port_map_->acceleration(motion.q, motion.v, motion.a, seen_.a);
@@ -252,7 +269,7 @@ std::optional<Failed> SolidInterior::meet_port_forces(double time) {
     if (contact_) port_map_->displacement(state_.motion.q, before_);
     if (auto failed = parts_.scheme.integrator->jump(state_.motion, time, change_)) return failed;
     if (contact_) {
-      port_map_->displacement(state_.motion.q, seen_.u);
+      port_map_->displacement(state_.motion.q, places_);
       add_port_work();
     }
   }
@@ -261,16 +278,16 @@ std::optional<Failed> SolidInterior::meet_port_forces(double time) {
 }
 
 /// Of the forces on ports, which change from those of the state to now_ while the ports move from
-/// before_ to where they are seen.
+/// before_ to their places.
 void SolidInterior::add_port_work() {
   for (std::size_t k = 0; k < now_.size(); ++k)
-    state_.port_work += 0.5 * (state_.port_force[k] + now_[k]) * (seen_.u[k] - before_[k]);
+    state_.port_work += 0.5 * (state_.port_force[k] + now_[k]) * (places_[k] - before_[k]);
 }
 
 /// After a substep: where the ports are, and the work that the forces on them have done.
 void SolidInterior::follow_ports(double time) {
-  before_.swap(seen_.u);
-  port_map_->displacement(state_.motion.q, seen_.u);
+  before_.swap(places_);
+  port_map_->displacement(state_.motion.q, places_);
   const bool pressed = parts_.problem->contact != nullptr;
   if (!port_forces_->acts() && !pressed) return;
   port_forces_->at(time, now_);

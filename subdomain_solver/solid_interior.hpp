@@ -82,6 +82,7 @@ class SolidInterior final : public Interior {
   Energy energy() const;
   std::size_t nodal_values() const { return index(parts_.model->dofs()); }
   void see_nodes();
+  void see_places();
   std::optional<Failed> meet_port_forces(double time);
   void find_contacts();
   void follow_ports(double time);
@@ -96,7 +97,9 @@ class SolidInterior final : public Interior {
   std::unique_ptr<PointContact> contact_;  // null: no port meets obstacles
   PortForces* port_forces_ = nullptr;  // owned by the problem, the last of its loads
   State state_;
+  std::vector<double> places_;  // [m] (port values)
   PortValues seen_;
+  int substep_ = 0;  // the last one of the window
   std::unique_ptr<Problem> loaded_;  // while the body is probed: the problem with its loads
   // Of the nodes (nodes, dim) along the axes of space, as see_nodes() left them.
   std::vector<double> u_, v_;

@@ -42,8 +42,8 @@ bool PointContact::has(std::size_t port) const {
 }
 
 bool PointContact::acts(std::size_t port) const {
-  return std::ranges::any_of(
-      acting_, [this, port](std::size_t k) { return ends_[k].point.port == port; });
+  return std::ranges::any_of(acting_,
+                             [this, port](std::size_t k) { return ends_[k].point.port == port; });
 }
 
 void PointContact::aim(int i, const std::vector<double>& forces) {
@@ -74,8 +74,8 @@ const Vector& PointContact::solve(double time, const Vector& free,
     double change = 0.0;
     for (Eigen::Index k = 0; k < free.size(); ++k) {
       const double others = compliance.row(k).dot(force_) - compliance(k, k) * force_(k);
-      const double now = push(ends_[acting_[index(k)]], in_substep, time, free(k) + others,
-                              compliance(k, k));
+      const double now =
+          push(ends_[acting_[index(k)]], in_substep, time, free(k) + others, compliance(k, k));
       change = std::max(change, std::abs(now - force_(k)));
       force_(k) = now;
     }

@@ -42,7 +42,7 @@ class PointContact final : public Contact {
   };
   double push(const End& end, bool in_substep, double time, double free, double give) const;
 
-  std::vector<End> ends_;          // by coordinate
+  std::vector<End> ends_;            // by coordinate
   std::vector<std::size_t> acting_;  // of ends_, in the order of dofs_
   std::vector<int> dofs_;
   Substeps grid_;

@@ -78,7 +78,8 @@ bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> 
       for (int b = 0; b < n; ++b) {
         const int column = place(own[index(b)] * dim);
         if (column >= 0)
-          out.tangent.block(row, column, dim, dim) += local_.tangent.block(a * dim, b * dim, dim, dim);
+          out.tangent.block(row, column, dim, dim) +=
+              local_.tangent.block(a * dim, b * dim, dim, dim);
       }
     }
   }

@@ -253,13 +253,14 @@ std::string BodySpec::why_general() const {
 int BodySpec::end_of(const std::string& side) const {
   if (side == "left") return 0;
   if (side == "right") return 1;
-  if (!is_linear_bar()) return -1;
-  const BarMeshSpec& mesh = std::get<BarMeshSpec>(std::get<FeModelSpec>(model).mesh);
+  const BarMeshSpec* mesh = shape() != nullptr ? std::get_if<BarMeshSpec>(&shape()->mesh) : nullptr;
+  if (mesh == nullptr) return -1;
+  const double near = mesh->grading == 1.0 ? 0.5 / mesh->elements : 1.0e-6;
   for (const auto& [name, point] : points) {
     if (name != side || point.at.size() != 1) continue;
-    const double nodes = (point.at[0] - initial.position[0]) / mesh.length * mesh.elements;
-    if (nodes < 0.5) return 0;
-    if (nodes > mesh.elements - 0.5) return 1;
+    const double along = (point.at[0] - initial.position[0]) / mesh->length;
+    if (along < near) return 0;
+    if (along > 1.0 - near) return 1;
   }
   return -1;
 }

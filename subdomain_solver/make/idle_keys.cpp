@@ -63,7 +63,7 @@ void BodySpec::idle_of_bars(Fields& f) const {
   const bool still = integrator && std::holds_alternative<QuasiStaticSpec>(*integrator);
   const bool fe_bar = solid && !flat && !modal && !rigid && !still;
   f.idle(solid && (!fe_bar || contact_layer.index() != 0), "contact_layer",
-         fe_bar ? "a bar by the model of solids has a massless layer or, where its port is tied, none"
+         fe_bar ? "a bar by the model of solids has a massless layer, at tied ports none"
                 : "contact of this body has no layer yet");
   f.idle(fe_bar, "contact_layer.massless.stiffness_factor",
          "it is for bars of equal elements of linear_elastic material");
@@ -74,11 +74,13 @@ void BodySpec::idle_of_bars(Fields& f) const {
       "it is for bars of linear_elastic material and equal elements, without constraints and "
       "ports inside");
   for (const auto& [name, port] : ports)
-    f.idle(solid && !fe_bar, "ports." + name + ".tied", "no node of the body gives its mass away");
+    f.idle(solid && (!fe_bar || end_of(port.side) < 0), "ports." + name + ".tied",
+           "no node of the port would give its mass away");
   f.idle(flat || rigid, "supports",
          flat ? "they are for the ends of bars" : "a rigid body has no ends of its own to hold");
   bool contact = false;
-  for (const auto& [name, port] : ports) contact = contact || !port.tied;
+  for (const auto& [name, port] : ports)
+    contact = contact || (!port.tied && (is_bar() || end_of(port.side) >= 0));
   f.idle((is_bar() || fe_bar) && !contact, "contact_layer", "the body has no port for contact");
   f.idle(rigid || (modal && !is_implicit()), "equations",
          "nothing of the body is solved by iteration");

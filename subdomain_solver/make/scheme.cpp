@@ -96,7 +96,8 @@ std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Pla
   std::vector<SolidInterior::PortNodes> ports;
   for (const auto& [name, port] : spec.ports) {
     named(place, "ports." + name + ".side", [&] { return mesh.nodes_of(port.side); });
-    ports.push_back({name, port.side, port.tied});
+    const int end = mesh.dim == 1 ? spec.end_of(port.side) : -1;  // by a point's name too
+    ports.push_back({name, end < 0 ? port.side : end == 0 ? "left" : "right", port.tied});
   }
   return ports;
 }

@@ -13,6 +13,7 @@ ExplicitDynamics::ExplicitDynamics(const Problem& problem)
       layer_(problem),
       inverse_mass_(problem.model->lumped_mass().cwiseInverse()) {
   for (const int dof : layer_.dofs()) inverse_mass_(dof) = 0.0;
+  if (!layer_.empty()) answer_.setZero(problem.model->dofs());
   for (const Prescribed& p : problem_.supports) inverse_mass_(p.dof) = 0.0;
 }
 

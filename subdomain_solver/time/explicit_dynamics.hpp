@@ -8,8 +8,9 @@ namespace abut {
 /// Central differences on any model with lumped mass, in the form that has positions, velocities
 /// and accelerations at the same times (velocity Verlet) [M.48]. Conserves momentum exactly and,
 /// below the stable step, an energy that differs from 1/2 v M v + stored by terms of second order
-/// in dt. Coordinates without mass lie where their forces balance at the end of every step, and take
-/// contact there [M.85, M.86]. A step is two passes over the motion around the model's force, and allocates nothing.
+/// in dt. Coordinates without mass lie where their forces balance at the end of every step, and
+/// take contact there [M.85], [M.86]. A step is two passes over the motion around the model's
+/// force, and allocates nothing.
 class ExplicitDynamics final : public Integrator {
  public:
   explicit ExplicitDynamics(const Problem& problem);

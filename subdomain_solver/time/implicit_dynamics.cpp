@@ -1,5 +1,6 @@
 #include "subdomain_solver/time/implicit_dynamics.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -15,7 +16,21 @@ namespace {
 /// Of the balance and contact, before a step fails.
 constexpr int most_turns = 50;
 
+/// Of a change of contact forces that is taken.
+constexpr double smallest_factor = 0.02;
+
 }  // namespace
+
+/// Aitken's factor, from the third turn on: where a material begins to yield, factors of either
+/// side would lead to and fro.
+void ImplicitDynamics::Pressed::relax(int turn) {
+  if (turn == 0) factor = 1.0;
+  if (turn < 2) return;
+  const double between = (change - last_change).squaredNorm();
+  if (between == 0.0) return;
+  factor *= std::abs(last_change.dot(last_change - change)) / between;
+  factor = std::clamp(factor, smallest_factor, 1.0);
+}
 
 /// Balance of momentum at the end of a step, with the free accelerations as unknowns.
 class ImplicitDynamics::Balance final : public Equations {
@@ -100,7 +115,7 @@ class ImplicitDynamics::Balance final : public Equations {
 
   /// Contact forces for where the balance without change of them has led, and the accelerations x
   /// that they make by the present factors. False: there are no factors.
-  [[nodiscard]] bool press(Vector& x, double& change) {
+  [[nodiscard]] bool press(Vector& x, int turn, double& change) {
     Contact& contact = *o_.problem_.contact;
     if (o_.factored_dt_ != dt_ && !factor()) return false;
     if (p_.of_step != dt_ && !find_columns()) return false;
@@ -108,10 +123,12 @@ class ImplicitDynamics::Balance final : public Equations {
     for (Eigen::Index k = 0; k < n; ++k) p_.free(k) = b_.q(contact.coordinates()[index(k)]);
     p_.free.noalias() -= p_.compliance * p_.force;
     const Vector& force = contact.solve(end_, p_.free, p_.compliance);
-    change = (force - p_.force).norm();
-    for (Eigen::Index k = 0; k < n; ++k)
-      x.noalias() += p_.columns.col(k) * (force(k) - p_.force(k));
-    p_.force = force;
+    p_.last_change.swap(p_.change);
+    p_.change = force - p_.force;
+    change = p_.change.norm();
+    p_.relax(turn);
+    x.noalias() += p_.columns * (p_.factor * p_.change);
+    p_.force += p_.factor * p_.change;
     return true;
   }
 
@@ -141,10 +158,13 @@ class ImplicitDynamics::Balance final : public Equations {
   [[nodiscard]] bool find_columns() {
     const std::vector<int>& touched = p_.touched;
     const Eigen::Index n = static_cast<Eigen::Index>(touched.size());
-    p_.unit.setZero(o_.free_.count(), n);
-    for (Eigen::Index k = 0; k < n; ++k)
-      p_.unit(o_.free_.place(touched[index(k)]), k) = 1.0 - w_.alpha_f;
-    if (!o_.solver_->solve_columns(p_.unit, p_.columns)) return false;
+    p_.columns.resize(o_.free_.count(), n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      p_.unit.setZero(o_.free_.count());
+      p_.unit(o_.free_.place(touched[index(k)])) = 1.0 - w_.alpha_f;
+      if (!o_.solver_->solve(p_.unit, p_.column)) return false;
+      p_.columns.col(k) = p_.column;
+    }
     p_.compliance.resize(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
       p_.compliance.row(i) =
@@ -192,6 +212,7 @@ ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& option
       inertial_(problem.model->dofs(), problem.supports, problem.model->massless()),
       layer_(problem) {
   mass_ = mass_matrix(*problem.model, options.mass);
+  if (!layer_.empty()) of_mass_.answer.setZero(problem.model->dofs());
 }
 
 void ImplicitDynamics::times_mass(const Eigen::Ref<const Vector>& x, Vector& out) const {
@@ -299,9 +320,10 @@ NewtonReport ImplicitDynamics::solve(Balance& balance, const Motion& motion) {
     iterations_ += report.iterations;
     if (!report.converged() || contact == nullptr) return report;
     double change = 0.0;
-    if (!balance.press(x, change)) return {NewtonReport::End::singular};
+    if (!balance.press(x, turn, change)) return {NewtonReport::End::singular};
     if (change <= options_.newton.tolerance * buffers_.scale) return report;
-    if (turn == most_turns) return {NewtonReport::End::not_converged, turn, change / buffers_.scale};
+    if (turn == most_turns)
+      return {NewtonReport::End::not_converged, turn, change / buffers_.scale};
   }
 }
 

@@ -49,11 +49,16 @@ class ImplicitDynamics final : public Integrator {
   struct MassBuffers {  // of what is asked for between steps
     Vector force, acceleration, free, rest, answer;
   };
-  struct Pressed {           // by contact
+  struct Pressed {             // by contact
     std::vector<int> touched;  // its coordinates
-    Vector force, free;      // [N], [m] (contact)
-    Eigen::MatrixXd unit, columns, compliance;
-    double of_step = 0.0;  // [s] that columns are for
+    Vector force, free;        // [N], [m] (contact)
+    Vector unit, column;       // (free)
+    Eigen::MatrixXd columns, compliance;
+    double of_step = 0.0;        // [s] that columns are for
+    Vector change, last_change;  // [N] (contact) that contact asked for, in this turn and before
+    double factor = 1.0;         // of the change that is taken
+
+    void relax(int turn);
   };
 
   void times_mass(const Eigen::Ref<const Vector>& x, Vector& out) const;

@@ -12,15 +12,25 @@ namespace abut {
 
 namespace {
 
-constexpr int most_iterations = 30;
-constexpr int most_halvings = 8;
+constexpr int most_iterations = 50;
+constexpr int most_halvings = 8, most_trials = 20;
 /// Of the largest force in the balance. A layer is small, and energy is kept to what is left.
 constexpr double tolerance = 1.0e-12;
+
+Failed inadmissible(double time) { return failed_newton({NewtonReport::End::inadmissible}, time); }
 
 }  // namespace
 
 MasslessLayer::MasslessLayer(const Problem& problem)
-    : problem_(problem), dofs_(problem.model->massless()) {}
+    : problem_(problem), dofs_(problem.model->massless()) {
+  if (dofs_.empty()) return;
+  const Eigen::Index own = static_cast<Eigen::Index>(dofs_.size()), all = problem.model->dofs();
+  unit_.setIdentity(own, own);
+  loads_.setZero(all);  // of jumps, the first of which may come late
+  moved_.resize(index(all));
+  whole_.force.setZero(all);
+  whole_.history.resize(problem.model->history_size());
+}
 
 bool MasslessLayer::respond(std::span<const double> q, std::span<const double> history) {
   return problem_.model->evaluate_layer(q, history, response_);
@@ -30,7 +40,7 @@ bool MasslessLayer::respond(std::span<const double> q, std::span<const double> h
 void MasslessLayer::find_compliance() {
   if (inverted_) return;
   factors_.compute(response_.tangent);
-  inverse_ = factors_.inverse();
+  inverse_ = factors_.solve(unit_);
   inverted_ = problem_.model->is_linear();
 }
 
@@ -69,43 +79,68 @@ double MasslessLayer::move(std::vector<double>& q, double part) {
   return largest;
 }
 
+/// What is not in balance, under what presses now; returns the size of the forces.
+double MasslessLayer::find_rest(const Vector& loads, bool pressed) {
+  rest_ = -response_.force;
+  if (loads.size() > 0) {
+    for (std::size_t i = 0; i < dofs_.size(); ++i)
+      rest_(static_cast<Eigen::Index>(i)) += loads(dofs_[i]);
+  }
+  if (!pressed) return response_.force.norm();
+  for (std::size_t k = 0; k < place_.size(); ++k)
+    rest_(place_[k]) += pressed_(static_cast<Eigen::Index>(k));
+  return std::max(response_.force.norm(), pressed_.norm());
+}
+
+/// Goes along the step: all the way, or, where forces then lead back as strongly, to where they do
+/// not (regula falsi). Where a material begins to yield, tangents of both sides would lead to and
+/// fro for ever. False: no admissible place was found.
+bool MasslessLayer::walk(std::vector<double>& q, std::span<const double> history,
+                         const Vector& loads, bool pressed) {
+  find_rest(loads, pressed);
+  const double begin = step_.dot(rest_);
+  const double most = 0.5 * begin;
+  part_ = 1.0;
+  largest_ = move(q, part_);
+  for (int halving = 0; !respond(q, history); ++halving) {
+    if (halving == most_halvings) return false;
+    part_ *= 0.5;
+    largest_ = move(q, -part_);
+  }
+  for (int trial = 0; trial < most_trials; ++trial) {
+    find_rest(loads, pressed);
+    const double here = step_.dot(rest_);
+    if (here >= -most) return true;
+    const double next = part_ * begin / (begin - here);
+    largest_ = move(q, next - part_);
+    part_ = next;
+    if (!respond(q, history)) return false;
+  }
+  return true;
+}
+
 std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
                                             std::span<const double> history, const Vector& loads,
                                             Contact* contact) {
-  const Failed inadmissible = failed_newton({NewtonReport::End::inadmissible}, time);
   if (contact != nullptr)
     pressed_.setZero(static_cast<Eigen::Index>(contact->coordinates().size()));
-  if (!respond(q, history)) return inadmissible;
+  if (!respond(q, history)) return inadmissible(time);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    rest_ = -response_.force;
-    double scale = response_.force.norm();
-    if (loads.size() > 0) {
-      for (std::size_t i = 0; i < dofs_.size(); ++i)
-        rest_(static_cast<Eigen::Index>(i)) += loads(dofs_[i]);
-    }
-    if (contact != nullptr && iteration > 0) {
-      for (std::size_t k = 0; k < place_.size(); ++k)
-        rest_(place_[k]) += pressed_(static_cast<Eigen::Index>(k));
-      scale = std::max(scale, pressed_.norm());
-    }
+    const double scale = find_rest(loads, contact != nullptr && iteration > 0);
     if (!rest_.allFinite()) return not_finite(time);
-    const bool first = iteration == 0;
-    if (!first && rest_.norm() <= std::max(tolerance * scale, problem_.model->roundoff(q)))
+    if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, problem_.model->roundoff(q)))
       return std::nullopt;
     find_compliance();
     step_.noalias() = inverse_ * rest_;
     if (contact != nullptr) press(time, q, *contact);
     if (!step_.allFinite()) return failed_newton({NewtonReport::End::singular}, time);
-    double largest = move(q, 1.0);
-    if (problem_.model->is_linear()) return std::nullopt;
-    double part = 1.0;
-    for (int halving = 0; !respond(q, history); ++halving) {
-      if (halving == most_halvings) return inadmissible;
-      part *= 0.5;
-      largest = move(q, -part);
+    if (problem_.model->is_linear()) {
+      move(q, 1.0);
+      return std::nullopt;
     }
-    const double least = 4.0 * std::numeric_limits<double>::epsilon() * largest;
-    if (part == 1.0 && step_.lpNorm<Eigen::Infinity>() <= least) return std::nullopt;
+    if (!walk(q, history, loads, contact != nullptr)) return inadmissible(time);
+    const double least = 4.0 * std::numeric_limits<double>::epsilon() * largest_;
+    if (part_ == 1.0 && step_.lpNorm<Eigen::Infinity>() <= least) return std::nullopt;
   }
   return failed_newton({NewtonReport::End::not_converged, most_iterations}, time);
 }

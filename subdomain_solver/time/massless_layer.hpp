@@ -35,20 +35,24 @@ class MasslessLayer {
   [[nodiscard]] bool respond(std::span<const double> q, std::span<const double> history);
   void find_compliance();
   void press(double time, std::span<const double> q, Contact& contact);
+  double find_rest(const Vector& loads, bool pressed);
+  [[nodiscard]] bool walk(std::vector<double>& q, std::span<const double> history,
+                          const Vector& loads, bool pressed);
   double move(std::vector<double>& q, double part);
 
   const Problem& problem_;
   std::vector<int> dofs_;
   LayerResponse response_;
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
-  Eigen::MatrixXd inverse_;  // [m/N] of the tangent
-  bool inverted_ = false;    // for good: the model is linear
-  Vector step_, rest_;       // [m], [N] (layer)
-  Vector free_, pressed_;    // [m], [N] (contact)
-  Eigen::MatrixXd give_;     // [m/N] (contact)
-  std::vector<int> place_;   // of the contact's coordinates in the layer
-  std::vector<double> moved_;  // [m] (dofs) by a jump
-  Vector loads_;               // [N] (dofs) after it
+  Eigen::MatrixXd unit_, inverse_;     // 1; [m/N] of the tangent
+  bool inverted_ = false;              // for good: the model is linear
+  Vector step_, rest_;                 // [m], [N] (layer)
+  double part_ = 0.0, largest_ = 0.0;  // of the step; [m] displacement that results
+  Vector free_, pressed_;              // [m], [N] (contact)
+  Eigen::MatrixXd give_;               // [m/N] (contact)
+  std::vector<int> place_;             // of the contact's coordinates in the layer
+  std::vector<double> moved_;          // [m] (dofs) by a jump
+  Vector loads_;                       // [N] (dofs) after it
   ModelResponse whole_;
 };
 

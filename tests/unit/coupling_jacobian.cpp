@@ -40,7 +40,7 @@ BarText bar(const std::string& name, const std::string& integrator, const std::s
   b.layer = layer;
   b.sides = {name == "left" ? "right" : "left"};
   b.solid = layer == solid;
-  if (b.solid) b.layer = "massless: {}";  // of the ports of bars: solids keep their nodes' mass
+  if (b.solid) b.layer = "massless: {}";
   if (name == "right") b.modulus = 2.0;   // not the symmetric special case
   return b;
 }

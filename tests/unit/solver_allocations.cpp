@@ -243,6 +243,11 @@ bool needs_sparse_solver(const std::string& name) {
   });
 }
 
+void advance_or_fail(Subdomain& body, const Advance& request, Response& response) {
+  const Outcome outcome = body.advance(request, response);
+  if (const Failed* failed = std::get_if<Failed>(&outcome)) FAIL() << failed->detail;
+}
+
 TEST_P(Allocations, AreNoneFromTheSecondWindowOn) {
   if (needs_sparse_solver(GetParam().name) && make_cholmod_solver(Pivots::every) != nullptr)
     GTEST_SKIP() << "CHOLMOD makes its vectors in every solve";
@@ -270,9 +275,9 @@ TEST_P(Allocations, AreNoneFromTheSecondWindowOn) {
       }
       if (w == 0) body->save();
       const long before = allocations.load();
-      ASSERT_TRUE(std::holds_alternative<Advanced>(body->advance(request, response)));
+      advance_or_fail(*body, request, response);
       body->restore();
-      ASSERT_TRUE(std::holds_alternative<Advanced>(body->advance(request, response)));
+      advance_or_fail(*body, request, response);
       const long both = allocations.load() - before;
       body->save();  // grows once more after the first window: the start keeps no accelerations
       if (w > 0) {

@@ -78,12 +78,15 @@ INSTANTIATE_TEST_SUITE_P(Solver, LoadedBar, testing::ValuesIn(schemes_of_both())
 
 TEST_P(LoadedBar, TakesTheStepsOfTheModelOfSolids) {
   for (const Extra& extra : extras()) {
-    for (const char* fixed : {"", "left"}) {
+    for (const bool layered : {false, true}) {
+      const char* fixed = layered ? "" : "left";
       SCOPED_TRACE(extra.name + " " + fixed);
-      BarText text = case_bar({"", GetParam().integrator, GetParam().layer, {"right"}}, 0.03);
+      const std::string layer = layered ? "massless: {stiffness_factor: 1.0}" : GetParam().layer;
+      BarText text = case_bar({"", GetParam().integrator, layer, {"right"}}, 0.03);
       text.fixed = fixed;
       const std::unique_ptr<Subdomain> core = build_with(text, extra);
       text.solid = true;
+      if (!layered) text.tied = "right";  // the end keeps its mass
       const std::unique_ptr<Subdomain> solid = build_with(text, extra);
       ASSERT_TRUE(is_core(*core));
       ASSERT_FALSE(is_core(*solid));
@@ -99,7 +102,10 @@ TEST_P(LoadedBar, TakesTheStepsOfTheModelOfSolids) {
       EXPECT_LT(largest_difference(a.u, b.u), rounding);
       EXPECT_GT(largest_size(a.u), 0.1);
       for (std::size_t r = 0; r < 4; ++r) {
-        EXPECT_NEAR(found.records[r].momentum[0], expected.records[r].momentum[0], 40 * rounding);
+        // The core tells momentum as the mean forces of steps change it where no node is held.
+        if (!layered || GetParam().name.find("alpha") == std::string::npos) {
+          EXPECT_NEAR(found.records[r].momentum[0], expected.records[r].momentum[0], 40 * rounding);
+        }
         // forces of up to 0.1 N on 40 nodes
         EXPECT_NEAR(found.records[r].energy.external_work, expected.records[r].energy.external_work,
                     40 * rounding);

@@ -1,7 +1,7 @@
 // Goal: a bar by the model of solids, of any law, spacing and scheme, meets a surface as the bars'
 // own core does: it never pulls, never passes through it, and what it gives is what it loses.
-// Oracles: the bars' own core, whose contact element has the stiffness of the mesh; complementarity;
-// balance of momentum; work of the surface.
+// Oracles: the bars' own core, whose contact element has the stiffness of the mesh;
+// complementarity; balance of momentum; work of the surface.
 
 #include <cmath>
 #include <string>
@@ -59,8 +59,7 @@ std::vector<Layered> all_layered() {
     add("saint_venant_kirchhoff", "saint_venant_kirchhoff: {" + solid + "}");
     add("neo_hookean", "neo_hookean: {" + solid + "}");
     add("hencky", "hencky: {" + solid + "}");
-    add("mooney_rivlin",
-        "mooney_rivlin: {c10: 0.15, c01: 0.05, bulk_modulus: 1.0, density: 1.0}");
+    add("mooney_rivlin", "mooney_rivlin: {c10: 0.15, c01: 0.05, bulk_modulus: 1.0, density: 1.0}");
     add("j2_plasticity", "j2_plasticity: {" + solid + ", yield_stress: 0.01, hardening: 0.1}");
   }
   return all;
@@ -72,12 +71,13 @@ std::unique_ptr<Subdomain> build_layered(const Layered& l, const std::string& po
   const double grading = l.grading == 1.0 ? 1.0 + 0x1p-52 : l.grading;
   return make_body(
       Document::from_text(
-          "test", fmt::format("bodies: {{it: {{model: {{fe: {{dimension: 1, mesh: {{bar: {{length: "
-                              "{}, elements: {}, area: 1.0, grading: {}}}}}}}}}, material: {{{}}}, "
-                              "integrator: {{{}}}, ports: {{{}}}{}}}}}",
-                              elements, elements, number(grading), l.law, l.integrator, ports,
-                              velocity != 0.0 ? fmt::format(", initial: {{velocity: [{}]}}", velocity)
-                                              : "")),
+          "test",
+          fmt::format(
+              "bodies: {{it: {{model: {{fe: {{dimension: 1, mesh: {{bar: {{length: "
+              "{}, elements: {}, area: 1.0, grading: {}}}}}}}}}, material: {{{}}}, "
+              "integrator: {{{}}}, ports: {{{}}}{}}}}}",
+              elements, elements, number(grading), l.law, l.integrator, ports,
+              velocity != 0.0 ? fmt::format(", initial: {{velocity: [{}]}}", velocity) : "")),
       "bodies.it");
 }
 
@@ -104,7 +104,8 @@ struct History {
   double work = 0.0;                  // [J] of the surface
 };
 
-/// Windows of seven substeps, the last one shorter, in which a surface pushes every port and leaves.
+/// Windows of seven substeps, the last one shorter, in which a surface pushes every port and
+/// leaves.
 std::vector<History> push(Subdomain& body, double depth, BodyRecord& end) {
   constexpr double period = 60.0, window = 6.7 * step;
   const std::size_t ports = body.describe().ports.size();
@@ -204,7 +205,8 @@ TEST_P(LayeredBar, OfEqualElementsIsTheBarsOwnCore) {
 TEST(LayeredBars, KeepTheirMassAndTheirLimit) {
   for (const std::string& scheme : schemes()) {
     const Layered l{"", "linear_elastic: {" + elastic + "}", scheme, 0.7};
-    const std::unique_ptr<Subdomain> free = build_layered(l, "right: {side: right, tied: true}", speed);
+    const std::unique_ptr<Subdomain> free =
+        build_layered(l, "right: {side: right, tied: true}", speed);
     const std::unique_ptr<Subdomain> layered = build_layered(l, both, speed);
     EXPECT_DOUBLE_EQ(free->describe().mass, layered->describe().mass);
     EXPECT_EQ(free->describe().stable_step, layered->describe().stable_step);
@@ -219,8 +221,10 @@ TEST(LayeredBars, KeepTheirMassAndTheirLimit) {
 TEST(LayeredBars, OfOneElementHaveOneLayer) {
   const auto text = [](const char* ports) {
     return fmt::format(
-        "bodies: {{it: {{model: {{fe: {{dimension: 1, mesh: {{bar: {{length: 1.0, elements: 1, area: "
-        "1.0}}}}}}}}, material: {{neo_hookean: {{youngs_modulus: 1.0, poissons_ratio: 0.3, density: "
+        "bodies: {{it: {{model: {{fe: {{dimension: 1, mesh: {{bar: {{length: 1.0, elements: 1, "
+        "area: "
+        "1.0}}}}}}}}, material: {{neo_hookean: {{youngs_modulus: 1.0, poissons_ratio: 0.3, "
+        "density: "
         "1.0}}}}, integrator: {{newmark: {{step: 0.1}}}}, ports: {{{}}}}}}}",
         ports);
   };
@@ -232,7 +236,8 @@ TEST(LayeredBars, OfOneElementHaveOneLayer) {
     make("tip: {side: right}, root: {side: left}");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("no node that could take the mass"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("no node that could take the mass"),
+              std::string::npos);
   }
 }
 
