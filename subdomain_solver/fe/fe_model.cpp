@@ -224,17 +224,23 @@ void FeModel::assemble_mass(SparseMatrix& out) const {
   out.data().squeeze();  // two of three entries are gone, their memory not yet
 }
 
+/// Of a linear model.
+const SparseMatrix& FeModel::linear_stiffness() {
+  SparseMatrix& stiffness = assembly().stiffness;
+  if (stiffness.size() > 0) return stiffness;
+  const std::vector<double> rest(index(dofs()), 0.0);
+  ModelResponse response;
+  const bool admissible = assemble(rest, {}, Want::tangent, response);
+  ABUT_ASSERT(admissible);
+  stiffness = response.tangent;
+  return stiffness;
+}
+
 bool FeModel::evaluate(std::span<const double> q, std::span<const double> history, Want want,
                        ModelResponse& out) {
   if (batched_ && want == Want::force) return batched_force(q, out);
   if (!is_linear()) return assemble(q, history, want, out);
-  SparseMatrix& stiffness = assembly().stiffness;
-  if (stiffness.size() == 0) {
-    const std::vector<double> rest(index(dofs()), 0.0);
-    const bool admissible = assemble(rest, {}, Want::tangent, out);
-    ABUT_ASSERT(admissible);
-    stiffness = out.tangent;
-  }
+  const SparseMatrix& stiffness = linear_stiffness();
   out.dissipation = 0.0;
   out.history.clear();
   if (want == Want::tangent) out.tangent = stiffness;

@@ -116,6 +116,8 @@ class FeModel final : public Model {
   void lump_mass();
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
   void hand_over(std::span<const std::int32_t> nodes, Eigen::MatrixXd& nodal) const;
+  const SparseMatrix& linear_stiffness();
+  void spring_layer(std::span<const double> q, LayerResponse& out);
   void spring_force(std::span<const double> q, ModelResponse& out) const;
   [[nodiscard]] bool batched_force(std::span<const double> q, ModelResponse& out);
   [[nodiscard]] bool respond(int block, int cell, std::span<const double> q,

@@ -56,8 +56,31 @@ void FeModel::hand_over(std::span<const std::int32_t> nodes, Eigen::MatrixXd& no
   for (const Eigen::Index at : others) nodal(at, at) += each;
 }
 
+/// Of a linear bar, from differences of displacements, as its whole force: what is far smaller than
+/// a rounding of F, which is about 1, counts too.
+void FeModel::spring_layer(std::span<const double> q, LayerResponse& out) {
+  const SparseMatrix& stiffness = linear_stiffness();
+  const Eigen::Index size = static_cast<Eigen::Index>(massless_.size());
+  out.force.setZero(size);
+  out.tangent.setZero(size, size);
+  for (Eigen::Index row = 0; row < size; ++row) {
+    const int dof = massless_[index(row)];
+    for (SparseMatrix::InnerIterator at(stiffness, dof); at; ++at) {
+      const int other = static_cast<int>(at.row());
+      if (other != dof) out.force(row) += at.value() * (q[index(other)] - q[index(dof)]);
+      const auto place = std::ranges::lower_bound(massless_, other);
+      if (place != massless_.end() && *place == other)
+        out.tangent(row, place - massless_.begin()) = at.value();
+    }
+  }
+}
+
 bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> history,
                              LayerResponse& out) {
+  if (is_linear() && mesh_.dim == 1) {
+    spring_layer(q, out);
+    return true;
+  }
   const int dim = mesh_.dim, size = static_cast<int>(massless_.size());
   const auto place = [this](int dof) {
     const auto at = std::ranges::lower_bound(massless_, dof);
