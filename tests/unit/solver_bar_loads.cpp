@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "tests/support/tolerance.hpp"
+#include "tests/unit/shared_schemes.hpp"
 #include "tests/unit/solver_cases.hpp"
 
 namespace abut {
@@ -56,24 +57,8 @@ std::unique_ptr<Subdomain> build_with(const BarText& bar, const Extra& extra) {
 
 bool is_core(const Subdomain& body) { return body.describe().model.starts_with("bar"); }
 
-struct Scheme {
-  std::string name, integrator, layer;
-};
-void PrintTo(const Scheme& s, std::ostream* out) { *out << s.name; }
-
-std::vector<Scheme> schemes_of_both() {
-  std::vector<Scheme> out = {{"explicit", explicit_scheme(case_step), "kick: {}"}};
-  for (const char* mass : {"lumped", "averaged", "consistent"}) {
-    for (const char* scheme : {"newmark", "hht_alpha", "generalized_alpha"})
-      out.push_back({fmt::format("{}_{}", scheme, mass),
-                     fmt::format("{}: {{step: {}, mass: {}}}", scheme, number(case_step), mass),
-                     "massive: {}"});
-  }
-  return out;
-}
-
-class LoadedBar : public testing::TestWithParam<Scheme> {};
-INSTANTIATE_TEST_SUITE_P(Solver, LoadedBar, testing::ValuesIn(schemes_of_both()),
+class LoadedBar : public testing::TestWithParam<SharedScheme> {};
+INSTANTIATE_TEST_SUITE_P(Solver, LoadedBar, testing::ValuesIn(shared_schemes()),
                          [](const auto& s) { return s.param.name; });
 
 TEST_P(LoadedBar, TakesTheStepsOfTheModelOfSolids) {

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "tests/support/tolerance.hpp"
+#include "tests/unit/shared_schemes.hpp"
 #include "tests/unit/solver_cases.hpp"
 
 namespace abut {
@@ -33,24 +34,8 @@ std::unique_ptr<Subdomain> general(BarText bar) {
   return build(bar);
 }
 
-struct Scheme {
-  std::string name, integrator, layer;
-};
-void PrintTo(const Scheme& s, std::ostream* out) { *out << s.name; }
-
-std::vector<Scheme> schemes() {
-  std::vector<Scheme> out = {{"explicit", explicit_scheme(case_step), "kick: {}"}};
-  for (const char* mass : {"lumped", "averaged", "consistent"}) {
-    for (const char* scheme : {"newmark", "hht_alpha", "generalized_alpha"})
-      out.push_back({fmt::format("{}_{}", scheme, mass),
-                     fmt::format("{}: {{step: {}, mass: {}}}", scheme, number(case_step), mass),
-                     "massive: {}"});
-  }
-  return out;
-}
-
-class GeneralBar : public testing::TestWithParam<Scheme> {};
-INSTANTIATE_TEST_SUITE_P(Solver, GeneralBar, testing::ValuesIn(schemes()),
+class GeneralBar : public testing::TestWithParam<SharedScheme> {};
+INSTANTIATE_TEST_SUITE_P(Solver, GeneralBar, testing::ValuesIn(shared_schemes()),
                          [](const auto& s) { return s.param.name; });
 
 TEST_P(GeneralBar, TakesTheStepsOfTheBarsOwnCore) {
