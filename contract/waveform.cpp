@@ -48,7 +48,7 @@ void Waveform::interpolate(const std::vector<double>& field, double at,
 }
 
 void Waveform::force_at(double at, std::span<double> out) const {
-  if (support == ForceSupport::nodal) {
+  if (support != ForceSupport::step) {
     interpolate(f, at, out);
     return;
   }
@@ -68,6 +68,7 @@ void Waveform::impulse(double from, double to, std::span<double> out) const {
   std::fill_n(out.begin(), w, 0.0);
   if (time.size() < 2) return;
   const std::size_t last = time.size() - 1;
+  if (support == ForceSupport::linear) return linear_impulse(from, to, out);
   const bool nodal = support == ForceSupport::nodal;
   // Cell i is [begin_of(i), begin_of(i + 1)]: dual cells of all nodes, or the substeps 1..last.
   auto begin_of = [this, nodal, last](std::size_t i) {
@@ -82,6 +83,17 @@ void Waveform::impulse(double from, double to, std::span<double> out) const {
     const double overlap = std::min(cell_end, to) - std::max(cell_begin, from);
     if (overlap <= 0.0) continue;
     for (std::size_t c = 0; c < w; ++c) out[c] += overlap * f[i * w + c];
+  }
+}
+
+void Waveform::linear_impulse(double from, double to, std::span<double> out) const {
+  const std::size_t w = index(width);
+  for (std::size_t i = interval_of(time, from); i + 1 < time.size() && time[i] < to; ++i) {
+    const double begin = std::max(from, time[i]), end = std::min(to, time[i + 1]);
+    if (end <= begin) continue;
+    const double middle = (0.5 * (begin + end) - time[i]) / (time[i + 1] - time[i]);
+    for (std::size_t c = 0; c < w; ++c)
+      out[c] += (end - begin) * ((1.0 - middle) * f[i * w + c] + middle * f[(i + 1) * w + c]);
   }
 }
 

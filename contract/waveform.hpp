@@ -11,7 +11,8 @@ namespace abut {
 enum class ForceSupport {
   // f(t_i) acts over the dual cell around t_i (trapezoid rule): massless layers, implicit bodies
   nodal,
-  step,  // f_i is constant over the substep that ends at t_i: contact kicks
+  step,    // f_i is constant over the substep that ends at t_i: contact kicks
+  linear,  // f is linear between its times: contact of surfaces
 };
 
 /// Motion and force on a port as functions of time over a window.
@@ -43,12 +44,16 @@ class Waveform {
   /// empty and the field is (times, width).
   void interpolate(const std::vector<double>& field, double at, std::span<double> out) const;
 
-  /// Force that acts at a time: linear between stored times (nodal) or that of the substep (step).
+  /// Force that acts at a time: linear between stored times (nodal, linear) or that of the substep
+  /// (step).
   void force_at(double at, std::span<double> out) const;
 
   /// Impulse [N s] of f over [from, to], clipped to the window: exact for the waveform's support,
   /// so the impulses of adjoining intervals add up to that of their union. Writes `width` numbers.
   void impulse(double from, double to, std::span<double> out) const;
+
+ private:
+  void linear_impulse(double from, double to, std::span<double> out) const;
 };
 
 }  // namespace abut

@@ -101,12 +101,14 @@ void require_count(std::size_t count, std::size_t expected, const char* of, cons
 }
 
 v1::ForceSupport encode(ForceSupport support) {
+  if (support == ForceSupport::linear) return v1::FORCE_SUPPORT_LINEAR;
   return support == ForceSupport::nodal ? v1::FORCE_SUPPORT_NODAL : v1::FORCE_SUPPORT_STEP;
 }
 
 ForceSupport decode(v1::ForceSupport support, const FieldPath& path) {
   if (support == v1::FORCE_SUPPORT_NODAL) return ForceSupport::nodal;
   if (support == v1::FORCE_SUPPORT_STEP) return ForceSupport::step;
+  if (support == v1::FORCE_SUPPORT_LINEAR) return ForceSupport::linear;
   path.fail(fmt::format("has an unknown value {}", static_cast<int>(support)));
 }
 

@@ -79,6 +79,7 @@ Description two_ports() {
   body.fields.push_back({"stress", FieldPlace::cells, 6});
   body.columns = {"clamp.reaction [N]"};
   body.frequencies = {0.0, 12.5};
+  body.linear = true;
   return body;
 }
 
@@ -278,6 +279,7 @@ TEST(Codec, DescriptionKeepsEveryFieldAndInfinity) {
   EXPECT_EQ(got.measures, (std::vector<std::string>{"displacement.x.max", "energy.stored"}));
   EXPECT_EQ(got.columns, std::vector<std::string>{"clamp.reaction [N]"});
   EXPECT_EQ(got.frequencies, (std::vector<double>{0.0, 12.5}));
+  EXPECT_TRUE(got.linear);
   ASSERT_EQ(got.fields.size(), 2U);
   EXPECT_EQ(got.fields[0].name, "displacement");
   EXPECT_EQ(got.fields[0].place, FieldPlace::nodes);

@@ -24,6 +24,7 @@ class Dice {
   explicit Dice(std::uint64_t seed) : random_(seed) {}
   int upto(int most) { return static_cast<int>(random_() % index(most + 1)); }
   bool coin() { return upto(1) == 1; }
+  ForceSupport any_support() { return static_cast<ForceSupport>(upto(2)); }
   double value() { return static_cast<double>(random_() >> 11) * 0x1.0p-53 - 0.5; }
   std::vector<double> values(std::size_t count) {
     std::vector<double> all(count);
@@ -57,7 +58,7 @@ class Dice {
                 const TimeWindow& window) {
     Waveform made((listed.empty() ? shape.points : static_cast<int>(listed.size())) * shape.dim);
     made.points = listed;
-    made.support = coin() ? ForceSupport::nodal : ForceSupport::step;
+    made.support = any_support();
     const int steps = 1 + upto(3);
     for (int i = 0; i <= steps; ++i)
       made.time.push_back(i == steps ? window.end : window.begin + window.length() * i / steps);
@@ -68,7 +69,7 @@ class Dice {
   PortKernel kernel(int patterns, int width, int count) {
     PortKernel made;
     made.step = 0.5 + value();
-    made.support = coin() ? ForceSupport::nodal : ForceSupport::step;
+    made.support = any_support();
     made.patterns = patterns;
     made.width = width;
     made.displacement = values(index(count) * made.per_step());
