@@ -18,8 +18,20 @@ void mortar_rows(const PosedSurface& k, const PosedSurface& n, std::span<const F
     for (std::size_t i = 0; i < nodes.size(); ++i)
       buffers.weight[nodes[i]] += facet.weight[static_cast<Eigen::Index>(i)];
   }
-  merged_rows(k, buffers.pieces, buffers.weight, buffers.full, options.merge, buffers.merge,
-              buffers.root);
+  const int nodes = k.node_count();
+  buffers.root.resize(index(nodes));
+  bool merges = false;
+  for (int j = 0; j < nodes; ++j) {
+    const double weight = buffers.weight[j];
+    buffers.root[j] = weight > 0.0 ? j : -1;
+    merges = merges || (weight > 0.0 && is_light(weight, buffers.full[j], options.merge));
+  }
+  assemble_rows(k, n, buffers.pieces, buffers.root, buffers.rows, rows);
+  if (!merges) return;
+  buffers.gap.assign(index(nodes), 0.0);
+  for (std::size_t r = 0; r < rows.nodes.size(); ++r) buffers.gap[rows.nodes[r]] = rows.gaps[r];
+  merged_rows(k, buffers.pieces, buffers.weight, buffers.full, buffers.gap, options.merge,
+              options.level, buffers.merge, buffers.root);
   assemble_rows(k, n, buffers.pieces, buffers.root, buffers.rows, rows);
 }
 

@@ -18,6 +18,7 @@ struct MortarBuffers {
   MortarPieces pieces;
   std::vector<double> full;    // (nodes of K) tributary weights
   std::vector<double> weight;  // (nodes of K) their part that N covers
+  std::vector<double> gap;     // [m] (nodes of K) of rows as they are
   std::vector<std::int32_t> root;
   MergeBuffers merge;
   RowBuffers rows;

@@ -13,6 +13,8 @@ struct MortarOptions {
   double facing = 0.5;
   // rows with less than this share of their node's full weight are merged; 0: none is
   double merge = 0.25;
+  // ... with neighbours whose gap differs by less than this share of the node's size
+  double level = 0.02;
   // overlaps below this share of the facet of K use its shape functions instead of a dual basis
   double dual_from = 1.0e-4;
   PieceQuadrature quadrature = PieceQuadrature::seven_points;
