@@ -195,7 +195,7 @@ void Body::begin_replies(const Advance& request, Response& response) {
     for (std::size_t k = 0; k < obstacles.size(); ++k) {
       Waveform& force = port.reactions[k].force;
       force.clear();
-      force.support = port.trace.support;
+      force.support = interior_->reaction_support(p);
       force.width = obstacles[k].motion.width;
       force.points = obstacles[k].motion.points;
     }

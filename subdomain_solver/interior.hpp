@@ -61,6 +61,8 @@ class Interior {
   /// A partner whose surface gives way: whether the body can take it.
   virtual bool takes(int, const PortKernel&) const { return false; }
   virtual ForceSupport support(std::size_t) const { return ForceSupport::nodal; }
+  /// The same of the reactions to obstacles.
+  virtual ForceSupport reaction_support(std::size_t port) const { return support(port); }
   /// Quasi-static compliance of a port of one point [m/N]; 0: none.
   virtual double compliance(std::size_t) const { return 0.0; }
   /// A force [N] on a port to which the body answers linearly: probes press with it.

@@ -9,7 +9,8 @@ const std::vector<int>& Model::massless() const {
   return none;
 }
 
-bool Model::evaluate_layer(std::span<const double>, std::span<const double>, LayerResponse& out) {
+bool Model::evaluate_layer(std::span<const double>, std::span<const double>, Want,
+                           LayerResponse& out) {
   ABUT_ASSERT(massless().empty());  // who has a layer says how it answers
   out.force.resize(0);
   out.tangent.resize(0, 0);

@@ -48,8 +48,8 @@ struct ModelResponse {
 
 /// What a model answers for its massless coordinates alone, in their order.
 struct LayerResponse {
-  Vector force;             // [N]
-  Eigen::MatrixXd tangent;  // [N/m] dr/dq among them
+  Vector force;          // [N]
+  SparseMatrix tangent;  // [N/m] dr/dq among them; always of one pattern
 };
 
 /// Semi-discrete body in its own coordinates q:   M q'' + r(q) = f(t)   [M.40]. Integrators see
@@ -75,9 +75,11 @@ class Model {
 
   /// Coordinates without mass, ascending: the surface layer [M.85]. Usually none.
   virtual const std::vector<int>& massless() const;
-  /// Of these alone, which costs as much as they are many. False: q is inadmissible.
+  /// Of these alone, which costs as much as they are many; the tangent when wanted. False: q is
+  /// inadmissible.
   [[nodiscard]] virtual bool evaluate_layer(std::span<const double> q,
-                                            std::span<const double> history, LayerResponse& out);
+                                            std::span<const double> history, Want want,
+                                            LayerResponse& out);
 };
 
 /// [kg] in the form that a scheme asks for; averaged is half lumped, half consistent.

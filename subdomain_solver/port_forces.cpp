@@ -34,7 +34,7 @@ void PortForces::add_sampled(const Waveform& imposed, std::size_t port, bool fir
   forces_.resize(index(grid_.count + 1) * map_.values(), 0.0);
   const std::size_t width = index(imposed.width), listed = imposed.points.size();
   ABUT_ASSERT(width == (listed == 0 ? map_.width(port) : listed * index(map_.dim())));
-  const bool same = imposed.support == ForceSupport::nodal && grid_.matches(imposed.time);
+  const bool same = imposed.support != ForceSupport::step && grid_.matches(imposed.time);
   mean_.resize(width);
   for (int i = 0; i <= grid_.count; ++i) {
     double* row = forces_.data() + index(i) * map_.values() + map_.first(port);

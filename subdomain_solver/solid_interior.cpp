@@ -7,7 +7,9 @@
 
 #include "base/index.hpp"
 #include "subdomain_solver/bars/compressed_bar.hpp"
-#include "subdomain_solver/fe/loads.hpp"
+#include "subdomain_solver/contact/point_contact.hpp"
+#include "subdomain_solver/contact/surface_contact.hpp"
+#include "subdomain_solver/port_geometry.hpp"
 #include "subdomain_solver/solid_fields.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 #include "subdomain_solver/validity_measures.hpp"
@@ -47,9 +49,9 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
   }
 }
 
-/// Ports of one massless point meet obstacles.
+/// Ports without mass meet obstacles.
 void SolidInterior::find_contacts() {
-  if (description_.dim != 1) return;
+  if (description_.dim > 1) return find_surfaces();
   const std::vector<int>& massless = parts_.problem->model->massless();
   std::vector<PointContact::Point> points;
   for (std::size_t p = 0; p < ports_.size(); ++p) {
@@ -59,10 +61,39 @@ void SolidInterior::find_contacts() {
       points.push_back({p, dof, geometry.points[0], geometry.normals[0]});
   }
   if (points.empty()) return;
-  contact_ = std::make_unique<PointContact>(points, description_.name);
+  contact_ = std::make_unique<PointContact>(points, description_.step, description_.name);
   port_forces_->keep_swings();
   description_.can.obstacle = points.size() == ports_.size();
   description_.can.yielding = description_.can.obstacle;
+}
+
+void SolidInterior::find_surfaces() {
+  // Where something may touch: of the undeformed body, at its first orientation.
+  if (std::ranges::any_of(may_touch_, [](char touched) { return touched != 0; }))
+    description_.can.kernel = true;
+  std::vector<SurfaceContact::Surface> surfaces;
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    const std::vector<std::int32_t>& nodes = ports_[p].nodes;
+    const PortGeometry& geometry = description_.ports[p].geometry;
+    const FeModel& model = *parts_.model;
+    const bool reduced = parts_.problem->model != &model;  // whose ports have mass
+    // Rings would weigh by their radius.
+    if (geometry.facets.empty() || !may_touch_[p] || reduced || model.round()) continue;
+    touched_.push_back(
+        {ports_[p].name, p, port_map_->first(p), &geometry, nodes, model.options().thickness});
+    SurfaceContact::Surface& surface = surfaces.emplace_back();
+    surface.port = p;
+    surface.first = port_map_->first(p);
+    surface.geometry = &geometry;
+    surface.nodes = nodes;
+    for (const std::int32_t node : nodes) surface.frames.push_back(model.frame(node));
+  }
+  if (surfaces.empty()) return;
+  contact_ = std::make_unique<SurfaceContact>(std::move(surfaces), description_.name);
+  for (std::string& name : touch_measure_names(touched_))
+    description_.measures.push_back(std::move(name));
+  for (FieldInfo& field : touch_fields()) description_.fields.push_back(std::move(field));
+  description_.can.obstacle = description_.can.yielding = true;
 }
 
 void SolidInterior::describe(std::string name, const std::vector<PortNodes>& ports) {
@@ -80,12 +111,13 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   description_.stable_step = parts_.scheme.stable_step;
   description_.can.force = true;
   const bool small = parts_.problem->model->is_linear() && parts_.deforms;
+  description_.linear = small;
   description_.can.kernel =
       (small || mesh.dim == 1) && parts_.scheme.integrator->has_inertia() && !ports.empty();
   for (const PortNodes& p : ports) {
     ports_.push_back({p.name, mesh.nodes_of(p.side)});
-    Port port = port_of(p, ports_.back().nodes);
-    port.tied = p.tied;
+    may_touch_.push_back(p.touched);
+    Port port{p.name, port_geometry(*parts_.model, p.side, ports_.back().nodes), p.tied};
     if (parts_.deforms) port.geometry.transit = port.geometry.spacing / fastest_wave(*parts_.model);
     description_.ports.push_back(std::move(port));
   }
@@ -102,57 +134,6 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   if (parts_.reactions) description_.fields.push_back({"reaction", FieldPlace::nodes, 3});
 }
 
-/// Points, facets and area-averaged normals of a side; a node set has no normals, the end of a bar
-/// no facets.
-Port SolidInterior::port_of(const PortNodes& nodes, const std::vector<std::int32_t>& list) const {
-  const Mesh& mesh = parts_.model->mesh();
-  const std::size_t dim = index(mesh.dim);
-  Port port;
-  port.name = nodes.name;
-  port.geometry.dim = mesh.dim;
-  for (std::int32_t node : list) {
-    const double* x = mesh.points.data() + index(node) * dim;
-    port.geometry.points.insert(port.geometry.points.end(), x, x + dim);
-  }
-  port.geometry.normals.assign(list.size() * dim, 0.0);
-  if (!mesh.sides.contains(nodes.side)) return port;
-  std::vector<double>& normals = port.geometry.normals;
-  port.geometry.offsets.push_back(0);
-  double area = 0.0;
-  const SidePoints side = SidePoints::of(*parts_.model, nodes.side);
-  for (const SidePoints::FacetPoints& facet : side.facets) {
-    for (std::size_t a = 0; a < facet.nodes.size(); ++a) {
-      const auto place = std::lower_bound(list.begin(), list.end(), facet.nodes[a]) - list.begin();
-      port.geometry.facets.push_back(static_cast<std::int32_t>(place));
-      for (const SidePoints::Point& point : facet.points) {
-        for (std::size_t i = 0; i < dim; ++i)
-          normals[index(place) * dim + i] +=
-              point.area * point.n[a] * point.normal(static_cast<Eigen::Index>(i));
-      }
-    }
-    port.geometry.offsets.push_back(static_cast<std::int32_t>(port.geometry.facets.size()));
-    for (const SidePoints::Point& point : facet.points) area += point.area;
-  }
-  for (std::size_t k = 0; k < normals.size(); k += dim) {
-    double length = 0.0;
-    for (std::size_t i = 0; i < dim; ++i) length = std::hypot(length, normals[k + i]);
-    for (std::size_t i = 0; i < dim && length > 0.0; ++i) normals[k + i] /= length;
-  }
-  if (dim == 1) {
-    port.geometry.facets.clear();
-    port.geometry.offsets.clear();
-    const Facet& end = mesh.side(nodes.side).front();
-    const CellBlock& cells = mesh.blocks[index(end.block)];
-    const std::int32_t* cell = cells.nodes.data() + end.cell * cells.element->nodes;
-    port.geometry.spacing = mesh.points[index(cell[1])] - mesh.points[index(cell[0])];
-    return port;
-  }
-  const double facets = static_cast<double>(std::max<std::size_t>(1, side.facets.size()));
-  port.geometry.spacing =
-      std::pow(area / facets, 1.0 / std::max(1.0, static_cast<double>(dim) - 1.0));
-  return port;
-}
-
 void SolidInterior::state(Archive& archive) {
   archive.field("time", state_.time);
   state_.motion.state(archive);
@@ -160,6 +141,7 @@ void SolidInterior::state(Archive& archive) {
   archive.field("port_force", state_.port_force);
   archive.field("port_work", state_.port_work);
   archive.field("turned", state_.turned);
+  if (contact_) contact_->state(archive);
 }
 
 double SolidInterior::effort() const { return parts_.model->mesh().cell_count() / usual_work; }
@@ -182,7 +164,7 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
   if (contact_) contact_->impose(window);
   parts_.problem->contact = contact_ && contact_->acts() ? contact_.get() : nullptr;
   if (std::optional<Failed> failed = meet_port_forces(time)) return failed;
-  if (parts_.problem->contact != nullptr) contact_->aim(0, state_.port_force);
+  if (parts_.problem->contact != nullptr) contact_->aim(0, state_.port_force, places_);
   if (!state_.begun) {
     parts_.problem->set_rates(time, parts_.scheme.step, state_.motion);
     if (std::optional<Failed> failed = parts_.scheme.integrator->begin(state_.motion, time))
@@ -198,7 +180,7 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i) {
   Integrator& integrator = *parts_.scheme.integrator;
   const double begin = window.grid.time(i - 1), dt = window.grid.length(i);
   substep_ = i;
-  if (parts_.problem->contact != nullptr) contact_->aim(i, state_.port_force);
+  if (parts_.problem->contact != nullptr) contact_->aim(i, state_.port_force, places_);
   if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);
   if (port_map_) follow_ports(state_.time);
@@ -221,7 +203,7 @@ void SolidInterior::see_nodes() {
 /// the mean.
 void SolidInterior::see_places() {
   seen_.u = places_;
-  for (std::size_t p = 0; contact_ && p < ports_.size(); ++p) {
+  for (std::size_t p = 0; contact_ && description_.dim == 1 && p < ports_.size(); ++p) {
     const double swing = contact_->has(p) ? port_forces_->swing(substep_, p) : 0.0;
     if (swing != 0.0) seen_.u[p] += compliance(p) * swing;
   }
@@ -235,22 +217,24 @@ const PortValues& SolidInterior::see(const Window&, double time, bool all) {
   port_map_->velocity(motion.q, motion.v, seen_.v);
   port_map_->acceleration(motion.q, motion.v, motion.a, seen_.a);
   port_forces_->at(time, seen_.f);
-  for (std::size_t p = 0; contact_ && p < ports_.size(); ++p)
-    if (contact_->acts(p)) seen_.f[p] = state_.port_force[p];
+  for (std::size_t p = 0; contact_ && p < ports_.size(); ++p) {
+    if (!contact_->acts(p)) continue;
+    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(port_map_->first(p));
+    std::copy_n(state_.port_force.begin() + first, port_map_->width(p), seen_.f.begin() + first);
+  }
   return seen_;
 }
 
-void SolidInterior::react(std::size_t port, std::size_t, std::vector<double>& force) const {
-  force.push_back(-state_.port_force[port]);
+void SolidInterior::react(std::size_t port, std::size_t partner, std::vector<double>& force) const {
+  contact_->react(port, partner, state_.port_force, force);
 }
 
 bool SolidInterior::takes(int port, const PortKernel& kernel) const {
-  return contact_ && contact_->has(index(port)) && kernel.step == description_.step &&
-         kernel.support == ForceSupport::nodal && kernel.per_step() == 1;
+  return contact_ && contact_->takes(index(port), kernel);
 }
 
 double SolidInterior::compliance(std::size_t port) const {
-  if (!contact_ || !contact_->has(port)) return 0.0;
+  if (description_.dim > 1 || !contact_ || !contact_->has(port)) return 0.0;
   return parts_.scheme.integrator->compliance(state_.motion, ports_[port].nodes.front());
 }
 
@@ -259,8 +243,7 @@ double SolidInterior::compliance(std::size_t port) const {
 std::optional<Failed> SolidInterior::meet_port_forces(double time) {
   if (port_forces_ == nullptr) return std::nullopt;
   port_forces_->at(time, now_);
-  for (std::size_t p = 0; contact_ && p < ports_.size(); ++p)
-    if (contact_->acts(p)) now_[p] = state_.port_force[p];
+  if (contact_) contact_->hold(state_.port_force, now_);
   if (state_.begun && now_ != state_.port_force) {
     before_ = now_;
     for (std::size_t k = 0; k < now_.size(); ++k) before_[k] -= state_.port_force[k];
@@ -348,6 +331,7 @@ std::vector<double> SolidInterior::measure() {
         parts_.scheme.integrator->measure(state_.motion),
         validity_measures(*parts_.model, parts_.deforms, u_, state_.motion.stored, state_.turned)})
     out.insert(out.end(), more.begin(), more.end());
+  touch_measures(touched_, state_.port_force, places_, out);
   return out;
 }
 
@@ -359,13 +343,21 @@ std::vector<FieldValues> SolidInterior::fields() {
   parts_.map->displacement(state_.motion.q, q);
   std::vector<FieldValues> values =
       solid_field_values(*parts_.model, {q, u_, v_, state_.motion.history}, parts_.deforms);
-  if (!parts_.reactions) return values;
+  if (parts_.reactions) values.push_back(nodal_reactions());
+  if (touched_.empty()) return values;
+  for (FieldValues& field :
+       touch_field_values(touched_, *contact_, index(parts_.model->mesh().node_count()),
+                          state_.port_force, places_))
+    values.push_back(std::move(field));
+  return values;
+}
+
+FieldValues SolidInterior::nodal_reactions() {
   Vector forces = Vector::Zero(static_cast<Eigen::Index>(nodal_values()));
   if (state_.begun)
     parts_.reactions->forces(state_.motion, state_.time, forces_on_ports(), forces);
   parts_.model->to_space({forces.data(), nodal_values()});
-  values.push_back(in_space(span_of(forces), description_.dim));
-  return values;
+  return in_space(span_of(forces), description_.dim);
 }
 
 Energy SolidInterior::energy() const {
@@ -374,12 +366,29 @@ Energy SolidInterior::energy() const {
           motion.external_work - state_.port_work};  // partners account for what ports exchange
 }
 
+/// A hint, which the horizon's flight verifies: waves inside may yet throw the surface faster.
+void SolidInterior::finish(std::size_t port, PortResponse& reply) const {
+  if (description_.dim == 1) return;
+  const std::size_t dim = index(description_.dim);
+  const double* v = seen_.v.data() + port_map_->first(port);
+  double most = 0.0;
+  for (std::size_t k = 0; k < port_map_->width(port); k += dim) {
+    double square = 0.0;
+    for (std::size_t i = 0; i < dim; ++i) square += v[k + i] * v[k + i];
+    most = std::max(most, square);
+  }
+  reply.speed_bound = std::sqrt(most);
+}
+
 /// Of a nonlinear body: far above the rounding of strains, far below where they matter.
-double SolidInterior::light_force(std::size_t) const {
+double SolidInterior::light_force(std::size_t port) const {
   const FeModel& model = *parts_.model;
   if (parts_.problem->model->is_linear()) return 1.0;
   constexpr double strain = 1.0e-7;
-  return strain * model.material().moduli().youngs() * model.options().area;
+  const double area = description_.dim == 1 ? model.options().area
+                                            : std::pow(description_.ports[port].geometry.spacing,
+                                                       static_cast<double>(description_.dim) - 1.0);
+  return strain * model.material().moduli().youngs() * area;
 }
 
 bool SolidInterior::rest(std::size_t) {

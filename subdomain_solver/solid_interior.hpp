@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "subdomain_solver/contact/point_contact.hpp"
+#include "subdomain_solver/contact/contact_fields.hpp"
+#include "subdomain_solver/contact/port_contact.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/interior.hpp"
 #include "subdomain_solver/nodal_map.hpp"
@@ -18,13 +19,14 @@ namespace abut {
 
 /// A solid in one, two or three dimensions: a mesh, the rung of the fidelity ladder whose
 /// coordinates move it, what acts on it, an integrator, and ports, which are sides or node sets of
-/// the mesh. Ports take forces; linear bodies answer for their port kernels too. A port that is one
-/// massless point meets obstacles; nodes of other ports keep their mass.
+/// the mesh. Ports take forces; linear bodies answer for their port kernels too. Ports without mass
+/// meet obstacles: ends of bars, surfaces in the plane and in space.
 class SolidInterior final : public Interior {
  public:
   struct PortNodes {
     std::string name, side;
     bool tied = false;
+    bool touched = false;  // something may touch it
   };
   struct Scheme {
     std::unique_ptr<Integrator> integrator;
@@ -56,7 +58,11 @@ class SolidInterior final : public Interior {
   const PortValues& see(const Window& window, double time, bool all) override;
   std::optional<Failed> record(BodyRecord& record) override;
   void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;
+  void finish(std::size_t port, PortResponse& reply) const override;
   bool takes(int port, const PortKernel& kernel) const override;
+  ForceSupport reaction_support(std::size_t) const override {
+    return description_.dim == 1 ? ForceSupport::nodal : ForceSupport::linear;
+  }
   double compliance(std::size_t port) const override;
   double light_force(std::size_t port) const override;
   bool rest(std::size_t port) override;
@@ -78,23 +84,26 @@ class SolidInterior final : public Interior {
   };
 
   void describe(std::string name, const std::vector<PortNodes>& ports);
-  Port port_of(const PortNodes& port, const std::vector<std::int32_t>& list) const;
   Energy energy() const;
   std::size_t nodal_values() const { return index(parts_.model->dofs()); }
   void see_nodes();
   void see_places();
   std::optional<Failed> meet_port_forces(double time);
   void find_contacts();
+  void find_surfaces();
   void follow_ports(double time);
   void add_port_work();
   const Vector& forces_on_ports();
   void reactions(std::vector<double>& out);
+  FieldValues nodal_reactions();
 
   Parts parts_;
   SparseMatrix mass_;  // [kg] of the nodes, in the form of the scheme
   std::vector<NamedNodes> ports_;
+  std::vector<char> may_touch_;        // (ports)
   std::unique_ptr<PortMap> port_map_;  // null: no ports
-  std::unique_ptr<PointContact> contact_;  // null: no port meets obstacles
+  std::unique_ptr<PortContact> contact_;  // null: no port meets obstacles
+  std::vector<TouchedSurface> touched_;   // its ports, where they are surfaces
   PortForces* port_forces_ = nullptr;  // owned by the problem, the last of its loads
   State state_;
   std::vector<double> places_;  // [m] (port values)

@@ -18,7 +18,8 @@ constexpr double rounding = 1.0e-6;
 
 }  // namespace
 
-PointContact::PointContact(const std::vector<Point>& points, const std::string& body) {
+PointContact::PointContact(const std::vector<Point>& points, double step, const std::string& body)
+    : step_(step) {
   for (const Point& p : points) ends_.push_back({p, {p.place, p.outward, body}, {}});
   std::sort(ends_.begin(), ends_.end(),
             [](const End& a, const End& b) { return a.point.dof < b.point.dof; });
@@ -46,10 +47,24 @@ bool PointContact::acts(std::size_t port) const {
                              [this, port](std::size_t k) { return ends_[k].point.port == port; });
 }
 
-void PointContact::aim(int i, const std::vector<double>& forces) {
+void PointContact::aim(int i, const std::vector<double>& forces, const std::vector<double>&) {
   aim_ = i == 0 ? grid_.begin : grid_.time(i);
   for (const std::size_t k : acting_)
     ends_[k].surface = ends_[k].obstacle.at(i, -forces[ends_[k].point.port]);
+}
+
+void PointContact::hold(const std::vector<double>& forces, std::vector<double>& now) const {
+  for (const std::size_t k : acting_) now[ends_[k].point.port] = forces[ends_[k].point.port];
+}
+
+void PointContact::react(std::size_t port, std::size_t, const std::vector<double>& forces,
+                         std::vector<double>& out) const {
+  out.push_back(-forces[port]);
+}
+
+bool PointContact::takes(std::size_t port, const PortKernel& kernel) const {
+  return has(port) && kernel.support == ForceSupport::nodal && kernel.per_step() == 1 &&
+         kernel.step == step_;
 }
 
 void PointContact::add_to(std::vector<double>& forces) const {
@@ -66,22 +81,22 @@ double PointContact::push(const End& end, bool in_substep, double time, double f
   return -end.point.outward * (surface.bilateral ? pressure : std::max(0.0, pressure));
 }
 
-const Vector& PointContact::solve(double time, const Vector& free,
-                                  const Eigen::MatrixXd& compliance) {
+const Vector* PointContact::solve(double time, const Vector& free, Compliance& give) {
   const bool in_substep = std::abs(time - aim_) > rounding * grid_.step;
   force_.setZero(free.size());
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     double change = 0.0;
     for (Eigen::Index k = 0; k < free.size(); ++k) {
-      const double others = compliance.row(k).dot(force_) - compliance(k, k) * force_(k);
-      const double now =
-          push(ends_[acting_[index(k)]], in_substep, time, free(k) + others, compliance(k, k));
+      const Vector* column = give.column(static_cast<int>(k));  // symmetric: its row too
+      if (column == nullptr) return nullptr;
+      const double own = (*column)(k), others = column->dot(force_) - own * force_(k);
+      const double now = push(ends_[acting_[index(k)]], in_substep, time, free(k) + others, own);
       change = std::max(change, std::abs(now - force_(k)));
       force_(k) = now;
     }
     if (change <= 1.0e-15 * force_.lpNorm<Eigen::Infinity>() || free.size() == 1) break;
   }
-  return force_;
+  return &force_;
 }
 
 }  // namespace abut

@@ -18,11 +18,6 @@ namespace {
 constexpr std::size_t most_cells = 4096, least_cells = 512, wanted_patches = 16;
 constexpr std::size_t lanes = batch_lanes;
 
-std::span<const std::int32_t> nodes_of(const CellBlock& cells, std::int32_t cell) {
-  const std::size_t n = index(cells.element->nodes);
-  return std::span(cells.nodes).subspan(index(cell) * n, n);
-}
-
 /// Puts two zeros before every one of the lower 21 bits.
 std::uint64_t spread(std::uint64_t x) {
   x = (x | x << 32) & 0x001f00000000ffffull;

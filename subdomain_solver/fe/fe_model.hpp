@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -43,11 +44,15 @@ class FeModel final : public Model {
                               ModelResponse& out) override;
   const std::vector<int>& massless() const override { return massless_; }
   [[nodiscard]] bool evaluate_layer(std::span<const double> q, std::span<const double> history,
-                                    LayerResponse& out) override;
+                                    Want want, LayerResponse& out) override;
 
   /// Moves the mass of these nodes to the others of their cells (the surface layer, [M.85]), once,
-  /// before anything asks for a mass. Throws InputError where a cell has no other node.
-  void make_massless(const std::vector<std::int32_t>& nodes);
+  /// before anything asks for a mass; cells that have no others give theirs to the nearest nodes
+  /// that have some. `held`: dofs (sorted) whose motion is prescribed, which are no coordinates of
+  /// the layer. Throws InputError where no node is left.
+  void make_massless(const std::vector<std::int32_t>& nodes, const std::vector<int>& held);
+
+  bool is_bare(std::int32_t node) const;  // it has no mass
 
   const Mesh& mesh() const { return mesh_; }
   const Material& material() const { return *material_; }
@@ -115,9 +120,17 @@ class FeModel final : public Model {
   void assemble_mass(SparseMatrix& out) const;
   void lump_mass();
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
+  int layer_place(int dof) const;  // among the massless; -1: it is none
+  void find_heirs();
   void hand_over(std::span<const std::int32_t> nodes, Eigen::MatrixXd& nodal) const;
+  template <class Take>
+  void inherit(const Take& take) const;
+  void inherit(Vector& lumped) const;
+  void inherit(SparseMatrix& mass) const;
   const SparseMatrix& linear_stiffness();
-  void spring_layer(std::span<const double> q, LayerResponse& out);
+  void find_layer_pattern(LayerResponse& out) const;
+  void find_layer_rows(std::span<const double> q, std::span<const double> history);
+  void linear_layer(std::span<const double> q, Want want, LayerResponse& out);
   void spring_force(std::span<const double> q, ModelResponse& out) const;
   [[nodiscard]] bool batched_force(std::span<const double> q, ModelResponse& out);
   [[nodiscard]] bool respond(int block, int cell, std::span<const double> q,
@@ -138,8 +151,13 @@ class FeModel final : public Model {
   std::vector<Block> blocks_;
   std::size_t history_size_ = 0;
   std::vector<NodeFrame> frames_;  // sorted by node; usually none
-  std::vector<int> massless_;      // dofs, ascending; usually none
+  using LayerRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  std::vector<std::int32_t> bare_;                // nodes without mass, ascending; usually none
+  std::vector<int> massless_;                     // their dofs that are not held, ascending
   std::vector<std::pair<int, int>> layer_cells_;  // (block, cell) that touch them
+  // of cells wholly among them: nodes that have their mass
+  std::map<std::pair<int, int>, std::vector<std::int32_t>> heirs_;
+  LayerRows layer_rows_;  // [N/m] (massless, dofs) of linear models, when first asked for
   mutable std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<BatchedCells> batched_;  // null: cell by cell
   Vector lumped_;

@@ -11,40 +11,88 @@
 
 namespace abut {
 
-void FeModel::make_massless(const std::vector<std::int32_t>& nodes) {
-  ABUT_ASSERT(massless_.empty() && (!assembly_ || assembly_->mass.size() == 0));
-  for (const std::int32_t node : nodes) {
-    for (int i = 0; i < mesh_.dim; ++i) massless_.push_back(node * mesh_.dim + i);
-  }
-  std::sort(massless_.begin(), massless_.end());
-  for (std::size_t k = 0; k < mesh_.blocks.size(); ++k) {
-    const CellBlock& cells = mesh_.blocks[k];
-    const std::size_t n = index(cells.element->nodes);
-    for (int c = 0; c < cells.count(); ++c) {
-      const std::span own = std::span(cells.nodes).subspan(index(c) * n, n);
-      const std::ptrdiff_t bare = std::ranges::count_if(own, [this](std::int32_t node) {
-        return std::ranges::binary_search(massless_, node * mesh_.dim);
-      });
-      if (bare == 0) continue;
-      if (index(bare) == n) {
-        throw InputError(fmt::format("{} has no node that could take the mass of its surface",
-                                     cell_text(mesh_, k, index(c))),
-                         "mesh", "Use a finer mesh, or fewer ports for contact.");
-      }
-      layer_cells_.emplace_back(static_cast<int>(k), c);
+bool FeModel::is_bare(std::int32_t node) const { return std::ranges::binary_search(bare_, node); }
+
+int FeModel::layer_place(int dof) const {
+  const auto at = std::ranges::lower_bound(massless_, dof);
+  return at != massless_.end() && *at == dof ? static_cast<int>(at - massless_.begin()) : -1;
+}
+
+void FeModel::make_massless(const std::vector<std::int32_t>& nodes, const std::vector<int>& held) {
+  ABUT_ASSERT(bare_.empty() && (!assembly_ || assembly_->mass.size() == 0));
+  bare_ = nodes;
+  std::ranges::sort(bare_);
+  for (const std::int32_t node : bare_) {
+    for (int i = 0; i < mesh_.dim; ++i) {
+      const int dof = node * mesh_.dim + i;
+      if (!std::ranges::binary_search(held, dof)) massless_.push_back(dof);
     }
   }
+  for (std::size_t k = 0; k < mesh_.blocks.size(); ++k) {
+    const CellBlock& cells = mesh_.blocks[k];
+    for (int c = 0; c < cells.count(); ++c) {
+      if (std::ranges::any_of(nodes_of(cells, c), [this](auto node) { return is_bare(node); }))
+        layer_cells_.emplace_back(static_cast<int>(k), c);
+    }
+  }
+  find_heirs();
   lump_mass();
 }
 
+/// Cells wholly in the layer, tetrahedra in corners for instance, have no node that could take
+/// their mass: nodes of their neighbours do, or of these ones' neighbours.
+void FeModel::find_heirs() {
+  std::vector<std::size_t> bare_cells;  // of layer_cells_
+  for (std::size_t l = 0; l < layer_cells_.size(); ++l) {
+    const auto& [block, cell] = layer_cells_[l];
+    if (std::ranges::all_of(nodes_of(mesh_.blocks[index(block)], cell),
+                            [this](auto node) { return is_bare(node); }))
+      bare_cells.push_back(l);
+  }
+  if (bare_cells.empty()) return;
+  std::vector<std::vector<std::size_t>> around(index(mesh_.node_count()));  // of layer_cells_
+  for (std::size_t l = 0; l < layer_cells_.size(); ++l) {
+    for (const std::int32_t node :
+         nodes_of(mesh_.blocks[index(layer_cells_[l].first)], layer_cells_[l].second))
+      around[index(node)].push_back(l);
+  }
+  for (const std::size_t first : bare_cells) {
+    std::vector<std::size_t> reached = {first}, ring = {first};
+    std::vector<std::int32_t>& heirs = heirs_[layer_cells_[first]];
+    while (heirs.empty() && !ring.empty()) {
+      std::vector<std::size_t> next;
+      for (const std::size_t l : ring) {
+        for (const std::int32_t node :
+             nodes_of(mesh_.blocks[index(layer_cells_[l].first)], layer_cells_[l].second)) {
+          if (!is_bare(node)) heirs.push_back(node);
+          for (const std::size_t other : around[index(node)]) {
+            if (std::ranges::find(reached, other) != reached.end()) continue;
+            reached.push_back(other);
+            next.push_back(other);
+          }
+        }
+      }
+      ring = std::move(next);
+    }
+    if (heirs.empty()) {
+      throw InputError(fmt::format("{} has no node near it that could take the mass of its surface",
+                                   cell_text(mesh_, index(layer_cells_[first].first),
+                                             index(layer_cells_[first].second))),
+                       "mesh", "Use a finer mesh, or fewer ports for contact.");
+    }
+    std::ranges::sort(heirs);
+    heirs.erase(std::unique(heirs.begin(), heirs.end()), heirs.end());
+  }
+}
+
 /// Of one cell's mass, what belongs to massless nodes goes to its others in equal parts: the matrix
-/// keeps its sum.
+/// keeps its sum. That of a cell which has no others is left to its heirs.
 void FeModel::hand_over(std::span<const std::int32_t> nodes, Eigen::MatrixXd& nodal) const {
   const double total = nodal.sum();
   std::vector<Eigen::Index> others;
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     const Eigen::Index at = static_cast<Eigen::Index>(a);
-    if (!std::ranges::binary_search(massless_, nodes[a] * mesh_.dim)) {
+    if (!is_bare(nodes[a])) {
       others.push_back(at);
       continue;
     }
@@ -56,53 +104,110 @@ void FeModel::hand_over(std::span<const std::int32_t> nodes, Eigen::MatrixXd& no
   for (const Eigen::Index at : others) nodal(at, at) += each;
 }
 
-/// Of a linear bar, from differences of displacements, as its whole force: what is far smaller than
-/// a rounding of F, which is about 1, counts too.
-void FeModel::spring_layer(std::span<const double> q, LayerResponse& out) {
-  const SparseMatrix& stiffness = linear_stiffness();
-  const Eigen::Index size = static_cast<Eigen::Index>(massless_.size());
-  out.force.setZero(size);
-  out.tangent.setZero(size, size);
-  for (Eigen::Index row = 0; row < size; ++row) {
+/// Calls `take` with every heir of a cell wholly in the layer and the mass [kg] that it takes.
+template <class Take>
+void FeModel::inherit(const Take& take) const {
+  for (const auto& [cell, heirs] : heirs_) {
+    const double mass = nodal_mass(index(cell.first), cell.second).sum();
+    for (const std::int32_t heir : heirs) take(heir, mass / static_cast<double>(heirs.size()));
+  }
+}
+
+void FeModel::inherit(Vector& lumped) const {
+  const int dim = mesh_.dim;
+  inherit([&](std::int32_t heir, double mass) { lumped.segment(heir * dim, dim).array() += mass; });
+}
+
+void FeModel::inherit(SparseMatrix& mass) const {
+  inherit([&](std::int32_t heir, double part) {
+    for (int i = 0; i < mesh_.dim; ++i)
+      mass.coeffRef(heir * mesh_.dim + i, heir * mesh_.dim + i) += part;
+  });
+}
+
+/// Zeros where the layer's tangent has entries, and where its cells' matrices go.
+void FeModel::find_layer_pattern(LayerResponse& out) const {
+  const int size = static_cast<int>(massless_.size()), dim = mesh_.dim;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& [block, cell] : layer_cells_) {
+    for (const std::int32_t a : nodes_of(mesh_.blocks[index(block)], cell)) {
+      for (const std::int32_t b : nodes_of(mesh_.blocks[index(block)], cell)) {
+        for (int k = 0; k < dim * dim; ++k) {
+          const int row = layer_place(a * dim + k / dim), column = layer_place(b * dim + k % dim);
+          if (row >= 0 && column >= 0) entries.emplace_back(row, column, 0.0);
+        }
+      }
+    }
+  }
+  out.tangent.resize(size, size);
+  out.tangent.setFromTriplets(entries.begin(), entries.end());
+}
+
+/// Rows of the stiffness of a linear model that belong to its layer.
+void FeModel::find_layer_rows(std::span<const double> q, std::span<const double> history) {
+  const int dim = mesh_.dim;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& [block, cell] : layer_cells_) {
+    const bool admissible = respond(block, cell, q, history);
+    ABUT_ASSERT(admissible);
+    const std::span<const std::int32_t> own = nodes_of(mesh_.blocks[index(block)], cell);
+    turn(own, nullptr, &local_.tangent);
+    for (int a = 0; a < static_cast<int>(local_.tangent.rows()); ++a) {
+      const int row = layer_place(own[index(a / dim)] * dim + a % dim);
+      for (int b = 0; row >= 0 && b < static_cast<int>(local_.tangent.cols()); ++b)
+        entries.emplace_back(row, own[index(b / dim)] * dim + b % dim, local_.tangent(a, b));
+    }
+  }
+  layer_rows_.resize(static_cast<Eigen::Index>(massless_.size()), dofs());
+  layer_rows_.setFromTriplets(entries.begin(), entries.end());
+}
+
+/// Forces from differences of displacements: a translation makes none, and in one dimension what is
+/// far smaller than a rounding of F, which is about 1, counts too.
+void FeModel::linear_layer(std::span<const double> q, Want want, LayerResponse& out) {
+  if (layer_rows_.size() == 0) find_layer_rows(q, {});
+  const int dim = mesh_.dim;
+  const bool translates = frames_.empty() && !round();
+  out.force.setZero(static_cast<Eigen::Index>(massless_.size()));
+  for (Eigen::Index row = 0; row < layer_rows_.rows(); ++row) {
     const int dof = massless_[index(row)];
-    for (SparseMatrix::InnerIterator at(stiffness, dof); at; ++at) {
-      const int other = static_cast<int>(at.row());
-      if (other != dof) out.force(row) += at.value() * (q[index(other)] - q[index(dof)]);
-      const auto place = std::ranges::lower_bound(massless_, other);
-      if (place != massless_.end() && *place == other)
-        out.tangent(row, place - massless_.begin()) = at.value();
+    for (LayerRows::InnerIterator at(layer_rows_, row); at; ++at) {
+      const int other = static_cast<int>(at.col());
+      const double here = translates ? q[index(dof - dof % dim + other % dim)] : 0.0;
+      out.force(row) += at.value() * (q[index(other)] - here);
+    }
+  }
+  if (want == Want::force) return;
+  for (Eigen::Index row = 0; row < layer_rows_.rows(); ++row) {
+    for (LayerRows::InnerIterator at(layer_rows_, row); at; ++at) {
+      const int column = layer_place(static_cast<int>(at.col()));
+      if (column >= 0) out.tangent.coeffRef(row, column) = at.value();
     }
   }
 }
 
-bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> history,
+bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> history, Want want,
                              LayerResponse& out) {
-  if (is_linear() && mesh_.dim == 1) {
-    spring_layer(q, out);
+  if (out.tangent.size() == 0) find_layer_pattern(out);
+  if (is_linear()) {
+    linear_layer(q, want, out);
     return true;
   }
-  const int dim = mesh_.dim, size = static_cast<int>(massless_.size());
-  const auto place = [this](int dof) {
-    const auto at = std::ranges::lower_bound(massless_, dof);
-    return at != massless_.end() && *at == dof ? static_cast<int>(at - massless_.begin()) : -1;
-  };
-  out.force.setZero(size);
-  out.tangent.setZero(size, size);
+  const int dim = mesh_.dim;
+  out.force.setZero(static_cast<Eigen::Index>(massless_.size()));
+  for (Eigen::Index k = 0; k < out.tangent.nonZeros(); ++k) out.tangent.valuePtr()[k] = 0.0;
   for (const auto& [block, cell] : layer_cells_) {
     if (!respond(block, cell, q, history)) return false;
-    const CellBlock& cells = mesh_.blocks[index(block)];
-    const int n = cells.element->nodes;
-    const std::span own = std::span(cells.nodes).subspan(index(cell * n), index(n));
+    const std::span<const std::int32_t> own = nodes_of(mesh_.blocks[index(block)], cell);
     turn(own, &local_.force, &local_.tangent);
-    for (int a = 0; a < n; ++a) {
-      const int row = place(own[index(a)] * dim);
+    for (int a = 0; a < static_cast<int>(local_.force.size()); ++a) {
+      const int row = layer_place(own[index(a / dim)] * dim + a % dim);
       if (row < 0) continue;
-      out.force.segment(row, dim) += local_.force.segment(a * dim, dim);
-      for (int b = 0; b < n; ++b) {
-        const int column = place(own[index(b)] * dim);
-        if (column >= 0)
-          out.tangent.block(row, column, dim, dim) +=
-              local_.tangent.block(a * dim, b * dim, dim, dim);
+      out.force(row) += local_.force(a);
+      if (want == Want::force) continue;
+      for (int b = 0; b < static_cast<int>(local_.force.size()); ++b) {
+        const int column = layer_place(own[index(b / dim)] * dim + b % dim);
+        if (column >= 0) out.tangent.coeffRef(row, column) += local_.tangent(a, b);
       }
     }
   }

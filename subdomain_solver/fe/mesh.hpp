@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "base/index.hpp"
 #include "subdomain_solver/fe/element.hpp"
 
 namespace abut {
@@ -17,6 +19,12 @@ struct CellBlock {
 
   int count() const;
 };
+
+/// Nodes of one cell.
+inline std::span<const std::int32_t> nodes_of(const CellBlock& cells, int cell) {
+  const std::size_t n = index(cells.element->nodes);
+  return std::span(cells.nodes).subspan(index(cell) * n, n);
+}
 
 /// One facet of one cell.
 struct Facet {

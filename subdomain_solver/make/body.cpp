@@ -183,6 +183,7 @@ std::unique_ptr<Interior> build(const Document& document, const std::string& pat
     return make_modal(spec, place);
   if (std::holds_alternative<RigidModelSpec>(spec.model))
     return make_rigid(spec, place);
+  if (std::holds_alternative<RigidToolSpec>(spec.model)) return make_tool(spec, place);
   if (spec.is_solid()) return make_solid(spec, place);
   check_points(spec, place);
   std::vector<BarInterior::End> ports = ports_of(spec, place);

@@ -28,6 +28,13 @@ void SolidShapeSpec::fields(Fields& f) {
   f.word("plane", plane, {"strain", "stress", "axisymmetric"},
          "kinematics in two dimensions; axisymmetric: x is the radius, y the axis");
   f.optional("thickness", thickness, "m", "thickness in plane strain and stress", positive);
+  f.optional("map", map, "m",
+             "places of the mesh's nodes, one expression in x, y, z per dimension: rounds, tapers "
+             "or refines a part before it is placed, without stress");
+  f.check(map.empty() || map.size() == index(dimension), "map",
+          fmt::format("has {} expressions", map.size()),
+          fmt::format("Give {} expressions, one per dimension.", dimension));
+  f.idle(dimension == 1, "map", "it is for bodies in two and three dimensions");
   const bool bar = std::holds_alternative<BarMeshSpec>(mesh);
   const bool flat =
       std::holds_alternative<RectangleSpec>(mesh) || std::holds_alternative<DiskSpec>(mesh);
@@ -86,6 +93,24 @@ void RigidModelSpec::fields(Fields& f) {
           "axisymmetric does not fit a rigid body, which turns about its centre",
           "Mesh the whole body in space, or leave plane out.");
   f.idle(true, "plane", "a rigid body has no stress");
+}
+
+void RigidToolSpec::fields(Fields& f) {
+  SolidShapeSpec::fields(f);
+  f.optional("way", way, "m",
+             "displacement of the tool, one expression in t per dimension; it stands without");
+  f.optional("step", step, "s",
+             "time between the points at which its way is told; default the "
+             "window",
+             positive);
+  f.check(dimension > 1, "dimension", "is 1, but a tool has a surface",
+          "Use rigid_wall for bars, or give dimension 2 or 3.");
+  f.check(way.empty() || way.size() == index(dimension), "way",
+          fmt::format("has {} expressions", way.size()),
+          fmt::format("Give {} expressions, one per dimension.", dimension));
+  f.idle(true, "thickness", "a rigid tool has no mass");
+  f.idle(plane != Plane::axisymmetric, "plane", "a rigid tool has no stress");
+  f.idle(way.empty(), "step", "a tool that stands has no way to tell");
 }
 
 void PairedBarSpec::fields(Fields& f) {
@@ -177,8 +202,9 @@ void BodySpec::fields(Fields& f) {
   f.defaulted("equations", equations, "solution of the equations of an implicit or static solid");
   check_dimensions(f);
   idle_keys(f);
-  if (is_solid()) check_solid(f);
-  const bool wall = std::holds_alternative<RigidWallSpec>(model);
+  const bool only_wall = std::holds_alternative<RigidWallSpec>(model);
+  const bool wall = only_wall || std::holds_alternative<RigidToolSpec>(model);
+  if (is_solid() && !wall) check_solid(f);
   const bool pair = std::holds_alternative<BarPairSpec>(model);
   const bool rigid = std::holds_alternative<RigidModelSpec>(model);
   if (rigid) check_rigid(f);
@@ -199,7 +225,7 @@ void BodySpec::fields(Fields& f) {
           "Use newmark: {step: ...} or another integrator of bodies that deform.");
   f.check(!pair || ports.empty(), "ports", "do not belong to a bar_pair",
           "Leave ports out: the pair has left_tip and right_tip.");
-  f.check(!wall || ports.size() == 1, "model", "rigid_wall needs exactly one port",
+  f.check(!only_wall || ports.size() == 1, "model", "rigid_wall needs exactly one port",
           "Add ports: {face: {side: left}}, where the side tells to which side the wall faces.");
 }
 

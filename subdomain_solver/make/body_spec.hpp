@@ -36,6 +36,7 @@ struct SolidShapeSpec {
       mesh;
   Plane plane = Plane::strain;
   double thickness = 1.0;  // [m]
+  std::vector<std::string> map;  // [m] where nodes of the mesh go; empty: they stay
   void fields(Fields& f);
   double area() const;  // [m^2] cross section of a bar; 1 of other meshes
 };
@@ -57,6 +58,13 @@ struct ModalModelSpec : FiniteElementsSpec {
 };
 struct RigidModelSpec : SolidShapeSpec {
   static constexpr std::string_view name = "rigid";
+  void fields(Fields& f);
+};
+/// A shape that goes where it is told.
+struct RigidToolSpec : SolidShapeSpec {
+  static constexpr std::string_view name = "rigid_tool";
+  std::vector<std::string> way;  // [m] one expression per dimension; empty: it stands
+  std::optional<double> step;    // [s]; none: windows
   void fields(Fields& f);
 };
 struct RigidWallSpec {
@@ -125,7 +133,9 @@ struct BodySpec {
       std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec, GeneralizedAlphaSpec,
                    QuasiStaticSpec, RigidMotionSpec, BackwardEulerSpec>;
 
-  std::variant<FeModelSpec, ModalModelSpec, RigidModelSpec, RigidWallSpec, BarPairSpec> model;
+  std::variant<FeModelSpec, ModalModelSpec, RigidModelSpec, RigidToolSpec, RigidWallSpec,
+               BarPairSpec>
+      model;
   std::optional<MaterialSpec> material;
   std::optional<Integrator> integrator;
   std::variant<MasslessSpec, KickSpec, MassiveSpec> contact_layer;

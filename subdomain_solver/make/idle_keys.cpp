@@ -28,20 +28,22 @@ void BodySpec::idle_keys(Fields& f) const {
 }
 
 void BodySpec::idle_of_walls_and_pairs(Fields& f) const {
-  const bool wall = std::holds_alternative<RigidWallSpec>(model);
+  const bool tool = std::holds_alternative<RigidToolSpec>(model);
+  const bool wall = tool || std::holds_alternative<RigidWallSpec>(model);
   const bool pair = std::holds_alternative<BarPairSpec>(model);
-  const char* of_wall = "a rigid_wall has nothing but a place and a port";
+  const char* of_wall = tool ? "a rigid_tool has nothing but a shape, a way and ports"
+                             : "a rigid_wall has nothing but a place and a port";
   const char* of_pair = "a bar_pair has bars of its own, free, at their own places";
   all_idle(f, wall,
            {"material", "integrator", "initial.velocity", "initial.displacement_field",
             "initial.velocity_field"},
            of_wall);
   for (const auto& [name, port] : ports)
-    f.idle(wall, "ports." + name + ".tied", "a rigid_wall has no node whose mass could be shared");
+    f.idle(wall, "ports." + name + ".tied", "nothing here has a node whose mass could be shared");
   all_idle(f, pair, {"initial"}, of_pair);
   for (const char* key :
        {"contact_layer", "supports", "body_force", "points", "constraints", "loads", "equations"}) {
-    f.idle(wall, key, of_wall);
+    f.idle(wall && !(tool && key == std::string("points")), key, of_wall);
     f.idle(pair, key, of_pair);
   }
   f.idle(pair, "integrator.central_difference.above_limit", "it is for solids");
@@ -54,6 +56,7 @@ void BodySpec::idle_of_walls_and_pairs(Fields& f) const {
 }
 
 void BodySpec::idle_of_bars(Fields& f) const {
+  if (std::holds_alternative<RigidToolSpec>(model)) return;
   const bool solid = is_solid();
   const bool flat = shape() != nullptr && shape()->dimension > 1;
   const bool modal = std::holds_alternative<ModalModelSpec>(model);

@@ -13,6 +13,7 @@ namespace abut {
 std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place);
 std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place);
 std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Place& place);
+std::unique_ptr<Interior> make_tool(const BodySpec& spec, const Place& place);
 std::unique_ptr<Interior> make_pair(const BodySpec& spec, const Place& place);
 
 }  // namespace abut

@@ -1,5 +1,7 @@
 #include "subdomain_solver/make/mesh.hpp"
 
+#include "subdomain_solver/make/expression.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -133,6 +135,19 @@ double size_of(const Mesh& mesh) {
   return size;
 }
 
+void map_nodes(const SolidShapeSpec& spec, const Place& place, const std::string& model,
+               Mesh& mesh) {
+  const std::size_t dim = index(mesh.dim);
+  std::vector<std::function<double(const std::array<double, 3>&, double)>> formulas;
+  for (std::size_t i = 0; i < spec.map.size(); ++i)
+    formulas.push_back(expression(spec.map[i], place.where(fmt::format("{}.map[{}]", model, i))));
+  for (std::size_t k = 0; !formulas.empty() && k < mesh.points.size(); k += dim) {
+    std::array<double, 3> at{};
+    std::copy_n(mesh.points.begin() + static_cast<std::ptrdiff_t>(k), dim, at.begin());
+    for (std::size_t i = 0; i < dim; ++i) mesh.points[k + i] = formulas[i](at, 0.0);
+  }
+}
+
 }  // namespace
 
 void name_points(const BodySpec& spec, const Place& place, Mesh& mesh) {
@@ -174,6 +189,7 @@ std::string on_file(const SolidShapeSpec& spec) {
 Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,
                const std::string& model) {
   Mesh mesh = std::visit(MeshMaker{place, model}, spec.mesh);
+  map_nodes(spec, place, model, mesh);
   check_mesh(mesh, place.where(model + ".mesh"));
   if (mesh.dim != spec.dimension) {
     throw InputError(fmt::format("is {}, but the mesh has {} dimensions", spec.dimension, mesh.dim),

@@ -1,5 +1,7 @@
 #include "subdomain_solver/make/scheme.hpp"
 
+#include "subdomain_solver/make/scene_contact.hpp"
+
 #include <cmath>
 #include <limits>
 
@@ -97,7 +99,8 @@ std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Pla
   for (const auto& [name, port] : spec.ports) {
     named(place, "ports." + name + ".side", [&] { return mesh.nodes_of(port.side); });
     const int end = mesh.dim == 1 ? spec.end_of(port.side) : -1;  // by a point's name too
-    ports.push_back({name, end < 0 ? port.side : end == 0 ? "left" : "right", port.tied});
+    const bool touched = mesh.dim == 1 ? !port.tied : touches(place.document, place.name(), name);
+    ports.push_back({name, end < 0 ? port.side : end == 0 ? "left" : "right", port.tied, touched});
   }
   return ports;
 }

@@ -18,21 +18,23 @@ namespace abut {
 
 namespace {
 
-/// Nodes of the contact layer: in one dimension the ends at which ports may touch. Ends that are
-/// held touch nothing, those of tied ports keep their mass.
+/// Nodes of the contact layer: those at which ports may touch. Nodes that are held wholly keep
+/// their mass, and so do node sets: nothing touches them.
 std::vector<std::int32_t> layer_nodes(const FeModel& model, const BodySpec& spec,
                                       const std::vector<SolidInterior::PortNodes>& ports,
                                       const std::vector<Prescribed>& supports) {
   std::vector<std::int32_t> nodes;
   const Mesh& mesh = model.mesh();
-  if (mesh.dim != 1 || std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return nodes;
+  if (std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return nodes;
+  std::vector<int> held(index(mesh.node_count()), 0);
+  for (const Prescribed& p : supports) ++held[index(p.dof / mesh.dim)];
   for (const SolidInterior::PortNodes& port : ports) {
-    if (port.tied || !mesh.sides.contains(port.side)) continue;
-    const std::int32_t node = mesh.nodes_of(port.side).front();
-    const bool held =
-        std::ranges::any_of(supports, [node](const Prescribed& p) { return p.dof == node; });
-    if (!held && std::ranges::find(nodes, node) == nodes.end()) nodes.push_back(node);
+    if (!port.touched || !mesh.sides.contains(port.side)) continue;
+    for (const std::int32_t node : mesh.nodes_of(port.side))
+      if (held[index(node)] < mesh.dim) nodes.push_back(node);
   }
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
 }
 
@@ -59,7 +61,14 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
                      place.where("model.fe.threads"), "Leave threads out.");
   }
   const std::vector<std::int32_t> layer = layer_nodes(model, spec, ports, constraints.supports);
-  if (!layer.empty()) named(place, "model.fe.mesh", [&] { model.make_massless(layer); return 0; });
+  std::vector<int> held;  // coordinates, ascending
+  for (const Prescribed& p : constraints.supports) held.push_back(p.dof);
+  if (!layer.empty()) {
+    named(place, "model.fe.mesh", [&] {
+      model.make_massless(layer, held);
+      return 0;
+    });
+  }
   check_statics(spec, place, model, constraints.supports);
   parts.map = std::make_unique<IdentityMap>();
   parts.problem = std::make_unique<Problem>();

@@ -6,6 +6,15 @@
 
 namespace abut {
 
+/// How the coordinates that contact may press on give way.
+class Compliance {
+ public:
+  virtual ~Compliance() = default;
+  /// [m/N] (contact's coordinates) displacements by a unit force on the k-th of them; good until
+  /// the step's end. Null: there is no answer.
+  virtual const Vector* column(int k) = 0;
+};
+
 /// What may press on some coordinates of a body at the end of a step. Every scheme is affine in
 /// such forces, x = free + compliance * force (the port line, [M.86]); who owns the geometry solves
 /// for them.
@@ -15,9 +24,8 @@ class Contact {
   /// The coordinates that may be pressed, ascending.
   virtual const std::vector<int>& coordinates() const = 0;
   /// The forces [N] (coordinates) at a time, where the coordinates [m] would lie at `free` without
-  /// them and give way by `compliance` [m/N]; good until the next call.
-  virtual const Vector& solve(double time, const Vector& free,
-                              const Eigen::MatrixXd& compliance) = 0;
+  /// them and give way by `give`; good until the next call. Null: none were found.
+  virtual const Vector* solve(double time, const Vector& free, Compliance& give) = 0;
 };
 
 }  // namespace abut

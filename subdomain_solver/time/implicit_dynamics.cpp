@@ -6,31 +6,9 @@
 
 #include "base/assert.hpp"
 #include "base/index.hpp"
-#include "subdomain_solver/time/contact.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
-
-namespace {
-
-/// Of the balance and contact, before a step fails.
-constexpr int most_turns = 50;
-
-/// Of a change of contact forces that is taken.
-constexpr double smallest_factor = 0.02;
-
-}  // namespace
-
-/// Aitken's factor, from the third turn on: where a material begins to yield, factors of either
-/// side would lead to and fro.
-void ImplicitDynamics::Pressed::relax(int turn) {
-  if (turn == 0) factor = 1.0;
-  if (turn < 2) return;
-  const double between = (change - last_change).squaredNorm();
-  if (between == 0.0) return;
-  factor *= std::abs(last_change.dot(last_change - change)) / between;
-  factor = std::clamp(factor, smallest_factor, 1.0);
-}
 
 /// Balance of momentum at the end of a step, with the free accelerations as unknowns.
 class ImplicitDynamics::Balance final : public Equations {
@@ -38,7 +16,6 @@ class ImplicitDynamics::Balance final : public Equations {
   Balance(ImplicitDynamics& owner, const Motion& motion, double time, double dt)
       : o_(owner),
         b_(owner.buffers_),
-        p_(owner.pressed_),
         w_(owner.options_.weights),
         motion_(motion),
         end_(time + dt),
@@ -49,6 +26,8 @@ class ImplicitDynamics::Balance final : public Equations {
     b_.a = a;
     for (const Prescribed& p : o_.problem_.supports)
       b_.a(p.dof) = (p.value(end_) - b_.q_start(p.dof)) / (w_.beta * dt * dt);
+    // Factors of another state would leave their rounding in contact's turns.
+    if (!o_.problem_.model->is_linear()) o_.factored_dt_ = 0.0;
     o_.times_mass(a, b_.inertia);
     b_.past = w_.alpha_m * b_.inertia;
     if (!w_.is_newmark()) {
@@ -71,10 +50,7 @@ class ImplicitDynamics::Balance final : public Equations {
     const std::span<const double> q = span_of(b_.q);
     if (!model.evaluate(q, motion_.history, Model::Want::force, b_.response)) return false;
     b_.external = o_.problem_.external_force(end_, q);
-    if (const Contact* contact = o_.problem_.contact) {
-      for (std::size_t k = 0; k < contact->coordinates().size(); ++k)
-        b_.external(contact->coordinates()[k]) += p_.force(static_cast<Eigen::Index>(k));
-    }
+    o_.contact_.add_to(b_.external);
     o_.times_mass(b_.a, b_.inertia);
     b_.inertia *= 1.0 - w_.alpha_m;
     b_.inner = (1.0 - w_.alpha_f) * b_.response.force;
@@ -109,27 +85,15 @@ class ImplicitDynamics::Balance final : public Equations {
     o_.factored_dt_ = 0.0;
     if (!o_.solver_->factor(o_.matrix_)) return false;
     o_.factored_dt_ = dt_;
-    p_.of_step = 0.0;
+    o_.contact_.forget();
     return true;
   }
 
-  /// Contact forces for where the balance without change of them has led, and the accelerations x
-  /// that they make by the present factors. False: there are no factors.
+  /// Contact forces for where the balance without change of them has led. False: there are none.
   [[nodiscard]] bool press(Vector& x, int turn, double& change) {
-    Contact& contact = *o_.problem_.contact;
     if (o_.factored_dt_ != dt_ && !factor()) return false;
-    if (p_.of_step != dt_ && !find_columns()) return false;
-    const Eigen::Index n = p_.force.size();
-    for (Eigen::Index k = 0; k < n; ++k) p_.free(k) = b_.q(contact.coordinates()[index(k)]);
-    p_.free.noalias() -= p_.compliance * p_.force;
-    const Vector& force = contact.solve(end_, p_.free, p_.compliance);
-    p_.last_change.swap(p_.change);
-    p_.change = force - p_.force;
-    change = p_.change.norm();
-    p_.relax(turn);
-    x.noalias() += p_.columns * (p_.factor * p_.change);
-    p_.force += p_.factor * p_.change;
-    return true;
+    o_.contact_.weigh(1.0 - w_.alpha_f, w_.beta * dt_ * dt_);
+    return o_.contact_.press(end_, b_.q, turn, x, change);
   }
 
   double smallest_step(const Vector& x) const override {
@@ -154,25 +118,6 @@ class ImplicitDynamics::Balance final : public Equations {
   }
 
  private:
-  /// Accelerations by unit contact forces, and the displacements among them.
-  [[nodiscard]] bool find_columns() {
-    const std::vector<int>& touched = p_.touched;
-    const Eigen::Index n = static_cast<Eigen::Index>(touched.size());
-    p_.columns.resize(o_.free_.count(), n);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      p_.unit.setZero(o_.free_.count());
-      p_.unit(o_.free_.place(touched[index(k)])) = 1.0 - w_.alpha_f;
-      if (!o_.solver_->solve(p_.unit, p_.column)) return false;
-      p_.columns.col(k) = p_.column;
-    }
-    p_.compliance.resize(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      p_.compliance.row(i) =
-          w_.beta * dt_ * dt_ * p_.columns.row(o_.free_.place(touched[index(i)]));
-    p_.of_step = dt_;
-    return true;
-  }
-
   /// [J] of the step, by loads and supports: what inertia and internal force take. With other
   /// weights than Newmark's these take damping too, and accelerations lag by (alpha_f - alpha_m)
   /// dt, so free coordinates are worked on by the loads, and supports see the lag made good.
@@ -197,7 +142,6 @@ class ImplicitDynamics::Balance final : public Equations {
 
   ImplicitDynamics& o_;
   Buffers& b_;
-  Pressed& p_;
   const AlphaWeights& w_;
   const Motion& motion_;
   double end_, dt_;
@@ -210,7 +154,8 @@ ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& option
       solver_(std::move(solver)),
       free_(problem.model->dofs(), problem.supports),
       inertial_(problem.model->dofs(), problem.supports, problem.model->massless()),
-      layer_(problem) {
+      layer_(problem),
+      contact_(free_, *solver_) {
   mass_ = mass_matrix(*problem.model, options.mass);
   if (!layer_.empty()) of_mass_.answer.setZero(problem.model->dofs());
 }
@@ -300,29 +245,17 @@ std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
   return std::nullopt;
 }
 
-/// The balance and contact in turns: exact factors, as of linear models, need two. What the
-/// coordinates without mass bear at the begin is the first guess of what presses on them.
 NewtonReport ImplicitDynamics::solve(Balance& balance, const Motion& motion) {
-  Contact* contact = problem_.contact;
   Vector& x = balance.first_guess();
-  const Eigen::Index n =
-      contact != nullptr ? static_cast<Eigen::Index>(contact->coordinates().size()) : 0;
-  pressed_.force.resize(n);
-  pressed_.free.resize(n);
-  for (Eigen::Index k = 0; k < n; ++k)
-    pressed_.force(k) = motion.force[index(contact->coordinates()[index(k)])];
-  if (contact != nullptr && pressed_.touched != contact->coordinates()) {
-    pressed_.touched = contact->coordinates();
-    pressed_.of_step = 0.0;
-  }
+  contact_.begin(problem_.contact, motion.force);
   for (int turn = 0;; ++turn) {
     const NewtonReport report = solve_newton(balance, x, options_.newton, buffers_.newton);
     iterations_ += report.iterations;
-    if (!report.converged() || contact == nullptr) return report;
+    if (!report.converged() || problem_.contact == nullptr) return report;
     double change = 0.0;
     if (!balance.press(x, turn, change)) return {NewtonReport::End::singular};
     if (change <= options_.newton.tolerance * buffers_.scale) return report;
-    if (turn == most_turns)
+    if (turn == ContactTurns::most)
       return {NewtonReport::End::not_converged, turn, change / buffers_.scale};
   }
 }

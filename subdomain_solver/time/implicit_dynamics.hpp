@@ -5,6 +5,7 @@
 #include "subdomain_solver/solve/matrix_sum.hpp"
 #include "subdomain_solver/solve/newton.hpp"
 #include "subdomain_solver/time/alpha_weights.hpp"
+#include "subdomain_solver/time/contact_turns.hpp"
 #include "subdomain_solver/time/integrator.hpp"
 #include "subdomain_solver/time/massless_layer.hpp"
 
@@ -49,18 +50,6 @@ class ImplicitDynamics final : public Integrator {
   struct MassBuffers {  // of what is asked for between steps
     Vector force, acceleration, free, rest, answer;
   };
-  struct Pressed {             // by contact
-    std::vector<int> touched;  // its coordinates
-    Vector force, free;        // [N], [m] (contact)
-    Vector unit, column;       // (free)
-    Eigen::MatrixXd columns, compliance;
-    double of_step = 0.0;        // [s] that columns are for
-    Vector change, last_change;  // [N] (contact) that contact asked for, in this turn and before
-    double factor = 1.0;         // of the change that is taken
-
-    void relax(int turn);
-  };
-
   void times_mass(const Eigen::Ref<const Vector>& x, Vector& out) const;
   [[nodiscard]] bool solve_mass(const Vector& force, Vector& acceleration) const;
 
@@ -69,12 +58,12 @@ class ImplicitDynamics final : public Integrator {
   std::unique_ptr<LinearSolver> solver_;
   FreeCoordinates free_, inertial_;  // those among them that have mass
   MasslessLayer layer_;
+  ContactTurns contact_;
   SparseMatrix mass_;
   MatrixSum whole_;
   SparseMatrix matrix_;  // of the free coordinates
   double factored_dt_ = 0.0;
   Buffers buffers_;
-  Pressed pressed_;
   mutable MassBuffers of_mass_;
   mutable std::unique_ptr<LinearSolver> mass_solver_;  // of the free coordinates, when needed
 };

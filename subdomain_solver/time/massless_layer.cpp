@@ -24,8 +24,9 @@ Failed inadmissible(double time) { return failed_newton({NewtonReport::End::inad
 MasslessLayer::MasslessLayer(const Problem& problem)
     : problem_(problem), dofs_(problem.model->massless()) {
   if (dofs_.empty()) return;
-  const Eigen::Index own = static_cast<Eigen::Index>(dofs_.size()), all = problem.model->dofs();
-  unit_.setIdentity(own, own);
+  const Eigen::Index all = problem.model->dofs();
+  factors_ = make_direct_solver();
+  unit_.setZero(static_cast<Eigen::Index>(dofs_.size()));
   loads_.setZero(all);  // of jumps, the first of which may come late
   moved_.resize(index(all));
   whole_.force.setZero(all);
@@ -33,39 +34,74 @@ MasslessLayer::MasslessLayer(const Problem& problem)
 }
 
 bool MasslessLayer::respond(std::span<const double> q, std::span<const double> history) {
-  return problem_.model->evaluate_layer(q, history, response_);
+  const Model::Want want = factored_ ? Model::Want::force : Model::Want::tangent;
+  return problem_.model->evaluate_layer(q, history, want, response_);
 }
 
-/// Inverse of the layer's stiffness and its part that contact sees.
-void MasslessLayer::find_compliance() {
-  if (inverted_) return;
-  factors_.compute(response_.tangent);
-  inverse_ = factors_.solve(unit_);
-  inverted_ = problem_.model->is_linear();
+/// Factors of the layer's stiffness; columns of its inverse are to be found anew.
+bool MasslessLayer::factor() {
+  if (factored_) return true;
+  if (!factors_->factor(response_.tangent)) return false;
+  std::ranges::fill(known_, 0);
+  factored_ = problem_.model->is_linear();
+  return true;
 }
 
-/// Adds what contact presses to the step, where the step without it would lead.
-void MasslessLayer::press(double time, std::span<const double> q, Contact& contact) {
-  const std::vector<int>& touched = contact.coordinates();
-  const Eigen::Index n = static_cast<Eigen::Index>(touched.size());
-  place_.resize(touched.size());
-  for (std::size_t k = 0; k < touched.size(); ++k) {
-    const auto at = std::lower_bound(dofs_.begin(), dofs_.end(), touched[k]);
-    ABUT_ASSERT(at != dofs_.end() && *at == touched[k]);
-    place_[k] = static_cast<int>(at - dofs_.begin());
+const Vector* MasslessLayer::column(int k) {
+  Vector& column = columns_[index(k)];
+  if (known_[index(k)]) return &column;
+  column.setZero(static_cast<Eigen::Index>(place_.size()));
+  known_[index(k)] = 1;
+  const int place = place_[index(k)];
+  if (place < 0) return &column;
+  unit_(place) = 1.0;
+  const bool solved = factors_->solve(unit_, answer_);
+  unit_(place) = 0.0;
+  if (!solved) return nullptr;
+  for (std::size_t i = 0; i < place_.size(); ++i)
+    if (place_[i] >= 0) column(static_cast<Eigen::Index>(i)) = answer_(place_[i]);
+  return &column;
+}
+
+void MasslessLayer::find_places(const Contact& contact) {
+  if (touched_ == contact.coordinates()) return;
+  touched_ = contact.coordinates();
+  place_.resize(touched_.size());
+  for (std::size_t k = 0; k < touched_.size(); ++k) {
+    const auto at = std::ranges::lower_bound(dofs_, touched_[k]);
+    const bool mine = at != dofs_.end() && *at == touched_[k];
+    place_[k] = mine ? static_cast<int>(at - dofs_.begin()) : -1;
   }
-  give_.resize(n, n);
-  free_.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const int row = place_[index(i)];
-    for (Eigen::Index k = 0; k < n; ++k) give_(i, k) = inverse_(row, place_[index(k)]);
-    free_(i) = q[index(dofs_[index(row)])] + step_(row);
+  columns_.resize(std::max(columns_.size(), touched_.size()));
+  known_.assign(touched_.size(), 0);
+}
+
+/// Adds what contact presses to the step, where the step without it would lead. False: contact has
+/// no answer.
+bool MasslessLayer::press(double time, std::span<const double> q, Contact& contact) {
+  free_.resize(pressed_.size());
+  for (std::size_t i = 0; i < place_.size(); ++i) {
+    const double step = place_[i] >= 0 ? step_(place_[i]) : 0.0;
+    free_(static_cast<Eigen::Index>(i)) = q[index(touched_[i])] + step;
   }
-  free_.noalias() -= give_ * pressed_;
-  const Vector& force = contact.solve(time, free_, give_);
-  for (Eigen::Index k = 0; k < n; ++k)
-    step_.noalias() += inverse_.col(place_[index(k)]) * (force(k) - pressed_(k));
-  pressed_ = force;
+  for (int k = 0; k < static_cast<int>(pressed_.size()); ++k) {
+    if (pressed_(k) == 0.0) continue;
+    const Vector* give = column(k);
+    if (give == nullptr) return false;
+    free_.noalias() -= pressed_(k) * *give;
+  }
+  const Vector* force = contact.solve(time, free_, *this);
+  if (force == nullptr) return false;
+  rest_.setZero();
+  for (std::size_t k = 0; k < place_.size(); ++k) {
+    const Eigen::Index at = static_cast<Eigen::Index>(k);
+    if (place_[k] >= 0) rest_(place_[k]) = (*force)(at)-pressed_(at);
+  }
+  pressed_ = *force;
+  if (rest_.isZero(0.0)) return true;
+  if (!factors_->solve(rest_, answer_)) return false;
+  step_ += answer_;
+  return true;
 }
 
 /// By part of the step; returns the largest displacement that results.
@@ -88,7 +124,7 @@ double MasslessLayer::find_rest(const Vector& loads, bool pressed) {
   }
   if (!pressed) return response_.force.norm();
   for (std::size_t k = 0; k < place_.size(); ++k)
-    rest_(place_[k]) += pressed_(static_cast<Eigen::Index>(k));
+    if (place_[k] >= 0) rest_(place_[k]) += pressed_(static_cast<Eigen::Index>(k));
   return std::max(response_.force.norm(), pressed_.norm());
 }
 
@@ -122,17 +158,19 @@ bool MasslessLayer::walk(std::vector<double>& q, std::span<const double> history
 std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
                                             std::span<const double> history, const Vector& loads,
                                             Contact* contact) {
-  if (contact != nullptr)
+  if (contact != nullptr) {
     pressed_.setZero(static_cast<Eigen::Index>(contact->coordinates().size()));
+    find_places(*contact);
+  }
   if (!respond(q, history)) return inadmissible(time);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const double scale = find_rest(loads, contact != nullptr && iteration > 0);
     if (!rest_.allFinite()) return not_finite(time);
     if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, problem_.model->roundoff(q)))
       return std::nullopt;
-    find_compliance();
-    step_.noalias() = inverse_ * rest_;
-    if (contact != nullptr) press(time, q, *contact);
+    if (!factor() || !factors_->solve(rest_, step_) ||
+        (contact != nullptr && !press(time, q, *contact)))
+      return failed_newton({NewtonReport::End::singular}, time);
     if (!step_.allFinite()) return failed_newton({NewtonReport::End::singular}, time);
     if (problem_.model->is_linear()) {
       move(q, 1.0);
@@ -169,10 +207,12 @@ std::optional<Failed> MasslessLayer::jump(double time, Motion& motion, const Vec
 double MasslessLayer::compliance(std::span<const double> q, std::span<const double> history,
                                  int dof) {
   const auto at = std::lower_bound(dofs_.begin(), dofs_.end(), dof);
-  if (at == dofs_.end() || *at != dof || !respond(q, history)) return 0.0;
-  find_compliance();
+  if (at == dofs_.end() || *at != dof || !respond(q, history) || !factor()) return 0.0;
   const Eigen::Index place = at - dofs_.begin();
-  return inverse_(place, place);
+  unit_(place) = 1.0;
+  const bool solved = factors_->solve(unit_, answer_);
+  unit_(place) = 0.0;
+  return solved ? answer_(place) : 0.0;
 }
 
 }  // namespace abut

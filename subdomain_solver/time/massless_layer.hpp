@@ -1,18 +1,19 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include <Eigen/LU>
-
 #include "contract/outcome.hpp"
+#include "subdomain_solver/solve/linear_solver.hpp"
+#include "subdomain_solver/time/contact.hpp"
 #include "subdomain_solver/time/problem.hpp"
 
 namespace abut {
 
 /// The coordinates of a model that have no mass: wherever the others are, these lie where their
 /// forces balance [M.85], and what presses on them is solved for there [M.86].
-class MasslessLayer {
+class MasslessLayer final : private Compliance {
  public:
   /// The problem must outlive it.
   explicit MasslessLayer(const Problem& problem);
@@ -32,9 +33,11 @@ class MasslessLayer {
   double compliance(std::span<const double> q, std::span<const double> history, int dof);
 
  private:
+  const Vector* column(int k) override;
   [[nodiscard]] bool respond(std::span<const double> q, std::span<const double> history);
-  void find_compliance();
-  void press(double time, std::span<const double> q, Contact& contact);
+  [[nodiscard]] bool factor();
+  void find_places(const Contact& contact);
+  [[nodiscard]] bool press(double time, std::span<const double> q, Contact& contact);
   double find_rest(const Vector& loads, bool pressed);
   [[nodiscard]] bool walk(std::vector<double>& q, std::span<const double> history,
                           const Vector& loads, bool pressed);
@@ -43,14 +46,16 @@ class MasslessLayer {
   const Problem& problem_;
   std::vector<int> dofs_;
   LayerResponse response_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
-  Eigen::MatrixXd unit_, inverse_;     // 1; [m/N] of the tangent
-  bool inverted_ = false;              // for good: the model is linear
+  std::unique_ptr<LinearSolver> factors_;
+  bool factored_ = false;              // for good: the model is linear
   Vector step_, rest_;                 // [m], [N] (layer)
   double part_ = 0.0, largest_ = 0.0;  // of the step; [m] displacement that results
   Vector free_, pressed_;              // [m], [N] (contact)
-  Eigen::MatrixXd give_;               // [m/N] (contact)
-  std::vector<int> place_;             // of the contact's coordinates in the layer
+  std::vector<int> touched_;           // the contact's coordinates
+  std::vector<int> place_;             // of them in the layer; -1: prescribed
+  std::vector<Vector> columns_;        // [m/N] (contact) of the compliance
+  std::vector<char> known_;            // (contact) which of them
+  Vector unit_, answer_;               // (layer)
   std::vector<double> moved_;          // [m] (dofs) by a jump
   Vector loads_;                       // [N] (dofs) after it
   ModelResponse whole_;

@@ -28,6 +28,8 @@ class QuasiStatic::Balance final : public Equations {
       : o_(owner), b_(owner.buffers_), motion_(motion), time_(time) {
     b_.q = view(motion.q);
     for (const Prescribed& p : o_.problem_.supports) b_.q(p.dof) = p.value(time);
+    // Factors of another state would leave their rounding here.
+    if (!o_.problem_.model->is_linear()) o_.factored_ = false;
   }
 
   Vector& first_guess() {
@@ -56,27 +58,29 @@ class QuasiStatic::Balance final : public Equations {
     Model& model = *o_.problem_.model;
     const std::span<const double> q = span_of(b_.q);
     if (!model.evaluate(q, motion_.history, Model::Want::force, b_.response)) return false;
-    const Vector& external = o_.problem_.external_force(time_, q);
-    b_.sum = b_.response.force - external;
+    b_.external = o_.problem_.external_force(time_, q);
+    o_.contact_.add_to(b_.external);
+    b_.sum = b_.response.force - b_.external;
     o_.free_.pick(b_.sum, r);
-    scale = std::max({b_.response.force.norm(), external.norm(),
+    scale = std::max({b_.response.force.norm(), b_.external.norm(),
                       model.roundoff(q) / o_.options_.newton.tolerance});
+    b_.scale = scale;
     return true;
   }
 
   [[nodiscard]] bool correct(const Vector& r, Vector& dx) override {
-    Model& model = *o_.problem_.model;
-    if (!model.is_linear() || !o_.factored_) {
-      ModelResponse& here = b_.tangent;
-      const std::span<const double> q = span_of(b_.q);
-      if (!model.evaluate(q, motion_.history, Model::Want::tangent, here)) return false;
-      for (const std::unique_ptr<Load>& load : o_.problem_.loads)
-        load->add_tangent(time_, q, here.tangent);
-      if (!factor(here.tangent)) return false;
-    }
+    const bool kept = o_.problem_.model->is_linear() && o_.factored_;
+    if (!kept && !factor_here()) return false;
     if (!o_.solver_->solve(r, dx)) return false;
     dx = -dx;
     return true;
+  }
+
+  /// Contact forces for where the balance without change of them has led. False: there are none.
+  [[nodiscard]] bool press(Vector& x, int turn, double& change) {
+    if (!o_.factored_ && !factor_here()) return false;
+    o_.contact_.weigh(1.0, 1.0);
+    return o_.contact_.press(time_, b_.q, turn, x, change);
   }
 
   double smallest_step(const Vector& x) const override {
@@ -100,7 +104,17 @@ class QuasiStatic::Balance final : public Equations {
   bool factor(const SparseMatrix& tangent) {
     o_.free_.extract(tangent, o_.matrix_);
     o_.factored_ = o_.solver_->factor(o_.matrix_);
+    o_.contact_.forget();
     return o_.factored_;
+  }
+
+  [[nodiscard]] bool factor_here() {
+    ModelResponse& here = b_.tangent;
+    const std::span<const double> q = span_of(b_.q);
+    if (!o_.problem_.model->evaluate(q, motion_.history, Model::Want::tangent, here)) return false;
+    for (const std::unique_ptr<Load>& load : o_.problem_.loads)
+      load->add_tangent(time_, q, here.tangent);
+    return factor(here.tangent);
   }
 
   /// [J] that loads and supports do in the step: the integral [M.70] of the internal force along
@@ -168,24 +182,35 @@ QuasiStatic::QuasiStatic(const Problem& problem, const Options& options,
     : problem_(problem),
       options_(options),
       solver_(std::move(solver)),
-      free_(problem.model->dofs(), problem.supports) {}
+      free_(problem.model->dofs(), problem.supports),
+      contact_(free_, *solver_) {}
 
 std::optional<Failed> QuasiStatic::begin(Motion& motion, double time) {
   motion.history.resize(problem_.model->history_size(), 0.0);
   motion.a.assign(motion.q.size(), 0.0);
   motion.force.assign(motion.q.size(), 0.0);
-  const NewtonReport report = part(motion, time);
+  const NewtonReport report = part(motion, time, nullptr);
   if (!report.converged()) return failed_newton(report, time);
   return std::nullopt;
 }
 
-NewtonReport QuasiStatic::part(Motion& motion, double end) {
+NewtonReport QuasiStatic::part(Motion& motion, double end, Contact* contact) {
   Balance balance(*this, motion, end);
   if (!balance.finite()) return {.residual = std::numeric_limits<double>::infinity()};
   Vector& x = balance.first_guess();
   if (!balance.drag(x)) return {NewtonReport::End::singular};
-  const NewtonReport report = solve_newton(balance, x, options_.newton, buffers_.newton);
-  iterations_ += report.iterations;
+  contact_.begin(contact, motion.force);
+  NewtonReport report;
+  for (int turn = 0;; ++turn) {
+    report = solve_newton(balance, x, options_.newton, buffers_.newton);
+    iterations_ += report.iterations;
+    if (!report.converged() || contact == nullptr) break;
+    double change = 0.0;
+    if (!balance.press(x, turn, change)) return {NewtonReport::End::singular};
+    if (change <= options_.newton.tolerance * buffers_.scale) break;
+    if (turn == ContactTurns::most)
+      return {NewtonReport::End::not_converged, turn, change / buffers_.scale};
+  }
   if (report.converged() && !balance.finish(motion)) return {NewtonReport::End::inadmissible};
   return report;
 }
@@ -197,7 +222,7 @@ std::optional<Failed> QuasiStatic::step(Motion& motion, double time, double dt) 
   while (done < dt) {
     const bool last = done + length >= dt * (1.0 - 1.0e-12);
     const double end = last ? time + dt : time + done + length;
-    const NewtonReport report = part(motion, end);
+    const NewtonReport report = part(motion, end, problem_.contact);
     if (report.converged()) {
       done = last ? dt : done + length;
       if (report.iterations <= few_iterations) length *= 2.0;

@@ -2,6 +2,7 @@
 
 #include "subdomain_solver/solve/linear_solver.hpp"
 #include "subdomain_solver/solve/newton.hpp"
+#include "subdomain_solver/time/contact_turns.hpp"
 #include "subdomain_solver/time/integrator.hpp"
 
 namespace abut {
@@ -31,17 +32,19 @@ class QuasiStatic final : public Integrator {
   class Balance;
 
   struct Buffers {  // of one part of a step at a time
-    Vector q, x, dx, moved, between, sum, pull;
+    Vector q, x, dx, moved, between, sum, pull, external;
+    double scale = 0.0;  // [N] of the balance
     ModelResponse response, tangent, on_the_way;
     NewtonVectors newton;
   };
 
-  [[nodiscard]] NewtonReport part(Motion& motion, double end);
+  [[nodiscard]] NewtonReport part(Motion& motion, double end, Contact* contact);
 
   const Problem& problem_;
   Options options_;
   std::unique_ptr<LinearSolver> solver_;
   FreeCoordinates free_;
+  ContactTurns contact_;
   SparseMatrix matrix_;  // of the free coordinates
   bool factored_ = false;
   Buffers buffers_;

@@ -1,0 +1,104 @@
+#include "subdomain_solver/contact/contact_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/index.hpp"
+#include "surface/posed_surface.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Of the largest: smaller pressures are none.
+constexpr double least_share = 1.0e-9;
+
+struct Touch {
+  std::vector<double> pose, normals, weights;  // now; [m], [m^2]
+  std::vector<double> pressure;                // [Pa] (points)
+  double most = 0.0;
+};
+
+Touch touch_of(const TouchedSurface& s, std::span<const double> forces,
+               std::span<const double> places) {
+  Touch t;
+  const std::size_t dim = index(s.geometry->dim);
+  t.pose = s.geometry->points;
+  for (std::size_t v = 0; v < t.pose.size(); ++v) t.pose[v] += places[s.first + v];
+  const PosedSurface posed{s.geometry->dim, t.pose, s.geometry->facets, s.geometry->offsets};
+  nodal_normals(posed, t.normals);
+  tributary_weights(posed, t.weights);
+  for (std::size_t a = 0; a < s.nodes.size(); ++a) {
+    double inward = 0.0;
+    for (std::size_t i = 0; i < dim; ++i)
+      inward -= t.normals[a * dim + i] * forces[s.first + a * dim + i];
+    t.weights[a] *= dim == 2 ? s.thickness : 1.0;
+    t.pressure.push_back(t.weights[a] > 0.0 ? inward / t.weights[a] : 0.0);
+    t.most = std::max(t.most, t.pressure.back());
+  }
+  return t;
+}
+
+}  // namespace
+
+std::vector<std::string> touch_measure_names(const std::vector<TouchedSurface>& surfaces) {
+  std::vector<std::string> names;
+  for (const TouchedSurface& s : surfaces)
+    for (const char* what : {".contact.pressure_max", ".contact.area", ".contact.spread"})
+      names.push_back(s.name + what);
+  return names;
+}
+
+void touch_measures(const std::vector<TouchedSurface>& surfaces, std::span<const double> forces,
+                    std::span<const double> places, std::vector<double>& out) {
+  for (const TouchedSurface& s : surfaces) {
+    const Touch t = touch_of(s, forces, places);
+    const std::size_t dim = index(s.geometry->dim);
+    double area = 0.0, force = 0.0, square = 0.0;
+    std::vector<double> centre(dim, 0.0);
+    const auto each = [&](const auto& visit) {
+      for (std::size_t a = 0; a < t.pressure.size(); ++a)
+        if (t.pressure[a] > least_share * t.most) visit(a, t.pressure[a] * t.weights[a]);
+    };
+    each([&](std::size_t a, double part) {
+      area += t.weights[a];
+      force += part;
+      for (std::size_t i = 0; i < dim; ++i) centre[i] += part * t.pose[a * dim + i];
+    });
+    each([&](std::size_t a, double part) {
+      for (std::size_t i = 0; i < dim; ++i) {
+        const double away = t.pose[a * dim + i] - centre[i] / force;
+        square += part * away * away;
+      }
+    });
+    out.insert(out.end(), {t.most, area, force > 0.0 ? std::sqrt(square / force) : 0.0});
+  }
+}
+
+std::vector<FieldInfo> touch_fields() {
+  return {{"contact_pressure", FieldPlace::nodes, 1},
+          {"contact_gap", FieldPlace::nodes, 1},
+          {"contact_status", FieldPlace::nodes, 1}};
+}
+
+std::vector<FieldValues> touch_field_values(const std::vector<TouchedSurface>& surfaces,
+                                            const PortContact& contact, std::size_t nodes,
+                                            std::span<const double> forces,
+                                            std::span<const double> places) {
+  std::vector<FieldValues> out(3, FieldValues(nodes, 0.0));
+  for (const TouchedSurface& s : surfaces) {
+    const Touch t = touch_of(s, forces, places);
+    contact.see_gaps(s.port, [&](std::size_t point, double gap) {
+      out[1][index(s.nodes[point])] = gap;
+      out[2][index(s.nodes[point])] = 1.0;
+    });
+    for (std::size_t a = 0; a < t.pressure.size(); ++a) {
+      if (t.pressure[a] == 0.0) continue;
+      out[0][index(s.nodes[a])] = t.pressure[a];
+      if (t.pressure[a] > least_share * t.most) out[2][index(s.nodes[a])] = 2.0;
+    }
+  }
+  return out;
+}
+
+}  // namespace abut

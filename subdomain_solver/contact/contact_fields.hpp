@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "contract/field.hpp"
+#include "contract/port.hpp"
+#include "subdomain_solver/contact/port_contact.hpp"
+
+namespace abut {
+
+/// A port that is a surface, as pictures and measures see its contact.
+struct TouchedSurface {
+  std::string name;
+  std::size_t port = 0;
+  std::size_t first = 0;  // of its values among those of all ports
+  const PortGeometry* geometry = nullptr;
+  std::vector<std::int32_t> nodes;  // of the mesh, by point
+  double thickness = 1.0;           // [m] across the plane
+};
+
+/// What is told of every such port: contact.pressure_max [Pa], contact.area [m^2] where it is
+/// pressed, by the weights of its nodes; contact.spread [m], the root of the mean square distance
+/// of the pressure from its centre.
+std::vector<std::string> touch_measure_names(const std::vector<TouchedSurface>& surfaces);
+/// Their values, of forces [N] and displacements [m] of the ports (port values).
+void touch_measures(const std::vector<TouchedSurface>& surfaces, std::span<const double> forces,
+                    std::span<const double> places, std::vector<double>& out);
+
+/// At the nodes of the mesh: contact_pressure [Pa], contact_gap [m] of the side that finds contact
+/// (0 where it finds nothing near), contact_status (0 nothing near, 1 near, 2 pressed).
+std::vector<FieldInfo> touch_fields();
+std::vector<FieldValues> touch_field_values(const std::vector<TouchedSurface>& surfaces,
+                                            const PortContact& contact, std::size_t nodes,
+                                            std::span<const double> forces,
+                                            std::span<const double> places);
+
+}  // namespace abut

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "base/archive.hpp"
+#include "subdomain_solver/interior.hpp"
+#include "subdomain_solver/time/contact.hpp"
+
+namespace abut {
+
+/// What the ports of a solid meet. Forces are on the body, (port values) as those of PortMap [N].
+class PortContact : public Contact {
+ public:
+  /// What changes during a step beside the forces on ports.
+  virtual void state(Archive&) {}
+  /// Takes what is imposed over a window.
+  virtual void impose(const Window& window) = 0;
+  virtual bool acts() const = 0;                  // an obstacle is there in this window
+  virtual bool acts(std::size_t port) const = 0;  // before this port
+  virtual bool has(std::size_t port) const = 0;   // the port may meet obstacles
+  /// What presses at the window's begin goes on pressing, where the obstacle stays: to the forces
+  /// of partners `now`. `forces`: all that act at the end of the window before.
+  virtual void hold(const std::vector<double>& forces, std::vector<double>& now) const = 0;
+  /// The window's substep i is next, 0: its begin. `forces`: all that act now; `places`: [m] (port
+  /// values) displacements now.
+  virtual void aim(int i, const std::vector<double>& forces, const std::vector<double>& places) = 0;
+  /// Puts what was solved for last to the forces of partners; the substep is done.
+  virtual void add_to(std::vector<double>& forces) const = 0;
+  /// Appends the force on the points that a partner's obstacle lists [N].
+  virtual void react(std::size_t port, std::size_t partner, const std::vector<double>& forces,
+                     std::vector<double>& out) const = 0;
+  /// Calls `see` with the points of a port that have something near, and the gaps [m] there.
+  virtual void see_gaps(std::size_t, const std::function<void(std::size_t, double)>&) const {}
+  /// Whether an obstacle before the port may give way by a kernel.
+  virtual bool takes(std::size_t port, const PortKernel& kernel) const = 0;
+};
+
+}  // namespace abut

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "subdomain_solver/contact/port_contact.hpp"
+#include "subdomain_solver/contact/surface_obstacle.hpp"
+#include "subdomain_solver/fe/cell_kernel.hpp"
+#include "subdomain_solver/solve/unilateral_forces.hpp"
+
+namespace abut {
+
+/// Contact of a solid in two or three dimensions: its ports are surfaces of nodes without mass,
+/// each of which may meet several partners. One problem for all of them at the end of every
+/// substep [M.88]: rows at the end's geometry, which the forces decide, so rows and forces are
+/// found in turns.
+class SurfaceContact final : public PortContact {
+ public:
+  struct Surface {  // of a port
+    std::size_t port = 0;
+    std::size_t first = 0;  // of its values among those of all ports
+    const PortGeometry* geometry = nullptr;
+    std::vector<std::int32_t> nodes;     // of the mesh, by point
+    std::vector<const Matrix3*> frames;  // by point; null: the axes of space
+  };
+  /// `body`: its name, for people. Geometries and frames must outlive it.
+  SurfaceContact(std::vector<Surface> surfaces, const std::string& body);
+
+  void state(Archive& archive) override;
+  /// Throws RunError for what surfaces cannot take.
+  void impose(const Window& window) override;
+  bool acts() const override;
+  bool acts(std::size_t port) const override;
+  bool has(std::size_t port) const override;
+  void hold(const std::vector<double>& forces, std::vector<double>& now) const override;
+  void aim(int i, const std::vector<double>& forces, const std::vector<double>& places) override;
+  void add_to(std::vector<double>& forces) const override;
+  void react(std::size_t port, std::size_t partner, const std::vector<double>& forces,
+             std::vector<double>& out) const override;
+  bool takes(std::size_t port, const PortKernel& kernel) const override;
+  void see_gaps(std::size_t port,
+                const std::function<void(std::size_t, double)>& see) const override;
+
+  const std::vector<int>& coordinates() const override { return dofs_; }
+  const Vector* solve(double time, const Vector& free, Compliance& give) override;
+
+ private:
+  struct Own {  // a surface in its pose
+    Surface surface;
+    std::vector<int> at;        // (values) its coordinates among those of contact
+    std::vector<double> pose;   // [m] (points, dim)
+    std::vector<double> begin;  // [m] (points, dim) where the substep began
+    double travel = 0.0;        // [m] from there to the free pose, at most
+  };
+  struct Meeting {
+    std::unique_ptr<SurfaceObstacle> obstacle;
+    std::size_t own = 0;                   // of surfaces_
+    std::size_t pressed = 0, reacted = 0;  // where its forces begin in pressed_, reactions_
+    Eigen::Index row = 0, rows = 0;        // its part of the problem
+  };
+  struct Term {  // of a row
+    int coordinate;
+    double factor;
+  };
+
+  void meet(const Window& window);
+  void pose(const Vector& q);
+  void make_rows();
+  [[nodiscard]] bool find_problem(const Vector& free, Compliance& give);
+  void find_terms(const Own& own, const SurfaceRows& rows, int row);
+  void spread();
+  [[nodiscard]] bool move(const Vector& free, Compliance& give);
+  std::span<double> pressed(const Meeting& m);
+  std::span<double> reacted(const Meeting& m);
+
+  std::vector<Own> surfaces_;
+  std::string body_;
+  std::vector<int> dofs_;
+  std::vector<Meeting> meetings_;  // by port and partner
+  std::vector<double> pressed_;    // [N] (meetings, values of the port) on the body: state
+  std::vector<double> reactions_;  // [N] (meetings, values of the partner) on partners: state
+  int looks_ = 0;                  // at the geometry, at this time
+  double time_ = 0.0;              // [s] that was solved for last
+  // The problem of all rows:
+  std::vector<std::size_t> first_term_;  // (rows + 1)
+  std::vector<Term> terms_;
+  Eigen::MatrixXd compliance_;  // [m/N]
+  Vector gaps_, row_force_;     // [m] of the free pose; [N]
+  UnilateralBuffers buffers_;
+  Vector force_, last_, moved_;  // [N], [N], [m] (coordinates)
+};
+
+}  // namespace abut

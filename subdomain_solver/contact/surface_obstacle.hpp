@@ -1,0 +1,81 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "subdomain_solver/interior.hpp"
+#include "surface/boxes.hpp"
+#include "surface/mortar.hpp"
+
+namespace abut {
+
+/// A partner's surface before a port that is a surface: where it lies, how it gives way, and the
+/// rows that join the two [M.88].
+class SurfaceObstacle {
+ public:
+  /// `body`: for people.
+  SurfaceObstacle(std::size_t port, std::size_t partner, const PortGeometry& own,
+                  const Partner& met, std::string body);
+
+  std::size_t port() const { return port_; }
+  std::size_t partner() const { return partner_; }
+  std::size_t width() const { return met_->surface.points.size(); }
+
+  /// Takes what is imposed over a window, which must live until the next, as the partner. Throws
+  /// RunError for what a surface cannot take.
+  void impose(const BoundaryData& data, const Partner& met, const Substeps& grid);
+  /// It acts in this window.
+  bool acts() const { return motion_ != nullptr; }
+  bool yields() const { return acts() && met_->kernel.count() > 0; }
+  const std::vector<std::int32_t>& points() const { return motion_->points; }
+
+  /// The substep i is next. `reaction`: [N] (values) the force on the partner at the substep
+  /// before.
+  void aim(int i, std::span<const double> reaction);
+  /// Where it lies at a time of this substep without the substep's own reaction.
+  void place(double time);
+  /// Moves it from there by a reaction [N] (values).
+  void give_way(std::span<const double> reaction);
+  /// Rows for the port's present pose [m] (points, dim) and its own. What a long substep may lead
+  /// through each other is still seen: `travel` [m] is the port's way in it.
+  void join(std::span<const double> pose, double travel);
+
+  const SurfaceRows& rows() const { return rows_; }
+  /// [m] (points, dim) where it lies without the substep's own reaction.
+  const std::vector<double>& free() const { return free_; }
+  /// Adds the compliance [m/N] among the rows to a square of `a` that begins at `first`.
+  void add_compliance(Eigen::Index first, Eigen::MatrixXd& a);
+
+ private:
+  double compliance(std::size_t value, std::size_t force) const {
+    return give_[force * width() + value];
+  }
+  void find_travel(int i);
+  void recall(int level, double share);
+  void find_give(int level, double share);
+  const double* response(int level, int after, std::size_t force) const;
+
+  std::size_t port_, partner_;
+  const PortGeometry& own_;
+  const Partner* met_;
+  std::string body_;
+  MortarOptions options_;
+  double reach_ = 0.0, travel_ = 0.0;  // [m] of a substep of no length; own way in this one
+  const Waveform* motion_ = nullptr;
+  Substeps grid_;
+  // While it yields, of the window: its own levels (l), the substeps' levels (s).
+  std::vector<double> parts_;   // (l, s) of the reactions that its levels take
+  std::vector<double> later_;   // (l) of this substep's reaction, held to the window's end
+  std::vector<double> taken_;   // [N] (l, values) of earlier ones, beyond what d was found under
+  std::vector<double> memory_;  // [m] (values) of earlier reactions, at the substep's end
+  std::vector<double> give_;    // [m/N] (values, values) to this substep's reaction
+  std::vector<double> free_, pose_;     // [m] (points, dim)
+  std::vector<double> given_, before_;  // [m] (values) displacements
+  BoxTree tree_, own_tree_;
+  std::vector<FacetPair> pairs_;
+  MortarBuffers buffers_;
+  SurfaceRows rows_;
+  std::vector<double> answer_;  // [m/N] (values) of the surface to a row
+};
+
+}  // namespace abut

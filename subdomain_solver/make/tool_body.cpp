@@ -1,0 +1,37 @@
+#include "subdomain_solver/make/expression.hpp"
+#include "subdomain_solver/make/makers.hpp"
+#include "subdomain_solver/make/mesh.hpp"
+#include "subdomain_solver/make/scheme.hpp"
+#include "subdomain_solver/materials/linear_elastic.hpp"
+#include "subdomain_solver/rigid/rigid_tool.hpp"
+
+namespace abut {
+
+std::unique_ptr<Interior> make_tool(const BodySpec& spec, const Place& place) {
+  const RigidToolSpec& tool = std::get<RigidToolSpec>(spec.model);
+  Mesh mesh = make_mesh(tool, spec.initial.position, place, "model.rigid_tool");
+  name_points(spec, place, mesh);
+  const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
+  std::vector<RigidTool::Way> way;
+  for (int i = 0; i < mesh.dim; ++i) {
+    if (tool.way.empty()) {
+      way.push_back([](double) { return 0.0; });
+      continue;
+    }
+    const std::string key = "model.rigid_tool.way[" + std::to_string(i) + "]";
+    way.push_back([formula = expression(tool.way[index(i)], place.where(key))](double time) {
+      return formula({0.0, 0.0, 0.0}, time);
+    });
+  }
+  // A shape alone: nothing asks for its stiffness or its mass.
+  const std::string words =
+      (tool.way.empty() ? "rigid tool that stands" : "rigid tool on its way") + on_file(tool);
+  FeOptions options;
+  options.plane = tool.plane;
+  auto shape = std::make_unique<FeModel>(
+      std::move(mesh), std::make_unique<LinearElastic>(Moduli{1.0, 1.0}, 1.0), options);
+  return std::make_unique<RigidTool>(place.name(), std::move(shape), std::move(way),
+                                     tool.step.value_or(0.0), ports, words);
+}
+
+}  // namespace abut

@@ -1,0 +1,88 @@
+#include "subdomain_solver/port_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/index.hpp"
+#include "subdomain_solver/fe/loads.hpp"
+
+namespace abut {
+
+namespace {
+
+using Parts = std::vector<std::vector<int>>;
+
+/// A facet's parts with corners alone, in the same sense; nodes on edges follow the corners.
+const Parts& parts_of(int dim, std::size_t nodes) {
+  static const Parts segment = {{0, 1}}, bent = {{0, 2}, {2, 1}};
+  static const Parts triangle = {{0, 1, 2}}, quadrilateral = {{0, 1, 2, 3}};
+  static const Parts tri6 = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+  static const Parts quad8 = {{0, 4, 7}, {1, 5, 4}, {2, 6, 5}, {3, 7, 6}, {4, 5, 6, 7}};
+  if (dim == 2) return nodes == 2 ? segment : bent;
+  if (nodes == 3) return triangle;
+  if (nodes == 4) return quadrilateral;
+  return nodes == 6 ? tri6 : quad8;
+}
+
+void add_parts(int dim, const std::vector<std::int32_t>& places, PortGeometry& geometry) {
+  for (const std::vector<int>& part : parts_of(dim, places.size())) {
+    for (const int local : part) geometry.facets.push_back(places[index(local)]);
+    geometry.offsets.push_back(static_cast<std::int32_t>(geometry.facets.size()));
+  }
+}
+
+void normalise(std::vector<double>& normals, std::size_t dim) {
+  for (std::size_t k = 0; k < normals.size(); k += dim) {
+    double length = 0.0;
+    for (std::size_t i = 0; i < dim; ++i) length = std::hypot(length, normals[k + i]);
+    for (std::size_t i = 0; i < dim && length > 0.0; ++i) normals[k + i] /= length;
+  }
+}
+
+}  // namespace
+
+PortGeometry port_geometry(const FeModel& model, const std::string& name,
+                           const std::vector<std::int32_t>& nodes) {
+  const Mesh& mesh = model.mesh();
+  const std::size_t dim = index(mesh.dim);
+  PortGeometry geometry;
+  geometry.dim = mesh.dim;
+  for (std::int32_t node : nodes) {
+    const double* x = mesh.points.data() + index(node) * dim;
+    geometry.points.insert(geometry.points.end(), x, x + dim);
+  }
+  geometry.normals.assign(nodes.size() * dim, 0.0);
+  if (!mesh.sides.contains(name)) return geometry;
+  std::vector<double>& normals = geometry.normals;
+  if (dim > 1) geometry.offsets.push_back(0);
+  double area = 0.0;
+  std::vector<std::int32_t> places;
+  const SidePoints side = SidePoints::of(model, name);
+  for (const SidePoints::FacetPoints& facet : side.facets) {
+    places.clear();
+    for (std::size_t a = 0; a < facet.nodes.size(); ++a) {
+      const auto place = std::ranges::lower_bound(nodes, facet.nodes[a]) - nodes.begin();
+      places.push_back(static_cast<std::int32_t>(place));
+      for (const SidePoints::Point& point : facet.points) {
+        for (std::size_t i = 0; i < dim; ++i)
+          normals[index(place) * dim + i] +=
+              point.area * point.n[a] * point.normal(static_cast<Eigen::Index>(i));
+      }
+    }
+    if (dim > 1) add_parts(mesh.dim, places, geometry);
+    for (const SidePoints::Point& point : facet.points) area += point.area;
+  }
+  normalise(normals, dim);
+  if (dim == 1) {
+    const Facet& end = mesh.side(name).front();
+    const CellBlock& cells = mesh.blocks[index(end.block)];
+    const std::int32_t* cell = cells.nodes.data() + end.cell * cells.element->nodes;
+    geometry.spacing = mesh.points[index(cell[1])] - mesh.points[index(cell[0])];
+    return geometry;
+  }
+  const double facets = static_cast<double>(std::max<std::size_t>(1, side.facets.size()));
+  geometry.spacing = std::pow(area / facets, 1.0 / std::max(1.0, static_cast<double>(dim) - 1.0));
+  return geometry;
+}
+
+}  // namespace abut
