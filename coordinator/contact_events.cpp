@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "coordinator/coupling/nearness.hpp"
 #include "coordinator/coupling/transmission.hpp"
 
 namespace abut {
@@ -23,6 +24,9 @@ constexpr double notable_share = 1.0e-6;
 // The same: what is owed for it to be paid after an event. Between events only what is notable is
 // paid: to pay what the iteration leaves open would disturb more than it mends.
 constexpr double payable_share = 1.0e-13;
+// Ways that surfaces can come in a window: those nearer than this may meet, those farther than that
+// are free again.
+constexpr double near_windows = 1.5, far_windows = 4.0;
 
 bool has_shared_node(const Joint& joint, const Bodies& bodies) {
   return std::ranges::all_of(joint.sides, [&bodies](const Side& side) {
@@ -49,8 +53,18 @@ void ContactEvents::start() {
   }
 }
 
+/// Surfaces that may meet in the window are iterated, also where they do not: their bodies find
+/// out. They are free again when they would need several windows to meet.
+void ContactEvents::approach(Joint& joint, const TimeWindow& window) {
+  const double apart = distance(joint, bodies_), bound = closing_bound(joint, bodies_);
+  const double way = bound * window.length();
+  if (!joint.closed() && apart <= near_windows * way) return engage(joint, bound, window.begin);
+  if (joint.closed() && !joint.pressing() && apart > far_windows * way) joint.disengage();
+}
+
 void ContactEvents::begin(const TimeWindow& window) {
   for (Joint& joint : joints_) {
+    if (joint.surfaces) approach(joint, window);
     if (joint.decision != Decision::window_begin) continue;
     const Waveform& t0 = trace_of(bodies_, joint.sides[0]);
     const Waveform& t1 = trace_of(bodies_, joint.sides[1]);
@@ -79,6 +93,12 @@ std::optional<double> ContactEvents::engage_touching(const TimeWindow& window) {
   const double negligible = still() * bodies_.shortest_step();
   for (Joint& joint : joints_) {
     if (!joint.unilateral() || joint.closed()) continue;
+    if (joint.surfaces) {
+      if (boxes_apart(joint, bodies_)) continue;
+      engage(joint, closing_bound(joint, bodies_), window.begin);
+      first = std::min(first.value_or(window.end), window.end);  // again, as a whole
+      continue;
+    }
     const std::optional<Touch> touch = first_overlap(joint, bodies_, negligible);
     if (!touch) continue;
     engage(joint, touch->speed, window.begin);
@@ -105,7 +125,7 @@ std::optional<double> ContactEvents::first_event(const TimeWindow& window, doubl
   std::optional<double> first;
   const double notable = notable_share * energy;
   for (Joint& joint : joints_) {
-    if (!joint.deciding()) continue;
+    if (!joint.deciding() || joint.surfaces) continue;  // these need no cut
     history_.read(joint, bodies_);
     const double floor = least_force(joint);
     for (std::size_t k = 1; k < history_.size(); ++k) {
@@ -141,7 +161,7 @@ double ContactEvents::common_end(const TimeWindow& window, double time) const {
 bool ContactEvents::release_kicks(const TimeWindow& window) {
   bool released = false;
   for (Joint& joint : joints_) {
-    if (!joint.deciding()) continue;
+    if (!joint.deciding() || joint.surfaces) continue;
     history_.read(joint, bodies_);
     if (!history_.kicks() || history_.size() < 2) continue;
     const double floor = least_force(joint);
@@ -173,6 +193,10 @@ void ContactEvents::settle(const TimeWindow& window, double energy) {
   for (Joint& joint : joints_) {
     joint.impulse = 0.0;
     if (!joint.closed()) continue;
+    if (joint.surfaces) {
+      settle_surfaces(joint);
+      continue;
+    }
     if (!joint.unilateral()) {
       joint.force_scale = std::max(joint.force_scale, peak_force(joint, bodies_));
       continue;
@@ -184,6 +208,23 @@ void ContactEvents::settle(const TimeWindow& window, double energy) {
     pay(joint, energy);
     narrate(joint);
     disengage(joint, window);
+  }
+}
+
+/// Tells of pushes that begin and end: substeps decide about every point for themselves.
+void ContactEvents::settle_surfaces(Joint& joint) {
+  const Waveform& force = bodies_.reaction(joint.kinematic_side());
+  const int dim = bodies_.port(joint.sides[0]).geometry.dim;
+  joint.force_scale = std::max(joint.force_scale, peak_force(joint, bodies_));
+  for (std::size_t i = 1; i < force.size(); ++i) {
+    const bool presses = resultant(force, i, dim) > force_floor * joint.force_scale;
+    if (presses && !joint.pressing()) {
+      joint.press();
+      narrator_.closed(joint, force.time[i], joint.closing_speed);
+    } else if (!presses && joint.pressing()) {
+      joint.release();
+      narrator_.opened(joint, force.time[i - 1]);
+    }
   }
 }
 

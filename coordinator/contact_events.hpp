@@ -60,6 +60,8 @@ class ContactEvents {
 
  private:
   void engage(Joint& joint, double speed, double time);
+  void approach(Joint& joint, const TimeWindow& window);
+  void settle_surfaces(Joint& joint);
   void pay(Joint& joint, double energy);
   void narrate(Joint& joint);
   void disengage(Joint& joint, const TimeWindow& window) const;

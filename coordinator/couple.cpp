@@ -9,9 +9,11 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "coordinator/coupling/compliant_obstacle.hpp"
 #include "coordinator/coupling/robin.hpp"
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/transmission.hpp"
+#include "coordinator/surface_start.hpp"
 
 namespace abut {
 
@@ -126,6 +128,42 @@ void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
   }
 }
 
+/// Bodies that are surfaces to each other.
+void set_surfaces(const InterfaceSpec& spec, const Bodies& bodies, Joint& joint) {
+  const std::string where = "interfaces." + spec.name;
+  const auto* how = std::get_if<UnilateralTransmission>(&spec.transmission);
+  if (how == nullptr) {
+    throw InputError("is of ends of bars only: surfaces know the transmission unilateral",
+                     where + ".transmission", "Leave transmission out.");
+  }
+  for (const Side& side : joint.sides) {
+    const Description& body = bodies.describe(side.body);
+    require(body.can.force, body, where, "takes no forces", "Use a body that does.");
+  }
+  const Description& one = bodies.describe(joint.sides[0].body);
+  const Description& other = bodies.describe(joint.sides[1].body);
+  if (!one.can.obstacle && !other.can.obstacle) {
+    throw InputError(fmt::format("joins '{}' ({}) and '{}' ({}), of which neither can find contact "
+                                 "on its surface",
+                                 one.name, one.model, other.name, other.model),
+                     where, "Make one of them a body of model fe, integrated in time.");
+  }
+  joint.role_fixed = how->kinematic != "auto";
+  if (joint.role_fixed) {
+    joint.kinematic = index_of(spec, how->kinematic, where + ".transmission.unilateral.kinematic");
+    const Description& body = bodies.describe(joint.kinematic_side().body);
+    require(body.can.obstacle, body, where + ".transmission.unilateral.kinematic",
+            "takes forces only and cannot be the kinematic side", "Name the other side, or auto.");
+  }
+  const auto side = [&](int s) {
+    const Side& at = joint.sides[index(s)];
+    return NamedSurface{spec.sides[index(s)], bodies.port(at).geometry};
+  };
+  const int finder = contact_finder(joint, bodies);
+  check_surfaces(side(finder), side(1 - finder), where + ".sides");
+  joint.how = std::make_unique<CompliantObstacle>();
+}
+
 void set_published(const InterfaceSpec& spec, const DirichletNeumannTransmission& how,
                    const SchwarzSpec& schwarz, const Bodies& bodies, Joint& joint) {
   const std::string where = "interfaces." + spec.name + ".transmission.dirichlet_neumann";
@@ -188,7 +226,9 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     std::array<Side, 2> sides = {find_side(spec.sides[0], bodies, where),
                                  find_side(spec.sides[1], bodies, where)};
     for (Side& side : sides) side.partner = met[{side.body, side.port}]++;
-    Joint& joint = joints.emplace_back(make_joint(name, sides, bodies));
+    const bool surfaces = bodies.port(sides[0]).geometry.dim > 1 && spec.contact;
+    Joint& joint = joints.emplace_back(surfaces ? make_surface_joint(name, sides, bodies)
+                                                : make_joint(name, sides, bodies));
     if (std::holds_alternative<InternalTransmission>(spec.transmission)) {
       joint.decision = Decision::inside;
       continue;
@@ -199,7 +239,9 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     } else {
       refuse_tied_ports(spec, bodies, joint);
     }
-    if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
+    if (joint.surfaces) {
+      set_surfaces(spec, bodies, joint);
+    } else if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
       set_unilateral(spec, *unilateral, scene.schwarz.parallel, bodies, joint);
     } else if (const auto* robin = std::get_if<RobinTransmission>(&spec.transmission)) {
       set_robin(spec, *robin, scene.schwarz, bodies, joint);

@@ -345,14 +345,12 @@ void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
   if (ports[0]->dim != ports[1]->dim)
     throw InputError(fmt::format("join a port in {}D and one in {}D", ports[0]->dim, ports[1]->dim),
                      document.where(path), "Give both bodies the same dimension.");
-  if (ports[0]->dim != 1)
+  if (ports[0]->dim != 1 && interface.tied)
     throw InputError(
-        fmt::format("join bodies in {} dimensions, which cannot touch each other yet: only ends of "
-                    "bars can",
+        fmt::format("are surfaces in {} dimensions, which touch but cannot be tied yet",
                     ports[0]->dim),
-        document.where(path),
-        "Run each body in a scene of its own, without interfaces, or model both as bars "
-        "(dimension: 1).");
+        document.where(path), "Give contact: {}, or model both bodies as bars (dimension: 1).");
+  if (ports[0]->dim != 1) return;
   const double normal = ports[0]->normals.at(0);
   if (normal + ports[1]->normals.at(0) != 0.0)
     throw InputError("look the same way and cannot touch", document.where(path),

@@ -137,20 +137,35 @@ void Bodies::strike_record(const Side& side, double impulse) {
   if (reply.recoil->mobility > 0.0) record.momentum[0] -= impulse * port(side).geometry.normals[0];
 }
 
-const PortKernel& Bodies::kernel(int body, int port, int count) {
+PortKernel& Bodies::cached(Kernels& kernels, int body, int port) {
   auto same = [body, port](const CachedKernel& k) { return k.body == body && k.port == port; };
-  auto found = std::find_if(kernels_.begin(), kernels_.end(), same);
-  if (found == kernels_.end()) {
-    kernels_.push_back({body, port, {}});
-    found = kernels_.end() - 1;
-  }
-  if (found->kernel.count() >= count) return found->kernel;
-  const PortGeometry& surface = describe(body).ports[index(port)].geometry;
+  const auto found = std::ranges::find_if(kernels, same);
+  if (found != kernels.end()) return found->kernel;
+  return kernels.emplace_back(CachedKernel{body, port, {}}).kernel;
+}
+
+PortKernel Bodies::ask(int body, int port, std::span<const double> patterns, int count) {
   const double step = describe(body).step;
-  found->kernel = along(
-      (*this)[body].probe(port, surface.normals, step > 0.0 ? step : window_, count), surface);
   ++exchanges_;
-  return found->kernel;
+  return (*this)[body].probe(port, patterns, step > 0.0 ? step : window_, count);
+}
+
+const PortKernel& Bodies::kernel(int body, int port, int count) {
+  PortKernel& kernel = cached(kernels_, body, port);
+  if (kernel.count() >= count) return kernel;
+  const PortGeometry& surface = describe(body).ports[index(port)].geometry;
+  kernel = along(ask(body, port, surface.normals, count), surface);
+  return kernel;
+}
+
+const PortKernel& Bodies::full_kernel(int body, int port, int count) {
+  PortKernel& kernel = cached(full_kernels_, body, port);
+  if (kernel.count() >= count) return kernel;
+  const std::size_t width = describe(body).ports[index(port)].geometry.points.size();
+  std::vector<double> units(width * width, 0.0);
+  for (std::size_t k = 0; k < width; ++k) units[k * width + k] = 1.0;
+  kernel = ask(body, port, units, count);
+  return kernel;
 }
 
 double Bodies::shortest_step() const {

@@ -63,6 +63,9 @@ class Bodies {
   /// along them: one pattern of one value.
   const PortKernel& kernel(int body, int port, int count);
 
+  /// Response of every value of a port to a unit force on every one.
+  const PortKernel& full_kernel(int body, int port, int count);
+
   double shortest_step() const;  // [s] of all bodies, at most a window
   double longest_step() const;   // [s] of those that have one; a window where none has
   std::int64_t exchanges() const { return exchanges_; }
@@ -74,6 +77,9 @@ class Bodies {
     int body = 0, port = 0;
     PortKernel kernel;
   };
+  using Kernels = std::deque<CachedKernel>;  // references to kernels stay valid
+  static PortKernel& cached(Kernels& kernels, int body, int port);
+  PortKernel ask(int body, int port, std::span<const double> patterns, int count);
 
   std::vector<Subdomain*> subdomains_;
   double window_;  // [s]
@@ -81,7 +87,7 @@ class Bodies {
   std::vector<Response> responses_;
   std::vector<double> struck_;
   std::vector<int> everybody_;
-  std::deque<CachedKernel> kernels_;  // references to kernels stay valid
+  Kernels kernels_, full_kernels_;
   std::int64_t exchanges_ = 0;
   std::vector<double> compute_seconds_;
   std::vector<float> overhead_;

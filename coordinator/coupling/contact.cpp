@@ -126,8 +126,21 @@ double contact_work(const Joint& joint, const Bodies& bodies) {
   return port_of(bodies, joint.sides[0]).work + port_of(bodies, joint.sides[1]).work;
 }
 
+double resultant(const Waveform& force, std::size_t i, int dim) {
+  const std::size_t width = index(force.width);
+  double sum[3] = {0.0, 0.0, 0.0};
+  for (std::size_t k = 0; k < width; ++k) sum[k % index(dim)] += force.f[i * width + k];
+  return std::hypot(sum[0], sum[1], sum[2]);
+}
+
 double peak_force(const Joint& joint, const Bodies& bodies) {
   double peak = 0.0;
+  if (joint.surfaces) {
+    const Waveform& force = bodies.reaction(joint.kinematic_side());
+    const int dim = bodies.port(joint.sides[0]).geometry.dim;
+    for (std::size_t i = 0; i < force.size(); ++i) peak = std::max(peak, resultant(force, i, dim));
+    return peak;
+  }
   for (double f : trace_of(bodies, joint.kinematic_side()).f)
     peak = std::max(peak, std::abs(f));
   return peak;

@@ -67,6 +67,9 @@ class ContactHistory {
   double rounding_ = 0.0;
 };
 
+/// [N] length of the sum of a force over all points at its i-th time.
+double resultant(const Waveform& force, std::size_t i, int dim);
+
 /// Largest contact force [N] on the kinematic side in the latest responses.
 double peak_force(const Joint& joint, const Bodies& bodies);
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "coordinator/coupling/nearness.hpp"
+
 namespace abut {
 
 namespace {
@@ -18,9 +20,10 @@ double free_flight_horizon(std::span<const Joint> joints, const Bodies& bodies) 
     if (joint.closed()) return 0.0;
     const PortResponse& p0 = port_of(bodies, joint.sides[0]);
     const PortResponse& p1 = port_of(bodies, joint.sides[1]);
-    const double gap = joint.gap(p0.trace.u.back(), p1.trace.u.back());
+    const double gap =
+        joint.surfaces ? distance(joint, bodies) : joint.gap(p0.trace.u.back(), p1.trace.u.back());
     if (gap <= 0.0) return 0.0;
-    const double v = p0.speed_bound + p1.speed_bound;
+    const double v = closing_bound(joint, bodies);
     const double a = p0.acceleration_bound + p1.acceleration_bound;
     const double root = std::sqrt(std::max(0.0, v * v + 2.0 * a * gap));
     if (v + root <= 0.0) continue;
@@ -31,6 +34,7 @@ double free_flight_horizon(std::span<const Joint> joints, const Bodies& bodies) 
 
 bool stayed_apart(std::span<const Joint> joints, const Bodies& bodies) {
   return std::ranges::all_of(joints, [&bodies](const Joint& joint) {
+    if (joint.surfaces) return boxes_apart(joint, bodies);
     const PortResponse& p0 = port_of(bodies, joint.sides[0]);
     const PortResponse& p1 = port_of(bodies, joint.sides[1]);
     const bool right = joint.normal[0] > 0.0;  // side 0 looks to the right

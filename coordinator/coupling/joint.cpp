@@ -85,6 +85,45 @@ Joint make_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodi
   return joint;
 }
 
+namespace {
+
+/// [m] by which facets leave the tangent planes at their nodes, at most: 0 of flat surfaces.
+double sag(const PortGeometry& surface) {
+  const std::size_t dim = index(surface.dim);
+  double most = 0.0;
+  for (std::size_t f = 0; f + 1 < surface.offsets.size(); ++f) {
+    const std::size_t begin = index(surface.offsets[f]), end = index(surface.offsets[f + 1]);
+    for (std::size_t a = begin; a < end; ++a) {
+      for (std::size_t b = begin; b < end; ++b) {
+        double off = 0.0;
+        for (std::size_t i = 0; i < dim; ++i)
+          off += surface.normals[index(surface.facets[a]) * dim + i] *
+                 (surface.points[index(surface.facets[b]) * dim + i] -
+                  surface.points[index(surface.facets[a]) * dim + i]);
+        most = std::max(most, std::abs(off));
+      }
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+Joint make_surface_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodies) {
+  Joint joint;
+  joint.name = std::move(name);
+  joint.sides = sides;
+  joint.surfaces = true;
+  for (const Side& side : sides) {
+    if (!bodies.port(side).geometry.facets.empty()) continue;
+    throw InputError(fmt::format("port '{}' of body '{}' has no facets, so nothing can touch it",
+                                 bodies.port(side).name, bodies.describe(side.body).name),
+                     "interfaces." + joint.name, "Put the port on a side of the mesh.");
+  }
+  for (const Side& side : sides) joint.margin += sag(bodies.port(side).geometry);
+  return joint;
+}
+
 void introduce(Joint& joint, Bodies& bodies) {
   for (std::size_t s : {0u, 1u})
     bodies.meet(joint.sides[s], bodies.port(joint.sides[1 - s]).geometry, {joint.tied()});

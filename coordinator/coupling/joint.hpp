@@ -41,7 +41,9 @@ class Joint {
 
   std::string name;
   std::array<Side, 2> sides;
-  int width = 1;  // values of a port's motion: points x dimension
+  bool surfaces = false;  // in two and three dimensions: they touch anywhere, one body maps them
+  double margin = 0.0;    // [m] of surfaces: rows of facets may press before these touch
+  int width = 1;          // values of a port's motion: points x dimension; of surfaces not used
   // Of one point: outward, +1 or -1. Of surfaces tied point by point: the signs with which their
   // components are compared.
   std::array<double, 2> normal = {0.0, 0.0};
@@ -97,6 +99,9 @@ constexpr double place_tolerance = 1.0e-9;
 /// Two ports that are to be joined. Throws InputError when they do not face each other or overlap
 /// at the start; surfaces of several points when the points of one are not those of the other.
 Joint make_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodies);
+
+/// Two surfaces that may touch. Throws InputError when they cannot.
+Joint make_surface_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodies);
 
 /// Tells the bodies whom their ports may meet, before the first window.
 void introduce(Joint& joint, Bodies& bodies);

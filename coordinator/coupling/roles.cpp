@@ -57,6 +57,22 @@ int Roles::wish(const Joint& joint) {
   return step[1] < step[0] ? 1 : 0;
 }
 
+int contact_finder(const Joint& joint, const Bodies& bodies) {
+  if (joint.role_fixed) return joint.kinematic;
+  if (const std::optional<int> only = only_side(joint, bodies)) return *only;
+  bool yields[2];
+  double spacing[2], step[2];
+  for (std::size_t s : {0u, 1u}) {
+    const Description& body = bodies.describe(joint.sides[s].body);
+    yields[s] = (body.can.kernel && body.linear) || std::isinf(body.mass);
+    step[s] = body.step;
+    spacing[s] = bodies.port(joint.sides[s]).geometry.spacing;
+  }
+  if (yields[0] != yields[1]) return yields[0] ? 1 : 0;
+  if (step[0] != step[1]) return step[0] > step[1] ? 0 : 1;
+  return spacing[0] <= spacing[1] ? 0 : 1;
+}
+
 void Roles::settle(Joint& joint, int kinematic, bool may_turn) {
   joint.kinematic = kinematic;
   if (order_.comes_before(joint.neumann_side().body, joint.kinematic_side().body)) {
@@ -85,6 +101,9 @@ void Roles::start(std::span<Joint> joints) {
   }
   for (Joint& joint : joints) {
     if (joint.tied()) choose(joint);
+    if (!joint.surfaces || joint.role_fixed) continue;
+    if (!only_side(joint, bodies_)) settle(joint, contact_finder(joint, bodies_), true);
+    joint.role_fixed = true;
   }
 }
 

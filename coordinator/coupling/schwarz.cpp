@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 
 #include "base/archive.hpp"
 #include "base/index.hpp"
@@ -77,6 +78,29 @@ std::optional<Failed> Schwarz::sweep(const Island& island, std::span<const Joint
   return std::nullopt;
 }
 
+/// Of Neumann sides whose motion without reactions is the first guess; afterwards they stand where
+/// they stood.
+std::optional<Failed> Schwarz::fly(const Island& island, std::span<const Joint> joints,
+                                   Bodies& bodies) const {
+  std::vector<int> flown;
+  for (int j : island.joints) {
+    const Joint& joint = joints[index(j)];
+    if (!joint.how->flies()) continue;
+    joint.how->release(joint, bodies);
+    flown.push_back(joint.neumann_side().body);
+  }
+  if (flown.empty()) return std::nullopt;
+  std::ranges::sort(flown);
+  flown.erase(std::unique(flown.begin(), flown.end()), flown.end());
+  if (std::optional<Failed> failed = bodies.advance(flown)) return failed;
+  for (int j : island.joints) {
+    const Joint& joint = joints[index(j)];
+    if (joint.how->flies()) joint.how->see_flight(joint, bodies);
+  }
+  for (int body : flown) bodies[body].restore();
+  return std::nullopt;
+}
+
 std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, const Island& island,
                                                    std::span<const Joint> joints, Bodies& bodies) {
   layout_.joints = island.joints;
@@ -94,6 +118,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   auto joint_at = [&joints, &island](std::size_t i) -> const Joint& {
     return joints[index(island.joints[i])];
   };
+  if (std::optional<Failed> failed = fly(island, joints, bodies)) return *failed;
   for (std::size_t i = 0; i < island.joints.size(); ++i)
     joint_at(i).how->predict(part(x_, i));
   Accelerator& accelerator = accelerator_of(island, joints);

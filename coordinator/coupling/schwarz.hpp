@@ -53,6 +53,8 @@ class Schwarz {
     std::vector<int> joints;
     std::vector<Eigen::Index> first;  // of every joint's part in the stacked iterate, and the total
   };
+  std::optional<Failed> fly(const Island& island, std::span<const Joint> joints,
+                            Bodies& bodies) const;
   std::optional<Failed> sweep(const Island& island, std::span<const Joint> joints,
                               const Layout& layout, const Eigen::VectorXd& x, Bodies& bodies) const;
   Eigen::VectorXd apply_inverses(const Eigen::VectorXd& r, std::span<const Joint> joints) const;

@@ -15,8 +15,8 @@ namespace abut {
 
 /// What the partner's response imposes on each side of a closed joint, and what is iterated: values
 /// of its ports' points and components at the substeps of a window, (substeps, width), in SI units.
-/// A window runs  begin, predict, (impose side by side, image, measure)*;  x is the joint's part of
-/// the stacked iterate.
+/// A window runs  begin, (release, see_flight), predict, (impose side by side, image, measure)*;  x
+/// is the joint's part of the stacked iterate.
 class Transmission {
  public:
   virtual ~Transmission() = default;
@@ -24,6 +24,11 @@ class Transmission {
   /// Lays out the iterate of a window; the latest responses hold the state at its begin.
   virtual void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) = 0;
   virtual int values() const = 0;
+  /// Whether the first guess is a flight: the Neumann side is advanced once, as `release` asks, and
+  /// brought back, before the guess is made.
+  virtual bool flies() const { return false; }
+  virtual void release(const Joint&, Bodies&) {}
+  virtual void see_flight(const Joint&, const Bodies&) {}
   virtual void predict(Eigen::Ref<Eigen::VectorXd> x) const = 0;
   /// Fills the request of one side's body.
   virtual void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,

@@ -2,6 +2,7 @@
 #include "base/index.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace abut {
 
@@ -34,7 +35,12 @@ PortValues PortReader::at(const Waveform& trace, double time) {
 }
 
 double PortReader::compression(const Waveform& trace, std::size_t i) const {
-  const std::size_t width = index(trace.width);
+  const std::size_t width = index(trace.width), dim = index(port_->geometry.dim);
+  if (dim > 1) {
+    std::array<double, 3> sum{};
+    for (std::size_t k = 0; k < width; ++k) sum[k % dim] += trace.f[i * width + k];
+    return std::hypot(sum[0], sum[1], sum[2]);
+  }
   double force = 0.0;
   for (std::size_t k = 0; k < width; ++k)
     force -= trace.f[i * width + k] * port_->geometry.normals[k];

@@ -1,0 +1,216 @@
+#include "coordinator/coupling/compliant_obstacle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contract/force_means.hpp"
+#include "coordinator/coupling/transmission_parts.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Numbers of a kernel that bodies exchange once and keep: 256 MiB.
+constexpr double largest_kernel = 3.2e7;
+
+/// Substeps over which a force goes on rising or falling as it did; then it stays.
+constexpr int most_rising = 3;
+
+/// The least factor that a first correction is relaxed by.
+constexpr double least_factor = 0.05;
+
+}  // namespace
+
+void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
+  const Side& k = joint.kinematic_side();
+  const Side& n = joint.neumann_side();
+  kinematic_grid_ = substeps_of(bodies, k, window);
+  iterate_ = {substeps_of(bodies, n, window),
+              static_cast<int>(bodies.port(n).geometry.points.size())};
+  const Waveform& trace = trace_of(bodies, n);
+  const std::size_t now = index_at_begin(trace, window.begin);
+  keep_row(trace, trace.u, now, u_begin_);
+  keep_row(trace, trace.v, now, v_begin_);
+  keep_begin(window, joint, bodies);
+  find_kernel(joint, bodies);
+  const bool stands = std::isinf(bodies.describe(n.body).mass) && largest(v_begin_) == 0.0;
+  flies_ = !stands;
+  flight_.resize(0);
+  scale_.step = std::max(kinematic_grid_.step, iterate_.steps.step);
+  scale_.velocity = joint.closing_speed;
+}
+
+/// What presses on the Neumann side when the window begins, as the window before left it.
+void CompliantObstacle::keep_begin(const TimeWindow& window, const Joint& joint,
+                                   const Bodies& bodies) {
+  f_begin_.assign(u_begin_.size(), 0.0);
+  f_rate_.assign(u_begin_.size(), 0.0);
+  const std::vector<Reaction>& reactions = port_of(bodies, joint.kinematic_side()).reactions;
+  const std::size_t partner = index(joint.kinematic_side().partner);
+  if (partner >= reactions.size() || reactions[partner].force.empty()) return;
+  const Waveform& force = reactions[partner].force;
+  const std::size_t now = index_at_begin(force, window.begin);
+  keep_row(force, force.f, now, f_begin_);
+  if (now == 0 || bodies.describe(joint.neumann_side().body).linear) return;
+  const std::span<const double> before = row(force, force.f, now - 1);
+  for (std::size_t c = 0; c < f_rate_.size(); ++c)
+    f_rate_[c] = (f_begin_[c] - before[c]) / (force.time[now] - force.time[now - 1]);
+}
+
+void CompliantObstacle::find_kernel(const Joint& joint, Bodies& bodies) {
+  const Side& k = joint.kinematic_side();
+  const Side& n = joint.neumann_side();
+  kernel_ = nullptr;
+  first_factor_ = 1.0;
+  const Description& body = bodies.describe(n.body);
+  if (std::isinf(body.mass) || !body.can.kernel) return;
+  const double size = static_cast<double>(iterate_.steps.count) * iterate_.width * iterate_.width;
+  if (!bodies.describe(k.body).can.yielding || size > largest_kernel) {
+    if (!bodies.describe(k.body).can.kernel) return;
+    const double own = bodies.kernel(k.body, k.port, kinematic_grid_.count).displacement.front();
+    const double others = bodies.kernel(n.body, n.port, iterate_.steps.count).displacement.front();
+    if (own > 0.0) first_factor_ = std::max(least_factor, own / (own + std::max(0.0, others)));
+    return;
+  }
+  kernel_ = &bodies.full_kernel(n.body, n.port, iterate_.steps.count);
+  if (told_ >= kernel_->count()) return;
+  bodies[k.body].yields(k.port, k.partner, *kernel_);
+  told_ = kernel_->count();
+}
+
+/// The flight of the Neumann side: what pressed at the begin goes, as the force of the instant. A
+/// body whose kernel is that of another state flies under what presses, carried on.
+void CompliantObstacle::release(const Joint& joint, Bodies& bodies) {
+  guess_.clear();
+  guess_.width = iterate_.width;
+  guess_.support = ForceSupport::linear;
+  const bool linear = bodies.describe(joint.neumann_side().body).linear;
+  for (int i = 0; i <= iterate_.steps.count; ++i) {
+    const double time = i == 0 ? iterate_.steps.begin : iterate_.steps.time(i);
+    guess_.time.push_back(time);
+    for (std::size_t c = 0; c < f_begin_.size(); ++c) {
+      const double ahead = i <= most_rising
+                               ? time - iterate_.steps.begin
+                               : iterate_.steps.time(most_rising) - iterate_.steps.begin;
+      const double on = f_begin_[c] + ahead * f_rate_[c];
+      const bool turned = on * f_begin_[c] < 0.0 || f_begin_[c] == 0.0;
+      guess_.f.push_back(i == 0 ? f_begin_[c] : linear || turned ? 0.0 : on);
+    }
+  }
+  bodies.force(joint.neumann_side()) = guess_;
+}
+
+void CompliantObstacle::see_flight(const Joint& joint, const Bodies& bodies) {
+  const Waveform& trace = trace_of(bodies, joint.neumann_side());
+  flight_.resize(iterate_.size());
+  for (int i = 1; i <= iterate_.steps.count; ++i)
+    trace.interpolate(trace.u, iterate_.steps.time(i),
+                      {&flight_[iterate_.at(i)], index(iterate_.width)});
+  if (kernel_ == nullptr) return;
+  take(guess_);
+  take_back(flight_);
+}
+
+void CompliantObstacle::predict(Eigen::Ref<Eigen::VectorXd> x) const {
+  if (flight_.size() > 0) {
+    x = flight_;
+    return;
+  }
+  for (int i = 1; i <= iterate_.steps.count; ++i) {
+    const double ahead = iterate_.steps.time(i) - iterate_.steps.begin;
+    for (std::size_t c = 0; c < u_begin_.size(); ++c)
+      x[iterate_.at(i) + static_cast<Eigen::Index>(c)] = u_begin_[c] + v_begin_[c] * ahead;
+  }
+}
+
+void CompliantObstacle::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
+                               const Joint& joint, Bodies& bodies) {
+  const Side& here = joint.sides[index(side)];
+  if (side != joint.kinematic) {
+    bodies.force(here) = bodies.reaction(joint.kinematic_side());
+    return;
+  }
+  given_.clear();
+  given_.width = iterate_.width;
+  given_.time.push_back(iterate_.steps.begin);
+  given_.u = u_begin_;
+  for (int i = 1; i <= iterate_.steps.count; ++i) given_.time.push_back(iterate_.steps.time(i));
+  given_.u.insert(given_.u.end(), x.begin(), x.end());
+  if (kernel_ != nullptr) {  // what pressed at the begin is in d
+    given_.f.assign(given_.u.size(), 0.0);
+    std::ranges::copy(f_begin_, given_.f.begin());
+  }
+  bodies.obstacle(here).motion = given_;
+}
+
+/// d = y - kernel * reaction, of the last replies.
+void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>&, const Joint& joint,
+                              const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
+  const Waveform& trace = trace_of(bodies, joint.neumann_side());
+  const int width = iterate_.width;
+  for (int i = 1; i <= iterate_.steps.count; ++i)
+    trace.interpolate(trace.u, iterate_.steps.time(i), {&g[iterate_.at(i)], index(width)});
+  scale_.velocity = std::max(
+      {scale_.velocity, reached(trace), reached(trace_of(bodies, joint.kinematic_side()))});
+  scale_.roundoff = roundoff_of(largest(u_begin_), g.tail(width).lpNorm<Eigen::Infinity>());
+  if (kernel_ == nullptr) return;
+  take(bodies.reaction(joint.kinematic_side()));
+  take_back(g);
+}
+
+/// Takes from the Neumann side's motion what the forces taken have moved it by the kernel.
+void CompliantObstacle::take_back(Eigen::Ref<Eigen::VectorXd> motion) const {
+  const int width = iterate_.width;
+  for (int j = 0; j <= iterate_.steps.count; ++j) {
+    for (int p = 0; p < width; ++p) {
+      const double force = taken_(p, j);
+      if (force == 0.0) continue;
+      const std::vector<double>& of = j == 0 ? kernel_->begin : kernel_->displacement;
+      for (int i = std::max(1, j); i <= iterate_.steps.count; ++i) {
+        const int lag = j == 0 ? i - 1 : i - j;
+        const double* response = of.data() + index(lag) * kernel_->per_step() + index(p * width);
+        motion.segment(iterate_.at(i), width) -=
+            force * Eigen::Map<const Eigen::VectorXd>(response, width);
+      }
+    }
+  }
+}
+
+/// A force at the Neumann side's levels, as it takes it; what pressed at the begin is in d.
+void CompliantObstacle::take(const Waveform& force) {
+  const Substeps& steps = iterate_.steps;
+  std::vector<double> levels = {steps.begin};
+  for (int i = 1; i <= steps.count; ++i) levels.push_back(steps.time(i));
+  const std::vector<double> parts = force_means(levels, force.time);
+  const Eigen::Index times = static_cast<Eigen::Index>(force.size());
+  const Eigen::Map<const Eigen::MatrixXd> f(force.f.data(), iterate_.width, times);
+  const Eigen::Map<const Eigen::MatrixXd> part(parts.data(), times, steps.count + 1);
+  taken_.noalias() = f * part;
+  taken_.col(0) -= Eigen::Map<const Eigen::VectorXd>(f_begin_.data(), iterate_.width);
+}
+
+/// [m/s] mean speed over the window of the point that went furthest.
+double CompliantObstacle::reached(const Waveform& trace) const {
+  const double length = trace.time.back() - trace.time.front();
+  if (trace.u.empty() || length <= 0.0) return 0.0;
+  const std::span<const double> from = row(trace, trace.u, 0);
+  const std::span<const double> to = row(trace, trace.u, trace.size() - 1);
+  double most = 0.0;
+  for (std::size_t k = 0; k < from.size(); ++k) most = std::max(most, std::abs(to[k] - from[k]));
+  return most / length;
+}
+
+FieldResiduals CompliantObstacle::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                          const Eigen::Ref<const Eigen::VectorXd>& g) const {
+  FieldResiduals r;
+  r.displacement =
+      scaled((g - x).lpNorm<Eigen::Infinity>(), scale_.velocity * scale_.step, scale_.roundoff);
+  return r;
+}
+
+void CompliantObstacle::scales(Eigen::Ref<Eigen::VectorXd> s) const {
+  const double unit = scale_.velocity * scale_.step;
+  s.setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
+}
+
+}  // namespace abut

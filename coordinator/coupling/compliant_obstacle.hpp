@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "coordinator/coupling/transmission.hpp"
+
+namespace abut {
+
+/// Contact of surfaces: the kinematic body meets the partner's surface, which gives way by the
+/// partner's port kernel, and the partner confirms what was predicted [M.90], [M.91]. Iterated is
+/// the surface's motion without the reactions of the window: d of  y = d + kernel * reaction.  It
+/// is constant where the partner is linear, and then one sweep is enough: a flight of the partner
+/// without reactions, the kinematic body against it, the partner under the reaction. Partners
+/// without a kernel, or of other substeps, are obstacles that do not give way: d is their motion.
+class CompliantObstacle final : public Transmission {
+ public:
+  void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
+  int values() const override { return static_cast<int>(iterate_.size()); }
+  bool flies() const override { return flies_; }
+  void release(const Joint& joint, Bodies& bodies) override;
+  void see_flight(const Joint& joint, const Bodies& bodies) override;
+  void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
+  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
+              Bodies& bodies) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
+  FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
+                         const Eigen::Ref<const Eigen::VectorXd>& g) const override;
+  void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
+  Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override {
+    return first_factor_ * r;
+  }
+  double first_factor() const override { return first_factor_; }
+  bool ordered() const override { return true; }
+
+ private:
+  void find_kernel(const Joint& joint, Bodies& bodies);
+  void keep_begin(const TimeWindow& window, const Joint& joint, const Bodies& bodies);
+  void take(const Waveform& force);
+  void take_back(Eigen::Ref<Eigen::VectorXd> motion) const;
+  double reached(const Waveform& trace) const;
+
+  Substeps kinematic_grid_;
+  IterateGrid iterate_;                    // of the Neumann port
+  std::vector<double> u_begin_, v_begin_;  // (width) of the Neumann port
+  std::vector<double> f_begin_, f_rate_;   // [N] [N/s] (width) reaction at the window's begin
+  Waveform guess_;                         // [N] under which the Neumann side flies
+  const PortKernel* kernel_ = nullptr;     // null: the obstacle does not give way
+  int told_ = 0;                           // substeps of the kernel that the body knows
+  bool flies_ = false;
+  Eigen::VectorXd flight_;  // [m] as the iterate; empty: none was flown
+  Waveform given_;          // the obstacle of this sweep
+  ReferenceScales scale_;
+  double first_factor_ = 1.0;
+  Eigen::MatrixXd taken_;  // [N] (width, levels) of the reaction by the Neumann side, beyond d's
+};
+
+}  // namespace abut
