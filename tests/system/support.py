@@ -160,7 +160,10 @@ class SystemTest(unittest.TestCase):
         names = {path.name for path in folder.iterdir()}
         summary = self.summary(folder)
         tables = ["history.csv"] + (["closed_form.csv"] if "closed_form" in summary else [])
-        self.assertEqual(names, FILES | set(tables))
+        resolved = (folder / "scene.resolved.yaml").read_text(encoding="utf-8")
+        pictures = re.search(r"^output:\n(?:  .*\n)*?  fields:", resolved, re.MULTILINE)
+        fields = {"fields", "fields.pvd"} if pictures else set()
+        self.assertEqual(names, FILES | fields | set(tables))
         self.events(folder)
         columns = []
         for name in tables:
