@@ -73,6 +73,9 @@ struct Advance {
   Sampling sampling = Sampling::substeps;
   std::vector<BoundaryData> boundary;  // in the order of Description::ports
   std::vector<Want> want;              // the same; empty: everything
+  // [s] by which the body goes on after the window, while forces of partners are gone at once, to
+  // tell where its ports would be (PortResponse::ahead); it stands at the window's end all the same
+  double ahead = 0.0;
 };
 
 /// A body: something that can be advanced through a window with given data on its ports, and

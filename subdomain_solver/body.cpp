@@ -134,6 +134,7 @@ Outcome Body::finish(Response& response) {
   recorded_ = 0;
   if (std::optional<Failed> failed = advance(window, response)) return *failed;
   for (std::size_t p = 0; p < ports_.size(); ++p) interior_->finish(p, response.ports[p]);
+  if (request.ahead > 0.0) look_ahead(request, response);
   response.steps = window.grid.count;
   response.compute_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -164,6 +165,60 @@ std::optional<Failed> Body::advance(const Window& window, Response& response) {
   for (; !clock.done(); clock.next())  // a window of no length
     if (auto failed = record(clock.time(), response)) return failed;
   return std::nullopt;
+}
+
+/// What partners press with at the window's end is gone by the end of the next substep. A look that
+/// fails has nothing to tell.
+void Body::look_ahead(const Advance& request, Response& response) {
+  const bool meets = std::ranges::any_of(
+      request.boundary, [](const BoundaryData& data) { return data.obstructed(); });
+  if (meets) return;
+  const double begin = request.window.end;
+  ahead_.window = {request.window.index + 1, begin, begin + request.ahead};
+  ahead_.boundary.resize(ports_.size());
+  const Substeps grid = divide(ahead_);
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    std::vector<Waveform>& forces = ahead_.boundary[p].forces;
+    forces.resize(1);
+    forces[0].clear();
+    forces[0].width = static_cast<int>(ports_[p].width);
+    forces[0].support = ForceSupport::linear;
+    for (int i = 0; i <= grid.count; ++i)
+      forces[0].time.push_back(i == 0 ? grid.begin : grid.time(i));
+    forces[0].f.assign(forces[0].time.size() * ports_[p].width, 0.0);
+    bool pushed = false;
+    for (const Waveform& force : request.boundary[p].forces) {
+      if (force.empty() || !force.points.empty()) continue;
+      pressing_.resize(index(force.width));
+      force.force_at(begin, pressing_);
+      for (std::size_t k = 0; k < pressing_.size(); ++k) forces[0].f[k] += pressing_[k];
+      pushed = true;
+    }
+    if (!pushed) forces[0].clear();
+  }
+  write(*interior_, looked_, Archive::Form::bare);
+  const Window window{ahead_, grid, partners_};
+  std::optional<Failed> failed = patiently([&] { return interior_->begin(window); });
+  const auto tell = [&](double time) {
+    const PortValues& seen = interior_->see(window, time, false);
+    for (std::size_t p = 0; p < ports_.size(); ++p) {
+      Waveform& told = response.ports[p].ahead;
+      told.width = static_cast<int>(ports_[p].width);
+      told.time.push_back(time);
+      append(std::span(seen.u).subspan(ports_[p].first, ports_[p].width), {}, 1, told.u);
+    }
+  };
+  if (!failed) tell(grid.begin);
+  if (!failed) interior_->set_off(window);
+  for (int i = 1; i <= grid.count && !failed; ++i) {
+    failed = patiently([&] { return interior_->step(window, i); });
+    if (!failed) tell(grid.time(i));
+    report_progress();
+  }
+  for (PortResponse& port : response.ports)
+    if (failed) port.ahead.clear();
+  read(*interior_, looked_, Archive::Form::bare);
+  interior_->restored();
 }
 
 /// A body without a step of its own goes from record to record.
@@ -199,6 +254,7 @@ void Body::begin_replies(const Advance& request, Response& response) {
       force.width = obstacles[k].motion.width;
       force.points = obstacles[k].motion.points;
     }
+    port.ahead.clear();
     port.lower.clear();
     port.upper.clear();
     port.speed_bound = std::numeric_limits<double>::infinity();

@@ -45,6 +45,7 @@ class Body final : public Subdomain {
   };
 
   std::optional<Failed> advance(const Window& window, Response& response);
+  void look_ahead(const Advance& request, Response& response);
   Substeps divide(const Advance& request) const;
   void begin_replies(const Advance& request, Response& response);
   void follow(const Window& window, double time, bool shown);
@@ -67,6 +68,9 @@ class Body final : public Subdomain {
   const PortValues* seen_ = nullptr;
   std::size_t recorded_ = 0;  // records of the window so far
   std::vector<std::byte> saved_;
+  Advance ahead_;                  // what is looked at after a window
+  std::vector<double> pressing_;   // [N] (values) of a port, when it begins
+  std::vector<std::byte> looked_;  // the state from which
   double step_effort_ = 0.0;  // of a substep
   double effort_ = 0.0;       // since the last sign of life
 };

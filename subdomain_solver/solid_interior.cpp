@@ -176,6 +176,10 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
   return std::nullopt;
 }
 
+void SolidInterior::restored() {
+  if (port_map_) port_map_->displacement(state_.motion.q, places_);
+}
+
 std::optional<Failed> SolidInterior::step(const Window& window, int i) {
   Integrator& integrator = *parts_.scheme.integrator;
   const double begin = window.grid.time(i - 1), dt = window.grid.length(i);

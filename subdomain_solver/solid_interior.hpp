@@ -53,6 +53,7 @@ class SolidInterior final : public Interior {
 
   void state(Archive& archive) override;
   std::size_t coordinates() const override { return state_.motion.q.size(); }
+  void restored() override;
   std::optional<Failed> begin(const Window& window) override;
   std::optional<Failed> step(const Window& window, int i) override;
   const PortValues& see(const Window& window, double time, bool all) override;

@@ -94,6 +94,7 @@ void Bodies::prepare(const TimeWindow& window, int records, Sampling sampling) {
     request.window = window;
     request.records = records;
     request.sampling = sampling;
+    request.ahead = 0.0;
     for (BoundaryData& data : request.boundary) data.clear();
   }
 }

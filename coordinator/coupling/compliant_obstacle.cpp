@@ -34,10 +34,24 @@ void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodi
   keep_begin(window, joint, bodies);
   find_kernel(joint, bodies);
   const bool stands = std::isinf(bodies.describe(n.body).mass) && largest(v_begin_) == 0.0;
-  flies_ = !stands;
   flight_.resize(0);
+  const bool looked = see_look(joint, bodies);
+  flies_ = !stands && !looked;
+  looks_ = !stands && bodies.describe(n.body).linear ? window.length() : 0.0;
   scale_.step = std::max(kinematic_grid_.step, iterate_.steps.step);
   scale_.velocity = joint.closing_speed;
+}
+
+/// Where its last reply told the Neumann side would fly: over a window like this one.
+bool CompliantObstacle::see_look(const Joint& joint, const Bodies& bodies) {
+  const Waveform& look = port_of(bodies, joint.neumann_side()).ahead;
+  const Substeps& steps = iterate_.steps;
+  const double rounding = 1.0e-9 * steps.step;  // of a window's end
+  if (look.empty() || static_cast<int>(look.size()) != steps.count + 1 ||
+      look.time.front() != steps.begin || std::abs(look.time.back() - steps.end) > rounding)
+    return false;
+  flight_ = Eigen::Map<const Eigen::VectorXd>(look.u.data() + iterate_.width, iterate_.size());
+  return true;
 }
 
 /// What presses on the Neumann side when the window begins, as the window before left it.
@@ -128,6 +142,7 @@ void CompliantObstacle::impose(int side, const Eigen::Ref<const Eigen::VectorXd>
   const Side& here = joint.sides[index(side)];
   if (side != joint.kinematic) {
     bodies.force(here) = bodies.reaction(joint.kinematic_side());
+    bodies.request(here.body).ahead = looks_;
     return;
   }
   given_.clear();

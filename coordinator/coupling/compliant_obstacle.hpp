@@ -35,6 +35,7 @@ class CompliantObstacle final : public Transmission {
 
  private:
   void find_kernel(const Joint& joint, Bodies& bodies);
+  bool see_look(const Joint& joint, const Bodies& bodies);
   void keep_begin(const TimeWindow& window, const Joint& joint, const Bodies& bodies);
   void take(const Waveform& force);
   void take_back(Eigen::Ref<Eigen::VectorXd> motion) const;
@@ -48,6 +49,7 @@ class CompliantObstacle final : public Transmission {
   const PortKernel* kernel_ = nullptr;     // null: the obstacle does not give way
   int told_ = 0;                           // substeps of the kernel that the body knows
   bool flies_ = false;
+  double looks_ = 0.0;  // [s] by which the Neumann side looks on after the window
   Eigen::VectorXd flight_;  // [m] as the iterate; empty: none was flown
   Waveform given_;          // the obstacle of this sweep
   ReferenceScales scale_;

@@ -11,7 +11,7 @@ namespace {
 static_assert(sizeof(TimeWindow) == 3 * sizeof(double));
 static_assert(sizeof(Want) == sizeof(double) + sizeof(std::vector<std::int32_t>));
 static_assert(sizeof(Advance) ==
-              sizeof(TimeWindow) + sizeof(double) + 2 * sizeof(std::vector<double>));
+              sizeof(TimeWindow) + 2 * sizeof(double) + 2 * sizeof(std::vector<double>));
 
 using Wire = v1::Advance;
 
@@ -100,6 +100,7 @@ SurfaceSize surface_at(const Description& body, std::size_t place, const FieldPa
 }  // namespace
 
 void encode(const Advance& from, WireWriter& to) {
+  to.number(Wire::kAheadFieldNumber, from.ahead);
   for (std::size_t i = from.want.size(); i-- > 0;) encode(from.want[i], to);
   for (std::size_t i = from.boundary.size(); i-- > 0;) {
     const std::size_t before = to.size();
@@ -121,6 +122,7 @@ void decode(Bytes bytes, const Description& body, const Partners& met, Advance& 
   std::size_t boundaries = 0, wants = 0;
   std::int64_t records = 0, sampling = 0;
   bool windowed = false;
+  to.ahead = 0.0;
   for (WireReader from(bytes, path); from.next();) {
     switch (from.field()) {
       case Wire::kWindowFieldNumber:
@@ -132,6 +134,9 @@ void decode(Bytes bytes, const Description& body, const Partners& met, Advance& 
         break;
       case Wire::kSamplingFieldNumber:
         sampling = from.integer();
+        break;
+      case Wire::kAheadFieldNumber:
+        to.ahead = number(from.number(), FieldPath{&path, "ahead"}, Allow::not_negative);
         break;
       case Wire::kBoundaryFieldNumber: {
         const SurfaceSize surface = surface_at(body, boundaries, boundary);

@@ -12,12 +12,13 @@ namespace {
 // A member added to the contract and forgotten here would silently arrive as zero.
 static_assert(sizeof(Recoil) == 2 * sizeof(double));
 static_assert(sizeof(Reaction) == sizeof(Waveform));
-static_assert(sizeof(PortResponse) == sizeof(Waveform) + 3 * sizeof(std::vector<double>) +
+static_assert(sizeof(PortResponse) == 2 * sizeof(Waveform) + 3 * sizeof(std::vector<double>) +
                                           3 * sizeof(double) + sizeof(std::optional<Recoil>));
 
 using Wire = v1::PortResponse;
 
 const Want everything;
+const Want places{.v = false, .a = false, .f = false, .points = {}};
 
 /// What is wanted of a port's trace.
 const Want& wanted(const Advance& asked, std::size_t port) {
@@ -25,6 +26,7 @@ const Want& wanted(const Advance& asked, std::size_t port) {
 }
 
 void encode(const PortResponse& from, const Want& want, WireWriter& to) {
+  if (!from.ahead.empty()) encode(from.ahead, places, Wire::kAheadFieldNumber, to);
   std::size_t reactions = from.reactions.size();
   while (reactions > 0 && from.reactions[reactions - 1].force.empty()) --reactions;
   while (reactions-- > 0) {
@@ -65,6 +67,17 @@ void decode_trace(Bytes from, const Port& port, const Advance& asked, const Want
   if (want.v) require_field(to, to.v, "v", path);
   if (want.a) require_field(to, to.a, "a", path);
   if (want.f) require_field(to, to.f, "f", path);
+}
+
+/// What a body saw when it looked on after the window.
+void decode_ahead(Bytes from, const Port& port, const Advance& asked, const FieldPath& path,
+                  Waveform& to) {
+  decode(from, size_of(port.geometry), path, to);
+  if (to.empty()) path.fail("is present but empty");
+  if (asked.ahead <= 0.0) path.fail("was not asked for");
+  if (!to.points.empty()) FieldPath{&path, "points"}.fail("is not of all points");
+  check_span(to, {0, asked.window.end, asked.window.end + asked.ahead}, path);
+  require_field(to, to.u, "u", path);
 }
 
 /// The force inside a reaction; empty: absent.
@@ -134,9 +147,13 @@ void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance
   const std::vector<Obstacle>& obstacles = asked.boundary[place].obstacles;
   clear(to, obstacles.size());
   std::size_t reactions = 0;
-  bool traced = false;
+  bool traced = false, looked = false;
   for (WireReader from(bytes, path); from.next();) {
     switch (from.field()) {
+      case Wire::kAheadFieldNumber:
+        decode_ahead(from.message(), port, asked, FieldPath{&path, "ahead"}, to.ahead);
+        looked = true;
+        break;
       case Wire::kTraceFieldNumber:
         decode_trace(from.message(), port, asked, wanted(asked, place), FieldPath{&path, "trace"},
                      to.trace);
@@ -176,6 +193,7 @@ void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance
     }
   }
   if (!traced) to.trace.clear();
+  if (!looked) to.ahead.clear();
   for (; reactions < to.reactions.size(); ++reactions) to.reactions[reactions].force.clear();
   require_reactions(asked.boundary[place], path, to.reactions);
   check(to.lower, index(asked.records * port.geometry.dim), true, FieldPath{&path, "lower"});

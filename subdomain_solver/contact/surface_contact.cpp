@@ -75,13 +75,21 @@ void SurfaceContact::meet(const Window& window) {
       meetings_.push_back(std::move(m));
     }
   }
-  if (pressed_.size() == pressed && reactions_.size() == reacted) return;  // resumed
-  pressed_.assign(pressed, 0.0);
-  reactions_.assign(reacted, 0.0);
+}
+
+/// States of before the first window hold no forces yet; resumed ones do.
+void SurfaceContact::begin_forces() {
+  if (meetings_.empty()) return;
+  const Meeting& last = meetings_.back();
+  const std::size_t pressed = last.pressed + surfaces_[last.own].at.size();
+  const std::size_t reacted = last.reacted + last.obstacle->width();
+  if (pressed_.size() != pressed) pressed_.assign(pressed, 0.0);
+  if (reactions_.size() != reacted) reactions_.assign(reacted, 0.0);
 }
 
 void SurfaceContact::impose(const Window& window) {
   if (meetings_.empty()) meet(window);
+  begin_forces();
   for (Meeting& m : meetings_) {
     const std::size_t port = m.obstacle->port();
     m.obstacle->impose(window.request.boundary[port], window.partners[port][m.obstacle->partner()],

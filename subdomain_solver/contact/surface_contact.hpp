@@ -65,6 +65,7 @@ class SurfaceContact final : public PortContact {
   };
 
   void meet(const Window& window);
+  void begin_forces();
   void pose(const Vector& q);
   void make_rows();
   [[nodiscard]] bool find_problem(const Vector& free, Compliance& give);

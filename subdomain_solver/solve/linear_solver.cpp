@@ -102,10 +102,14 @@ bool LinearSolver::solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
   return true;
 }
 
+std::unique_ptr<LinearSolver> make_small_solver(Pivots pivots) {
+  return std::make_unique<Ldlt>(pivots);
+}
+
 std::unique_ptr<LinearSolver> make_direct_solver(Pivots pivots) {
   if (std::unique_ptr<LinearSolver> quick = make_cholmod_solver(pivots); quick != nullptr)
     return std::make_unique<FirstThatFactors>(std::move(quick), pivots);
-  return std::make_unique<Ldlt>(pivots);
+  return make_small_solver(pivots);
 }
 
 }  // namespace abut

@@ -49,6 +49,7 @@ Advance full_advance() {
   advance.window = TimeWindow{41, -2.0e-4, 1.0 / 3.0};
   advance.records = 7;
   advance.sampling = Sampling::records;
+  advance.ahead = 0.75;
   advance.boundary.resize(2);
   advance.boundary[0].motion = wave(1, 0.0);
   advance.boundary[0].forces = {wave(1, 1.0), Waveform(), wave(1, 3.0)};
@@ -138,6 +139,7 @@ TEST(Codec, AdvanceKeepsEveryField) {
   EXPECT_EQ(got.window.end, sent.window.end);
   EXPECT_EQ(got.records, 7);
   EXPECT_EQ(got.sampling, Sampling::records);
+  EXPECT_EQ(got.ahead, 0.75);
   expect_equal(got.boundary[0].motion, sent.boundary[0].motion);
   ASSERT_EQ(got.boundary[0].forces.size(), 3U);
   expect_equal(got.boundary[0].forces[0], sent.boundary[0].forces[0]);
@@ -195,6 +197,25 @@ TEST(Codec, AReusedMessageHoldsNothingOfTheLastOne) {
   EXPECT_FALSE(got.boundary[0].closed());
   EXPECT_TRUE(got.boundary[0].impulse.empty());
   EXPECT_EQ(got.sampling, Sampling::substeps);
+}
+
+TEST(Codec, ALookAheadIsOfItsTimeAlone) {
+  Response sent = full_response();
+  Waveform& look = sent.ports[1].ahead = Waveform(1);
+  look.time = {0.2, 0.3, 0.5};
+  look.u = {1.0, 2.0, 4.0};
+  Advance asked = bare_advance();
+  asked.ahead = 0.3;
+  Response got;
+  decode(through_bytes(sent, asked), two_ports(), asked, got);
+  expect_equal(got.ports[1].ahead, look);
+  EXPECT_TRUE(got.ports[0].ahead.empty());
+  for (const double other : {0.0, 0.4}) {  // not asked for; asked for another time
+    Advance unlike = asked;
+    unlike.ahead = other;
+    EXPECT_THROW(decode(through_bytes(sent, asked), two_ports(), unlike, got), CodecError)
+        << other;
+  }
 }
 
 TEST(Codec, ResponseKeepsEveryField) {

@@ -26,9 +26,9 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 std::vector<Case> cases() {
   std::vector<Case> out;
-  for (const std::string& law : {"linear_elastic: {", "neo_hookean: {",
-                                 "j2_plasticity: {yield_stress: 1.0e-2, hardening: 0.1, "}) {
-    for (const std::string& scheme :
+  for (const std::string law : {"linear_elastic: {", "neo_hookean: {",
+                                "j2_plasticity: {yield_stress: 1.0e-2, hardening: 0.1, "}) {
+    for (const std::string scheme :
          {"central_difference", "newmark", "hht_alpha", "generalized_alpha", "quasi_static"}) {
       for (const auto& [dim, element] : {std::pair(2, "quad4"), std::pair(2, "tri6"),
                                          std::pair(3, "hex8"), std::pair(3, "tet4")})
@@ -161,6 +161,41 @@ TEST_P(SurfaceContactOf, ComesBackBitForBit) {
   const Response third = advance(*twin, 0.2, 0.4);
   EXPECT_EQ(twin->state_hash(), after);
   EXPECT_EQ(first.ports[0].reactions[0].force.f, third.ports[0].reactions[0].force.f);
+}
+
+/// Where it looks is where it flies, and it has not moved.
+TEST_P(SurfaceContactOf, LooksAheadAndStays) {
+  const std::size_t width = body->describe().ports[0].geometry.points.size();
+  Advance request;
+  request.window = {0, 0.0, 0.2};
+  request.boundary.resize(1);
+  Waveform& force = request.boundary[0].forces.emplace_back(static_cast<int>(width));
+  force.support = ForceSupport::linear;
+  force.time = {0.0, 0.2};
+  force.f.assign(2 * width, 0.0);
+  for (std::size_t k = 0; k < width; ++k) force.f[width + k] = -1.0e-4;
+  Response plain, looking;
+  body->save();
+  ASSERT_TRUE(std::holds_alternative<Advanced>(body->advance(request, plain)));
+  const std::uint64_t hash = body->state_hash();
+  EXPECT_TRUE(plain.ports[0].ahead.empty());
+  body->restore();
+  request.ahead = 0.1;
+  ASSERT_TRUE(std::holds_alternative<Advanced>(body->advance(request, looking)));
+  EXPECT_EQ(body->state_hash(), hash);
+  const Waveform& look = looking.ports[0].ahead;
+  Advance flight;
+  flight.window = {1, 0.2, 0.2 + 0.1};
+  flight.boundary.resize(1);
+  Waveform& gone = flight.boundary[0].forces.emplace_back(static_cast<int>(width));
+  gone.support = ForceSupport::linear;
+  gone.time = look.time;
+  gone.f.assign(gone.time.size() * width, 0.0);
+  for (std::size_t k = 0; k < width; ++k) gone.f[k] = -1.0e-4;
+  Response flown;
+  ASSERT_TRUE(std::holds_alternative<Advanced>(body->advance(flight, flown)));
+  EXPECT_EQ(look.time, flown.ports[0].trace.time);
+  EXPECT_EQ(look.u, flown.ports[0].trace.u);
 }
 
 TEST_P(SurfaceContactOf, ProbesLeaveItAlone) {
