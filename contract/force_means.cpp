@@ -4,6 +4,12 @@
 
 namespace abut {
 
+std::vector<double> levels_of(const Substeps& grid) {
+  std::vector<double> levels = {grid.begin};
+  for (int i = 1; i <= grid.count; ++i) levels.push_back(grid.time(i));
+  return levels;
+}
+
 std::vector<double> force_means(std::span<const double> here, std::span<const double> source) {
   const std::size_t rows = here.size(), columns = source.size();
   std::vector<double> parts(rows * columns, 0.0);

@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/life_signs.hpp"
+#include "contract/force_means.hpp"
 
 namespace abut {
 
@@ -167,6 +168,21 @@ std::optional<Failed> Body::advance(const Window& window, Response& response) {
   return std::nullopt;
 }
 
+/// From where the body is through a request that leaves no records; `visit` is called with the
+/// number of every substep behind it, from 0.
+template <class Visit>
+std::optional<Failed> Body::walk(const Window& window, const Visit& visit) {
+  if (auto failed = patiently([&] { return interior_->begin(window); })) return failed;
+  visit(0);
+  interior_->set_off(window);
+  for (int i = 1; i <= window.grid.count; ++i) {
+    if (auto failed = patiently([&] { return interior_->step(window, i); })) return failed;
+    report_progress();
+    visit(i);
+  }
+  return std::nullopt;
+}
+
 /// What partners press with at the window's end is gone by the end of the next substep. A look that
 /// fails has nothing to tell.
 void Body::look_ahead(const Advance& request, Response& response) {
@@ -177,29 +193,11 @@ void Body::look_ahead(const Advance& request, Response& response) {
   ahead_.window = {request.window.index + 1, begin, begin + request.ahead};
   ahead_.boundary.resize(ports_.size());
   const Substeps grid = divide(ahead_);
-  for (std::size_t p = 0; p < ports_.size(); ++p) {
-    std::vector<Waveform>& forces = ahead_.boundary[p].forces;
-    forces.resize(1);
-    forces[0].clear();
-    forces[0].width = static_cast<int>(ports_[p].width);
-    forces[0].support = ForceSupport::linear;
-    for (int i = 0; i <= grid.count; ++i)
-      forces[0].time.push_back(i == 0 ? grid.begin : grid.time(i));
-    forces[0].f.assign(forces[0].time.size() * ports_[p].width, 0.0);
-    bool pushed = false;
-    for (const Waveform& force : request.boundary[p].forces) {
-      if (force.empty() || !force.points.empty()) continue;
-      pressing_.resize(index(force.width));
-      force.force_at(begin, pressing_);
-      for (std::size_t k = 0; k < pressing_.size(); ++k) forces[0].f[k] += pressing_[k];
-      pushed = true;
-    }
-    if (!pushed) forces[0].clear();
-  }
+  for (std::size_t p = 0; p < ports_.size(); ++p) release(p, request, grid);
   write(*interior_, looked_, Archive::Form::bare);
   const Window window{ahead_, grid, partners_};
-  std::optional<Failed> failed = patiently([&] { return interior_->begin(window); });
-  const auto tell = [&](double time) {
+  const std::optional<Failed> failed = walk(window, [&](int i) {
+    const double time = i == 0 ? grid.begin : grid.time(i);
     const PortValues& seen = interior_->see(window, time, false);
     for (std::size_t p = 0; p < ports_.size(); ++p) {
       Waveform& told = response.ports[p].ahead;
@@ -207,18 +205,34 @@ void Body::look_ahead(const Advance& request, Response& response) {
       told.time.push_back(time);
       append(std::span(seen.u).subspan(ports_[p].first, ports_[p].width), {}, 1, told.u);
     }
-  };
-  if (!failed) tell(grid.begin);
-  if (!failed) interior_->set_off(window);
-  for (int i = 1; i <= grid.count && !failed; ++i) {
-    failed = patiently([&] { return interior_->step(window, i); });
-    if (!failed) tell(grid.time(i));
-    report_progress();
-  }
+  });
   for (PortResponse& port : response.ports)
     if (failed) port.ahead.clear();
   read(*interior_, looked_, Archive::Form::bare);
   interior_->restored();
+}
+
+/// The forces that a request ends with on a port, and none from the next substep's end on.
+void Body::release(std::size_t p, const Advance& request, const Substeps& grid) {
+  const std::size_t width = ports_[p].width, dim = index(ports_[p].geometry->dim);
+  std::vector<Waveform>& forces = ahead_.boundary[p].forces;
+  forces.resize(1);
+  Waveform& gone = forces[0];
+  gone.clear();
+  if (!request.boundary[p].pushed()) return;
+  gone.width = static_cast<int>(width);
+  gone.support = ForceSupport::linear;
+  gone.time = levels_of(grid);
+  gone.f.assign(gone.time.size() * width, 0.0);
+  for (const Waveform& force : request.boundary[p].forces) {
+    if (force.empty()) continue;
+    pressing_.resize(index(force.width));
+    force.force_at(request.window.end, pressing_);
+    for (std::size_t k = 0; k < pressing_.size(); ++k) {
+      const bool listed = !force.points.empty();
+      gone.f[listed ? index(force.points[k / dim]) * dim + k % dim : k] += pressing_[k];
+    }
+  }
 }
 
 /// A body without a step of its own goes from record to record.
@@ -416,15 +430,11 @@ std::optional<Failed> Body::respond(const Advance& request, const Substeps& grid
   const Window window{request, grid, partners_};
   const std::size_t width = describe().ports[port].geometry.points.size();
   displacement.clear();
-  if (auto failed = patiently([&] { return interior_->begin(window); })) return failed;
-  interior_->set_off(window);
-  for (int i = 1; i <= grid.count; ++i) {
-    if (auto failed = patiently([&] { return interior_->step(window, i); })) return failed;
-    report_progress();
+  return walk(window, [&](int i) {
+    if (i == 0) return;
     const double* u = interior_->see(window, grid.time(i), false).u.data() + ports_[port].first;
     displacement.insert(displacement.end(), u, u + width);
-  }
-  return std::nullopt;
+  });
 }
 
 /// With signs of life meanwhile, where a single call may take long.

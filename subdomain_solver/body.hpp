@@ -45,7 +45,10 @@ class Body final : public Subdomain {
   };
 
   std::optional<Failed> advance(const Window& window, Response& response);
+  template <class Visit>
+  std::optional<Failed> walk(const Window& window, const Visit& visit);
   void look_ahead(const Advance& request, Response& response);
+  void release(std::size_t port, const Advance& request, const Substeps& grid);
   Substeps divide(const Advance& request) const;
   void begin_replies(const Advance& request, Response& response);
   void follow(const Window& window, double time, bool shown);

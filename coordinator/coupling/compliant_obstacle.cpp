@@ -98,14 +98,11 @@ void CompliantObstacle::release(const Joint& joint, Bodies& bodies) {
   guess_.clear();
   guess_.width = iterate_.width;
   guess_.support = ForceSupport::linear;
+  guess_.time = levels_of(iterate_.steps);
   const bool linear = bodies.describe(joint.neumann_side().body).linear;
   for (int i = 0; i <= iterate_.steps.count; ++i) {
-    const double time = i == 0 ? iterate_.steps.begin : iterate_.steps.time(i);
-    guess_.time.push_back(time);
+    const double ahead = guess_.time[index(std::min(i, most_rising))] - guess_.time[0];
     for (std::size_t c = 0; c < f_begin_.size(); ++c) {
-      const double ahead = i <= most_rising
-                               ? time - iterate_.steps.begin
-                               : iterate_.steps.time(most_rising) - iterate_.steps.begin;
       const double on = f_begin_[c] + ahead * f_rate_[c];
       const bool turned = on * f_begin_[c] < 0.0 || f_begin_[c] == 0.0;
       guess_.f.push_back(i == 0 ? f_begin_[c] : linear || turned ? 0.0 : on);
@@ -147,9 +144,8 @@ void CompliantObstacle::impose(int side, const Eigen::Ref<const Eigen::VectorXd>
   }
   given_.clear();
   given_.width = iterate_.width;
-  given_.time.push_back(iterate_.steps.begin);
+  given_.time = levels_of(iterate_.steps);
   given_.u = u_begin_;
-  for (int i = 1; i <= iterate_.steps.count; ++i) given_.time.push_back(iterate_.steps.time(i));
   given_.u.insert(given_.u.end(), x.begin(), x.end());
   if (kernel_ != nullptr) {  // what pressed at the begin is in d
     given_.f.assign(given_.u.size(), 0.0);
@@ -194,9 +190,7 @@ void CompliantObstacle::take_back(Eigen::Ref<Eigen::VectorXd> motion) const {
 /// A force at the Neumann side's levels, as it takes it; what pressed at the begin is in d.
 void CompliantObstacle::take(const Waveform& force) {
   const Substeps& steps = iterate_.steps;
-  std::vector<double> levels = {steps.begin};
-  for (int i = 1; i <= steps.count; ++i) levels.push_back(steps.time(i));
-  const std::vector<double> parts = force_means(levels, force.time);
+  const std::vector<double> parts = force_means(levels_of(steps), force.time);
   const Eigen::Index times = static_cast<Eigen::Index>(force.size());
   const Eigen::Map<const Eigen::MatrixXd> f(force.f.data(), iterate_.width, times);
   const Eigen::Map<const Eigen::MatrixXd> part(parts.data(), times, steps.count + 1);

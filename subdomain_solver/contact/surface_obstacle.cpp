@@ -66,9 +66,7 @@ void SurfaceObstacle::impose(const BoundaryData& data, const Partner& met, const
                    fmt::format("body '{}'", body_),
                    "Give its motion at its own substeps, with the kernel of as many.");
   }
-  std::vector<double> levels = {grid.begin};
-  for (int i = 1; i <= grid.count; ++i) levels.push_back(grid.time(i));
-  parts_ = force_means(motion_->time, levels);
+  parts_ = force_means(motion_->time, levels_of(grid));
   taken_.assign(motion_->size() * width(), 0.0);
   if (motion_->f.empty()) return;
   for (std::size_t k = 0; k < taken_.size(); ++k) taken_[k] = -motion_->f[k];

@@ -27,7 +27,6 @@ class SurfaceObstacle {
   /// It acts in this window.
   bool acts() const { return motion_ != nullptr; }
   bool yields() const { return acts() && met_->kernel.count() > 0; }
-  const std::vector<std::int32_t>& points() const { return motion_->points; }
 
   /// The substep i is next. `reaction`: [N] (values) the force on the partner at the substep
   /// before.

@@ -144,7 +144,13 @@ void map_nodes(const SolidShapeSpec& spec, const Place& place, const std::string
   for (std::size_t k = 0; !formulas.empty() && k < mesh.points.size(); k += dim) {
     std::array<double, 3> at{};
     std::copy_n(mesh.points.begin() + static_cast<std::ptrdiff_t>(k), dim, at.begin());
-    for (std::size_t i = 0; i < dim; ++i) mesh.points[k + i] = formulas[i](at, 0.0);
+    for (std::size_t i = 0; i < dim; ++i) {
+      mesh.points[k + i] = formulas[i](at, 0.0);
+      if (std::isfinite(mesh.points[k + i])) continue;
+      throw InputError(fmt::format("has no value at the node {}", words(at.data(), mesh.dim)),
+                       place.where(fmt::format("{}.map[{}]", model, i)),
+                       "Give an expression with a value at every node of the mesh.");
+    }
   }
 }
 
