@@ -44,6 +44,8 @@ struct PortKernel {
   std::vector<double> displacement;
   // [m/N] (n, patterns, width) the same, force at the window's begin only (nodal support)
   std::vector<double> begin;
+  // of the port, ascending, that patterns and responses are of; empty: all. Others do not give way.
+  std::vector<std::int32_t> points;
 
   std::size_t per_step() const { return index(patterns) * index(width); }
   int count() const { return static_cast<int>(displacement.size() / per_step()); }

@@ -42,6 +42,7 @@ struct Description {
   double stable_step = 0.0;  // [s] limit of the nominal step; infinity: none
   // Its energy changes by port and external work alone, as its records tell: no damping, no heat.
   bool conserves = false;
+  bool quasi_static = false;  // it has no inertia: its energy follows its loads step by step
   bool linear = false;  // it answers forces linearly: port kernels tell it exactly
   std::vector<Port> ports;
   Capabilities can;

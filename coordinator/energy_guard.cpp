@@ -6,10 +6,11 @@
 
 namespace abut {
 
-EnergyGuard::EnergyGuard(double share, std::vector<bool> conserves)
+EnergyGuard::EnergyGuard(double share, std::vector<bool> conserves, bool together)
     : share_(share),
       conserves_(std::move(conserves)),
       all_conserve_(std::ranges::all_of(conserves_, [](bool yes) { return yes; })),
+      together_(together),
       bodies_(conserves_.size()) {}
 
 EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
@@ -37,6 +38,7 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
     return verdict(change, share_, true);
   }
   culprit_ = -1;
+  if (!together_) return Verdict::fine;
   return verdict((own - first_) / most_, share_, all_conserve_);
 }
 

@@ -17,7 +17,8 @@ class EnergyGuard {
 
   /// `share`: change, as a fraction of the largest kinetic and stored energy so far, that fails.
   /// `conserves`: by body, whether it is watched by itself; all: whether losses are wrong too.
-  EnergyGuard(double share, std::vector<bool> conserves);
+  /// `together`: whether the sum of all bodies is watched.
+  EnergyGuard(double share, std::vector<bool> conserves, bool together = true);
 
   /// Looks at the last record of every body, once for every accepted window. Warns once, at half
   /// the share of growth; of losses at the share itself.
@@ -39,7 +40,7 @@ class EnergyGuard {
 
   double share_;
   std::vector<bool> conserves_;
-  bool all_conserve_;
+  bool all_conserve_, together_;
   bool begun_ = false, warned_ = false;
   std::vector<Account> bodies_;
   double first_ = 0.0;  // [J] at the first look

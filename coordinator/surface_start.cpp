@@ -12,8 +12,10 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "surface/check.hpp"
+#include "surface/divided_surface.hpp"
 #include "surface/mortar.hpp"
 #include "surface/point_rows.hpp"
+#include "surface/sharp_nodes.hpp"
 
 namespace abut {
 
@@ -61,6 +63,29 @@ void check_nodes(const NamedSurface& one, const NamedSurface& other, const std::
       where, "Move a body with initial.position until they are apart.");
 }
 
+bool has_edges(const NamedSurface& surface) {
+  return !sharp_nodes(posed(surface.geometry), sharp_edge).empty();
+}
+
+/// Rows will be of the nodes of the surface that has edges, divided as finely as the finder's
+/// (METHOD.md, [M.93]).
+void check_division(const NamedSurface& finder, const NamedSurface& edged,
+                    const std::string& where) {
+  constexpr double most_facets = 2.0e5;
+  const PosedSurface surface = posed(edged.geometry);
+  const double parts = parts_for(surface, finder.geometry.spacing);
+  const double facets = surface.facet_count() * std::pow(parts, surface.dim - 1);
+  if (facets <= most_facets) return;
+  throw InputError(
+      fmt::format("{} has sharp edges and is to be divided as finely as {}, {:.3g} m, which makes "
+                  "{:.3g} facets of it",
+                  edged.name, finder.name, finder.geometry.spacing, facets),
+      where,
+      fmt::format("Name a side of {} without edges, or make the body no larger than what it "
+                  "touches.",
+                  edged.name));
+}
+
 /// Facets of polygons that stand for round bodies overlap on the average of a node's surroundings
 /// before any node does: contact would begin with a blow.
 void check_averages(const NamedSurface& one, const NamedSurface& other, const std::string& where) {
@@ -95,7 +120,9 @@ void check_surfaces(const NamedSurface& finder, const NamedSurface& other,
   check_facets(other, where);
   check_nodes(finder, other, where);
   check_nodes(other, finder, where);
-  check_averages(finder, other, where);
+  const bool turned = has_edges(other) && !has_edges(finder);
+  if (turned) check_division(finder, other, where);
+  check_averages(turned ? other : finder, turned ? finder : other, where);
 }
 
 }  // namespace abut

@@ -14,8 +14,8 @@ struct NamedSurface {
 
 /// Refuses what no contact can start from: a facet without area or folded, and surfaces that
 /// overlap in the reference by more than a millionth of a facet, in nodes or over the facets of the
-/// finder, which is the side that finds their contact. Throws InputError with the facet, or the
-/// place and how much; `where` is the interface's key.
+/// side whose nodes have the rows: the finder's, which finds their contact, but for edges. Throws
+/// InputError with the facet, or the place and how much; `where` is the interface's key.
 void check_surfaces(const NamedSurface& finder, const NamedSurface& other,
                     const std::string& where);
 

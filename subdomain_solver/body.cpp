@@ -386,6 +386,7 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
                     static_cast<int>(width),
                     {},
                     {},
+                    {},
                     {}};
   kernel.displacement.assign(index(count) * patterns.size(), 0.0);
   const bool nodal = kernel.support == ForceSupport::nodal;

@@ -108,6 +108,7 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   description_.dofs = parts_.problem->model->dofs();
   description_.mass = parts_.model->material().density() * parts_.model->volume();
   description_.step = parts_.scheme.step;
+  description_.quasi_static = !parts_.scheme.integrator->has_inertia();
   description_.stable_step = parts_.scheme.stable_step;
   description_.can.force = true;
   const bool small = parts_.problem->model->is_linear() && parts_.deforms;

@@ -12,6 +12,11 @@ namespace {
 /// N covers less than some hundredth of a facet, away from its edges.
 constexpr double most_cancellation = 1.0e3;
 
+/// A facet of K over which N goes out of reach, some part of it being nearer, is not joined: it is
+/// far from touching, and dual functions of the part that is nearer would lead N on beyond it, on
+/// curved faces through K. `apart`: of the reach, `whole`: of the facet's area.
+constexpr double apart = 0.5, whole = 0.999;
+
 /// Coefficients A of the dual functions, Phi = A N, where D and w are those of the facet; false
 /// when round-off would show in them.
 bool dual_basis(const Eigen::Matrix4d& d, const Shape4& w, int count, Eigen::Matrix4d& a) {
@@ -56,18 +61,22 @@ void mortar_pieces(const PosedSurface& k, const PosedSurface& n, std::span<const
     facet.t.setZero();
     facet.weight.setZero();
     double covered = 0.0;
+    bool leaves = false;
     for (end = begin; end < pairs.size() && pairs[end].k == pairs[begin].k; ++end) {
       const Corners partner = corners(n, pairs[end].n);
       const Eigen::Vector3d normal = mean_normal(partner);
       if (!(normal.dot(ground.plane.normal) <= -options.facing)) continue;
-      if (!integrate(ground, partner, options.reach, options.quadrature, overlap)) continue;
+      const bool joined = integrate(ground, partner, options.reach, options.quadrature, overlap);
+      leaves = leaves || overlap.gap > apart * options.reach;
+      if (!joined) continue;
       out.pieces.push_back({pairs[end].n, overlap.mixed, overlap.moments, normal});
       facet.t += overlap.own;
       facet.weight += overlap.moments;
       covered += overlap.area;
     }
     facet.last = static_cast<std::int32_t>(out.pieces.size());
-    if (facet.first == facet.last) continue;
+    if (leaves && covered < whole * ground.area) out.pieces.resize(index(facet.first));
+    if (index(facet.first) == out.pieces.size()) continue;
     to_dual(ground, covered, options.dual_from, facet,
             std::span(out.pieces).subspan(index(facet.first)));
     out.facets.push_back(facet);

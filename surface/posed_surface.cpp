@@ -1,8 +1,20 @@
 #include "surface/posed_surface.hpp"
 
+#include <algorithm>
+
 #include "base/index.hpp"
 
 namespace abut {
+
+double longest_edge(const PosedSurface& surface) {
+  double longest = 0.0;
+  for (int f = 0; f < surface.facet_count(); ++f) {
+    const Corners c = corners(surface, f);
+    for (int i = 0; i < c.count; ++i)
+      longest = std::max(longest, (c.x[(i + 1) % c.count] - c.x[i]).norm());
+  }
+  return longest;
+}
 
 void nodal_normals(const PosedSurface& surface, std::vector<double>& normals) {
   const int dim = surface.dim;

@@ -75,6 +75,9 @@ inline Eigen::Vector3d mean_normal(const Corners& c) {
   return size > 0.0 ? Eigen::Vector3d(a / size) : Eigen::Vector3d::Zero();
 }
 
+/// [m] of all facets; 0 without one.
+double longest_edge(const PosedSurface& surface);
+
 /// Outward unit normals at the nodes, (n, dim): facets by area. Zero at a node without facets.
 void nodal_normals(const PosedSurface& surface, std::vector<double>& normals);
 

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "surface/posed_surface.hpp"
 
 namespace abut {
+
+/// [rad] Edges that turn by more are sharp to contact.
+inline constexpr double sharp_edge = std::numbers::pi / 6.0;
 
 /// Nodes at convex edges (in the plane: corners) whose two facets turn by more than `angle` [rad],
 /// ascending: where averaged normals mean nothing and a row of its own takes the node to the

@@ -27,8 +27,28 @@ PortKernel along(const PortKernel& all, const PortGeometry& surface) {
       out[k / normals.size()] += normals[k % normals.size()] * values[k] / count;
     return out;
   };
-  return {all.step,       all.support, 1, 1, mean(all.compliance), mean(all.displacement),
-          mean(all.begin)};
+  return {all.step,        all.support, 1, 1, mean(all.compliance), mean(all.displacement),
+          mean(all.begin), {}};
+}
+
+/// The responses of some points alone, to patterns of as many.
+PortKernel cut(PortKernel all, const std::vector<std::int32_t>& points, std::size_t dim) {
+  all.points = points;
+  if (points.empty()) return all;
+  const std::size_t width = index(all.width), least = points.size() * dim;
+  const auto keep = [&](std::vector<double>& values) {
+    const std::size_t rows = values.size() / width;
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t k = 0; k < least; ++k)
+        values[r * least + k] = values[r * width + index(points[k / dim]) * dim + k % dim];
+    values.resize(rows * least);
+    values.shrink_to_fit();
+  };
+  keep(all.compliance);
+  keep(all.displacement);
+  keep(all.begin);
+  all.width = static_cast<int>(least);
+  return all;
 }
 
 /// A body in this process shares its memory: when that ends, the body is to be named.
@@ -159,14 +179,15 @@ const PortKernel& Bodies::kernel(int body, int port, int count) {
   return kernel;
 }
 
-const PortKernel& Bodies::full_kernel(int body, int port, int count) {
-  PortKernel& kernel = cached(full_kernels_, body, port);
-  if (kernel.count() >= count) return kernel;
-  const std::size_t width = describe(body).ports[index(port)].geometry.points.size();
-  std::vector<double> units(width * width, 0.0);
-  for (std::size_t k = 0; k < width; ++k) units[k * width + k] = 1.0;
-  kernel = ask(body, port, units, count);
-  return kernel;
+PortKernel Bodies::full_kernel(int body, int port, int count,
+                               const std::vector<std::int32_t>& points) {
+  const PortGeometry& surface = describe(body).ports[index(port)].geometry;
+  const std::size_t width = surface.points.size(), dim = index(surface.dim);
+  const std::size_t values = points.empty() ? width : points.size() * dim;
+  std::vector<double> units(values * width, 0.0);
+  for (std::size_t k = 0; k < values; ++k)
+    units[k * width + (points.empty() ? k : index(points[k / dim]) * dim + k % dim)] = 1.0;
+  return cut(ask(body, port, units, count), points, dim);
 }
 
 double Bodies::shortest_step() const {

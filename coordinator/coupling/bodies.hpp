@@ -63,8 +63,9 @@ class Bodies {
   /// along them: one pattern of one value.
   const PortKernel& kernel(int body, int port, int count);
 
-  /// Response of every value of a port to a unit force on every one.
-  const PortKernel& full_kernel(int body, int port, int count);
+  /// Response of every value of a port's points to a unit force on every one. `points`: ascending;
+  /// empty: all.
+  PortKernel full_kernel(int body, int port, int count, const std::vector<std::int32_t>& points);
 
   double shortest_step() const;  // [s] of all bodies, at most a window
   double longest_step() const;   // [s] of those that have one; a window where none has
@@ -87,7 +88,7 @@ class Bodies {
   std::vector<Response> responses_;
   std::vector<double> struck_;
   std::vector<int> everybody_;
-  Kernels kernels_, full_kernels_;
+  Kernels kernels_;
   std::int64_t exchanges_ = 0;
   std::vector<double> compute_seconds_;
   std::vector<float> overhead_;

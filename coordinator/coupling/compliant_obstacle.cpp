@@ -27,12 +27,13 @@ void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodi
   kinematic_grid_ = substeps_of(bodies, k, window);
   iterate_ = {substeps_of(bodies, n, window),
               static_cast<int>(bodies.port(n).geometry.points.size())};
+  dim_ = index(bodies.port(n).geometry.dim);
   const Waveform& trace = trace_of(bodies, n);
   const std::size_t now = index_at_begin(trace, window.begin);
   keep_row(trace, trace.u, now, u_begin_);
   keep_row(trace, trace.v, now, v_begin_);
   keep_begin(window, joint, bodies);
-  find_kernel(joint, bodies);
+  find_kernel(window.length(), joint, bodies);
   const bool stands = std::isinf(bodies.describe(n.body).mass) && largest(v_begin_) == 0.0;
   flight_.resize(0);
   const bool looked = see_look(joint, bodies);
@@ -71,14 +72,25 @@ void CompliantObstacle::keep_begin(const TimeWindow& window, const Joint& joint,
     f_rate_[c] = (f_begin_[c] - before[c]) / (force.time[now] - force.time[now - 1]);
 }
 
-void CompliantObstacle::find_kernel(const Joint& joint, Bodies& bodies) {
+void CompliantObstacle::find_zone(double length, const Joint& joint, const Bodies& bodies) {
+  const Waveform& trace = trace_of(bodies, joint.kinematic_side());
+  const std::size_t now = index_at_begin(trace, iterate_.steps.begin);
+  keep_row(trace, trace.u, now, u_k_);
+  const double speed = largest(v_begin_) + largest(row(trace, trace.v, now));
+  zone_.see(joint, bodies, u_k_, u_begin_, speed * length);
+}
+
+void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& bodies) {
   const Side& k = joint.kinematic_side();
   const Side& n = joint.neumann_side();
   kernel_ = nullptr;
   first_factor_ = 1.0;
   const Description& body = bodies.describe(n.body);
   if (std::isinf(body.mass) || !body.can.kernel) return;
-  const double size = static_cast<double>(iterate_.steps.count) * iterate_.width * iterate_.width;
+  find_zone(length, joint, bodies);
+  const double values =
+      zone_.points().empty() ? iterate_.width : static_cast<double>(zone_.points().size() * dim_);
+  const double size = iterate_.steps.count * values * values;
   if (!bodies.describe(k.body).can.yielding || size > largest_kernel) {
     if (!bodies.describe(k.body).can.kernel) return;
     const double own = bodies.kernel(k.body, k.port, kinematic_grid_.count).displacement.front();
@@ -86,10 +98,10 @@ void CompliantObstacle::find_kernel(const Joint& joint, Bodies& bodies) {
     if (own > 0.0) first_factor_ = std::max(least_factor, own / (own + std::max(0.0, others)));
     return;
   }
-  kernel_ = &bodies.full_kernel(n.body, n.port, iterate_.steps.count);
-  if (told_ >= kernel_->count()) return;
-  bodies[k.body].yields(k.port, k.partner, *kernel_);
-  told_ = kernel_->count();
+  kernel_ = &answer_;
+  if (answer_.count() >= iterate_.steps.count && answer_.points == zone_.points()) return;
+  answer_ = bodies.full_kernel(n.body, n.port, iterate_.steps.count, zone_.points());
+  bodies[k.body].yields(k.port, k.partner, answer_);
 }
 
 /// The flight of the Neumann side: what pressed at the begin goes, as the force of the instant. A
@@ -171,20 +183,26 @@ void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>&, const Jo
 
 /// Takes from the Neumann side's motion what the forces taken have moved it by the kernel.
 void CompliantObstacle::take_back(Eigen::Ref<Eigen::VectorXd> motion) const {
-  const int width = iterate_.width;
+  const int width = kernel_->width;
   for (int j = 0; j <= iterate_.steps.count; ++j) {
     for (int p = 0; p < width; ++p) {
-      const double force = taken_(p, j);
+      const double force = taken_(static_cast<Eigen::Index>(value(p)), j);
       if (force == 0.0) continue;
       const std::vector<double>& of = j == 0 ? kernel_->begin : kernel_->displacement;
       for (int i = std::max(1, j); i <= iterate_.steps.count; ++i) {
         const int lag = j == 0 ? i - 1 : i - j;
         const double* response = of.data() + index(lag) * kernel_->per_step() + index(p * width);
-        motion.segment(iterate_.at(i), width) -=
-            force * Eigen::Map<const Eigen::VectorXd>(response, width);
+        double* moved = &motion[iterate_.at(i)];
+        for (int q = 0; q < width; ++q) moved[value(q)] -= force * response[q];
       }
     }
   }
+}
+
+std::size_t CompliantObstacle::value(int p) const {
+  const std::vector<std::int32_t>& points = kernel_->points;
+  if (points.empty()) return index(p);
+  return index(points[index(p) / dim_]) * dim_ + index(p) % dim_;
 }
 
 /// A force at the Neumann side's levels, as it takes it; what pressed at the begin is in d.

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "coordinator/coupling/contact_zone.hpp"
 #include "coordinator/coupling/transmission.hpp"
 
 namespace abut {
@@ -34,7 +35,9 @@ class CompliantObstacle final : public Transmission {
   bool ordered() const override { return true; }
 
  private:
-  void find_kernel(const Joint& joint, Bodies& bodies);
+  void find_kernel(double length, const Joint& joint, Bodies& bodies);
+  void find_zone(double length, const Joint& joint, const Bodies& bodies);
+  std::size_t value(int p) const;  // of the port, that a kernel's value p is
   bool see_look(const Joint& joint, const Bodies& bodies);
   void keep_begin(const TimeWindow& window, const Joint& joint, const Bodies& bodies);
   void take(const Waveform& force);
@@ -46,8 +49,11 @@ class CompliantObstacle final : public Transmission {
   std::vector<double> u_begin_, v_begin_;  // (width) of the Neumann port
   std::vector<double> f_begin_, f_rate_;   // [N] [N/s] (width) reaction at the window's begin
   Waveform guess_;                         // [N] under which the Neumann side flies
+  std::size_t dim_ = 1;
+  ContactZone zone_;                       // of points that give way
+  std::vector<double> u_k_;                // [m] of the kinematic port, at the window's begin
   const PortKernel* kernel_ = nullptr;     // null: the obstacle does not give way
-  int told_ = 0;                           // substeps of the kernel that the body knows
+  PortKernel answer_;                      // of the zone, as the kinematic body knows it
   bool flies_ = false;
   double looks_ = 0.0;  // [s] by which the Neumann side looks on after the window
   Eigen::VectorXd flight_;  // [m] as the iterate; empty: none was flown

@@ -82,6 +82,7 @@ void encode(const Description& from, v1::Description& to) {
   to.set_stable_step(from.stable_step);
   to.set_conserves(from.conserves);
   to.set_linear(from.linear);
+  to.set_quasi_static(from.quasi_static);
   for (const Port& port : from.ports) {
     v1::Port& wire = *to.add_ports();
     wire.set_name(port.name);
@@ -113,6 +114,7 @@ void decode(const v1::Description& from, Description& to) {
       number(from.stable_step(), FieldPath{&path, "stable_step"}, Allow::not_negative_or_inf);
   to.conserves = from.conserves();
   to.linear = from.linear();
+  to.quasi_static = from.quasi_static();
   if (from.ports_size() > most_ports) FieldPath{&path, "ports"}.fail("has too many entries");
   to.ports.resize(index(from.ports_size()));
   for (int i = 0; i < from.ports_size(); ++i) {

@@ -8,7 +8,7 @@ namespace abut {
 namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
-static_assert(sizeof(PortKernel) == 3 * sizeof(double) + 3 * sizeof(std::vector<double>));
+static_assert(sizeof(PortKernel) == 3 * sizeof(double) + 4 * sizeof(std::vector<double>));
 
 /// The arrays are whole and of one size; patterns and width are those that the caller expects.
 void decode(const v1::PortKernel& from, int patterns, int width, const FieldPath& path,
@@ -69,11 +69,14 @@ void encode(const PortKernel& from, v1::PortKernel& to) {
   copy(from.compliance, *to.mutable_compliance());
   copy(from.displacement, *to.mutable_displacement());
   copy(from.begin, *to.mutable_begin());
+  to.mutable_points()->Assign(from.points.begin(), from.points.end());
 }
 
 void decode(const v1::PortKernel& from, const Description& body, const Probing& asked,
             PortKernel& to) {
   const FieldPath path{nullptr, "kernel"};
+  if (from.points_size() > 0) FieldPath{&path, "points"}.fail("was not asked for");
+  to.points.clear();
   const int width = size_of(body.ports[index(asked.port)].geometry).width();
   decode(from, static_cast<int>(asked.patterns.size()) / width, width, path, to);
   if (to.count() == asked.count) return;
@@ -94,7 +97,12 @@ void decode(const v1::Yields& from, const Partners& met, Yielding& to) {
   to.partner = position(from.partner(), partners.size(), FieldPath{&path, "partner"});
   const FieldPath kernel{&path, "kernel"};
   if (!from.has_kernel()) kernel.fail("is missing");
-  const int width = partners[index(to.partner)].width();
+  const SurfaceSize& surface = partners[index(to.partner)];
+  to.kernel.points.assign(from.kernel().points().begin(), from.kernel().points().end());
+  check_points(to.kernel.points, surface.points, FieldPath{&kernel, "points"});
+  const int width = to.kernel.points.empty()
+                        ? surface.width()
+                        : static_cast<int>(to.kernel.points.size()) * surface.dim;
   decode(from.kernel(), width, width, kernel, to.kernel);
 }
 

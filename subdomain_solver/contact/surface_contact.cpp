@@ -44,6 +44,7 @@ SurfaceContact::SurfaceContact(std::vector<Surface> surfaces, const std::string&
 void SurfaceContact::state(Archive& archive) {
   archive.field("pressed", pressed_);
   archive.field("reactions", reactions_);
+  archive.field("turned", turned_);
 }
 
 std::span<double> SurfaceContact::pressed(const Meeting& m) {
@@ -85,6 +86,7 @@ void SurfaceContact::begin_forces() {
   const std::size_t reacted = last.reacted + last.obstacle->width();
   if (pressed_.size() != pressed) pressed_.assign(pressed, 0.0);
   if (reactions_.size() != reacted) reactions_.assign(reacted, 0.0);
+  if (turned_.size() != meetings_.size()) turned_.assign(meetings_.size(), 0.0);
 }
 
 void SurfaceContact::impose(const Window& window) {
@@ -144,7 +146,12 @@ void SurfaceContact::see_gaps(std::size_t port,
   for (const Meeting& m : meetings_) {
     if (m.obstacle->port() != port || !m.obstacle->acts()) continue;
     const SurfaceRows& rows = m.obstacle->rows();
-    for (std::size_t r = 0; r < rows.nodes.size(); ++r) see(index(rows.nodes[r]), rows.gaps[r]);
+    for (int r = 0; r < rows.count(); ++r) {
+      const std::int32_t first = rows.k.offsets[index(r)], last = rows.k.offsets[index(r) + 1];
+      const auto begin = rows.k.values.begin();
+      const auto most = std::max_element(begin + first, begin + last);
+      see(index(rows.k.columns[index(most - begin)]), rows.gaps[index(r)]);
+    }
   }
 }
 
@@ -155,8 +162,10 @@ void SurfaceContact::aim(int i, const std::vector<double>&, const std::vector<do
     for (std::size_t v = 0; v < own.begin.size(); ++v)
       own.begin[v] += places[own.surface.first + v];
   }
-  for (Meeting& m : meetings_)
-    if (m.obstacle->acts()) m.obstacle->aim(i, reacted(m));
+  for (std::size_t k = 0; k < meetings_.size(); ++k) {
+    Meeting& m = meetings_[k];
+    if (m.obstacle->acts()) m.obstacle->aim(i, reacted(m), turned_[k] != 0.0);
+  }
 }
 
 /// Where the surfaces are when the coordinates are q.
@@ -310,6 +319,8 @@ const Vector* SurfaceContact::solve(double time, const Vector& free, Compliance&
     const double change = (force_ - last_).lpNorm<Eigen::Infinity>();
     if (change <= settled * force_.lpNorm<Eigen::Infinity>() || looks_ >= most_looks) break;
   }
+  for (std::size_t k = 0; k < meetings_.size(); ++k)
+    turned_[k] = meetings_[k].obstacle->turned() ? 1.0 : 0.0;
   return &force_;
 }
 

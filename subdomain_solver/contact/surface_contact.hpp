@@ -81,6 +81,7 @@ class SurfaceContact final : public PortContact {
   std::vector<Meeting> meetings_;  // by port and partner
   std::vector<double> pressed_;    // [N] (meetings, values of the port) on the body: state
   std::vector<double> reactions_;  // [N] (meetings, values of the partner) on partners: state
+  std::vector<double> turned_;     // (meetings) 1: rows of the partner's nodes: state
   int looks_ = 0;                  // at the geometry, at this time
   double time_ = 0.0;              // [s] that was solved for last
   // The problem of all rows:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -17,31 +18,18 @@ PosedSurface posed(const PortGeometry& surface, std::span<const double> points) 
   return {surface.dim, points, surface.facets, surface.offsets};
 }
 
-/// [m] of the facets: what is farther from one than that is not what it presses on.
-double longest_edge(const PortGeometry& surface) {
-  const std::size_t dim = index(surface.dim);
-  double longest = 0.0;
-  for (std::size_t f = 0; f + 1 < surface.offsets.size(); ++f) {
-    for (std::int32_t a = surface.offsets[f]; a + 1 < surface.offsets[f + 1]; ++a) {
-      const std::size_t from = index(surface.facets[index(a)]),
-                        to = index(surface.facets[index(a + 1)]);
-      double square = 0.0;
-      for (std::size_t i = 0; i < dim; ++i) {
-        const double along = surface.points[to * dim + i] - surface.points[from * dim + i];
-        square += along * along;
-      }
-      longest = std::max(longest, std::sqrt(square));
-    }
-  }
-  return longest;
-}
-
 }  // namespace
 
 SurfaceObstacle::SurfaceObstacle(std::size_t port, std::size_t partner, const PortGeometry& own,
                                  const Partner& met, std::string body)
-    : port_(port), partner_(partner), own_(own), met_(&met), body_(std::move(body)) {
-  reach_ = longest_edge(own);
+    : port_(port),
+      partner_(partner),
+      own_(own),
+      met_(&met),
+      body_(std::move(body)),
+      reach_(longest_edge(posed(own, own.points))),
+      edges_(met.surface, own.spacing),
+      own_edges_(own, reach_) {
   free_ = pose_ = met.surface.points;
   build(tree_, posed(met.surface, pose_), reach_);
   build(own_tree_, posed(own, own.points), 0.0);
@@ -60,7 +48,8 @@ void SurfaceObstacle::impose(const BoundaryData& data, const Partner& met, const
   }
   if (!yields()) return;
   const PortKernel& kernel = met_->kernel;
-  if (index(kernel.count() + 1) < motion_->size() || index(kernel.width) != width() ||
+  find_zone();
+  if (index(kernel.count() + 1) < motion_->size() || index(kernel.width) != zone_.size() ||
       kernel.patterns != kernel.width || kernel.begin.size() != kernel.displacement.size()) {
     throw RunError("an obstacle that gives way has a kernel that is too short or of other points",
                    fmt::format("body '{}'", body_),
@@ -72,16 +61,32 @@ void SurfaceObstacle::impose(const BoundaryData& data, const Partner& met, const
   for (std::size_t k = 0; k < taken_.size(); ++k) taken_[k] = -motion_->f[k];
 }
 
-/// [m/N] (values) of the surface at a level to a force at another one, 0: the window's begin.
+/// Which values of the partner's surface its kernel is of.
+void SurfaceObstacle::find_zone() {
+  const std::vector<std::int32_t>& points = met_->kernel.points;
+  const std::size_t dim = index(met_->surface.dim);
+  zone_.clear();
+  in_zone_.assign(width(), -1);
+  for (std::size_t v = 0; v < (points.empty() ? width() : points.size() * dim); ++v) {
+    zone_.push_back(points.empty() ? v : index(points[v / dim]) * dim + v % dim);
+    in_zone_[zone_.back()] = static_cast<int>(v);
+  }
+}
+
+/// [m/N] (zone) of the surface at a level to a force at another one, 0: the window's begin.
 const double* SurfaceObstacle::response(int level, int at, std::size_t force) const {
   const PortKernel& kernel = met_->kernel;
   const std::vector<double>& of = at == 0 ? kernel.begin : kernel.displacement;
-  return of.data() + (index(at == 0 ? level - 1 : level - at) * width() + force) * width();
+  const std::size_t z = zone_.size();
+  return of.data() + (index(at == 0 ? level - 1 : level - at) * z + force) * z;
 }
 
 /// Earlier reactions are known, this substep's goes on being the later ones' guess [M.92].
-void SurfaceObstacle::aim(int i, std::span<const double> reaction) {
+void SurfaceObstacle::aim(int i, std::span<const double> reaction, bool turned) {
   const std::size_t w = width(), levels = motion_->size(), columns = index(grid_.count + 1);
+  held_ = std::ranges::any_of(reaction, [](double force) { return force != 0.0; });
+  turned_ = turned;
+  chosen_ = false;
   memory_.assign(w, 0.0);
   find_travel(i);
   if (!yields() || i == 0) return;
@@ -93,7 +98,7 @@ void SurfaceObstacle::aim(int i, std::span<const double> reaction) {
   later_.assign(levels, 0.0);
   for (std::size_t l = 0; l < levels; ++l)
     for (std::size_t j = index(i); j < columns; ++j) later_[l] += parts_[l * columns + j];
-  give_.assign(w * w, 0.0);
+  give_.assign(zone_.size() * zone_.size(), 0.0);
   const double time = grid_.time(i);
   const auto after = std::ranges::lower_bound(motion_->time, time) - motion_->time.begin();
   const int next =
@@ -109,26 +114,26 @@ void SurfaceObstacle::aim(int i, std::span<const double> reaction) {
 
 /// Adds a share of what earlier reactions have moved the surface at a level.
 void SurfaceObstacle::recall(int level, double share) {
-  const std::size_t w = width();
+  const std::size_t w = width(), z = zone_.size();
   for (int at = 0; at <= level && level > 0; ++at) {
-    for (std::size_t f = 0; f < w; ++f) {
-      const double force = share * taken_[index(at) * w + f];
+    for (std::size_t f = 0; f < z; ++f) {
+      const double force = share * taken_[index(at) * w + zone_[f]];
       if (force == 0.0) continue;
       const double* answer = response(level, at, f);
-      for (std::size_t v = 0; v < w; ++v) memory_[v] += force * answer[v];
+      for (std::size_t v = 0; v < z; ++v) memory_[zone_[v]] += force * answer[v];
     }
   }
 }
 
 /// Adds a share of what this substep's reaction moves the surface at a level.
 void SurfaceObstacle::find_give(int level, double share) {
-  const std::size_t w = width();
+  const std::size_t z = zone_.size();
   for (int at = 0; at <= level && level > 0; ++at) {
     const double part = share * later_[index(at)];
     if (part == 0.0) continue;
-    for (std::size_t f = 0; f < w; ++f) {
+    for (std::size_t f = 0; f < z; ++f) {
       const double* answer = response(level, at, f);
-      for (std::size_t v = 0; v < w; ++v) give_[f * w + v] += part * answer[v];
+      for (std::size_t v = 0; v < z; ++v) give_[f * z + v] += part * answer[v];
     }
   }
 }
@@ -154,19 +159,36 @@ void SurfaceObstacle::place(double time) {
 void SurfaceObstacle::give_way(std::span<const double> reaction) {
   pose_ = free_;
   if (!yields()) return;
-  for (std::size_t f = 0; f < width(); ++f) {
-    if (reaction[f] == 0.0) continue;
-    for (std::size_t v = 0; v < width(); ++v) pose_[v] += reaction[f] * compliance(v, f);
+  const std::size_t z = zone_.size();
+  for (std::size_t f = 0; f < z; ++f) {
+    const double force = reaction[zone_[f]];
+    if (force == 0.0) continue;
+    for (std::size_t v = 0; v < z; ++v) pose_[zone_[v]] += force * give_[f * z + v];
   }
 }
 
+/// Once in a substep, with trees and pairs of its first look.
+void SurfaceObstacle::choose_side(std::span<const double> pose) {
+  chosen_ = true;
+  if (turned_ && held_) return;
+  const double reach = options_.reach;
+  turned_ = !pairs_.empty() && edges_.is_near(pose_, posed(own_, pose), own_tree_, reach) &&
+            !own_edges_.is_near(pose, posed(met_->surface, pose_), tree_, reach);
+}
+
 void SurfaceObstacle::join(std::span<const double> pose, double travel) {
-  options_.reach = reach_ + travel_ + travel;
   const PosedSurface k = posed(own_, pose), n = posed(met_->surface, pose_);
+  const double way = travel_ + travel;
+  options_.reach = reach_ + way;
   refit(own_tree_, k, 0.0);
   refit(tree_, n, options_.reach);
-  overlapping_pairs(own_tree_, tree_, pairs_);
-  mortar_rows(k, n, pairs_, options_, buffers_, rows_);
+  if (!turned_ || !chosen_) overlapping_pairs(own_tree_, tree_, pairs_);
+  if (!chosen_) choose_side(pose);
+  if (turned_) {
+    edges_.join(pose_, k, own_tree_, way, rows_);
+  } else {
+    mortar_rows(k, n, pairs_, options_, buffers_, rows_);
+  }
 }
 
 void SurfaceObstacle::add_compliance(Eigen::Index first, Eigen::MatrixXd& a) {
@@ -174,15 +196,16 @@ void SurfaceObstacle::add_compliance(Eigen::Index first, Eigen::MatrixXd& a) {
   const std::size_t dim = index(rows_.dim);
   const auto each = [this, dim](int row, const auto& visit) {
     for (std::int32_t e = rows_.n.offsets[index(row)]; e < rows_.n.offsets[index(row) + 1]; ++e) {
-      for (std::size_t d = 0; d < dim; ++d)
-        visit(index(rows_.n.columns[index(e)]) * dim + d,
-              rows_.n.values[index(e)] * rows_.normals[index(row) * dim + d]);
+      const int first = in_zone_[index(rows_.n.columns[index(e)]) * dim];
+      for (std::size_t d = 0; first >= 0 && d < dim; ++d)
+        visit(index(first) + d, rows_.n.values[index(e)] * rows_.normals[index(row) * dim + d]);
     }
   };
   for (int r = 0; r < rows_.count(); ++r) {
-    answer_.assign(width(), 0.0);
+    answer_.assign(zone_.size(), 0.0);
     each(r, [this](std::size_t force, double part) {
-      for (std::size_t v = 0; v < width(); ++v) answer_[v] += part * compliance(v, force);
+      const double* moved = give_.data() + force * zone_.size();
+      for (std::size_t v = 0; v < zone_.size(); ++v) answer_[v] += part * moved[v];
     });
     for (int s = 0; s < rows_.count(); ++s)
       each(s, [&](std::size_t value, double part) {

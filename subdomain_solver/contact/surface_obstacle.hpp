@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "subdomain_solver/contact/edged_surface.hpp"
 #include "subdomain_solver/interior.hpp"
 #include "surface/boxes.hpp"
 #include "surface/mortar.hpp"
@@ -29,8 +30,12 @@ class SurfaceObstacle {
   bool yields() const { return acts() && met_->kernel.count() > 0; }
 
   /// The substep i is next. `reaction`: [N] (values) the force on the partner at the substep
-  /// before.
-  void aim(int i, std::span<const double> reaction);
+  /// before. `turned`: the rows then were of the partner's nodes.
+  void aim(int i, std::span<const double> reaction, bool turned);
+  /// Rows are of the nodes of the side with sharp edges there: averaged over facets around an edge,
+  /// the other side's would let it through [M.93]. Contact keeps its side, unless an edge comes
+  /// near.
+  bool turned() const { return turned_; }
   /// Where it lies at a time of this substep without the substep's own reaction.
   void place(double time);
   /// Moves it from there by a reaction [N] (values).
@@ -46,10 +51,9 @@ class SurfaceObstacle {
   void add_compliance(Eigen::Index first, Eigen::MatrixXd& a);
 
  private:
-  double compliance(std::size_t value, std::size_t force) const {
-    return give_[force * width() + value];
-  }
+  void find_zone();
   void find_travel(int i);
+  void choose_side(std::span<const double> pose);
   void recall(int level, double share);
   void find_give(int level, double share);
   const double* response(int level, int after, std::size_t force) const;
@@ -60,6 +64,9 @@ class SurfaceObstacle {
   std::string body_;
   MortarOptions options_;
   double reach_ = 0.0, travel_ = 0.0;  // [m] of a substep of no length; own way in this one
+  EdgedSurface edges_, own_edges_;
+  bool turned_ = false;                 // rows are of the partner's nodes
+  bool chosen_ = false, held_ = false;  // in this substep; it pressed in the one before
   const Waveform* motion_ = nullptr;
   Substeps grid_;
   // While it yields, of the window: its own levels (l), the substeps' levels (s).
@@ -67,14 +74,16 @@ class SurfaceObstacle {
   std::vector<double> later_;   // (l) of this substep's reaction, held to the window's end
   std::vector<double> taken_;   // [N] (l, values) of earlier ones, beyond what d was found under
   std::vector<double> memory_;  // [m] (values) of earlier reactions, at the substep's end
-  std::vector<double> give_;    // [m/N] (values, values) to this substep's reaction
+  std::vector<double> give_;    // [m/N] (zone, zone) to this substep's reaction
+  std::vector<std::size_t> zone_;       // values that give way
+  std::vector<int> in_zone_;            // (values) where in the zone; -1: they do not
   std::vector<double> free_, pose_;     // [m] (points, dim)
   std::vector<double> given_, before_;  // [m] (values) displacements
   BoxTree tree_, own_tree_;
   std::vector<FacetPair> pairs_;
   MortarBuffers buffers_;
   SurfaceRows rows_;
-  std::vector<double> answer_;  // [m/N] (values) of the surface to a row
+  std::vector<double> answer_;  // [m/N] (zone) of the surface to a row
 };
 
 }  // namespace abut

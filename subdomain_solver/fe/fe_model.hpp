@@ -128,7 +128,7 @@ class FeModel final : public Model {
   void inherit(Vector& lumped) const;
   void inherit(SparseMatrix& mass) const;
   const SparseMatrix& linear_stiffness();
-  void find_layer_pattern(LayerResponse& out) const;
+  void find_layer_pattern(LayerResponse& out);
   void find_layer_rows(std::span<const double> q, std::span<const double> history);
   void linear_layer(std::span<const double> q, Want want, LayerResponse& out);
   void spring_force(std::span<const double> q, ModelResponse& out) const;
@@ -157,6 +157,9 @@ class FeModel final : public Model {
   std::vector<std::pair<int, int>> layer_cells_;  // (block, cell) that touch them
   // of cells wholly among them: nodes that have their mass
   std::map<std::pair<int, int>, std::vector<std::int32_t>> heirs_;
+  // by cell of the layer: places of its coordinates among the massless, -1: none; entries of its
+  // matrix, column by column, among the values of the tangent
+  std::vector<int> layer_places_, layer_slots_;
   LayerRows layer_rows_;  // [N/m] (massless, dofs) of linear models, when first asked for
   mutable std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<BatchedCells> batched_;  // null: cell by cell

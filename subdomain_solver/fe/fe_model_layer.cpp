@@ -126,21 +126,37 @@ void FeModel::inherit(SparseMatrix& mass) const {
 }
 
 /// Zeros where the layer's tangent has entries, and where its cells' matrices go.
-void FeModel::find_layer_pattern(LayerResponse& out) const {
+void FeModel::find_layer_pattern(LayerResponse& out) {
   const int size = static_cast<int>(massless_.size()), dim = mesh_.dim;
   std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& [block, cell] : layer_cells_) {
-    for (const std::int32_t a : nodes_of(mesh_.blocks[index(block)], cell)) {
-      for (const std::int32_t b : nodes_of(mesh_.blocks[index(block)], cell)) {
-        for (int k = 0; k < dim * dim; ++k) {
-          const int row = layer_place(a * dim + k / dim), column = layer_place(b * dim + k % dim);
-          if (row >= 0 && column >= 0) entries.emplace_back(row, column, 0.0);
-        }
-      }
+  layer_places_.clear();
+  const auto each_cell = [&](const auto& visit) {
+    std::size_t first = 0;
+    for (const auto& [block, cell] : layer_cells_) {
+      const std::size_t count = nodes_of(mesh_.blocks[index(block)], cell).size() * index(dim);
+      visit(std::span(layer_places_).subspan(first, count));
+      first += count;
     }
-  }
+  };
+  for (const auto& [block, cell] : layer_cells_)
+    for (const std::int32_t node : nodes_of(mesh_.blocks[index(block)], cell))
+      for (int i = 0; i < dim; ++i) layer_places_.push_back(layer_place(node * dim + i));
+  each_cell([&entries](std::span<const int> places) {
+    for (const int row : places)
+      for (const int column : places)
+        if (row >= 0 && column >= 0) entries.emplace_back(row, column, 0.0);
+  });
   out.tangent.resize(size, size);
   out.tangent.setFromTriplets(entries.begin(), entries.end());
+  layer_slots_.clear();
+  each_cell([&](std::span<const int> places) {
+    for (const int column : places)
+      for (const int row : places)
+        layer_slots_.push_back(
+            row < 0 || column < 0
+                ? -1
+                : static_cast<int>(&out.tangent.coeffRef(row, column) - out.tangent.valuePtr()));
+  });
 }
 
 /// Rows of the stiffness of a linear model that belong to its layer.
@@ -193,23 +209,19 @@ bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> 
     linear_layer(q, want, out);
     return true;
   }
-  const int dim = mesh_.dim;
   out.force.setZero(static_cast<Eigen::Index>(massless_.size()));
   for (Eigen::Index k = 0; k < out.tangent.nonZeros(); ++k) out.tangent.valuePtr()[k] = 0.0;
+  const int* place = layer_places_.data();
+  const int* slot = layer_slots_.data();
   for (const auto& [block, cell] : layer_cells_) {
     if (!respond(block, cell, q, history)) return false;
-    const std::span<const std::int32_t> own = nodes_of(mesh_.blocks[index(block)], cell);
-    turn(own, &local_.force, &local_.tangent);
-    for (int a = 0; a < static_cast<int>(local_.force.size()); ++a) {
-      const int row = layer_place(own[index(a / dim)] * dim + a % dim);
-      if (row < 0) continue;
-      out.force(row) += local_.force(a);
-      if (want == Want::force) continue;
-      for (int b = 0; b < static_cast<int>(local_.force.size()); ++b) {
-        const int column = layer_place(own[index(b / dim)] * dim + b % dim);
-        if (column >= 0) out.tangent.coeffRef(row, column) += local_.tangent(a, b);
-      }
-    }
+    turn(nodes_of(mesh_.blocks[index(block)], cell), &local_.force, &local_.tangent);
+    for (Eigen::Index a = 0; a < local_.force.size(); ++a, ++place)
+      if (*place >= 0) out.force(*place) += local_.force(a);
+    const Eigen::Index values = local_.force.size() * local_.force.size();
+    for (Eigen::Index k = 0; want == Want::tangent && k < values; ++k)
+      if (slot[k] >= 0) out.tangent.valuePtr()[slot[k]] += local_.tangent.data()[k];
+    slot += values;
   }
   return true;
 }

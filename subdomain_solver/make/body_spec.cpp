@@ -172,8 +172,8 @@ void SupportsSpec::fields(Fields& f) {
 
 void PortSpec::fields(Fields& f) {
   f.required("side", side, "",
-             "side of the body that the port is: left or right for a bar or a wall; or the name of "
-             "a point");
+             "side of the body that the port is: left or right for a bar or a wall; a side of the "
+             "mesh, boundary for all of its surface; or the name of a point");
   f.optional("tied", tied, "",
              "whether the port is joined to another body from the start: its node then keeps its "
              "share of the joint's mass, whatever the contact_layer, and takes no contact");

@@ -10,12 +10,17 @@ namespace abut {
 namespace {
 
 constexpr int most_sets = 30;
-constexpr int most_sweeps = 20000;
 /// Of the largest force, or of the largest gap: changes below it are rounding.
 constexpr double settled = 1.0e-14;
 
-/// Forces of the pressed rows that close their gaps. False: the rows are not independent.
-bool close(const Eigen::MatrixXd& a, const Vector& gap, Vector& force, UnilateralBuffers& b) {
+/// Of the largest compliance. Rows that say the same share their force by it, and gaps are left
+/// that are smaller by as much than what the forces move.
+constexpr double softness = 1.0e-11;
+
+/// Forces of the pressed rows, each of which gives way by `soft` [m/N] of its own, that close their
+/// gaps. False: the rows are not independent.
+bool close(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& force,
+           UnilateralBuffers& b) {
   const Eigen::Index n = static_cast<Eigen::Index>(b.pressed.size());
   force.setZero();
   if (n == 0) return true;
@@ -24,6 +29,7 @@ bool close(const Eigen::MatrixXd& a, const Vector& gap, Vector& force, Unilatera
   for (Eigen::Index k = 0; k < n; ++k) {
     const Eigen::Index column = b.pressed[index(k)];
     for (Eigen::Index i = 0; i < n; ++i) b.part(i, k) = a(b.pressed[index(i)], column);
+    b.part(k, k) += soft;
     b.rest(k) = -gap(column);
   }
   b.factors.compute(b.part);
@@ -41,7 +47,7 @@ bool by_active_sets(const Eigen::MatrixXd& a, const Vector& gap, Vector& force,
     b.pressed.clear();
     for (Eigen::Index i = 0; i < gap.size(); ++i)
       if (b.is_pressed[index(i)]) b.pressed.push_back(i);
-    if (!close(a, gap, force, b)) return false;
+    if (!close(a, gap, 0.0, force, b)) return false;
     b.gap = gap;
     b.gap.noalias() += a * force;
     bool same = true;
@@ -55,18 +61,52 @@ bool by_active_sets(const Eigen::MatrixXd& a, const Vector& gap, Vector& force,
   return false;
 }
 
-bool by_sweeps(const Eigen::MatrixXd& a, const Vector& gap, Vector& force) {
-  for (Eigen::Index i = 0; i < force.size(); ++i) force(i) = std::max(0.0, force(i));
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    double change = 0.0;
-    for (Eigen::Index i = 0; i < gap.size(); ++i) {
-      const double open = gap(i) + a.col(i).dot(force);
-      const double next = std::max(0.0, force(i) - open / a(i, i));
-      change = std::max(change, std::abs(next - force(i)));
-      force(i) = next;
+/// From forces that press to those that close the gaps of the pressed rows, no farther than to
+/// where one of them would pull: that row is released. True: none did.
+bool press(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& force,
+           UnilateralBuffers& b) {
+  b.pressed.clear();
+  for (Eigen::Index i = 0; i < gap.size(); ++i)
+    if (b.is_pressed[index(i)]) b.pressed.push_back(i);
+  b.from = force;
+  if (!close(a, gap, soft, force, b)) return true;  // not a number: told by the caller
+  double way = 1.0;
+  Eigen::Index first = -1;
+  for (const Eigen::Index i : b.pressed) {
+    if (force(i) > 0.0) continue;
+    const double to = b.from(i) / (b.from(i) - force(i));
+    if (first >= 0 && to >= way) continue;
+    first = i;
+    way = to;
+  }
+  if (first < 0) return true;
+  force = b.from + way * (force - b.from);
+  for (const Eigen::Index i : b.pressed) force(i) = std::max(0.0, force(i));
+  force(first) = 0.0;
+  b.is_pressed[index(first)] = 0;
+  return false;
+}
+
+/// One row after the other, so that every step lessens the energy  f.A.f/2 + gap.f: it ends. Lawson
+/// and Hanson, Solving Least Squares Problems (1974), chapter 23.
+bool by_rows(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& force,
+             UnilateralBuffers& b) {
+  force = force.cwiseMax(0.0);
+  for (Eigen::Index i = 0; i < gap.size(); ++i) b.is_pressed[index(i)] = force(i) > 0.0;
+  const Eigen::Index most_steps = 10 * gap.size() + 100;
+  for (Eigen::Index step = 0; step < most_steps; ++step) {
+    while (!press(a, gap, soft, force, b)) {
     }
-    if (!std::isfinite(change)) return false;
-    if (change <= settled * force.lpNorm<Eigen::Infinity>()) return true;
+    if (!force.allFinite()) return false;
+    b.gap = gap;
+    b.gap.noalias() += a * force;
+    Eigen::Index deepest = 0;
+    const double least =
+        std::max(settled * gap.lpNorm<Eigen::Infinity>(), soft * force.lpNorm<Eigen::Infinity>());
+    for (Eigen::Index i = 0; i < gap.size(); ++i)
+      if (b.is_pressed[index(i)]) b.gap(i) = 0.0;
+    if (b.gap.minCoeff(&deepest) >= -least) return true;
+    b.is_pressed[index(deepest)] = 1;
   }
   return false;
 }
@@ -77,10 +117,15 @@ bool unilateral_forces(const Eigen::MatrixXd& a, const Vector& gap, Vector& forc
                        UnilateralBuffers& buffers) {
   if (!gap.allFinite() || !a.allFinite()) return false;
   buffers.is_pressed.resize(index(gap.size()));
-  for (Eigen::Index i = 0; i < gap.size(); ++i)
-    buffers.is_pressed[index(i)] = gap(i) < 0.0 || (i < force.size() && force(i) > 0.0);
+  buffers.guess.setZero(gap.size());
+  for (Eigen::Index i = 0; i < gap.size(); ++i) {
+    if (i < force.size()) buffers.guess(i) = std::max(0.0, force(i));
+    buffers.is_pressed[index(i)] = gap(i) < 0.0 || buffers.guess(i) > 0.0;
+  }
   force.resize(gap.size());
-  return by_active_sets(a, gap, force, buffers) || by_sweeps(a, gap, force);
+  if (by_active_sets(a, gap, force, buffers)) return true;
+  force = buffers.guess;
+  return by_rows(a, gap, softness * a.diagonal().maxCoeff(), force, buffers);
 }
 
 }  // namespace abut

@@ -39,6 +39,12 @@ TEST(EnergyGuard, SeesAGainBehindWhatBecameHeat) {
   EXPECT_EQ(guard.look(std::vector{holding(40.0, 12.0, 0.0, 50.0)}), Verdict::fail);
 }
 
+TEST(EnergyGuard, WatchesNoSumThatStepsWithoutInertiaLeave) {
+  EnergyGuard guard(0.01, {false}, false);
+  EXPECT_EQ(guard.look(std::vector{holding(0.0, 100.0)}), Verdict::fine);
+  EXPECT_EQ(guard.look(std::vector{holding(0.0, 200.0)}), Verdict::fine);
+}
+
 TEST(EnergyGuard, TakesLossForNoFault) {
   EnergyGuard guard(0.01, {false});
   for (double left : {100.0, 50.0, 99.0, 0.0, 100.4})

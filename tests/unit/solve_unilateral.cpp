@@ -50,6 +50,24 @@ TEST(UnilateralForces, OfRowsThatSayTheSameCloseTheirGap) {
   check(a, gap, force, 1.0e-11);
 }
 
+/// More rows than there is to move: a finer surface on a coarser one, before what cannot give way.
+TEST(UnilateralForces, OfRowsThatDependOnEachOtherCloseTheirGaps) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  UnilateralBuffers buffers;
+  for (int trial = 0; trial < 50; ++trial) {
+    const int moves = 3 + trial % 8, rows = 3 * moves;
+    Eigen::MatrixXd b(rows, moves);
+    for (Eigen::Index k = 0; k < b.size(); ++k) b.data()[k] = part(random);
+    Vector gap(rows), force;
+    const Vector deep = Vector::Constant(moves, -1.0);  // every row can be closed
+    for (Eigen::Index k = 0; k < rows; ++k) gap(k) = b.row(k).dot(deep) + (k % 3) * part(random);
+    const Eigen::MatrixXd a = b * b.transpose();
+    ASSERT_TRUE(unilateral_forces(a, gap, force, buffers));
+    check(a, gap, force, 1.0e-8);  // rows share their force by 1e-11 of the compliance
+  }
+}
+
 TEST(UnilateralForces, OfOpenRowsAreNone) {
   Vector force = Vector::Constant(2, 5.0);  // a guess that is wrong
   UnilateralBuffers buffers;

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "coordinator/coupling/joint.hpp"
+#include "surface/boxes.hpp"
+
+namespace abut {
+
+/// The points of a joint's Neumann side that contact may reach: those near the kinematic side's
+/// facets. Only they give way by a port kernel, whose cost is the square of their number.
+class ContactZone {
+ public:
+  /// For a window that moves the two sides by `way` [m] relative to each other. `k`, `n`: [m]
+  /// (points, dim) displacements of the two sides at its begin. A point that has come near without
+  /// being in the zone makes a new one, with a margin.
+  void see(const Joint& joint, const Bodies& bodies, std::span<const double> k,
+           std::span<const double> n, double way);
+  /// Ascending; empty: all points of the side.
+  const std::vector<std::int32_t>& points() const { return points_; }
+
+ private:
+  std::vector<std::int32_t> near(double reach) const;
+
+  bool all_ = false;
+  std::vector<std::int32_t> points_;
+  std::vector<double> pose_k_, pose_n_;  // [m]
+  PosedSurface k_, n_;
+  BoxTree tree_;
+};
+
+}  // namespace abut

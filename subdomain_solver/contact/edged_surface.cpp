@@ -1,0 +1,64 @@
+#include "subdomain_solver/contact/edged_surface.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/index.hpp"
+#include "surface/closest_point.hpp"
+#include "surface/sharp_nodes.hpp"
+
+namespace abut {
+
+EdgedSurface::EdgedSurface(const PortGeometry& surface, double size) {
+  const PosedSurface whole{surface.dim, surface.points, surface.facets, surface.offsets};
+  if (sharp_nodes(whole, sharp_edge).empty()) return;
+  divided_ = divided(whole, parts_for(whole, size));
+  const PosedSurface parts = pose_of(surface.points);
+  sharp_ = sharp_nodes(parts, sharp_edge);
+  longest_ = longest_edge(parts);
+  build(tree_, parts, 0.0);
+  sum_.resize(whole.node_count());
+}
+
+PosedSurface EdgedSurface::pose_of(std::span<const double> pose) {
+  points_.resize(index(divided_.node_count() * divided_.dim));
+  apply(divided_.nodes, divided_.dim, pose, points_);
+  return {divided_.dim, points_, divided_.facets, divided_.offsets};
+}
+
+bool EdgedSurface::is_near(std::span<const double> pose, const PosedSurface& other,
+                           const BoxTree& tree, double reach) {
+  if (sharp_.empty()) return false;
+  const PosedSurface parts = pose_of(pose);
+  ClosestSearch search;
+  search.reach = reach;
+  return std::ranges::any_of(sharp_, [&](std::int32_t node) {
+    const std::optional<SurfacePoint> foot = closest_point(other, tree, parts.point(node), search);
+    return foot && foot->at.feature == FacetFeature::inside;
+  });
+}
+
+void EdgedSurface::join(std::span<const double> pose, const PosedSurface& other,
+                        const BoxTree& tree, double way, SurfaceRows& rows) {
+  const PosedSurface parts = pose_of(pose);
+  options_.reach = longest_ + way;
+  refit(tree_, parts, options_.reach);
+  overlapping_pairs(tree_, tree, pairs_);
+  mortar_rows(parts, other, pairs_, options_, buffers_, rows);
+  mapped_.clear();
+  for (int r = 0; r < rows.count(); ++r) {
+    for (std::int32_t e = rows.k.offsets[index(r)]; e < rows.k.offsets[index(r) + 1]; ++e) {
+      const std::size_t node = index(rows.k.columns[index(e)]);
+      const double share = rows.k.values[index(e)];
+      for (std::int32_t i = divided_.nodes.offsets[node]; i < divided_.nodes.offsets[node + 1]; ++i)
+        sum_.add(divided_.nodes.columns[index(i)], share * divided_.nodes.values[index(i)]);
+    }
+    sum_.flush(1.0, mapped_);
+  }
+  std::swap(rows.k, rows.n);
+  std::swap(rows.n, mapped_);
+  for (double& component : rows.normals) component = -component;
+}
+
+}  // namespace abut

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contract/port.hpp"
+#include "surface/boxes.hpp"
+#include "surface/divided_surface.hpp"
+#include "surface/mortar.hpp"
+
+namespace abut {
+
+/// A surface whose nodes may have the rows of a contact, because it has sharp edges: averaged over
+/// facets around an edge, rows of the other side's nodes would let it through [M.93]. Its facets
+/// are divided to about the size of the other's.
+class EdgedSurface {
+ public:
+  EdgedSurface(const PortGeometry& surface, double size);
+
+  /// Whether an edge lies over another surface, no farther from it than `reach` [m]; `tree` holds
+  /// that one's boxes. `pose`: [m] (points, dim) of this surface.
+  bool is_near(std::span<const double> pose, const PosedSurface& other, const BoxTree& tree,
+               double reach);
+  /// Rows of this surface's nodes against the other's facets, told as those of the other: T over
+  /// its nodes, P over the points of this surface, normals out of this surface. `way`: [m] that the
+  /// two go in the substep.
+  void join(std::span<const double> pose, const PosedSurface& other, const BoxTree& tree,
+            double way, SurfaceRows& rows);
+
+ private:
+  PosedSurface pose_of(std::span<const double> pose);
+
+  DividedSurface divided_;
+  std::vector<std::int32_t> sharp_;  // nodes
+  std::vector<double> points_;       // [m] (nodes, dim)
+  double longest_ = 0.0;             // [m] edge
+  BoxTree tree_;
+  std::vector<FacetPair> pairs_;
+  MortarOptions options_;
+  MortarBuffers buffers_;
+  RowSum sum_;
+  SparseRows mapped_;
+};
+
+}  // namespace abut

@@ -1,0 +1,107 @@
+// Goal: sharp corners press on faces, whichever side finds the contact and whether the body with
+// the corner deforms. Oracles: energy; balance of momentum; a corner that is above a face touches
+// it, and leaves it again. Rows of the face's nodes alone let a rigid corner at 45 degrees through
+// by a quarter of a facet, unseen, and gave +46 % of the energy at 17 degrees.
+
+#include <cmath>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/runs.hpp"
+
+namespace abut {
+namespace {
+
+struct Fall {
+  std::string name;
+  int dim = 2;
+  std::string body, integrator;  // of the brick
+  double tilt = 0.0;             // [rad]
+  std::string base;              // integrator of what it falls on
+};
+
+void PrintTo(const Fall& fall, std::ostream* out) { *out << fall.name; }
+
+constexpr double speed = 0.01;  // of that of sound
+
+/// A brick of 0.4 x 0.3, its lowest corner 0.004 above a block of 1 x 0.4, which is free.
+std::string text(const Fall& fall) {
+  const bool plane = fall.dim == 2;
+  const double c = std::cos(fall.tilt), s = std::sin(fall.tilt);
+  const std::string up = plane ? "y" : "z";
+  const std::string turned = fmt::format("{} * (x - 0.2) - {} * {}", number(c), number(s), up);
+  const std::string lifted = fmt::format("{} * (x - 0.2) + {} * {} + {}", number(s), number(c), up,
+                                         number(0.2 * std::abs(s) + 0.004));
+  const std::string map = plane ? fmt::format("[\"{}\", \"{}\"]", turned, lifted)
+                                : fmt::format("[\"{}\", \"y\", \"{}\"]", turned, lifted);
+  const std::string brick = plane ? "rectangle: {lengths: [0.4, 0.3], elements: [6, 5]}"
+                                  : "box: {lengths: [0.4, 0.2, 0.3], elements: [6, 3, 5]}";
+  const std::string block = plane ? "rectangle: {lengths: [1.0, 0.4], elements: [14, 6]}"
+                                  : "box: {lengths: [1.0, 0.5, 0.4], elements: [14, 7, 6]}";
+  const std::string zero = plane ? "0.0, " : "0.0, 0.0, ";
+  const std::string material =
+      "    material: {linear_elastic: {youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0}}\n";
+  return fmt::format(
+             "meta: {{title: test}}\ntime: {{begin: 0.0, end: 3.0, window: 0.025}}\nbodies:\n"
+             "  brick:\n    model: {{{}: {{dimension: {}, mesh: {{{}}}, map: {}}}}}\n",
+             fall.body, fall.dim, brick, map) +
+         material +
+         fmt::format("    integrator: {{{}}}\n    initial: {{velocity: [{}{}]}}\n", fall.integrator,
+                     zero, number(-speed)) +
+         fmt::format(
+             "    ports: {{skin: {{side: boundary}}}}\n"
+             "  base:\n    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n",
+             fall.dim, block) +
+         material +
+         fmt::format("    integrator: {{{}}}\n    initial: {{position: [{}]}}\n", fall.base,
+                     plane ? "-0.5, -0.4" : "-0.5, -0.15, -0.4") +
+         fmt::format("    ports: {{face: {{side: {}}}}}\n", plane ? "top" : "front") +
+         "interfaces: {impact: {sides: [brick.skin, base.face], contact: {}, "
+         "transmission: {unilateral: {kinematic: base.face}}}}\n";
+}
+
+std::vector<Fall> falls() {
+  const std::string leapfrog = "central_difference: {step: 0.0125}";
+  const std::string trapezoid = "newmark: {step: 0.0125}";
+  std::vector<Fall> out;
+  for (const int dim : {2, 3})
+    for (const auto& [body, integrator] : std::vector<std::pair<std::string, std::string>>{
+             {"rigid", "rigid_motion: {step: 0.0125}"}, {"fe", leapfrog}, {"fe", trapezoid}})
+      for (const int tilt : {2, 17, 45})
+        for (const std::string& base : {leapfrog, trapezoid})
+          out.push_back({fmt::format("{}d_{}_{}_at_{}_on_{}", dim, body,
+                                     integrator.substr(0, integrator.find(':')), tilt,
+                                     base.substr(0, base.find(':'))),
+                         dim, body, integrator, tilt * std::acos(-1.0) / 180.0, base});
+  return out;
+}
+
+class SharpCorner : public testing::TestWithParam<Fall> {};
+INSTANTIATE_TEST_SUITE_P(Falls, SharpCorner, testing::ValuesIn(falls()),
+                         [](const auto& c) { return c.param.name; });
+
+TEST_P(SharpCorner, PressesOnAFace) {
+  const Fall& fall = GetParam();
+  const auto result = run_document(Document::from_text("test", text(fall)));
+  ASSERT_TRUE(result->completed());
+  const bool both_explicit = (fall.body == "rigid" || fall.integrator.starts_with("central")) &&
+                             fall.base.starts_with("central");
+  // Rounding; where a body solves equations, 1e-9 of the forces.
+  EXPECT_LE(result->measure("momentum.total"), both_explicit ? 1.0e-12 : 1.0e-9);
+  // 6e-4 measured at most, but 2.1e-3 where a rigid face falls almost flat and rattles on a body
+  // that is integrated by the trapezoidal rule: all its rows close inside one step.
+  const bool rattles = fall.body == "rigid" && fall.tilt < 0.1;
+  EXPECT_NEAR(result->energy_error(), 0.0, rattles ? 4.0e-3 : 1.0e-3);
+  const std::size_t closings = result->times(RunEvent::Kind::contact_closed, "impact").size();
+  EXPECT_GE(closings, 1u);
+  EXPECT_LE(closings, rattles ? 2u : 1u);
+  // Of the speed that it had, a blow beside its centre takes some for its spin.
+  const std::string up = fall.dim == 2 ? "y" : "z";
+  EXPECT_GT(result->measure("mean_velocity.brick.end_" + up), -0.5 * speed);
+}
+
+}  // namespace
+}  // namespace abut
