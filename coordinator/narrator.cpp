@@ -12,7 +12,8 @@ void Narrator::start(double begin, double end, std::span<const Joint> joints) {
                                 {j.sides[0].body, j.sides[1].body},
                                 {j.sides[0].port, j.sides[1].port},
                                 j.reference_gap,
-                                j.tied()});
+                                j.tied(),
+                                {j.sides[0].partner, j.sides[1].partner}});
   }
   for (Observer* observer : observers_) observer->on_start(start);
 }

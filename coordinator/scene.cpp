@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/assert.hpp"
 #include "base/input_errors.hpp"
@@ -293,17 +294,17 @@ void validate_force_filter(const Scene& scene, const Document& document) {
         "Give a lower class, or {mean: {time: ...}}, whose cost does not grow.");
 }
 
-void validate_ports_used_once(const Scene& scene, const Document& document) {
-  std::map<std::string, std::string> used;  // side to interface
+/// Two ports meet in one way.
+void validate_pairs(const Scene& scene, const Document& document) {
+  std::map<std::set<std::string>, std::string> used;  // sides to interface
   for (const auto& [name, interface] : scene.interfaces) {
-    for (std::size_t i = 0; i < interface.sides.size(); ++i) {
-      const auto [entry, fresh] = used.emplace(interface.sides[i], name);
-      if (!fresh)
-        throw InputError(fmt::format("is {}, which the interface {} uses already",
-                                     interface.sides[i], entry->second),
-                         document.where(fmt::format("interfaces.{}.sides[{}]", name, i)),
-                         "Give every interface ports of its own; a body may have several ports.");
-    }
+    const std::set<std::string> sides(interface.sides.begin(), interface.sides.end());
+    const auto [entry, fresh] = used.emplace(sides, name);
+    if (!fresh)
+      throw InputError(fmt::format("are {}, which the interface {} joins already",
+                                   fmt::join(sides, " and "), entry->second),
+                       document.where(fmt::format("interfaces.{}.sides", name)),
+                       "Keep one of the two interfaces.");
   }
 }
 
@@ -362,6 +363,25 @@ void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
                      "Move a body with initial.position until the gap is zero or more.");
 }
 
+/// A surface may touch several others; the end of a bar meets one partner.
+void validate_ends_used_once(const Scene& scene, std::span<const Description* const> bodies,
+                             const Document& document) {
+  std::map<std::string, std::string> used;  // side to interface
+  for (const auto& [name, interface] : scene.interfaces) {
+    for (std::size_t i = 0; i < interface.sides.size(); ++i) {
+      const std::string& side = interface.sides[i];
+      const Description* body = description_of(scene, bodies, split_port(side).body);
+      if (body == nullptr || body->dim != 1) continue;
+      const auto [entry, fresh] = used.emplace(side, name);
+      if (!fresh)
+        throw InputError(
+            fmt::format("is {}, which the interface {} uses already", side, entry->second),
+            document.where(fmt::format("interfaces.{}.sides[{}]", name, i)),
+            "Give every interface ports of its own; a body may have several ports.");
+    }
+  }
+}
+
 /// Tables show members as bodies: their names must be new.
 void validate_members(const Scene& scene, std::span<const Description* const> bodies,
                       const Document& document) {
@@ -411,7 +431,7 @@ void validate(const Scene& scene, const Document& document) {
     errors.gather([&] { check_external_launch(entry.second, document); });
   for (const auto& entry : scene.interfaces)
     errors.gather([&] { validate_interface(scene, entry.second, document); });
-  errors.gather([&] { validate_ports_used_once(scene, document); });
+  errors.gather([&] { validate_pairs(scene, document); });
   errors.gather([&] { validate_force_filter(scene, document); });
   if (scene.meta.closed_form) {
     for (const std::string& name : exact_interfaces(scene))
@@ -431,6 +451,7 @@ void validate_bodies(const Scene& scene, std::span<const Description* const> bod
   InputErrors errors;
   errors.gather([&] { validate_members(scene, bodies, document); });
   errors.gather([&] { check_steps(scene, bodies, document); });
+  errors.gather([&] { validate_ends_used_once(scene, bodies, document); });
   for (const auto& entry : scene.interfaces)
     errors.gather([&] { validate_geometry(entry.second, scene, bodies, document); });
   const auto silent = [](const Description* body) {

@@ -92,6 +92,12 @@ Eigen::VectorXd QuasiNewton::next(const Eigen::VectorXd& iterate, const Eigen::V
   return iterate + (secants.images - secants.residuals) * weights + inverse_(rest);
 }
 
+void QuasiNewton::forget() {
+  current_.clear();
+  earlier_.clear();
+  previous_residual_.resize(0);
+}
+
 void QuasiNewton::accept() {
   needed_ = updates_ > exact_enough_;
   if (reuse_ == 0 || current_.empty()) return;

@@ -20,6 +20,8 @@ class Accelerator {
   virtual void reset(std::uint64_t key) = 0;
   /// x_k, G(x_k) -> x_{k+1}
   virtual Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) = 0;
+  /// What was learned led away from the solution: it holds no longer.
+  virtual void forget() {}
   /// The window was accepted: what was learned in it may serve the next one.
   virtual void accept() {}
 };
@@ -71,6 +73,7 @@ class QuasiNewton final : public Accelerator {
   QuasiNewton(Inverse inverse, int reuse, double filter, int exact_enough);
   void reset(std::uint64_t key) override;
   Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) override;
+  void forget() override;
   void accept() override;
 
  private:

@@ -32,6 +32,7 @@ class CompliantObstacle final : public Transmission {
     return first_factor_ * r;
   }
   double first_factor() const override { return first_factor_; }
+  bool contracts() const override { return kernel_ != nullptr; }
   bool ordered() const override { return true; }
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <utility>
 
 #include "base/archive.hpp"
 #include "base/index.hpp"
@@ -79,25 +80,42 @@ std::optional<Failed> Schwarz::sweep(const Island& island, std::span<const Joint
 }
 
 /// Of Neumann sides whose motion without reactions is the first guess; afterwards they stand where
-/// they stood.
+/// they stood. The last levels fly first: a body that finds contact as well flies against the
+/// surfaces that it finds, where these were told to go.
 std::optional<Failed> Schwarz::fly(const Island& island, std::span<const Joint> joints,
-                                   Bodies& bodies) const {
-  std::vector<int> flown;
-  for (int j : island.joints) {
-    const Joint& joint = joints[index(j)];
-    if (!joint.how->flies()) continue;
-    joint.how->release(joint, bodies);
-    flown.push_back(joint.neumann_side().body);
+                                   Bodies& bodies) {
+  for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
+    const Joint& joint = joints[index(layout_.joints[i])];
+    if (!joint.how->flies()) joint.how->predict(part(x_, i));
   }
-  if (flown.empty()) return std::nullopt;
-  std::ranges::sort(flown);
-  flown.erase(std::unique(flown.begin(), flown.end()), flown.end());
-  if (std::optional<Failed> failed = bodies.advance(flown)) return failed;
-  for (int j : island.joints) {
-    const Joint& joint = joints[index(j)];
-    if (joint.how->flies()) joint.how->see_flight(joint, bodies);
+  for (auto level = island.levels.rbegin(); level != island.levels.rend(); ++level) {
+    const auto flies = [&level](const Joint& joint) {
+      return joint.how->flies() && std::ranges::count(*level, joint.neumann_side().body) > 0;
+    };
+    std::vector<int> flown;
+    for (int j : layout_.joints) {
+      const Joint& joint = joints[index(j)];
+      if (!flies(joint)) continue;
+      joint.how->release(joint, bodies);
+      flown.push_back(joint.neumann_side().body);
+    }
+    if (flown.empty()) continue;
+    std::ranges::sort(flown);
+    flown.erase(std::unique(flown.begin(), flown.end()), flown.end());
+    for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
+      const Joint& joint = joints[index(layout_.joints[i])];
+      if (std::ranges::count(flown, joint.kinematic_side().body) > 0)
+        joint.how->impose(joint.kinematic, part(x_, i), joint, bodies);
+    }
+    if (std::optional<Failed> failed = bodies.advance(flown)) return failed;
+    for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
+      const Joint& joint = joints[index(layout_.joints[i])];
+      if (!flies(joint)) continue;
+      joint.how->see_flight(joint, bodies);
+      joint.how->predict(part(x_, i));
+    }
+    for (int body : flown) bodies[body].restore();
   }
-  for (int body : flown) bodies[body].restore();
   return std::nullopt;
 }
 
@@ -112,18 +130,15 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   }
   const Eigen::Index size = layout_.first.back();
   for (Eigen::VectorXd* v : {&x_, &g_, &s_}) v->resize(size);
-  auto part = [this](Eigen::VectorXd& v, std::size_t i) {
-    return v.segment(layout_.first[i], layout_.first[i + 1] - layout_.first[i]);
-  };
   auto joint_at = [&joints, &island](std::size_t i) -> const Joint& {
     return joints[index(island.joints[i])];
   };
   if (std::optional<Failed> failed = fly(island, joints, bodies)) return *failed;
-  for (std::size_t i = 0; i < island.joints.size(); ++i)
-    joint_at(i).how->predict(part(x_, i));
   Accelerator& accelerator = accelerator_of(island, joints);
   accelerator.reset(layout_key(window, layout_.first));
 
+  const bool contracts = std::ranges::all_of(
+      island.joints, [&joints](int j) { return joints[index(j)].how->contracts(); });
   SchwarzReport report;
   for (report.iterations = 1;; ++report.iterations) {
     if (report.iterations > 1) {
@@ -132,7 +147,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
       }
     }
     if (std::optional<Failed> failed = sweep(island, joints, layout_, x_, bodies)) return *failed;
-    report.residual = {};
+    const double before = std::exchange(report.residual, {}).largest();
     for (std::size_t i = 0; i < island.joints.size(); ++i) {
       const Joint& joint = joint_at(i);
       joint.how->image(part(x_, i), joint, bodies, part(g_, i));
@@ -141,6 +156,9 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     }
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
+    const bool early = 2 * report.iterations <= options_.max_iterations;  // later it is no bad luck
+    if (contracts && early && report.iterations > 1 && report.residual.largest() > before)
+      accelerator.forget();
     if (options_.kernels && std::ranges::any_of(island.joints, [&joints](int j) {
           return joints[index(j)].how->projects();
         })) {

@@ -53,11 +53,15 @@ class Schwarz {
     std::vector<int> joints;
     std::vector<Eigen::Index> first;  // of every joint's part in the stacked iterate, and the total
   };
-  std::optional<Failed> fly(const Island& island, std::span<const Joint> joints,
-                            Bodies& bodies) const;
+  /// First guesses of all joints.
+  std::optional<Failed> fly(const Island& island, std::span<const Joint> joints, Bodies& bodies);
   std::optional<Failed> sweep(const Island& island, std::span<const Joint> joints,
                               const Layout& layout, const Eigen::VectorXd& x, Bodies& bodies) const;
   Eigen::VectorXd apply_inverses(const Eigen::VectorXd& r, std::span<const Joint> joints) const;
+  /// A joint's part of a stacked vector.
+  Eigen::VectorBlock<Eigen::VectorXd> part(Eigen::VectorXd& v, std::size_t i) const {
+    return v.segment(layout_.first[i], layout_.first[i + 1] - layout_.first[i]);
+  }
   Accelerator& accelerator_of(const Island& island, std::span<const Joint> joints);
 
   Options options_;

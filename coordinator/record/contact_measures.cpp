@@ -62,7 +62,21 @@ void ContactMeasures::on_window(const WindowReport& report) {
   const InterfaceReport& mine = report.interfaces[index_];
   const std::size_t kinematic = index(mine.kinematic);
   velocity_.on_window(readers_, traces, mine.kinematic, mine.closed, errors_ ? &*errors_ : nullptr);
-  read_force(*traces[kinematic], readers_[kinematic]);
+  if (const Waveform* force = force_of(report, kinematic)) {
+    read_force(*force, readers_[kinematic]);
+  } else {
+    read_rest(*traces[kinematic]);
+  }
+}
+
+/// The force of one point is that on its port. A surface may press on several partners at once:
+/// what it does to this one is its reaction; null: none.
+const Waveform* ContactMeasures::force_of(const WindowReport& report, std::size_t kinematic) const {
+  const PortResponse& reply = report.responses[info_.body[kinematic]].ports[info_.port[kinematic]];
+  if (readers_[kinematic].port().geometry.dim == 1) return &reply.trace;
+  const std::size_t partner = index(info_.partner[kinematic]);
+  if (partner >= reply.reactions.size() || reply.reactions[partner].force.empty()) return nullptr;
+  return &reply.reactions[partner].force;
 }
 
 void ContactMeasures::read_gap(const WindowReport& report,
@@ -77,7 +91,7 @@ void ContactMeasures::read_gap(const WindowReport& report,
 /// Of every window: bodies that nothing touches tell no force.
 void ContactMeasures::read_force(const Waveform& trace, const PortReader& reader) {
   if (trace.f.empty()) return;
-  const bool nodal = trace.support == ForceSupport::nodal;
+  const bool nodal = trace.support != ForceSupport::step;
   double before = reader.compression(trace, 0);
   if (nodal) {
     peak_ = std::max(peak_, before);
@@ -97,6 +111,12 @@ void ContactMeasures::read_force(const Waveform& trace, const PortReader& reader
     }
     before = now;
   }
+}
+
+/// A filter remembers: it is told of times without force as well.
+void ContactMeasures::read_rest(const Waveform& trace) {
+  for (std::size_t i = 1; filter_ && i < trace.size(); ++i)
+    filter_->add(trace.time[i - 1], trace.time[i], 0.0, 0.0);
 }
 
 void ContactMeasures::write(double run_end, Measures& out) {

@@ -31,7 +31,9 @@ class ContactMeasures {
 
  private:
   void read_gap(const WindowReport& report, const std::array<const Waveform*, 2>& traces);
+  const Waveform* force_of(const WindowReport& report, std::size_t kinematic) const;
   void read_force(const Waveform& trace, const PortReader& reader);
+  void read_rest(const Waveform& trace);
   void write_force(double closed, Measures& out);
   void write_times(Measures& out) const;
   std::string name(const char* what) const;

@@ -18,6 +18,7 @@ struct InterfaceInfo {
   int port[2] = {0, 0};      // index into Description::ports
   double initial_gap = 0.0;  // [m] 1D: normal distance of the reference positions
   bool tied = false;         // joined from the start, for the whole run
+  int partner[2] = {0, 0};   // number of the other side among those that the port meets
 };
 
 struct RunStart {

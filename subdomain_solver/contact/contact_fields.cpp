@@ -89,8 +89,10 @@ std::vector<FieldValues> touch_field_values(const std::vector<TouchedSurface>& s
   for (const TouchedSurface& s : surfaces) {
     const Touch t = touch_of(s, forces, places);
     contact.see_gaps(s.port, [&](std::size_t point, double gap) {
-      out[1][index(s.nodes[point])] = gap;
-      out[2][index(s.nodes[point])] = 1.0;
+      double& least = out[1][index(s.nodes[point])];
+      double& status = out[2][index(s.nodes[point])];
+      least = status == 0.0 ? gap : std::min(least, gap);  // of all partners
+      status = 1.0;
     });
     for (std::size_t a = 0; a < t.pressure.size(); ++a) {
       if (t.pressure[a] == 0.0) continue;

@@ -133,6 +133,21 @@ TEST(QuasiNewton, ReuseOfNoneForgetsTheLastWindow) {
   EXPECT_LT((newton.next(x, image) - (x + 0.5 * (image - x))).norm(), roundoff(10, 2.0));
 }
 
+TEST(QuasiNewton, ForgetsSecantsOfThisAndEarlierWindows) {
+  const AffineMap map(3);
+  QuasiNewton newton(relaxed(0.5), 5, 1e-12, 0);
+  newton.reset(1);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(3);
+  for (int step = 0; step < 4; ++step) x = newton.next(x, map(x));
+  newton.accept();
+  newton.reset(1);
+  for (int step = 0; step < 2; ++step) x = newton.next(x, map(x));
+  newton.forget();
+  x = Eigen::VectorXd::Constant(3, 2.0);
+  const Eigen::VectorXd image = map(x);
+  EXPECT_LT((newton.next(x, image) - (x + 0.5 * (image - x))).norm(), roundoff(10, 2.0));
+}
+
 TEST(Toeplitz, SolvesWhatTheMatrixMultiplies) {
   const std::vector<double> column = {2.0, -0.5, 0.25, 1.0, 0.0, 0.125};
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(6, -1.0, 4.0);

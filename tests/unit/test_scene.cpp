@@ -110,12 +110,11 @@ INSTANTIATE_TEST_SUITE_P(
             "s.yaml, from --set interfaces.impact.sides=[left.tip, left.tail]: "
             "interfaces.impact.sides: must be ports of two different bodies. Name one port of each "
             "of the two bodies that meet."},
-        Bad{"PortInTwoInterfaces",
-            {"interfaces.second={sides: [third.tip, left.tip], contact: {}}"},
-            "s.yaml, from --set interfaces.second={sides: [third.tip, left.tip], contact: {}}: "
-            "interfaces.second.sides[1]: is left.tip, which the interface impact uses already. "
-            "Give "
-            "every interface ports of its own; a body may have several ports."},
+        Bad{"SamePortsInTwoInterfaces",
+            {"interfaces.second={sides: [right.tip, left.tip], contact: {}}"},
+            "s.yaml, from --set interfaces.second={sides: [right.tip, left.tip], contact: {}}: "
+            "interfaces.second.sides: are left.tip and right.tip, which the interface impact joins "
+            "already. Keep one of the two interfaces."},
         Bad{"KinematicIsNoSide",
             {"interfaces.impact.transmission={unilateral: {kinematic: third.tip}}"},
             "s.yaml, from --set interfaces.impact.transmission={unilateral: {kinematic: "

@@ -1,0 +1,132 @@
+// Goal: one surface touches several others, as the side that finds contact with one and is found
+// by another. Oracles: balance of momentum; three equal blocks in a row hand on their velocity as
+// equal bodies do; a mirror along the diagonal.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/runs.hpp"
+
+namespace abut {
+namespace {
+
+constexpr double speed = 0.01;  // of that of sound
+
+/// Three blocks in a row, the first of which moves; the skin of each is one port.
+struct Chain {
+  std::string law = "linear_elastic", scheme = "central_difference";
+  std::array<std::string, 2> kinematic = {"auto", "auto"};
+  double window = 0.025;
+  int dim = 2;
+
+  /// As many cells across as dimensions at least: the skin has no mass, and would turn about nodes
+  /// inside that lie on one line.
+  std::string block(const std::string& name, double place, double v, int across) const {
+    const std::string mesh =
+        dim == 2
+            ? fmt::format("rectangle: {{lengths: [1.0, 0.25], elements: [8, {}]}}", across)
+            : fmt::format("box: {{lengths: [1.0, 0.25, 0.25], elements: [8, {0}, {0}]}}", across);
+    const std::string zeros = dim == 2 ? "0.0" : "0.0, 0.0";
+    return fmt::format(
+        "  {}:\n"
+        "    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n"
+        "    material: {{{}: {{youngs_modulus: 1.0, poissons_ratio: 0.0, density: 1.0}}}}\n"
+        "    integrator: {{{}: {{step: 0.0125}}}}\n"
+        "    initial: {{position: [{}, {}], velocity: [{}, {}]}}\n"
+        "    ports: {{skin: {{side: boundary}}}}\n",
+        name, dim, mesh, law, scheme, number(place), zeros, number(v), zeros);
+  }
+  std::string text() const {
+    const auto joint = [](const char* name, const char* one, const char* other,
+                          const std::string& side) {
+      return fmt::format(
+          "  {}: {{sides: [{}.skin, {}.skin], contact: {{}}, transmission: {{unilateral: "
+          "{{kinematic: {}}}}}}}\n",
+          name, one, other, side);
+    };
+    return fmt::format(
+               "meta: {{title: test}}\ntime: {{begin: 0.0, end: 5.0, window: {}}}\nbodies:\n",
+               number(window)) +
+           block("a", -1.0, speed, dim) + block("b", 0.002, 0.0, dim + 1) +
+           block("c", 1.004, 0.0, dim) + "interfaces:\n" + joint("first", "a", "b", kinematic[0]) +
+           joint("second", "b", "c", kinematic[1]);
+  }
+  std::unique_ptr<RunResult> run() const {
+    return run_document(Document::from_text("test", text()));
+  }
+};
+
+/// Eight elements disperse the front: 10 % of the velocity stay behind in vibration, as between two
+/// blocks, and once more at the second contact.
+void expect_handed_on(const RunResult& result, const std::string& what) {
+  ASSERT_TRUE(result.completed()) << what;
+  EXPECT_LE(result.momentum_error(), 1.0e-11) << what;  // forces balance point by point
+  EXPECT_NEAR(result.energy_error(), 0.0, 0.01) << what;
+  EXPECT_NEAR(result.velocity(0), 0.0, 0.1 * speed) << what;
+  EXPECT_NEAR(result.velocity(1), 0.0, 0.1 * speed) << what;
+  EXPECT_NEAR(result.velocity(2), speed, 0.15 * speed) << what;
+  for (const char* joint : {"first", "second"}) {
+    EXPECT_EQ(result.times(RunEvent::Kind::contact_closed, joint).size(), 1u) << what;
+    EXPECT_EQ(result.times(RunEvent::Kind::contact_opened, joint).size(), 1u) << what;
+  }
+  // Each interface tells its own force, not that of the whole port.
+  const double mass = result.masses[2], after = result.velocity(2);
+  EXPECT_NEAR(result.measure("contact.second.impulse"), mass * after, 1.0e-9 * mass * speed)
+      << what;
+  EXPECT_NEAR(result.measure("contact.first.impulse"), mass * (speed - result.velocity(0)),
+              1.0e-9 * mass * speed)
+      << what;
+}
+
+TEST(SeveralPartners, RolesMayBeMixedOnOneSkin) {
+  for (const std::string& scheme : {"central_difference", "newmark"}) {
+    for (const double window : {0.025, 0.5}) {
+      for (const char* first : {"auto", "a.skin", "b.skin"}) {
+        for (const char* second : {"auto", "b.skin", "c.skin"}) {
+          Chain chain;
+          chain.scheme = scheme;
+          chain.window = window;
+          chain.kinematic = {first, second};
+          const std::unique_ptr<RunResult> result = chain.run();
+          const std::string what = fmt::format("{}, windows of {} s, kinematic {} and {}", scheme,
+                                               window, first, second);
+          expect_handed_on(*result, what);
+          // The middle block is predicted without what its other partner does within the window.
+          const double most = window < 0.1 ? 2.0 : 4.0;
+          EXPECT_LE(result->measure("schwarz.iterations_max"), most) << what;
+        }
+      }
+    }
+  }
+}
+
+TEST(SeveralPartners, OfRubberAndInSpace) {
+  for (const int dim : {2, 3}) {
+    Chain chain;
+    chain.dim = dim;
+    chain.law = dim == 2 ? "neo_hookean" : "linear_elastic";
+    const std::unique_ptr<RunResult> result = chain.run();
+    expect_handed_on(*result, fmt::format("{} dimensions", dim));
+    EXPECT_LE(result->measure("schwarz.iterations_mean"), dim == 2 ? 3.0 : 1.0);
+  }
+}
+
+TEST(SeveralPartners, AMirrorAlongTheDiagonalChangesNothing) {
+  const std::unique_ptr<RunResult> result =
+      run_file(ABUT_SOURCE_DIR "/configs/contact/ball_in_corner.yaml");
+  ASSERT_TRUE(result->completed());
+  // Sums in another order, over 160 windows.
+  const double rounding = 1.0e-12;
+  const double x = result->measure("mean_velocity.disk.end_x");
+  EXPECT_NEAR(result->measure("mean_velocity.disk.end_y") / x, 1.0, rounding);
+  const double below = result->measure("contact.below.impulse");
+  EXPECT_NEAR(result->measure("contact.beside.impulse") / below, 1.0, rounding);
+  // Each interface tells its own force: what changes the momentum along its axis.
+  EXPECT_NEAR(below, result->masses[0] * (50.0 + x), 1.0e-9 * below);
+}
+
+}  // namespace
+}  // namespace abut
