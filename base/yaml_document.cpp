@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/input_file.hpp"
+#include "base/yaml_like.hpp"
 #include "base/yaml_text.hpp"
 
 namespace abut {
@@ -137,10 +138,35 @@ Document::Document(std::string name, std::string text, std::vector<std::string> 
   if (!root_->IsMap())
     throw InputError(root_->IsNull() ? "is empty" : "is not a map of keys", name_,
                      "Write a scene as key: value lines, beginning with meta:, time:, bodies:.");
-  for (const std::string& text_of_override : overrides_) put(text_of_override);
+  write_out();
 }
 
-void Document::put(const std::string& override_text) {
+/// Overrides change the text, so that bodies have what was changed in those that they are like.
+/// What has no place there, or takes out what was not there, is of a body that is written out.
+void Document::write_out() {
+  std::vector<std::string> later;
+  for (std::size_t i = 0; i < overrides_.size(); ++i) {
+    const std::string& text = overrides_[i];
+    const bool changed_again =
+        std::any_of(overrides_.begin() + static_cast<std::ptrdiff_t>(i) + 1, overrides_.end(),
+                    [&text](const std::string& other) {
+                      return is_at_or_below(override_path(other), override_path(text));
+                    });
+    try {
+      if (put(text) || changed_again) continue;
+    } catch (const InputError&) {  // told below, where it still has no place
+    }
+    later.push_back(text);
+  }
+  if (has_likes(*root_)) {
+    written_ = std::move(root_);
+    const Where where = [this](const std::string& path) { return place_of(path, path); };
+    root_ = std::make_unique<YAML::Node>(with_likes(*written_, where));
+  }
+  for (const std::string& text : later) put(text);
+}
+
+bool Document::put(const std::string& override_text) {
   const std::string where = "--set " + override_text;
   const std::vector<std::string> steps = split_path(override_path(override_text));
   if (override_text.find('=') == std::string::npos || steps.empty())
@@ -150,6 +176,7 @@ void Document::put(const std::string& override_text) {
       parse_yaml(override_text.substr(override_text.find('=') + 1), where,
                  override_path(override_text), "Give the value as in a scene file.");
   root_ = std::make_unique<YAML::Node>(with_value(*root_, steps, 0, value, where));
+  return !value.IsNull();
 }
 
 bool Document::has(std::string_view path) const {
@@ -187,11 +214,25 @@ bool Document::chooses(std::string_view path, std::string_view name) const {
 }
 
 std::string Document::where(std::string_view path) const {
+  std::vector<std::string> steps = split_path(path);
+  const std::string origin = written_ != nullptr ? origin_of(*written_, path) : std::string();
+  if (origin.empty() || steps[1] == origin) return place_of(path, path);
+  steps[1] = origin;
+  std::string there;
+  for (const std::string& step : steps) there = join_path(there, step);
+  for (const std::string& override_text : overrides_)
+    if (is_at_or_below(std::string(path), override_path(override_text)))
+      return place_of(path, path);
+  return place_of(there, fmt::format("{} (like {})", path, origin));
+}
+
+/// Where a path of the text stands, shown as another one.
+std::string Document::place_of(std::string_view path, std::string_view shown) const {
   const std::string text(path);
   for (auto it = overrides_.rbegin(); it != overrides_.rend(); ++it)
     if (is_at_or_below(text, override_path(*it)))
-      return fmt::format("{}, from --set {}: {}", name_, *it, path);
-  YAML::Node node(*root_);
+      return fmt::format("{}, from --set {}: {}", name_, *it, shown);
+  YAML::Node node(written_ != nullptr ? *written_ : *root_);
   std::string there;  // the part of the path that the document has
   int line = 0;
   for (const std::string& step : split_path(path)) {
@@ -203,12 +244,12 @@ std::string Document::where(std::string_view path) const {
       for (const std::string& override_text : overrides_)
         if (is_at_or_below(override_path(override_text), there))
           return fmt::format("{}, from --set {}{}: {}", name_, override_text,
-                             there == path ? "" : ", which adds " + there, path);
+                             there == path ? "" : ", which adds " + there, shown);
     }
     node.reset(found->node);
   }
   const std::string file = line > 0 ? fmt::format("{}:{}", name_, line) : name_;
-  return path.empty() ? file : fmt::format("{}: {}", file, path);
+  return path.empty() ? file : fmt::format("{}: {}", file, shown);
 }
 
 }  // namespace abut

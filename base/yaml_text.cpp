@@ -13,9 +13,7 @@
 namespace abut {
 namespace {
 
-// No honest scene comes near these.
-constexpr int max_depth = 64;
-constexpr int max_values = 200'000;
+constexpr int max_depth = 64;  // no honest scene comes near
 
 /// Counts what a text holds before a tree is made of it, and refuses what a tree would not show:
 /// tags, which change nothing here, and characters at which the library stands still.
@@ -82,7 +80,8 @@ class Census final : public YAML::EventHandler {
   }
 
   const std::string& name_;
-  int documents_ = 0, depth_ = 0, values_ = 0;
+  int documents_ = 0, depth_ = 0;
+  std::size_t values_ = 0;
   int begin_ = -1;  // of the last document, in characters
   YAML::Mark second_;
 };
@@ -118,7 +117,7 @@ class FormCheck {
   }
 
   const std::string& name_;
-  int nodes_ = 0;
+  std::size_t nodes_ = 0;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace YAML {
@@ -8,6 +9,9 @@ struct Mark;
 }  // namespace YAML
 
 namespace abut {
+
+/// Values of a scene, at most: no honest one comes near.
+constexpr std::size_t max_values = 200'000;
 
 /// "scene.yaml:12"; the name alone where the place is not in a file.
 std::string at_line(const std::string& name, const YAML::Mark& mark);

@@ -12,6 +12,7 @@ std::string model_of(const std::string& body) { return "bodies." + body + ".mode
 
 void ExternalBody::fields(Fields& f) {
   f.ignore("launch");
+  f.ignore("like");
   f.choice("model", model,
            "model of the body; the keys of external are those of another program and reach it as "
            "they stand (proto/README.md)");
@@ -29,6 +30,13 @@ void check_external_launch(const BodyEntry& entry, const Document& document) {
                    document.where(model_of(entry.name)),
                    "Give launch: {connect: {}} and start that program yourself, or launch: "
                    "{spawn: {program: its path}}.");
+}
+
+void check_external_like(const BodyEntry& entry, const Document& document) {
+  const std::string path = "bodies." + entry.name + ".like";
+  if (!entry.external || !document.has(path)) return;
+  throw InputError("is for bodies of this program: another one reads the text as it stands",
+                   document.where(path), "Write the external body out.");
 }
 
 void refuse_external_bodies(const Scene& scene, const Document& document) {

@@ -26,6 +26,8 @@ bool is_external(const Document& document, const std::string& body);
 
 /// Refuses what cannot start an external body. Throws InputError.
 void check_external_launch(const BodyEntry& entry, const Document& document);
+/// An external body is written out. Throws InputError.
+void check_external_like(const BodyEntry& entry, const Document& document);
 /// Refuses an external body where all bodies are to live in this process. Throws InputError.
 void refuse_external_bodies(const Scene& scene, const Document& document);
 

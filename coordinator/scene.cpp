@@ -43,6 +43,10 @@ void ConnectLaunch::fields(Fields& f) {
 }
 
 void BodyEntry::fields(Fields& f) {
+  if (f.purpose() != Fields::Purpose::write)
+    f.optional("like", like, "",
+               "name of a body whose keys this one has beside its own: maps key by key, lists and "
+               "values as a whole, a choice of another name instead; null leaves a key out");
   f.choice("launch", launch, "way in which the body's process comes to life", Presence::optional);
   f.ignore_rest();
 }
@@ -428,7 +432,10 @@ void validate(const Scene& scene, const Document& document) {
   if (scene.bodies.empty())
     errors.add({"has no body", document.where("bodies"), "Give at least one body."});
   for (const auto& entry : scene.bodies)
-    errors.gather([&] { check_external_launch(entry.second, document); });
+    errors.gather([&] {
+      check_external_launch(entry.second, document);
+      check_external_like(entry.second, document);
+    });
   for (const auto& entry : scene.interfaces)
     errors.gather([&] { validate_interface(scene, entry.second, document); });
   errors.gather([&] { validate_pairs(scene, document); });

@@ -39,6 +39,7 @@ struct BodyEntry {
   std::string name;
   std::variant<SpawnLaunch, ConnectLaunch> launch;
   bool external = false;  // of another program, which alone can describe it
+  std::string like;       // body that it has the rest from; the document has written it out
   void fields(Fields& f);
 };
 

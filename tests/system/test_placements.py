@@ -27,6 +27,22 @@ bodies:
     initial: {{velocity_field: ["-100 * y", "100 * x", "0"]}}
     body_force: [0, 0, -9.81]
 """
+CHAIN = """\
+meta: {title: Three blocks in a row of which each skin is one port}
+time: {begin: 0.0, end: 2.5, window: 0.1}
+bodies:
+  a:
+    model: {fe: {dimension: 2, mesh: {rectangle: {lengths: [1.0, 0.25], elements: [8, 2]}}}}
+    material: {linear_elastic: {youngs_modulus: 1.0, poissons_ratio: 0.0, density: 1.0}}
+    integrator: {central_difference: {step: 0.0125}}
+    initial: {position: [-1.0, 0.0], velocity: [0.01, 0.0]}
+    ports: {skin: {side: boundary}}
+  b: {like: a, initial: {position: [0.002, 0.0], velocity: [0.0, 0.0]}}
+  c: {like: b, initial: {position: [1.004, 0.0]}}
+interfaces:
+  first: {sides: [a.skin, b.skin], contact: {}, transmission: {unilateral: {kinematic: a.skin}}}
+  second: {sides: [b.skin, c.skin], contact: {}, transmission: {unilateral: {kinematic: b.skin}}}
+"""
 
 
 class Placements(SystemTest):
@@ -64,6 +80,13 @@ class Placements(SystemTest):
         self.succeed(self.abut("check", scene))
         self.assertEqual(bits(self.run_in("a", scene, "--local")),
                          bits(self.run_in("b", TWO_BARS, "--local")))
+
+    def test_one_skin_finds_contact_and_is_found_wherever_the_bodies_live(self):
+        scene = self.folder / "chain.yaml"
+        scene.write_text(CHAIN, encoding="utf-8")
+        local = self.run_in("here", scene, "--local")
+        self.assertEqual(bits(self.run_in("there", scene)), bits(local))
+        self.assertEqual(self.summary(local)["measures"]["contact.second.closings"], 1.0)
 
     def test_load_priority_and_a_single_core_change_no_bit(self):
         once = bits(self.run_in("once", TWO_BARS))
