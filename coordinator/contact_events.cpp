@@ -58,6 +58,7 @@ void ContactEvents::start() {
 void ContactEvents::approach(Joint& joint, const TimeWindow& window) {
   const double apart = distance(joint, bodies_), bound = closing_bound(joint, bodies_);
   const double way = bound * window.length();
+  if (!joint.pressing()) joint.touch_speed = bound;
   if (!joint.closed() && apart <= near_windows * way) return engage(joint, bound, window.begin);
   if (joint.closed() && !joint.pressing() && apart > far_windows * way) joint.disengage();
 }
@@ -220,7 +221,7 @@ void ContactEvents::settle_surfaces(Joint& joint) {
     const bool presses = resultant(force, i, dim) > force_floor * joint.force_scale;
     if (presses && !joint.pressing()) {
       joint.press();
-      narrator_.closed(joint, force.time[i], joint.closing_speed);
+      narrator_.closed(joint, force.time[i], joint.touch_speed);
     } else if (!presses && joint.pressing()) {
       joint.release();
       narrator_.opened(joint, force.time[i - 1]);

@@ -82,7 +82,7 @@ void expect_handed_on(const RunResult& result, const std::string& what) {
 }
 
 TEST(SeveralPartners, RolesMayBeMixedOnOneSkin) {
-  for (const std::string& scheme : {"central_difference", "newmark"}) {
+  for (const char* scheme : {"central_difference", "newmark"}) {
     for (const double window : {0.025, 0.5}) {
       for (const char* first : {"auto", "a.skin", "b.skin"}) {
         for (const char* second : {"auto", "b.skin", "c.skin"}) {
