@@ -146,7 +146,9 @@ void set_surfaces(const InterfaceSpec& spec, const Bodies& bodies, Joint& joint)
     throw InputError(fmt::format("joins '{}' ({}) and '{}' ({}), of which neither can find contact "
                                  "on its surface",
                                  one.name, one.model, other.name, other.model),
-                     where, "Make one of them a body of model fe, in the plane or in space, integrated in time.");
+                     where,
+                     "Make one of them a body of model fe, in the plane or in space, integrated in "
+                     "time.");
   }
   joint.role_fixed = how->kinematic != "auto";
   if (joint.role_fixed) {

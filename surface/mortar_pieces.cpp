@@ -12,10 +12,9 @@ namespace {
 /// N covers less than some hundredth of a facet, away from its edges.
 constexpr double most_cancellation = 1.0e3;
 
-/// A facet of K over which N goes out of reach, some part of it being nearer, is not joined: it is
-/// far from touching, and dual functions of the part that is nearer would lead N on beyond it, on
-/// curved faces through K. `apart`: of the reach, `whole`: of the facet's area.
-constexpr double apart = 0.5, whole = 0.999;
+/// Of the facet's area: what N covers less of while some of N is out of reach there has no dual
+/// functions. They would lead N on beyond the part that is near, on curved faces through K.
+constexpr double whole = 0.999;
 
 /// Coefficients A of the dual functions, Phi = A N, where D and w are those of the facet; false
 /// when round-off would show in them.
@@ -67,7 +66,7 @@ void mortar_pieces(const PosedSurface& k, const PosedSurface& n, std::span<const
       const Eigen::Vector3d normal = mean_normal(partner);
       if (!(normal.dot(ground.plane.normal) <= -options.facing)) continue;
       const bool joined = integrate(ground, partner, options.reach, options.quadrature, overlap);
-      leaves = leaves || overlap.gap > apart * options.reach;
+      leaves = leaves || overlap.gap > options.reach;
       if (!joined) continue;
       out.pieces.push_back({pairs[end].n, overlap.mixed, overlap.moments, normal});
       facet.t += overlap.own;
@@ -75,10 +74,9 @@ void mortar_pieces(const PosedSurface& k, const PosedSurface& n, std::span<const
       covered += overlap.area;
     }
     facet.last = static_cast<std::int32_t>(out.pieces.size());
-    if (leaves && covered < whole * ground.area) out.pieces.resize(index(facet.first));
-    if (index(facet.first) == out.pieces.size()) continue;
-    to_dual(ground, covered, options.dual_from, facet,
-            std::span(out.pieces).subspan(index(facet.first)));
+    if (facet.first == facet.last) continue;
+    const double least = leaves && covered < whole * ground.area ? 1.0 : options.dual_from;
+    to_dual(ground, covered, least, facet, std::span(out.pieces).subspan(index(facet.first)));
     out.facets.push_back(facet);
   }
 }

@@ -77,7 +77,7 @@ void CompliantObstacle::find_zone(double length, const Joint& joint, const Bodie
   const std::size_t now = index_at_begin(trace, iterate_.steps.begin);
   keep_row(trace, trace.u, now, u_k_);
   const double speed = largest(v_begin_) + largest(row(trace, trace.v, now));
-  zone_.see(joint, bodies, u_k_, u_begin_, speed * length);
+  zone_.see(joint, bodies, u_k_, u_begin_, f_begin_, speed * length);
 }
 
 void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& bodies) {
@@ -88,6 +88,7 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
   const Description& body = bodies.describe(n.body);
   if (std::isinf(body.mass) || !body.can.kernel) return;
   find_zone(length, joint, bodies);
+  if (zone_.empty()) return;
   const double values =
       zone_.points().empty() ? iterate_.width : static_cast<double>(zone_.points().size() * dim_);
   const double size = iterate_.steps.count * values * values;
@@ -167,7 +168,7 @@ void CompliantObstacle::impose(int side, const Eigen::Ref<const Eigen::VectorXd>
 }
 
 /// d = y - kernel * reaction, of the last replies.
-void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>&, const Joint& joint,
+void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                               const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
   const Waveform& trace = trace_of(bodies, joint.neumann_side());
   const int width = iterate_.width;
@@ -175,10 +176,31 @@ void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>&, const Jo
     trace.interpolate(trace.u, iterate_.steps.time(i), {&g[iterate_.at(i)], index(width)});
   scale_.velocity = std::max(
       {scale_.velocity, reached(trace), reached(trace_of(bodies, joint.kinematic_side()))});
-  scale_.roundoff = roundoff_of(largest(u_begin_), g.tail(width).lpNorm<Eigen::Infinity>());
+  // Gaps are differences of places, and no rounder than these.
+  const double place = largest(bodies.port(joint.neumann_side()).geometry.points);
+  scale_.roundoff =
+      roundoff_of(place + largest(u_begin_), g.tail(width).lpNorm<Eigen::Infinity>());
   if (kernel_ == nullptr) return;
   take(bodies.reaction(joint.kinematic_side()));
   take_back(g);
+  leave_far(x, g);
+}
+
+/// Points outside the zone do not give way, and nothing presses on them: where they are is not
+/// contact's affair.
+void CompliantObstacle::leave_far(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                  Eigen::Ref<Eigen::VectorXd> g) const {
+  if (kernel_->points.empty()) return;
+  std::size_t next = 0;
+  for (int first = 0; first < iterate_.width; first += static_cast<int>(dim_)) {
+    const std::vector<std::int32_t>& zone = kernel_->points;
+    const bool inside = next < zone.size() && index(zone[next]) * dim_ == index(first);
+    next += inside ? 1 : 0;
+    const Eigen::Index dim = static_cast<Eigen::Index>(dim_);
+    if (inside || !taken_.middleRows(first, dim).isZero(0.0)) continue;
+    for (int i = 1; i <= iterate_.steps.count; ++i)
+      g.segment(iterate_.at(i) + first, dim) = x.segment(iterate_.at(i) + first, dim);
+  }
 }
 
 /// Takes from the Neumann side's motion what the forces taken have moved it by the kernel.

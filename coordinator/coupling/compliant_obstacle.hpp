@@ -43,6 +43,7 @@ class CompliantObstacle final : public Transmission {
   void keep_begin(const TimeWindow& window, const Joint& joint, const Bodies& bodies);
   void take(const Waveform& force);
   void take_back(Eigen::Ref<Eigen::VectorXd> motion) const;
+  void leave_far(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> g) const;
   double reached(const Waveform& trace) const;
 
   Substeps kinematic_grid_;

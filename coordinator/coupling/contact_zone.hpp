@@ -10,19 +10,23 @@
 namespace abut {
 
 /// The points of a joint's Neumann side that contact may reach: those near the kinematic side's
-/// facets. Only they give way by a port kernel, whose cost is the square of their number.
+/// facets, those that are pressed, and some facets around both. Only they give way by a port
+/// kernel, whose cost is the square of their number.
 class ContactZone {
  public:
   /// For a window that moves the two sides by `way` [m] relative to each other. `k`, `n`: [m]
-  /// (points, dim) displacements of the two sides at its begin. A point that has come near without
-  /// being in the zone makes a new one, with a margin.
+  /// (points, dim) displacements of the two sides at its begin, `pressed`: [N] the force on n then.
+  /// A point that has come near or is pressed without being in the zone makes a new one.
   void see(const Joint& joint, const Bodies& bodies, std::span<const double> k,
-           std::span<const double> n, double way);
-  /// Ascending; empty: all points of the side.
+           std::span<const double> n, std::span<const double> pressed, double way);
+  /// Nothing has come near yet.
+  bool empty() const { return !all_ && points_.empty(); }
+  /// Ascending; all points of the side where that is empty and the zone is not.
   const std::vector<std::int32_t>& points() const { return points_; }
 
  private:
-  std::vector<std::int32_t> near(double reach) const;
+  std::vector<std::int32_t> reached(double reach, std::span<const double> pressed) const;
+  std::vector<std::int32_t> around(const std::vector<std::int32_t>& points, double reach) const;
 
   bool all_ = false;
   std::vector<std::int32_t> points_;

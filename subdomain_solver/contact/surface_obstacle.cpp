@@ -30,8 +30,8 @@ SurfaceObstacle::SurfaceObstacle(std::size_t port, std::size_t partner, const Po
       reach_(longest_edge(posed(own, own.points))),
       edges_(met.surface, own.spacing),
       own_edges_(own, reach_) {
-  free_ = pose_ = met.surface.points;
-  build(tree_, posed(met.surface, pose_), reach_);
+  free_ = pose_ = fitted_ = met.surface.points;
+  build(tree_, posed(met.surface, pose_), 0.0);
   build(own_tree_, posed(own, own.points), 0.0);
 }
 
@@ -180,8 +180,11 @@ void SurfaceObstacle::join(std::span<const double> pose, double travel) {
   const PosedSurface k = posed(own_, pose), n = posed(met_->surface, pose_);
   const double way = travel_ + travel;
   options_.reach = reach_ + way;
-  refit(own_tree_, k, 0.0);
-  refit(tree_, n, options_.reach);
+  refit(own_tree_, k, options_.reach);
+  if (fitted_ != pose_) {  // walls stand
+    refit(tree_, n, 0.0);
+    fitted_ = pose_;
+  }
   if (!turned_ || !chosen_) overlapping_pairs(own_tree_, tree_, pairs_);
   if (!chosen_) choose_side(pose);
   if (turned_) {

@@ -79,7 +79,8 @@ class SurfaceObstacle {
   std::vector<int> in_zone_;            // (values) where in the zone; -1: they do not
   std::vector<double> free_, pose_;     // [m] (points, dim)
   std::vector<double> given_, before_;  // [m] (values) displacements
-  BoxTree tree_, own_tree_;
+  BoxTree tree_, own_tree_;             // the port's with the reach around its boxes
+  std::vector<double> fitted_;          // [m] (points, dim) pose of tree_
   std::vector<FacetPair> pairs_;
   MortarBuffers buffers_;
   SurfaceRows rows_;

