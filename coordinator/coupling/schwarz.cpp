@@ -139,6 +139,9 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
 
   const bool contracts = std::ranges::all_of(
       island.joints, [&joints](int j) { return joints[index(j)].how->contracts(); });
+  std::unique_ptr<Accelerator> careful;
+  double share = 1.0;  // of a plain step
+  int growths = 0;     // of the residual
   SchwarzReport report;
   for (report.iterations = 1;; ++report.iterations) {
     if (report.iterations > 1) {
@@ -146,7 +149,18 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
         for (int body : level) bodies[body].restore();
       }
     }
-    if (std::optional<Failed> failed = sweep(island, joints, layout_, x_, bodies)) return *failed;
+    if (std::optional<Failed> failed = sweep(island, joints, layout_, x_, bodies)) {
+      // Secants may lead to where a body has no answer; from the last iterate that had one, a part
+      // of the plain step leads to another.
+      const bool led = report.iterations > 1 && report.iterations < options_.max_iterations;
+      if (!contracts || !led) return *failed;
+      accelerator.forget();
+      share *= 0.5;
+      careful = std::make_unique<Aitken>(share);
+      x_ = held_ + share * (g_ - held_);
+      continue;
+    }
+    held_ = x_;
     const double before = std::exchange(report.residual, {}).largest();
     for (std::size_t i = 0; i < island.joints.size(); ++i) {
       const Joint& joint = joint_at(i);
@@ -157,15 +171,18 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
     const bool early = 2 * report.iterations <= options_.max_iterations;  // later it is no bad luck
-    if (contracts && early && report.iterations > 1 && report.residual.largest() > before)
+    if (contracts && early && report.iterations > 1 && report.residual.largest() > before) {
       accelerator.forget();
+      if (growths++ > 0 && careful == nullptr) careful = std::make_unique<Aitken>(0.5);
+    }
     if (options_.kernels && std::ranges::any_of(island.joints, [&joints](int j) {
           return joints[index(j)].how->projects();
         })) {
       x_ += apply_inverses(g_ - x_, joints);
       continue;
     }
-    x_ = accelerator.next(x_.cwiseProduct(s_), g_.cwiseProduct(s_)).cwiseQuotient(s_);
+    Accelerator& next = careful != nullptr ? *careful : accelerator;
+    x_ = next.next(x_.cwiseProduct(s_), g_.cwiseProduct(s_)).cwiseQuotient(s_);
   }
 }
 

@@ -66,7 +66,8 @@ class Schwarz {
 
   Options options_;
   MakeAccelerator make_;
-  Eigen::VectorXd x_, g_, s_;  // iterate, image, scales: kept, so that windows allocate nothing
+  // iterate, image, scales, last iterate that has an image: kept, so that windows allocate nothing
+  Eigen::VectorXd x_, g_, s_, held_;
   Layout layout_;              // of the window being solved: the accelerators' inverse reads it
   std::map<std::vector<int>, std::unique_ptr<Accelerator>> accelerators_;
 };
