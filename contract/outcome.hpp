@@ -54,7 +54,7 @@ struct PortResponse {
   Waveform trace;                   // at the substeps, or at the records only (Sampling)
   std::vector<Reaction> reactions;  // by partner, to the obstacles of the request
   // Displacements (u) of all points over Advance::ahead, at the substeps; empty: not asked for, or
-  // not told: bodies that meet obstacles do not
+  // not told: bodies that meet obstacles with more than a point do not
   Waveform ahead;
   // [m] (records, dim) box that the points swept in each record's part of the window: positions
   std::vector<double> lower, upper;

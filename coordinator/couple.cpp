@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -91,8 +92,8 @@ void refuse_tied_ports(const InterfaceSpec& spec, const Bodies& bodies, const Jo
   }
 }
 
-void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how, bool parallel,
-                    const Bodies& bodies, Joint& joint) {
+void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how,
+                    const SchwarzSpec& schwarz, const Bodies& bodies, Joint& joint) {
   const std::string where = "interfaces." + spec.name;
   for (const Side& side : joint.sides) {
     const Description& body = bodies.describe(side.body);
@@ -121,10 +122,13 @@ void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
     require(body.can.obstacle, body, where + ".transmission.unilateral.kinematic",
             "takes forces only and cannot be the kinematic side", "Name the other side, or auto.");
   }
-  if (parallel) {
-    joint.how = std::make_unique<ParallelForce>();
+  // Trials need kernels: who chooses another accelerator wants to see what that does.
+  const bool kernels = std::holds_alternative<KernelAcceleration>(schwarz.accelerator);
+  constexpr double never = std::numeric_limits<double>::infinity();
+  if (schwarz.parallel) {
+    joint.how = std::make_unique<ParallelForce>(kernels);
   } else {
-    joint.how = std::make_unique<Unilateral>();
+    joint.how = std::make_unique<Unilateral>(kernels ? schwarz.tolerance : never);
   }
 }
 
@@ -244,7 +248,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     if (joint.surfaces) {
       set_surfaces(spec, bodies, joint);
     } else if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
-      set_unilateral(spec, *unilateral, scene.schwarz.parallel, bodies, joint);
+      set_unilateral(spec, *unilateral, scene.schwarz, bodies, joint);
     } else if (const auto* robin = std::get_if<RobinTransmission>(&spec.transmission)) {
       set_robin(spec, *robin, scene.schwarz, bodies, joint);
     } else {

@@ -186,14 +186,14 @@ std::optional<Failed> Body::walk(const Window& window, const Visit& visit) {
 /// What partners press with at the window's end is gone by the end of the next substep. A look that
 /// fails has nothing to tell.
 void Body::look_ahead(const Advance& request, Response& response) {
-  const bool meets = std::ranges::any_of(
-      request.boundary, [](const BoundaryData& data) { return data.obstructed(); });
-  if (meets) return;
+  for (std::size_t p = 0; p < ports_.size(); ++p)
+    if (request.boundary[p].obstructed() && ports_[p].width > 1) return;
   const double begin = request.window.end;
   ahead_.window = {request.window.index + 1, begin, begin + request.ahead};
   ahead_.boundary.resize(ports_.size());
   const Substeps grid = divide(ahead_);
-  for (std::size_t p = 0; p < ports_.size(); ++p) release(p, request, grid);
+  for (std::size_t p = 0; p < ports_.size(); ++p)
+    release(p, request, grid, response.ports[p].trace);
   write(*interior_, looked_, Archive::Form::bare);
   const Window window{ahead_, grid, partners_};
   const std::optional<Failed> failed = walk(window, [&](int i) {
@@ -212,13 +212,17 @@ void Body::look_ahead(const Advance& request, Response& response) {
   interior_->restored();
 }
 
-/// The forces that a request ends with on a port, and none from the next substep's end on.
-void Body::release(std::size_t p, const Advance& request, const Substeps& grid) {
+/// The forces that a request ends with on a port, and none from the end of the next step on of
+/// those who gave them. At a point that found contact itself that is its own.
+void Body::release(std::size_t p, const Advance& request, const Substeps& grid,
+                   const Waveform& trace) {
   const std::size_t width = ports_[p].width, dim = index(ports_[p].geometry->dim);
   std::vector<Waveform>& forces = ahead_.boundary[p].forces;
   forces.resize(1);
   Waveform& gone = forces[0];
   gone.clear();
+  const bool obstructed = request.boundary[p].obstructed();
+  if (width == 1) return release_point(request, obstructed ? &trace : nullptr, p, gone);
   if (!request.boundary[p].pushed()) return;
   gone.width = static_cast<int>(width);
   gone.support = ForceSupport::linear;
@@ -233,6 +237,24 @@ void Body::release(std::size_t p, const Advance& request, const Substeps& grid) 
       gone.f[listed ? index(force.points[k / dim]) * dim + k % dim : k] += pressing_[k];
     }
   }
+}
+
+/// The same of one value: it acts over the dual cell of the window's end (nodal), or not any more.
+void Body::release_point(const Advance& request, const Waveform* own, std::size_t p,
+                         Waveform& gone) const {
+  const std::vector<Waveform>& forces = request.boundary[p].forces;
+  const auto given = std::ranges::find_if(forces, [](const Waveform& f) { return !f.empty(); });
+  const Waveform* last = own != nullptr ? own : given != forces.end() ? &*given : nullptr;
+  if (last == nullptr || last->support == ForceSupport::step || last->size() < 2) return;
+  const TimeWindow& next = ahead_.window;
+  const Substeps grid = Substeps::divide(next.begin, next.end, last->time[1] - last->time[0]);
+  gone.width = 1;
+  gone.support = last->support;
+  gone.time = levels_of(grid);
+  gone.f.assign(gone.time.size(), 0.0);
+  if (own != nullptr) gone.f[0] = own->f.back();
+  for (const Waveform& force : forces)
+    if (own == nullptr && !force.empty()) gone.f[0] += force.f.back();
 }
 
 /// A body without a step of its own goes from record to record.

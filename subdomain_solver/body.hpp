@@ -48,7 +48,10 @@ class Body final : public Subdomain {
   template <class Visit>
   std::optional<Failed> walk(const Window& window, const Visit& visit);
   void look_ahead(const Advance& request, Response& response);
-  void release(std::size_t port, const Advance& request, const Substeps& grid);
+  void release_point(const Advance& request, const Waveform* own, std::size_t p,
+                     Waveform& gone) const;
+  void release(std::size_t port, const Advance& request, const Substeps& grid,
+               const Waveform& trace);
   Substeps divide(const Advance& request) const;
   void begin_replies(const Advance& request, Response& response);
   void follow(const Window& window, double time, bool shown);

@@ -1,6 +1,7 @@
 #include "coordinator/coupling/bodies.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <new>
 #include <numeric>
@@ -188,6 +189,29 @@ PortKernel Bodies::full_kernel(int body, int port, int count,
   for (std::size_t k = 0; k < values; ++k)
     units[k * width + (points.empty() ? k : index(points[k / dim]) * dim + k % dim)] = 1.0;
   return cut(ask(body, port, units, count), points, dim);
+}
+
+std::vector<double> Bodies::impulse_response(const Side& side, const TimeWindow& window) {
+  const Description& body = describe(side.body);
+  const double normal = port(side).geometry.normals[0];
+  const double impulse = body.mass;  // [N s] that changes the velocity of the whole by 1 m/s
+  std::array<Response, 2> responses;
+  Advance alone;
+  alone.window = window;
+  for (std::size_t struck : {0u, 1u}) {
+    alone.boundary.assign(body.ports.size(), {});
+    if (struck == 1) alone.boundary[index(side.port)].impulse = {-normal * impulse};
+    ++exchanges_;
+    const Outcome outcome = (*this)[side.body].advance(alone, responses[struck]);
+    (*this)[side.body].restore();
+    if (!std::holds_alternative<Advanced>(outcome)) return {};
+  }
+  const std::vector<double>& before = responses[0].ports[index(side.port)].trace.u;
+  const std::vector<double>& after = responses[1].ports[index(side.port)].trace.u;
+  std::vector<double> moved;
+  for (std::size_t i = 1; i < std::min(before.size(), after.size()); ++i)
+    moved.push_back(normal * (after[i] - before[i]) / impulse);
+  return moved;
 }
 
 double Bodies::shortest_step() const {

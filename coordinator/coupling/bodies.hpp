@@ -67,7 +67,12 @@ class Bodies {
   /// empty: all.
   PortKernel full_kernel(int body, int port, int count, const std::vector<std::int32_t>& points);
 
+  /// [m/(N s)] (substeps) outward displacement of a port of one point after a unit impulse against
+  /// its normal at the begin of a window, of a linear body. Precondition: all stand as saved.
+  std::vector<double> impulse_response(const Side& side, const TimeWindow& window);
+
   double shortest_step() const;  // [s] of all bodies, at most a window
+  double window() const { return window_; }  // [s] a whole one
   double longest_step() const;   // [s] of those that have one; a window where none has
   std::int64_t exchanges() const { return exchanges_; }
   const std::vector<double>& compute_seconds() const { return compute_seconds_; }

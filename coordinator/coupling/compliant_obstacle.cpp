@@ -45,13 +45,9 @@ void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodi
 
 /// Where its last reply told the Neumann side would fly: over a window like this one.
 bool CompliantObstacle::see_look(const Joint& joint, const Bodies& bodies) {
-  const Waveform& look = port_of(bodies, joint.neumann_side()).ahead;
-  const Substeps& steps = iterate_.steps;
-  const double rounding = 1.0e-9 * steps.step;  // of a window's end
-  if (look.empty() || static_cast<int>(look.size()) != steps.count + 1 ||
-      look.time.front() != steps.begin || std::abs(look.time.back() - steps.end) > rounding)
-    return false;
-  flight_ = Eigen::Map<const Eigen::VectorXd>(look.u.data() + iterate_.width, iterate_.size());
+  const Waveform* look = look_of(bodies, joint.neumann_side(), iterate_.steps);
+  if (look == nullptr) return false;
+  flight_ = Eigen::Map<const Eigen::VectorXd>(look->u.data() + iterate_.width, iterate_.size());
   return true;
 }
 

@@ -30,17 +30,39 @@ void ParallelForce::begin(const TimeWindow& window, const Joint& joint, Bodies& 
   scale_.velocity = reference_velocity(joint, compliance_, scale_.step);
   scale_.force = joint.force_scale;
   inverse_ = nullptr;
-  if (joint.width > 1) return;  // secants do it
-  inverse_ = inverses_.find(window.length());
+  if (joint.width == 1) find_inverse(kernels, grids, window.length());  // else secants do it
+  window_ = window;
+  see_trial({grids[0], grids[1]}, joint, bodies);
+  const bool linear = std::ranges::all_of(
+      joint.sides, [&bodies](const Side& side) { return bodies.describe(side.body).linear; });
+  looks_ = trials_ && linear && inverse_ != nullptr;
+}
+
+void ParallelForce::find_inverse(const std::vector<const PortKernel*>& kernels,
+                                 const std::vector<Substeps>& grids, double length) {
+  inverse_ = inverses_.find(length);
   if (inverse_ != nullptr) return;
   if (std::max(grids[0].count, grids[1].count) > KernelInverse::largest) return;
   Eigen::MatrixXd jacobian = parallel_jacobian(kernels, grids, iterate_.steps, support_);
-  inverse_ = unilateral_
-                 ? inverses_.store(window.length(), ContactMaps{std::move(jacobian), {}, {}})
-                 : inverses_.store(window.length(), jacobian / compliance_);
+  inverse_ = unilateral_ ? inverses_.store(length, ContactMaps{std::move(jacobian), {}, {}})
+                         : inverses_.store(length, jacobian / compliance_);
+}
+
+/// What force leaves no overlap of the trial?
+void ParallelForce::see_trial(const std::array<Substeps, 2>& grids, const Joint& joint,
+                              Bodies& bodies) {
+  predicted_.resize(0);
+  if (inverse_ == nullptr || !trial_.see(window_, grids, joint, bodies)) return;
+  see_overlap(joint, {&trial_.motion(0), &trial_.motion(1)});
+  force_.setZero(iterate_.size());
+  predicted_ = apply_inverse(overlap_ / compliance_);
 }
 
 void ParallelForce::predict(Eigen::Ref<Eigen::VectorXd> x) const {
+  if (predicted_.size() > 0) {
+    x = predicted_;
+    return;
+  }
   const bool known = covers(guess_, iterate_.steps);
   for (int i = 1; i <= iterate_.steps.count; ++i) {
     const std::span<double> to(&x[iterate_.at(i)], force_begin_.size());
@@ -61,23 +83,13 @@ void ParallelForce::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
   Waveform& force = bodies.force(joint.sides[index(side)]);
   force = guess_;
   for (double& f : force.f) f *= -joint.normal_of(side);
+  if (looks_) Trial::ask(window_, joint, bodies);
 }
 
 void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                           const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
-  double travelled = 0.0;
-  overlap_.resize(iterate_.size());
-  std::array<std::vector<double>, 2> u;
-  for (std::vector<double>& values : u) values.resize(index(iterate_.width));
-  for (int i = 1; i <= iterate_.steps.count; ++i) {
-    for (std::size_t s : {0u, 1u}) {
-      const Waveform& trace = trace_of(bodies, joint.sides[s]);
-      trace.interpolate(trace.u, iterate_.steps.time(i), u[s]);
-      travelled = std::max(travelled, largest(u[s]));
-    }
-    for (std::size_t c = 0; c < u[0].size(); ++c)
-      overlap_[iterate_.at(i) + static_cast<Eigen::Index>(c)] = -joint.gap(u[0][c], u[1][c]);
-  }
+  const double travelled =
+      see_overlap(joint, {&trace_of(bodies, joint.sides[0]), &trace_of(bodies, joint.sides[1])});
   g = x + overlap_ / compliance_;
   if (unilateral_) g = g.cwiseMax(0.0);
   force_ = x;
@@ -85,6 +97,24 @@ void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Join
   scale_.force = std::max(joint.force_scale, x.lpNorm<Eigen::Infinity>());
   balance(scale_, compliance_);
   scale_.roundoff = roundoff_of(travelled, joint.reference_gap);
+}
+
+/// Of motions of both sides, at the iterate's substeps. Returns [m] how far they went.
+double ParallelForce::see_overlap(const Joint& joint,
+                                  const std::array<const Waveform*, 2>& motions) {
+  double travelled = 0.0;
+  overlap_.resize(iterate_.size());
+  std::array<std::vector<double>, 2> u;
+  for (std::vector<double>& values : u) values.resize(index(iterate_.width));
+  for (int i = 1; i <= iterate_.steps.count; ++i) {
+    for (std::size_t s : {0u, 1u}) {
+      motions[s]->interpolate(motions[s]->u, iterate_.steps.time(i), u[s]);
+      travelled = std::max(travelled, largest(u[s]));
+    }
+    for (std::size_t c = 0; c < u[0].size(); ++c)
+      overlap_[iterate_.at(i) + static_cast<Eigen::Index>(c)] = -joint.gap(u[0][c], u[1][c]);
+  }
+  return travelled;
 }
 
 FieldResiduals ParallelForce::measure(const Eigen::Ref<const Eigen::VectorXd>& x,

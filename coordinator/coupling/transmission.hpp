@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "coordinator/coupling/convergence.hpp"
 #include "coordinator/coupling/joint.hpp"
 #include "coordinator/coupling/port_jacobian.hpp"
+#include "coordinator/coupling/trial.hpp"
 
 namespace abut {
 
@@ -96,6 +99,9 @@ class KernelInverse {
 /// side's motion, never the force, so momentum is exact in every iterate  [M.9].
 class Unilateral final : public Transmission {
  public:
+  /// Trials are asked for where windows without them would miss `tolerance`; infinity: never.
+  explicit Unilateral(double tolerance = 0.0) : tolerance_(tolerance) {}
+
   void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
   int values() const override { return static_cast<int>(iterate_.size()); }
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
@@ -120,7 +126,16 @@ class Unilateral final : public Transmission {
   double kinematic_compliance_ = 0.0, neumann_compliance_ = 0.0;  // [m/N] over one substep
   double roundoff_gain_ = 1.0;  // of displacements, through the reaction
   double first_factor_ = 1.0;
+  double tolerance_;
+  TimeWindow window_;
+  Trial trial_;
+  bool looks_ = false;  // both sides look on after the window
+  double straight_residual_ = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd predicted_;  // [m] as the iterate; empty: there is no trial
   void find_inverse(const Joint& joint, double length);
+  void see_trial(const TimeWindow& window, const Joint& joint, Bodies& bodies);
+  void see_overlap(const Joint& joint, const Waveform& k, const Waveform& n);
+  Eigen::VectorXd straight() const;
   void see_contact(const Joint& joint, const Bodies& bodies);
 
   // of contact at one point: kernels, and what the last sweep left on K's side at its substeps
@@ -139,6 +154,8 @@ class Unilateral final : public Transmission {
 /// side's substeps until no overlap is left  [M.12].
 class ParallelForce final : public Transmission {
  public:
+  explicit ParallelForce(bool trials = true) : trials_(trials) {}
+
   void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
   int values() const override { return static_cast<int>(iterate_.size()); }
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
@@ -154,6 +171,11 @@ class ParallelForce final : public Transmission {
   bool ordered() const override { return false; }
 
  private:
+  void see_trial(const std::array<Substeps, 2>& grids, const Joint& joint, Bodies& bodies);
+  double see_overlap(const Joint& joint, const std::array<const Waveform*, 2>& motions);
+  void find_inverse(const std::vector<const PortKernel*>& kernels,
+                    const std::vector<Substeps>& grids, double length);
+
   IterateGrid iterate_;     // of the force, compressive
   bool unilateral_ = true;  // contact: every substep decides for itself
   bool projects_ = false;
@@ -163,6 +185,11 @@ class ParallelForce final : public Transmission {
   Waveform guess_;
   ReferenceScales scale_;
   double compliance_ = 0.0;  // [m/N] of both sides over one substep
+  TimeWindow window_;
+  bool trials_;
+  Trial trial_;
+  bool looks_ = false;         // both sides look on after the window
+  Eigen::VectorXd predicted_;  // [N] as the iterate; empty: there is no trial
   KernelInverse inverses_;
   const KernelInverse::Entry* inverse_ = nullptr;
 };

@@ -62,6 +62,17 @@ inline void balance(ReferenceScales& scale, double compliance) {
   scale.force = std::max(scale.force, share * scale.velocity * scale.step / compliance);
 }
 
+/// Where the last reply told that a side would go over these substeps without partners; null: it
+/// did not tell, or of another window.
+inline const Waveform* look_of(const Bodies& bodies, const Side& side, const Substeps& steps) {
+  const Waveform& look = port_of(bodies, side).ahead;
+  const double rounding = 1.0e-9 * steps.step;  // of a window's end
+  const bool fits = !look.empty() && static_cast<int>(look.size()) == steps.count + 1 &&
+                    look.time.front() == steps.begin &&
+                    std::abs(look.time.back() - steps.end) <= rounding;
+  return fits ? &look : nullptr;
+}
+
 /// A window that was cut short starts from the iterate of the longer one.
 inline bool covers(const Waveform& guess, const Substeps& steps) {
   return !guess.empty() && guess.time.front() == steps.begin && guess.time.back() >= steps.end;

@@ -7,10 +7,20 @@
 
 namespace abut {
 
+namespace {
+/// Of the tolerance: where the straight guess misses by less, windows are sure to do without a
+/// trial.
+constexpr double doubt = 0.1;
+/// Times as much as the kinematic side gives way: a trial of a softer partner would be pushed all
+/// the way by forces that a stiff side knows with too few digits.
+constexpr double softest = 1.0e4;
+}  // namespace
+
 void Unilateral::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
   const Side& k = joint.kinematic_side();
   const Side& n = joint.neumann_side();
   kinematic_grid_ = substeps_of(bodies, k, window);
+  window_ = window;
   iterate_ = {substeps_of(bodies, n, window), joint.width};
   const Substeps& neumann = iterate_.steps;
   const Waveform& trace = trace_of(bodies, n);
@@ -40,6 +50,26 @@ void Unilateral::begin(const TimeWindow& window, const Joint& joint, Bodies& bod
   // own that maps them, and secants do the rest.
   if (!std::isinf(bodies.describe(n.body).mass) && joint.width == 1)
     find_inverse(joint, window.length());
+  see_trial(window, joint, bodies);
+  const bool linear = bodies.describe(k.body).linear && bodies.describe(n.body).linear;
+  looks_ = linear && unilateral_ && inverse_ != nullptr &&
+           neumann_compliance_ < softest * kinematic_compliance_ &&
+           straight_residual_ > doubt * tolerance_;
+}
+
+/// What contact makes of the trial.
+void Unilateral::see_trial(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
+  predicted_.resize(0);
+  if (!unilateral_ || inverse_ == nullptr) return;
+  std::array<Substeps, 2> grids;
+  grids[index(joint.kinematic)] = kinematic_grid_;
+  grids[index(1 - joint.kinematic)] = iterate_.steps;
+  if (!trial_.see(window, grids, joint, bodies)) return;
+  const Waveform& n = trial_.motion(1 - joint.kinematic);
+  force_.setZero(kinematic_grid_.count);
+  see_overlap(joint, trial_.motion(joint.kinematic), n);
+  predicted_ = Eigen::Map<const Eigen::VectorXd>(n.u.data() + 1, iterate_.size());
+  predicted_ += apply_inverse(Eigen::VectorXd::Zero(iterate_.size()));
 }
 
 void Unilateral::find_inverse(const Joint& joint, double length) {
@@ -60,19 +90,20 @@ void Unilateral::find_inverse(const Joint& joint, double length) {
 }
 
 void Unilateral::predict(Eigen::Ref<Eigen::VectorXd> x) const {
-  const bool known = covers(guess_, iterate_.steps);
-  for (int i = 1; i <= iterate_.steps.count; ++i) {
-    const double time = iterate_.steps.time(i);
-    const std::span<double> to(&x[iterate_.at(i)], u_begin_.size());
-    for (std::size_t c = 0; c < to.size(); ++c)
-      to[c] = u_begin_[c] + v_begin_[c] * (time - iterate_.steps.begin);
-    if (known) guess_.interpolate(guess_.u, time, to);
+  if (predicted_.size() > 0) {
+    x = predicted_;
+    return;
   }
+  x = straight();
+  if (!covers(guess_, iterate_.steps)) return;
+  for (int i = 1; i <= iterate_.steps.count; ++i)
+    guess_.interpolate(guess_.u, iterate_.steps.time(i), {&x[iterate_.at(i)], u_begin_.size()});
 }
 
 void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                         Bodies& bodies) {
   const Side& here = joint.sides[index(side)];
+  if (looks_) Trial::ask(window_, joint, bodies);
   if (side != joint.kinematic) {
     bodies.force(here) = bodies.reaction(joint.kinematic_side());
     return;
@@ -103,23 +134,38 @@ void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Joint& jo
   balance(scale_, kinematic_compliance_);
   const double travelled = g.tail(iterate_.width).lpNorm<Eigen::Infinity>();
   scale_.roundoff = roundoff_gain_ * roundoff_of(largest(u_begin_), travelled);
+  if (inverse_ != nullptr) straight_residual_ = measure(straight(), g).largest();
+}
+
+/// Motion at the velocity of the window's begin.
+Eigen::VectorXd Unilateral::straight() const {
+  Eigen::VectorXd x(iterate_.size());
+  for (int i = 1; i <= iterate_.steps.count; ++i)
+    for (std::size_t c = 0; c < u_begin_.size(); ++c)
+      x[iterate_.at(i) + static_cast<Eigen::Index>(c)] =
+          u_begin_[c] + v_begin_[c] * (iterate_.steps.time(i) - iterate_.steps.begin);
+  return x;
 }
 
 /// Overlap and force at K's substeps, against the iterate that it was given.
 void Unilateral::see_contact(const Joint& joint, const Bodies& bodies) {
   const Waveform& reply = trace_of(bodies, joint.kinematic_side());
-  overlap_.resize(kinematic_grid_.count);
+  see_overlap(joint, reply, guess_);
   force_.resize(kinematic_grid_.count);
-  for (Eigen::Index i = 0; i < force_.size(); ++i) {
-    const std::size_t at = index(i) + 1;
-    double u[2];
-    u[joint.kinematic] = reply.u[at];
-    guess_.interpolate(guess_.u, kinematic_grid_.time(static_cast<int>(at)),
-                       {&u[1 - joint.kinematic], 1});
-    overlap_[i] = -joint.gap(u[0], u[1]);
-    force_[i] = -joint.normal_of(joint.kinematic) * reply.f[at];
-  }
+  for (Eigen::Index i = 0; i < force_.size(); ++i)
+    force_[i] = -joint.normal_of(joint.kinematic) * reply.f[index(i) + 1];
   projects_ = force_.minCoeff() <= 0.0;
+}
+
+/// Of motions of K, told at its substeps, and of N.
+void Unilateral::see_overlap(const Joint& joint, const Waveform& k, const Waveform& n) {
+  overlap_.resize(kinematic_grid_.count);
+  for (int i = 1; i <= kinematic_grid_.count; ++i) {
+    double u[2];
+    u[joint.kinematic] = k.u[index(i)];
+    n.interpolate(n.u, kinematic_grid_.time(i), {&u[1 - joint.kinematic], 1});
+    overlap_[i - 1] = -joint.gap(u[0], u[1]);
+  }
 }
 
 FieldResiduals Unilateral::measure(const Eigen::Ref<const Eigen::VectorXd>& x,

@@ -86,6 +86,7 @@ void BarInterior::describe(std::string name, const std::vector<End>& ends) {
   description_.conserves = scheme_.conserves && data.bulk_viscosity == 0.0 && data.tchamwa <= 1.0 &&
                            data.layer[0] != ContactLayer::massive &&
                            data.layer[1] != ContactLayer::massive;
+  description_.linear = data.bulk_viscosity == 0.0;
   description_.fields = bar_fields();
   Capabilities& can = description_.can;
   can.force = true;

@@ -199,9 +199,9 @@ void SurfaceObstacle::add_compliance(Eigen::Index first, Eigen::MatrixXd& a) {
   const std::size_t dim = index(rows_.dim);
   const auto each = [this, dim](int row, const auto& visit) {
     for (std::int32_t e = rows_.n.offsets[index(row)]; e < rows_.n.offsets[index(row) + 1]; ++e) {
-      const int first = in_zone_[index(rows_.n.columns[index(e)]) * dim];
-      for (std::size_t d = 0; first >= 0 && d < dim; ++d)
-        visit(index(first) + d, rows_.n.values[index(e)] * rows_.normals[index(row) * dim + d]);
+      const int at = in_zone_[index(rows_.n.columns[index(e)]) * dim];
+      for (std::size_t d = 0; at >= 0 && d < dim; ++d)
+        visit(index(at) + d, rows_.n.values[index(e)] * rows_.normals[index(row) * dim + d]);
     }
   };
   for (int r = 0; r < rows_.count(); ++r) {

@@ -12,6 +12,8 @@ RULES = [
      "use a path relative to the project, or one found at run time"),
     (re.compile(r"\b(https?|ftp)://(localhost|\d+\.\d+\.\d+\.\d+)[:/]"), "address of one machine",
      "take it from the scene or the command line"),
+    (re.compile(r"^(<{7} |>{7} |={7}$)"), "mark of a merge",
+     "decide between the two sides"),
 ]
 EXEMPT = ("tests/tidy/",)
 PLAIN = (".md", ".yaml", ".yml", ".txt", ".json")
