@@ -38,7 +38,7 @@ constexpr Rule between(double low, double high) { return Rule{.low = low, .high 
 enum class Presence { required, optional };
 
 /// What every key states about itself. Unit "" means a pure number or text; `help` is a noun phrase
-/// that can follow "the".
+/// that can follow "the", or begins with what or whether.
 struct Key {
   std::string_view name, unit, help;
   Presence presence = Presence::required;

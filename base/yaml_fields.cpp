@@ -217,8 +217,8 @@ std::string Reader::enter_choice(const Key& key, std::span<const std::string_vie
 
 std::string Reader::chosen(const Key& key, const std::string& path, const YAML::Node& node,
                            std::span<const std::string_view> names) const {
-  const std::string form = fmt::format("Give the {} as {{name: {{its keys}}}}, with one of {}.",
-                                       noun(key), one_of(names));
+  const std::string form =
+      fmt::format("Give {} as {{name: {{its keys}}}}, with one of {}.", noun(key), one_of(names));
   const bool bare = is_plain(node);
   if (node.IsMap() && node.size() > 1) {  // the last is the one that --set added, where it did
     std::vector<std::string> given;

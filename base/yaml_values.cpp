@@ -33,10 +33,14 @@ std::string with_unit(const std::string& text, std::string_view unit) {
   return unit.empty() ? text : fmt::format("{} {}", text, unit);
 }
 
-std::string_view noun(const Key& key) { return key.help.substr(0, key.help.find_first_of(",;:")); }
+std::string noun(const Key& key) {
+  const std::string_view words = key.help.substr(0, key.help.find_first_of(",;:"));
+  const bool clause = words.starts_with("what ") || words.starts_with("whether ");
+  return fmt::format("{}{}", clause ? "" : "the ", words);
+}
 
 std::string remedy(const Key& key, std::string_view form, const Rule& rule) {
-  std::string text = fmt::format("Give the {}", noun(key));
+  std::string text = fmt::format("Give {}", noun(key));
   if (!form.empty()) text += fmt::format(" as {}", form);
   if (!key.unit.empty()) text += fmt::format(" in {}", key.unit);
   const std::string range = rule.range();

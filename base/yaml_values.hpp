@@ -42,8 +42,8 @@ std::string one_of(const Strings& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-/// Of the help only the noun itself fits into a sentence.
-std::string_view noun(const Key& key);
+/// Of the help only the noun itself fits into a sentence, with its article.
+std::string noun(const Key& key);
 /// The sentence that says what to write.
 std::string remedy(const Key& key, std::string_view form, const Rule& rule = any);
 

@@ -27,10 +27,6 @@ constexpr double tolerance = 1.0e-6;
 /// Facet sizes that a node may lie behind a surface and still be seen.
 constexpr double reach = 2.0;
 
-PosedSurface posed(const PortGeometry& surface) {
-  return {surface.dim, surface.points, surface.facets, surface.offsets};
-}
-
 void check_facets(const NamedSurface& surface, const std::string& where) {
   const std::optional<UnsoundSurface> unsound = check(posed(surface.geometry));
   if (!unsound) return;

@@ -79,13 +79,9 @@ void SolidInterior::find_surfaces() {
     const bool reduced = parts_.problem->model != &model;  // whose ports have mass
     // Rings would weigh by their radius.
     if (geometry.facets.empty() || !may_touch_[p] || reduced || model.round()) continue;
-    touched_.push_back(
-        {ports_[p].name, p, port_map_->first(p), &geometry, nodes, model.options().thickness});
-    SurfaceContact::Surface& surface = surfaces.emplace_back();
-    surface.port = p;
-    surface.first = port_map_->first(p);
-    surface.geometry = &geometry;
-    surface.nodes = nodes;
+    const PortSurface port{p, port_map_->first(p), &geometry, nodes};
+    touched_.push_back({port, ports_[p].name, model.options().thickness});
+    SurfaceContact::Surface& surface = surfaces.emplace_back(port);
     for (const std::int32_t node : nodes) surface.frames.push_back(model.frame(node));
   }
   if (surfaces.empty()) return;

@@ -34,6 +34,16 @@ struct PosedSurface {
   }
 };
 
+/// A pose, of its own points or of others [m] (n, dim), of whatever has the facets of a surface.
+template <class Surface>
+PosedSurface posed(const Surface& surface, std::span<const double> points) {
+  return {surface.dim, points, surface.facets, surface.offsets};
+}
+template <class Surface>
+PosedSurface posed(const Surface& surface) {
+  return posed(surface, surface.points);
+}
+
 /// The corners of one facet. No facet has more than four.
 struct Corners {
   int count = 0;

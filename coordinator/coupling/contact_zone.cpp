@@ -16,7 +16,7 @@ PosedSurface pose(const PortGeometry& surface, std::span<const double> moved,
                   std::vector<double>& to) {
   to = surface.points;
   for (std::size_t v = 0; v < to.size(); ++v) to[v] += moved[v];
-  return {surface.dim, to, surface.facets, surface.offsets};
+  return posed(surface, to);
 }
 
 }  // namespace

@@ -25,9 +25,9 @@ Touch touch_of(const TouchedSurface& s, std::span<const double> forces,
   const std::size_t dim = index(s.geometry->dim);
   t.pose = s.geometry->points;
   for (std::size_t v = 0; v < t.pose.size(); ++v) t.pose[v] += places[s.first + v];
-  const PosedSurface posed{s.geometry->dim, t.pose, s.geometry->facets, s.geometry->offsets};
-  nodal_normals(posed, t.normals);
-  tributary_weights(posed, t.weights);
+  const PosedSurface now = posed(*s.geometry, t.pose);
+  nodal_normals(now, t.normals);
+  tributary_weights(now, t.weights);
   for (std::size_t a = 0; a < s.nodes.size(); ++a) {
     double inward = 0.0;
     for (std::size_t i = 0; i < dim; ++i)

@@ -11,13 +11,9 @@
 namespace abut {
 
 /// A port that is a surface, as pictures and measures see its contact.
-struct TouchedSurface {
+struct TouchedSurface : PortSurface {
   std::string name;
-  std::size_t port = 0;
-  std::size_t first = 0;  // of its values among those of all ports
-  const PortGeometry* geometry = nullptr;
-  std::vector<std::int32_t> nodes;  // of the mesh, by point
-  double thickness = 1.0;           // [m] across the plane
+  double thickness = 1.0;  // [m] across the plane
 };
 
 /// What is told of every such port: contact.pressure_max [Pa], contact.area [m^2] where it is

@@ -11,7 +11,7 @@
 namespace abut {
 
 EdgedSurface::EdgedSurface(const PortGeometry& surface, double size) {
-  const PosedSurface whole{surface.dim, surface.points, surface.facets, surface.offsets};
+  const PosedSurface whole = posed(surface);
   if (sharp_nodes(whole, sharp_edge).empty()) return;
   divided_ = divided(whole, parts_for(whole, size));
   const PosedSurface parts = pose_of(surface.points);
@@ -24,7 +24,7 @@ EdgedSurface::EdgedSurface(const PortGeometry& surface, double size) {
 PosedSurface EdgedSurface::pose_of(std::span<const double> pose) {
   points_.resize(index(divided_.node_count() * divided_.dim));
   apply(divided_.nodes, divided_.dim, pose, points_);
-  return {divided_.dim, points_, divided_.facets, divided_.offsets};
+  return posed(divided_, points_);
 }
 
 bool EdgedSurface::is_near(std::span<const double> pose, const PosedSurface& other,

@@ -9,6 +9,14 @@
 
 namespace abut {
 
+/// A port that is a surface of nodes of a mesh. Its geometry must outlive it.
+struct PortSurface {
+  std::size_t port = 0;
+  std::size_t first = 0;  // of its values among those of all ports
+  const PortGeometry* geometry = nullptr;
+  std::vector<std::int32_t> nodes;  // by point
+};
+
 /// What the ports of a solid meet. Forces are on the body, (port values) as those of PortMap [N].
 class PortContact : public Contact {
  public:

@@ -17,14 +17,10 @@ namespace abut {
 /// found in turns.
 class SurfaceContact final : public PortContact {
  public:
-  struct Surface {  // of a port
-    std::size_t port = 0;
-    std::size_t first = 0;  // of its values among those of all ports
-    const PortGeometry* geometry = nullptr;
-    std::vector<std::int32_t> nodes;     // of the mesh, by point
+  struct Surface : PortSurface {
     std::vector<const Matrix3*> frames;  // by point; null: the axes of space
   };
-  /// `body`: its name, for people. Geometries and frames must outlive it.
+  /// `body`: its name, for people. Frames must outlive it.
   SurfaceContact(std::vector<Surface> surfaces, const std::string& body);
 
   void state(Archive& archive) override;

@@ -12,14 +12,6 @@
 
 namespace abut {
 
-namespace {
-
-PosedSurface posed(const PortGeometry& surface, std::span<const double> points) {
-  return {surface.dim, points, surface.facets, surface.offsets};
-}
-
-}  // namespace
-
 SurfaceObstacle::SurfaceObstacle(std::size_t port, std::size_t partner, const PortGeometry& own,
                                  const Partner& met, std::string body)
     : port_(port),

@@ -127,8 +127,8 @@ void PenaltySpec::fields(Fields& f) {
 }
 
 void BarPairSpec::fields(Fields& f) {
-  f.section("left", left, "the left bar; its right end may touch");
-  f.section("right", right, "the right bar; its left end may touch");
+  f.section("left", left, "left bar; its right end may touch");
+  f.section("right", right, "right bar; its left end may touch");
   f.choice("contact", contact, "contact between the tips, solved within the body");
   f.word("lengths", current_lengths, {"reference", "current"},
          "element lengths on which mass and stiffness are assembled; current: anew in every step, "

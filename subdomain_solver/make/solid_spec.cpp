@@ -125,7 +125,7 @@ void PointSpec::fields(Fields& f) {
 
 void ConstraintSpec::fields(Fields& f) {
   f.required("on", on, "", "side or node set of the mesh");
-  f.optional("fixed", fixed, "", "no displacement in any direction");
+  f.optional("fixed", fixed, "", "hold in every direction");
   f.optional("x", x, "m", "displacement along x, an expression in x, y, z and t");
   f.optional("y", y, "m", "displacement along y, the same");
   f.optional("z", z, "m", "displacement along z, the same");
@@ -133,7 +133,7 @@ void ConstraintSpec::fields(Fields& f) {
              "direction along which value is prescribed (an inclined roller), one number per "
              "dimension");
   f.optional("value", value, "m", "displacement along direction, an expression");
-  f.optional("symmetry", symmetry, "", "no displacement normal to the side, which must be plane");
+  f.optional("symmetry", symmetry, "", "hold along the normal of the side, which must be plane");
   const int ways = (fixed ? 1 : 0) + (x.empty() && y.empty() && z.empty() ? 0 : 1) +
                    (direction.empty() ? 0 : 1) + (symmetry ? 1 : 0);
   f.check(ways == 1, "on", ways == 0 ? "prescribes nothing" : "is prescribed in more than one way",

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/runs.hpp"
+#include "tests/support/solid_scenes.hpp"
 
 namespace abut {
 namespace {
@@ -24,38 +24,26 @@ struct Chain {
 
   /// As many cells across as dimensions at least: the skin has no mass, and would turn about nodes
   /// inside that lie on one line.
-  std::string block(const std::string& name, double place, double v, int across) const {
-    const std::string mesh =
-        dim == 2
-            ? fmt::format("rectangle: {{lengths: [1.0, 0.25], elements: [8, {}]}}", across)
-            : fmt::format("box: {{lengths: [1.0, 0.25, 0.25], elements: [8, {0}, {0}]}}", across);
-    const std::string zeros = dim == 2 ? "0.0" : "0.0, 0.0";
-    return fmt::format(
-        "  {}:\n"
-        "    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n"
-        "    material: {{{}: {{youngs_modulus: 1.0, poissons_ratio: 0.0, density: 1.0}}}}\n"
-        "    integrator: {{{}: {{step: 0.0125}}}}\n"
-        "    initial: {{position: [{}, {}], velocity: [{}, {}]}}\n"
-        "    ports: {{skin: {{side: boundary}}}}\n",
-        name, dim, mesh, law, scheme, number(place), zeros, number(v), zeros);
-  }
-  std::string text() const {
-    const auto joint = [](const char* name, const char* one, const char* other,
-                          const std::string& side) {
-      return fmt::format(
-          "  {}: {{sides: [{}.skin, {}.skin], contact: {{}}, transmission: {{unilateral: "
-          "{{kinematic: {}}}}}}}\n",
-          name, one, other, side);
-    };
-    return fmt::format(
-               "meta: {{title: test}}\ntime: {{begin: 0.0, end: 5.0, window: {}}}\nbodies:\n",
-               number(window)) +
-           block("a", -1.0, speed, dim) + block("b", 0.002, 0.0, dim + 1) +
-           block("c", 1.004, 0.0, dim) + "interfaces:\n" + joint("first", "a", "b", kinematic[0]) +
-           joint("second", "b", "c", kinematic[1]);
+  SolidText block(const std::string& name, double place, double v, int across) const {
+    return {.name = name,
+            .dim = dim,
+            .mesh = bar_mesh(dim, across),
+            .material = unit_law(law, 0.0),
+            .integrator = scheme + ": {step: 0.0125}",
+            .position = {place},
+            .velocity = {v},
+            .port = "skin",
+            .side = "boundary"};
   }
   std::unique_ptr<RunResult> run() const {
-    return run_document(Document::from_text("test", text()));
+    const auto role = [](const std::string& side) {
+      return fmt::format(", transmission: {{unilateral: {{kinematic: {}}}}}", side);
+    };
+    return run_solids(5.0, window,
+                      {block("a", -1.0, speed, dim), block("b", 0.002, 0.0, dim + 1),
+                       block("c", 1.004, 0.0, dim)},
+                      touching("first", "a.skin", "b.skin", role(kinematic[0])) +
+                          touching("second", "b.skin", "c.skin", role(kinematic[1])));
   }
 };
 

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/runs.hpp"
+#include "tests/support/solid_scenes.hpp"
 
 namespace abut {
 namespace {
@@ -26,28 +26,23 @@ void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.name; }
 
 constexpr double speed = 0.01;  // of that of sound
 
-std::string block(const Pair& pair, const std::string& name, int across, double place, double v,
-                  const std::string& side) {
-  const bool plane = pair.dim == 2;
-  const std::string mesh =
-      plane ? fmt::format("rectangle: {{lengths: [1.0, 0.25], elements: [8, {}]}}", across)
-            : fmt::format("box: {{lengths: [1.0, 0.25, 0.25], elements: [8, {0}, {0}]}}", across);
-  const std::string zeros = plane ? "0.0" : "0.0, 0.0";
-  return fmt::format(
-      "  {}:\n"
-      "    model: {{fe: {{dimension: {}, {}mesh: {{{}}}}}}}\n"
-      "    material: {{{}}}\n"
-      "    integrator: {{{}}}\n"
-      "    initial: {{position: [{}, {}], velocity: [{}, {}]}}\n"
-      "    ports: {{face: {{side: {}}}}}\n{}",
-      name, pair.dim, pair.model, mesh, pair.material, pair.integrator, number(place), zeros,
-      number(v), zeros, side, pair.more);
+SolidText block(const Pair& pair, const std::string& name, int across, double place, double v,
+                const std::string& side) {
+  return {.name = name,
+          .dim = pair.dim,
+          .mesh = bar_mesh(pair.dim, across),
+          .material = pair.material,
+          .integrator = pair.integrator,
+          .position = {place},
+          .velocity = {v},
+          .side = side,
+          .keys = pair.model,
+          .more = pair.more};
 }
 
 std::vector<Pair> pairs() {
   const auto law = [](const std::string& name, const std::string& more = "") {
-    return fmt::format("{}: {{youngs_modulus: 1.0, poissons_ratio: 0.0, density: 1.0{}}}", name,
-                       more);
+    return unit_law(name, 0.0, more);
   };
   // The impact compresses by its speed over that of sound, 0.01: it yields at half of that.
   const std::string j2 = law("j2_plasticity", ", yield_stress: 0.005, hardening: 0.1");
@@ -99,12 +94,10 @@ INSTANTIATE_TEST_SUITE_P(Combinations, SurfacePair, testing::ValuesIn(pairs()),
 
 TEST_P(SurfacePair, TouchesAndParts) {
   const Pair& pair = GetParam();
-  const std::string scene =
-      "meta: {title: test}\ntime: {begin: 0.0, end: 3.0, window: 0.025}\nbodies:\n" +
-      block(pair, "left", 2, -1.0, speed, "right") +
-      block(pair, "right", 3, 0.002, -speed, "left") +
-      "interfaces: {impact: {sides: [left.face, right.face], contact: {}}}\n";
-  const auto result = run_document(Document::from_text("test", scene));
+  const auto result = run_solids(3.0, 0.025,
+                                 {block(pair, "left", 2, -1.0, speed, "right"),
+                                  block(pair, "right", 3, 0.002, -speed, "left")},
+                                 touching("impact", "left.face", "right.face"));
   ASSERT_TRUE(result->completed());
   // Newton's method leaves 1e-9 of the forces; alpha schemes' lag is untold [M.24], but both have
   // the same.

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/runs.hpp"
+#include "tests/support/solid_scenes.hpp"
 
 namespace abut {
 namespace {
@@ -30,38 +30,25 @@ struct Impact {
 
 void PrintTo(const Impact& impact, std::ostream* out) { *out << impact.name; }
 
-constexpr int along = 8;
 constexpr double speed = 0.01;  // of that of sound
 
-std::string block(const std::string& name, const Block& b, int dim, double place, double v,
-                  const std::string& side) {
-  const std::string mesh =
-      dim == 2
-          ? fmt::format("rectangle: {{lengths: [1.0, 0.25], elements: [{}, {}], element: {}}}",
-                        along, b.across, b.element)
-          : fmt::format("box: {{lengths: [1.0, 0.25, 0.25], elements: [{}, {}, {}], element: {}}}",
-                        along, b.across, b.across, b.element);
-  const std::string zeros = dim == 2 ? "0.0" : "0.0, 0.0";
-  return fmt::format(
-      "  {}:\n"
-      "    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n"
-      "    material: {{{}: {{youngs_modulus: 1.0, poissons_ratio: 0.0, density: 1.0}}}}\n"
-      "    integrator: {{{}}}\n"
-      "    initial: {{position: [{}, {}], velocity: [{}, {}]}}\n"
-      "    ports: {{face: {{side: {}}}}}\n",
-      name, dim, mesh, b.law, b.integrator, number(place), zeros, number(v), zeros, side);
-}
-
-std::string text(const Impact& impact) {
-  return fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n",
-                     number(impact.end), number(impact.window)) +
-         block("left", impact.left, impact.dim, -1.0, speed, "right") +
-         block("right", impact.right, impact.dim, 0.002, -speed, "left") +
-         "interfaces: {impact: {sides: [left.face, right.face], contact: {}}}\n";
+SolidText block(const std::string& name, const Block& b, int dim, double place, double v,
+                const std::string& side) {
+  return {.name = name,
+          .dim = dim,
+          .mesh = bar_mesh(dim, b.across, b.element),
+          .material = unit_law(b.law, 0.0),
+          .integrator = b.integrator,
+          .position = {place},
+          .velocity = {v},
+          .side = side};
 }
 
 std::unique_ptr<RunResult> run(const Impact& impact) {
-  return run_document(Document::from_text("test", text(impact)));
+  return run_solids(impact.end, impact.window,
+                    {block("left", impact.left, impact.dim, -1.0, speed, "right"),
+                     block("right", impact.right, impact.dim, 0.002, -speed, "left")},
+                    touching("impact", "left.face", "right.face"));
 }
 
 bool is_explicit(const Block& b) { return b.integrator.starts_with("central"); }
@@ -172,52 +159,43 @@ TEST(SurfaceTunnelling, NothingIsPassedThrough) {
   constexpr int phases = 2000;
   for (int phase = 0; phase < phases; ++phase) {
     const double gap = 1.0e-6 + 2.0 * fast * step * phase / phases;
-    const std::string scene = fmt::format(
-        "meta: {{title: test}}\ntime: {{begin: 0.0, end: 3.0, window: {0}}}\nbodies:\n"
-        "  block:\n"
-        "    model: {{fe: {{dimension: 2, mesh: {{rectangle: {{lengths: [1.0, 1.0], elements: [1, "
-        "2]}}}}}}}}\n"
-        "    material: {{neo_hookean: {{youngs_modulus: 1.0, poissons_ratio: 0.0, density: "
-        "1.0}}}}\n"
-        "    integrator: {{central_difference: {{step: {0}}}}}\n"
-        "    initial: {{position: [0.0, {1}], velocity: [0.0, {2}]}}\n"
-        "    ports: {{face: {{side: bottom}}}}\n"
-        "  plate:\n"
-        "    model: {{rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [3.0, {3}], "
-        "elements: "
-        "[1, 1]}}}}}}}}\n"
-        "    initial: {{position: [-1.0, {4}]}}\n"
-        "    ports: {{face: {{side: boundary}}}}\n"
-        "interfaces: {{impact: {{sides: [block.face, plate.face], contact: {{}}}}}}\n",
-        number(step), number(gap), number(-fast), number(thickness), number(-thickness));
-    const auto result = run_document(Document::from_text("test", scene));
+    const SolidText block{.name = "block",
+                          .mesh = block_mesh({1.0, 1.0}, {1, 2}),
+                          .material = unit_law("neo_hookean", 0.0),
+                          .integrator = scheme("central_difference", step),
+                          .position = {0.0, gap},
+                          .velocity = {0.0, -fast},
+                          .side = "bottom"};
+    const SolidText plate{.name = "plate",
+                          .mesh = block_mesh({3.0, thickness}, {1, 1}),
+                          .position = {-1.0, -thickness},
+                          .side = "boundary",
+                          .model = "rigid_tool"};
+    const auto result =
+        run_solids(3.0, step, {block, plate}, touching("impact", "block.face", "plate.face"));
     ASSERT_TRUE(result->completed()) << "gap " << gap;
     ASSERT_GT(result->measure("mean_velocity.block.end_y"), 0.5 * fast) << "gap " << gap;
   }
 }
 
-std::string pressed(const std::string& name, int dim, const std::string& element, int facets,
-                    bool upper) {
-  const std::string mesh =
-      dim == 2
-          ? fmt::format("rectangle: {{lengths: [1.0, 0.5], elements: [{}, 2], element: {}}}",
-                        facets, element)
-          : fmt::format("box: {{lengths: [1.0, 1.0, 0.5], elements: [{0}, {0}, 2], element: {1}}}",
-                        facets, element);
+SolidText pressed(const std::string& name, int dim, const std::string& element, int facets,
+                  bool upper) {
   const std::string low = dim == 2 ? "bottom" : "back", high = dim == 2 ? "top" : "front";
-  const char* axis = dim == 2 ? "y" : "z";
-  const std::string more = dim == 3 ? ", floor: {on: bottom, y: '0'}" : "";
-  return fmt::format(
-      "  {}:\n"
-      "    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n"
-      "    material: {{linear_elastic: {{youngs_modulus: 1.0, poissons_ratio: 0.3, density: "
-      "1.0}}}}\n"
-      "    integrator: {{quasi_static: {{step: 1.0}}}}\n"
-      "    initial: {{position: [{}]}}\n"
-      "    ports: {{face: {{side: {}}}}}\n"
-      "    constraints: {{end: {{on: {}, {}: '{}'}}, side: {{on: left, x: '0'}}{}}}\n",
-      name, dim, mesh, std::string(dim == 2 ? "0.0, " : "0.0, 0.0, ") + (upper ? "0.5" : "0.0"),
-      upper ? low : high, upper ? high : low, axis, upper ? "-1e-4 * t" : "0", more);
+  const std::vector<double> below(index(dim), 0.0);
+  std::vector<double> above = below;
+  above.back() = 0.5;
+  return {.name = name,
+          .dim = dim,
+          .mesh = dim == 2 ? block_mesh({1.0, 0.5}, {facets, 2}, element)
+                           : block_mesh({1.0, 1.0, 0.5}, {facets, facets, 2}, element),
+          .material = unit_law("linear_elastic", 0.3),
+          .integrator = scheme("quasi_static", 1.0),
+          .position = upper ? above : below,
+          .side = upper ? low : high,
+          .more = fmt::format(
+              "    constraints: {{end: {{on: {}, {}: '{}'}}, side: {{on: left, x: '0'}}{}}}\n",
+              upper ? high : low, dim == 2 ? "y" : "z", upper ? "-1e-4 * t" : "0",
+              dim == 3 ? ", floor: {on: bottom, y: '0'}" : "")};
 }
 
 /// Every pair of linear elements, finer on coarser and the other way round.
@@ -228,11 +206,9 @@ TEST(SurfacePatch, PassesAConstantPressure) {
     for (const std::string& a : elements) {
       for (const std::string& b : elements) {
         for (const auto& [k, n] : {std::pair(3, 2), std::pair(2, 3)}) {
-          const std::string scene =
-              "meta: {title: test}\ntime: {begin: 0.0, end: 1.0, window: 1.0}\nbodies:\n" +
-              pressed("upper", dim, a, k, true) + pressed("lower", dim, b, n, false) +
-              "interfaces: {joint: {sides: [upper.face, lower.face], contact: {}}}\n";
-          const auto result = run_document(Document::from_text("test", scene));
+          const auto result = run_solids(
+              1.0, 1.0, {pressed("upper", dim, a, k, true), pressed("lower", dim, b, n, false)},
+              touching("joint", "upper.face", "lower.face"));
           const std::string what = fmt::format("{} {} on {} {}", a, k, b, n);
           ASSERT_TRUE(result->completed()) << what;
           EXPECT_EQ(result->measure("schwarz.iterations_max"), 1.0) << what;

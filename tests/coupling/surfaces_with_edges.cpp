@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/runs.hpp"
+#include "tests/support/solid_scenes.hpp"
 
 namespace abut {
 namespace {
@@ -28,7 +28,7 @@ void PrintTo(const Fall& fall, std::ostream* out) { *out << fall.name; }
 constexpr double speed = 0.01;  // of that of sound
 
 /// A brick of 0.4 x 0.3, its lowest corner 0.004 above a block of 1 x 0.4, which is free.
-std::string text(const Fall& fall) {
+std::unique_ptr<RunResult> run(const Fall& fall) {
   const bool plane = fall.dim == 2;
   const double c = std::cos(fall.tilt), s = std::sin(fall.tilt);
   const std::string up = plane ? "y" : "z";
@@ -37,30 +37,30 @@ std::string text(const Fall& fall) {
                                          number(0.2 * std::abs(s) + 0.004));
   const std::string map = plane ? fmt::format("[\"{}\", \"{}\"]", turned, lifted)
                                 : fmt::format("[\"{}\", \"y\", \"{}\"]", turned, lifted);
-  const std::string brick = plane ? "rectangle: {lengths: [0.4, 0.3], elements: [6, 5]}"
-                                  : "box: {lengths: [0.4, 0.2, 0.3], elements: [6, 3, 5]}";
-  const std::string block = plane ? "rectangle: {lengths: [1.0, 0.4], elements: [14, 6]}"
-                                  : "box: {lengths: [1.0, 0.5, 0.4], elements: [14, 7, 6]}";
-  const std::string zero = plane ? "0.0, " : "0.0, 0.0, ";
-  const std::string material =
-      "    material: {linear_elastic: {youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0}}\n";
-  return fmt::format(
-             "meta: {{title: test}}\ntime: {{begin: 0.0, end: 3.0, window: 0.025}}\nbodies:\n"
-             "  brick:\n    model: {{{}: {{dimension: {}, mesh: {{{}}}, map: {}}}}}\n",
-             fall.body, fall.dim, brick, map) +
-         material +
-         fmt::format("    integrator: {{{}}}\n    initial: {{velocity: [{}{}]}}\n", fall.integrator,
-                     zero, number(-speed)) +
-         fmt::format(
-             "    ports: {{skin: {{side: boundary}}}}\n"
-             "  base:\n    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n",
-             fall.dim, block) +
-         material +
-         fmt::format("    integrator: {{{}}}\n    initial: {{position: [{}]}}\n", fall.base,
-                     plane ? "-0.5, -0.4" : "-0.5, -0.15, -0.4") +
-         fmt::format("    ports: {{face: {{side: {}}}}}\n", plane ? "top" : "front") +
-         "interfaces: {impact: {sides: [brick.skin, base.face], contact: {}, "
-         "transmission: {unilateral: {kinematic: base.face}}}}\n";
+  std::vector<double> down(index(fall.dim), 0.0);
+  down.back() = -speed;
+  const SolidText brick{
+      .name = "brick",
+      .dim = fall.dim,
+      .mesh = plane ? block_mesh({0.4, 0.3}, {6, 5}) : block_mesh({0.4, 0.2, 0.3}, {6, 3, 5}),
+      .material = unit_law("linear_elastic", 0.3),
+      .integrator = fall.integrator,
+      .velocity = down,
+      .port = "skin",
+      .side = "boundary",
+      .model = fall.body,
+      .keys = fmt::format("map: {}, ", map)};
+  const SolidText base{
+      .name = "base",
+      .dim = fall.dim,
+      .mesh = plane ? block_mesh({1.0, 0.4}, {14, 6}) : block_mesh({1.0, 0.5, 0.4}, {14, 7, 6}),
+      .material = unit_law("linear_elastic", 0.3),
+      .integrator = fall.base,
+      .position = plane ? std::vector{-0.5, -0.4} : std::vector{-0.5, -0.15, -0.4},
+      .side = plane ? "top" : "front"};
+  return run_solids(3.0, 0.025, {brick, base},
+                    touching("impact", "brick.skin", "base.face",
+                             ", transmission: {unilateral: {kinematic: base.face}}"));
 }
 
 std::vector<Fall> falls() {
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Falls, SharpCorner, testing::ValuesIn(falls()),
 
 TEST_P(SharpCorner, PressesOnAFace) {
   const Fall& fall = GetParam();
-  const auto result = run_document(Document::from_text("test", text(fall)));
+  const auto result = run(fall);
   ASSERT_TRUE(result->completed());
   const bool both_explicit = (fall.body == "rigid" || fall.integrator.starts_with("central")) &&
                              fall.base.starts_with("central");

@@ -7,29 +7,29 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/runs.hpp"
+#include "tests/support/solid_scenes.hpp"
 
 namespace abut {
 namespace {
 
 /// A disk that falls on a plate, along it too.
-std::string text(double width, const std::string& disk, const std::string& plate, double along) {
-  return fmt::format(
-      "meta: {{title: test}}\ntime: {{begin: 0.0, end: 2.0, window: 0.08}}\nbodies:\n"
-      "  disk:\n    model: {{fe: {{dimension: 2, mesh: {{disk: {{radius: 0.25, core: 4, layers: "
-      "3}}}}}}}}\n"
-      "    material: {{linear_elastic: {{youngs_modulus: 1.0, poissons_ratio: 0.3, density: "
-      "1.0}}}}\n"
-      "    integrator: {{{}}}\n    initial: {{position: [0.0, 0.262], velocity: [{}, -0.02]}}\n"
-      "    ports: {{skin: {{side: boundary}}}}\n"
-      "  plate:\n    model: {{fe: {{dimension: 2, mesh: {{rectangle: {{lengths: [{}, 0.5], "
-      "elements: [{}, 6]}}}}}}}}\n"
-      "    material: {{linear_elastic: {{youngs_modulus: 1.0, poissons_ratio: 0.3, density: "
-      "1.0}}}}\n"
-      "    integrator: {{{}}}\n    initial: {{position: [{}, -0.5]}}\n"
-      "    ports: {{face: {{side: top}}}}\n"
-      "interfaces: {{impact: {{sides: [disk.skin, plate.face], contact: {{}}}}}}\n",
-      disk, number(along), number(width), number(width * 12.0), plate, number(-0.5 * width));
+std::unique_ptr<RunResult> run(double width, const std::string& of_disk,
+                               const std::string& of_plate, double along) {
+  const SolidText disk{.name = "disk",
+                       .mesh = "disk: {radius: 0.25, core: 4, layers: 3}",
+                       .material = unit_law("linear_elastic", 0.3),
+                       .integrator = of_disk,
+                       .position = {0.0, 0.262},
+                       .velocity = {along, -0.02},
+                       .port = "skin",
+                       .side = "boundary"};
+  const SolidText plate{.name = "plate",
+                        .mesh = block_mesh({width, 0.5}, {static_cast<int>(12.0 * width), 6}),
+                        .material = unit_law("linear_elastic", 0.3),
+                        .integrator = of_plate,
+                        .position = {-0.5 * width, -0.5},
+                        .side = "top"};
+  return run_solids(2.0, 0.08, {disk, plate}, touching("impact", "disk.skin", "plate.face"));
 }
 
 TEST(ContactZone, HoldsWhatContactReaches) {
@@ -37,8 +37,8 @@ TEST(ContactZone, HoldsWhatContactReaches) {
   for (const auto& [disk, plate] : {std::pair(leapfrog, leapfrog), std::pair(leapfrog, slow),
                                     std::pair(slow, leapfrog)}) {
     for (const double along : {0.0, 0.2}) {  // 0.4 in all, five facets
-      const auto narrow = run_document(Document::from_text("test", text(3.0, disk, plate, along)));
-      const auto wide = run_document(Document::from_text("test", text(12.0, disk, plate, along)));
+      const auto narrow = run(3.0, disk, plate, along);
+      const auto wide = run(12.0, disk, plate, along);
       for (const auto* result : {narrow.get(), wide.get()}) {
         ASSERT_TRUE(result->completed());
         EXPECT_EQ(result->measure("schwarz.iterations_max"), 1.0) << disk << plate << along;

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "tests/support/runs.hpp"
+
+namespace abut {
+
+/// Numbers of a vector as a scene writes it, those that are not given are zero.
+inline std::string components(std::vector<double> values, int dim) {
+  values.resize(index(dim), 0.0);
+  std::vector<std::string> words;
+  for (const double value : values) words.push_back(number(value));
+  return fmt::format("[{}]", fmt::join(words, ", "));
+}
+
+/// A rectangle or a box of cells; `element` may be empty.
+inline std::string block_mesh(const std::vector<double>& lengths, const std::vector<int>& cells,
+                              const std::string& element = "") {
+  return fmt::format("{}: {{lengths: [{}], elements: [{}]{}}}",
+                     lengths.size() == 2 ? "rectangle" : "box", fmt::join(lengths, ", "),
+                     fmt::join(cells, ", "), element.empty() ? "" : ", element: " + element);
+}
+
+/// A bar of length 1 and height (and breadth) 0.25 with 8 cells along and `across` cells over it.
+inline std::string bar_mesh(int dim, int across, const std::string& element = "") {
+  if (dim == 2) return block_mesh({1.0, 0.25}, {8, across}, element);
+  return block_mesh({1.0, 0.25, 0.25}, {8, across, across}, element);
+}
+
+/// A law of unit modulus and density.
+inline std::string unit_law(const std::string& law, double poissons_ratio,
+                            const std::string& more = "") {
+  return fmt::format("{}: {{youngs_modulus: 1.0, poissons_ratio: {}, density: 1.0{}}}", law,
+                     number(poissons_ratio), more);
+}
+
+/// A body in two or three dimensions with one port, as a scene file writes it.
+struct SolidText {
+  std::string name = {};
+  int dim = 2;
+  std::string mesh = {};
+  std::string material = {}, integrator = {};        // empty: it has none
+  std::vector<double> position = {}, velocity = {};  // first components; empty: not told
+  std::string port = "face", side = {};
+  std::string model = "fe", keys = {};  // kind; keys beside dimension and mesh, with commas
+  std::string more = {};                // keys of the body, in lines of their own
+
+  std::string text() const {
+    std::string out = fmt::format("  {}:\n    model: {{{}: {{dimension: {}, {}mesh: {{{}}}}}}}\n",
+                                  name, model, dim, keys, mesh);
+    if (!material.empty()) out += fmt::format("    material: {{{}}}\n", material);
+    if (!integrator.empty()) out += fmt::format("    integrator: {{{}}}\n", integrator);
+    out += "    initial: {";
+    if (!position.empty()) out += fmt::format("position: {}, ", components(position, dim));
+    if (!velocity.empty()) out += fmt::format("velocity: {}", components(velocity, dim));
+    return out + fmt::format("}}\n    ports: {{{}: {{side: {}}}}}\n{}", port, side, more);
+  }
+};
+
+/// Two surfaces that touch; `more`: keys of the interface after a comma.
+inline std::string touching(const std::string& name, const std::string& one,
+                            const std::string& other, const std::string& more = "") {
+  return fmt::format("  {}: {{sides: [{}, {}], contact: {{}}{}}}\n", name, one, other, more);
+}
+
+/// A run of such bodies from time 0 in windows of one length.
+inline std::unique_ptr<RunResult> run_solids(double end, double window,
+                                             const std::vector<SolidText>& bodies,
+                                             const std::string& interfaces) {
+  std::string text =
+      fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n",
+                  number(end), number(window));
+  for (const SolidText& body : bodies) text += body.text();
+  return run_document(Document::from_text("test", text + "interfaces:\n" + interfaces));
+}
+
+}  // namespace abut
