@@ -12,6 +12,7 @@ namespace abut {
 /// The surface of a port, in the reference configuration. All arrays are flat and row-major.
 struct PortGeometry {
   int dim = 1;                        // 1, 2 or 3
+  bool round = false;                 // in 2D: of rings about the axis x = 0, each as a whole
   std::vector<double> points;         // [m] (n, dim), reference configuration
   std::vector<double> normals;        // (n, dim), unit, out of the body
   std::vector<std::int32_t> facets;   // facet connectivity; empty in 1D

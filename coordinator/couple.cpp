@@ -132,6 +132,18 @@ void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
   }
 }
 
+/// Forces on rings are of all around; only what does not move of itself has no thickness.
+void refuse_flat_beside_round(const Joint& joint, const Bodies& bodies, const std::string& where) {
+  for (const int s : {0, 1}) {
+    const Side &round = joint.sides[index(s)], &flat = joint.sides[index(1 - s)];
+    if (!bodies.port(round).geometry.round || bodies.port(flat).geometry.round) continue;
+    const Description& other = bodies.describe(flat.body);
+    require(std::isinf(other.mass), other, where,
+            fmt::format("is plane, but '{}' is axisymmetric", bodies.describe(round.body).name),
+            "Give both bodies plane: axisymmetric, or use a rigid_tool.");
+  }
+}
+
 /// Bodies that are surfaces to each other.
 void set_surfaces(const InterfaceSpec& spec, const Bodies& bodies, Joint& joint) {
   const std::string where = "interfaces." + spec.name;
@@ -154,6 +166,7 @@ void set_surfaces(const InterfaceSpec& spec, const Bodies& bodies, Joint& joint)
                      "Make one of them a body of model fe, in the plane or in space, integrated in "
                      "time.");
   }
+  refuse_flat_beside_round(joint, bodies, where);
   joint.role_fixed = how->kinematic != "auto";
   if (joint.role_fixed) {
     joint.kinematic = index_of(spec, how->kinematic, where + ".transmission.unilateral.kinematic");

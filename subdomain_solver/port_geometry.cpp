@@ -47,6 +47,7 @@ PortGeometry port_geometry(const FeModel& model, const std::string& name,
   const std::size_t dim = index(mesh.dim);
   PortGeometry geometry;
   geometry.dim = mesh.dim;
+  geometry.round = model.round();
   for (std::int32_t node : nodes) {
     const double* x = mesh.points.data() + index(node) * dim;
     geometry.points.insert(geometry.points.end(), x, x + dim);

@@ -77,8 +77,7 @@ void SolidInterior::find_surfaces() {
     const PortGeometry& geometry = description_.ports[p].geometry;
     const FeModel& model = *parts_.model;
     const bool reduced = parts_.problem->model != &model;  // whose ports have mass
-    // Rings would weigh by their radius.
-    if (geometry.facets.empty() || !may_touch_[p] || reduced || model.round()) continue;
+    if (geometry.facets.empty() || !may_touch_[p] || reduced) continue;
     const PortSurface port{p, port_map_->first(p), &geometry, nodes};
     touched_.push_back({port, ports_[p].name, model.options().thickness});
     SurfaceContact::Surface& surface = surfaces.emplace_back(port);

@@ -18,6 +18,7 @@ class Division {
  public:
   Division(const PosedSurface& surface, int parts) : surface_(surface), parts_(parts) {
     out_.dim = surface.dim;
+    out_.round = surface.round;
     out_.offsets.push_back(0);
     out_.nodes.offsets.push_back(0);
     for (int f = 0; f < surface.facet_count(); ++f) divide(surface.nodes(f));

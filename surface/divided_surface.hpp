@@ -13,6 +13,7 @@ namespace abut {
 /// shape with nodes as near to each other as another surface's. Its nodes follow the surface's.
 struct DividedSurface {
   int dim = 3;
+  bool round = false;                         // the same
   std::vector<std::int32_t> facets, offsets;  // as those of PosedSurface
   SparseRows nodes;                           // of its nodes over those of the surface
 

@@ -1,6 +1,7 @@
 #include "surface/facet_overlap.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <span>
 
 namespace abut {
@@ -136,22 +137,32 @@ bool integrate_segments(const GroundFacet& ground, const Corners& partner, doubl
   overlap.gap = height_at(ground, partner, seen.shape(centre));
   if (!(std::abs(overlap.gap) <= reach)) return false;
   const Integrand integrand{ground.seen, seen, overlap};
-  constexpr double root3 = 1.732050807568877294;  // two points of Gauss: degree 3, 2 is needed
-  for (const double at : {-1.0 / root3, 1.0 / root3})
-    integrand.add({centre.x() + 0.5 * at * overlap.area, 0.0}, 0.5 * overlap.area);
+  // two points of Gauss: degree 3, which rings need; segments need 2
+  constexpr double root3 = 1.732050807568877294;
+  for (const double at : {-1.0 / root3, 1.0 / root3}) {
+    const Eigen::Vector2d z(centre.x() + 0.5 * at * overlap.area, 0.0);
+    double weight = 0.5 * overlap.area;
+    if (ground.round) {
+      const Shape4 shape = ground.seen.shape(z);
+      weight *= 2.0 * std::numbers::pi *
+                (shape[0] * ground.corners.x[0].x() + shape[1] * ground.corners.x[1].x());
+    }
+    integrand.add(z, weight);
+  }
   return true;
 }
 
 }  // namespace
 
-GroundFacet::GroundFacet(const Corners& facet)
+GroundFacet::GroundFacet(const Corners& facet, bool is_round)
     : corners(facet),
       plane(auxiliary_plane(facet)),
       seen(seen_in(plane, facet)),
       polygon(seen.polygon()),
       low(polygon.x[0]),
       high(polygon.x[0]),
-      area(abut::area(facet)) {
+      area(abut::area(facet)),
+      round(is_round) {
   for (int i = 1; i < polygon.count; ++i) {
     low = low.cwiseMin(polygon.x[i]);
     high = high.cwiseMax(polygon.x[i]);

@@ -24,12 +24,14 @@ struct GroundFacet {
   Polygon polygon;
   Eigen::Vector2d low, high;  // [m] its extent in the plane
   double area = 0.0;          // [m^(dim-1)] of the whole facet
+  bool round;                 // a ring about x = 0: integrals are over all of it
 
-  explicit GroundFacet(const Corners& facet);
+  explicit GroundFacet(const Corners& facet, bool round = false);
 };
 
 /// Integrals over what a ground facet (i) and a partner's facet (j) have in common when both are
-/// seen in the ground's auxiliary plane [m^(dim-1)]. Rows and columns beyond the corners are 0.
+/// seen in the ground's auxiliary plane [m^(dim-1)]; of rings, with the ground's radius, [m^2] but
+/// for the area, which stays a length. Rows and columns beyond the corners are 0.
 struct FacetOverlap {
   double area = 0.0;
   double gap = 0.0;                                 // [m] height of the partner at its middle

@@ -53,7 +53,7 @@ void mortar_pieces(const PosedSurface& k, const PosedSurface& n, std::span<const
   out.pieces.clear();
   FacetOverlap overlap;
   for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
-    const GroundFacet ground(corners(k, pairs[begin].k));
+    const GroundFacet ground(corners(k, pairs[begin].k), k.round);
     MortarFacet facet;
     facet.facet = pairs[begin].k;
     facet.first = static_cast<std::int32_t>(out.pieces.size());

@@ -1,6 +1,7 @@
 #include "surface/posed_surface.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "base/index.hpp"
 
@@ -36,6 +37,12 @@ void tributary_weights(const PosedSurface& surface, std::vector<double>& weights
   for (int f = 0; f < surface.facet_count(); ++f) {
     const Corners c = corners(surface, f);
     const std::span<const std::int32_t> nodes = surface.nodes(f);
+    if (surface.round) {
+      const double r0 = c.x[0].x(), r1 = c.x[1].x(), ring = std::numbers::pi / 3.0 * area(c);
+      weights[index(nodes[0])] += ring * (2.0 * r0 + r1);
+      weights[index(nodes[1])] += ring * (r0 + 2.0 * r1);
+      continue;
+    }
     if (c.count < 4) {
       for (std::int32_t node : nodes) weights[index(node)] += area(c) / c.count;
       continue;

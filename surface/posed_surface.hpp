@@ -20,6 +20,7 @@ struct PosedSurface {
   std::span<const double> points;         // [m] (n, dim)
   std::span<const std::int32_t> facets;   // nodes of the facets, one facet after the other
   std::span<const std::int32_t> offsets;  // (m + 1) where a facet begins in `facets`; from 0
+  bool round = false;  // in the plane: facets are rings about x = 0, and weigh by 2 pi x
 
   int node_count() const { return static_cast<int>(points.size()) / dim; }
   int facet_count() const { return offsets.empty() ? 0 : static_cast<int>(offsets.size()) - 1; }
@@ -37,7 +38,7 @@ struct PosedSurface {
 /// A pose, of its own points or of others [m] (n, dim), of whatever has the facets of a surface.
 template <class Surface>
 PosedSurface posed(const Surface& surface, std::span<const double> points) {
-  return {surface.dim, points, surface.facets, surface.offsets};
+  return {surface.dim, points, surface.facets, surface.offsets, surface.round};
 }
 template <class Surface>
 PosedSurface posed(const Surface& surface) {
@@ -92,7 +93,7 @@ double longest_edge(const PosedSurface& surface);
 void nodal_normals(const PosedSurface& surface, std::vector<double>& normals);
 
 /// [m^(dim-1)] (n) w_j = sum over the facets of the integral of N_j, in the facets' mean planes:
-/// exact, closed form.
+/// exact, closed form. Of round surfaces [m^2], of whole rings.
 void tributary_weights(const PosedSurface& surface, std::vector<double>& weights);
 
 }  // namespace abut

@@ -8,7 +8,8 @@ namespace abut {
 namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
-static_assert(sizeof(PortGeometry) == 4 * sizeof(std::vector<double>) + 3 * sizeof(double));
+static_assert(sizeof(PortGeometry) ==
+              4 * sizeof(std::vector<double>) + 3 * sizeof(double));  // two are dim and round
 static_assert(sizeof(ContactLaw) == sizeof(bool));
 
 /// Facets are nodes one facet after the other; offsets say where each begins, and the last ends.
@@ -42,6 +43,7 @@ void encode(const PortGeometry& from, v1::Surface& to) {
   copy(from.offsets, *to.mutable_offsets());
   to.set_spacing(from.spacing);
   to.set_transit(from.transit);
+  to.set_round(from.round);
 }
 
 void decode(const v1::Surface& from, const FieldPath& path, PortGeometry& to) {
@@ -56,6 +58,8 @@ void decode(const v1::Surface& from, const FieldPath& path, PortGeometry& to) {
   check_facets(to, path);
   to.spacing = number(from.spacing(), FieldPath{&path, "spacing"}, Allow::not_negative);
   to.transit = number(from.transit(), FieldPath{&path, "transit"}, Allow::not_negative);
+  to.round = from.round();
+  if (to.round && to.dim != 2) FieldPath{&path, "round"}.fail("is not for this dimension");
 }
 
 void encode(const Meeting& from, v1::Meet& to) {

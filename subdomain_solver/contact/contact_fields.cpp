@@ -32,7 +32,7 @@ Touch touch_of(const TouchedSurface& s, std::span<const double> forces,
     double inward = 0.0;
     for (std::size_t i = 0; i < dim; ++i)
       inward -= t.normals[a * dim + i] * forces[s.first + a * dim + i];
-    t.weights[a] *= dim == 2 ? s.thickness : 1.0;
+    t.weights[a] *= dim == 2 && !s.geometry->round ? s.thickness : 1.0;
     t.pressure.push_back(t.weights[a] > 0.0 ? inward / t.weights[a] : 0.0);
     t.most = std::max(t.most, t.pressure.back());
   }
@@ -63,7 +63,8 @@ void touch_measures(const std::vector<TouchedSurface>& surfaces, std::span<const
     each([&](std::size_t a, double part) {
       area += t.weights[a];
       force += part;
-      for (std::size_t i = 0; i < dim; ++i) centre[i] += part * t.pose[a * dim + i];
+      for (std::size_t i = s.geometry->round ? 1 : 0; i < dim; ++i)
+        centre[i] += part * t.pose[a * dim + i];  // that of rings is on the axis
     });
     each([&](std::size_t a, double part) {
       for (std::size_t i = 0; i < dim; ++i) {

@@ -41,7 +41,8 @@ bool EdgedSurface::is_near(std::span<const double> pose, const PosedSurface& oth
 
 void EdgedSurface::join(std::span<const double> pose, const PosedSurface& other,
                         const BoxTree& tree, double way, SurfaceRows& rows) {
-  const PosedSurface parts = pose_of(pose);
+  PosedSurface parts = pose_of(pose);
+  parts.round = parts.round || other.round;  // a tool has no radius of its own
   options_.reach = longest_ + way;
   refit(tree_, parts, options_.reach);
   overlapping_pairs(tree_, tree, pairs_);

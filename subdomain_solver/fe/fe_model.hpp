@@ -46,13 +46,11 @@ class FeModel final : public Model {
   [[nodiscard]] bool evaluate_layer(std::span<const double> q, std::span<const double> history,
                                     Want want, LayerResponse& out) override;
 
-  /// Moves the mass of these nodes to the others of their cells (the surface layer, [M.85]), once,
-  /// before anything asks for a mass; cells that have no others give theirs to the nearest nodes
-  /// that have some. `held`: dofs (sorted) whose motion is prescribed, which are no coordinates of
-  /// the layer. Throws InputError where no node is left.
-  void make_massless(const std::vector<std::int32_t>& nodes, const std::vector<int>& held);
-
-  bool is_bare(std::int32_t node) const;  // it has no mass
+  /// Moves the mass of these dofs (sorted) to those of the others of their cells, direction by
+  /// direction (the surface layer, [M.85]), once, before anything asks for a mass; cells that have
+  /// no others give theirs to the nearest nodes that have some. `held`: dofs (sorted) whose motion
+  /// is prescribed, which are no coordinates of the layer. Throws InputError where no node is left.
+  void make_massless(std::vector<int> bare, const std::vector<int>& held);
 
   const Mesh& mesh() const { return mesh_; }
   const Material& material() const { return *material_; }
@@ -121,8 +119,9 @@ class FeModel final : public Model {
   void lump_mass();
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
   int layer_place(int dof) const;  // among the massless; -1: it is none
-  void find_heirs();
-  void hand_over(std::span<const std::int32_t> nodes, Eigen::MatrixXd& nodal) const;
+  bool is_bare(std::int32_t node, int direction) const;  // it has no mass in it
+  void find_heirs(int direction);
+  void hand_over(std::span<const std::int32_t> nodes, int direction, Eigen::MatrixXd& nodal) const;
   template <class Take>
   void inherit(const Take& take) const;
   void inherit(Vector& lumped) const;
@@ -152,11 +151,11 @@ class FeModel final : public Model {
   std::size_t history_size_ = 0;
   std::vector<NodeFrame> frames_;  // sorted by node; usually none
   using LayerRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-  std::vector<std::int32_t> bare_;                // nodes without mass, ascending; usually none
-  std::vector<int> massless_;                     // their dofs that are not held, ascending
+  std::vector<int> bare_;                         // dofs without mass, ascending; usually none
+  std::vector<int> massless_;                     // of them, those that are not held
   std::vector<std::pair<int, int>> layer_cells_;  // (block, cell) that touch them
-  // of cells wholly among them: nodes that have their mass
-  std::map<std::pair<int, int>, std::vector<std::int32_t>> heirs_;
+  // by direction, of cells wholly without mass there: nodes that have it
+  std::array<std::map<std::pair<int, int>, std::vector<std::int32_t>>, 3> heirs_;
   // by cell of the layer: places of its coordinates among the massless, -1: none; entries of its
   // matrix, column by column, among the values of the tangent
   std::vector<int> layer_places_, layer_slots_;

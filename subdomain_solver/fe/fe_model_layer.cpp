@@ -1,6 +1,8 @@
-// The surface layer of finite elements: nodes whose mass the others of their cells have.
+// The surface layer of finite elements: coordinates whose mass the others of their cells have.
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,42 +13,42 @@
 
 namespace abut {
 
-bool FeModel::is_bare(std::int32_t node) const { return std::ranges::binary_search(bare_, node); }
+bool FeModel::is_bare(std::int32_t node, int direction) const {
+  return std::ranges::binary_search(bare_, node * mesh_.dim + direction);
+}
 
 int FeModel::layer_place(int dof) const {
   const auto at = std::ranges::lower_bound(massless_, dof);
   return at != massless_.end() && *at == dof ? static_cast<int>(at - massless_.begin()) : -1;
 }
 
-void FeModel::make_massless(const std::vector<std::int32_t>& nodes, const std::vector<int>& held) {
+void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held) {
   ABUT_ASSERT(bare_.empty() && (!assembly_ || assembly_->mass.size() == 0));
-  bare_ = nodes;
-  std::ranges::sort(bare_);
-  for (const std::int32_t node : bare_) {
-    for (int i = 0; i < mesh_.dim; ++i) {
-      const int dof = node * mesh_.dim + i;
-      if (!std::ranges::binary_search(held, dof)) massless_.push_back(dof);
-    }
-  }
+  bare_ = std::move(bare);
+  std::ranges::set_difference(bare_, held, std::back_inserter(massless_));
+  const auto bare_anywhere = [this](std::int32_t node) {
+    const auto first = std::ranges::lower_bound(bare_, node * mesh_.dim);
+    return first != bare_.end() && *first < (node + 1) * mesh_.dim;
+  };
   for (std::size_t k = 0; k < mesh_.blocks.size(); ++k) {
     const CellBlock& cells = mesh_.blocks[k];
     for (int c = 0; c < cells.count(); ++c) {
-      if (std::ranges::any_of(nodes_of(cells, c), [this](auto node) { return is_bare(node); }))
+      if (std::ranges::any_of(nodes_of(cells, c), bare_anywhere))
         layer_cells_.emplace_back(static_cast<int>(k), c);
     }
   }
-  find_heirs();
+  for (int i = 0; i < mesh_.dim; ++i) find_heirs(i);
   lump_mass();
 }
 
 /// Cells wholly in the layer, tetrahedra in corners for instance, have no node that could take
 /// their mass: nodes of their neighbours do, or of these ones' neighbours.
-void FeModel::find_heirs() {
+void FeModel::find_heirs(int direction) {
   std::vector<std::size_t> bare_cells;  // of layer_cells_
   for (std::size_t l = 0; l < layer_cells_.size(); ++l) {
     const auto& [block, cell] = layer_cells_[l];
     if (std::ranges::all_of(nodes_of(mesh_.blocks[index(block)], cell),
-                            [this](auto node) { return is_bare(node); }))
+                            [=, this](auto node) { return is_bare(node, direction); }))
       bare_cells.push_back(l);
   }
   if (bare_cells.empty()) return;
@@ -58,13 +60,13 @@ void FeModel::find_heirs() {
   }
   for (const std::size_t first : bare_cells) {
     std::vector<std::size_t> reached = {first}, ring = {first};
-    std::vector<std::int32_t>& heirs = heirs_[layer_cells_[first]];
+    std::vector<std::int32_t>& heirs = heirs_[index(direction)][layer_cells_[first]];
     while (heirs.empty() && !ring.empty()) {
       std::vector<std::size_t> next;
       for (const std::size_t l : ring) {
         for (const std::int32_t node :
              nodes_of(mesh_.blocks[index(layer_cells_[l].first)], layer_cells_[l].second)) {
-          if (!is_bare(node)) heirs.push_back(node);
+          if (!is_bare(node, direction)) heirs.push_back(node);
           for (const std::size_t other : around[index(node)]) {
             if (std::ranges::find(reached, other) != reached.end()) continue;
             reached.push_back(other);
@@ -85,14 +87,15 @@ void FeModel::find_heirs() {
   }
 }
 
-/// Of one cell's mass, what belongs to massless nodes goes to its others in equal parts: the matrix
-/// keeps its sum. That of a cell which has no others is left to its heirs.
-void FeModel::hand_over(std::span<const std::int32_t> nodes, Eigen::MatrixXd& nodal) const {
+/// Of one cell's mass in a direction, what belongs to massless nodes goes to its others in equal
+/// parts: the matrix keeps its sum. That of a cell which has no others is left to its heirs.
+void FeModel::hand_over(std::span<const std::int32_t> nodes, int direction,
+                        Eigen::MatrixXd& nodal) const {
   const double total = nodal.sum();
   std::vector<Eigen::Index> others;
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     const Eigen::Index at = static_cast<Eigen::Index>(a);
-    if (!is_bare(nodes[a])) {
+    if (!is_bare(nodes[a], direction)) {
       others.push_back(at);
       continue;
     }
@@ -104,25 +107,25 @@ void FeModel::hand_over(std::span<const std::int32_t> nodes, Eigen::MatrixXd& no
   for (const Eigen::Index at : others) nodal(at, at) += each;
 }
 
-/// Calls `take` with every heir of a cell wholly in the layer and the mass [kg] that it takes.
+/// Calls `take` with every dof of an heir of a cell wholly in the layer and the mass [kg] that it
+/// takes.
 template <class Take>
 void FeModel::inherit(const Take& take) const {
-  for (const auto& [cell, heirs] : heirs_) {
-    const double mass = nodal_mass(index(cell.first), cell.second).sum();
-    for (const std::int32_t heir : heirs) take(heir, mass / static_cast<double>(heirs.size()));
+  for (int i = 0; i < mesh_.dim; ++i) {
+    for (const auto& [cell, heirs] : heirs_[index(i)]) {
+      const double mass = nodal_mass(index(cell.first), cell.second).sum();
+      for (const std::int32_t heir : heirs)
+        take(heir * mesh_.dim + i, mass / static_cast<double>(heirs.size()));
+    }
   }
 }
 
 void FeModel::inherit(Vector& lumped) const {
-  const int dim = mesh_.dim;
-  inherit([&](std::int32_t heir, double mass) { lumped.segment(heir * dim, dim).array() += mass; });
+  inherit([&](int dof, double mass) { lumped(dof) += mass; });
 }
 
 void FeModel::inherit(SparseMatrix& mass) const {
-  inherit([&](std::int32_t heir, double part) {
-    for (int i = 0; i < mesh_.dim; ++i)
-      mass.coeffRef(heir * mesh_.dim + i, heir * mesh_.dim + i) += part;
-  });
+  inherit([&](int dof, double part) { mass.coeffRef(dof, dof) += part; });
 }
 
 /// Zeros where the layer's tangent has entries, and where its cells' matrices go.

@@ -33,13 +33,15 @@ void FeModel::lump_mass() {
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const CellBlock& cells = mesh_.blocks[k];
     for (int c = 0; c < cells.count(); ++c) {
-      Eigen::MatrixXd diagonal = cell_mass(static_cast<int>(k), c).asDiagonal();
-      if (!bare_.empty()) hand_over(nodes_of(cells, c), diagonal);
-      const Vector nodal = diagonal.diagonal();
-      int a = 0;
-      for (std::int32_t node : nodes_of(cells, c)) {
-        lumped_.segment(node * dim, dim).array() += nodal(a);
-        ++a;
+      const Eigen::MatrixXd whole = cell_mass(static_cast<int>(k), c).asDiagonal();
+      for (int i = 0; i < dim; ++i) {
+        Eigen::MatrixXd nodal = whole;
+        if (!bare_.empty()) hand_over(nodes_of(cells, c), i, nodal);
+        int a = 0;
+        for (const std::int32_t node : nodes_of(cells, c)) {
+          lumped_(node * dim + i) += nodal(a, a);
+          ++a;
+        }
       }
     }
   }
@@ -59,13 +61,13 @@ void FeModel::assemble_mass(SparseMatrix& out) const {
     const CellBlock& cells = mesh_.blocks[k];
     const Tabulation& t = blocks_[k].mass_table;
     for (int c = 0; c < cells.count(); ++c) {
-      Eigen::MatrixXd nodal = nodal_mass(k, c);
-      if (!bare_.empty()) hand_over(nodes_of(cells, c), nodal);
+      const Eigen::MatrixXd whole = nodal_mass(k, c);
       Eigen::MatrixXd local = Eigen::MatrixXd::Zero(t.nodes * dim, t.nodes * dim);
-      for (int a = 0; a < t.nodes; ++a) {
-        for (int b = 0; b < t.nodes; ++b) {
-          for (int i = 0; i < dim; ++i) local(a * dim + i, b * dim + i) = nodal(a, b);
-        }
+      for (int i = 0; i < dim; ++i) {
+        Eigen::MatrixXd nodal = whole;
+        if (!bare_.empty()) hand_over(nodes_of(cells, c), i, nodal);
+        for (int a = 0; a < t.nodes; ++a)
+          for (int b = 0; b < t.nodes; ++b) local(a * dim + i, b * dim + i) = nodal(a, b);
       }
       turn(nodes_of(cells, c), nullptr, &local);
       add_matrix(k, c, assembly(), local, out);

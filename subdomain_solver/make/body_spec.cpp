@@ -141,6 +141,10 @@ void MasslessSpec::fields(Fields& f) {
       "factor on the stiffness of the contact element; 4/3 is the distance to the centroid of the "
       "mass moved inwards",
       between(0.1, 100.0));
+  f.word(
+      "directions", normal_alone, {"all", "normal"},
+      "in which nodes of surfaces have no mass; normal: of flat sides along the axes, which keep "
+      "the mass that moves along them: for faces that yield and spread");
 }
 
 void MassiveSpec::fields(Fields& f) {

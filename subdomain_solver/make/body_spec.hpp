@@ -99,6 +99,7 @@ struct BarPairSpec {
 struct MasslessSpec {
   static constexpr std::string_view name = "massless";
   double stiffness_factor = 4.0 / 3.0;
+  bool normal_alone = false;  // "directions: all | normal"
   void fields(Fields& f);
 };
 struct KickSpec {

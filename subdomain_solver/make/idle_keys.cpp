@@ -65,11 +65,13 @@ void BodySpec::idle_of_bars(Fields& f) const {
            "it is for solids");
   const bool still = integrator && std::holds_alternative<QuasiStaticSpec>(*integrator);
   const bool fe_bar = solid && !flat && !modal && !rigid && !still;
-  f.idle(solid && (!fe_bar || contact_layer.index() != 0), "contact_layer",
-         fe_bar ? "a bar by the model of solids has a massless layer, at tied ports none"
-                : "contact of this body has no layer yet");
-  f.idle(fe_bar, "contact_layer.massless.stiffness_factor",
+  const bool layered = solid && !modal && !rigid && !still;
+  f.idle(solid && (!layered || contact_layer.index() != 0), "contact_layer",
+         layered ? "finite elements have a massless layer, at tied ports none"
+                 : "contact of this body has no layer");
+  f.idle(layered, "contact_layer.massless.stiffness_factor",
          "it is for bars of equal elements of linear_elastic material");
+  f.idle(!flat, "contact_layer.massless.directions", "one dimension has one direction");
   all_idle(
       f, solid,
       {"integrator.central_difference.dispersion_terms",
@@ -83,8 +85,8 @@ void BodySpec::idle_of_bars(Fields& f) const {
          flat ? "they are for the ends of bars" : "a rigid body has no ends of its own to hold");
   bool contact = false;
   for (const auto& [name, port] : ports)
-    contact = contact || (!port.tied && (is_bar() || end_of(port.side) >= 0));
-  f.idle((is_bar() || fe_bar) && !contact, "contact_layer", "the body has no port for contact");
+    contact = contact || (!port.tied && (is_bar() || flat || end_of(port.side) >= 0));
+  f.idle((is_bar() || layered) && !contact, "contact_layer", "the body has no port for contact");
   f.idle(rigid || (modal && !is_implicit()), "equations",
          "nothing of the body is solved by iteration");
 }

@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,30 +15,62 @@
 #include "subdomain_solver/make/mesh.hpp"
 #include "subdomain_solver/make/scheme.hpp"
 #include "subdomain_solver/place.hpp"
+#include "subdomain_solver/port_geometry.hpp"
 #include "subdomain_solver/solid_interior.hpp"
 
 namespace abut {
 
 namespace {
 
-/// Nodes of the contact layer: those at which ports may touch. Nodes that are held wholly keep
-/// their mass, and so do node sets: nothing touches them.
-std::vector<std::int32_t> layer_nodes(const FeModel& model, const BodySpec& spec,
-                                      const std::vector<SolidInterior::PortNodes>& ports,
-                                      const std::vector<Prescribed>& supports) {
-  std::vector<std::int32_t> nodes;
+/// Components of a unit normal below this are the rounding of an axis.
+constexpr double straight = 1.0e-9;
+
+/// Direction without mass [M.97] at the nodes of a flat side along an axis: its normal's.
+int only_direction(const FeModel& model, const std::string& side,
+                   std::span<const std::int32_t> nodes, const Place& place) {
+  const int dim = model.mesh().dim;
+  const std::vector<double> normals =
+      port_geometry(model, side, {nodes.begin(), nodes.end()}).normals;
+  int found = -1;
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    const int direction = static_cast<int>(v) % dim;
+    if (std::abs(normals[v]) < straight) continue;
+    if (found < 0) found = direction;
+    if (direction == found) continue;
+    throw InputError("is normal, but side '" + side + "' is not flat along an axis",
+                     place.where("contact_layer.massless.directions"),
+                     "Leave directions out, or turn the mesh.");
+  }
+  return found;
+}
+
+/// Coordinates of the contact layer: of nodes at which ports may touch. Nodes that are held wholly
+/// keep their mass, and so do node sets: nothing touches them.
+std::vector<int> layer_coordinates(const FeModel& model, const BodySpec& spec,
+                                   const std::vector<SolidInterior::PortNodes>& ports,
+                                   const Constraints& constraints, const Place& place) {
+  std::vector<int> dofs;
   const Mesh& mesh = model.mesh();
-  if (std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return nodes;
+  if (std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return dofs;
+  const auto* layer = std::get_if<MasslessSpec>(&spec.contact_layer);
+  const bool normal_alone = layer != nullptr && layer->normal_alone;
+  if (normal_alone && !constraints.frames.empty()) {
+    throw InputError("is normal beside supports along inclined sides",
+                     place.where("contact_layer.massless.directions"), "Leave directions out.");
+  }
   std::vector<int> held(index(mesh.node_count()), 0);
-  for (const Prescribed& p : supports) ++held[index(p.dof / mesh.dim)];
+  for (const Prescribed& p : constraints.supports) ++held[index(p.dof / mesh.dim)];
   for (const SolidInterior::PortNodes& port : ports) {
     if (!port.touched || !mesh.sides.contains(port.side)) continue;
-    for (const std::int32_t node : mesh.nodes_of(port.side))
-      if (held[index(node)] < mesh.dim) nodes.push_back(node);
+    const auto& nodes = mesh.nodes_of(port.side);
+    const int only = normal_alone ? only_direction(model, port.side, nodes, place) : -1;
+    for (const std::int32_t node : nodes)
+      for (int i = 0; held[index(node)] < mesh.dim && i < mesh.dim; ++i)
+        if (only < 0 || i == only) dofs.push_back(node * mesh.dim + i);
   }
-  std::ranges::sort(nodes);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
+  std::ranges::sort(dofs);
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+  return dofs;
 }
 
 }  // namespace
@@ -60,12 +95,12 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
     throw InputError("have no effect: one thread computes the elements of this law or formulation",
                      place.where("model.fe.threads"), "Leave threads out.");
   }
-  const std::vector<std::int32_t> layer = layer_nodes(model, spec, ports, constraints.supports);
+  std::vector<int> layer = layer_coordinates(model, spec, ports, constraints, place);
   std::vector<int> held;  // coordinates, ascending
   for (const Prescribed& p : constraints.supports) held.push_back(p.dof);
   if (!layer.empty()) {
     named(place, "model.fe.mesh", [&] {
-      model.make_massless(layer, held);
+      model.make_massless(std::move(layer), held);
       return 0;
     });
   }
