@@ -248,6 +248,8 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     const bool surfaces = bodies.port(sides[0]).geometry.dim > 1 && spec.contact;
     Joint& joint = joints.emplace_back(surfaces ? make_surface_joint(name, sides, bodies)
                                                 : make_joint(name, sides, bodies));
+    for (const int s : {0, 1})
+      if (scene.bodies[index(sides[index(s)].body)].second.adjusts) joint.adjusted = s;
     if (std::holds_alternative<InternalTransmission>(spec.transmission)) {
       joint.decision = Decision::inside;
       continue;

@@ -419,9 +419,30 @@ std::vector<std::string> exact_interfaces(const Scene& scene) {
   return names;
 }
 
+namespace {
+
+/// Of a body's own keys what interfaces depend on.
+struct AdjustKey {
+  bool adjust = false;
+  void fields(Fields& f) {
+    f.optional("adjust", adjust, "", "whether its surfaces are moved");
+    f.ignore_rest();
+  }
+};
+
+bool is_adjusted(const Document& document, const std::string& body) {
+  const std::string path = "bodies." + body + ".initial";
+  return document.has(path + ".adjust") && read<AdjustKey>(document, path).adjust;
+}
+
+}  // namespace
+
 Scene read_scene(const Document& document) {
   Scene scene = read<Scene>(document);
-  for (auto& [name, entry] : scene.bodies) entry.external = is_external(document, name);
+  for (auto& [name, entry] : scene.bodies) {
+    entry.external = is_external(document, name);
+    entry.adjusts = !entry.external && is_adjusted(document, name);
+  }
   validate(scene, document);
   return scene;
 }

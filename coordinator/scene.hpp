@@ -40,6 +40,7 @@ struct BodyEntry {
   std::variant<SpawnLaunch, ConnectLaunch> launch;
   bool external = false;  // of another program, which alone can describe it
   std::string like;       // body that it has the rest from; the document has written it out
+  bool adjusts = false;   // its own specification has initial: {adjust: true}
   void fields(Fields& f);
 };
 

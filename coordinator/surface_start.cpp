@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -13,9 +12,7 @@
 #include "base/index.hpp"
 #include "surface/check.hpp"
 #include "surface/divided_surface.hpp"
-#include "surface/mortar.hpp"
-#include "surface/point_rows.hpp"
-#include "surface/sharp_nodes.hpp"
+#include "surface/start_rows.hpp"
 
 namespace abut {
 
@@ -24,8 +21,7 @@ namespace {
 /// Of a facet's size: overlaps below it are roundings of the places.
 constexpr double tolerance = 1.0e-6;
 
-/// Facet sizes that a node may lie behind a surface and still be seen.
-constexpr double reach = 2.0;
+StartSurface start(const PortGeometry& surface) { return {posed(surface), surface.spacing}; }
 
 void check_facets(const NamedSurface& surface, const std::string& where) {
   const std::optional<UnsoundSurface> unsound = check(posed(surface.geometry));
@@ -34,33 +30,28 @@ void check_facets(const NamedSurface& surface, const std::string& where) {
                    "Mend the mesh there, or name another side.");
 }
 
-/// Nodes of `one` that lie behind the facets of `other`.
+/// The row that overlaps most, and by more than what is allowed [m]; -1: none does.
+int deepest(const SurfaceRows& rows, double allowed) {
+  const auto least = std::ranges::min_element(rows.gaps);
+  if (least == rows.gaps.end() || *least >= -allowed) return -1;
+  return static_cast<int>(least - rows.gaps.begin());
+}
+
+/// Nodes of `one` that lie behind the facets of `other`, farther than nodes of round surfaces do.
 void check_nodes(const NamedSurface& one, const NamedSurface& other, const std::string& where) {
-  const PosedSurface k = posed(one.geometry), n = posed(other.geometry);
-  const double size = std::max(one.geometry.spacing, other.geometry.spacing);
-  std::vector<std::int32_t> nodes(index(k.node_count()));
-  std::iota(nodes.begin(), nodes.end(), 0);
-  BoxTree tree;
-  build(tree, n, reach * size);
-  PointRowOptions options;
-  options.reach = reach * size;
-  PointRowBuffers buffers;
-  SurfaceRows rows;
-  point_rows(k, nodes, n, tree, options, buffers, rows);
-  const auto deepest = std::ranges::min_element(rows.gaps);
-  if (deepest == rows.gaps.end() || *deepest >= -tolerance * size) return;
-  const std::size_t node = index(rows.nodes[index(deepest - rows.gaps.begin())]);
-  const std::size_t dim = index(k.dim);
-  const std::span<const double> at = k.points.subspan(node * dim, dim);
+  const StartSurface k = start(one.geometry), n = start(other.geometry);
+  const SurfaceRows rows = node_rows(k, n);
+  const int row = deepest(rows, tolerance * facet_size(k, n) + roundness(k, n));
+  if (row < 0) return;
+  const std::size_t dim = index(rows.dim), node = index(rows.nodes[index(row)]);
+  const std::span<const double> at = k.surface.points.subspan(node * dim, dim);
   throw InputError(
       fmt::format("its sides overlap by {:.3g} m at the start: a node of {} at ({:.6g}) "
                   "m lies behind {}",
-                  -*deepest, one.name, fmt::join(at, ", "), other.name),
-      where, "Move a body with initial.position until they are apart.");
-}
-
-bool has_edges(const NamedSurface& surface) {
-  return !sharp_nodes(posed(surface.geometry), sharp_edge).empty();
+                  -rows.gaps[index(row)], one.name, fmt::join(at, ", "), other.name),
+      where,
+      "Move a body with initial.position until they are apart, or give one of them initial: "
+      "{adjust: true}.");
 }
 
 /// Rows will be of the nodes of the surface that has edges, divided as finely as the finder's
@@ -85,27 +76,18 @@ void check_division(const NamedSurface& finder, const NamedSurface& edged,
 /// Facets of polygons that stand for round bodies overlap on the average of a node's surroundings
 /// before any node does: contact would begin with a blow.
 void check_averages(const NamedSurface& one, const NamedSurface& other, const std::string& where) {
-  const PosedSurface k = posed(one.geometry), n = posed(other.geometry);
-  const double size = std::max(one.geometry.spacing, other.geometry.spacing);
-  BoxTree own, its;
-  build(own, k, 0.0);
-  build(its, n, size);
-  std::vector<FacetPair> pairs;
-  overlapping_pairs(own, its, pairs);
-  MortarOptions options;
-  options.reach = one.geometry.spacing;
-  MortarBuffers buffers;
-  SurfaceRows rows;
-  mortar_rows(k, n, pairs, options, buffers, rows);
-  const auto deepest = std::ranges::min_element(rows.gaps);
-  if (deepest == rows.gaps.end() || *deepest >= -tolerance * size) return;
+  const StartSurface k = start(one.geometry), n = start(other.geometry);
+  const SurfaceRows rows = average_rows(k, n);
+  const int row = deepest(rows, tolerance * facet_size(k, n));
+  if (row < 0) return;
+  const double overlap = -rows.gaps[index(row)];
   throw InputError(fmt::format("its sides are too near at the start: over the width of a facet {} "
-                               "overlaps {} by {:.3g} m, though no node does",
-                               one.name, other.name, -*deepest),
+                               "overlaps {} by {:.3g} m",
+                               one.name, other.name, overlap),
                    where,
-                   fmt::format("Move a body with initial.position by {:.3g} m more, or make the "
-                               "mesh finer.",
-                               -*deepest));
+                   fmt::format("Move a body with initial.position by {:.3g} m more, make the mesh "
+                               "finer, or give one of them initial: {{adjust: true}}.",
+                               overlap));
 }
 
 }  // namespace
@@ -116,7 +98,7 @@ void check_surfaces(const NamedSurface& finder, const NamedSurface& other,
   check_facets(other, where);
   check_nodes(finder, other, where);
   check_nodes(other, finder, where);
-  const bool turned = has_edges(other) && !has_edges(finder);
+  const bool turned = has_edges(posed(other.geometry)) && !has_edges(posed(finder.geometry));
   if (turned) check_division(finder, other, where);
   check_averages(turned ? other : finder, turned ? finder : other, where);
 }

@@ -52,6 +52,7 @@ class Joint {
   Decision decision = Decision::every_substep;
   int kinematic = 0;        // index of the kinematic (Dirichlet) side
   bool role_fixed = false;  // by the scene; else by probe
+  int adjusted = -1;        // side whose surface was moved onto the other's; -1: none
   bool roles_swap = false;  // published form: after every window in contact
   bool projection = false;  // published form: plastic impact of the contact nodes at first touch
 

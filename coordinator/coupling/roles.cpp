@@ -60,6 +60,7 @@ int Roles::wish(const Joint& joint) {
 int contact_finder(const Joint& joint, const Bodies& bodies) {
   if (joint.role_fixed) return joint.kinematic;
   if (const std::optional<int> only = only_side(joint, bodies)) return *only;
+  if (joint.adjusted >= 0) return joint.adjusted;
   bool yields[2];
   double spacing[2], step[2];
   for (std::size_t s : {0u, 1u}) {

@@ -167,6 +167,15 @@ void InitialSpec::fields(Fields& f) {
              "initial displacement, one expression in x, y, z per dimension");
   f.optional("velocity_field", velocity_field, "m/s",
              "initial velocity, added to velocity, one expression per dimension");
+  f.optional(
+      "adjust", adjust, "",
+      "whether nodes of the ports that overlap a surface that they may touch are moved out of "
+      "it before the start: the mesh changes, without stress; for bodies in two and three "
+      "dimensions");
+  f.optional("adjust_gaps", adjust_gaps, "m",
+             "distance up to which nodes before such a surface are moved onto it as well",
+             at_least(0.0));
+  f.idle(!adjust, "adjust_gaps", "it belongs to adjust: true");
 }
 
 void SupportsSpec::fields(Fields& f) {

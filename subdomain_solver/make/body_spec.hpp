@@ -117,6 +117,8 @@ struct InitialSpec {
   std::vector<double> position = {0.0}, velocity = {0.0};  // [m] [m/s] (dim)
   // one expression per dimension, added to the uniform values
   std::vector<std::string> displacement_field, velocity_field;
+  bool adjust = false;       // the mesh is moved out of what it may touch, before there is stress
+  double adjust_gaps = 0.0;  // [m]
   void fields(Fields& f);
 };
 struct SupportsSpec {

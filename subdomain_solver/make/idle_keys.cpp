@@ -46,6 +46,8 @@ void BodySpec::idle_of_walls_and_pairs(Fields& f) const {
     f.idle(wall && !(tool && key == std::string("points")), key, of_wall);
     f.idle(pair, key, of_pair);
   }
+  f.idle(shape() == nullptr ? !pair : shape()->dimension == 1, "initial.adjust",
+         "it is for surfaces, of bodies in two and three dimensions");
   f.idle(pair, "integrator.central_difference.above_limit", "it is for solids");
   const auto* elastic = material ? std::get_if<LinearElasticSpec>(&*material) : nullptr;
   const bool one_dimension = shape() != nullptr && shape()->dimension == 1;

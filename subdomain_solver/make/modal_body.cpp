@@ -5,6 +5,7 @@
 
 #include "base/count.hpp"
 #include "base/index.hpp"
+#include "subdomain_solver/make/adjust.hpp"
 #include "subdomain_solver/make/constraints.hpp"
 #include "subdomain_solver/make/fields.hpp"
 #include "subdomain_solver/make/makers.hpp"
@@ -100,6 +101,7 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
   name_points(spec, place, mesh);
   const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
   const Constraints constraints = make_constraints(spec, place, mesh);
+  const std::string adjusted = adjust_ports(spec, place, ports, constraints, mesh);
   check_formulation(modal, mesh, place, "model.modal");
   SolidInterior::Parts parts;
   parts.model = std::make_unique<FeModel>(
@@ -130,7 +132,7 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
   const std::size_t nodal = index(nodes.dofs());
   for (std::unique_ptr<Load>& load : make_loads(spec, place, nodes))
     parts.problem->loads.push_back(std::make_unique<LiftedLoad>(std::move(load), *map, nodal));
-  parts.rung = words_of(basis) + on_file(modal);
+  parts.rung = words_of(basis) + on_file(modal) + adjusted;
   parts.motion = modal_start(initial_motion(spec, place, nodes), constraints.supports,
                              mass_matrix(nodes, form), basis, nodes, *model, parts.rung);
   parts.scheme =

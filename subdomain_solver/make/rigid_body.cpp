@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/index.hpp"
+#include "subdomain_solver/make/adjust.hpp"
 #include "subdomain_solver/make/fields.hpp"
 #include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/make/mass_range.hpp"
@@ -63,6 +64,7 @@ std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Place& place) {
   Mesh mesh = make_mesh(model, spec.initial.position, place, "model.rigid");
   name_points(spec, place, mesh);
   const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
+  const std::string adjusted = adjust_ports(spec, place, ports, {}, mesh);
   SolidInterior::Parts parts;
   FeOptions options;
   options.plane = model.plane;
@@ -87,7 +89,7 @@ std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Place& place) {
                   std::numeric_limits<double>::infinity(), integrator.mass,
                   fmt::format("exact free motion, step {:g} s", integrator.step)};
   parts.reduced = std::move(body);
-  parts.rung = "rigid" + on_file(model);
+  parts.rung = "rigid" + on_file(model) + adjusted;
   parts.deforms = false;
   return std::make_unique<SolidInterior>(place.name(), std::move(parts), ports);
 }

@@ -1,9 +1,9 @@
 #include "subdomain_solver/make/scene_contact.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "base/fields.hpp"
+#include "base/index.hpp"
 #include "base/yaml_fields.hpp"
 
 namespace abut {
@@ -19,16 +19,41 @@ struct SidesSpec {
   }
 };
 
+/// Of its transmission, which the coordinator reads whole.
+struct KinematicSpec {
+  std::string kinematic;
+  void fields(Fields& f) {
+    f.optional("kinematic", kinematic, "", "side that finds the contact");
+    f.ignore_rest();
+  }
+};
+
+std::string kinematic_of(const Document& scene, const std::string& interface) {
+  const std::string path = interface + ".transmission.unilateral";
+  KinematicSpec spec;
+  if (scene.has(path + ".kinematic")) spec = read<KinematicSpec>(scene, path);
+  if (spec.kinematic == "auto") spec.kinematic.clear();
+  return spec.kinematic;
+}
+
 }  // namespace
 
-bool touches(const Document& scene, const std::string& body, const std::string& port) {
-  const std::vector<std::string> names = scene.keys("interfaces");
-  return std::ranges::any_of(names, [&](const std::string& name) {
+std::vector<SceneContact> contacts_of(const Document& scene, const std::string& body,
+                                      const std::string& port) {
+  std::vector<SceneContact> out;
+  for (const std::string& name : scene.keys("interfaces")) {
     const std::string path = "interfaces." + name;
-    if (!scene.has(path + ".contact") || !scene.has(path + ".sides")) return false;
+    if (!scene.has(path + ".contact") || !scene.has(path + ".sides")) continue;
     const SidesSpec interface = read<SidesSpec>(scene, path);
-    return std::ranges::find(interface.sides, body + "." + port) != interface.sides.end();
-  });
+    for (const std::size_t s : {0u, 1u}) {
+      if (interface.sides[s] != body + "." + port) continue;
+      const std::string& other = interface.sides[1 - s];
+      const std::size_t dot = other.find('.');
+      if (dot == std::string::npos) continue;
+      out.push_back({name, other.substr(0, dot), other.substr(dot + 1), kinematic_of(scene, path)});
+    }
+  }
+  return out;
 }
 
 }  // namespace abut

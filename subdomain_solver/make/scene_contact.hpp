@@ -1,13 +1,22 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/yaml_document.hpp"
 
 namespace abut {
 
-/// Whether an interface of the scene lets a body's port touch another one. The scene may be without
-/// interfaces: a body alone.
-bool touches(const Document& scene, const std::string& body, const std::string& port);
+/// An interface that lets a port touch another one.
+struct SceneContact {
+  std::string interface;
+  std::string body, port;  // the partner's
+  std::string kinematic;   // side to which the scene gives that role; empty: to none
+};
+
+/// With whom the interfaces of a scene let a body's port touch, in their order. The scene may be
+/// without interfaces: a body alone.
+std::vector<SceneContact> contacts_of(const Document& scene, const std::string& body,
+                                      const std::string& port);
 
 }  // namespace abut

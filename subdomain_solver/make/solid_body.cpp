@@ -7,6 +7,7 @@
 
 #include "subdomain_solver/fe/highest_frequency.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
+#include "subdomain_solver/make/adjust.hpp"
 #include "subdomain_solver/make/constraints.hpp"
 #include "subdomain_solver/make/fields.hpp"
 #include "subdomain_solver/make/makers.hpp"
@@ -81,6 +82,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   name_points(spec, place, mesh);
   const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
   Constraints constraints = make_constraints(spec, place, mesh);
+  const std::string adjusted = adjust_ports(spec, place, ports, constraints, mesh);
   check_formulation(fe, mesh, place, "model.fe");
   const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
   SolidInterior::Parts parts;
@@ -114,7 +116,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   const auto limit = [&] {
     return stable_step(model, parts.motion.q, std::vector<double>(model.history_size(), 0.0));
   };
-  parts.rung += on_file(fe);
+  parts.rung += on_file(fe) + adjusted;
   if (const std::string why = spec.why_general(); !why.empty())
     parts.rung += " in place of the bars' own core, for " + why;
   MakeWatch watch;  // the tangent of linear bodies stays

@@ -1,3 +1,4 @@
+#include "subdomain_solver/make/adjust.hpp"
 #include "subdomain_solver/make/expression.hpp"
 #include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/make/mesh.hpp"
@@ -12,6 +13,7 @@ std::unique_ptr<Interior> make_tool(const BodySpec& spec, const Place& place) {
   Mesh mesh = make_mesh(tool, spec.initial.position, place, "model.rigid_tool");
   name_points(spec, place, mesh);
   const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
+  const std::string adjusted = adjust_ports(spec, place, ports, {}, mesh);
   std::vector<RigidTool::Way> way;
   for (int i = 0; i < mesh.dim; ++i) {
     if (tool.way.empty()) {
@@ -25,7 +27,8 @@ std::unique_ptr<Interior> make_tool(const BodySpec& spec, const Place& place) {
   }
   // A shape alone: nothing asks for its stiffness or its mass.
   const std::string words =
-      (tool.way.empty() ? "rigid tool that stands" : "rigid tool on its way") + on_file(tool);
+      (tool.way.empty() ? "rigid tool that stands" : "rigid tool on its way") + on_file(tool) +
+      adjusted;
   FeOptions options;
   options.plane = tool.plane;
   auto shape = std::make_unique<FeModel>(

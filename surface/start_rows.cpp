@@ -1,0 +1,79 @@
+#include "surface/start_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "base/index.hpp"
+#include "surface/mortar.hpp"
+#include "surface/point_rows.hpp"
+#include "surface/sharp_nodes.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Facet sizes that a node may lie behind a surface and still be seen.
+constexpr double reach = 2.0;
+
+/// Half of sharp_edge: the angle between a facet and the normal of its node where two such meet.
+const double smooth = std::cos(0.5 * sharp_edge);
+
+}  // namespace
+
+double facet_size(const StartSurface& one, const StartSurface& other) {
+  return std::max(one.spacing, other.spacing);
+}
+
+double sag(const PosedSurface& surface) {
+  std::vector<double> normals;
+  nodal_normals(surface, normals);
+  const PosedSurface at_nodes{surface.dim, normals, {}, {}};
+  double most = 0.0;
+  for (int f = 0; f < surface.facet_count(); ++f) {
+    const Eigen::Vector3d whole = mean_normal(corners(surface, f));
+    for (const std::int32_t a : surface.nodes(f)) {
+      const Eigen::Vector3d n = at_nodes.point(a);
+      if (n.dot(whole) < smooth) continue;
+      for (const std::int32_t b : surface.nodes(f))
+        most = std::max(most, std::abs(n.dot(surface.point(b) - surface.point(a))));
+    }
+  }
+  return 0.5 * most;
+}
+
+double roundness(const StartSurface& one, const StartSurface& other) {
+  return sag(one.surface) + sag(other.surface);
+}
+
+SurfaceRows node_rows(const StartSurface& one, const StartSurface& other) {
+  std::vector<std::int32_t> nodes(index(one.surface.node_count()));
+  std::iota(nodes.begin(), nodes.end(), 0);
+  PointRowOptions options;
+  options.reach = reach * facet_size(one, other);
+  BoxTree tree;
+  build(tree, other.surface, options.reach);
+  PointRowBuffers buffers;
+  SurfaceRows rows;
+  point_rows(one.surface, nodes, other.surface, tree, options, buffers, rows);
+  return rows;
+}
+
+SurfaceRows average_rows(const StartSurface& one, const StartSurface& other) {
+  BoxTree own, its;
+  build(own, one.surface, 0.0);
+  build(its, other.surface, facet_size(one, other));
+  std::vector<FacetPair> pairs;
+  overlapping_pairs(own, its, pairs);
+  MortarOptions options;
+  options.reach = one.spacing;
+  MortarBuffers buffers;
+  SurfaceRows rows;
+  mortar_rows(one.surface, other.surface, pairs, options, buffers, rows);
+  return rows;
+}
+
+bool has_edges(const PosedSurface& surface) { return !sharp_nodes(surface, sharp_edge).empty(); }
+
+}  // namespace abut
