@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "surface/check.hpp"
+#include "surface/crossings.hpp"
 #include "surface/divided_surface.hpp"
 #include "surface/start_rows.hpp"
 
@@ -28,6 +29,23 @@ void check_facets(const NamedSurface& surface, const std::string& where) {
   if (!unsound) return;
   throw InputError(fmt::format("{}: {}", surface.name, words(*unsound)), where,
                    "Mend the mesh there, or name another side.");
+}
+
+/// Facets of one port that cross each other: contact within a body is not modelled.
+void check_itself(const NamedSurface& named, const std::string& where) {
+  const PosedSurface surface = posed(named.geometry);
+  BoxTree tree;
+  build(tree, surface, 0.0);
+  std::vector<FacetPair> pairs;
+  const Crossings found = crossings(surface, tree, pairs);
+  if (found.count == 0) return;
+  const Eigen::Vector3d at = centre(corners(surface, found.first.k));
+  throw InputError(
+      fmt::format("{} crosses itself: facets {} and {} of it pass through each other near "
+                  "({:.6g}) m, and contact of a body with itself is not modelled",
+                  named.name, found.first.k, found.first.n,
+                  fmt::join(at.data(), at.data() + surface.dim, ", ")),
+      where, "Mend the mesh there, or name another side.");
 }
 
 /// The row that overlaps most, and by more than what is allowed [m]; -1: none does.
@@ -96,6 +114,8 @@ void check_surfaces(const NamedSurface& finder, const NamedSurface& other,
                     const std::string& where) {
   check_facets(finder, where);
   check_facets(other, where);
+  check_itself(finder, where);
+  check_itself(other, where);
   check_nodes(finder, other, where);
   check_nodes(other, finder, where);
   const bool turned = has_edges(posed(other.geometry)) && !has_edges(posed(finder.geometry));

@@ -12,7 +12,8 @@ struct NamedSurface {
   const PortGeometry& geometry;
 };
 
-/// Refuses what no contact can start from: a facet without area or folded, and surfaces that
+/// Refuses what no contact can start from: a facet without area or folded, one that
+/// looks the other way than its neighbours, a surface that crosses itself, and surfaces that
 /// overlap in the reference by more than a millionth of a facet, in nodes or over the facets of the
 /// side whose nodes have the rows: the finder's, which finds their contact, but for edges. Throws
 /// InputError with the facet, or the place and how much; `where` is the interface's key.

@@ -87,6 +87,10 @@ void SolidInterior::find_surfaces() {
   contact_ = std::make_unique<SurfaceContact>(std::move(surfaces), description_.name);
   for (std::string& name : touch_measure_names(touched_))
     description_.measures.push_back(std::move(name));
+  if (parts_.deforms && !parts_.problem->model->is_linear()) {
+    crossings_ = std::make_unique<SelfCrossings>(touched_);
+    description_.measures.emplace_back("contact.crossings");
+  }
   for (FieldInfo& field : touch_fields()) description_.fields.push_back(std::move(field));
   description_.can.obstacle = description_.can.yielding = true;
 }
@@ -137,6 +141,7 @@ void SolidInterior::state(Archive& archive) {
   archive.field("port_force", state_.port_force);
   archive.field("port_work", state_.port_work);
   archive.field("turned", state_.turned);
+  if (crossings_) archive.field("crossed", state_.crossed);
   if (contact_) contact_->state(archive);
 }
 
@@ -283,6 +288,8 @@ std::optional<Failed> SolidInterior::record(BodyRecord& r) {
   see_nodes();
   r.energy = energy();
   state_.turned = std::max(state_.turned, rotation_on_the_way(*parts_.model, parts_.deforms, u_));
+  if (crossings_)
+    state_.crossed = std::max(state_.crossed, static_cast<double>(crossings_->count(places_)));
   r.momentum.assign(index(description_.dim), 0.0);
   for (Eigen::Index k = 0; k < momentum_.size(); ++k)
     r.momentum[index(k) % r.momentum.size()] += momentum_(k);
@@ -332,6 +339,7 @@ std::vector<double> SolidInterior::measure() {
         validity_measures(*parts_.model, parts_.deforms, u_, state_.motion.stored, state_.turned)})
     out.insert(out.end(), more.begin(), more.end());
   touch_measures(touched_, state_.port_force, places_, out);
+  if (crossings_) out.push_back(state_.crossed);
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include "base/index.hpp"
 #include "subdomain_solver/contact/contact_fields.hpp"
 #include "subdomain_solver/contact/port_contact.hpp"
+#include "subdomain_solver/contact/self_crossings.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/interior.hpp"
 #include "subdomain_solver/nodal_map.hpp"
@@ -82,6 +83,7 @@ class SolidInterior final : public Interior {
     std::vector<double> port_force;  // [N] (port values) that acts now
     double port_work = 0.0;          // [J] done by forces on the ports
     double turned = 0.0;             // [rad] largest rotation at records, where the law is linear
+    double crossed = 0.0;            // most pairs of facets that crossed each other, at records
   };
 
   void describe(std::string name, const std::vector<PortNodes>& ports);
@@ -105,6 +107,7 @@ class SolidInterior final : public Interior {
   std::unique_ptr<PortMap> port_map_;  // null: no ports
   std::unique_ptr<PortContact> contact_;  // null: no port meets obstacles
   std::vector<TouchedSurface> touched_;   // its ports, where they are surfaces
+  std::unique_ptr<SelfCrossings> crossings_;  // null: strains are small
   PortForces* port_forces_ = nullptr;  // owned by the problem, the last of its loads
   State state_;
   std::vector<double> places_;  // [m] (port values)

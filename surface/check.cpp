@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <tuple>
+#include <vector>
 
 #include "base/index.hpp"
 
@@ -54,6 +57,36 @@ std::optional<SurfaceDefect> check_shape(const Corners& c) {
   return std::nullopt;
 }
 
+/// One facet's way along an edge, nodes ascending; in the plane an edge is a node, and the way is
+/// from it or to it.
+struct HalfEdge {
+  std::int32_t a, b, facet;
+  bool forward;
+
+  bool same_edge(const HalfEdge& other) const { return a == other.a && b == other.b; }
+};
+
+/// Neighbours that look to one side run along their edge in opposite ways. Where more than two
+/// meet, at cells that have nothing but an edge in common, as many run either way.
+std::optional<UnsoundSurface> check_orientation(const PosedSurface& s) {
+  std::vector<HalfEdge> edges;
+  for (std::int32_t f = 0; f < s.facet_count(); ++f) {
+    const std::span<const std::int32_t> nodes = s.nodes(f);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const std::int32_t a = nodes[i], b = s.dim == 2 ? a : nodes[(i + 1) % nodes.size()];
+      edges.push_back({std::min(a, b), std::max(a, b), f, s.dim == 2 ? i == 0 : a < b});
+    }
+  }
+  std::ranges::sort(edges, {}, [](const HalfEdge& e) { return std::tuple(e.a, e.b, e.facet); });
+  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+    int ways = 0;
+    for (end = begin; end < edges.size() && edges[end].same_edge(edges[begin]); ++end)
+      ways += edges[end].forward ? 1 : -1;
+    if (std::abs(ways) > 1) return UnsoundSurface{SurfaceDefect::turned, edges[end - 1].facet};
+  }
+  return std::nullopt;
+}
+
 const char* words_of(SurfaceDefect defect) {
   switch (defect) {
     case SurfaceDefect::dimension:
@@ -74,6 +107,8 @@ const char* words_of(SurfaceDefect defect) {
       return "has no area";
     case SurfaceDefect::folded:
       return "is not convex";
+    case SurfaceDefect::turned:
+      return "looks the other way than its neighbour";
   }
   return "";
 }
@@ -87,7 +122,7 @@ std::optional<UnsoundSurface> check(const PosedSurface& surface) {
     if (!defect) defect = check_shape(corners(surface, f));
     if (defect) return UnsoundSurface{*defect, f};
   }
-  return std::nullopt;
+  return check_orientation(surface);
 }
 
 std::string words(const UnsoundSurface& unsound) {

@@ -18,7 +18,8 @@ enum class SurfaceDefect {
   not_finite,     // a facet has a node whose coordinates are not finite
   no_area,        // of a facet: less than 1e-12 of the square of its longest edge (in the plane:
                   // a segment without length)
-  folded          // a quadrilateral is not convex in its mean plane
+  folded,         // a quadrilateral is not convex in its mean plane
+  turned          // runs along an edge (in the plane: through a node) as its neighbour does
 };
 
 struct UnsoundSurface {

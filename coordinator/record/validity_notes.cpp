@@ -38,6 +38,11 @@ std::vector<std::string> validity_notes(const Description& body, std::span<const
         "rigid",
         body.name, turned, 100.0 * longer));
   }
+  if (told(body, values, "contact.crossings") > 0.0)
+    notes.push_back(
+        fmt::format("facets of {} have passed through each other on its ports: contact of a body "
+                    "with itself is not modelled, and what follows is not to be trusted",
+                    body.name));
   const double share = told(body, values, "energy.hourglass_share");
   const double stored = told(body, values, "energy.stored");
   const double all = stored + told(body, values, "energy.kinetic");

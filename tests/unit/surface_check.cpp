@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <string>
@@ -58,6 +59,9 @@ TEST(SurfaceCheck, NamesTheDefectAndItsFacet) {
   EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.points[19] = std::numeric_limits<double>::infinity(); }),
             "facet 2 has a node whose coordinates are not finite");
   EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.points[18] = 2.0; }), "facet 2 has no area");
+  EXPECT_EQ(
+      spoilt([](SurfaceMesh& m) { std::reverse(m.facets.begin() + 4, m.facets.begin() + 8); }),
+      "facet 1 looks the other way than its neighbour");
   EXPECT_EQ(spoilt([](SurfaceMesh& m) { m.points[0] = 2.0, m.points[1] = 2.0; }),
             "facet 0 is not convex");
   EXPECT_EQ(spoilt([](SurfaceMesh& m) { std::swap(m.facets[5], m.facets[6]); }),
