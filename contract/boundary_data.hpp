@@ -10,6 +10,8 @@ namespace abut {
 /// What joins two ports: with which law a body meets its partner's surface (Subdomain::meet).
 struct ContactLaw {
   bool tied = false;  // holds in tension too, and any gap of the references counts as none
+  // Of surfaces: each node of the body that finds contact for itself, instead of averages [M.95].
+  bool points = false;
 };
 
 /// The partner's moving surface, on the partner's own points: what the body must not penetrate, or,

@@ -145,7 +145,8 @@ void refuse_flat_beside_round(const Joint& joint, const Bodies& bodies, const st
 }
 
 /// Bodies that are surfaces to each other.
-void set_surfaces(const InterfaceSpec& spec, const Bodies& bodies, Joint& joint) {
+void set_surfaces(const InterfaceSpec& spec, const Scene& scene, const Bodies& bodies,
+                  Joint& joint) {
   const std::string where = "interfaces." + spec.name;
   const auto* how = std::get_if<UnilateralTransmission>(&spec.transmission);
   if (how == nullptr) {
@@ -179,7 +180,19 @@ void set_surfaces(const InterfaceSpec& spec, const Bodies& bodies, Joint& joint)
     return NamedSurface{spec.sides[index(s)], bodies.port(at).geometry};
   };
   const int finder = contact_finder(joint, bodies);
-  check_surfaces(side(finder), side(1 - finder), where + ".sides");
+  joint.points = spec.contact->points;
+  if (joint.points && scene.bodies[index(joint.sides[index(finder)].body)].second.external) {
+    throw InputError(
+        fmt::format("is point_to_surface, but {} finds the contact, and has rows of its "
+                    "own program",
+                    spec.sides[index(finder)]),
+        where + ".contact.rows", "Leave rows out.");
+  }
+  if (joint.points) {
+    check_points(side(finder), side(1 - finder), where);
+  } else {
+    check_surfaces(side(finder), side(1 - finder), where + ".sides");
+  }
   joint.how = std::make_unique<CompliantObstacle>();
 }
 
@@ -261,7 +274,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
       refuse_tied_ports(spec, bodies, joint);
     }
     if (joint.surfaces) {
-      set_surfaces(spec, bodies, joint);
+      set_surfaces(spec, scene, bodies, joint);
     } else if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
       set_unilateral(spec, *unilateral, scene.schwarz, bodies, joint);
     } else if (const auto* robin = std::get_if<RobinTransmission>(&spec.transmission)) {

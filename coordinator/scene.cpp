@@ -11,6 +11,7 @@
 #include "base/assert.hpp"
 #include "base/input_errors.hpp"
 #include "base/yaml_fields.hpp"
+#include "coordinator/adjusted_body.hpp"
 #include "coordinator/coupling/joint.hpp"
 #include "coordinator/external_body.hpp"
 #include "coordinator/scene_times.hpp"
@@ -51,7 +52,13 @@ void BodyEntry::fields(Fields& f) {
   f.ignore_rest();
 }
 
-void ContactSpec::fields(Fields&) {}
+void ContactSpec::fields(Fields& f) {
+  f.word(
+      "rows", points, {"mortar", "point_to_surface"},
+      "of surfaces, where their gaps are held: on the average over a node's surroundings, or, for "
+      "comparisons, at each node of the side that finds contact, which no constant pressure "
+      "passes");
+}
 
 void UnilateralTransmission::fields(Fields& f) {
   f.optional("kinematic", kinematic, "",
@@ -356,6 +363,10 @@ void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
                     ports[0]->dim),
         document.where(path), "Give contact: {}, or model both bodies as bars (dimension: 1).");
   if (ports[0]->dim != 1) return;
+  if (const std::string rows = fmt::format("interfaces.{}.contact.rows", interface.name);
+      document.has(rows))
+    throw InputError("has no effect: ends of bars are points", document.where(rows),
+                     "Leave it out.");
   const double normal = ports[0]->normals.at(0);
   if (normal + ports[1]->normals.at(0) != 0.0)
     throw InputError("look the same way and cannot touch", document.where(path),
@@ -418,24 +429,6 @@ std::vector<std::string> exact_interfaces(const Scene& scene) {
   }
   return names;
 }
-
-namespace {
-
-/// Of a body's own keys what interfaces depend on.
-struct AdjustKey {
-  bool adjust = false;
-  void fields(Fields& f) {
-    f.optional("adjust", adjust, "", "whether its surfaces are moved");
-    f.ignore_rest();
-  }
-};
-
-bool is_adjusted(const Document& document, const std::string& body) {
-  const std::string path = "bodies." + body + ".initial";
-  return document.has(path + ".adjust") && read<AdjustKey>(document, path).adjust;
-}
-
-}  // namespace
 
 Scene read_scene(const Document& document) {
   Scene scene = read<Scene>(document);

@@ -45,6 +45,7 @@ struct BodyEntry {
 };
 
 struct ContactSpec {  // frictionless
+  bool points = false;  // "rows: mortar | point_to_surface"
   void fields(Fields& f);
 };
 struct TiedSpec {  // joined from the start, for the whole run

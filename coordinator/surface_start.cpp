@@ -55,11 +55,12 @@ int deepest(const SurfaceRows& rows, double allowed) {
   return static_cast<int>(least - rows.gaps.begin());
 }
 
-/// Nodes of `one` that lie behind the facets of `other`, farther than nodes of round surfaces do.
-void check_nodes(const NamedSurface& one, const NamedSurface& other, const std::string& where) {
+/// Nodes of `one` that lie behind the facets of `other` by more than is allowed [m].
+void check_nodes(const NamedSurface& one, const NamedSurface& other, double allowed,
+                 const std::string& where) {
   const StartSurface k = start(one.geometry), n = start(other.geometry);
   const SurfaceRows rows = node_rows(k, n);
-  const int row = deepest(rows, tolerance * facet_size(k, n) + roundness(k, n));
+  const int row = deepest(rows, tolerance * facet_size(k, n) + allowed);
   if (row < 0) return;
   const std::size_t dim = index(rows.dim), node = index(rows.nodes[index(row)]);
   const std::span<const double> at = k.surface.points.subspan(node * dim, dim);
@@ -108,19 +109,38 @@ void check_averages(const NamedSurface& one, const NamedSurface& other, const st
                                overlap));
 }
 
+/// What makes one of two sides useless, whatever the other is.
+void check_each(const NamedSurface& one, const NamedSurface& other, const std::string& where) {
+  for (const NamedSurface* side : {&one, &other}) check_facets(*side, where);
+  for (const NamedSurface* side : {&one, &other}) check_itself(*side, where);
+}
+
 }  // namespace
 
 void check_surfaces(const NamedSurface& finder, const NamedSurface& other,
                     const std::string& where) {
-  check_facets(finder, where);
-  check_facets(other, where);
-  check_itself(finder, where);
-  check_itself(other, where);
-  check_nodes(finder, other, where);
-  check_nodes(other, finder, where);
+  check_each(finder, other, where);
+  const double round = roundness(start(finder.geometry), start(other.geometry));
+  check_nodes(finder, other, round, where);
+  check_nodes(other, finder, round, where);
   const bool turned = has_edges(posed(other.geometry)) && !has_edges(posed(finder.geometry));
   if (turned) check_division(finder, other, where);
   check_averages(turned ? other : finder, turned ? finder : other, where);
+}
+
+void check_points(const NamedSurface& finder, const NamedSurface& other, const std::string& where) {
+  check_each(finder, other, where + ".sides");
+  if (has_edges(posed(other.geometry)))
+    throw InputError(fmt::format("is point_to_surface, but {} has sharp edges, which would pass "
+                                 "between the nodes of {}",
+                                 other.name, finder.name),
+                     where + ".contact.rows",
+                     fmt::format("Leave rows out, or give transmission: {{unilateral: {{kinematic: "
+                                 "{}}}}}.",
+                                 other.name));
+  check_nodes(finder, other, 0.0, where + ".sides");
+  const double round = roundness(start(finder.geometry), start(other.geometry));
+  check_nodes(other, finder, round, where + ".sides");
 }
 
 }  // namespace abut

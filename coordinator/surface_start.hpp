@@ -20,4 +20,8 @@ struct NamedSurface {
 void check_surfaces(const NamedSurface& finder, const NamedSurface& other,
                     const std::string& where);
 
+/// The same for rows of the finder's single nodes, none of which may lie behind the other side, and
+/// which do not see edges of that side.
+void check_points(const NamedSurface& finder, const NamedSurface& other, const std::string& where);
+
 }  // namespace abut

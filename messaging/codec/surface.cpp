@@ -10,7 +10,7 @@ namespace {
 // A member added to the contract and forgotten here would silently arrive as zero.
 static_assert(sizeof(PortGeometry) ==
               4 * sizeof(std::vector<double>) + 3 * sizeof(double));  // two are dim and round
-static_assert(sizeof(ContactLaw) == sizeof(bool));
+static_assert(sizeof(ContactLaw) == 2 * sizeof(bool));
 
 /// Facets are nodes one facet after the other; offsets say where each begins, and the last ends.
 void check_facets(const PortGeometry& surface, const FieldPath& path) {
@@ -66,6 +66,7 @@ void encode(const Meeting& from, v1::Meet& to) {
   to.set_port(from.port);
   encode(from.partner, *to.mutable_surface());
   to.set_tied(from.law.tied);
+  to.set_points(from.law.points);
 }
 
 void decode(const v1::Meet& from, const Description& body, Meeting& to) {
@@ -81,6 +82,7 @@ void decode(const v1::Meet& from, const Description& body, Meeting& to) {
   }
   if (to.partner.count() == 0) FieldPath{&surface, "points"}.fail("is empty");
   to.law.tied = from.tied();
+  to.law.points = from.points();
 }
 
 }  // namespace abut

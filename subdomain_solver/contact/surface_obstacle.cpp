@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -25,6 +26,9 @@ SurfaceObstacle::SurfaceObstacle(std::size_t port, std::size_t partner, const Po
   free_ = pose_ = fitted_ = met.surface.points;
   build(tree_, posed(met.surface, pose_), 0.0);
   build(own_tree_, posed(own, own.points), 0.0);
+  if (!met.law.points) return;
+  own_nodes_.resize(index(own.count()));
+  std::iota(own_nodes_.begin(), own_nodes_.end(), 0);
 }
 
 void SurfaceObstacle::impose(const BoundaryData& data, const Partner& met, const Substeps& grid) {
@@ -168,6 +172,13 @@ void SurfaceObstacle::choose_side(std::span<const double> pose) {
             !own_edges_.is_near(pose, posed(met_->surface, pose_), tree_, reach);
 }
 
+/// Rows of the port's nodes, each for itself [M.95].
+void SurfaceObstacle::join_points(const PosedSurface& own, const PosedSurface& other) {
+  PointRowOptions options;
+  options.reach = options_.reach;
+  point_rows(own, own_nodes_, other, tree_, options, point_buffers_, rows_);
+}
+
 void SurfaceObstacle::join(std::span<const double> pose, double travel) {
   const PosedSurface k = posed(own_, pose), n = posed(met_->surface, pose_);
   const double way = travel_ + travel;
@@ -177,6 +188,7 @@ void SurfaceObstacle::join(std::span<const double> pose, double travel) {
     refit(tree_, n, 0.0);
     fitted_ = pose_;
   }
+  if (met_->law.points) return join_points(k, n);
   if (!turned_ || !chosen_) overlapping_pairs(own_tree_, tree_, pairs_);
   if (!chosen_) choose_side(pose);
   if (turned_) {

@@ -7,6 +7,7 @@
 #include "subdomain_solver/interior.hpp"
 #include "surface/boxes.hpp"
 #include "surface/mortar.hpp"
+#include "surface/point_rows.hpp"
 
 namespace abut {
 
@@ -54,6 +55,7 @@ class SurfaceObstacle {
   void find_zone();
   void find_travel(int i);
   void choose_side(std::span<const double> pose);
+  void join_points(const PosedSurface& own, const PosedSurface& other);
   void recall(int level, double share);
   void find_give(int level, double share);
   const double* response(int level, int after, std::size_t force) const;
@@ -83,6 +85,8 @@ class SurfaceObstacle {
   std::vector<double> fitted_;          // [m] (points, dim) pose of tree_
   std::vector<FacetPair> pairs_;
   MortarBuffers buffers_;
+  std::vector<std::int32_t> own_nodes_;  // where rows are of single points
+  PointRowBuffers point_buffers_;
   SurfaceRows rows_;
   std::vector<double> answer_;  // [m/N] (zone) of the surface to a row
 };

@@ -53,10 +53,15 @@ bool is_sound(const PortGeometry& surface) {
 struct Meeting {
   std::string interface;
   bool own_rows = true;             // contact will have rows of the body's nodes
+  bool points = false;              // ... of single ones
   std::vector<std::int32_t> nodes;  // of the body's mesh, by point
   PortGeometry own, partner;
   std::vector<char> closes;  // (points) their gap is to be closed
 
+  /// As contact will have them, of the nodes of one of its sides.
+  SurfaceRows rows(const StartSurface& k, const StartSurface& n) const {
+    return points ? node_rows(k, n) : average_rows(k, n);
+  }
   StartSurface one() const { return {posed(own), own.spacing}; }
   StartSurface other() const { return {posed(partner), partner.spacing}; }
 };
@@ -167,7 +172,8 @@ void Adjuster::meet(const std::string& port, const std::string& side) {
     // edges on one side alone rows are of that side's nodes [M.93].
     const bool other_finds = contact.kinematic == contact.body + "." + contact.port;
     const bool edges = has_edges(posed(m.own)), its_edges = has_edges(posed(m.partner));
-    m.own_rows = edges == its_edges ? finds(spec_) && !other_finds : edges;
+    m.points = contact.points;
+    m.own_rows = m.points || edges == its_edges ? finds(spec_) && !other_finds : edges;
     meetings_.push_back(std::move(m));
   }
 }
@@ -213,7 +219,7 @@ void Adjuster::add_rows(const Meeting& m, bool closing, Rows& out) const {
   const StartSurface own = m.one(), partner = m.other();
   if (closing) {
     const std::size_t first = out.gaps.size();
-    const SurfaceRows rows = average_rows(own, partner);
+    const SurfaceRows rows = m.rows(own, partner);
     add(m, rows, false, 0.0, out);
     for (std::size_t r = 0; r < rows.nodes.size(); ++r) {
       out.met[first + r] = m.closes[index(rows.nodes[r])];
@@ -225,9 +231,9 @@ void Adjuster::add_rows(const Meeting& m, bool closing, Rows& out) const {
   add(m, node_rows(own, partner), false, allowed, out);
   add(m, node_rows(partner, own), true, allowed, out);
   if (m.own_rows) {
-    add(m, average_rows(own, partner), false, 0.0, out);
+    add(m, m.rows(own, partner), false, 0.0, out);
   } else {
-    add(m, average_rows(partner, own), true, 0.0, out);
+    add(m, m.rows(partner, own), true, 0.0, out);
   }
 }
 
@@ -240,7 +246,7 @@ void Adjuster::choose_gaps() {
                                    spec_.initial.adjust_gaps, m.interface, m.own.spacing),
                        place_.where("initial.adjust_gaps"),
                        "Move the body with initial.position, and give what is left.");
-    const SurfaceRows rows = average_rows(m.one(), m.other());
+    const SurfaceRows rows = m.rows(m.one(), m.other());
     for (std::size_t r = 0; r < rows.nodes.size(); ++r)
       m.closes[index(rows.nodes[r])] =
           rows.gaps[r] > 0.0 && rows.gaps[r] <= spec_.initial.adjust_gaps;

@@ -50,7 +50,9 @@ std::vector<SceneContact> contacts_of(const Document& scene, const std::string& 
       const std::string& other = interface.sides[1 - s];
       const std::size_t dot = other.find('.');
       if (dot == std::string::npos) continue;
-      out.push_back({name, other.substr(0, dot), other.substr(dot + 1), kinematic_of(scene, path)});
+      out.push_back({name, other.substr(0, dot), other.substr(dot + 1),
+                     scene.chooses(path + ".contact.rows", "point_to_surface"),
+                     kinematic_of(scene, path)});
     }
   }
   return out;

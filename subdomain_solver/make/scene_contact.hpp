@@ -11,6 +11,7 @@ namespace abut {
 struct SceneContact {
   std::string interface;
   std::string body, port;  // the partner's
+  bool points = false;     // rows of single points
   std::string kinematic;   // side to which the scene gives that role; empty: to none
 };
 
