@@ -50,14 +50,14 @@ class Roles {
   BodyOrder order_;
 };
 
-/// Index of the side whose substeps carry the force in the parallel form: the one with the longer
-/// steps.
 /// Of two surfaces, the side that finds their contact: the scene's, or the only one that can, or
 /// the one that was adjusted, since its rows touch then. A body whose port kernel is exact is
 /// pressed, the other finds; of two such the one of longer steps does, or of the finer mesh.
 /// Circles of bodies may turn it.
 int contact_finder(const Joint& joint, const Bodies& bodies);
 
+/// Index of the side whose substeps carry the force in the parallel form: the one with the longer
+/// steps.
 int coarser_side(const Joint& joint, const Bodies& bodies);
 
 /// Stable step [s] of an explicit Neumann side whose massive node takes the kinematic side's
