@@ -46,7 +46,9 @@ struct Recoil {
 
 /// What a body that met an obstacle does to the partner behind it.
 struct Reaction {
-  Waveform force;  // [N] on the partner, on the partner's points that the obstacle listed
+  // [N] on the partner, on its points that the obstacle listed; where the obstacle is of all, on
+  // some of them perhaps: nothing acts on the others
+  Waveform force;
 };
 
 /// One port's reply to a window.

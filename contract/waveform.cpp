@@ -47,6 +47,25 @@ void Waveform::interpolate(const std::vector<double>& field, double at,
   }
 }
 
+void Waveform::interpolate(const std::vector<double>& field, double at,
+                           std::span<const std::size_t> values, std::span<double> out) const {
+  const std::size_t w = index(width);
+  ABUT_ASSERT(!time.empty() && field.size() == time.size() * w && out.size() == values.size());
+  const bool first = time.size() == 1 || at <= time.front();
+  if (first || at >= time.back()) {
+    const double* row = field.data() + (first ? 0 : field.size() - w);
+    for (std::size_t k = 0; k < values.size(); ++k) out[k] = row[values[k]];
+    return;
+  }
+  const std::size_t i = interval_of(time, at);
+  const double s = (at - time[i]) / (time[i + 1] - time[i]);
+  const double *before = field.data() + i * w, *after = before + w;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const std::size_t c = values[k];
+    out[k] = before[c] + s * (after[c] - before[c]);
+  }
+}
+
 void Waveform::force_at(double at, std::span<double> out) const {
   if (support != ForceSupport::step) {
     interpolate(f, at, out);

@@ -43,6 +43,9 @@ class Waveform {
   /// them; writes `width` numbers, as many as `out` must hold. Precondition: the waveform is not
   /// empty and the field is (times, width).
   void interpolate(const std::vector<double>& field, double at, std::span<double> out) const;
+  /// The same of the values that are listed alone, as many as `out` must hold.
+  void interpolate(const std::vector<double>& field, double at, std::span<const std::size_t> values,
+                   std::span<double> out) const;
 
   /// Force that acts at a time: linear between stored times (nodal, linear) or that of the substep
   /// (step).

@@ -95,6 +95,10 @@ void refuse_tied_ports(const InterfaceSpec& spec, const Bodies& bodies, const Jo
 void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how,
                     const SchwarzSpec& schwarz, const Bodies& bodies, Joint& joint) {
   const std::string where = "interfaces." + spec.name;
+  if (how.kernel_memory) {
+    throw InputError("is of surfaces: the kernel of the end of a bar is a few numbers",
+                     where + ".transmission.unilateral.kernel_memory", "Leave it out.");
+  }
   for (const Side& side : joint.sides) {
     const Description& body = bodies.describe(side.body);
     require(body.can.force && (body.can.kernel || !body.can.motion), body, where,
@@ -193,7 +197,8 @@ void set_surfaces(const InterfaceSpec& spec, const Scene& scene, const Bodies& b
   } else {
     check_surfaces(side(finder), side(1 - finder), where + ".sides");
   }
-  joint.how = std::make_unique<CompliantObstacle>();
+  joint.how = std::make_unique<CompliantObstacle>(how->kernel_memory.value_or(usual_kernel_memory) *
+                                                  1048576.0);
 }
 
 void set_published(const InterfaceSpec& spec, const DirichletNeumannTransmission& how,

@@ -8,12 +8,14 @@
 #include <variant>
 
 #include "base/count.hpp"
+#include "coordinator/coupling/kernel_bytes.hpp"
 #include "coordinator/flight_work.hpp"
 
 namespace abut {
 
 namespace {
 
+constexpr double mebi = 1048576.0;
 constexpr double process_mib = 9.5;        // libraries and sockets of a solver process, measured
 constexpr double bytes_per_dof = 200.0;    // state, saved state, matrices and scratch of a bar
 constexpr double bytes_factored = 3500.0;  // the same of an implicit solid and its factors, at 2e4
@@ -64,7 +66,54 @@ bool watched_only(const Scene& scene) {
 double memory_mib(const Description& body) {
   const bool factored = body.dim > 1 && std::isinf(body.stable_step);
   const double bytes = factored ? bytes_factored : bytes_per_dof;
-  return process_mib + static_cast<double>(body.dofs) * bytes / 1048576.0;
+  return process_mib + static_cast<double>(body.dofs) * bytes / mebi;
+}
+
+/// How the surface of a side would give way to the other; points: 0: it would not.
+Estimate::Kernel kernel_of(const InterfaceSpec& spec, const UnilateralTransmission& how,
+                           std::size_t side, double window,
+                           std::span<const Description* const> bodies) {
+  Estimate::Kernel kernel;
+  kernel.interface = spec.name;
+  kernel.side = spec.sides[side];
+  if (how.kinematic == kernel.side) return kernel;
+  const auto body_of = [bodies](const std::string& text) -> const Description* {
+    const std::string name(split_port(text).body);
+    const auto at = std::ranges::find_if(
+        bodies, [&name](const Description* b) { return b != nullptr && b->name == name; });
+    return at == bodies.end() ? nullptr : *at;
+  };
+  const Description* body = body_of(kernel.side);
+  const Description* finder = body_of(spec.sides[1 - side]);
+  if (body == nullptr || finder == nullptr || body->dim == 1 || !body->can.kernel ||
+      std::isinf(body->mass) || !finder->can.yielding)
+    return kernel;
+  const std::string port(split_port(kernel.side).port);
+  for (const Port& p : body->ports)
+    if (p.name == port) kernel.points = p.geometry.count();
+  kernel.substeps = body->step > 0.0
+                        ? count_within(std::ceil(window / body->step - 1.0e-9), 1, 1'000'000'000)
+                        : 1;
+  kernel.allowed_mib = how.kernel_memory.value_or(usual_kernel_memory);
+  const double steps = static_cast<double>(kernel.substeps);
+  kernel.memory_mib = kernel_bytes(static_cast<double>(kernel.points) * body->dim, steps) / mebi;
+  const double fit = std::sqrt(kernel.allowed_mib * mebi / kernel_bytes(1.0, steps)) / body->dim;
+  kernel.points_that_fit = std::min(kernel.points, static_cast<std::int64_t>(std::min(fit, 1.0e9)));
+  return kernel;
+}
+
+std::vector<Estimate::Kernel> kernels_of(const Scene& scene,
+                                         std::span<const Description* const> bodies) {
+  std::vector<Estimate::Kernel> kernels;
+  for (const auto& [name, spec] : scene.interfaces) {
+    const auto* how = std::get_if<UnilateralTransmission>(&spec.transmission);
+    if (how == nullptr || !spec.contact) continue;
+    Estimate::Kernel one = kernel_of(spec, *how, 0, scene.time.window, bodies);
+    Estimate::Kernel other = kernel_of(spec, *how, 1, scene.time.window, bodies);
+    Estimate::Kernel& larger = other.memory_mib > one.memory_mib ? other : one;
+    if (larger.points > 0) kernels.push_back(std::move(larger));
+  }
+  return kernels;
 }
 
 /// Far above what a scene may hold (coordinator/scene.cpp), and far below the end of the type.
@@ -121,6 +170,7 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
     e.exchanges_low = e.exchanges_high = count * (1 + (e.windows + windows - 1) / windows);
   }
   if (watched_only(scene)) e.exchanges_low = e.exchanges_high = count * (1 + e.windows);
+  e.kernels = kernels_of(scene, bodies);
   list_features(scene, e);
   return e;
 }
@@ -145,6 +195,18 @@ std::string to_text(const Estimate& e, bool verbose) {
   text += fmt::format("  windows    {}, in contact {}\n", e.windows,
                       range(e.contact_windows_low, e.contact_windows_high));
   text += fmt::format("  exchanges  {}\n", range(e.exchanges_low, e.exchanges_high));
+  for (const Estimate::Kernel& k : e.kernels) {
+    text += fmt::format(
+        "  {:<10} port kernel of {}: {:.3g} MiB where all {} points give way over {} substeps",
+        k.interface, k.side, k.memory_mib, k.points, k.substeps);
+    if (k.points_that_fit < k.points) {
+      text += fmt::format(
+          "; {} points fit kernel_memory, {:g} MiB: where more come near a contact, it takes more "
+          "iterations",
+          k.points_that_fit, k.allowed_mib);
+    }
+    text += '\n';
+  }
   if (!e.in_use.empty()) text += fmt::format("  in use     {}\n", fmt::join(e.in_use, ", "));
   if (verbose) text += fmt::format("  unused     {}\n", fmt::join(e.not_built, ", "));
   return text;

@@ -21,7 +21,16 @@ struct Estimate {
     double memory_mib = 0.0;    // of its process
   };
 
+  /// By which a surface gives way to another: of all its points, and of how many fit into what the
+  /// scene allows. Of the side for which it is larger where the scene leaves it open who yields.
+  struct Kernel {
+    std::string interface, side;
+    std::int64_t points = 0, points_that_fit = 0, substeps = 0;
+    double memory_mib = 0.0, allowed_mib = 0.0;
+  };
+
   std::vector<Body> bodies;
+  std::vector<Kernel> kernels;
   std::int64_t windows = 0;
   std::int64_t contact_windows_low = 0, contact_windows_high = 0;
   std::int64_t exchanges_low = 0, exchanges_high = 0;

@@ -63,6 +63,10 @@ void ContactSpec::fields(Fields& f) {
 void UnilateralTransmission::fields(Fields& f) {
   f.optional("kinematic", kinematic, "",
              "side that solves the one-body contact problem, as body.port; auto: the softer side");
+  f.optional("kernel_memory", kernel_memory, "MiB",
+             "largest memory of the port kernel by which a surface gives way; a contact that needs "
+             "more takes more iterations; usual: 512",
+             positive);
 }
 
 void DirichletNeumannTransmission::fields(Fields& f) {
@@ -98,6 +102,7 @@ void InterfaceSpec::fields(Fields& f) {
           "Keep one of the two: tied sides never part.");
   f.idle(tied.has_value(), "transmission.dirichlet_neumann.impact_projection",
          "tied sides never hit each other");
+  f.idle(tied.has_value(), "transmission.unilateral.kernel_memory", "tied sides need no kernel");
 }
 
 void NoAcceleration::fields(Fields&) {}

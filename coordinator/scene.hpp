@@ -52,11 +52,15 @@ struct TiedSpec {  // joined from the start, for the whole run
   void fields(Fields&) {}
 };
 
+/// [MiB] of the port kernel of a surface, where the scene does not say.
+constexpr double usual_kernel_memory = 512.0;
+
 /// The kinematic side solves a one-body unilateral problem against the partner's moving surface
 /// (default).
 struct UnilateralTransmission {
   static constexpr std::string_view name = "unilateral";
   std::string kinematic = "auto";  // body.port, or auto: by probe
+  std::optional<double> kernel_memory;  // [MiB] of surfaces; absent: usual_kernel_memory
   void fields(Fields& f);
 };
 /// The published form: motion overwritten on one side, internal force handed to the other.

@@ -35,6 +35,21 @@ void append(std::span<const double> port, const std::vector<std::int32_t>& point
   }
 }
 
+/// A force on some points as one on more of them; empty: on all, which are `width` values.
+void list(Waveform& force, const std::vector<std::int32_t>& points, int width, int dim) {
+  const Waveform before = force;
+  force.points = points;
+  force.width = points.empty() ? width : static_cast<int>(points.size()) * dim;
+  force.f.assign(force.time.size() * index(force.width), 0.0);
+  for (std::size_t k = 0; k < before.f.size(); ++k) {
+    const std::size_t w = index(before.width), n = index(dim), value = k % w;
+    const std::int32_t point = before.points[value / n];
+    const auto now =
+        points.empty() ? point : std::ranges::lower_bound(points, point) - points.begin();
+    force.f[k / w * index(force.width) + index(now) * n + value % n] = before.f[k];
+  }
+}
+
 void write(Interior& interior, std::vector<std::byte>& bytes, Archive::Form form) {
   Archive archive = Archive::writer(bytes, form);
   interior.state(archive);
@@ -336,6 +351,9 @@ void Body::push_reactions(std::size_t p, double time) const {
   for (std::size_t k = 0; k < port.reply->reactions.size(); ++k) {
     if ((*port.obstacles)[k].empty()) continue;
     Waveform& force = port.reply->reactions[k].force;
+    const std::vector<std::int32_t>* points = interior_->reacting(p, k);
+    if (points != nullptr && (force.time.empty() || force.points != *points))
+      list(force, *points, (*port.obstacles)[k].motion.width, port.geometry->dim);
     force.time.push_back(time);
     interior_->react(p, k, force.f);
   }

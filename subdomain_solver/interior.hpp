@@ -51,7 +51,12 @@ class Interior {
   virtual void settle(const Window&, int) {}
   /// Ports now; the displacements alone, unless all is wanted for their traces at `time`.
   virtual const PortValues& see(const Window& window, double time, bool all) = 0;
-  /// Appends the force on the points that a partner's obstacle lists [N].
+  /// Points of a partner that react() is of, ascending, empty: all; more of them as the window goes
+  /// on. Null: those that its obstacle lists.
+  virtual const std::vector<std::int32_t>* reacting(std::size_t, std::size_t) const {
+    return nullptr;
+  }
+  /// Appends the force on these points [N].
   virtual void react(std::size_t, std::size_t, std::vector<double>&) const {}
   /// Fills a record whose time is given. Values may be anything: Body looks at them.
   [[nodiscard]] virtual std::optional<Failed> record(BodyRecord& record) = 0;

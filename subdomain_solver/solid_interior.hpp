@@ -60,6 +60,9 @@ class SolidInterior final : public Interior {
   const PortValues& see(const Window& window, double time, bool all) override;
   std::optional<Failed> record(BodyRecord& record) override;
   void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;
+  const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override {
+    return contact_ ? contact_->reacting(port, partner) : nullptr;
+  }
   void finish(std::size_t port, PortResponse& reply) const override;
   bool takes(int port, const PortKernel& kernel) const override;
   ForceSupport reaction_support(std::size_t) const override {

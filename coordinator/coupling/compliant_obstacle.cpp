@@ -4,14 +4,12 @@
 #include <cmath>
 
 #include "contract/force_means.hpp"
+#include "coordinator/coupling/kernel_bytes.hpp"
 #include "coordinator/coupling/transmission_parts.hpp"
 
 namespace abut {
 
 namespace {
-
-/// Numbers of a kernel that bodies exchange once and keep: 256 MiB.
-constexpr double largest_kernel = 3.2e7;
 
 /// Substeps over which a force goes on rising or falling as it did; then it stays.
 constexpr int most_rising = 3;
@@ -61,11 +59,13 @@ void CompliantObstacle::keep_begin(const TimeWindow& window, const Joint& joint,
   if (partner >= reactions.size() || reactions[partner].force.empty()) return;
   const Waveform& force = reactions[partner].force;
   const std::size_t now = index_at_begin(force, window.begin);
-  keep_row(force, force.f, now, f_begin_);
+  const std::span<const double> pressed = row(force, force.f, now);
+  for (std::size_t c = 0; c < pressed.size(); ++c) f_begin_[value(force.points, c)] = pressed[c];
   if (now == 0 || bodies.describe(joint.neumann_side().body).linear) return;
   const std::span<const double> before = row(force, force.f, now - 1);
-  for (std::size_t c = 0; c < f_rate_.size(); ++c)
-    f_rate_[c] = (f_begin_[c] - before[c]) / (force.time[now] - force.time[now - 1]);
+  for (std::size_t c = 0; c < before.size(); ++c)
+    f_rate_[value(force.points, c)] =
+        (pressed[c] - before[c]) / (force.time[now] - force.time[now - 1]);
 }
 
 void CompliantObstacle::find_zone(double length, const Joint& joint, const Bodies& bodies) {
@@ -87,8 +87,8 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
   if (zone_.empty()) return;
   const double values =
       zone_.points().empty() ? iterate_.width : static_cast<double>(zone_.points().size() * dim_);
-  const double size = iterate_.steps.count * values * values;
-  if (!bodies.describe(k.body).can.yielding || size > largest_kernel) {
+  const double size = kernel_bytes(values, iterate_.steps.count);
+  if (!bodies.describe(k.body).can.yielding || size > largest_kernel_) {
     if (!bodies.describe(k.body).can.kernel) return;
     const double own = bodies.kernel(k.body, k.port, kinematic_grid_.count).displacement.front();
     const double others = bodies.kernel(n.body, n.port, iterate_.steps.count).displacement.front();
@@ -204,23 +204,22 @@ void CompliantObstacle::take_back(Eigen::Ref<Eigen::VectorXd> motion) const {
   const int width = kernel_->width;
   for (int j = 0; j <= iterate_.steps.count; ++j) {
     for (int p = 0; p < width; ++p) {
-      const double force = taken_(static_cast<Eigen::Index>(value(p)), j);
+      const double force = taken_(static_cast<Eigen::Index>(value(kernel_->points, index(p))), j);
       if (force == 0.0) continue;
       const std::vector<double>& of = j == 0 ? kernel_->begin : kernel_->displacement;
       for (int i = std::max(1, j); i <= iterate_.steps.count; ++i) {
         const int lag = j == 0 ? i - 1 : i - j;
         const double* response = of.data() + index(lag) * kernel_->per_step() + index(p * width);
         double* moved = &motion[iterate_.at(i)];
-        for (int q = 0; q < width; ++q) moved[value(q)] -= force * response[q];
+        for (int q = 0; q < width; ++q)
+          moved[value(kernel_->points, index(q))] -= force * response[q];
       }
     }
   }
 }
 
-std::size_t CompliantObstacle::value(int p) const {
-  const std::vector<std::int32_t>& points = kernel_->points;
-  if (points.empty()) return index(p);
-  return index(points[index(p) / dim_]) * dim_ + index(p) % dim_;
+std::size_t CompliantObstacle::value(const std::vector<std::int32_t>& points, std::size_t k) const {
+  return points.empty() ? k : index(points[k / dim_]) * dim_ + k % dim_;
 }
 
 /// A force at the Neumann side's levels, as it takes it; what pressed at the begin is in d.
@@ -228,9 +227,13 @@ void CompliantObstacle::take(const Waveform& force) {
   const Substeps& steps = iterate_.steps;
   const std::vector<double> parts = force_means(levels_of(steps), force.time);
   const Eigen::Index times = static_cast<Eigen::Index>(force.size());
-  const Eigen::Map<const Eigen::MatrixXd> f(force.f.data(), iterate_.width, times);
   const Eigen::Map<const Eigen::MatrixXd> part(parts.data(), times, steps.count + 1);
-  taken_.noalias() = f * part;
+  pressed_.setZero(iterate_.width, times);
+  for (std::size_t k = 0; k < index(force.width); ++k)
+    for (Eigen::Index i = 0; i < times; ++i)
+      pressed_(static_cast<Eigen::Index>(value(force.points, k)), i) =
+          force.f[index(i) * index(force.width) + k];
+  taken_.noalias() = pressed_ * part;
   taken_.col(0) -= Eigen::Map<const Eigen::VectorXd>(f_begin_.data(), iterate_.width);
 }
 

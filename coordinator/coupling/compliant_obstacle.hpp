@@ -15,6 +15,9 @@ namespace abut {
 /// without a kernel, or of other substeps, are obstacles that do not give way: d is their motion.
 class CompliantObstacle final : public Transmission {
  public:
+  /// `largest_kernel`: [B] beyond which the obstacle does not give way.
+  explicit CompliantObstacle(double largest_kernel) : largest_kernel_(largest_kernel) {}
+
   void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
   int values() const override { return static_cast<int>(iterate_.size()); }
   bool flies() const override { return flies_; }
@@ -38,7 +41,8 @@ class CompliantObstacle final : public Transmission {
  private:
   void find_kernel(double length, const Joint& joint, Bodies& bodies);
   void find_zone(double length, const Joint& joint, const Bodies& bodies);
-  std::size_t value(int p) const;  // of the port, that a kernel's value p is
+  /// Of the port: that of a list of its points which is number k; empty: all are listed.
+  std::size_t value(const std::vector<std::int32_t>& points, std::size_t k) const;
   bool see_look(const Joint& joint, const Bodies& bodies);
   void keep_begin(const TimeWindow& window, const Joint& joint, const Bodies& bodies);
   void take(const Waveform& force);
@@ -46,6 +50,7 @@ class CompliantObstacle final : public Transmission {
   void leave_far(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> g) const;
   double reached(const Waveform& trace) const;
 
+  double largest_kernel_;  // [B]
   Substeps kinematic_grid_;
   IterateGrid iterate_;                    // of the Neumann port
   std::vector<double> u_begin_, v_begin_;  // (width) of the Neumann port
@@ -62,6 +67,7 @@ class CompliantObstacle final : public Transmission {
   Waveform given_;          // the obstacle of this sweep
   ReferenceScales scale_;
   double first_factor_ = 1.0;
+  Eigen::MatrixXd pressed_;  // [N] (width, times of the reaction)
   Eigen::MatrixXd taken_;  // [N] (width, levels) of the reaction by the Neumann side, beyond d's
 };
 

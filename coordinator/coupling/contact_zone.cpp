@@ -1,6 +1,7 @@
 #include "coordinator/coupling/contact_zone.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "surface/closest_point.hpp"
 
@@ -19,23 +20,63 @@ PosedSurface pose(const PortGeometry& surface, std::span<const double> moved,
   return posed(surface, to);
 }
 
+/// [m] that no point has gone farther than, from one place to another.
+double way_between(std::span<const double> from, std::span<const double> to, int dim) {
+  double most = 0.0;
+  for (std::size_t v = 0; v < from.size(); ++v) most = std::max(most, std::abs(to[v] - from[v]));
+  return most * std::sqrt(static_cast<double>(dim));
+}
+
 }  // namespace
+
+/// Whether all that is pressed or within `reach` [m] is known to be in the zone.
+bool ContactZone::holds(std::span<const double> k, std::span<const double> n,
+                        std::span<const double> pressed, double reach) const {
+  if (seen_k_.empty()) return false;
+  const int dim = k_.dim;
+  if (reach + way_between(seen_k_, k, dim) + way_between(seen_n_, n, dim) >= clear_) return false;
+  for (std::size_t v = 0; v < pressed.size(); ++v) {
+    if (pressed[v] != 0.0 &&
+        !std::ranges::binary_search(points_, static_cast<std::int32_t>(v / index(dim))))
+      return false;
+  }
+  return true;
+}
 
 void ContactZone::see(const Joint& joint, const Bodies& bodies, std::span<const double> k,
                       std::span<const double> n, std::span<const double> pressed, double way) {
   if (all_) return;
   const PortGeometry& own = bodies.port(joint.kinematic_side()).geometry;
   const PortGeometry& other = bodies.port(joint.neumann_side()).geometry;
+  const double facet = std::max(own.spacing, other.spacing);
+  const double reach = facet + way + joint.margin;
+  if (holds(k, n, pressed, reach)) return;
   k_ = pose(own, k, pose_k_);
   n_ = pose(other, n, pose_n_);
   if (tree_.empty()) build(tree_, k_, 0.0);
   refit(tree_, k_, 0.0);
-  const double facet = std::max(own.spacing, other.spacing);
-  const std::vector<std::int32_t> now = reached(facet + way + joint.margin, pressed);
-  if (std::ranges::includes(points_, now)) return;
-  points_ = around(now, margin * facet);
-  all_ = points_.size() == index(n_.node_count());
-  if (all_) points_.clear();
+  const std::vector<std::int32_t> now = reached(reach, pressed);
+  if (!std::ranges::includes(points_, now)) {
+    points_ = around(now, margin * facet);
+    all_ = points_.size() == index(n_.node_count());
+    if (all_) return points_.clear();
+  }
+  seen_k_.assign(k.begin(), k.end());
+  seen_n_.assign(n.begin(), n.end());
+  clear_ = clearance(reach + margin * facet);
+}
+
+/// [m] from the kinematic side to the nearest point that is not in the zone; `most`: to look no
+/// farther.
+double ContactZone::clearance(double most) const {
+  ClosestSearch search;
+  search.reach = most;
+  for (std::int32_t node = 0; node < n_.node_count(); ++node) {
+    if (std::ranges::binary_search(points_, node)) continue;
+    if (const auto foot = closest_point(k_, tree_, n_.point(node), search))
+      search.reach = foot->at.distance;
+  }
+  return search.reach;
 }
 
 std::vector<std::int32_t> ContactZone::reached(double reach,

@@ -25,11 +25,18 @@ class ContactZone {
   const std::vector<std::int32_t>& points() const { return points_; }
 
  private:
+  bool holds(std::span<const double> k, std::span<const double> n, std::span<const double> pressed,
+             double reach) const;
+  double clearance(double most) const;
   std::vector<std::int32_t> reached(double reach, std::span<const double> pressed) const;
   std::vector<std::int32_t> around(const std::vector<std::int32_t>& points, double reach) const;
 
   bool all_ = false;
   std::vector<std::int32_t> points_;
+  // Of the last look: displacements [m], and how near to the kinematic side all points are in the
+  // zone [m].
+  std::vector<double> seen_k_, seen_n_;
+  double clear_ = 0.0;
   std::vector<double> pose_k_, pose_n_;  // [m]
   PosedSurface k_, n_;
   BoxTree tree_;

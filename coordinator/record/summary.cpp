@@ -147,10 +147,17 @@ Json estimate_object(const Estimate& estimate) {
     bodies[body.name] = {
         {"dofs", body.dofs}, {"substeps", body.substeps}, {"memory_mib", number(body.memory_mib)}};
   }
+  Json kernels = Json::object();
+  for (const Estimate::Kernel& kernel : estimate.kernels) {
+    kernels[kernel.interface] = {{"points", kernel.points},
+                                 {"points_that_fit", kernel.points_that_fit},
+                                 {"memory_mib", number(kernel.memory_mib)}};
+  }
   return {{"windows", estimate.windows},
           {"contact_windows", {estimate.contact_windows_low, estimate.contact_windows_high}},
           {"exchanges", {estimate.exchanges_low, estimate.exchanges_high}},
           {"bodies", bodies},
+          {"kernels", kernels},
           {"in_use", estimate.in_use},
           {"not_built", estimate.not_built}};
 }

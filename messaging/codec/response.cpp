@@ -93,18 +93,20 @@ Bytes force_of(Bytes reaction, const FieldPath& path) {
   return force;
 }
 
-/// The reaction to one obstacle of the request, on the points that it listed.
+/// The reaction to one obstacle of the request: on the points that it listed; where it is of all,
+/// on those that the reply lists.
 void decode_reaction(Bytes bytes, const Waveform& motion, int dim, const TimeWindow& window,
                      const FieldPath& parent, Waveform& to) {
   const Bytes from = force_of(bytes, parent);
   if (from.empty()) return to.clear();  // absent
   const FieldPath path{&parent, "force"};
   if (motion.empty()) path.fail("answers an obstacle that is absent");
-  // Its points are those of the obstacle, which the list below holds it against.
+  // Points of a list are those of the list, which it is held against below.
   const int most = motion.points.empty() ? motion.width / dim : motion.points.back() + 1;
   decode(from, SurfaceSize{most, dim}, path, to);
   if (to.empty()) path.fail("is present but empty");
-  if (to.points != motion.points) FieldPath{&path, "points"}.fail("is not that of the obstacle");
+  if (!motion.points.empty() && to.points != motion.points)
+    FieldPath{&path, "points"}.fail("is not that of the obstacle");
   require_field(to, to.f, "f", path);
   check_span(to, window, path);
 }

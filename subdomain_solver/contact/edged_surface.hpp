@@ -17,6 +17,8 @@ namespace abut {
 class EdgedSurface {
  public:
   EdgedSurface(const PortGeometry& surface, double size);
+  /// It has sharp edges.
+  bool any() const { return !sharp_.empty(); }
 
   /// Whether an edge lies over another surface, no farther from it than `reach` [m]; `tree` holds
   /// that one's boxes. `pose`: [m] (points, dim) of this surface.

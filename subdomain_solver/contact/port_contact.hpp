@@ -35,7 +35,12 @@ class PortContact : public Contact {
   virtual void aim(int i, const std::vector<double>& forces, const std::vector<double>& places) = 0;
   /// Puts what was solved for last to the forces of partners; the substep is done.
   virtual void add_to(std::vector<double>& forces) const = 0;
-  /// Appends the force on the points that a partner's obstacle lists [N].
+  /// Points of a partner that react() is of in this window, ascending, empty: all; more of them as
+  /// the window goes on. Null: those that its obstacle lists.
+  virtual const std::vector<std::int32_t>* reacting(std::size_t, std::size_t) const {
+    return nullptr;
+  }
+  /// Appends the force on these points [N].
   virtual void react(std::size_t port, std::size_t partner, const std::vector<double>& forces,
                      std::vector<double>& out) const = 0;
   /// Calls `see` with the points of a port that have something near, and the gaps [m] there.

@@ -95,7 +95,7 @@ void SurfaceContact::impose(const Window& window) {
   for (Meeting& m : meetings_) {
     const std::size_t port = m.obstacle->port();
     m.obstacle->impose(window.request.boundary[port], window.partners[port][m.obstacle->partner()],
-                       window.grid);
+                       window.grid, surfaces_[m.own].pose, reacted(m));
     if (m.obstacle->acts()) continue;
     std::ranges::fill(pressed(m), 0.0);
     std::ranges::fill(reacted(m), 0.0);
@@ -132,9 +132,17 @@ void SurfaceContact::react(std::size_t port, std::size_t partner, const std::vec
                            std::vector<double>& out) const {
   for (const Meeting& m : meetings_) {
     if (m.obstacle->port() != port || m.obstacle->partner() != partner) continue;
-    const auto first = reactions_.begin() + static_cast<std::ptrdiff_t>(m.reacted);
-    out.insert(out.end(), first, first + static_cast<std::ptrdiff_t>(m.obstacle->width()));
+    for (const std::size_t value : m.obstacle->near().values())
+      out.push_back(reactions_[m.reacted + value]);
   }
+}
+
+const std::vector<std::int32_t>* SurfaceContact::reacting(std::size_t port,
+                                                          std::size_t partner) const {
+  for (const Meeting& m : meetings_)
+    if (m.obstacle->port() == port && m.obstacle->partner() == partner)
+      return &m.obstacle->near().listed();
+  return nullptr;
 }
 
 bool SurfaceContact::takes(std::size_t port, const PortKernel& kernel) const {
@@ -212,8 +220,7 @@ void SurfaceContact::make_rows() {
     m.row = count;
     m.rows = 0;
     if (!m.obstacle->acts()) continue;
-    m.obstacle->give_way(reacted(m));
-    m.obstacle->join(surfaces_[m.own].pose, surfaces_[m.own].travel);
+    m.obstacle->join(surfaces_[m.own].pose, surfaces_[m.own].travel, reacted(m));
     m.rows = m.obstacle->rows().count();
     count += m.rows;
     for (int r = 0; r < m.rows; ++r) find_terms(surfaces_[m.own], m.obstacle->rows(), r);
@@ -256,20 +263,24 @@ void SurfaceContact::spread() {
       force_(terms_[t].coordinate) += terms_[t].factor * force;
   }
   for (Meeting& m : meetings_) {
+    if (!m.obstacle->acts()) continue;
+    const std::span<double> on_partner = reacted(m);
+    const NearSurface& near = m.obstacle->near();
     std::ranges::fill(pressed(m), 0.0);
-    std::ranges::fill(reacted(m), 0.0);
+    for (const std::size_t value : near.values()) on_partner[value] = 0.0;
     const SurfaceRows& rows = m.obstacle->rows();
     const std::size_t dim = index(surfaces_[m.own].surface.geometry->dim);
     for (int r = 0; r < m.rows; ++r) {
       const double force = row_force_(m.row + r);
-      const auto add = [&](const SparseRows& of, double factor, std::span<double> to) {
+      const auto add = [&](const SparseRows& of, double factor, const auto& to) {
         for (std::int32_t e = of.offsets[index(r)]; e < of.offsets[index(r) + 1]; ++e)
           for (std::size_t d = 0; d < dim; ++d)
-            to[index(of.columns[index(e)]) * dim + d] +=
+            to(of.columns[index(e)])[d] +=
                 factor * force * of.values[index(e)] * rows.normals[index(r) * dim + d];
       };
-      add(rows.k, 1.0, pressed(m));
-      add(rows.n, -1.0, reacted(m));
+      add(rows.k, 1.0, [&](std::int32_t point) { return &pressed(m)[index(point) * dim]; });
+      add(rows.n, -1.0,
+          [&](std::int32_t point) { return &on_partner[index(near.in_whole(point)) * dim]; });
     }
   }
 }

@@ -34,6 +34,7 @@ class SurfaceContact final : public PortContact {
   void add_to(std::vector<double>& forces) const override;
   void react(std::size_t port, std::size_t partner, const std::vector<double>& forces,
              std::vector<double>& out) const override;
+  const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override;
   bool takes(std::size_t port, const PortKernel& kernel) const override;
   void see_gaps(std::size_t port,
                 const std::function<void(std::size_t, double)>& see) const override;

@@ -22,16 +22,17 @@ SurfaceObstacle::SurfaceObstacle(std::size_t port, std::size_t partner, const Po
       body_(std::move(body)),
       reach_(longest_edge(posed(own, own.points))),
       edges_(met.surface, own.spacing),
-      own_edges_(own, reach_) {
-  free_ = pose_ = fitted_ = met.surface.points;
-  build(tree_, posed(met.surface, pose_), 0.0);
-  build(own_tree_, posed(own, own.points), 0.0);
+      own_edges_(own, reach_),
+      near_(met.surface, own) {
+  options_.reach = reach_;
+  build(own_tree_, posed(own), 0.0);
   if (!met.law.points) return;
   own_nodes_.resize(index(own.count()));
   std::iota(own_nodes_.begin(), own_nodes_.end(), 0);
 }
 
-void SurfaceObstacle::impose(const BoundaryData& data, const Partner& met, const Substeps& grid) {
+void SurfaceObstacle::impose(const BoundaryData& data, const Partner& met, const Substeps& grid,
+                             std::span<const double> pose, std::span<const double> reaction) {
   met_ = &met;
   motion_ = nullptr;
   if (partner_ >= data.obstacles.size() || data.obstacles[partner_].empty()) return;
@@ -42,6 +43,8 @@ void SurfaceObstacle::impose(const BoundaryData& data, const Partner& met, const
     throw RunError("an obstacle before a surface tells another number of points than the partner's",
                    fmt::format("body '{}'", body_), "Give its displacement at all of them.");
   }
+  near_.follow(motion_->u);
+  find_near(pose, reaction, false);
   if (!yields()) return;
   const PortKernel& kernel = met_->kernel;
   find_zone();
@@ -52,9 +55,34 @@ void SurfaceObstacle::impose(const BoundaryData& data, const Partner& met, const
                    "Give its motion at its own substeps, with the kernel of as many.");
   }
   parts_ = force_means(motion_->time, levels_of(grid));
-  taken_.assign(motion_->size() * width(), 0.0);
+  taken_.assign(motion_->size() * zone_.size(), 0.0);
   if (motion_->f.empty()) return;
-  for (std::size_t k = 0; k < taken_.size(); ++k) taken_[k] = -motion_->f[k];
+  for (std::size_t l = 0; l < motion_->size(); ++l)
+    for (std::size_t v = 0; v < zone_.size(); ++v)
+      taken_[l * zone_.size() + v] = -motion_->f[l * width() + zone_[v]];
+}
+
+/// What presses, gives way or may come into reach. Edges are those of the whole.
+void SurfaceObstacle::find_near(std::span<const double> pose, std::span<const double> reaction,
+                                bool grows) {
+  const std::vector<std::int32_t>& kernel = met_->kernel.points;
+  const double reach = options_.reach;
+  const auto is_near = [this](std::int32_t point) { return near_.in_part(point) >= 0; };
+  needed_.clear();
+  if (yields()) needed_ = kernel;
+  for (std::size_t v = 0; v < reaction.size(); ++v)
+    if (reaction[v] != 0.0) needed_.push_back(static_cast<std::int32_t>(v / index(near_.dim)));
+  std::ranges::sort(needed_);
+  const bool whole = edges_.any() || (yields() && kernel.empty());
+  if (near_.holds(pose, reach) && (near_.whole() || !whole) &&
+      std::ranges::all_of(needed_, is_near))
+    return;
+  if (whole)
+    near_.take_all();
+  else
+    near_.find(pose, reach, needed_, grows);
+  build(tree_, posed(near_), 0.0);
+  fitted_.clear();
 }
 
 /// Which values of the partner's surface its kernel is of.
@@ -62,10 +90,14 @@ void SurfaceObstacle::find_zone() {
   const std::vector<std::int32_t>& points = met_->kernel.points;
   const std::size_t dim = index(met_->surface.dim);
   zone_.clear();
-  in_zone_.assign(width(), -1);
+  zone_near_.clear();
+  in_zone_.assign(near_.points.size(), -1);
   for (std::size_t v = 0; v < (points.empty() ? width() : points.size() * dim); ++v) {
-    zone_.push_back(points.empty() ? v : index(points[v / dim]) * dim + v % dim);
-    in_zone_[zone_.back()] = static_cast<int>(v);
+    const std::int32_t point =
+        points.empty() ? static_cast<std::int32_t>(v / dim) : points[v / dim];
+    zone_.push_back(index(point) * dim + v % dim);
+    zone_near_.push_back(index(near_.in_part(point)) * dim + v % dim);
+    in_zone_[zone_near_.back()] = static_cast<int>(v);
   }
 }
 
@@ -79,17 +111,19 @@ const double* SurfaceObstacle::response(int level, int at, std::size_t force) co
 
 /// Earlier reactions are known, this substep's goes on being the later ones' guess [M.92].
 void SurfaceObstacle::aim(int i, std::span<const double> reaction, bool turned) {
-  const std::size_t w = width(), levels = motion_->size(), columns = index(grid_.count + 1);
-  held_ = std::ranges::any_of(reaction, [](double force) { return force != 0.0; });
+  const std::size_t z = zone_.size(), levels = motion_->size(), columns = index(grid_.count + 1);
+  held_ = turned && std::ranges::any_of(reaction, [](double force) { return force != 0.0; });
   turned_ = turned;
   chosen_ = false;
-  memory_.assign(w, 0.0);
   find_travel(i);
-  if (!yields() || i == 0) return;
+  if (!yields()) return;
+  memory_.assign(z, 0.0);
+  if (i == 0) return;
   const std::size_t last = index(i - 1);
   for (std::size_t l = 0; l < levels; ++l) {
     const double part = parts_[l * columns + last];
-    for (std::size_t v = 0; part != 0.0 && v < w; ++v) taken_[l * w + v] += part * reaction[v];
+    for (std::size_t v = 0; part != 0.0 && v < z; ++v)
+      taken_[l * z + v] += part * reaction[zone_[v]];
   }
   later_.assign(levels, 0.0);
   for (std::size_t l = 0; l < levels; ++l)
@@ -110,13 +144,13 @@ void SurfaceObstacle::aim(int i, std::span<const double> reaction, bool turned) 
 
 /// Adds a share of what earlier reactions have moved the surface at a level.
 void SurfaceObstacle::recall(int level, double share) {
-  const std::size_t w = width(), z = zone_.size();
+  const std::size_t z = zone_.size();
   for (int at = 0; at <= level && level > 0; ++at) {
     for (std::size_t f = 0; f < z; ++f) {
-      const double force = share * taken_[index(at) * w + zone_[f]];
+      const double force = share * taken_[index(at) * z + f];
       if (force == 0.0) continue;
       const double* answer = response(level, at, f);
-      for (std::size_t v = 0; v < z; ++v) memory_[zone_[v]] += force * answer[v];
+      for (std::size_t v = 0; v < z; ++v) memory_[v] += force * answer[v];
     }
   }
 }
@@ -136,7 +170,7 @@ void SurfaceObstacle::find_give(int level, double share) {
 
 void SurfaceObstacle::find_travel(int i) {
   travel_ = 0.0;
-  if (i == 0) return;
+  if (i == 0 || near_.stands()) return;
   before_.resize(width());
   given_.resize(width());
   motion_->interpolate(motion_->u, i == 1 ? grid_.begin : grid_.time(i - 1), before_);
@@ -146,10 +180,12 @@ void SurfaceObstacle::find_travel(int i) {
 }
 
 void SurfaceObstacle::place(double time) {
-  given_.resize(width());
-  motion_->interpolate(motion_->u, time, given_);
-  for (std::size_t v = 0; v < width(); ++v)
-    free_[v] = met_->surface.points[v] + given_[v] + memory_[v];
+  time_ = time;
+  given_.resize(near_.points.size());
+  free_.resize(near_.points.size());
+  motion_->interpolate(motion_->u, time, near_.values(), given_);
+  for (std::size_t v = 0; v < free_.size(); ++v) free_[v] = near_.points[v] + given_[v];
+  for (std::size_t v = 0; yields() && v < zone_.size(); ++v) free_[zone_near_[v]] += memory_[v];
 }
 
 void SurfaceObstacle::give_way(std::span<const double> reaction) {
@@ -159,7 +195,7 @@ void SurfaceObstacle::give_way(std::span<const double> reaction) {
   for (std::size_t f = 0; f < z; ++f) {
     const double force = reaction[zone_[f]];
     if (force == 0.0) continue;
-    for (std::size_t v = 0; v < z; ++v) pose_[zone_[v]] += force * give_[f * z + v];
+    for (std::size_t v = 0; v < z; ++v) pose_[zone_near_[v]] += force * give_[f * z + v];
   }
 }
 
@@ -169,7 +205,7 @@ void SurfaceObstacle::choose_side(std::span<const double> pose) {
   if (turned_ && held_) return;
   const double reach = options_.reach;
   turned_ = !pairs_.empty() && edges_.is_near(pose_, posed(own_, pose), own_tree_, reach) &&
-            !own_edges_.is_near(pose, posed(met_->surface, pose_), tree_, reach);
+            !own_edges_.is_near(pose, posed(near_, pose_), tree_, reach);
 }
 
 /// Rows of the port's nodes, each for itself [M.95].
@@ -179,10 +215,17 @@ void SurfaceObstacle::join_points(const PosedSurface& own, const PosedSurface& o
   point_rows(own, own_nodes_, other, tree_, options, point_buffers_, rows_);
 }
 
-void SurfaceObstacle::join(std::span<const double> pose, double travel) {
-  const PosedSurface k = posed(own_, pose), n = posed(met_->surface, pose_);
+void SurfaceObstacle::join(std::span<const double> pose, double travel,
+                           std::span<const double> reaction) {
   const double way = travel_ + travel;
   options_.reach = reach_ + way;
+  if (!near_.holds(pose, options_.reach)) {
+    find_near(pose, reaction, true);
+    if (yields()) find_zone();
+    place(time_);
+  }
+  give_way(reaction);
+  const PosedSurface k = posed(own_, pose), n = posed(near_, pose_);
   refit(own_tree_, k, options_.reach);
   if (fitted_ != pose_) {  // walls stand
     refit(tree_, n, 0.0);
@@ -203,9 +246,9 @@ void SurfaceObstacle::add_compliance(Eigen::Index first, Eigen::MatrixXd& a) {
   const std::size_t dim = index(rows_.dim);
   const auto each = [this, dim](int row, const auto& visit) {
     for (std::int32_t e = rows_.n.offsets[index(row)]; e < rows_.n.offsets[index(row) + 1]; ++e) {
-      const int at = in_zone_[index(rows_.n.columns[index(e)]) * dim];
-      for (std::size_t d = 0; at >= 0 && d < dim; ++d)
-        visit(index(at) + d, rows_.n.values[index(e)] * rows_.normals[index(row) * dim + d]);
+      const int begin = in_zone_[index(rows_.n.columns[index(e)]) * dim];
+      for (std::size_t d = 0; begin >= 0 && d < dim; ++d)
+        visit(index(begin) + d, rows_.n.values[index(e)] * rows_.normals[index(row) * dim + d]);
     }
   };
   for (int r = 0; r < rows_.count(); ++r) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "subdomain_solver/contact/edged_surface.hpp"
+#include "subdomain_solver/contact/near_surface.hpp"
 #include "subdomain_solver/interior.hpp"
 #include "surface/boxes.hpp"
 #include "surface/mortar.hpp"
@@ -22,15 +23,19 @@ class SurfaceObstacle {
   std::size_t port() const { return port_; }
   std::size_t partner() const { return partner_; }
   std::size_t width() const { return met_->surface.points.size(); }
+  /// The part of it that contact may be with: its points are those of rows, places and reactions.
+  const NearSurface& near() const { return near_; }
 
-  /// Takes what is imposed over a window, which must live until the next, as the partner. Throws
-  /// RunError for what a surface cannot take.
-  void impose(const BoundaryData& data, const Partner& met, const Substeps& grid);
+  /// Takes what is imposed over a window, which must live until the next, as the partner. `pose`:
+  /// [m] (points, dim) where the port is, about; `reaction`: [N] (values of the partner) the force
+  /// on the partner now. Throws RunError for what a surface cannot take.
+  void impose(const BoundaryData& data, const Partner& met, const Substeps& grid,
+              std::span<const double> pose, std::span<const double> reaction);
   /// It acts in this window.
   bool acts() const { return motion_ != nullptr; }
   bool yields() const { return acts() && met_->kernel.count() > 0; }
 
-  /// The substep i is next. `reaction`: [N] (values) the force on the partner at the substep
+  /// The substep i is next. `reaction`: [N] (values of the partner) the force on it at the substep
   /// before. `turned`: the rows then were of the partner's nodes.
   void aim(int i, std::span<const double> reaction, bool turned);
   /// Rows are of the nodes of the side with sharp edges there: averaged over facets around an edge,
@@ -39,21 +44,22 @@ class SurfaceObstacle {
   bool turned() const { return turned_; }
   /// Where it lies at a time of this substep without the substep's own reaction.
   void place(double time);
-  /// Moves it from there by a reaction [N] (values).
-  void give_way(std::span<const double> reaction);
-  /// Rows for the port's present pose [m] (points, dim) and its own. What a long substep may lead
-  /// through each other is still seen: `travel` [m] is the port's way in it.
-  void join(std::span<const double> pose, double travel);
+  /// Rows for the port's present pose [m] (points, dim) and its own, to which a reaction [N]
+  /// (values of the partner) moves it. What a long substep may lead through each other is still
+  /// seen: `travel` [m] is the port's way in it.
+  void join(std::span<const double> pose, double travel, std::span<const double> reaction);
 
   const SurfaceRows& rows() const { return rows_; }
-  /// [m] (points, dim) where it lies without the substep's own reaction.
+  /// [m] (near points, dim) where it lies without the substep's own reaction.
   const std::vector<double>& free() const { return free_; }
   /// Adds the compliance [m/N] among the rows to a square of `a` that begins at `first`.
   void add_compliance(Eigen::Index first, Eigen::MatrixXd& a);
 
  private:
+  void find_near(std::span<const double> pose, std::span<const double> reaction, bool grows);
   void find_zone();
   void find_travel(int i);
+  void give_way(std::span<const double> reaction);
   void choose_side(std::span<const double> pose);
   void join_points(const PosedSurface& own, const PosedSurface& other);
   void recall(int level, double share);
@@ -67,6 +73,9 @@ class SurfaceObstacle {
   MortarOptions options_;
   double reach_ = 0.0, travel_ = 0.0;  // [m] of a substep of no length; own way in this one
   EdgedSurface edges_, own_edges_;
+  NearSurface near_;
+  std::vector<std::int32_t> needed_;    // points that are to be in it
+  double time_ = 0.0;                   // [s] that it was placed for
   bool turned_ = false;                 // rows are of the partner's nodes
   bool chosen_ = false, held_ = false;  // in this substep; it pressed in the one before
   const Waveform* motion_ = nullptr;
@@ -74,15 +83,16 @@ class SurfaceObstacle {
   // While it yields, of the window: its own levels (l), the substeps' levels (s).
   std::vector<double> parts_;   // (l, s) of the reactions that its levels take
   std::vector<double> later_;   // (l) of this substep's reaction, held to the window's end
-  std::vector<double> taken_;   // [N] (l, values) of earlier ones, beyond what d was found under
-  std::vector<double> memory_;  // [m] (values) of earlier reactions, at the substep's end
+  std::vector<double> taken_;   // [N] (l, zone) of earlier ones, beyond what d was found under
+  std::vector<double> memory_;  // [m] (zone) of earlier reactions, at the substep's end
   std::vector<double> give_;    // [m/N] (zone, zone) to this substep's reaction
-  std::vector<std::size_t> zone_;       // values that give way
-  std::vector<int> in_zone_;            // (values) where in the zone; -1: they do not
-  std::vector<double> free_, pose_;     // [m] (points, dim)
+  std::vector<std::int32_t> zone_points_;      // of the partner
+  std::vector<std::size_t> zone_, zone_near_;  // values that give way, of the partner, of the near
+  std::vector<int> in_zone_;                   // (near values) where in the zone; -1: they do not
+  std::vector<double> free_, pose_;            // [m] (near points, dim)
   std::vector<double> given_, before_;  // [m] (values) displacements
   BoxTree tree_, own_tree_;             // the port's with the reach around its boxes
-  std::vector<double> fitted_;          // [m] (points, dim) pose of tree_
+  std::vector<double> fitted_;          // [m] (near points, dim) pose of tree_; empty: of none
   std::vector<FacetPair> pairs_;
   MortarBuffers buffers_;
   std::vector<std::int32_t> own_nodes_;  // where rows are of single points

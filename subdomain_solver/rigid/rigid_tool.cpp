@@ -1,5 +1,6 @@
 #include "subdomain_solver/rigid/rigid_tool.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -63,7 +64,7 @@ std::optional<Failed> RigidTool::step(const Window& window, int i) {
 std::optional<Failed> RigidTool::move_to(const Window& window, double time) {
   see(window, time, true);  // for the forces
   std::vector<double> force(way_.size(), 0.0);
-  for (std::size_t k = 0; k < seen_.f.size(); ++k) force[k % way_.size()] += seen_.f[k];
+  for (std::size_t k = 0; pushed_ && k < seen_.f.size(); ++k) force[k % way_.size()] += seen_.f[k];
   const double length = time - state_.time;
   for (std::size_t i = 0; i < way_.size(); ++i) {
     const double place = way_[i](time);
@@ -81,16 +82,23 @@ std::optional<Failed> RigidTool::move_to(const Window& window, double time) {
   return std::nullopt;
 }
 
+/// A wall may have any number of points: what stays as it is, is not written again.
 const PortValues& RigidTool::see(const Window& window, double time, bool) {
-  for (std::size_t k = 0; k < seen_.u.size(); ++k) {
-    seen_.u[k] = state_.place[k % way_.size()];
-    seen_.v[k] = state_.velocity[k % way_.size()];
-    seen_.f[k] = 0.0;
+  if (shown_place_ != state_.place || shown_velocity_ != state_.velocity) {
+    shown_place_ = state_.place;
+    shown_velocity_ = state_.velocity;
+    for (std::size_t k = 0; k < seen_.u.size(); ++k) {
+      seen_.u[k] = state_.place[k % way_.size()];
+      seen_.v[k] = state_.velocity[k % way_.size()];
+    }
   }
+  if (pushed_) std::ranges::fill(seen_.f, 0.0);
+  pushed_ = false;
   std::size_t first = 0;
   for (std::size_t p = 0; p < description_.ports.size(); ++p) {
     for (const Waveform& imposed : window.request.boundary[p].forces) {
       if (imposed.empty()) continue;
+      pushed_ = true;
       imposed_.resize(index(imposed.width));
       imposed.force_at(time, imposed_);
       for (std::size_t k = 0; k < imposed_.size(); ++k) {

@@ -47,6 +47,8 @@ class RigidTool final : public Interior {
   std::vector<Way> way_;
   State state_;
   PortValues seen_;
+  std::vector<double> shown_place_, shown_velocity_;  // that seen_ tells of
+  bool pushed_ = false;                               // there are forces in seen_
   std::vector<double> imposed_;  // [N] (values) of one port
 };
 

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "base/yaml_document.hpp"
 #include "coordinator/estimate.hpp"
@@ -111,6 +114,51 @@ TEST(Estimate, EveryFeatureIsEitherInUseOrNotBuilt) {
   EXPECT_EQ(plain.in_use.size() + plain.not_built.size(),
             other.in_use.size() + other.not_built.size());
   EXPECT_EQ(plain.in_use.size() + 1, other.in_use.size());
+}
+
+TEST(Estimate, TellsTheMemoryOfKernels) {
+  const std::string text = R"(
+meta: {title: estimate}
+time: {begin: 0.0, end: 1.0e-3, window: 1.0e-5}
+bodies: {finder: {}, other: {}}
+interfaces:
+  impact: {sides: [finder.skin, other.skin], contact: {}, transmission: {unilateral: {KEY}}}
+)";
+  const auto with = [&text](const std::string& keys) {
+    std::string scene = text;
+    scene.replace(scene.find("KEY"), 3, keys);
+    return read_scene(Document::from_text("estimate.yaml", scene, {}));
+  };
+  Description finder = bar(1.0e-6), other = bar(2.0e-6);
+  int points = 1000;
+  for (Description* body : {&finder, &other}) {
+    body->name = body == &finder ? "finder" : "other";
+    body->dim = 3;
+    body->can.kernel = body->can.yielding = true;
+    Port skin;
+    skin.name = "skin";
+    skin.geometry.dim = 3;
+    skin.geometry.points.assign(static_cast<std::size_t>(3 * points), 0.0);
+    body->ports = {skin};
+    points = 2000;
+  }
+  const Description* bodies[] = {&finder, &other};
+  // Two lists of numbers of 8 B for every pair of 3 x 2000 values and each of 5 substeps.
+  const Estimate open = estimate(with(""), bodies, std::nullopt);
+  ASSERT_EQ(open.kernels.size(), 1u);
+  EXPECT_EQ(open.kernels[0].side, "other.skin");  // the larger of the two
+  EXPECT_EQ(open.kernels[0].substeps, 5);
+  EXPECT_DOUBLE_EQ(open.kernels[0].memory_mib, 16.0 * 5 * 6000.0 * 6000.0 / 1048576.0);
+  // A quarter of the memory is enough for half of the points.
+  const std::string quarter = fmt::format("kernel_memory: {}", open.kernels[0].memory_mib / 4.0);
+  const Estimate bounded = estimate(with(quarter), bodies, std::nullopt);
+  EXPECT_NEAR(static_cast<double>(bounded.kernels[0].points_that_fit), 1000.0, 1.0);
+  const Estimate fixed = estimate(with("kinematic: other.skin"), bodies, std::nullopt);
+  ASSERT_EQ(fixed.kernels.size(), 1u);
+  EXPECT_EQ(fixed.kernels[0].side, "finder.skin");
+  EXPECT_EQ(fixed.kernels[0].substeps, 10);
+  finder.mass = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(estimate(with("kinematic: other.skin"), bodies, std::nullopt).kernels.empty());
 }
 
 }  // namespace
