@@ -363,18 +363,23 @@ CellMeasures FeModel::cell_measures(int block, int cell) const {
   return measures;
 }
 
-/// One cell's force and tangent, left in local_.
+/// One cell's force, and its tangent where that is wanted, left in local_.
 bool FeModel::respond(int block, int cell, std::span<const double> q,
                       std::span<const double> history) {
-  CellMeasures own;
-  if (!assembly_) own = cell_measures(block, cell);
-  const CellGeometry geometry = assembly_ ? assembly_->measures[index(block)].of(cell) : own.of(0);
+  if (assembly_)
+    return respond(block, cell, assembly_->measures[index(block)].of(cell), q, history,
+                   Need::tangent);
+  const CellMeasures own = cell_measures(block, cell);
+  return respond(block, cell, own.of(0), q, history, Need::tangent);
+}
+
+bool FeModel::respond(int block, int cell, const CellGeometry& geometry, std::span<const double> q,
+                      std::span<const double> history, Need need) {
   const std::size_t each = index(geometry.points * kernel_.history_size());
   const std::size_t first = blocks_[index(block)].history + index(cell) * each;
   after_.resize(each);
   gather(mesh_.blocks[index(block)], cell, q, u_);
-  return kernel_.evaluate(geometry, u_, history.subspan(first, each), after_, Need::tangent,
-                          local_);
+  return kernel_.evaluate(geometry, u_, history.subspan(first, each), after_, need, local_);
 }
 
 bool FeModel::cell_tangent(int block, int cell, std::span<const double> q,

@@ -129,11 +129,17 @@ class FeModel final : public Model {
   const SparseMatrix& linear_stiffness();
   void find_layer_pattern(LayerResponse& out);
   void find_layer_rows(std::span<const double> q, std::span<const double> history);
+  template <int dim, int count>
+  void add_layer_rows(Eigen::Index row, const double* q, const double* here, Vector& force) const;
+  template <int dim>
+  void linear_layer_force(std::span<const double> q, Vector& force) const;
   void linear_layer(std::span<const double> q, Want want, LayerResponse& out);
   void spring_force(std::span<const double> q, ModelResponse& out) const;
   [[nodiscard]] bool batched_force(std::span<const double> q, ModelResponse& out);
   [[nodiscard]] bool respond(int block, int cell, std::span<const double> q,
                              std::span<const double> history);
+  [[nodiscard]] bool respond(int block, int cell, const CellGeometry& geometry,
+                             std::span<const double> q, std::span<const double> history, Need need);
   void gather(const CellBlock& cells, int cell, std::span<const double> q,
               std::vector<double>& u) const;
   void scatter(std::size_t block, int cell, Want want, CellResponse& local,
@@ -159,6 +165,7 @@ class FeModel final : public Model {
   // by cell of the layer: places of its coordinates among the massless, -1: none; entries of its
   // matrix, column by column, among the values of the tangent
   std::vector<int> layer_places_, layer_slots_;
+  std::vector<CellMeasures> layer_measures_;  // the same, where no assembly has them
   LayerRows layer_rows_;  // [N/m] (massless, dofs) of linear models, when first asked for
   mutable std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<BatchedCells> batched_;  // null: cell by cell

@@ -1,6 +1,7 @@
 // The surface layer of finite elements: coordinates whose mass the others of their cells have.
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <utility>
 
@@ -181,21 +182,54 @@ void FeModel::find_layer_rows(std::span<const double> q, std::span<const double>
   layer_rows_.setFromTriplets(entries.begin(), entries.end());
 }
 
+/// Forces on some coordinates of one node, the rows from `row` on, which have all coordinates of
+/// the same nodes as columns. `here`: what displacements differ from. Rows are summed up side by
+/// side, each in its order, so that none waits for its own last sum.
+template <int dim, int count>
+void FeModel::add_layer_rows(Eigen::Index row, const double* q, const double* here,
+                             Vector& force) const {
+  const int first = layer_rows_.outerIndexPtr()[row];
+  const int entries = layer_rows_.outerIndexPtr()[row + 1] - first;
+  const int* column = layer_rows_.innerIndexPtr() + first;
+  const double* value = layer_rows_.valuePtr() + first;
+  std::array<double, count> sum{};
+  for (int e = 0; e < entries; e += dim) {
+    for (int i = 0; i < dim; ++i) {
+      const double difference = q[column[e] + i] - here[i];
+      for (int r = 0; r < count; ++r) sum[index(r)] += value[r * entries + e + i] * difference;
+    }
+  }
+  for (int r = 0; r < count; ++r) force(row + r) = sum[index(r)];
+}
+
+template <int dim>
+void FeModel::linear_layer_force(std::span<const double> q, Vector& force) const {
+  const bool translates = frames_.empty() && !round();
+  const std::array<double, 3> origin{};
+  for (Eigen::Index row = 0; row < layer_rows_.rows();) {
+    const int node = massless_[index(row)] / dim;
+    Eigen::Index end = row + 1;
+    while (end < layer_rows_.rows() && massless_[index(end)] / dim == node) ++end;
+    const double* here = translates ? q.data() + node * dim : origin.data();
+    if (end - row == 3) {
+      add_layer_rows<dim, 3>(row, q.data(), here, force);
+    } else if (end - row == 2) {
+      add_layer_rows<dim, 2>(row, q.data(), here, force);
+    } else {
+      add_layer_rows<dim, 1>(row, q.data(), here, force);
+    }
+    row = end;
+  }
+}
+
 /// Forces from differences of displacements: a translation makes none, and in one dimension what is
 /// far smaller than a rounding of F, which is about 1, counts too.
 void FeModel::linear_layer(std::span<const double> q, Want want, LayerResponse& out) {
   if (layer_rows_.size() == 0) find_layer_rows(q, {});
-  const int dim = mesh_.dim;
-  const bool translates = frames_.empty() && !round();
   out.force.setZero(static_cast<Eigen::Index>(massless_.size()));
-  for (Eigen::Index row = 0; row < layer_rows_.rows(); ++row) {
-    const int dof = massless_[index(row)];
-    for (LayerRows::InnerIterator at(layer_rows_, row); at; ++at) {
-      const int other = static_cast<int>(at.col());
-      const double here = translates ? q[index(dof - dof % dim + other % dim)] : 0.0;
-      out.force(row) += at.value() * (q[index(other)] - here);
-    }
-  }
+  if (mesh_.dim == 3) linear_layer_force<3>(q, out.force);
+  if (mesh_.dim == 2) linear_layer_force<2>(q, out.force);
+  if (mesh_.dim == 1) linear_layer_force<1>(q, out.force);
   if (want == Want::force) return;
   for (Eigen::Index row = 0; row < layer_rows_.rows(); ++row) {
     for (LayerRows::InnerIterator at(layer_rows_, row); at; ++at) {
@@ -212,17 +246,27 @@ bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> 
     linear_layer(q, want, out);
     return true;
   }
+  if (!assembly_ && layer_measures_.empty())
+    for (const auto& [block, cell] : layer_cells_)
+      layer_measures_.push_back(cell_measures(block, cell));
+  const bool tangent = want == Want::tangent;
   out.force.setZero(static_cast<Eigen::Index>(massless_.size()));
-  for (Eigen::Index k = 0; k < out.tangent.nonZeros(); ++k) out.tangent.valuePtr()[k] = 0.0;
+  for (Eigen::Index k = 0; tangent && k < out.tangent.nonZeros(); ++k)
+    out.tangent.valuePtr()[k] = 0.0;
+  const auto* measures = layer_measures_.data();
   const int* place = layer_places_.data();
   const int* slot = layer_slots_.data();
   for (const auto& [block, cell] : layer_cells_) {
-    if (!respond(block, cell, q, history)) return false;
-    turn(nodes_of(mesh_.blocks[index(block)], cell), &local_.force, &local_.tangent);
+    const CellGeometry geometry =
+        assembly_ ? assembly_->measures[index(block)].of(cell) : (measures++)->of(0);
+    if (!respond(block, cell, geometry, q, history, tangent ? Need::tangent : Need::stress))
+      return false;
+    turn(nodes_of(mesh_.blocks[index(block)], cell), &local_.force,
+         tangent ? &local_.tangent : nullptr);
     for (Eigen::Index a = 0; a < local_.force.size(); ++a, ++place)
       if (*place >= 0) out.force(*place) += local_.force(a);
     const Eigen::Index values = local_.force.size() * local_.force.size();
-    for (Eigen::Index k = 0; want == Want::tangent && k < values; ++k)
+    for (Eigen::Index k = 0; tangent && k < values; ++k)
       if (slot[k] >= 0) out.tangent.valuePtr()[slot[k]] += local_.tangent.data()[k];
     slot += values;
   }

@@ -13,6 +13,8 @@ namespace abut {
 namespace {
 
 constexpr int most_iterations = 50;
+/// Of what was not in balance before: factors that leave more behind are made anew.
+constexpr double slow = 0.25;
 constexpr int most_halvings = 8, most_trials = 20;
 /// Of the largest force in the balance. A layer is small, and energy is kept to what is left.
 constexpr double tolerance = 1.0e-12;
@@ -43,8 +45,9 @@ MasslessLayer::MasslessLayer(const Problem& problem)
   whole_.history.resize(problem.model->history_size());
 }
 
-bool MasslessLayer::respond(std::span<const double> q, std::span<const double> history) {
-  const Model::Want want = factored_ ? Model::Want::force : Model::Want::tangent;
+bool MasslessLayer::respond(std::span<const double> q, std::span<const double> history,
+                            Model::Want want) {
+  if (factored_) want = Model::Want::force;
   return problem_.model->evaluate_layer(q, history, want, response_);
 }
 
@@ -148,7 +151,7 @@ bool MasslessLayer::walk(std::vector<double>& q, std::span<const double> history
   const double most = 0.5 * begin;
   part_ = 1.0;
   largest_ = move(q, part_);
-  for (int halving = 0; !respond(q, history); ++halving) {
+  for (int halving = 0; !respond(q, history, Model::Want::force); ++halving) {
     if (halving == most_halvings) return false;
     part_ *= 0.5;
     largest_ = move(q, -part_);
@@ -160,7 +163,7 @@ bool MasslessLayer::walk(std::vector<double>& q, std::span<const double> history
     const double next = part_ * begin / (begin - here);
     largest_ = move(q, next - part_);
     part_ = next;
-    if (!respond(q, history)) return false;
+    if (!respond(q, history, Model::Want::force)) return false;
   }
   return true;
 }
@@ -172,13 +175,19 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     pressed_.setZero(static_cast<Eigen::Index>(contact->coordinates().size()));
     find_places(*contact);
   }
-  if (!respond(q, history)) return inadmissible(time);
+  // Factors of the begin serve as long as they lead on: they cost far more than forces do.
+  double before = 0.0;
+  if (!respond(q, history, Model::Want::tangent)) return inadmissible(time);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const double scale = find_rest(loads, contact != nullptr && iteration > 0);
     if (!rest_.allFinite()) return not_finite(time);
     if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, problem_.model->roundoff(q)))
       return std::nullopt;
-    if (!factor()) return not_held(time);
+    const double left = rest_.norm();
+    if (iteration > 0 && left > slow * before && !respond(q, history, Model::Want::tangent))
+      return inadmissible(time);
+    if ((iteration == 0 || left > slow * before) && !factor()) return not_held(time);
+    before = left;
     if (!factors_->solve(rest_, step_) || (contact != nullptr && !press(time, q, *contact)))
       return failed_newton({NewtonReport::End::singular}, time);
     if (!step_.allFinite()) return failed_newton({NewtonReport::End::singular}, time);
@@ -217,7 +226,8 @@ std::optional<Failed> MasslessLayer::jump(double time, Motion& motion, const Vec
 double MasslessLayer::compliance(std::span<const double> q, std::span<const double> history,
                                  int dof) {
   const auto at = std::lower_bound(dofs_.begin(), dofs_.end(), dof);
-  if (at == dofs_.end() || *at != dof || !respond(q, history) || !factor()) return 0.0;
+  if (at == dofs_.end() || *at != dof || !respond(q, history, Model::Want::tangent) || !factor())
+    return 0.0;
   const Eigen::Index place = at - dofs_.begin();
   unit_(place) = 1.0;
   const bool solved = factors_->solve(unit_, answer_);

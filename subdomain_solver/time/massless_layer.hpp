@@ -34,7 +34,8 @@ class MasslessLayer final : private Compliance {
 
  private:
   const Vector* column(int k) override;
-  [[nodiscard]] bool respond(std::span<const double> q, std::span<const double> history);
+  [[nodiscard]] bool respond(std::span<const double> q, std::span<const double> history,
+                             Model::Want want);
   [[nodiscard]] bool factor();
   void find_places(const Contact& contact);
   [[nodiscard]] bool press(double time, std::span<const double> q, Contact& contact);
