@@ -20,6 +20,12 @@ SCENES = pathlib.Path(__file__).resolve().parent.parent / "configs" / "contact"
 
 def run(abut, scene, overrides):
     """Measures and history of one run."""
+    summary, history = results(abut, scene, overrides)
+    return summary["measures"], history
+
+
+def results(abut, scene, overrides):
+    """Summary and history of one run."""
     with tempfile.TemporaryDirectory() as out:
         command = [abut, "run", str(SCENES / scene), "--local", "--quiet", "--out", out + "/run"]
         for override in [*overrides, "meta.expect=[]", "output=null"]:
@@ -27,9 +33,9 @@ def run(abut, scene, overrides):
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             sys.exit(f"{' '.join(command)} ended with {done.returncode}: {done.stderr}")
-        measures = json.loads(pathlib.Path(out, "run", "summary.json").read_text())["measures"]
+        summary = json.loads(pathlib.Path(out, "run", "summary.json").read_text())
         with open(pathlib.Path(out, "run", "history.csv"), encoding="utf-8") as table:
-            return measures, list(csv.DictReader(table))
+            return summary, list(csv.DictReader(table))
 
 
 def noise(history, column="left.tip.force_x [N]"):
@@ -103,6 +109,48 @@ def persistent(abut):
     tell("the same: closings", f"{measures['contact.impact.closings']:g}", "1")
 
 
+def zones(abut):
+    """A disk on a wall: nodes close and open one after the other. Its stable step is 2.676e-5 s."""
+    for scheme, step, goal in (
+        ("central_difference", 1.25e-5, "0.05 %"),
+        ("newmark", 2.5e-5, "0.2 %"),
+    ):
+        measures, _ = run(
+            abut,
+            "disk_on_wall.yaml",
+            [f"bodies.disk.integrator={{{scheme}: {{step: {step}}}}}"],
+        )
+        drift = measures["energy.total.relative_drift_end"]
+        cfl = step / 2.676e-5
+        tell(f"a disk on a wall, {scheme} at CFL {cfl:.2f}: energy", percent(drift), goal)
+        changes = measures["contact.impact.closings"] + measures["contact.impact.count"]
+        tell("the same: changes of the interface, on and off", f"{changes:g}", "2")
+
+
+def flights(abut):
+    """Requests to each of two bodies until they touch: the begin, flights, windows that are near."""
+    for scene in ("disks_head_on.yaml", "balls.yaml", "bars_3d.yaml"):
+        measures, _ = run(abut, scene, [])
+        touch = measures["contact.impact.begin"]
+        summary, _ = results(abut, scene, [f"time.end={touch}"])
+        tell(f"{scene[:-5]}: requests to a body until the touch", f"{summary['exchanges'] / 2:g}", "10")
+
+
+def beyond_memory(abut):
+    """What yields by a kernel does so no more where the kernel has no room."""
+    for scene in ("bars_2d.yaml", "bars_2d_implicit.yaml", "balls.yaml"):
+        measures, _ = run(
+            abut,
+            scene,
+            ["interfaces.impact.transmission={unilateral: {kernel_memory: 1.0e-6}}"],
+        )
+        tell(
+            f"{scene[:-5]} without a kernel: iterations, mean / max",
+            f"{measures['schwarz.iterations_mean']:.2f} / {measures['schwarz.iterations_max']:g}",
+            "6 (mean)",
+        )
+
+
 if __name__ == "__main__":
     if len(sys.argv) != 2:
         sys.exit(__doc__)
@@ -110,3 +158,6 @@ if __name__ == "__main__":
     impacts(program)
     peers(program)
     persistent(program)
+    zones(program)
+    flights(program)
+    beyond_memory(program)

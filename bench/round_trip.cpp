@@ -60,14 +60,26 @@ Waveform wave(int substeps) {
   return w;
 }
 
-/// Answers every window with the same response: all that is left of an exchange is its overhead.
+/// The same on a surface of points in space: one field, a substep.
+Waveform wave_of_surface(int points, std::vector<double> Waveform::*field) {
+  Waveform w(3 * points);
+  w.time = {0.0, 1.0e-7};
+  for (int i = 0; i < 2 * w.width; ++i) (w.*field).push_back(1.0 / (3.0 + i));
+  return w;
+}
+
+/// Answers every window with the same response: all that is left of an exchange is its overhead. Of
+/// one point it answers forces by motion, of several the motion of an obstacle by the reaction.
 class InstantBody : public Subdomain {
  public:
-  InstantBody() {
+  explicit InstantBody(int points) : points_(points) {
     description_.ports.resize(1);
     description_.ports[0].name = "tip";
-    description_.ports[0].geometry.points = {0.0};
-    description_.ports[0].geometry.normals = {1.0};
+    PortGeometry& geometry = description_.ports[0].geometry;
+    geometry.dim = points > 1 ? 3 : 1;
+    geometry.points.assign(index(points * geometry.dim), 0.0);
+    geometry.normals.assign(geometry.points.size(), 1.0);
+    description_.can.obstacle = points > 1;
   }
   const Description& describe() const override { return description_; }
   void save() override {}
@@ -75,6 +87,11 @@ class InstantBody : public Subdomain {
   void start(const Advance& request) override { request_ = &request; }
   Outcome finish(Response& response) override {
     const Clock::time_point begin = Clock::now();
+    if (points_ > 1) {
+      answer_obstacle(response);
+      response.compute_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+      return Advanced{};
+    }
     const int substeps = static_cast<int>(request_->boundary[0].forces[0].size()) - 1;
     if (response.steps != substeps) {
       response.ports.resize(1);
@@ -95,18 +112,33 @@ class InstantBody : public Subdomain {
   std::uint64_t state_hash() override { return 0; }
 
  private:
+  void answer_obstacle(Response& response) {
+    if (response.steps == 1) return;
+    response.ports.resize(1);
+    PortResponse& port = response.ports[0];
+    port.trace = Waveform(3 * points_);
+    port.trace.time = {0.0, 1.0e-7};
+    port.reactions = {Reaction{wave_of_surface(points_, &Waveform::f)}};
+    port.lower = port.upper = {0.0, 0.0, 0.0};
+    response.records.resize(1);
+    response.records[0].momentum = {0.0};
+    response.steps = 1;
+  }
+
+  int points_;
   Description description_;
   const Advance* request_ = nullptr;
 };
 
 /// The solver's process: our own server, as abut-solver runs it.
+template <int points>
 [[noreturn]] void solver_process(const std::string& endpoint) {
   const Limits limits;
   const Deadlines deadlines;
   ZmqDealer dealer(endpoint, "body", limits);
   CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
   const MakeBody make = [](const Specification&, const ProgressHook&) {
-    return std::unique_ptr<Subdomain>(std::make_unique<InstantBody>());
+    return std::unique_ptr<Subdomain>(std::make_unique<InstantBody>(points));
   };
   Server server("body", make, dealer, coordinator, limits, deadlines);
   serve(server, Milliseconds(10'000));
@@ -119,7 +151,7 @@ class InstantBody : public Subdomain {
   zmq::socket_t socket(context, zmq::socket_type::dealer);
   socket.set(zmq::sockopt::routing_id, "body");
   socket.connect(endpoint);
-  std::vector<std::byte> reply(1 << 20);
+  std::vector<std::byte> reply(1 << 23);
   socket.send(zmq::buffer(reply.data(), 8), zmq::send_flags::none);
   zmq::message_t message;
   for (;;) {
@@ -176,14 +208,15 @@ class OurExchange {
     Waveform& force = advance_.boundary[0].forces[0];
     for (std::vector<double>* field : {&force.u, &force.v, &force.a})
       field->clear();  // one field there, four back: as two bars do it
-    once();
-    Frame request, reply;
-    encode(advance_, request.open());
-    request.seal();
-    encode(response_, advance_, reply.open());
-    reply.seal();
-    constexpr std::size_t envelope = 20;  // number, session, the length inside
-    return {request.bytes().size() + envelope, reply.bytes().size() + envelope};
+    return sizes();
+  }
+  /// The motion of an obstacle there, the reaction back.
+  std::pair<std::size_t, std::size_t> prepare_surface(int points) {
+    advance_.window = TimeWindow{0, 0.0, 1.0e-7};
+    advance_.want = {Want{false, false, false, false, {}}};
+    advance_.boundary.resize(1);
+    advance_.boundary[0].obstacles = {Obstacle{wave_of_surface(points, &Waveform::u)}};
+    return sizes();
   }
   double once() {
     const Clock::time_point begin = Clock::now();
@@ -195,6 +228,17 @@ class OurExchange {
   }
 
  private:
+  std::pair<std::size_t, std::size_t> sizes() {
+    once();
+    Frame request, reply;
+    encode(advance_, request.open());
+    request.seal();
+    encode(response_, advance_, reply.open());
+    reply.seal();
+    constexpr std::size_t envelope = 20;  // number, session, the length inside
+    return {request.bytes().size() + envelope, reply.bytes().size() + envelope};
+  }
+
   Limits limits_;
   ZmqHub hub_;
   int peer_;
@@ -235,28 +279,51 @@ class BareExchange {
   zmq::message_t sender_, message_;
 };
 
-/// Prints one line; true when the ratio is accepted.
-bool measure(OurExchange& ours, BareExchange& bare, int substeps) {
-  const std::pair<std::size_t, std::size_t> sizes = ours.prepare(substeps);
-  bare.prepare(sizes);
-  std::vector<double> of_ours, of_bare;
-  for (int block = 0; block <= blocks; ++block) {
-    for (int i = 0; i < exchanges_per_block; ++i) {
+struct Measured {
+  std::vector<double> ours, bare;  // [us]
+};
+
+/// In turns; the first block warms up.
+Measured measure(OurExchange& ours, BareExchange& bare, int count, int each) {
+  Measured out;
+  for (int block = 0; block <= count; ++block) {
+    for (int i = 0; i < each; ++i) {
       const double time = bare.once();
-      if (block > 0) of_bare.push_back(time);  // block 0 warms up
+      if (block > 0) out.bare.push_back(time);
     }
-    for (int i = 0; i < exchanges_per_block; ++i) {
+    for (int i = 0; i < each; ++i) {
       const double time = ours.once();
-      if (block > 0) of_ours.push_back(time);
+      if (block > 0) out.ours.push_back(time);
     }
   }
-  const double ratio = quantile(of_ours, 0.5) / quantile(of_bare, 0.5);
+  return out;
+}
+
+void print(int first, const std::pair<std::size_t, std::size_t>& sizes, const Measured& m,
+           double last) {
   fmt::print(
       "{:>8} {:>7} {:>7}   {:>6.1f} ({:.1f} to {:.1f})   {:>6.1f} ({:.1f} to {:.1f})   {:.2f}\n",
-      substeps, sizes.first, sizes.second, quantile(of_bare, 0.5), quantile(of_bare, 0.1),
-      quantile(of_bare, 0.9), quantile(of_ours, 0.5), quantile(of_ours, 0.1),
-      quantile(of_ours, 0.9), ratio);
+      first, sizes.first, sizes.second, quantile(m.bare, 0.5), quantile(m.bare, 0.1),
+      quantile(m.bare, 0.9), quantile(m.ours, 0.5), quantile(m.ours, 0.1), quantile(m.ours, 0.9),
+      last);
+}
+
+/// Prints one line; true when the ratio is accepted.
+bool measure_substeps(OurExchange& ours, BareExchange& bare, int substeps) {
+  const std::pair<std::size_t, std::size_t> sizes = ours.prepare(substeps);
+  bare.prepare(sizes);
+  const Measured m = measure(ours, bare, blocks, exchanges_per_block);
+  const double ratio = quantile(m.ours, 0.5) / quantile(m.bare, 0.5);
+  print(substeps, sizes, m, ratio);
   return ratio <= accepted_ratio;
+}
+
+/// A surface of points at both ends of a substep: milliseconds beyond the bare round trip.
+void measure_surface(OurExchange& ours, BareExchange& bare, int points) {
+  const std::pair<std::size_t, std::size_t> sizes = ours.prepare_surface(points);
+  bare.prepare(sizes);
+  const Measured m = measure(ours, bare, 10, 20);
+  print(points, sizes, m, (quantile(m.ours, 0.5) - quantile(m.bare, 0.5)) / 1000.0);
 }
 
 }  // namespace
@@ -266,26 +333,40 @@ int main() {
   if (mkdtemp(directory.data()) == nullptr) return 1;
   const std::string ours_at = "ipc://" + directory + "/ours";
   const std::string bare_at = "ipc://" + directory + "/bare";
-  const pid_t solver = start_process(solver_process, ours_at);
+  const std::string small_at = "ipc://" + directory + "/small";
+  const std::string large_at = "ipc://" + directory + "/large";
+  const pid_t solver = start_process(solver_process<1>, ours_at);
+  const pid_t small = start_process(solver_process<10'000>, small_at);
+  const pid_t large = start_process(solver_process<100'000>, large_at);
   const pid_t echo = start_process(echo_process, bare_at);
   stay_on_core(0);
   bool accepted = true;
   {
     OurExchange ours(ours_at);
     BareExchange bare(bare_at);
+    fmt::print("Exchange over ipc, in microseconds: median (10 % to 90 %)\n");
+    fmt::print(
+        "  points   bytes   bytes   bare ZeroMQ              surface: motion there, force back   "
+        "ms "
+        "beyond\n");
+    {
+      OurExchange of_small(small_at), of_large(large_at);
+      measure_surface(of_small, bare, 10'000);
+      measure_surface(of_large, bare, 100'000);
+    }
     fmt::print("Exchange over ipc, {} of each, in microseconds: median (10 % to 90 %)\n",
                blocks * exchanges_per_block);
     fmt::print(
         "substeps   bytes   bytes   bare ZeroMQ              exchange less solving    ratio\n");
     fmt::print("           there    back\n");
     for (const int substeps : {1, 10, 100, 1000})
-      accepted = measure(ours, bare, substeps) && accepted;
+      accepted = measure_substeps(ours, bare, substeps) && accepted;
   }
-  for (const pid_t id : {solver, echo}) {
+  for (const pid_t id : {solver, small, large, echo}) {
     kill(id, SIGKILL);
     waitpid(id, nullptr, 0);
   }
-  for (const char* name : {"/ours", "/bare", ""}) {
+  for (const char* name : {"/ours", "/small", "/large", "/bare", ""}) {
     if (std::remove((directory + name).c_str()) != 0) continue;  // libzmq removes its own
   }
   fmt::print("limit {:.1f}: {}\n", accepted_ratio, accepted ? "kept" : "EXCEEDED");
