@@ -12,7 +12,7 @@
 namespace abut {
 
 /// Where the two points of a joint would go over a window without each other. It costs no request:
-/// bodies look on after the window before [M.95].
+/// bodies look on after the window before [M.98].
 class Trial {
  public:
   /// Asks both sides, with their requests, to look on over the window that will follow this one.
