@@ -128,12 +128,13 @@ def zones(abut):
 
 
 def flights(abut):
-    """Requests to each of two bodies until they touch: the begin, flights, windows that are near."""
+    """Requests to each of two bodies until they touch: begin, flights, windows that are near."""
     for scene in ("disks_head_on.yaml", "balls.yaml", "bars_3d.yaml"):
         measures, _ = run(abut, scene, [])
         touch = measures["contact.impact.begin"]
         summary, _ = results(abut, scene, [f"time.end={touch}"])
-        tell(f"{scene[:-5]}: requests to a body until the touch", f"{summary['exchanges'] / 2:g}", "10")
+        requests = f"{summary['exchanges'] / 2:g}"
+        tell(f"{scene[:-5]}: requests to a body until the touch", requests, "10")
 
 
 def beyond_memory(abut):

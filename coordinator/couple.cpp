@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "coordinator/coupling/compliant_obstacle.hpp"
+#include "coordinator/coupling/parallel_force.hpp"
 #include "coordinator/coupling/robin.hpp"
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/transmission.hpp"

@@ -51,12 +51,9 @@ struct ContactSpec {  // frictionless
 struct TiedSpec {  // joined from the start, for the whole run
   void fields(Fields&) {}
 };
-
 /// [MiB] of the port kernel of a surface, where the scene does not say.
 constexpr double usual_kernel_memory = 512.0;
-
-/// The kinematic side solves a one-body unilateral problem against the partner's moving surface
-/// (default).
+/// Default: the kinematic side solves a unilateral problem against the partner's moving surface.
 struct UnilateralTransmission {
   static constexpr std::string_view name = "unilateral";
   std::string kinematic = "auto";  // body.port, or auto: by probe

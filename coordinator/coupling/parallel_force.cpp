@@ -1,8 +1,9 @@
+#include "coordinator/coupling/parallel_force.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/assert.hpp"
-#include "coordinator/coupling/transmission.hpp"
 #include "coordinator/coupling/transmission_parts.hpp"
 
 namespace abut {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -11,7 +10,7 @@
 #include "coordinator/coupling/bodies.hpp"
 #include "coordinator/coupling/convergence.hpp"
 #include "coordinator/coupling/joint.hpp"
-#include "coordinator/coupling/port_jacobian.hpp"
+#include "coordinator/coupling/kernel_inverse.hpp"
 #include "coordinator/coupling/trial.hpp"
 
 namespace abut {
@@ -70,30 +69,6 @@ struct IterateGrid {
   Eigen::Index at(int substep) const { return Eigen::Index{substep - 1} * width; }  // from 1
 };
 
-/// Inverse interface Jacobians by window length: a Toeplitz column where both bodies take the same
-/// substeps, factors otherwise, and with them the maps of contact that comes and goes.
-class KernelInverse {
- public:
-  struct Entry {
-    double length = 0.0;  // [s] of the window
-    std::vector<double> column;
-    Eigen::PartialPivLU<Eigen::MatrixXd> factors;
-    ContactMaps maps;  // where the substeps are unlike; of the parallel form overlap alone
-
-    Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
-  };
-  const Entry* find(double length) const;  // null: not there yet
-  const Entry* store(double length, const Eigen::MatrixXd& jacobian);
-  const Entry* store(double length, ContactMaps maps);
-  const Entry* store(double length, std::vector<double> column);
-
-  static constexpr int largest = 1200;  // rows of a dense Jacobian: 11 MiB, factored once in 0.3 s
-
- private:
-  const Entry* add(Entry entry);
-  std::vector<std::unique_ptr<Entry>> entries_;
-};
-
 /// The kinematic side meets the partner's moving surface as a one-body problem and returns the
 /// complete reaction; the other side takes that reaction as impulses. Iterated is the Neumann
 /// side's motion, never the force, so momentum is exact in every iterate  [M.9].
@@ -146,50 +121,6 @@ class Unilateral final : public Transmission {
   const PortKernel* kernel_n_ = nullptr;
   double outward_n_ = 1.0;
   Eigen::VectorXd overlap_, force_;  // [m] [N] compressive
-  KernelInverse inverses_;
-  const KernelInverse::Entry* inverse_ = nullptr;
-};
-
-/// Both sides take the same contact force and advance at once; iterated is the force at the coarser
-/// side's substeps until no overlap is left  [M.12].
-class ParallelForce final : public Transmission {
- public:
-  explicit ParallelForce(bool trials = true) : trials_(trials) {}
-
-  void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
-  int values() const override { return static_cast<int>(iterate_.size()); }
-  void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
-  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
-              Bodies& bodies) override;
-  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint, const Bodies& bodies,
-             Eigen::Ref<Eigen::VectorXd> g) override;
-  FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
-                         const Eigen::Ref<const Eigen::VectorXd>& g) const override;
-  void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
-  Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override;
-  bool projects() const override { return projects_; }
-  bool ordered() const override { return false; }
-
- private:
-  void see_trial(const std::array<Substeps, 2>& grids, const Joint& joint, Bodies& bodies);
-  double see_overlap(const Joint& joint, const std::array<const Waveform*, 2>& motions);
-  void find_inverse(const std::vector<const PortKernel*>& kernels,
-                    const std::vector<Substeps>& grids, double length);
-
-  IterateGrid iterate_;     // of the force, compressive
-  bool unilateral_ = true;  // contact: every substep decides for itself
-  bool projects_ = false;
-  Eigen::VectorXd overlap_, force_;  // [m] [N] of the last image
-  ForceSupport support_ = ForceSupport::nodal;
-  std::vector<double> force_begin_;  // [N] (width) known at the window's begin
-  Waveform guess_;
-  ReferenceScales scale_;
-  double compliance_ = 0.0;  // [m/N] of both sides over one substep
-  TimeWindow window_;
-  bool trials_;
-  Trial trial_;
-  bool looks_ = false;         // both sides look on after the window
-  Eigen::VectorXd predicted_;  // [N] as the iterate; empty: there is no trial
   KernelInverse inverses_;
   const KernelInverse::Entry* inverse_ = nullptr;
 };

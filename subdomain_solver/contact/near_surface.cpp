@@ -19,7 +19,11 @@ double largest_difference(std::span<const double> a, std::span<const double> b) 
 }  // namespace
 
 NearSurface::NearSurface(const PortGeometry& whole, const PortGeometry& own)
-    : dim(whole.dim), round(whole.round), whole_(&whole), own_(&own), made_(whole.points.size(), 0.0) {
+    : dim(whole.dim),
+      round(whole.round),
+      whole_(&whole),
+      own_(&own),
+      made_(whole.points.size(), 0.0) {
   build(tree_, posed(whole), 0.0);
   build(own_tree_, posed(own), 0.0);
   posed_ = true;

@@ -11,6 +11,7 @@
 
 #include "coordinator/couple.hpp"
 #include "coordinator/coupling/contact.hpp"
+#include "coordinator/coupling/parallel_force.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 

@@ -10,6 +10,7 @@
 
 #include "base/index.hpp"
 #include "coordinator/coupling/joint.hpp"
+#include "coordinator/coupling/parallel_force.hpp"
 #include "coordinator/coupling/transmission.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"

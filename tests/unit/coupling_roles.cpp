@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "coordinator/coupling/islands.hpp"
+#include "coordinator/coupling/parallel_force.hpp"
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/transmission.hpp"
 #include "tests/support/scenes.hpp"

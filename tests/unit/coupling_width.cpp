@@ -13,6 +13,7 @@
 #include "base/error.hpp"
 #include "coordinator/couple.hpp"
 #include "coordinator/coupling/contact.hpp"
+#include "coordinator/coupling/parallel_force.hpp"
 #include "coordinator/coupling/robin.hpp"
 #include "tests/support/bundle.hpp"
 #include "tests/support/scenes.hpp"

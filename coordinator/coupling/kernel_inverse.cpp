@@ -1,4 +1,4 @@
-#include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/kernel_inverse.hpp"
 
 #include <cmath>
 #include <utility>
