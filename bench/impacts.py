@@ -128,7 +128,7 @@ def zones(abut):
 
 
 def flights(abut):
-    """Requests to each of two bodies until they touch: begin, flights, windows that are near."""
+    """Requests to each of two bodies until they touch: flights, and windows that are near."""
     for scene in ("disks_head_on.yaml", "balls.yaml", "bars_3d.yaml"):
         measures, _ = run(abut, scene, [])
         touch = measures["contact.impact.begin"]
@@ -138,7 +138,7 @@ def flights(abut):
 
 
 def beyond_memory(abut):
-    """What yields by a kernel does so no more where the kernel has no room."""
+    """What yields by a kernel does not where the kernel has no room."""
     for scene in ("bars_2d.yaml", "bars_2d_implicit.yaml", "balls.yaml"):
         measures, _ = run(
             abut,

@@ -91,7 +91,7 @@ void run_all(int repeats) {
                            Kind{"waving quadrilaterals", 0.1, 0.4, false, seven_points},
                            Kind{"the same, 4 x 7 points", 0.1, 0.4, false, four_times_seven},
                            Kind{"waving triangles", 0.1, 0.4, true, seven_points}}) {
-    for (const int cells : {10, 20, 40, 80}) run(kind, cells, repeats);
+    for (const int cells : {10, 20, 40, 80, 214}) run(kind, cells, repeats);
   }
 }
 

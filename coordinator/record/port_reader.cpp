@@ -9,7 +9,8 @@ namespace abut {
 std::array<double, 3> PortReader::gathered(double scale) const {
   std::array<double, 3> sum{};
   const std::size_t dim = index(port_->geometry.dim);
-  for (std::size_t i = 0; i < values_.size(); ++i) sum[i % dim] += values_[i];
+  for (std::size_t i = 0; i < values_.size(); i += dim)
+    for (std::size_t d = 0; d < dim; ++d) sum[d] += values_[i + d];
   for (double& value : sum) value *= scale;
   return sum;
 }

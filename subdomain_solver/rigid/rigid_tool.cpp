@@ -64,7 +64,8 @@ std::optional<Failed> RigidTool::step(const Window& window, int i) {
 std::optional<Failed> RigidTool::move_to(const Window& window, double time) {
   see(window, time, true);  // for the forces
   std::vector<double> force(way_.size(), 0.0);
-  for (std::size_t k = 0; pushed_ && k < seen_.f.size(); ++k) force[k % way_.size()] += seen_.f[k];
+  for (std::size_t k = 0; pushed_ && k < seen_.f.size(); k += way_.size())
+    for (std::size_t i = 0; i < way_.size(); ++i) force[i] += seen_.f[k + i];
   const double length = time - state_.time;
   for (std::size_t i = 0; i < way_.size(); ++i) {
     const double place = way_[i](time);

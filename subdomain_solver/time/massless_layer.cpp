@@ -51,6 +51,13 @@ bool MasslessLayer::respond(std::span<const double> q, std::span<const double> h
   return problem_.model->evaluate_layer(q, history, want, response_);
 }
 
+/// Factors serve for several iterations, but where the material may begin to yield.
+bool MasslessLayer::lasts() const { return problem_.model->history_size() == 0; }
+
+Model::Want MasslessLayer::along() const {
+  return lasts() ? Model::Want::force : Model::Want::tangent;
+}
+
 /// Factors of the layer's stiffness; columns of its inverse are to be found anew.
 bool MasslessLayer::factor() {
   if (factored_) return true;
@@ -151,7 +158,7 @@ bool MasslessLayer::walk(std::vector<double>& q, std::span<const double> history
   const double most = 0.5 * begin;
   part_ = 1.0;
   largest_ = move(q, part_);
-  for (int halving = 0; !respond(q, history, Model::Want::force); ++halving) {
+  for (int halving = 0; !respond(q, history, along()); ++halving) {
     if (halving == most_halvings) return false;
     part_ *= 0.5;
     largest_ = move(q, -part_);
@@ -163,7 +170,7 @@ bool MasslessLayer::walk(std::vector<double>& q, std::span<const double> history
     const double next = part_ * begin / (begin - here);
     largest_ = move(q, next - part_);
     part_ = next;
-    if (!respond(q, history, Model::Want::force)) return false;
+    if (!respond(q, history, along())) return false;
   }
   return true;
 }
@@ -184,9 +191,10 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, problem_.model->roundoff(q)))
       return std::nullopt;
     const double left = rest_.norm();
-    if (iteration > 0 && left > slow * before && !respond(q, history, Model::Want::tangent))
+    const bool anew = iteration == 0 || !lasts() || left > slow * before;
+    if (anew && iteration > 0 && lasts() && !respond(q, history, Model::Want::tangent))
       return inadmissible(time);
-    if ((iteration == 0 || left > slow * before) && !factor()) return not_held(time);
+    if (anew && !factor()) return not_held(time);
     before = left;
     if (!factors_->solve(rest_, step_) || (contact != nullptr && !press(time, q, *contact)))
       return failed_newton({NewtonReport::End::singular}, time);

@@ -37,6 +37,8 @@ class MasslessLayer final : private Compliance {
   [[nodiscard]] bool respond(std::span<const double> q, std::span<const double> history,
                              Model::Want want);
   [[nodiscard]] bool factor();
+  bool lasts() const;
+  Model::Want along() const;  // wanted at places of a step
   void find_places(const Contact& contact);
   [[nodiscard]] bool press(double time, std::span<const double> q, Contact& contact);
   double find_rest(const Vector& loads, bool pressed);
