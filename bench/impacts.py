@@ -139,7 +139,7 @@ def flights(abut):
 
 def beyond_memory(abut):
     """What yields by a kernel does not where the kernel has no room."""
-    for scene in ("bars_2d.yaml", "bars_2d_implicit.yaml", "balls.yaml"):
+    for scene in ("bars_2d.yaml", "bars_2d_implicit.yaml"):
         measures, _ = run(
             abut,
             scene,
