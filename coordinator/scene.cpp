@@ -368,9 +368,9 @@ void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
                     ports[0]->dim),
         document.where(path), "Give contact: {}, or model both bodies as bars (dimension: 1).");
   if (ports[0]->dim != 1) return;
-  if (const std::string rows = fmt::format("interfaces.{}.contact.rows", interface.name);
-      document.has(rows))
-    throw InputError("has no effect: ends of bars are points", document.where(rows),
+  if (interface.contact && interface.contact->points)  // a resolved scene names the default
+    throw InputError("has no effect: ends of bars are points",
+                     document.where(fmt::format("interfaces.{}.contact.rows", interface.name)),
                      "Leave it out.");
   const double normal = ports[0]->normals.at(0);
   if (normal + ports[1]->normals.at(0) != 0.0)
