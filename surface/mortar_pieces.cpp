@@ -1,5 +1,7 @@
 #include "surface/mortar_pieces.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 
 #include "base/index.hpp"
@@ -15,6 +17,11 @@ constexpr double most_cancellation = 1.0e3;
 /// Of the facet's area: what N covers less of while some of N is out of reach there has no dual
 /// functions. They would lead N on beyond the part that is near, on curved faces through K.
 constexpr double whole = 0.999;
+
+/// Cosine between the normals of facets: what N turns away from by more, an edge of K that sinks
+/// in, leaves the reach by its slope and not by N's curve. Dual functions hold such an edge at its
+/// own place, shape functions would average it with what stands off.
+constexpr double steep = 0.7;
 
 /// Coefficients A of the dual functions, Phi = A N, where D and w are those of the facet; false
 /// when round-off would show in them.
@@ -59,7 +66,7 @@ void mortar_pieces(const PosedSurface& k, const PosedSurface& n, std::span<const
     facet.first = static_cast<std::int32_t>(out.pieces.size());
     facet.t.setZero();
     facet.weight.setZero();
-    double covered = 0.0;
+    double covered = 0.0, faces = 0.0;
     bool leaves = false;
     for (end = begin; end < pairs.size() && pairs[end].k == pairs[begin].k; ++end) {
       const Corners partner = corners(n, pairs[end].n);
@@ -72,10 +79,12 @@ void mortar_pieces(const PosedSurface& k, const PosedSurface& n, std::span<const
       facet.t += overlap.own;
       facet.weight += overlap.moments;
       covered += overlap.area;
+      faces = std::max(faces, -normal.dot(ground.plane.normal));
     }
     facet.last = static_cast<std::int32_t>(out.pieces.size());
     if (facet.first == facet.last) continue;
-    const double least = leaves && covered < whole * ground.area ? 1.0 : options.dual_from;
+    const bool rim = leaves && faces > steep && covered < whole * ground.area;
+    const double least = rim ? 1.0 : options.dual_from;
     to_dual(ground, covered, least, facet, std::span(out.pieces).subspan(index(facet.first)));
     out.facets.push_back(facet);
   }

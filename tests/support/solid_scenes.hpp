@@ -49,6 +49,7 @@ struct SolidText {
   std::vector<double> position = {}, velocity = {};  // first components; empty: not told
   std::string port = "face", side = {};
   std::string model = "fe", keys = {};  // kind; keys beside dimension and mesh, with commas
+  std::string field = {};               // of velocity, one expression per dimension, or empty
   std::string more = {};                // keys of the body, in lines of their own
 
   std::string text() const {
@@ -59,6 +60,7 @@ struct SolidText {
     out += "    initial: {";
     if (!position.empty()) out += fmt::format("position: {}, ", components(position, dim));
     if (!velocity.empty()) out += fmt::format("velocity: {}", components(velocity, dim));
+    if (!field.empty()) out += fmt::format("velocity_field: [{}]", field);
     return out + fmt::format("}}\n    ports: {{{}: {{side: {}}}}}\n{}", port, side, more);
   }
 };
