@@ -158,7 +158,7 @@ TEST(RowsOfPoints, AreRefusedWhereTheyWouldMissOrDoNothing) {
       << message;
   SceneText bars = two_bars();
   std::string flat = bars.text();
-  flat.replace(flat.find("contact: {}"), 11, "contact: {rows: mortar}");
+  flat.replace(flat.find("contact: {}"), 11, "contact: {rows: point_to_surface}");
   EXPECT_NE(refused(flat).find("contact.rows: has no effect: ends of bars are points"),
             std::string::npos)
       << refused(flat);
