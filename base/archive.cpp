@@ -1,6 +1,11 @@
 #include "base/archive.hpp"
 
+// The same sums by the widest vector registers that the machine has, where the library can choose.
+#if defined(__x86_64__) && __has_include(<xxh_x86dispatch.h>)
+#include <xxh_x86dispatch.h>
+#else
 #include <xxhash.h>
+#endif
 
 #include <cstring>
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -321,6 +322,24 @@ TEST(Codec, EveryCauseOfFailureComesBack) {
     EXPECT_EQ(got.cause, cause);
     EXPECT_EQ(got.time, 0.5);
     EXPECT_EQ(got.detail, "why");
+  }
+}
+
+// Identity: what is refused is what std::isfinite refuses, at every place and of either sign.
+TEST(Codec, WaveformsHoldFiniteNumbersAlone) {
+  using Limits = std::numeric_limits<double>;
+  const Description body = two_ports();
+  for (const double value : {0.0, 1.0, Limits::max(), Limits::denorm_min(), Limits::min(), infinity,
+                             nan_value, Limits::signaling_NaN()}) {
+    for (const double sign : {1.0, -1.0}) {
+      for (std::size_t place = 0; place < full_response().ports[1].trace.f.size(); ++place) {
+        Response response = full_response(), got;
+        response.ports[1].trace.f[place] = std::copysign(value, sign);
+        const v1::Advanced wire = through_bytes(response, bare_advance());
+        const std::string why = refusal([&] { decode(wire, body, bare_advance(), got); });
+        EXPECT_EQ(why == "accepted", std::isfinite(value)) << value << ' ' << sign << ' ' << why;
+      }
+    }
   }
 }
 
