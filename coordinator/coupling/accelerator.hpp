@@ -47,7 +47,8 @@ class Relaxation final : public Accelerator {
 class Aitken final : public Accelerator {
  public:
   explicit Aitken(double initial) : initial_(initial) {}
-  explicit Aitken(ApplyInverse probe) : initial_(1.0), probe_(std::move(probe)) {}
+  explicit Aitken(ApplyInverse probe, double initial = 1.0)
+      : initial_(initial), probe_(std::move(probe)) {}
   void reset(std::uint64_t) override;
   Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) override;
 

@@ -14,9 +14,6 @@ namespace {
 /// Substeps over which a force goes on rising or falling as it did; then it stays.
 constexpr int most_rising = 3;
 
-/// The least factor that a first correction is relaxed by.
-constexpr double least_factor = 0.05;
-
 }  // namespace
 
 void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
@@ -32,11 +29,12 @@ void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodi
   keep_row(trace, trace.v, now, v_begin_);
   keep_begin(window, joint, bodies);
   find_kernel(window.length(), joint, bodies);
+  linear_ = bodies.describe(n.body).linear;
   const bool stands = std::isinf(bodies.describe(n.body).mass) && largest(v_begin_) == 0.0;
   flight_.resize(0);
-  const bool looked = see_look(joint, bodies);
+  const bool looked = free_ahead() && see_look(joint, bodies);
   flies_ = !stands && !looked;
-  looks_ = !stands && bodies.describe(n.body).linear ? window.length() : 0.0;
+  looks_ = !stands && free_ahead() ? window.length() : 0.0;
   scale_.step = std::max(kinematic_grid_.step, iterate_.steps.step);
   scale_.velocity = joint.closing_speed;
 }
@@ -61,7 +59,7 @@ void CompliantObstacle::keep_begin(const TimeWindow& window, const Joint& joint,
   const std::size_t now = index_at_begin(force, window.begin);
   const std::span<const double> pressed = row(force, force.f, now);
   for (std::size_t c = 0; c < pressed.size(); ++c) f_begin_[value(force.points, c)] = pressed[c];
-  if (now == 0 || bodies.describe(joint.neumann_side().body).linear) return;
+  if (now == 0) return;
   const std::span<const double> before = row(force, force.f, now - 1);
   for (std::size_t c = 0; c < before.size(); ++c)
     f_rate_[value(force.points, c)] =
@@ -82,9 +80,9 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
   kernel_ = nullptr;
   first_factor_ = 1.0;
   const Description& body = bodies.describe(n.body);
-  if (std::isinf(body.mass) || !body.can.kernel) return;
+  if (std::isinf(body.mass)) return;
   find_zone(length, joint, bodies);
-  if (zone_.empty()) return;
+  if (zone_.empty() || !body.can.kernel) return;
   const double values =
       zone_.points().empty() ? iterate_.width : static_cast<double>(zone_.points().size() * dim_);
   const double size = kernel_bytes(values, iterate_.steps.count);
@@ -92,7 +90,7 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
     if (!bodies.describe(k.body).can.kernel) return;
     const double own = bodies.kernel(k.body, k.port, kinematic_grid_.count).displacement.front();
     const double others = bodies.kernel(n.body, n.port, iterate_.steps.count).displacement.front();
-    if (own > 0.0) first_factor_ = std::max(least_factor, own / (own + std::max(0.0, others)));
+    if (own > 0.0) first_factor_ = own / (own + std::max(0.0, others));
     return;
   }
   kernel_ = &answer_;
@@ -102,19 +100,19 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
 }
 
 /// The flight of the Neumann side: what pressed at the begin goes, as the force of the instant. A
-/// body whose kernel is that of another state flies under what presses, carried on.
+/// body without a kernel, or whose kernel is that of another state, flies under what presses,
+/// carried on.
 void CompliantObstacle::release(const Joint& joint, Bodies& bodies) {
   guess_.clear();
   guess_.width = iterate_.width;
   guess_.support = ForceSupport::linear;
   guess_.time = levels_of(iterate_.steps);
-  const bool linear = bodies.describe(joint.neumann_side().body).linear;
   for (int i = 0; i <= iterate_.steps.count; ++i) {
     const double ahead = guess_.time[index(std::min(i, most_rising))] - guess_.time[0];
     for (std::size_t c = 0; c < f_begin_.size(); ++c) {
       const double on = f_begin_[c] + ahead * f_rate_[c];
       const bool turned = on * f_begin_[c] < 0.0 || f_begin_[c] == 0.0;
-      guess_.f.push_back(i == 0 ? f_begin_[c] : linear || turned ? 0.0 : on);
+      guess_.f.push_back(i == 0 ? f_begin_[c] : free_ahead() || turned ? 0.0 : on);
     }
   }
   bodies.force(joint.neumann_side()) = guess_;
@@ -176,20 +174,19 @@ void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>& x, const 
   const double place = largest(bodies.port(joint.neumann_side()).geometry.points);
   scale_.roundoff =
       roundoff_of(place + largest(u_begin_), g.tail(width).lpNorm<Eigen::Infinity>());
-  if (kernel_ == nullptr) return;
+  if (zone_.empty()) return;
   take(bodies.reaction(joint.kinematic_side()));
-  take_back(g);
+  if (kernel_ != nullptr) take_back(g);
   leave_far(x, g);
 }
 
-/// Points outside the zone do not give way, and nothing presses on them: where they are is not
-/// contact's affair.
+/// Nothing presses on points outside the zone: where they are is not contact's affair.
 void CompliantObstacle::leave_far(const Eigen::Ref<const Eigen::VectorXd>& x,
                                   Eigen::Ref<Eigen::VectorXd> g) const {
-  if (kernel_->points.empty()) return;
+  const std::vector<std::int32_t>& zone = zone_.points();
+  if (zone.empty()) return;
   std::size_t next = 0;
   for (int first = 0; first < iterate_.width; first += static_cast<int>(dim_)) {
-    const std::vector<std::int32_t>& zone = kernel_->points;
     const bool inside = next < zone.size() && index(zone[next]) * dim_ == index(first);
     next += inside ? 1 : 0;
     const Eigen::Index dim = static_cast<Eigen::Index>(dim_);

@@ -12,7 +12,8 @@ namespace abut {
 /// the surface's motion without the reactions of the window: d of  y = d + kernel * reaction.  It
 /// is constant where the partner is linear, and then one sweep is enough: a flight of the partner
 /// without reactions, the kinematic body against it, the partner under the reaction. Partners
-/// without a kernel, or of other substeps, are obstacles that do not give way: d is their motion.
+/// without a kernel, or of other substeps, are obstacles that do not give way: d is their motion,
+/// first guessed under the forces of the window before, carried on, and relaxed.
 class CompliantObstacle final : public Transmission {
  public:
   /// `largest_kernel`: [B] beyond which the obstacle does not give way.
@@ -35,7 +36,7 @@ class CompliantObstacle final : public Transmission {
     return first_factor_ * r;
   }
   double first_factor() const override { return first_factor_; }
-  bool contracts() const override { return kernel_ != nullptr; }
+  bool contracts() const override { return true; }
   bool ordered() const override { return true; }
 
  private:
@@ -49,6 +50,9 @@ class CompliantObstacle final : public Transmission {
   void take_back(Eigen::Ref<Eigen::VectorXd> motion) const;
   void leave_far(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> g) const;
   double reached(const Waveform& trace) const;
+  /// The Neumann side flies under no force: none presses, or what it moves under forces is known by
+  /// its kernel.
+  bool free_ahead() const { return linear_ && (kernel_ != nullptr || zone_.empty()); }
 
   double largest_kernel_;  // [B]
   Substeps kinematic_grid_;
@@ -61,6 +65,7 @@ class CompliantObstacle final : public Transmission {
   std::vector<double> u_k_;                // [m] of the kinematic port, at the window's begin
   const PortKernel* kernel_ = nullptr;     // null: the obstacle does not give way
   PortKernel answer_;                      // of the zone, as the kinematic body knows it
+  bool linear_ = false;                    // of the Neumann side
   bool flies_ = false;
   double looks_ = 0.0;  // [s] by which the Neumann side looks on after the window
   Eigen::VectorXd flight_;  // [m] as the iterate; empty: none was flown

@@ -33,6 +33,13 @@ Eigen::VectorXd Schwarz::apply_inverses(const Eigen::VectorXd& r,
   return out;
 }
 
+Eigen::VectorXd Schwarz::relaxed(Eigen::VectorXd r, std::span<const Joint> joints) const {
+  for (std::size_t i = 0; i < layout_.joints.size(); ++i)
+    r.segment(layout_.first[i], layout_.first[i + 1] - layout_.first[i]) *=
+        joints[index(layout_.joints[i])].how->first_factor();
+  return r;
+}
+
 Accelerator& Schwarz::accelerator_of(const Island& island, std::span<const Joint> joints) {
   std::unique_ptr<Accelerator>& slot = accelerators_[island.joints];
   if (slot == nullptr) {
@@ -139,6 +146,9 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
 
   const bool contracts = std::ranges::all_of(
       island.joints, [&joints](int j) { return joints[index(j)].how->contracts(); });
+  const ApplyInverse plain = [this, joints](const Eigen::VectorXd& r) {
+    return relaxed(r, joints);
+  };
   std::unique_ptr<Accelerator> careful;
   double share = 1.0;  // of a plain step
   int growths = 0;     // of the residual
@@ -156,8 +166,8 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
       if (!contracts || !led) return *failed;
       accelerator.forget();
       share *= 0.5;
-      careful = std::make_unique<Aitken>(share);
-      x_ = held_ + share * (g_ - held_);
+      careful = std::make_unique<Aitken>(plain, share);
+      x_ = held_ + share * plain(g_ - held_);
       continue;
     }
     held_ = x_;
@@ -173,7 +183,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     const bool early = 2 * report.iterations <= options_.max_iterations;  // later it is no bad luck
     if (contracts && early && report.iterations > 1 && report.residual.largest() > before) {
       accelerator.forget();
-      if (growths++ > 0 && careful == nullptr) careful = std::make_unique<Aitken>(0.5);
+      if (growths++ > 0 && careful == nullptr) careful = std::make_unique<Aitken>(plain, 0.5);
     }
     if (options_.kernels && std::ranges::any_of(island.joints, [&joints](int j) {
           return joints[index(j)].how->projects();

@@ -58,6 +58,8 @@ class Schwarz {
   std::optional<Failed> sweep(const Island& island, std::span<const Joint> joints,
                               const Layout& layout, const Eigen::VectorXd& x, Bodies& bodies) const;
   Eigen::VectorXd apply_inverses(const Eigen::VectorXd& r, std::span<const Joint> joints) const;
+  /// The residual, of every joint relaxed by its first factor.
+  Eigen::VectorXd relaxed(Eigen::VectorXd r, std::span<const Joint> joints) const;
   /// A joint's part of a stacked vector.
   Eigen::VectorBlock<Eigen::VectorXd> part(Eigen::VectorXd& v, std::size_t i) const {
     return v.segment(layout_.first[i], layout_.first[i + 1] - layout_.first[i]);

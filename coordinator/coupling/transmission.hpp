@@ -51,8 +51,8 @@ class Transmission {
   /// True when contact came or went within the window at the last image, and apply_inverse answers
   /// that exactly for linear bodies: secants of other substeps in contact would spoil it.
   virtual bool projects() const { return false; }
-  /// True when the plain iteration contracts by itself: a residual that grows is the doing of
-  /// secants, of another state or from the other side of a kink, where points come and go.
+  /// True when small plain steps, of the first factor, contract: a residual that grows is the doing
+  /// of secants, of another state or from the other side of a kink, where points come and go.
   virtual bool contracts() const { return false; }
   /// True when motion is overwritten on a side: that does work of which nobody knows.
   virtual bool overwrites_motion() const { return false; }
