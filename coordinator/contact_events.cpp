@@ -56,11 +56,13 @@ void ContactEvents::start() {
 /// Surfaces that may meet in the window are iterated, also where they do not: their bodies find
 /// out. They are free again when they would need several windows to meet.
 void ContactEvents::approach(Joint& joint, const TimeWindow& window) {
-  const double apart = distance(joint, bodies_), bound = closing_bound(joint, bodies_);
+  if (joint.pressing()) return;
+  measure_approach(joint, bodies_);
+  const auto [apart, bound] = joint.approach;
   const double way = bound * window.length();
-  if (!joint.pressing()) joint.touch_speed = bound;
+  joint.touch_speed = bound;
   if (!joint.closed() && apart <= near_windows * way) return engage(joint, bound, window.begin);
-  if (joint.closed() && !joint.pressing() && apart > far_windows * way) joint.disengage();
+  if (joint.closed() && apart > far_windows * way) joint.disengage();
 }
 
 void ContactEvents::begin(const TimeWindow& window) {
@@ -95,8 +97,8 @@ std::optional<double> ContactEvents::engage_touching(const TimeWindow& window) {
   for (Joint& joint : joints_) {
     if (!joint.unilateral() || joint.closed()) continue;
     if (joint.surfaces) {
-      if (boxes_apart(joint, bodies_)) continue;
-      engage(joint, closing_bound(joint, bodies_), window.begin);
+      if (kept_apart(joint, bodies_, window.length())) continue;
+      engage(joint, joint.approach.speed, window.begin);
       first = std::min(first.value_or(window.end), window.end);  // again, as a whole
       continue;
     }

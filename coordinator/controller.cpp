@@ -113,7 +113,7 @@ bool Controller::fly_free() {
     }
     return true;
   }
-  if (!stayed_apart(joints_, bodies_)) {
+  if (!stayed_apart(joints_, bodies_, flight.length())) {
     bodies_.restore_all();
     flight_.grounded = true;
     flight_.limit = std::max(1, windows / 4);  // the bound was wrong: trust it less for a while
@@ -226,7 +226,7 @@ std::string Controller::Attempt::trouble(double tolerance) const {
 }
 
 /// As many as the horizon allows, and that do not pass the next windows whose fields are wanted.
-int Controller::windows_to_fly() const {
+int Controller::windows_to_fly() {
   const double whole = clock_.whole_windows(free_flight_horizon(joints_, bodies_));
   int most = flight_.limit;
   if (scene_.output.field_output) {

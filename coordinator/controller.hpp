@@ -69,7 +69,7 @@ class Controller {
   Judgement judge_trouble(const TimeWindow& window);
   void accept(const TimeWindow& window);
 
-  int windows_to_fly() const;
+  int windows_to_fly();
   void prepare(const TimeWindow& window, int records, Sampling sampling);
   int records_in(const TimeWindow& window) const;
   void fill_reports(bool flown);

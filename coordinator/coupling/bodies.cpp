@@ -12,6 +12,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "coordinator/coupling/port_pose.hpp"
 
 namespace abut {
 
@@ -69,13 +70,18 @@ Bodies::Bodies(std::vector<Subdomain*> subdomains, double window)
       window_(window),
       requests_(subdomains_.size()),
       responses_(subdomains_.size()),
+      poses_(subdomains_.size()),
       everybody_(subdomains_.size()),
       compute_seconds_(subdomains_.size(), 0.0) {
   std::iota(everybody_.begin(), everybody_.end(), 0);
   for (std::size_t b = 0; b < subdomains_.size(); ++b) {
     requests_[b].boundary.resize(subdomains_[b]->describe().ports.size());
+    for (std::size_t p = 0; p < requests_[b].boundary.size(); ++p)
+      poses_[b].push_back(std::make_unique<PortPose>());
   }
 }
+
+Bodies::~Bodies() = default;
 
 Waveform& Bodies::force(const Side& side) {
   std::vector<Waveform>& forces = boundary(side).forces;
@@ -93,6 +99,12 @@ const Waveform& Bodies::reaction(const Side& side) const {
   return response(side.body).ports[index(side.port)].reactions.at(index(side.partner)).force;
 }
 
+const PortPose& Bodies::pose(const Side& side) const {
+  PortPose& pose = *poses_[index(side.body)][index(side.port)];
+  pose.see(port(side).geometry, response(side.body).ports[index(side.port)].trace);
+  return pose;
+}
+
 void Bodies::meet(const Side& side, const PortGeometry& partner, const ContactLaw& law) {
   if (describe(side.body).can.obstacle) (*this)[side.body].meet(side.port, partner, law);
 }
@@ -107,6 +119,7 @@ void Bodies::save_all() {
 
 void Bodies::restore_all() {
   for (Subdomain* body : subdomains_) body->restore();
+  taken_back_ = true;
 }
 
 void Bodies::prepare(const TimeWindow& window, int records, Sampling sampling) {
@@ -123,11 +136,13 @@ void Bodies::prepare(const TimeWindow& window, int records, Sampling sampling) {
 std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
   const auto began = std::chrono::steady_clock::now();
   for (int b : bodies) (*this)[b].start(request(b));
+  taken_back_ = false;
   std::optional<Failed> failed;
   double slowest = 0.0;
   for (int b : bodies) {
     Response& response = responses_[index(b)];
     Outcome outcome = finish((*this)[b], response);
+    for (const auto& pose : poses_[index(b)]) pose->forget();
     ++exchanges_;
     if (Failed* failure = std::get_if<Failed>(&outcome); failure != nullptr) {
       failure->detail = "body '" + describe(b).name + "': " + failure->detail;

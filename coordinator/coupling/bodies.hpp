@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "contract/subdomain.hpp"
 
 namespace abut {
+
+class PortPose;
 
 /// One end of a joint.
 struct Side {
@@ -23,6 +26,8 @@ class Bodies {
  public:
   /// `window` [s]: a whole one, which is the step of bodies that have none.
   explicit Bodies(std::vector<Subdomain*> subdomains, double window = 0.0);
+
+  ~Bodies();
 
   int count() const { return static_cast<int>(subdomains_.size()); }
   Subdomain& operator[](int body) { return *subdomains_[index(body)]; }
@@ -38,6 +43,11 @@ class Bodies {
   Obstacle& obstacle(const Side& side);
   /// What the latest response of one end does to the other.
   const Waveform& reaction(const Side& side) const;
+
+  /// Where the surface of one end stands by its latest response; made when it is asked for.
+  const PortPose& pose(const Side& side) const;
+  /// Whether the latest responses are of an attempt that was taken back.
+  bool taken_back() const { return taken_back_; }
 
   /// Tells a side that takes obstacles whom it may meet.
   void meet(const Side& side, const PortGeometry& partner, const ContactLaw& law);
@@ -91,6 +101,8 @@ class Bodies {
   double window_;  // [s]
   std::vector<Advance> requests_;
   std::vector<Response> responses_;
+  std::vector<std::vector<std::unique_ptr<PortPose>>> poses_;  // by body and port
+  bool taken_back_ = false;
   std::vector<double> struck_;
   std::vector<int> everybody_;
   Kernels kernels_;

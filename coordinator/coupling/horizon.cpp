@@ -14,16 +14,17 @@ namespace {
 constexpr double margin = 0.95;
 }  // namespace
 
-double free_flight_horizon(std::span<const Joint> joints, const Bodies& bodies) {
+double free_flight_horizon(std::span<Joint> joints, const Bodies& bodies) {
   double horizon = std::numeric_limits<double>::infinity();
-  for (const Joint& joint : joints) {
+  for (Joint& joint : joints) {
     if (joint.closed()) return 0.0;
+    if (joint.surfaces) measure_approach(joint, bodies);
     const PortResponse& p0 = port_of(bodies, joint.sides[0]);
     const PortResponse& p1 = port_of(bodies, joint.sides[1]);
     const double gap =
-        joint.surfaces ? distance(joint, bodies) : joint.gap(p0.trace.u.back(), p1.trace.u.back());
+        joint.surfaces ? joint.approach.apart : joint.gap(p0.trace.u.back(), p1.trace.u.back());
     if (gap <= 0.0) return 0.0;
-    const double v = closing_bound(joint, bodies);
+    const double v = joint.surfaces ? joint.approach.speed : p0.speed_bound + p1.speed_bound;
     const double a = p0.acceleration_bound + p1.acceleration_bound;
     const double root = std::sqrt(std::max(0.0, v * v + 2.0 * a * gap));
     if (v + root <= 0.0) continue;
@@ -32,9 +33,9 @@ double free_flight_horizon(std::span<const Joint> joints, const Bodies& bodies) 
   return horizon;
 }
 
-bool stayed_apart(std::span<const Joint> joints, const Bodies& bodies) {
-  return std::ranges::all_of(joints, [&bodies](const Joint& joint) {
-    if (joint.surfaces) return boxes_apart(joint, bodies);
+bool stayed_apart(std::span<const Joint> joints, const Bodies& bodies, double length) {
+  return std::ranges::all_of(joints, [&bodies, length](const Joint& joint) {
+    if (joint.surfaces) return kept_apart(joint, bodies, length);
     const PortResponse& p0 = port_of(bodies, joint.sides[0]);
     const PortResponse& p1 = port_of(bodies, joint.sides[1]);
     const bool right = joint.normal[0] > 0.0;  // side 0 looks to the right

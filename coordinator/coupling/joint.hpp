@@ -57,6 +57,13 @@ class Joint {
   bool roles_swap = false;  // published form: after every window in contact
   bool projection = false;  // published form: plastic impact of the contact nodes at first touch
 
+  /// How near surfaces were when a window or a flight began.
+  struct Approach {
+    double apart = 0.0;  // [m] from below
+    double speed = 0.0;  // [m/s] at which they may close; infinity: unknown
+  };
+  Approach approach;
+
   // What contact carries from window to window:
   State contact = State::apart;
   double opened_at = -std::numeric_limits<double>::infinity();  // [s] last release of a kick layer

@@ -3,20 +3,62 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coordinator/coupling/port_pose.hpp"
+#include "surface/least_distance.hpp"
+
 namespace abut {
 
-double distance(const Joint& joint, const Bodies& bodies) {
+namespace {
+
+/// Of the extent of the smaller side: boxes farther apart than this tell the distance well enough.
+constexpr double far_share = 0.5;
+
+struct Boxes {
+  double apart = 0.0;   // [m]
+  double extent = 0.0;  // [m] longest side of the smaller one
+};
+
+/// The boxes in which the sides ended their last replies.
+Boxes last_boxes(const Joint& joint, const Bodies& bodies) {
   const PortResponse& a = port_of(bodies, joint.sides[0]);
   const PortResponse& b = port_of(bodies, joint.sides[1]);
   const std::size_t dim = index(bodies.port(joint.sides[0]).geometry.dim);
   const std::size_t last_a = a.lower.size() - dim, last_b = b.lower.size() - dim;
-  double square = 0.0;
+  double square = 0.0, extent_a = 0.0, extent_b = 0.0;
   for (std::size_t i = 0; i < dim; ++i) {
     const double apart = std::max(a.lower[last_a + i] - b.upper[last_b + i],
                                   b.lower[last_b + i] - a.upper[last_a + i]);
     if (apart > 0.0) square += apart * apart;
+    extent_a = std::max(extent_a, a.upper[last_a + i] - a.lower[last_a + i]);
+    extent_b = std::max(extent_b, b.upper[last_b + i] - b.lower[last_b + i]);
   }
-  return std::max(0.0, std::sqrt(square) - joint.margin);
+  return {std::sqrt(square), std::min(extent_a, extent_b)};
+}
+
+double distance(const Joint& joint, const Bodies& bodies) {
+  const Boxes boxes = last_boxes(joint, bodies);
+  if (boxes.apart > far_share * boxes.extent) return boxes.apart;
+  const PortPose &a = bodies.pose(joint.sides[0]), &b = bodies.pose(joint.sides[1]);
+  return least_distance(a.surface(), a.tree(), b.surface(), b.tree());
+}
+
+/// Of what the sides have in common nothing closes the gap; what a body foresees beyond the
+/// velocities that its points had comes on top.
+double closing_bound(const Joint& joint, const Bodies& bodies) {
+  double absolute = 0.0, foreseen = 0.0;
+  for (const Side& side : joint.sides) {
+    const double bound = port_of(bodies, side).speed_bound;
+    if (std::isinf(bound)) return bound;
+    const PortPose& pose = bodies.pose(side);
+    absolute += bound;
+    foreseen += std::max(0.0, bound - pose.velocity().norm() - pose.spread()) + pose.spread();
+  }
+  const PortPose &a = bodies.pose(joint.sides[0]), &b = bodies.pose(joint.sides[1]);
+  return std::min(absolute, (a.velocity() - b.velocity()).norm() + foreseen);
+}
+
+Joint::Approach approach(const Joint& joint, const Bodies& bodies) {
+  return {std::max(0.0, distance(joint, bodies) - joint.margin), closing_bound(joint, bodies)};
 }
 
 bool boxes_apart(const Joint& joint, const Bodies& bodies) {
@@ -34,8 +76,16 @@ bool boxes_apart(const Joint& joint, const Bodies& bodies) {
   return true;
 }
 
-double closing_bound(const Joint& joint, const Bodies& bodies) {
-  return port_of(bodies, joint.sides[0]).speed_bound + port_of(bodies, joint.sides[1]).speed_bound;
+}  // namespace
+
+void measure_approach(Joint& joint, const Bodies& bodies) {
+  if (!bodies.taken_back()) joint.approach = approach(joint, bodies);
+}
+
+bool kept_apart(const Joint& joint, const Bodies& bodies, double length) {
+  if (boxes_apart(joint, bodies)) return true;
+  const Joint::Approach now = approach(joint, bodies);
+  return joint.approach.apart + now.apart > length * std::max(joint.approach.speed, now.speed);
 }
 
 }  // namespace abut

@@ -4,16 +4,16 @@
 
 namespace abut {
 
-// How near the sides of a joint of surfaces are, by the boxes that their points sweep, the joint's
-// margin around them.
+// How near the sides of a joint of surfaces are, the joint's margin counted as theirs.
 
-/// [m] between the boxes in which the sides ended their last replies; 0: they overlap.
-double distance(const Joint& joint, const Bodies& bodies);
+/// Notes in joint.approach how far its sides are apart at the end of the last replies, and how fast
+/// they may close. What is noted stays where the last replies were of an attempt that was taken
+/// back.
+void measure_approach(Joint& joint, const Bodies& bodies);
 
-/// Whether the boxes of the sides stayed apart in every record's part of the last replies.
-bool boxes_apart(const Joint& joint, const Bodies& bodies);
-
-/// [m/s] at which their points may approach each other; infinity: unknown.
-double closing_bound(const Joint& joint, const Bodies& bodies);
+/// Whether the sides stayed apart over the last replies, which span `length` [s] from where
+/// joint.approach was measured: their swept boxes did in every record's part, or what they were
+/// apart at both ends is more than they can have come together in between.
+bool kept_apart(const Joint& joint, const Bodies& bodies, double length);
 
 }  // namespace abut

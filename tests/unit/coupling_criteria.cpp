@@ -253,10 +253,10 @@ TEST(Horizon, SweptBoxesThatMeetInAnyPartAreSeen) {
   m.right.reply.ports[0].lower = {-0.5, -0.05};
   m.right.reply.ports[0].upper = {0.0, 0.0};
   m.reply();
-  EXPECT_TRUE(stayed_apart({&m.joint, 1}, m.bodies));
+  EXPECT_TRUE(stayed_apart({&m.joint, 1}, m.bodies, 1.0));
   m.left.reply.ports[0].upper = {-0.5, -0.1};  // in the first part
   m.reply();
-  EXPECT_FALSE(stayed_apart({&m.joint, 1}, m.bodies));
+  EXPECT_FALSE(stayed_apart({&m.joint, 1}, m.bodies, 1.0));
 }
 
 }  // namespace
