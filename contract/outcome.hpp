@@ -49,6 +49,7 @@ struct Reaction {
   // [N] on the partner, on its points that the obstacle listed; where the obstacle is of all, on
   // some of them perhaps: nothing acts on the others
   Waveform force;
+  double dissipated = 0.0;  // [J] by friction, since the run began
 };
 
 /// One port's reply to a window.

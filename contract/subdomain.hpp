@@ -23,6 +23,7 @@ struct Capabilities {
   bool kernel = false;     // answers probe()
   bool impedance = false;  // accepts BoundaryData::impedance
   bool yielding = false;   // takes obstacles that give way: yields()
+  bool friction = false;   // takes laws with friction: ContactLaw::rubs()
 };
 
 /// A solid inside a body that tables show as if it were a body: monolithic models hold several.

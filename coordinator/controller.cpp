@@ -43,7 +43,8 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       clock_(scene.time.begin, scene.time.end, scene.time.window),
       roles_(bodies_, scene.time.window, scene.schwarz.parallel),
       events_(joints_, bodies_, roles_, narrator_, scene.schwarz.tolerance, scene.time.window),
-      guard_(scene.schwarz.energy_guard, conserving_bodies(), !presses_quasi_statically()),
+      guard_(scene.schwarz.energy_guard, conserving_bodies(), !presses_quasi_statically(),
+             unresolved_inertia()),
       reports_(joints_.size()) {
   end_.status = "completed";
   flight_.longest = flight_.limit = windows_at_once(scene.time.window, descriptions_of(bodies_));
@@ -295,6 +296,17 @@ std::vector<bool> Controller::conserving_bodies() const {
     for (const Side& side : joint.sides) conserves[index(side.body)] = false;
   }
   return conserves;
+}
+
+/// m (2 dt)^2/2: of what a body moves at after two steps under its body force.
+std::vector<double> Controller::unresolved_inertia() const {
+  std::vector<double> inertia;
+  for (int b = 0; b < bodies_.count(); ++b) {
+    const Description& body = bodies_.describe(b);
+    const bool moves = std::isfinite(body.mass) && !body.quasi_static;
+    inertia.push_back(moves ? 2.0 * body.mass * body.step * body.step : 0.0);
+  }
+  return inertia;
 }
 
 /// Rows that close inside a step without inertia leave an energy of the order of the step, whatever

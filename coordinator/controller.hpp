@@ -75,6 +75,7 @@ class Controller {
   void fill_reports(bool flown);
   void watch_energy(EnergyGuard::Verdict verdict);
   std::vector<bool> conserving_bodies() const;
+  std::vector<double> unresolved_inertia() const;
   bool presses_quasi_statically() const;
   void fail(double time, const std::string& text);
   void state(Archive& archive);

@@ -193,6 +193,15 @@ void set_surfaces(const InterfaceSpec& spec, const Scene& scene, const Bodies& b
                     spec.sides[index(finder)]),
         where + ".contact.rows", "Leave rows out.");
   }
+  joint.kinetic_friction = spec.contact->friction;
+  joint.static_friction = spec.contact->static_friction.value_or(spec.contact->friction);
+  if (joint.static_friction > 0.0) {
+    const Description& body = bodies.describe(joint.sides[index(finder)].body);
+    require(body.can.friction, body, where + ".contact.friction",
+            "finds the contact and takes no friction",
+            "Leave friction out, or let the other side find contact by "
+            "transmission.unilateral.kinematic.");
+  }
   if (joint.points) {
     check_points(side(finder), side(1 - finder), where);
   } else {

@@ -6,9 +6,11 @@
 
 namespace abut {
 
-EnergyGuard::EnergyGuard(double share, std::vector<bool> conserves, bool together)
+EnergyGuard::EnergyGuard(double share, std::vector<bool> conserves, bool together,
+                         std::vector<double> inertia)
     : share_(share),
       conserves_(std::move(conserves)),
+      inertia_(std::move(inertia)),
       all_conserve_(std::ranges::all_of(conserves_, [](bool yes) { return yes; })),
       together_(together),
       bodies_(conserves_.size()) {}
@@ -28,7 +30,10 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
     }
     account.change = here - account.first - account.ports - (struck.empty() ? 0.0 : struck[b]);
   }
-  if (!std::exchange(begun_, true)) first_ = own;
+  if (!std::exchange(begun_, true)) {
+    first_ = own;
+    most_ = unresolved(responses);
+  }
   most_ = std::max(most_, motion);
   if (most_ <= 0.0) return Verdict::fine;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -40,6 +45,17 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
   culprit_ = -1;
   if (!together_) return Verdict::fine;
   return verdict((own - first_) / most_, share_, all_conserve_);
+}
+
+double EnergyGuard::unresolved(std::span<const Response> responses) const {
+  double energy = 0.0;
+  for (std::size_t b = 0; b < inertia_.size(); ++b) {
+    double most = 0.0;
+    for (const PortResponse& port : responses[b].ports)
+      most = std::max(most, port.acceleration_bound);
+    energy += inertia_[b] * most * most;
+  }
+  return energy;
 }
 
 EnergyGuard::Verdict EnergyGuard::verdict(double change, double share, bool losses) {

@@ -17,8 +17,11 @@ class EnergyGuard {
 
   /// `share`: change, as a fraction of the largest kinetic and stored energy so far, that fails.
   /// `conserves`: by body, whether it is watched by itself; all: whether losses are wrong too.
-  /// `together`: whether the sum of all bodies is watched.
-  EnergyGuard(double share, std::vector<bool> conserves, bool together = true);
+  /// `together`: whether the sum of all bodies is watched. `inertia` [kg s^2]: by body, of what
+  /// body forces may give in a step; empty: none. Bodies that rest when loads set in at once have
+  /// no energy that steps resolve: it counts as if there had been as much in motion.
+  EnergyGuard(double share, std::vector<bool> conserves, bool together = true,
+              std::vector<double> inertia = {});
 
   /// Looks at the last record of every body, once for every accepted window. Warns once, at half
   /// the share of growth; of losses at the share itself.
@@ -36,15 +39,17 @@ class EnergyGuard {
     double change = 0.0;  // [J] that nothing explains
   };
 
+  double unresolved(std::span<const Response> responses) const;
   Verdict verdict(double change, double share, bool losses);
 
   double share_;
   std::vector<bool> conserves_;
+  std::vector<double> inertia_;  // [kg s^2]
   bool all_conserve_, together_;
   bool begun_ = false, warned_ = false;
   std::vector<Account> bodies_;
   double first_ = 0.0;  // [J] at the first look
-  double most_ = 0.0;   // [J] largest kinetic and stored energy so far
+  double most_ = 0.0;   // [J] largest kinetic and stored energy so far, or what steps resolve
   double growth_ = 0.0;
   int culprit_ = -1;
 };

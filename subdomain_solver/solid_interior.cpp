@@ -92,7 +92,7 @@ void SolidInterior::find_surfaces() {
     description_.measures.emplace_back("contact.crossings");
   }
   for (FieldInfo& field : touch_fields()) description_.fields.push_back(std::move(field));
-  description_.can.obstacle = description_.can.yielding = true;
+  description_.can.obstacle = description_.can.yielding = description_.can.friction = true;
 }
 
 void SolidInterior::describe(std::string name, const std::vector<PortNodes>& ports) {
@@ -279,7 +279,7 @@ void SolidInterior::follow_ports(double time) {
   const bool pressed = parts_.problem->contact != nullptr;
   if (!port_forces_->acts() && !pressed) return;
   port_forces_->at(time, now_);
-  if (pressed) contact_->add_to(now_);
+  if (pressed) contact_->settle(now_);
   add_port_work();
   state_.port_force = now_;
 }
@@ -370,13 +370,16 @@ FieldValues SolidInterior::nodal_reactions() {
 
 Energy SolidInterior::energy() const {
   const Motion& motion = state_.motion;
-  return {parts_.scheme.integrator->kinetic(motion), motion.stored, motion.dissipated,
+  const double rubbed = contact_ ? contact_->dissipated() : 0.0;
+  return {parts_.scheme.integrator->kinetic(motion), motion.stored, motion.dissipated + rubbed,
           motion.external_work - state_.port_work};  // partners account for what ports exchange
 }
 
 /// A hint, which the horizon's flight verifies: waves inside may yet throw the surface faster.
 void SolidInterior::finish(std::size_t port, PortResponse& reply) const {
   if (description_.dim == 1) return;
+  for (std::size_t k = 0; contact_ && k < reply.reactions.size(); ++k)
+    reply.reactions[k].dissipated = contact_->dissipated(port, k);
   const std::size_t dim = index(description_.dim);
   const double* v = seen_.v.data() + port_map_->first(port);
   double most = 0.0;
@@ -386,6 +389,7 @@ void SolidInterior::finish(std::size_t port, PortResponse& reply) const {
     most = std::max(most, square);
   }
   reply.speed_bound = std::sqrt(most);
+  reply.acceleration_bound = parts_.body_acceleration;
 }
 
 /// Of a nonlinear body: far above the rounding of strains, far below where they matter.

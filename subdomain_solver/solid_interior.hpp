@@ -46,6 +46,7 @@ class SolidInterior final : public Interior {
     std::vector<HeldCoordinates> constraints;
     std::unique_ptr<Reactions> reactions;  // null: no constraints
     std::vector<double> frequencies;       // [Hz] of modal bodies, ascending
+    double body_acceleration = 0.0;        // [m/s^2] of the body force
     std::string rung = "fe";               // for people
     bool deforms = true;                   // there is stress to tell of
   };

@@ -147,7 +147,7 @@ Joint make_surface_joint(std::string name, std::array<Side, 2> sides, const Bodi
 void introduce(Joint& joint, Bodies& bodies) {
   for (std::size_t s : {0u, 1u})
     bodies.meet(joint.sides[s], bodies.port(joint.sides[1 - s]).geometry,
-                {joint.tied(), joint.points});
+                {joint.tied(), joint.points, joint.static_friction, joint.kinetic_friction});
 }
 
 }  // namespace abut

@@ -42,7 +42,9 @@ class Joint {
   std::string name;
   std::array<Side, 2> sides;
   bool surfaces = false;  // in two and three dimensions: they touch anywhere, one body maps them
-  bool points = false;    // of surfaces: rows of single points
+  // Of surfaces: rows of single points; Coulomb's coefficients of what sticks and what slides.
+  bool points = false;
+  double static_friction = 0.0, kinetic_friction = 0.0;
   double margin = 0.0;    // [m] of surfaces: rows of facets may press before these touch
   int width = 1;          // values of a port's motion: points x dimension; of surfaces not used
   // Of one point: outward, +1 or -1. Of surfaces tied point by point: the signs with which their

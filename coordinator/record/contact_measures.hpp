@@ -33,6 +33,7 @@ class ContactMeasures {
   void read_gap(const WindowReport& report, const std::array<const Waveform*, 2>& traces);
   const Waveform* force_of(const WindowReport& report, std::size_t kinematic) const;
   void read_force(const Waveform& trace, const PortReader& reader);
+  void read_friction(const WindowReport& report, std::size_t kinematic);
   void read_rest(const Waveform& trace);
   void write_force(double closed, Measures& out);
   void write_times(Measures& out) const;
@@ -47,6 +48,7 @@ class ContactMeasures {
   ClosedVelocity velocity_;
   double impulse_ = 0.0;  // [N s]
   double peak_ = 0.0;     // [N]
+  double dissipated_ = 0.0;  // [J]
   double gap_min_;        // [m]
   std::optional<ContactErrors> errors_;
   std::unique_ptr<ForceFilter> filter_;

@@ -94,14 +94,10 @@ void MeasureRecorder::write_positions() {
     const Port& port = body.ports[position.port];
     const std::size_t dim = position.most.size();
     for (std::size_t k = 0; k < dim; ++k) {
-      double reference = -std::numeric_limits<double>::infinity();
-      for (std::size_t i = k; i < port.geometry.points.size(); i += dim)
-        reference = std::max(reference, port.geometry.points[i]);
       const std::string name = fmt::format("position.{}.{}.max{}", body.name, port.name,
                                            axis_ending(static_cast<int>(dim), static_cast<int>(k)));
-      const double most = reference + position.most[k];
-      if (std::isfinite(most)) {
-        measures_.set(name, most);
+      if (std::isfinite(position.most[k])) {
+        measures_.set(name, position.most[k]);
       } else {
         measures_.none(name, "the body reports no displacements of this port");
       }

@@ -8,7 +8,7 @@ namespace abut {
 namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
-static_assert(sizeof(Capabilities) == 7 * sizeof(bool));
+static_assert(sizeof(Capabilities) == 8 * sizeof(bool));
 static_assert(sizeof(Port) == sizeof(std::string) + sizeof(PortGeometry) + sizeof(double));
 static_assert(sizeof(Member) ==
               sizeof(std::string) + sizeof(double) + sizeof(std::vector<std::int32_t>));
@@ -21,6 +21,7 @@ void encode(const Capabilities& from, v1::Capabilities& to) {
   to.set_kernel(from.kernel);
   to.set_impedance(from.impedance);
   to.set_yielding(from.yielding);
+  to.set_friction(from.friction);
 }
 
 Capabilities decode(const v1::Capabilities& from) {
@@ -30,7 +31,8 @@ Capabilities decode(const v1::Capabilities& from) {
           .impulse = from.impulse(),
           .kernel = from.kernel(),
           .impedance = from.impedance(),
-          .yielding = from.yielding()};
+          .yielding = from.yielding(),
+          .friction = from.friction()};
 }
 
 void decode_port(const v1::Port& from, const Description& body, const FieldPath& path, Port& to) {

@@ -11,7 +11,7 @@ namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
 static_assert(sizeof(Recoil) == 2 * sizeof(double));
-static_assert(sizeof(Reaction) == sizeof(Waveform));
+static_assert(sizeof(Reaction) == sizeof(Waveform) + sizeof(double));
 static_assert(sizeof(PortResponse) == 2 * sizeof(Waveform) + 3 * sizeof(std::vector<double>) +
                                           3 * sizeof(double) + sizeof(std::optional<Recoil>));
 
@@ -32,7 +32,10 @@ void encode(const PortResponse& from, const Want& want, WireWriter& to) {
   while (reactions-- > 0) {
     const std::size_t before = to.size();
     const Waveform& force = from.reactions[reactions].force;
-    if (!force.empty()) encode(force, Want{}, v1::Reaction::kForceFieldNumber, to);
+    if (!force.empty()) {
+      to.number(v1::Reaction::kDissipatedFieldNumber, from.reactions[reactions].dissipated);
+      encode(force, Want{}, v1::Reaction::kForceFieldNumber, to);
+    }
     to.close(Wire::kReactionsFieldNumber, before);
   }
   to.number(Wire::kWorkFieldNumber, from.work);
@@ -80,12 +83,15 @@ void decode_ahead(Bytes from, const Port& port, const Advance& asked, const Fiel
   require_field(to, to.u, "u", path);
 }
 
-/// The force inside a reaction; empty: absent.
-Bytes force_of(Bytes reaction, const FieldPath& path) {
+/// The force inside a reaction; empty: absent. Reads the rest of it.
+Bytes force_of(Bytes reaction, const FieldPath& path, double& dissipated) {
   Bytes force;
+  dissipated = 0.0;
   for (WireReader from(reaction, path); from.next();) {
     if (from.field() == v1::Reaction::kForceFieldNumber) {
       force = from.message();
+    } else if (from.field() == v1::Reaction::kDissipatedFieldNumber) {
+      dissipated = number(from.number(), FieldPath{&path, "dissipated"}, Allow::not_negative);
     } else {
       from.skip();
     }
@@ -96,8 +102,9 @@ Bytes force_of(Bytes reaction, const FieldPath& path) {
 /// The reaction to one obstacle of the request: on the points that it listed; where it is of all,
 /// on those that the reply lists.
 void decode_reaction(Bytes bytes, const Waveform& motion, int dim, const TimeWindow& window,
-                     const FieldPath& parent, Waveform& to) {
-  const Bytes from = force_of(bytes, parent);
+                     const FieldPath& parent, Reaction& reaction) {
+  Waveform& to = reaction.force;
+  const Bytes from = force_of(bytes, parent, reaction.dissipated);
   if (from.empty()) return to.clear();  // absent
   const FieldPath path{&parent, "force"};
   if (motion.empty()) path.fail("answers an obstacle that is absent");
@@ -168,7 +175,7 @@ void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance
         }
         decode_reaction(from.message(), obstacles[reactions].motion, port.geometry.dim,
                         asked.window, FieldPath{&path, "reactions", static_cast<int>(reactions)},
-                        to.reactions[reactions].force);
+                        to.reactions[reactions]);
         ++reactions;
         break;
       case Wire::kLowerFieldNumber:

@@ -10,7 +10,7 @@ namespace {
 // A member added to the contract and forgotten here would silently arrive as zero.
 static_assert(sizeof(PortGeometry) ==
               4 * sizeof(std::vector<double>) + 3 * sizeof(double));  // two are dim and round
-static_assert(sizeof(ContactLaw) == 2 * sizeof(bool));
+static_assert(sizeof(ContactLaw) == 3 * sizeof(double));              // the first are two flags
 
 /// Facets are nodes one facet after the other; offsets say where each begins, and the last ends.
 void check_facets(const PortGeometry& surface, const FieldPath& path) {
@@ -67,6 +67,8 @@ void encode(const Meeting& from, v1::Meet& to) {
   encode(from.partner, *to.mutable_surface());
   to.set_tied(from.law.tied);
   to.set_points(from.law.points);
+  to.set_static_friction(from.law.static_friction);
+  to.set_kinetic_friction(from.law.kinetic_friction);
 }
 
 void decode(const v1::Meet& from, const Description& body, Meeting& to) {
@@ -83,6 +85,9 @@ void decode(const v1::Meet& from, const Description& body, Meeting& to) {
   if (to.partner.count() == 0) FieldPath{&surface, "points"}.fail("is empty");
   to.law.tied = from.tied();
   to.law.points = from.points();
+  const FieldPath sticks{&path, "static_friction"}, slides{&path, "kinetic_friction"};
+  to.law.static_friction = number(from.static_friction(), sticks, Allow::not_negative);
+  to.law.kinetic_friction = number(from.kinetic_friction(), slides, Allow::not_negative);
 }
 
 }  // namespace abut

@@ -25,7 +25,8 @@ void touch_measures(const std::vector<TouchedSurface>& surfaces, std::span<const
                     std::span<const double> places, std::vector<double>& out);
 
 /// At the nodes of the mesh: contact_pressure [Pa], contact_gap [m] of the side that finds contact
-/// (0 where it finds nothing near), contact_status (0 nothing near, 1 near, 2 pressed).
+/// (0 where it finds nothing near), contact_status (0 nothing near, 1 near, 2 pressed, 3 pressed
+/// and held by friction, told of the side that finds contact).
 std::vector<FieldInfo> touch_fields();
 std::vector<FieldValues> touch_field_values(const std::vector<TouchedSurface>& surfaces,
                                             const PortContact& contact, std::size_t nodes,

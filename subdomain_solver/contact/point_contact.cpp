@@ -67,7 +67,7 @@ bool PointContact::takes(std::size_t port, const PortKernel& kernel) const {
          kernel.step == step_;
 }
 
-void PointContact::add_to(std::vector<double>& forces) const {
+void PointContact::settle(std::vector<double>& forces) {
   for (std::size_t k = 0; k < acting_.size(); ++k)
     forces[ends_[acting_[k]].point.port] = force_(static_cast<Eigen::Index>(k));
 }

@@ -28,7 +28,7 @@ class PointContact final : public PortContact {
   bool has(std::size_t port) const override;
   void hold(const std::vector<double>& forces, std::vector<double>& now) const override;
   void aim(int i, const std::vector<double>& forces, const std::vector<double>&) override;
-  void add_to(std::vector<double>& forces) const override;
+  void settle(std::vector<double>& forces) override;
   void react(std::size_t port, std::size_t partner, const std::vector<double>& forces,
              std::vector<double>& out) const override;
   bool takes(std::size_t port, const PortKernel& kernel) const override;

@@ -33,8 +33,8 @@ class PortContact : public Contact {
   /// The window's substep i is next, 0: its begin. `forces`: all that act now; `places`: [m] (port
   /// values) displacements now.
   virtual void aim(int i, const std::vector<double>& forces, const std::vector<double>& places) = 0;
-  /// Puts what was solved for last to the forces of partners; the substep is done.
-  virtual void add_to(std::vector<double>& forces) const = 0;
+  /// The substep is done: puts what was solved for last to the forces of partners.
+  virtual void settle(std::vector<double>& forces) = 0;
   /// Points of a partner that react() is of in this window, ascending, empty: all; more of them as
   /// the window goes on. Null: those that its obstacle lists.
   virtual const std::vector<std::int32_t>* reacting(std::size_t, std::size_t) const {
@@ -43,8 +43,14 @@ class PortContact : public Contact {
   /// Appends the force on these points [N].
   virtual void react(std::size_t port, std::size_t partner, const std::vector<double>& forces,
                      std::vector<double>& out) const = 0;
-  /// Calls `see` with the points of a port that have something near, and the gaps [m] there.
-  virtual void see_gaps(std::size_t, const std::function<void(std::size_t, double)>&) const {}
+  /// [J] by friction with a partner, since the run began.
+  virtual double dissipated(std::size_t, std::size_t) const { return 0.0; }
+  /// [J] with all.
+  virtual double dissipated() const { return 0.0; }
+  /// Calls `see` with the points of a port that have something near, the gaps [m] there, and
+  /// whether friction holds them.
+  using SeeGap = std::function<void(std::size_t point, double gap, bool sticks)>;
+  virtual void see_gaps(std::size_t, const SeeGap&) const {}
   /// Whether an obstacle before the port may give way by a kernel.
   virtual bool takes(std::size_t port, const PortKernel& kernel) const = 0;
 };

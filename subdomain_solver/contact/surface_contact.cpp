@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "surface/tangents.hpp"
 
 namespace abut {
 
@@ -45,6 +46,11 @@ void SurfaceContact::state(Archive& archive) {
   archive.field("pressed", pressed_);
   archive.field("reactions", reactions_);
   archive.field("turned", turned_);
+  archive.field("slid", slid_);
+  archive.field("shears", shears_);
+  archive.field("anchors", anchors_);
+  archive.field("anchored", anchored_);
+  archive.field("dissipated", dissipated_);
 }
 
 std::span<double> SurfaceContact::pressed(const Meeting& m) {
@@ -55,9 +61,13 @@ std::span<double> SurfaceContact::reacted(const Meeting& m) {
   return std::span(reactions_).subspan(m.reacted, m.obstacle->width());
 }
 
+std::span<double> SurfaceContact::anchor(const Meeting& m) {
+  return std::span(anchors_).subspan(m.anchor, m.law.rubs() ? m.obstacle->width() : 0);
+}
+
 /// Whom the ports may meet is known when the first window begins.
 void SurfaceContact::meet(const Window& window) {
-  std::size_t pressed = 0, reacted = 0;
+  std::size_t pressed = 0, reacted = 0, slid = 0, anchor = 0;
   for (std::size_t s = 0; s < surfaces_.size(); ++s) {
     const Surface& own = surfaces_[s].surface;
     for (std::size_t k = 0; k < window.partners[own.port].size(); ++k) {
@@ -69,8 +79,16 @@ void SurfaceContact::meet(const Window& window) {
       Meeting m;
       m.obstacle = std::make_unique<SurfaceObstacle>(own.port, k, *own.geometry, met, body_);
       m.own = s;
+      m.law = met.law;
       m.pressed = pressed;
       m.reacted = reacted;
+      m.slid = slid;
+      m.anchor = anchor;
+      if (met.law.rubs()) {
+        m.parts = own.geometry->dim;
+        slid += own.nodes.size();
+        anchor += m.obstacle->width();
+      }
       pressed += surfaces_[s].at.size();
       reacted += m.obstacle->width();
       meetings_.push_back(std::move(m));
@@ -86,17 +104,31 @@ void SurfaceContact::begin_forces() {
   const std::size_t reacted = last.reacted + last.obstacle->width();
   if (pressed_.size() != pressed) pressed_.assign(pressed, 0.0);
   if (reactions_.size() != reacted) reactions_.assign(reacted, 0.0);
-  if (turned_.size() != meetings_.size()) turned_.assign(meetings_.size(), 0.0);
+  const bool rubs = last.law.rubs();
+  const std::size_t slid = last.slid + (rubs ? surfaces_[last.own].surface.nodes.size() : 0);
+  const std::size_t anchors = last.anchor + (rubs ? last.obstacle->width() : 0);
+  const auto fit = [](std::vector<double>& values, std::size_t size) {
+    if (values.size() != size) values.assign(size, 0.0);
+  };
+  fit(turned_, meetings_.size());
+  fit(slid_, slid);
+  fit(shears_, slid * index(surfaces_[last.own].surface.geometry->dim));
+  fit(anchors_, anchors);
+  fit(anchored_, meetings_.size());
+  fit(dissipated_, meetings_.size());
 }
 
 void SurfaceContact::impose(const Window& window) {
   if (meetings_.empty()) meet(window);
   begin_forces();
-  for (Meeting& m : meetings_) {
+  for (std::size_t k = 0; k < meetings_.size(); ++k) {
+    Meeting& m = meetings_[k];
     const std::size_t port = m.obstacle->port();
     m.obstacle->impose(window.request.boundary[port], window.partners[port][m.obstacle->partner()],
                        window.grid, surfaces_[m.own].pose, reacted(m));
     if (m.obstacle->acts()) continue;
+    anchored_[k] = 0.0;
+    if (m.law.rubs()) forget_shears(m);
     std::ranges::fill(pressed(m), 0.0);
     std::ranges::fill(reacted(m), 0.0);
   }
@@ -117,15 +149,17 @@ bool SurfaceContact::has(std::size_t port) const {
 }
 
 void SurfaceContact::hold(const std::vector<double>&, std::vector<double>& now) const {
-  add_to(now);
-}
-
-void SurfaceContact::add_to(std::vector<double>& forces) const {
   for (const Meeting& m : meetings_) {
     const Own& own = surfaces_[m.own];
     for (std::size_t v = 0; v < own.at.size(); ++v)
-      forces[own.surface.first + v] += pressed_[m.pressed + v];
+      now[own.surface.first + v] += pressed_[m.pressed + v];
   }
+}
+
+void SurfaceContact::settle(std::vector<double>& forces) {
+  hold(forces, forces);
+  for (std::size_t k = 0; k < meetings_.size(); ++k)
+    if (meetings_[k].law.rubs() && meetings_[k].obstacle->acts()) settle_friction(k);
 }
 
 void SurfaceContact::react(std::size_t port, std::size_t partner, const std::vector<double>&,
@@ -149,8 +183,7 @@ bool SurfaceContact::takes(std::size_t port, const PortKernel& kernel) const {
   return has(port) && kernel.support == ForceSupport::nodal;
 }
 
-void SurfaceContact::see_gaps(std::size_t port,
-                              const std::function<void(std::size_t, double)>& see) const {
+void SurfaceContact::see_gaps(std::size_t port, const SeeGap& see) const {
   for (const Meeting& m : meetings_) {
     if (m.obstacle->port() != port || !m.obstacle->acts()) continue;
     const SurfaceRows& rows = m.obstacle->rows();
@@ -158,7 +191,9 @@ void SurfaceContact::see_gaps(std::size_t port,
       const std::int32_t first = rows.k.offsets[index(r)], last = rows.k.offsets[index(r) + 1];
       const auto begin = rows.k.values.begin();
       const auto most = std::max_element(begin + first, begin + last);
-      see(index(rows.k.columns[index(most - begin)]), rows.gaps[index(r)]);
+      const bool sticks =
+          r < m.rows && row_state(rows_[index(m.first_row + r)], row_force_) == RowState::sticks;
+      see(index(rows.k.columns[index(most - begin)]), rows.gaps[index(r)], sticks);
     }
   }
 }
@@ -172,7 +207,10 @@ void SurfaceContact::aim(int i, const std::vector<double>&, const std::vector<do
   }
   for (std::size_t k = 0; k < meetings_.size(); ++k) {
     Meeting& m = meetings_[k];
-    if (m.obstacle->acts()) m.obstacle->aim(i, reacted(m), turned_[k] != 0.0);
+    if (!m.obstacle->acts()) continue;
+    m.obstacle->aim(i, reacted(m), turned_[k] != 0.0);
+    if (m.law.rubs())
+      m.obstacle->begin_slip(i, anchored_[k] != 0.0 ? anchor(m) : std::span<double>());
   }
 }
 
@@ -194,40 +232,68 @@ void SurfaceContact::pose(const Vector& q) {
   }
 }
 
-/// One row's terms: n . T over coordinates.
-void SurfaceContact::find_terms(const Own& own, const SurfaceRows& rows, int row) {
+/// One component's terms: direction . T over coordinates.
+void SurfaceContact::find_terms(const Own& own, const SurfaceRows& rows, int row,
+                                const double* direction) {
   const std::size_t dim = index(rows.dim);
-  const double* normal = rows.normals.data() + index(row) * dim;
   for (std::int32_t e = rows.k.offsets[index(row)]; e < rows.k.offsets[index(row) + 1]; ++e) {
     const std::size_t point = index(rows.k.columns[index(e)]);
     const Matrix3* axes = own.surface.frames[point];
     for (std::size_t i = 0; i < dim; ++i) {
-      double along = axes == nullptr ? normal[i] : 0.0;
+      double along = axes == nullptr ? direction[i] : 0.0;
       for (std::size_t k = 0; axes != nullptr && k < dim; ++k)
-        along += (*axes)(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) * normal[k];
+        along += (*axes)(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) * direction[k];
       terms_.push_back({own.at[point * dim + i], rows.k.values[index(e)] * along});
     }
   }
   first_term_.push_back(terms_.size());
 }
 
+/// The normals of a meeting's rows and, where it rubs, their tangents; and with what they rub.
+void SurfaceContact::add_components(Meeting& m) {
+  const SurfaceRows& rows = m.obstacle->rows();
+  const std::size_t dim = index(rows.dim);
+  m.rows = rows.count();
+  for (int r = 0; r < m.rows; ++r) {
+    const std::size_t at = directions_.size();
+    const double* normal = rows.normals.data() + index(r) * dim;
+    directions_.insert(directions_.end(), normal, normal + dim);
+    if (m.parts > 1) {
+      directions_.resize(at + index(m.parts) * dim);
+      tangents(rows.dim, normal, std::span(directions_).subspan(at + dim));
+    }
+    const bool slid = m.law.rubs() && slid_[m.slid + index(rows.nodes[index(r)])] != 0.0;
+    rows_.push_back({static_cast<Eigen::Index>(at / dim), m.parts,
+                     slid ? m.law.kinetic_friction : m.law.static_friction});
+    for (int p = 0; p < m.parts; ++p)
+      find_terms(surfaces_[m.own], rows, r, directions_.data() + at + index(p) * dim);
+  }
+}
+
 /// The rows of all meetings, for the present poses.
 void SurfaceContact::make_rows() {
   terms_.clear();
   first_term_.assign(1, 0);
-  Eigen::Index count = 0;
+  directions_.clear();
+  rows_.clear();
+  rubs_ = false;
   for (Meeting& m : meetings_) {
-    m.row = count;
+    m.first = static_cast<Eigen::Index>(first_term_.size()) - 1;
+    m.first_row = static_cast<int>(rows_.size());
     m.rows = 0;
     if (!m.obstacle->acts()) continue;
     m.obstacle->join(surfaces_[m.own].pose, surfaces_[m.own].travel, reacted(m));
-    m.rows = m.obstacle->rows().count();
-    count += m.rows;
-    for (int r = 0; r < m.rows; ++r) find_terms(surfaces_[m.own], m.obstacle->rows(), r);
+    add_components(m);
+    rubs_ = rubs_ || (m.parts > 1 && m.rows > 0);
   }
 }
 
-/// Gaps of the free pose, and the compliance among the rows.
+std::span<const double> SurfaceContact::directions(const Meeting& m) const {
+  const std::size_t dim = index(surfaces_[m.own].surface.geometry->dim);
+  return std::span(directions_).subspan(index(m.first) * dim, index(m.rows) * index(m.parts) * dim);
+}
+
+/// Gaps of the free pose, slips to it, and the compliance among the components.
 bool SurfaceContact::find_problem(const Vector& free, Compliance& give) {
   const Eigen::Index count = static_cast<Eigen::Index>(first_term_.size()) - 1;
   compliance_.setZero(count, count);
@@ -235,9 +301,11 @@ bool SurfaceContact::find_problem(const Vector& free, Compliance& give) {
   pose(free);
   for (Meeting& m : meetings_) {
     if (m.rows == 0) continue;
-    gaps(m.obstacle->rows(), surfaces_[m.own].pose, m.obstacle->free(),
-         {gaps_.data() + m.row, index(m.rows)});
-    m.obstacle->add_compliance(m.row, compliance_);
+    row_gaps_.resize(index(m.rows));
+    gaps(m.obstacle->rows(), surfaces_[m.own].pose, m.obstacle->free(), row_gaps_);
+    for (int r = 0; r < m.rows; ++r) gaps_(m.first + r * m.parts) = row_gaps_[index(r)];
+    if (m.parts > 1) find_slips(m);
+    m.obstacle->add_compliance(m.first, directions(m), compliance_);
   }
   for (Eigen::Index r = 0; r < count; ++r) {
     for (std::size_t t = first_term_[index(r)]; t < first_term_[index(r) + 1]; ++t) {
@@ -254,7 +322,7 @@ bool SurfaceContact::find_problem(const Vector& free, Compliance& give) {
   return true;
 }
 
-/// From the rows' forces to those of coordinates, ports and partners.
+/// From the components' forces to those of coordinates, ports and partners.
 void SurfaceContact::spread() {
   force_.setZero();
   for (std::size_t r = 0; r + 1 < first_term_.size(); ++r) {
@@ -270,13 +338,15 @@ void SurfaceContact::spread() {
     for (const std::size_t value : near.values()) on_partner[value] = 0.0;
     const SurfaceRows& rows = m.obstacle->rows();
     const std::size_t dim = index(surfaces_[m.own].surface.geometry->dim);
-    for (int r = 0; r < m.rows; ++r) {
-      const double force = row_force_(m.row + r);
+    const std::span<const double> along = directions(m);
+    for (std::size_t c = 0; c * dim < along.size(); ++c) {
+      const double force = row_force_(m.first + static_cast<Eigen::Index>(c));
+      const std::size_t r = c / index(m.parts);
       const auto add = [&](const SparseRows& of, double factor, const auto& to) {
-        for (std::int32_t e = of.offsets[index(r)]; e < of.offsets[index(r) + 1]; ++e)
+        for (std::int32_t e = of.offsets[r]; e < of.offsets[r + 1]; ++e)
           for (std::size_t d = 0; d < dim; ++d)
             to(of.columns[index(e)])[d] +=
-                factor * force * of.values[index(e)] * rows.normals[index(r) * dim + d];
+                factor * force * of.values[index(e)] * along[c * dim + d];
       };
       add(rows.k, 1.0, [&](std::int32_t point) { return &pressed(m)[index(point) * dim]; });
       add(rows.n, -1.0,
@@ -325,7 +395,7 @@ const Vector* SurfaceContact::solve(double time, const Vector& free, Compliance&
     }
     last_ = force_;
     if (!find_problem(free, give)) return nullptr;
-    if (!unilateral_forces(compliance_, gaps_, row_force_, buffers_)) return nullptr;
+    if (!find_forces()) return nullptr;
     spread();
     const double change = (force_ - last_).lpNorm<Eigen::Infinity>();
     if (change <= settled * force_.lpNorm<Eigen::Infinity>() || looks_ >= most_looks) break;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "subdomain_solver/contact/port_contact.hpp"
 #include "subdomain_solver/contact/surface_obstacle.hpp"
 #include "subdomain_solver/fe/cell_kernel.hpp"
+#include "subdomain_solver/solve/friction_forces.hpp"
 #include "subdomain_solver/solve/unilateral_forces.hpp"
 
 namespace abut {
@@ -14,7 +16,7 @@ namespace abut {
 /// Contact of a solid in two or three dimensions: its ports are surfaces of nodes without mass,
 /// each of which may meet several partners. One problem for all of them at the end of every
 /// substep [M.88]: rows at the end's geometry, which the forces decide, so rows and forces are
-/// found in turns.
+/// found in turns. Rows that rub have tangents beside their normal [M.100].
 class SurfaceContact final : public PortContact {
  public:
   struct Surface : PortSurface {
@@ -31,13 +33,14 @@ class SurfaceContact final : public PortContact {
   bool has(std::size_t port) const override;
   void hold(const std::vector<double>& forces, std::vector<double>& now) const override;
   void aim(int i, const std::vector<double>& forces, const std::vector<double>& places) override;
-  void add_to(std::vector<double>& forces) const override;
+  void settle(std::vector<double>& forces) override;
   void react(std::size_t port, std::size_t partner, const std::vector<double>& forces,
              std::vector<double>& out) const override;
   const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override;
   bool takes(std::size_t port, const PortKernel& kernel) const override;
-  void see_gaps(std::size_t port,
-                const std::function<void(std::size_t, double)>& see) const override;
+  double dissipated(std::size_t port, std::size_t partner) const override;
+  double dissipated() const override;
+  void see_gaps(std::size_t port, const SeeGap& see) const override;
 
   const std::vector<int>& coordinates() const override { return dofs_; }
   const Vector* solve(double time, const Vector& free, Compliance& give) override;
@@ -53,10 +56,13 @@ class SurfaceContact final : public PortContact {
   struct Meeting {
     std::unique_ptr<SurfaceObstacle> obstacle;
     std::size_t own = 0;                   // of surfaces_
-    std::size_t pressed = 0, reacted = 0;  // where its forces begin in pressed_, reactions_
-    Eigen::Index row = 0, rows = 0;        // its part of the problem
+    ContactLaw law;
+    std::size_t pressed = 0, reacted = 0;    // where its forces begin in pressed_, reactions_
+    std::size_t slid = 0, anchor = 0;        // and its parts of slid_, anchors_, where it rubs
+    Eigen::Index first = 0;                  // of its components
+    int first_row = 0, rows = 0, parts = 1;  // of the problem; components of a row
   };
-  struct Term {  // of a row
+  struct Term {  // of a component
     int coordinate;
     double factor;
   };
@@ -66,11 +72,20 @@ class SurfaceContact final : public PortContact {
   void pose(const Vector& q);
   void make_rows();
   [[nodiscard]] bool find_problem(const Vector& free, Compliance& give);
-  void find_terms(const Own& own, const SurfaceRows& rows, int row);
+  void add_components(Meeting& m);
+  void find_terms(const Own& own, const SurfaceRows& rows, int row, const double* direction);
+  void find_slips(const Meeting& m);
+  [[nodiscard]] bool find_forces();
+  void guess_forces();
+  bool let_slide();
+  void settle_friction(std::size_t meeting);
+  void forget_shears(const Meeting& m);
   void spread();
   [[nodiscard]] bool move(const Vector& free, Compliance& give);
   std::span<double> pressed(const Meeting& m);
   std::span<double> reacted(const Meeting& m);
+  std::span<double> anchor(const Meeting& m);
+  std::span<const double> directions(const Meeting& m) const;
 
   std::vector<Own> surfaces_;
   std::string body_;
@@ -79,14 +94,27 @@ class SurfaceContact final : public PortContact {
   std::vector<double> pressed_;    // [N] (meetings, values of the port) on the body: state
   std::vector<double> reactions_;  // [N] (meetings, values of the partner) on partners: state
   std::vector<double> turned_;     // (meetings) 1: rows of the partner's nodes: state
+  std::vector<double> slid_;       // (meetings that rub, points) 1: slid in the last substep: state
+  // [N] (meetings that rub, values of the port) along the surface, on the body: state
+  std::vector<double> shears_;
+  std::vector<double> shears_before_;
+  std::vector<double> anchors_;     // [m] (meetings that rub, values of the partner): state
+  std::vector<double> anchored_;    // (meetings) 1: anchors are those of now: state
+  std::vector<double> dissipated_;  // [J] (meetings) by friction: state
   int looks_ = 0;                  // at the geometry, at this time
   double time_ = 0.0;              // [s] that was solved for last
-  // The problem of all rows:
-  std::vector<std::size_t> first_term_;  // (rows + 1)
+  // The problem of all rows, by component:
+  std::vector<double> directions_;  // (components, dim) normals and tangents
+  std::vector<FrictionRow> rows_;
+  bool rubs_ = false;
+  std::vector<std::size_t> first_term_;  // (components + 1)
   std::vector<Term> terms_;
   Eigen::MatrixXd compliance_;  // [m/N]
-  Vector gaps_, row_force_;     // [m] of the free pose; [N]
+  Vector gaps_, row_force_;     // [m] of the free pose, and slips to there; [N]
+  std::vector<double> row_gaps_;
+  Vector opened_;  // [m] gaps and slips under the forces
   UnilateralBuffers buffers_;
+  FrictionBuffers friction_buffers_;
   Vector force_, last_, moved_;  // [N], [N], [m] (coordinates)
 };
 

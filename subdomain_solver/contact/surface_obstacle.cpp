@@ -241,25 +241,44 @@ void SurfaceObstacle::join(std::span<const double> pose, double travel,
   }
 }
 
-void SurfaceObstacle::add_compliance(Eigen::Index first, Eigen::MatrixXd& a) {
-  if (!yields()) return;
-  const std::size_t dim = index(rows_.dim);
-  const auto each = [this, dim](int row, const auto& visit) {
-    for (std::int32_t e = rows_.n.offsets[index(row)]; e < rows_.n.offsets[index(row) + 1]; ++e) {
+void SurfaceObstacle::begin_slip(int i, std::span<const double> anchor) {
+  slip_begin_.assign(anchor.begin(), anchor.end());
+  if (!anchor.empty()) return;
+  slip_begin_.resize(width());
+  motion_->interpolate(motion_->u, i <= 1 ? grid_.begin : grid_.time(i - 1), slip_begin_);
+}
+
+void SurfaceObstacle::end_slip(std::span<const double> reaction, std::span<double> anchor) {
+  motion_->interpolate(motion_->u, time_, anchor);
+  give_way(reaction);
+  for (std::size_t v = 0; v < pose_.size(); ++v)
+    anchor[near_.values()[v]] = pose_[v] - near_.points[v];
+}
+
+void SurfaceObstacle::add_compliance(Eigen::Index first, std::span<const double> directions,
+                                     Eigen::MatrixXd& a) {
+  if (!yields() || rows_.count() == 0) return;
+  const std::size_t dim = index(rows_.dim), components = directions.size() / dim;
+  const std::size_t parts = components / index(rows_.count());
+  const auto each = [&](std::size_t component, const auto& visit) {
+    const std::size_t row = component / parts;
+    for (std::int32_t e = rows_.n.offsets[row]; e < rows_.n.offsets[row + 1]; ++e) {
       const int begin = in_zone_[index(rows_.n.columns[index(e)]) * dim];
       for (std::size_t d = 0; begin >= 0 && d < dim; ++d)
-        visit(index(begin) + d, rows_.n.values[index(e)] * rows_.normals[index(row) * dim + d]);
+        if (const double part = directions[component * dim + d]; part != 0.0)
+          visit(index(begin) + d, rows_.n.values[index(e)] * part);
     }
   };
-  for (int r = 0; r < rows_.count(); ++r) {
+  for (std::size_t r = 0; r < components; ++r) {
     answer_.assign(zone_.size(), 0.0);
     each(r, [this](std::size_t force, double part) {
       const double* moved = give_.data() + force * zone_.size();
       for (std::size_t v = 0; v < zone_.size(); ++v) answer_[v] += part * moved[v];
     });
-    for (int s = 0; s < rows_.count(); ++s)
+    for (std::size_t s = 0; s < components; ++s)
       each(s, [&](std::size_t value, double part) {
-        a(first + s, first + r) += part * answer_[value];
+        a(first + static_cast<Eigen::Index>(s), first + static_cast<Eigen::Index>(r)) +=
+            part * answer_[value];
       });
   }
 }

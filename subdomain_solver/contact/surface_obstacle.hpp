@@ -52,8 +52,18 @@ class SurfaceObstacle {
   const SurfaceRows& rows() const { return rows_; }
   /// [m] (near points, dim) where it lies without the substep's own reaction.
   const std::vector<double>& free() const { return free_; }
-  /// Adds the compliance [m/N] among the rows to a square of `a` that begins at `first`.
-  void add_compliance(Eigen::Index first, Eigen::MatrixXd& a);
+  /// Adds the compliance [m/N] among the rows' components, as many of each row as it has
+  /// `directions` (components, dim), to a square of `a` that begins at `first`.
+  void add_compliance(Eigen::Index first, std::span<const double> directions, Eigen::MatrixXd& a);
+
+  // What rubs is followed by displacements of all its points, as they were predicted: what a window
+  // leaves between these and where the partner went would else add up from window to window.
+  /// Where slips of the substep that was aimed at begin: at `anchor` [m] (values of the partner)
+  /// or, where it is empty, where the partner is then.
+  void begin_slip(int i, std::span<const double> anchor);
+  const std::vector<double>& slip_begin() const { return slip_begin_; }  // [m] (values of partner)
+  /// Where they end under a reaction [N]: the next substep's anchor.
+  void end_slip(std::span<const double> reaction, std::span<double> anchor);
 
  private:
   void find_near(std::span<const double> pose, std::span<const double> reaction, bool grows);
@@ -91,6 +101,7 @@ class SurfaceObstacle {
   std::vector<int> in_zone_;                   // (near values) where in the zone; -1: they do not
   std::vector<double> free_, pose_;            // [m] (near points, dim)
   std::vector<double> given_, before_;  // [m] (values) displacements
+  std::vector<double> slip_begin_;      // [m] (values of the partner)
   BoxTree tree_, own_tree_;             // the port's with the reach around its boxes
   std::vector<double> fitted_;          // [m] (near points, dim) pose of tree_; empty: of none
   std::vector<FacetPair> pairs_;

@@ -1,6 +1,7 @@
 #include "subdomain_solver/make/fields.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -61,6 +62,12 @@ std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place&
     };
   loads.push_back(std::make_unique<BodyForce>(model, std::move(uniform), mass));
   return loads;
+}
+
+double body_acceleration(const BodySpec& spec) {
+  double square = 0.0;
+  for (const double b : spec.body_force) square += b * b;
+  return std::sqrt(square);
 }
 
 /// Coordinates and velocities of the start, in the nodes' frames.

@@ -22,6 +22,9 @@ std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node);
 std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place& place,
                                               const FeModel& model);
 
+/// [m/s^2] of the body force that is the same everywhere and always.
+double body_acceleration(const BodySpec& spec);
+
 /// Coordinates [m] and velocities [m/s] of the mesh's model at the start. Throws InputError.
 Motion initial_motion(const BodySpec& spec, const Place& place, const FeModel& model);
 

@@ -78,6 +78,7 @@ std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Place& place) {
   std::unique_ptr<RigidModel> body = std::make_unique<RigidModel>(nodes, integrator.mass);
   parts.map = std::make_unique<RigidMap>(*body, nodes.mesh());
   parts.problem = std::make_unique<Problem>();
+  parts.body_acceleration = body_acceleration(spec);
   parts.problem->model = body.get();
   const std::size_t nodal = index(nodes.dofs());
   for (std::unique_ptr<Load>& load : make_loads(spec, place, nodes))

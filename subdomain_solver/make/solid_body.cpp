@@ -109,6 +109,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   check_statics(spec, place, model, constraints.supports);
   parts.map = std::make_unique<IdentityMap>();
   parts.problem = std::make_unique<Problem>();
+  parts.body_acceleration = body_acceleration(spec);
   parts.problem->model = &model;
   parts.problem->supports = std::move(constraints.supports);
   parts.problem->loads = make_loads(spec, place, model);

@@ -130,7 +130,7 @@ class HandMadeRun {
       trace.f.push_back(f(side, time - shift));
       most = std::max(most, trace.u.back());
     }
-    reply.upper = {most};
+    reply.upper = {most + (side == 0 ? -0.1 : 0.1)};  // a position
     BodyRecord record;
     record.time = end;
     record.energy.kinetic = kinetic(side, end);

@@ -1,0 +1,84 @@
+#include "coordinator/interface_spec.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace abut {
+
+void ContactSpec::fields(Fields& f) {
+  f.word(
+      "rows", points, {"mortar", "point_to_surface"},
+      "of surfaces, where their gaps are held: on the average over a node's surroundings, or, for "
+      "comparisons, at each node of the side that finds contact, which no constant pressure "
+      "passes");
+  std::string text = friction == rough_friction ? "rough" : fmt::format("{}", friction);
+  f.optional(
+      "friction", text, "",
+      "of surfaces, Coulomb's coefficient: forces along the surface are at most this part of "
+      "the pressing ones; rough: nothing slips while it presses");
+  f.optional("static_friction", static_friction, "",
+             "of surfaces, the coefficient while nothing slides; usual: that of friction");
+  if (f.purpose() != Fields::Purpose::read) return;
+  const char* end = text.data() + text.size();
+  const std::from_chars_result parsed = std::from_chars(text.data(), end, friction);
+  const bool whole = parsed.ec == std::errc() && parsed.ptr == end;
+  if (text == "rough") friction = rough_friction;
+  f.check(text == "rough" || (whole && friction >= 0.0 && friction <= rough_friction), "friction",
+          fmt::format("is {}, which is no coefficient of friction", text),
+          fmt::format("Give a number from 0 to {:g}, or rough.", rough_friction));
+  f.check(!static_friction || (*static_friction >= friction && *static_friction <= rough_friction),
+          "static_friction",
+          fmt::format("is {}, below friction, {}, or above {:g}", static_friction.value_or(0.0),
+                      friction, rough_friction),
+          "What sticks holds at least as much as what slides: give both, or leave it out.");
+}
+
+void UnilateralTransmission::fields(Fields& f) {
+  f.optional("kinematic", kinematic, "",
+             "side that solves the one-body contact problem, as body.port; auto: the softer side");
+  f.optional("kernel_memory", kernel_memory, "MiB",
+             "largest memory of the port kernel by which a surface gives way; a contact that needs "
+             "more takes more iterations; usual: 512",
+             positive);
+}
+
+void DirichletNeumannTransmission::fields(Fields& f) {
+  f.required("dirichlet", dirichlet, "", "side on which motion is imposed first, as body.port");
+  f.optional("swap_every_window", swap_every_window, "",
+             "exchange of the roles in every window, as published");
+  f.optional("impact_projection", impact_projection, "",
+             "common velocity of both contact nodes at first touch, of the same momentum");
+}
+
+void RobinTransmission::fields(Fields& f) {
+  f.optional("impedance", impedance, "kg/s",
+             "impedance that each side sees: matched to the partner's by probe, kernel (step over "
+             "the kernel's first coefficient), or a number");
+  if (f.purpose() != Fields::Purpose::read || impedance == "matched" || impedance == "kernel")
+    return;
+  const char* end = impedance.data() + impedance.size();
+  const std::from_chars_result parsed = std::from_chars(impedance.data(), end, number);
+  f.check(parsed.ec == std::errc() && parsed.ptr == end && number > 0.0 && std::isfinite(number),
+          "impedance", fmt::format("is {}, which is no impedance", impedance),
+          "Give matched, kernel, or a number above 0 in kg/s.");
+}
+
+void InterfaceSpec::fields(Fields& f) {
+  f.required("sides", sides, "", "two ports that meet, as body.port");
+  f.optional_section("contact", contact, "contact between the sides");
+  f.choice("transmission", transmission, "rule that couples the sides while they are closed",
+           Presence::optional);
+  f.optional_section("tied", tied, "sides that are one from the start and never part");
+  f.check(contact.has_value() || tied.has_value(), "contact", "is missing",
+          "Write contact: {}, or tied: {} where the sides are joined from the start.");
+  f.check(!contact || !tied, "tied", "stands beside contact",
+          "Keep one of the two: tied sides never part.");
+  f.idle(tied.has_value(), "transmission.dirichlet_neumann.impact_projection",
+         "tied sides never hit each other");
+  f.idle(tied.has_value(), "transmission.unilateral.kernel_memory", "tied sides need no kernel");
+}
+
+}  // namespace abut

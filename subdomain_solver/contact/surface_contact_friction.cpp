@@ -1,0 +1,138 @@
+// What rubs: slips of rows, the forces of rows with friction, and what a substep leaves behind.
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "base/index.hpp"
+#include "subdomain_solver/contact/surface_contact.hpp"
+
+namespace abut {
+
+void SurfaceContact::forget_shears(const Meeting& m) {
+  const std::size_t dim = index(surfaces_[m.own].surface.geometry->dim);
+  const std::size_t points = surfaces_[m.own].surface.nodes.size();
+  std::ranges::fill(std::span(shears_).subspan(m.slid * dim, points * dim), 0.0);
+  std::ranges::fill(std::span(slid_).subspan(m.slid, points), 0.0);
+}
+
+/// What friction took in the substep: by the mean of the forces at its ends, as the schemes work
+/// with them. Which points slid, and where the partner was.
+void SurfaceContact::settle_friction(std::size_t meeting) {
+  const Meeting& m = meetings_[meeting];
+  opened_ = gaps_;
+  opened_.noalias() += compliance_ * row_force_;
+  const std::size_t dim = index(surfaces_[m.own].surface.geometry->dim);
+  const std::size_t points = surfaces_[m.own].surface.nodes.size();
+  const std::span<double> slid = std::span(slid_).subspan(m.slid, points);
+  const std::span<double> shears = std::span(shears_).subspan(m.slid * dim, points * dim);
+  std::ranges::fill(slid, 0.0);
+  shears_before_.assign(shears.begin(), shears.end());
+  std::ranges::fill(shears, 0.0);
+  const std::span<const double> along = directions(m);
+  for (int r = 0; r < m.rows; ++r) {
+    const FrictionRow& row = rows_[index(m.first_row + r)];
+    const std::size_t point = index(m.obstacle->rows().nodes[index(r)]);
+    if (row_state(row, row_force_) == RowState::slips) slid[point] = 1.0;
+    for (int p = 1; p < row.parts; ++p) {
+      const double* tangent = along.data() + index(row.first - m.first + p) * dim;
+      const double now = row_force_(row.first + p);
+      double before = 0.0;
+      for (std::size_t i = 0; i < dim; ++i) {
+        before += tangent[i] * shears_before_[point * dim + i];
+        shears[point * dim + i] += tangent[i] * now;
+      }
+      dissipated_[meeting] -= 0.5 * (before + now) * opened_(row.first + p);
+    }
+  }
+  m.obstacle->end_slip(reacted(m), anchor(m));
+  anchored_[meeting] = 1.0;
+}
+
+double SurfaceContact::dissipated(std::size_t port, std::size_t partner) const {
+  for (std::size_t k = 0; k < meetings_.size() && k < dissipated_.size(); ++k)
+    if (meetings_[k].obstacle->port() == port && meetings_[k].obstacle->partner() == partner)
+      return dissipated_[k];
+  return 0.0;
+}
+
+double SurfaceContact::dissipated() const {
+  return std::accumulate(dissipated_.begin(), dissipated_.end(), 0.0);
+}
+
+/// Slips of a meeting's rows from the substep's begin to the free pose, in this pose's rows.
+void SurfaceContact::find_slips(const Meeting& m) {
+  const Own& own = surfaces_[m.own];
+  const SurfaceRows& rows = m.obstacle->rows();
+  const NearSurface& near = m.obstacle->near();
+  const std::vector<double>& partner = m.obstacle->free();
+  const std::vector<double>& begin = m.obstacle->slip_begin();
+  const std::size_t dim = index(rows.dim);
+  const std::span<const double> along = directions(m);
+  for (std::size_t r = 0; r < index(m.rows); ++r) {
+    std::array<double, 3> slip{};
+    for (std::int32_t e = rows.k.offsets[r]; e < rows.k.offsets[r + 1]; ++e) {
+      const std::size_t v = index(rows.k.columns[index(e)]) * dim;
+      for (std::size_t i = 0; i < dim; ++i)
+        slip[i] += rows.k.values[index(e)] * (own.pose[v + i] - own.begin[v + i]);
+    }
+    for (std::int32_t e = rows.n.offsets[r]; e < rows.n.offsets[r + 1]; ++e) {
+      const std::size_t v = index(rows.n.columns[index(e)]) * dim;
+      for (std::size_t i = 0; i < dim; ++i) {
+        const double moved = partner[v + i] - near.points[v + i] - begin[near.values()[v + i]];
+        slip[i] -= rows.n.values[index(e)] * moved;
+      }
+    }
+    for (std::size_t p = 1; p < index(m.parts); ++p) {
+      const double* tangent = along.data() + (r * index(m.parts) + p) * dim;
+      double sum = 0.0;
+      for (std::size_t i = 0; i < dim; ++i) sum += tangent[i] * slip[i];
+      gaps_(m.first + static_cast<Eigen::Index>(r * index(m.parts) + p)) = sum;
+    }
+  }
+}
+
+/// Rows that stuck and slide now rub with the coefficient of what slides. True: there are such.
+bool SurfaceContact::let_slide() {
+  bool any = false;
+  for (const Meeting& m : meetings_) {
+    if (m.law.static_friction == m.law.kinetic_friction) continue;
+    for (int r = 0; r < m.rows; ++r) {
+      FrictionRow& row = rows_[index(m.first_row + r)];
+      if (row.friction == m.law.kinetic_friction) continue;
+      if (row_state(row, row_force_) != RowState::slips) continue;
+      row.friction = m.law.kinetic_friction;
+      any = true;
+    }
+  }
+  return any;
+}
+
+/// What pressed on the rows' nodes last: in the state, or in the look before.
+void SurfaceContact::guess_forces() {
+  row_force_.setZero(gaps_.size());
+  for (const Meeting& m : meetings_) {
+    const std::size_t dim = index(surfaces_[m.own].surface.geometry->dim);
+    const std::span<const double> along = directions(m);
+    for (std::size_t c = 0; c * dim < along.size(); ++c) {
+      const std::size_t row = c / index(m.parts);
+      const std::size_t point = index(m.obstacle->rows().nodes[row]);
+      double& force = row_force_(m.first + static_cast<Eigen::Index>(c));
+      for (std::size_t i = 0; i < dim; ++i)
+        force += along[c * dim + i] * pressed_[m.pressed + point * dim + i];
+      if (c % index(m.parts) == 0) force = std::max(0.0, force);
+    }
+  }
+}
+
+bool SurfaceContact::find_forces() {
+  if (!rubs_) return unilateral_forces(compliance_, gaps_, row_force_, buffers_);
+  if (row_force_.size() != gaps_.size()) guess_forces();
+  soften_held(rows_, compliance_);
+  do {
+    if (!friction_forces(compliance_, gaps_, rows_, row_force_, friction_buffers_)) return false;
+  } while (let_slide());
+  return true;
+}
+
+}  // namespace abut

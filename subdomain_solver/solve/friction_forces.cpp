@@ -1,0 +1,327 @@
+#include "subdomain_solver/solve/friction_forces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/index.hpp"
+
+namespace abut {
+
+namespace {
+
+constexpr int first_sweeps = 15, most_sweeps = 4000;
+constexpr int most_newton = 30;
+constexpr int most_turns = 30;  // of the direction in which one row slips
+/// Of the largest force: changes, and residuals, that are rounding; residuals that are an answer.
+constexpr double settled = 1.0e-14, accurate = 1.0e-11;
+/// The same: steps of Newton's method after which the next would be rounding.
+constexpr double converged = 1.0e-9;
+/// Of the largest compliance: what rows that say the same give way by, each for itself.
+constexpr double softness = 1.0e-11;
+/// Of the cone's radius: forces nearer to it than this are on it.
+constexpr double on_cone = 1.0e-9;
+
+using Tangent = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1>;
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;
+
+double radius(const FrictionRow& row, double normal) {
+  return normal > 0.0 ? row.friction * normal : 0.0;
+}
+
+/// [N] that close the gaps and stop the slips, each for itself: below parts of them is rounding.
+double size_of(const Eigen::MatrixXd& a, const Vector& b) {
+  return b.cwiseAbs().cwiseQuotient(a.diagonal()).maxCoeff();
+}
+
+/// The nearest force in the disc.
+void hold_in_cone(const FrictionRow& row, double normal, Eigen::Ref<Vector> tangent) {
+  const double most = radius(row, normal), size = tangent.norm();
+  if (size > most) tangent *= size > 0.0 ? most / size : 0.0;
+}
+
+/// One row against all others: its block D and what its rates b would be without it.
+class OneRow {
+ public:
+  OneRow(const Eigen::MatrixXd& a, const FrictionRow& row)
+      : row_(row),
+        tangents_(row.parts - 1),
+        normal_(a(row.first, row.first)),
+        couple_(a.col(row.first).segment(row.first + 1, tangents_)),
+        give_(a.block(row.first + 1, row.first + 1, tangents_, tangents_)) {}
+
+  /// Forces (normal, tangents) for b.
+  void solve(double gap, const Eigen::Ref<const Vector>& slip, Eigen::Ref<Vector> z) const {
+    if (gap >= 0.0) {
+      z.setZero();
+      return;
+    }
+    if (tangents_ == 0) {
+      z(0) = -gap / normal_;
+      return;
+    }
+    stick(gap, slip, z);
+    const double most = radius(row_, z(0)), size = z.tail(tangents_).norm();
+    if (z(0) > 0.0 && size <= most) return;
+    slide(gap, slip, z);
+  }
+
+ private:
+  void stick(double gap, const Eigen::Ref<const Vector>& slip, Eigen::Ref<Vector> z) const {
+    const Tangent lean = inverse_of(couple_), rest = inverse_of(slip);
+    z(0) = -(gap - couple_.dot(rest)) / (normal_ - couple_.dot(lean));
+    z.tail(tangents_) = -rest - lean * z(0);
+  }
+  Tangent inverse_of(const Eigen::Ref<const Vector>& v) const {
+    if (tangents_ == 1) return Tangent::Constant(1, v(0) / give_(0, 0));
+    const double det = give_(0, 0) * give_(1, 1) - give_(0, 1) * give_(1, 0);
+    Tangent out(2);
+    out << (give_(1, 1) * v(0) - give_(0, 1) * v(1)) / det,
+        (give_(0, 0) * v(1) - give_(1, 0) * v(0)) / det;
+    return out;
+  }
+  double pressing(double gap, const Tangent& way) const {
+    const double give = normal_ + row_.friction * couple_.dot(way);
+    return give > 0.0 ? -gap / give : -gap / normal_;
+  }
+  /// The direction of tau by turns: tau leads where tau - rho w_t does.
+  void slide(double gap, const Eigen::Ref<const Vector>& slip, Eigen::Ref<Vector> z) const {
+    Tangent way = z.tail(tangents_);
+    if (z(0) <= 0.0 || way.norm() == 0.0) way = -slip;
+    if (way.norm() > 0.0) way.normalize();
+    const double rho = 1.0 / give_.trace();
+    for (int turn = 0; turn < most_turns; ++turn) {
+      z(0) = pressing(gap, way);
+      const Tangent tau = row_.friction * z(0) * way;
+      Tangent next = tau - rho * (slip + couple_ * z(0) + give_ * tau);
+      if (next.norm() == 0.0) break;
+      next.normalize();
+      const double change = (next - way).norm();
+      way = next;
+      if (change <= settled) break;
+    }
+    z(0) = pressing(gap, way);
+    z.tail(tangents_) = row_.friction * z(0) * way;
+  }
+
+  const FrictionRow& row_;
+  Eigen::Index tangents_;
+  double normal_;
+  Tangent couple_;
+  Square give_;
+};
+
+/// True: settled.
+bool sweep(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionRow> rows, int most,
+           Vector& z, FrictionBuffers& buffers) {
+  Vector& w = buffers.slip;
+  w = b;
+  w.noalias() += a * z;
+  const double size = size_of(a, b);
+  for (int k = 0; k < most; ++k) {
+    double change = 0.0;
+    for (const FrictionRow& row : rows) {
+      const Eigen::Index parts = row.parts;
+      const Vector old = z.segment(row.first, parts);
+      const Vector rate =
+          w.segment(row.first, parts) - a.block(row.first, row.first, parts, parts) * old;
+      OneRow(a, row).solve(rate(0), rate.tail(parts - 1), z.segment(row.first, parts));
+      const Vector moved = z.segment(row.first, parts) - old;
+      if (moved.isZero(0.0)) continue;
+      w.noalias() += a.middleCols(row.first, parts) * moved;
+      change = std::max(change, moved.lpNorm<Eigen::Infinity>());
+    }
+    if (!z.allFinite()) return false;
+    if (change <= settled * std::max(size, z.lpNorm<Eigen::Infinity>())) return true;
+  }
+  return false;
+}
+
+/// Alart and Curnier's equations of the rows that press, made linear at z. The components of open
+/// rows are zero.
+class Linearised {
+ public:
+  Linearised(const Eigen::MatrixXd& a, std::span<const FrictionRow> rows, double soft,
+             FrictionBuffers& buffers)
+      : a_(a), rows_(rows), soft_(soft), b_(buffers) {}
+
+  /// The next iterate; false: there is none.
+  [[nodiscard]] bool step(const Vector& b, Vector& z) {
+    find_active(b, z);
+    const Eigen::Index n = static_cast<Eigen::Index>(b_.active.size());
+    if (n == 0) {
+      z.setZero();
+      return true;
+    }
+    b_.matrix.resize(n, n);
+    b_.rest.resize(n);
+    Eigen::Index at = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      if (b_.states[r] == RowState::open) continue;
+      fill(rows_[r], b_.states[r], b, z, at);
+      at += rows_[r].parts;
+    }
+    b_.factors.compute(b_.matrix);
+    b_.step = b_.factors.solve(b_.rest);
+    if (!b_.step.allFinite()) return false;
+    z.setZero();
+    for (Eigen::Index k = 0; k < n; ++k) z(b_.active[index(k)]) = b_.step(k);
+    return true;
+  }
+
+ private:
+  void find_active(const Vector& b, const Vector& z) {
+    b_.slip = b;
+    b_.slip.noalias() += a_ * z;
+    b_.states.assign(rows_.size(), RowState::open);
+    b_.active.clear();
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const FrictionRow& row = rows_[r];
+      const double pushed = z(row.first) - b_.slip(row.first) / a_(row.first, row.first);
+      if (pushed <= 0.0) continue;
+      b_.states[r] = RowState::sticks;
+      for (int p = 0; p < row.parts; ++p) b_.active.push_back(row.first + p);
+      if (row.parts == 1) continue;
+      if (led(row, z).norm() > row.friction * pushed) b_.states[r] = RowState::slips;
+    }
+  }
+  /// tau - rho w_t
+  Tangent led(const FrictionRow& row, const Vector& z) const {
+    const Eigen::Index tangents = row.parts - 1;
+    return z.segment(row.first + 1, tangents) - rho(row) * b_.slip.segment(row.first + 1, tangents);
+  }
+  double rho(const FrictionRow& row) const {
+    double sum = 0.0;
+    for (int p = 1; p < row.parts; ++p) sum += a_(row.first + p, row.first + p);
+    return (row.parts - 1) / sum;
+  }
+  void fill_rate(Eigen::Index component, const Vector& b, Eigen::Index at) {
+    for (std::size_t k = 0; k < b_.active.size(); ++k)
+      b_.matrix(at, static_cast<Eigen::Index>(k)) = a_(component, b_.active[k]);
+    b_.matrix(at, at) += soft_;
+    b_.rest(at) = -b(component);
+  }
+  void fill(const FrictionRow& row, RowState state, const Vector& b, const Vector& z,
+            Eigen::Index at) {
+    fill_rate(row.first, b, at);
+    if (row.parts == 1) return;
+    if (state == RowState::sticks) {
+      for (int p = 1; p < row.parts; ++p) fill_rate(row.first + p, b, at + p);
+      return;
+    }
+    // tau = mu lambda e(l), l = tau - rho w_t, e = l/|l|:  what turns e across itself counts,
+    // forces along it are lambda's.
+    const Eigen::Index tangents = row.parts - 1;
+    const Tangent lead = led(row, z);
+    const double size = lead.norm();
+    const Tangent way = lead / size;
+    const Square across = (Square::Identity(tangents, tangents) - way * way.transpose()) *
+                          std::min(1.0, radius(row, z(row.first)) / size);
+    for (Eigen::Index p = 0; p < tangents; ++p) {
+      b_.matrix.row(at + 1 + p).setZero();
+      b_.rest(at + 1 + p) = 0.0;
+    }
+    for (std::size_t k = 0; k < b_.active.size(); ++k) {
+      const Tangent slips = a_.col(b_.active[k]).segment(row.first + 1, tangents) * rho(row);
+      b_.matrix.col(static_cast<Eigen::Index>(k)).segment(at + 1, tangents) += across * slips;
+    }
+    b_.matrix.block(at + 1, at + 1, tangents, tangents) +=
+        Square::Identity(tangents, tangents) - across;
+    b_.matrix.col(at).segment(at + 1, tangents) -= row.friction * way;
+    b_.rest.segment(at + 1, tangents) = -(across * (rho(row) * b.segment(row.first + 1, tangents)));
+  }
+
+  const Eigen::MatrixXd& a_;
+  std::span<const FrictionRow> rows_;
+  double soft_;
+  FrictionBuffers& b_;
+};
+
+/// Into the cone exactly, after iterates that only come near it.
+void hold_all(std::span<const FrictionRow> rows, Vector& z) {
+  for (const FrictionRow& row : rows) {
+    z(row.first) = std::max(0.0, z(row.first));
+    hold_in_cone(row, z(row.first), z.segment(row.first + 1, row.parts - 1));
+  }
+}
+
+bool newton(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionRow> rows,
+            double soft, Vector& z, FrictionBuffers& buffers) {
+  Linearised equations(a, rows, soft, buffers);
+  buffers.trial = z;
+  const double size = size_of(a, b);
+  for (int k = 0; k < most_newton; ++k) {
+    buffers.best = buffers.trial;
+    if (!equations.step(b, buffers.trial)) return false;
+    const double change = (buffers.trial - buffers.best).lpNorm<Eigen::Infinity>();
+    if (change > converged * std::max(size, buffers.trial.lpNorm<Eigen::Infinity>())) continue;
+    hold_all(rows, buffers.trial);
+    const double most = soft > 0.0 ? 1.0e-8 : accurate;
+    if (friction_residual(a, b, rows, buffers.trial) > most) return false;
+    z = buffers.trial;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void soften_held(std::span<const FrictionRow> rows, Eigen::MatrixXd& a) {
+  constexpr double least = 1.0e-9;
+  for (const FrictionRow& row : rows) {
+    if (row.parts == 1) continue;
+    const Eigen::Index t = row.first + 1;
+    const double soft = least * a(row.first, row.first);
+    double stiffest = a(t, t);
+    if (row.parts == 3) {
+      const double mean = 0.5 * (a(t, t) + a(t + 1, t + 1));
+      const double lean = 0.5 * (a(t, t) - a(t + 1, t + 1));
+      stiffest = mean - std::hypot(lean, a(t, t + 1));
+    }
+    if (stiffest >= soft) continue;
+    for (int p = 1; p < row.parts; ++p) a(row.first + p, row.first + p) += soft;
+  }
+}
+
+double friction_residual(const Eigen::MatrixXd& a, const Vector& b,
+                         std::span<const FrictionRow> rows, const Vector& force) {
+  const Vector w = b + a * force;
+  double most = 0.0, scale = size_of(a, b);
+  for (const FrictionRow& row : rows) {
+    const Eigen::Index tangents = row.parts - 1;
+    const double normal = force(row.first), give = a(row.first, row.first);
+    scale = std::max(
+        {scale, force.segment(row.first, row.parts).norm(), std::abs(b(row.first)) / give});
+    most = std::max(most, std::abs(normal - std::max(0.0, normal - w(row.first) / give)));
+    if (tangents == 0) continue;
+    Vector led = force.segment(row.first + 1, tangents) -
+                 w.segment(row.first + 1, tangents) * tangents /
+                     a.block(row.first + 1, row.first + 1, tangents, tangents).trace();
+    hold_in_cone(row, normal, led);
+    most = std::max(most, (force.segment(row.first + 1, tangents) - led).norm());
+  }
+  return scale > 0.0 ? most / scale : 0.0;
+}
+
+RowState row_state(const FrictionRow& row, const Vector& force) {
+  const double normal = force(row.first);
+  if (!(normal > 0.0)) return RowState::open;
+  if (row.parts == 1) return RowState::slips;
+  const double size = force.segment(row.first + 1, row.parts - 1).norm();
+  return size < row.friction * normal * (1.0 - on_cone) ? RowState::sticks : RowState::slips;
+}
+
+bool friction_forces(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionRow> rows,
+                     Vector& force, FrictionBuffers& buffers) {
+  if (!b.allFinite() || !a.allFinite()) return false;
+  if (force.size() != b.size()) force.setZero(b.size());
+  if (b.size() == 0) return true;
+  if (sweep(a, b, rows, first_sweeps, force, buffers)) return true;
+  if (!force.allFinite()) force.setZero();
+  if (newton(a, b, rows, 0.0, force, buffers)) return true;
+  const double soft = softness * a.diagonal().maxCoeff();
+  if (newton(a, b, rows, soft, force, buffers)) return true;
+  if (sweep(a, b, rows, most_sweeps, force, buffers)) return true;
+  return force.allFinite() && friction_residual(a, b, rows, force) <= 1.0e-8;
+}
+
+}  // namespace abut

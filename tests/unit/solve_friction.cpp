@@ -1,0 +1,189 @@
+// Goal: forces of rows with Coulomb's friction solve their problem: in the plane, in space, beside
+// rows without friction, for every coefficient, soft and stiff couplings, rows that say the same.
+// Oracles: the conditions themselves, the problem without friction, one block in closed form.
+
+#include "subdomain_solver/solve/friction_forces.hpp"
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/index.hpp"
+#include "subdomain_solver/solve/unilateral_forces.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace abut {
+namespace {
+
+struct Problem {
+  Eigen::MatrixXd a;
+  Vector b;
+  std::vector<FrictionRow> rows;
+};
+
+/// Rows on a line that give way by what decays with their distance, as a surface does, components
+/// mixed a little, as a slanted one's are; gaps and slips drawn.
+Problem drawn(int count, int parts, double friction, double range, std::mt19937& engine) {
+  std::uniform_real_distribution<double> draw(-1.0, 1.0);
+  const Eigen::Index n = static_cast<Eigen::Index>(count) * parts;
+  Problem p;
+  Eigen::MatrixXd mix(parts, parts);
+  for (Eigen::Index i = 0; i < mix.size(); ++i) mix(i) = 0.15 * draw(engine);
+  mix += Eigen::MatrixXd::Identity(parts, parts);
+  const Eigen::MatrixXd block = mix * mix.transpose();
+  p.a.resize(n, n);
+  for (Eigen::Index i = 0; i < count; ++i)
+    for (Eigen::Index j = 0; j < count; ++j)
+      p.a.block(i * parts, j * parts, parts, parts) =
+          std::exp(-std::abs(static_cast<double>(i - j)) / range) * block;
+  p.b.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) p.b(i) = draw(engine) - (i % parts == 0 ? 0.4 : 0.0);
+  for (int i = 0; i < count; ++i) p.rows.push_back({i * parts, parts, friction});
+  return p;
+}
+
+/// Each condition for itself. `tolerance`: of the largest force, and of what it moves.
+void expect_coulomb(const Problem& p, const Vector& z, double tolerance) {
+  const Vector w = p.b + p.a * z;
+  const double force = z.lpNorm<Eigen::Infinity>();
+  const double least = tolerance * force, small = tolerance * force * p.a.diagonal().maxCoeff();
+  for (const FrictionRow& row : p.rows) {
+    const Eigen::Index tangents = row.parts - 1;
+    const double normal = z(row.first), gap = w(row.first);
+    const Vector tau = z.segment(row.first + 1, tangents);
+    const Vector slip = w.segment(row.first + 1, tangents);
+    EXPECT_GE(normal, 0.0);
+    EXPECT_GE(gap, -small);
+    EXPECT_LE(std::min(normal, gap / small * least), least);
+    if (tangents == 0) continue;
+    const double most = row.friction * normal;
+    EXPECT_LE(tau.norm(), most * (1.0 + roundoff(8, 1.0)));
+    if (tau.norm() < most - least) {
+      EXPECT_LE(slip.norm(), small);
+    } else if (slip.norm() > small) {  // opposed, and on the cone
+      EXPECT_LE((tau * slip.norm() + most * slip).norm(),
+                4.0 * (least * slip.norm() + most * small));
+    }
+  }
+}
+
+TEST(FrictionForces, SolveTheirProblem) {
+  std::mt19937 engine(11);
+  for (const int parts : {1, 2, 3})
+    for (const double friction : {0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1000.0})
+      for (const double range : {0.3, 2.0, 20.0})
+        for (const int count : {1, 2, 7, 40}) {
+          SCOPED_TRACE(std::to_string(parts) + " parts, friction " + std::to_string(friction) +
+                       ", range " + std::to_string(range) + ", rows " + std::to_string(count));
+          const Problem p = drawn(count, parts, friction, range, engine);
+          Vector z;
+          FrictionBuffers buffers;
+          ASSERT_TRUE(friction_forces(p.a, p.b, p.rows, z, buffers));
+          expect_coulomb(p, z, 1.0e-10);  // a row by a row; cond A is some 1e2
+          Vector again = z;
+          ASSERT_TRUE(friction_forces(p.a, p.b, p.rows, again, buffers));
+          EXPECT_LE((again - z).norm(), 1.0e-9 * z.norm());  // a good guess is kept
+        }
+}
+
+TEST(FrictionForces, WithoutFrictionAreTheUnilateralOnes) {
+  std::mt19937 engine(5);
+  const Problem p = drawn(30, 1, 0.0, 2.0, engine);
+  Vector z, f;
+  FrictionBuffers buffers;
+  UnilateralBuffers others;
+  ASSERT_TRUE(friction_forces(p.a, p.b, p.rows, z, buffers));
+  ASSERT_TRUE(unilateral_forces(p.a, p.b, f, others));
+  EXPECT_LE((z - f).norm(), 1.0e-10 * f.norm());
+}
+
+TEST(FrictionForces, OfMixedRowsSolveTheirProblemToo) {
+  std::mt19937 engine(8);
+  Problem p = drawn(24, 3, 0.3, 2.0, engine);
+  p.rows.clear();
+  for (int i = 0; i < 12; ++i) p.rows.push_back({6 * i, 3, 0.1 * i});
+  for (int i = 0; i < 12; ++i)
+    for (int k = 3; k < 6; ++k) p.rows.push_back({6 * i + k, 1, 0.0});
+  Vector z;
+  FrictionBuffers buffers;
+  ASSERT_TRUE(friction_forces(p.a, p.b, p.rows, z, buffers));
+  expect_coulomb(p, z, 1.0e-10);
+}
+
+/// A block of unit compliance pressed by 1 and pulled by `pull` along the plane.
+TEST(FrictionForces, OfOneBlockAreThoseOfTheBook) {
+  for (const int parts : {2, 3})
+    for (const double pull : {0.1, 0.299, 0.301, 2.0}) {
+      Problem p;
+      p.a = Eigen::MatrixXd::Identity(parts, parts);
+      p.b = Vector::Zero(parts);
+      p.b(0) = -1.0;
+      if (parts == 2) {
+        p.b(1) = pull;
+      } else {
+        p.b.tail(2) << 0.6 * pull, 0.8 * pull;
+      }
+      p.rows = {{0, parts, 0.3}};
+      Vector z;
+      FrictionBuffers buffers;
+      ASSERT_TRUE(friction_forces(p.a, p.b, p.rows, z, buffers));
+      EXPECT_NEAR(z(0), 1.0, roundoff(8, 1.0));
+      const double expected = std::min(pull, 0.3);
+      EXPECT_NEAR(z.tail(parts - 1).norm(), expected, roundoff(16, 1.0));
+      EXPECT_NEAR(z.tail(parts - 1).dot(p.b.tail(parts - 1)), -expected * pull, roundoff(16, 2.0));
+      EXPECT_EQ(row_state(p.rows[0], z), pull < 0.3 ? RowState::sticks : RowState::slips);
+    }
+}
+
+TEST(FrictionForces, OfRowsThatSayTheSameAreFound) {
+  std::mt19937 engine(9);
+  const Problem one = drawn(6, 3, 0.3, 1.0, engine);
+  Problem twice;
+  const Eigen::Index n = one.b.size();
+  twice.a.resize(2 * n, 2 * n);
+  twice.a << one.a, one.a, one.a, one.a;
+  twice.b.resize(2 * n);
+  twice.b << one.b, one.b;
+  twice.rows = one.rows;
+  for (FrictionRow row : one.rows) twice.rows.push_back({row.first + n, row.parts, row.friction});
+  Vector z, alone;
+  FrictionBuffers buffers;
+  ASSERT_TRUE(friction_forces(one.a, one.b, one.rows, alone, buffers));
+  ASSERT_TRUE(friction_forces(twice.a, twice.b, twice.rows, z, buffers));
+  EXPECT_LE((z.head(n) + z.tail(n) - alone).norm(), 1.0e-7 * alone.norm());  // softness 1e-11 of A
+}
+
+/// Before a support a row's tangents cannot all move, whichever tangents it has.
+TEST(FrictionForces, OfRowsBeforeASupportAreFound) {
+  for (const double angle : {0.0, 0.3, 0.25 * M_PI, 1.5}) {
+    Problem p;
+    p.a = Eigen::MatrixXd::Zero(3, 3);
+    const Eigen::Vector2d free(std::cos(angle), std::sin(angle));
+    p.a(0, 0) = 1.0;
+    p.a.bottomRightCorner(2, 2) = free * free.transpose();
+    p.b = Vector::Zero(3);
+    p.b(0) = -1.0;
+    p.b.tail(2) = 0.2 * free;
+    p.rows = {{0, 3, 0.3}};
+    soften_held(p.rows, p.a);
+    Vector z;
+    FrictionBuffers buffers;
+    ASSERT_TRUE(friction_forces(p.a, p.b, p.rows, z, buffers));
+    EXPECT_NEAR((z.tail(2) + 0.2 * free).norm(), 0.0, 1.0e-7);  // rounding over the softness
+  }
+}
+
+TEST(FrictionForces, OfWhatIsNoNumberAreNone) {
+  Vector z;
+  FrictionBuffers buffers;
+  const Vector b = Vector::Constant(2, std::numeric_limits<double>::quiet_NaN());
+  const std::vector<FrictionRow> rows = {{0, 2, 0.3}};
+  EXPECT_FALSE(friction_forces(Eigen::MatrixXd::Identity(2, 2), b, rows, z, buffers));
+}
+
+}  // namespace
+}  // namespace abut
