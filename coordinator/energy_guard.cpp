@@ -6,6 +6,11 @@
 
 namespace abut {
 
+namespace {
+/// Bodies at rest that loads set in motion have hardly any energy at first.
+constexpr int looks_from_rest = 10;
+}  // namespace
+
 EnergyGuard::EnergyGuard(double share, std::vector<bool> conserves, bool together,
                          std::vector<double> inertia)
     : share_(share),
@@ -32,10 +37,12 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
   }
   if (!std::exchange(begun_, true)) {
     first_ = own;
+    unjudged_ = motion == 0.0 ? looks_from_rest : 0;
     most_ = unresolved(responses);
   }
   most_ = std::max(most_, motion);
-  if (most_ <= 0.0) return Verdict::fine;
+  if (most_ <= 0.0 || unjudged_-- > 0) return Verdict::fine;
+  unjudged_ = 0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const double change = bodies_[b].change / most_;
     if (!conserves_[b] || std::abs(change) <= share_) continue;

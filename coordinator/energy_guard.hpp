@@ -18,8 +18,9 @@ class EnergyGuard {
   /// `share`: change, as a fraction of the largest kinetic and stored energy so far, that fails.
   /// `conserves`: by body, whether it is watched by itself; all: whether losses are wrong too.
   /// `together`: whether the sum of all bodies is watched. `inertia` [kg s^2]: by body, of what
-  /// body forces may give in a step; empty: none. Bodies that rest when loads set in at once have
-  /// no energy that steps resolve: it counts as if there had been as much in motion.
+  /// body forces may give in a step; empty: none. Bodies that rest when loads set
+  /// in have no energy that steps resolve: the first ten looks are not judged, and it counts as if
+  /// there had been in motion what steps do not resolve.
   EnergyGuard(double share, std::vector<bool> conserves, bool together = true,
               std::vector<double> inertia = {});
 
@@ -47,6 +48,7 @@ class EnergyGuard {
   std::vector<double> inertia_;  // [kg s^2]
   bool all_conserve_, together_;
   bool begun_ = false, warned_ = false;
+  int unjudged_ = 0;  // looks that are still not judged
   std::vector<Account> bodies_;
   double first_ = 0.0;  // [J] at the first look
   double most_ = 0.0;   // [J] largest kinetic and stored energy so far, or what steps resolve

@@ -23,13 +23,31 @@ Response holding(double kinetic, double stored, double work = 0.0, double heat =
 
 TEST(EnergyGuard, CountsWhatExternalWorkDoesNotExplain) {
   EnergyGuard guard(0.01, {false});
-  EXPECT_EQ(guard.look(std::vector{holding(0.0, 0.0)}), Verdict::fine);
+  EXPECT_EQ(guard.look(std::vector{holding(1.0e-30, 0.0)}), Verdict::fine);
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 10.0, 100.0)}), Verdict::fine);
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 10.4, 100.0)}), Verdict::fine);
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 10.6, 100.0)}), Verdict::warn);
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 10.7, 100.0)}), Verdict::fine) << "told already";
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 11.1, 100.0)}), Verdict::fail);
   EXPECT_NEAR(guard.growth(), 1.1 / 101.1, 1e-15);
+}
+
+TEST(EnergyGuard, JudgesFromRestWhenThereIsEnergyToCompareWith) {
+  EnergyGuard guard(0.01, {false});
+  EXPECT_EQ(guard.look(std::vector{holding(0.0, 0.0)}), Verdict::fine);
+  for (int k = 0; k < 10; ++k)
+    EXPECT_EQ(guard.look(std::vector{holding(1.0e-3, 0.0)}), Verdict::fine) << k;
+  EXPECT_EQ(guard.look(std::vector{holding(1.0e-3, 0.0)}), Verdict::fail);
+}
+
+/// 2 kg under 10 m/s^2 in steps of 0.1 s: 2 (1 m/s)^2 count as if in motion.
+TEST(EnergyGuard, KnowsWhatStepsDoNotResolve) {
+  EnergyGuard guard(0.01, {false}, true, {2.0 * 2.0 * 0.1 * 0.1});
+  Response heavy = holding(0.0, 0.0);
+  heavy.ports.resize(1);
+  heavy.ports[0].acceleration_bound = 10.0;
+  EXPECT_EQ(guard.look(std::vector{heavy}), Verdict::fine);
+  EXPECT_DOUBLE_EQ(guard.most(), 4.0);
 }
 
 TEST(EnergyGuard, SeesAGainBehindWhatBecameHeat) {
