@@ -91,7 +91,7 @@ Bytes force_of(Bytes reaction, const FieldPath& path, double& dissipated) {
     if (from.field() == v1::Reaction::kForceFieldNumber) {
       force = from.message();
     } else if (from.field() == v1::Reaction::kDissipatedFieldNumber) {
-      dissipated = number(from.number(), FieldPath{&path, "dissipated"}, Allow::not_negative);
+      dissipated = number(from.number(), FieldPath{&path, "dissipated"});
     } else {
       from.skip();
     }
