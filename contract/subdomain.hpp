@@ -94,9 +94,9 @@ class Subdomain {
  public:
   virtual ~Subdomain() = default;
   virtual const Description& describe() const = 0;
-  /// The partner that a port may meet, before the first window: its surface in the reference
-  /// configuration, and the law. Partners of a port are numbered from 0 in the order of the calls.
-  /// Bodies that take no obstacles are not told.
+  /// A partner that a port may meet from the next advance on: its surface in the reference
+  /// configuration, and the law. Partners of a port are numbered from 0 in the order of the calls,
+  /// which restore() does not take back. Bodies that take no obstacles are not told.
   virtual void meet(int port, const PortGeometry& partner, const ContactLaw& law) = 0;
   /// How that partner's surface gives way: its kernel for unit forces on its points, one pattern
   /// per component. Bodies that take no yielding obstacles are not told.

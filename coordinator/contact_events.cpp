@@ -112,6 +112,7 @@ std::optional<double> ContactEvents::engage_touching(const TimeWindow& window) {
 
 void ContactEvents::engage(Joint& joint, double speed, double time) {
   fastest_touch_ = std::max(fastest_touch_, speed);
+  if (!joint.met) introduce(joint, bodies_);
   joint.engage(std::max(speed, still()));
   if (!roles_.choose(joint) || !joint.unilateral()) return;
   const double limit = stable_step_in_contact(joint, bodies_, window_);
@@ -283,7 +284,7 @@ void ContactEvents::watch_inside(std::span<InterfaceReport> reports) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     if (joints_[j].decision != Decision::inside) continue;
     const InternalContact seen = watch_internal_contact(joints_[j], bodies_);
-    reports[j].closed = seen.pressed;
+    reports[index(joints_[j].interface)].closed = seen.pressed;
     for (const InternalContact::Change& change : seen.changes) narrator_.inside(joints_[j], change);
   }
 }

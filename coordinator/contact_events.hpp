@@ -17,7 +17,7 @@ namespace abut {
 class ContactEvents {
  public:
   /// `tolerance`: of the iteration; `window` [s]: a whole one. All references must outlive it.
-  ContactEvents(std::span<Joint> joints, Bodies& bodies, Roles& roles, Narrator& narrator,
+  ContactEvents(std::vector<Joint>& joints, Bodies& bodies, Roles& roles, Narrator& narrator,
                 double tolerance, double window)
       : joints_(joints),
         bodies_(bodies),
@@ -68,7 +68,7 @@ class ContactEvents {
   double least_force(const Joint& joint) const;
   double still() const;
 
-  std::span<Joint> joints_;
+  std::vector<Joint>& joints_;  // which grow, where everything may touch everything
   Bodies& bodies_;
   Roles& roles_;
   Narrator& narrator_;

@@ -23,6 +23,9 @@ namespace abut {
 namespace {
 
 constexpr int most_halvings = 20;
+/// Pairs of a scene where everything may touch everything are joined when they may meet within so
+/// many: contact begins to look at its joints within the next one or two.
+constexpr double near_windows = 4.0;
 
 std::vector<const Description*> descriptions_of(const Bodies& bodies) {
   std::vector<const Description*> descriptions;
@@ -39,13 +42,14 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       interrupted_(interrupted),
       narrator_(bodies_, std::move(observers)),
       joints_(make_joints(scene, bodies_)),
+      broad_phase_(make_broad_phase(scene, joints_, bodies_)),
       schwarz_(make_schwarz(scene.schwarz)),
       clock_(scene.time.begin, scene.time.end, scene.time.window),
       roles_(bodies_, scene.time.window, scene.schwarz.parallel),
       events_(joints_, bodies_, roles_, narrator_, scene.schwarz.tolerance, scene.time.window),
       guard_(scene.schwarz.energy_guard, conserving_bodies(), !presses_quasi_statically(),
              unresolved_inertia()),
-      reports_(joints_.size()) {
+      reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {
   end_.status = "completed";
   flight_.longest = flight_.limit = windows_at_once(scene.time.window, descriptions_of(bodies_));
 }
@@ -61,6 +65,7 @@ RunEnd Controller::run() {
   try {
     start();
     while (running()) {
+      join_near();
       if (!fly_free()) step_window();
     }
     if (interrupted_ != nullptr && interrupted_->load()) end_.status = "interrupted";
@@ -79,8 +84,8 @@ bool Controller::running() const {
 }
 
 void Controller::start() {
-  narrator_.start(scene_.time.begin, scene_.time.end, joints_);
   for (Joint& joint : joints_) introduce(joint, bodies_);
+  narrator_.start(scene_.time.begin, scene_.time.end, joints_, !broad_phase_.empty());
   const bool accelerations = std::ranges::any_of(joints_, [](const Joint& joint) {
     return joint.how != nullptr && joint.how->overwrites_motion();
   });
@@ -93,7 +98,20 @@ void Controller::start() {
   events_.start();
   watch_energy(guard_.look(bodies_.responses()));
   fill_reports(true);
-  narrator_.window({instant, bodies_.responses(), reports_});
+  narrator_.window({instant, bodies_.responses(), reports_, 0, {}});
+}
+
+/// Pairs that may meet within the next windows are watched one by one from now on.
+void Controller::join_near() {
+  if (broad_phase_.empty()) return;
+  join(broad_phase_.near(bodies_, near_windows * scene_.time.window));
+}
+
+void Controller::join(std::span<const PortPair> pairs) {
+  for (const PortPair& pair : pairs) {
+    roles_.join(joints_.emplace_back(make_pair(scene_, pair, bodies_)));
+    broad_phase_.join(pair);
+  }
 }
 
 bool Controller::fly_free() {
@@ -114,6 +132,7 @@ bool Controller::fly_free() {
     }
     return true;
   }
+  if (!broad_phase_.empty()) join(broad_phase_.crossed(bodies_));
   if (!stayed_apart(joints_, bodies_, flight.length())) {
     bodies_.restore_all();
     flight_.grounded = true;
@@ -122,7 +141,7 @@ bool Controller::fly_free() {
   }
   fill_reports(true);
   clock_.accept_flight(flight, windows);
-  narrator_.window({flight, bodies_.responses(), reports_, clock_.windows()});
+  narrator_.window({flight, bodies_.responses(), reports_, clock_.windows(), {}});
   watch_energy(guard_.look(bodies_.responses()));
   flight_.limit = std::min(flight_.longest, 2 * flight_.limit);
   return true;
@@ -146,7 +165,7 @@ void Controller::advance(const TimeWindow& window) {
   attempt_.failed.reset();
   attempt_.reports.clear();
   prepare(window, records_in(window), Sampling::substeps);
-  partition_.update(joints_, bodies_.count());
+  if (partition_.update(joints_, bodies_.count())) schwarz_.keep(partition_.islands());
   for (const Island& island : partition_.islands()) {
     std::variant<SchwarzReport, Failed> result = schwarz_.solve(window, island, joints_, bodies_);
     if (Failed* failed = std::get_if<Failed>(&result); failed != nullptr) {
@@ -164,6 +183,7 @@ Controller::Judgement Controller::judge(const TimeWindow& window) {
     const Judgement trouble = judge_trouble(window);
     if (trouble.verdict != Verdict::accept) return trouble;
   }
+  if (!broad_phase_.empty()) join(broad_phase_.crossed(bodies_));
   if (const std::optional<double> touch = events_.engage_touching(window))
     return {Verdict::cut, events_.common_end(window, *touch), {}};
   const std::optional<double> event = events_.first_event(window, guard_.most());
@@ -199,7 +219,7 @@ void Controller::accept(const TimeWindow& window) {
   events_.settle(window, guard_.most());
   const EnergyGuard::Verdict energy = guard_.look(bodies_.responses(), bodies_.struck());
   clock_.accept(window);
-  narrator_.window({window, bodies_.responses(), reports_, clock_.windows()});
+  narrator_.window({window, bodies_.responses(), reports_, clock_.windows(), pairs_});
   if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
   halvings_ = 0;
   watch_energy(energy);
@@ -234,8 +254,9 @@ int Controller::windows_to_fly() {
     const int every = scene_.output.field_output->every;
     most = std::min(most, every - static_cast<int>(clock_.windows() % every));
   }
-  return count_within(std::min(whole, most_substeps * bodies_.shortest_step() / scene_.time.window),
+  most = count_within(std::min(whole, most_substeps * bodies_.shortest_step() / scene_.time.window),
                       0, most);
+  return broad_phase_.free_windows(bodies_, scene_.time.window, most);
 }
 
 void Controller::prepare(const TimeWindow& window, int records, Sampling sampling) {
@@ -254,17 +275,29 @@ int Controller::records_in(const TimeWindow& window) const {
 }
 
 void Controller::fill_reports(bool flown) {
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    const Joint& joint = joints_[j];
+  std::ranges::fill(reports_, InterfaceReport{});
+  pairs_.clear();
+  for (const Joint& joint : joints_) {
     const bool silent = joint.deciding() && peak_force(joint, bodies_) == 0.0;
-    reports_[j] = {joint.closed() && !silent, joint.kinematic};
+    InterfaceReport& report = reports_[index(joint.interface)];
+    report.closed = report.closed || (joint.closed() && !silent);
+    report.kinematic = joint.kinematic;
   }
   if (flown) return;
   events_.watch_inside(reports_);
   for (std::size_t k = 0; k < attempt_.reports.size(); ++k) {
-    for (int j : partition_.islands()[k].joints) {
-      reports_[index(j)].iterations = attempt_.reports[k].iterations;
-      reports_[index(j)].residual = attempt_.reports[k].residual.largest();
+    for (const int j : partition_.islands()[k].joints) {
+      const Joint& joint = joints_[index(j)];
+      InterfaceReport& report = reports_[index(joint.interface)];
+      report.iterations = std::max(report.iterations, attempt_.reports[k].iterations);
+      report.residual = std::max(report.residual, attempt_.reports[k].residual.largest());
+      if (index(joint.interface) < scene_.interfaces.size()) continue;
+      const auto& [one, two] = joint.sides;
+      pairs_.push_back({joint.interface,
+                        {one.body, two.body},
+                        {one.port, two.port},
+                        {one.partner, two.partner},
+                        joint.kinematic});
     }
   }
 }
@@ -312,6 +345,8 @@ std::vector<double> Controller::unresolved_inertia() const {
 /// Rows that close inside a step without inertia leave an energy of the order of the step, whatever
 /// it is: nothing would be unstable.
 bool Controller::presses_quasi_statically() const {
+  for (int b = 0; b < bodies_.count() && !broad_phase_.empty(); ++b)
+    if (bodies_.describe(b).quasi_static) return true;
   return std::ranges::any_of(joints_, [this](const Joint& joint) {
     return !joint.tied() && std::ranges::any_of(joint.sides, [this](const Side& side) {
       return bodies_.describe(side.body).quasi_static;

@@ -20,6 +20,7 @@ namespace abut {
 /// The time loop: walks controller windows from the scene's begin to its end.
 ///
 ///   run           observe the start, then fly free or step until the end
+///   join_near     where everything may touch everything: pairs that came near are watched
 ///   fly_free      nothing can touch before the horizon: several windows in one request per body
 ///   step_window   one window: tried, judged, and accepted or tried again
 ///   judge         what becomes of a window that was tried
@@ -62,6 +63,8 @@ class Controller {
 
   void start();
   bool running() const;
+  void join_near();
+  void join(std::span<const PortPair> pairs);
   bool fly_free();
   void step_window();
   void advance(const TimeWindow& window);
@@ -86,7 +89,8 @@ class Controller {
   Bodies bodies_;
   const std::atomic<bool>* interrupted_;
   Narrator narrator_;
-  std::vector<Joint> joints_;
+  std::vector<Joint> joints_;  // the scene's, and of other pairs those that came near
+  BroadPhase broad_phase_;
   Partition partition_;
   Schwarz schwarz_;
   WindowClock clock_;
@@ -97,6 +101,7 @@ class Controller {
   std::int64_t halvings_ = 0;
   Attempt attempt_;
   std::vector<InterfaceReport> reports_;
+  std::vector<PairReport> pairs_;
   RunEnd end_;
 };
 

@@ -150,9 +150,8 @@ void refuse_flat_beside_round(const Joint& joint, const Bodies& bodies, const st
 }
 
 /// Bodies that are surfaces to each other.
-void set_surfaces(const InterfaceSpec& spec, const Scene& scene, const Bodies& bodies,
-                  Joint& joint) {
-  const std::string where = "interfaces." + spec.name;
+void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Scene& scene,
+                  const Bodies& bodies, Joint& joint) {
   const auto* how = std::get_if<UnilateralTransmission>(&spec.transmission);
   if (how == nullptr) {
     throw InputError("is of ends of bars only: surfaces know the transmission unilateral",
@@ -180,10 +179,6 @@ void set_surfaces(const InterfaceSpec& spec, const Scene& scene, const Bodies& b
     require(body.can.obstacle, body, where + ".transmission.unilateral.kinematic",
             "takes forces only and cannot be the kinematic side", "Name the other side, or auto.");
   }
-  const auto side = [&](int s) {
-    const Side& at = joint.sides[index(s)];
-    return NamedSurface{spec.sides[index(s)], bodies.port(at).geometry};
-  };
   const int finder = contact_finder(joint, bodies);
   joint.points = spec.contact->points;
   if (joint.points && scene.bodies[index(joint.sides[index(finder)].body)].second.external) {
@@ -202,13 +197,22 @@ void set_surfaces(const InterfaceSpec& spec, const Scene& scene, const Bodies& b
             "Leave friction out, or let the other side find contact by "
             "transmission.unilateral.kinematic.");
   }
+  joint.how = std::make_unique<CompliantObstacle>(how->kernel_memory.value_or(usual_kernel_memory) *
+                                                  1048576.0);
+}
+
+/// What no contact can start from.
+void check_start(const InterfaceSpec& spec, const std::string& where, const Joint& joint,
+                 const Bodies& bodies) {
+  const auto side = [&](int s) {
+    return NamedSurface{spec.sides[index(s)], bodies.port(joint.sides[index(s)]).geometry};
+  };
+  const int finder = contact_finder(joint, bodies);
   if (joint.points) {
     check_points(side(finder), side(1 - finder), where);
   } else {
     check_surfaces(side(finder), side(1 - finder), where + ".sides");
   }
-  joint.how = std::make_unique<CompliantObstacle>(how->kernel_memory.value_or(usual_kernel_memory) *
-                                                  1048576.0);
 }
 
 void set_published(const InterfaceSpec& spec, const DirichletNeumannTransmission& how,
@@ -265,19 +269,36 @@ void set_robin(const InterfaceSpec& spec, const RobinTransmission& how, const Sc
 
 }  // namespace
 
+namespace {
+
+void see_adjusted(const Scene& scene, Joint& joint) {
+  for (const int s : {0, 1})
+    if (scene.bodies[index(joint.sides[index(s)].body)].second.adjusts) joint.adjusted = s;
+}
+
+/// A pair of a scene where everything may touch everything, as if the scene wrote it.
+InterfaceSpec spec_of(const Scene& scene, const PortPair& pair, const Bodies& bodies) {
+  InterfaceSpec spec;
+  for (const std::size_t s : {0u, 1u})
+    spec.sides[s] = bodies.describe(pair[s].body).name + "." + bodies.port(pair[s]).name;
+  spec.name = spec.sides[0] + "-" + spec.sides[1];
+  spec.contact = *scene.everything();
+  return spec;
+}
+
+}  // namespace
+
 std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
   std::vector<Joint> joints;
-  std::map<std::pair<int, int>, int> met;  // partners by body and port
   for (const auto& [name, spec] : scene.interfaces) {
     const std::string where = "interfaces." + name + ".sides";
-    std::array<Side, 2> sides = {find_side(spec.sides[0], bodies, where),
-                                 find_side(spec.sides[1], bodies, where)};
-    for (Side& side : sides) side.partner = met[{side.body, side.port}]++;
+    const std::array<Side, 2> sides = {find_side(spec.sides[0], bodies, where),
+                                       find_side(spec.sides[1], bodies, where)};
     const bool surfaces = bodies.port(sides[0]).geometry.dim > 1 && spec.contact;
     Joint& joint = joints.emplace_back(surfaces ? make_surface_joint(name, sides, bodies)
                                                 : make_joint(name, sides, bodies));
-    for (const int s : {0, 1})
-      if (scene.bodies[index(sides[index(s)].body)].second.adjusts) joint.adjusted = s;
+    joint.interface = static_cast<int>(joints.size()) - 1;
+    see_adjusted(scene, joint);
     if (std::holds_alternative<InternalTransmission>(spec.transmission)) {
       joint.decision = Decision::inside;
       continue;
@@ -289,7 +310,8 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
       refuse_tied_ports(spec, bodies, joint);
     }
     if (joint.surfaces) {
-      set_surfaces(spec, scene, bodies, joint);
+      set_surfaces(spec, "interfaces." + name, scene, bodies, joint);
+      check_start(spec, "interfaces." + name, joint, bodies);
     } else if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
       set_unilateral(spec, *unilateral, scene.schwarz, bodies, joint);
     } else if (const auto* robin = std::get_if<RobinTransmission>(&spec.transmission)) {
@@ -300,6 +322,28 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     }
   }
   return joints;
+}
+
+Joint make_pair(const Scene& scene, const PortPair& pair, const Bodies& bodies) {
+  const InterfaceSpec spec = spec_of(scene, pair, bodies);
+  Joint joint = make_surface_joint(spec.name, pair, bodies);
+  joint.interface = static_cast<int>(scene.interfaces.size());
+  see_adjusted(scene, joint);
+  const std::string where(everything_path);
+  refuse_members(joint, bodies, where);
+  refuse_tied_ports(spec, bodies, joint);
+  set_surfaces(spec, where, scene, bodies, joint);
+  return joint;
+}
+
+BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
+                            const Bodies& bodies) {
+  if (scene.everything() == nullptr) return {};
+  BroadPhase all(bodies, joints);
+  for (const PortPair& pair : all.near_at_start(bodies))
+    check_start(spec_of(scene, pair, bodies), std::string(everything_path),
+                make_pair(scene, pair, bodies), bodies);
+  return all;
 }
 
 Schwarz make_schwarz(const SchwarzSpec& spec) {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "coordinator/coupling/broad_phase.hpp"
 #include "coordinator/coupling/schwarz.hpp"
 #include "coordinator/scene.hpp"
 
@@ -10,6 +11,15 @@ namespace abut {
 /// The joints of a run: what the scene says of its interfaces, joined to the bodies. Throws
 /// InputError for ports that do not face each other or bodies that cannot take their roles.
 std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies);
+
+/// The joint of two surfaces of a scene where everything may touch everything. Throws InputError
+/// for bodies of which neither can find their contact.
+Joint make_pair(const Scene& scene, const PortPair& pair, const Bodies& bodies);
+
+/// Its pairs; none where interfaces are written one by one. `joints`: those that are. Throws
+/// InputError for bodies that overlap at the start.
+BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
+                            const Bodies& bodies);
 
 Schwarz make_schwarz(const SchwarzSpec& spec);
 

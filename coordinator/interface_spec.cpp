@@ -36,6 +36,12 @@ void ContactSpec::fields(Fields& f) {
           "What sticks holds at least as much as what slides: give both, or leave it out.");
 }
 
+void SceneContact::fields(Fields& f) {
+  f.section("everything", everything,
+            "law of contact between all surfaces (ports) of different bodies, but for pairs that "
+            "have an interface; measures name it contact.everything");
+}
+
 void UnilateralTransmission::fields(Fields& f) {
   f.optional("kinematic", kinematic, "",
              "side that solves the one-body contact problem, as body.port; auto: the softer side");

@@ -22,6 +22,14 @@ struct ContactSpec {
   std::optional<double> static_friction;  // of those that stick; absent: the same
   void fields(Fields& f);
 };
+/// Contact between any two surfaces of a scene.
+struct SceneContact {
+  ContactSpec everything;
+  void fields(Fields& f);
+};
+/// Its key, and the name of its interface in what a run tells.
+constexpr std::string_view everything_path = "contact.everything", everything_name = "everything";
+
 struct TiedSpec {  // joined from the start, for the whole run
   void fields(Fields&) {}
 };

@@ -104,6 +104,7 @@ void validate_expectations(const Scene& scene, const std::vector<const Descripti
     scope.interfaces.push_back(name);
     scope.ports.insert(scope.ports.end(), interface.sides.begin(), interface.sides.end());
   }
+  if (scene.everything() != nullptr) scope.interfaces.emplace_back(everything_name);
   scope.filtered = scene.output.force_filter.has_value();
   scope.exact = exact_interfaces(scene);
   scope.told = told_measures(bodies);

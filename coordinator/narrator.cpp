@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "base/index.hpp"
+#include "coordinator/interface_spec.hpp"
+
 namespace abut {
 
-void Narrator::start(double begin, double end, std::span<const Joint> joints) {
+void Narrator::start(double begin, double end, std::span<const Joint> joints, bool everything) {
   RunStart start{begin, end, {}, {}};
   for (int b = 0; b < bodies_.count(); ++b) start.bodies.push_back(&bodies_.describe(b));
   for (const Joint& j : joints) {
@@ -13,8 +16,15 @@ void Narrator::start(double begin, double end, std::span<const Joint> joints) {
                                 {j.sides[0].port, j.sides[1].port},
                                 j.reference_gap,
                                 j.tied(),
-                                {j.sides[0].partner, j.sides[1].partner}});
+                                {j.sides[0].partner, j.sides[1].partner},
+                                false});
   }
+  if (everything) {
+    InterfaceInfo& all = start.interfaces.emplace_back();
+    all.name = everything_name;
+    all.many = true;
+  }
+  for (const InterfaceInfo& info : start.interfaces) interfaces_.push_back(info.name);
   for (Observer* observer : observers_) observer->on_start(start);
 }
 
@@ -38,7 +48,7 @@ void Narrator::end_after_error(const RunEnd& end) {
 void Narrator::closed(const Joint& joint, double time, double speed) {
   tell({RunEvent::Kind::contact_closed,
         time,
-        joint.name,
+        interface_of(joint),
         fmt::format("contact '{}' closes at {:.6g} m/s; kinematic side: {}", joint.name, speed,
                     bodies_.describe(joint.kinematic_side().body).name),
         {{"closing_speed", speed}}});
@@ -47,7 +57,7 @@ void Narrator::closed(const Joint& joint, double time, double speed) {
 void Narrator::opened(const Joint& joint, double time) {
   tell({RunEvent::Kind::contact_opened,
         time,
-        joint.name,
+        interface_of(joint),
         fmt::format("contact '{}' opens", joint.name),
         {{"release_impulse", joint.impulse}}});
 }

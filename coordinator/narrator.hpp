@@ -18,7 +18,9 @@ class Narrator {
   Narrator(const Bodies& bodies, std::vector<Observer*> observers)
       : bodies_(bodies), observers_(std::move(observers)) {}
 
-  void start(double begin, double end, std::span<const Joint> joints);
+  /// `joints`: one of every interface that the scene writes. `everything`: there is an interface of
+  /// any two surfaces beside them.
+  void start(double begin, double end, std::span<const Joint> joints, bool everything);
   void window(const WindowReport& report);
   void end(const RunEnd& end);
   /// The same after an error: all observers still write what they can.
@@ -41,8 +43,13 @@ class Narrator {
   void tell(const RunEvent& event);
   std::string blamed(const std::string& text) const;  // the body that a text names, or empty
 
+  const std::string& interface_of(const Joint& joint) const {
+    return interfaces_[index(joint.interface)];
+  }
+
   const Bodies& bodies_;
   std::vector<Observer*> observers_;
+  std::vector<std::string> interfaces_;
 };
 
 }  // namespace abut

@@ -13,6 +13,7 @@
 #include "base/yaml_fields.hpp"
 #include "coordinator/adjusted_body.hpp"
 #include "coordinator/coupling/joint.hpp"
+#include "coordinator/everything.hpp"
 #include "coordinator/external_body.hpp"
 #include "coordinator/scene_times.hpp"
 
@@ -146,6 +147,7 @@ void Scene::fields(Fields& f) {
   f.section("time", time, "interval of the run and its windows");
   f.map("bodies", bodies, "bodies, in the order of every table");
   f.map("interfaces", interfaces, "pairs of ports that may meet", Presence::optional);
+  f.optional_section("contact", contact, "contact that is not written pair by pair");
   f.defaulted("schwarz", schwarz, "iteration inside a window in contact");
   f.defaulted("output", output, "what the run writes");
   f.defaulted("network", network, "addresses and deadlines");
@@ -153,9 +155,10 @@ void Scene::fields(Fields& f) {
 }
 
 void Scene::idle_keys(Fields& f) const {
-  const bool iterated = std::any_of(interfaces.begin(), interfaces.end(), [](const auto& entry) {
-    return !std::holds_alternative<InternalTransmission>(entry.second.transmission);
-  });
+  const bool iterated =
+      contact || std::any_of(interfaces.begin(), interfaces.end(), [](const auto& entry) {
+        return !std::holds_alternative<InternalTransmission>(entry.second.transmission);
+      });
   for (const char* key : {"form", "tolerance", "max_iterations", "accelerator"})
     f.idle(!iterated, std::string("schwarz.") + key, "no two bodies of the scene meet");
   const auto waits = [](const auto& entry) {
@@ -432,6 +435,7 @@ void validate_bodies(const Scene& scene, std::span<const Description* const> bod
   errors.gather([&] { validate_members(scene, bodies, document); });
   errors.gather([&] { check_steps(scene, bodies, document); });
   errors.gather([&] { validate_ends_used_once(scene, bodies, document); });
+  errors.gather([&] { validate_everything(scene, bodies, document); });
   for (const auto& entry : scene.interfaces)
     errors.gather([&] { validate_geometry(entry.second, scene, bodies, document); });
   const auto silent = [](const Description* body) {

@@ -119,10 +119,14 @@ struct Scene {
   TimeSpec time;
   std::vector<std::pair<std::string, BodyEntry>> bodies;
   std::vector<std::pair<std::string, InterfaceSpec>> interfaces;
+  std::optional<SceneContact> contact;
   SchwarzSpec schwarz;
   OutputSpec output;
   NetworkSpec network;
   void fields(Fields& f);
+
+  /// The law where everything may touch everything; null: interfaces are written one by one.
+  const ContactSpec* everything() const { return contact ? &contact->everything : nullptr; }
 
  private:
   void idle_keys(Fields& f) const;

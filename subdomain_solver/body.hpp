@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <memory>
 
@@ -69,7 +70,7 @@ class Body final : public Subdomain {
   std::unique_ptr<Interior> interior_;
   std::function<void()> progress_;
   std::vector<Watched> ports_;
-  std::vector<std::vector<Partner>> partners_;  // by port
+  std::vector<std::deque<Partner>> partners_;  // by port; contact holds on to them
   const Advance* request_ = nullptr;
   const PortValues* seen_ = nullptr;
   std::size_t recorded_ = 0;  // records of the window so far

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,7 +22,7 @@ struct Partner {
 struct Window {
   const Advance& request;
   Substeps grid;
-  std::span<const std::vector<Partner>> partners;  // by port, in the order in which they were met
+  std::span<const std::deque<Partner>> partners;  // by port, in the order in which they were met
 };
 
 /// Motion and force of all points of all ports at one time, port after port (values) [SI units].

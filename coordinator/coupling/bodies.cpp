@@ -71,11 +71,13 @@ Bodies::Bodies(std::vector<Subdomain*> subdomains, double window)
       requests_(subdomains_.size()),
       responses_(subdomains_.size()),
       poses_(subdomains_.size()),
+      partners_(subdomains_.size()),
       everybody_(subdomains_.size()),
       compute_seconds_(subdomains_.size(), 0.0) {
   std::iota(everybody_.begin(), everybody_.end(), 0);
   for (std::size_t b = 0; b < subdomains_.size(); ++b) {
     requests_[b].boundary.resize(subdomains_[b]->describe().ports.size());
+    partners_[b].resize(requests_[b].boundary.size(), 0);
     for (std::size_t p = 0; p < requests_[b].boundary.size(); ++p)
       poses_[b].push_back(std::make_unique<PortPose>());
   }
@@ -105,7 +107,8 @@ const PortPose& Bodies::pose(const Side& side) const {
   return pose;
 }
 
-void Bodies::meet(const Side& side, const PortGeometry& partner, const ContactLaw& law) {
+void Bodies::meet(Side& side, const PortGeometry& partner, const ContactLaw& law) {
+  side.partner = partners_[index(side.body)][index(side.port)]++;
   if (describe(side.body).can.obstacle) (*this)[side.body].meet(side.port, partner, law);
 }
 

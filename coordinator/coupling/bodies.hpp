@@ -49,8 +49,8 @@ class Bodies {
   /// Whether the latest responses are of an attempt that was taken back.
   bool taken_back() const { return taken_back_; }
 
-  /// Tells a side that takes obstacles whom it may meet.
-  void meet(const Side& side, const PortGeometry& partner, const ContactLaw& law);
+  /// Numbers the partner of a side, and tells it whom it may meet where it takes obstacles.
+  void meet(Side& side, const PortGeometry& partner, const ContactLaw& law);
   /// Fields of the traces that later responses are to hold.
   void want(const Want& fields);
 
@@ -102,6 +102,7 @@ class Bodies {
   std::vector<Advance> requests_;
   std::vector<Response> responses_;
   std::vector<std::vector<std::unique_ptr<PortPose>>> poses_;  // by body and port
+  std::vector<std::vector<int>> partners_;                     // met so far, by body and port
   bool taken_back_ = false;
   std::vector<double> struck_;
   std::vector<int> everybody_;

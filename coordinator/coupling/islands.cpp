@@ -11,76 +11,103 @@ namespace abut {
 
 namespace {
 
+/// Bodies that hang together, each set under its smallest index (union by index with halved paths).
+class Sets {
+ public:
+  explicit Sets(int bodies) : parent_(index(bodies)) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  int root(int body) {
+    while (parent_[index(body)] != body) {
+      parent_[index(body)] = parent_[index(parent_[index(body)])];
+      body = parent_[index(body)];
+    }
+    return body;
+  }
+  void merge(int a, int b) {
+    a = root(a);
+    b = root(b);
+    parent_[index(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
 /// Bodies of an island by level: a body comes after the kinematic partners whose reactions it
 /// takes.
 std::vector<std::vector<int>> levels_of(const std::vector<int>& members,
                                         std::span<const Joint> joints,
-                                        const std::vector<int>& island) {
-  std::vector<int> waiting = members;
-  std::vector<int> done;
-  std::vector<std::vector<int>> levels;
-  auto is_done = [&done](int body) {
-    return std::find(done.begin(), done.end(), body) != done.end();
-  };
-  while (!waiting.empty()) {
-    std::vector<int> level;
-    for (int body : waiting) {
-      const bool ready =
-          std::all_of(island.begin(), island.end(), [&joints, body, &is_done](int j) {
-            const Joint& joint = joints[index(j)];
-            return joint.neumann_side().body != body || !joint.how->ordered() ||
-                   is_done(joint.kinematic_side().body);
-          });
-      if (ready) level.push_back(body);
+                                        const std::vector<int>& island,
+                                        std::vector<int>& waits_for) {
+  std::vector<std::vector<int>> levels(1);
+  for (const int j : island) {
+    const Joint& joint = joints[index(j)];
+    if (joint.how->ordered()) ++waits_for[index(joint.neumann_side().body)];
+  }
+  for (const int body : members)
+    if (waits_for[index(body)] == 0) levels[0].push_back(body);
+  std::size_t placed = levels[0].size();
+  while (placed < members.size()) {
+    std::vector<int> next;
+    for (const int j : island) {
+      const Joint& joint = joints[index(j)];
+      if (!joint.how->ordered()) continue;
+      if (!std::ranges::binary_search(levels.back(), joint.kinematic_side().body)) continue;
+      const int body = joint.neumann_side().body;
+      if (--waits_for[index(body)] == 0) next.push_back(body);
     }
-    if (level.empty()) {
+    if (next.empty()) {
       throw RunError("the kinematic sides of closed interfaces go round in a circle", "interfaces",
                      "Leave `kinematic: auto` on at least one interface of the circle.");
     }
-    for (int body : level) {
-      done.push_back(body);
-      waiting.erase(std::find(waiting.begin(), waiting.end(), body));
-    }
-    levels.push_back(std::move(level));
+    std::ranges::sort(next);
+    placed += next.size();
+    levels.push_back(std::move(next));
   }
   return levels;
+}
+
+/// Ends of an island's joints by the level of their bodies.
+std::vector<std::vector<Island::End>> ends_of(const Island& island, std::span<const Joint> joints,
+                                              std::vector<int>& level_of) {
+  for (std::size_t l = 0; l < island.levels.size(); ++l)
+    for (const int body : island.levels[l]) level_of[index(body)] = static_cast<int>(l);
+  std::vector<std::vector<Island::End>> ends(island.levels.size());
+  for (std::size_t i = 0; i < island.joints.size(); ++i)
+    for (const int side : {0, 1}) {
+      const int body = joints[index(island.joints[i])].sides[index(side)].body;
+      ends[index(level_of[index(body)])].push_back({i, side});
+    }
+  return ends;
 }
 
 }  // namespace
 
 std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
-  std::vector<int> root(index(bodies));
-  for (int b = 0; b < bodies; ++b) root[index(b)] = b;
-  auto merge = [&root](int from, int to) {
-    for (int& r : root) {
-      if (r == from) r = to;
-    }
-  };
-  for (const Joint& joint : joints) {
-    if (!joint.closed()) continue;
-    const int a = root[index(joint.sides[0].body)];
-    const int b = root[index(joint.sides[1].body)];
-    merge(std::max(a, b), std::min(a, b));
+  Sets sets(bodies);
+  for (const Joint& joint : joints)
+    if (joint.closed()) sets.merge(joint.sides[0].body, joint.sides[1].body);
+  std::vector<Island> of_root(index(bodies));
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (!joints[j].closed()) continue;
+    of_root[index(sets.root(joints[j].sides[0].body))].joints.push_back(static_cast<int>(j));
   }
+  std::vector<std::vector<int>> members(index(bodies));
+  for (int b = 0; b < bodies; ++b) members[index(sets.root(b))].push_back(b);
+  std::vector<int> waits_for(index(bodies), 0), level_of(index(bodies), 0);
   std::vector<Island> islands;
   for (int r = 0; r < bodies; ++r) {
-    Island island;
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      if (joints[j].closed() && root[index(joints[j].sides[0].body)] == r)
-        island.joints.push_back(static_cast<int>(j));
-    }
+    Island& island = of_root[index(r)];
     if (island.joints.empty()) continue;
-    std::vector<int> members;
-    for (int b = 0; b < bodies; ++b) {
-      if (root[index(b)] == r) members.push_back(b);
-    }
-    island.levels = levels_of(members, joints, island.joints);
+    island.levels = levels_of(members[index(r)], joints, island.joints, waits_for);
+    island.ends = ends_of(island, joints, level_of);
     islands.push_back(std::move(island));
   }
   return islands;
 }
 
-void Partition::update(std::span<const Joint> joints, int bodies) {
+bool Partition::update(std::span<const Joint> joints, int bodies) {
   bool same = roles_.size() == joints.size() && !(islands_.empty() && free_.empty());
   roles_.resize(joints.size(), -1);
   for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -88,15 +115,16 @@ void Partition::update(std::span<const Joint> joints, int bodies) {
     same = same && roles_[j] == role;
     roles_[j] = role;
   }
-  if (same) return;
+  if (same) return false;
   islands_ = find_islands(joints, bodies);
-  free_.resize(index(bodies));
-  std::iota(free_.begin(), free_.end(), 0);
-  for (const Island& island : islands_) {
-    for (const std::vector<int>& level : island.levels) {
-      for (int body : level) std::erase(free_, body);
-    }
-  }
+  std::vector<bool> taken(index(bodies), false);
+  for (const Island& island : islands_)
+    for (const std::vector<int>& level : island.levels)
+      for (const int body : level) taken[index(body)] = true;
+  free_.clear();
+  for (int b = 0; b < bodies; ++b)
+    if (!taken[index(b)]) free_.push_back(b);
+  return true;
 }
 
 }  // namespace abut

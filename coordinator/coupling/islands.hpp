@@ -11,6 +11,11 @@ namespace abut {
 struct Island {
   std::vector<int> joints;               // indices into the run's joints
   std::vector<std::vector<int>> levels;  // bodies; those of one level advance at once
+  struct End {                           // of a joint
+    std::size_t joint = 0;               // of `joints`
+    int side = 0;
+  };
+  std::vector<std::vector<End>> ends;  // by level: those of its bodies, in the order of the joints
 };
 
 /// Finds the islands of the closed joints and the order of sweeps inside them: kinematic sides
@@ -20,7 +25,8 @@ std::vector<Island> find_islands(std::span<const Joint> joints, int bodies);
 /// The bodies of a run by their closed joints; found again only when those change.
 class Partition {
  public:
-  void update(std::span<const Joint> joints, int bodies);
+  /// True: the islands have changed.
+  bool update(std::span<const Joint> joints, int bodies);
 
   const std::vector<Island>& islands() const { return islands_; }
   const std::vector<int>& free() const { return free_; }  // bodies in no island

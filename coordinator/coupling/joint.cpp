@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "coordinator/coupling/row_margin.hpp"
 #include "coordinator/coupling/transmission.hpp"
 
 namespace abut {
@@ -85,45 +86,6 @@ Joint make_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodi
   return joint;
 }
 
-namespace {
-
-struct Facets {
-  double rise = 0.0;          // [m] out of the tangent planes at their nodes, at most
-  double reach_square = 0.0;  // [m^2] of the longest way between nodes of one
-};
-
-Facets facets_of(const PortGeometry& surface) {
-  const std::size_t dim = index(surface.dim);
-  Facets facets;
-  for (std::size_t f = 0; f + 1 < surface.offsets.size(); ++f) {
-    const std::size_t begin = index(surface.offsets[f]), end = index(surface.offsets[f + 1]);
-    for (std::size_t a = begin; a < end; ++a) {
-      for (std::size_t b = begin; b < end; ++b) {
-        double off = 0.0, square = 0.0;
-        for (std::size_t i = 0; i < dim; ++i) {
-          const double way = surface.points[index(surface.facets[b]) * dim + i] -
-                             surface.points[index(surface.facets[a]) * dim + i];
-          off += surface.normals[index(surface.facets[a]) * dim + i] * way;
-          square += way * way;
-        }
-        facets.rise = std::max(facets.rise, std::abs(off));
-        facets.reach_square = std::max(facets.reach_square, square);
-      }
-    }
-  }
-  return facets;
-}
-
-/// [m] by which rows see a side nearer than its facets are. A dual row of facets of length h of a
-/// flat side takes the rise k h^2/2 of the other's curvature k for -k h^2/12: a sixth. Half as much
-/// again is added, for meshes that are not uniform.
-double early(const Facets& curved, const Facets& rows) {
-  if (curved.rise == 0.0) return 0.0;
-  return 0.25 * curved.rise * std::max(1.0, rows.reach_square / curved.reach_square);
-}
-
-}  // namespace
-
 Joint make_surface_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodies) {
   Joint joint;
   joint.name = std::move(name);
@@ -135,16 +97,12 @@ Joint make_surface_joint(std::string name, std::array<Side, 2> sides, const Bodi
                                  bodies.port(side).name, bodies.describe(side.body).name),
                      "interfaces." + joint.name, "Put the port on a side of the mesh.");
   }
-  const std::array<Facets, 2> facets = {facets_of(bodies.port(sides[0]).geometry),
-                                        facets_of(bodies.port(sides[1]).geometry)};
-  for (std::size_t s : {0u, 1u}) {  // rows are of sides that take obstacles
-    const bool finds = bodies.describe(sides[s].body).can.obstacle;
-    joint.margin += early(facets[1 - s], finds ? facets[s] : facets[1 - s]);
-  }
+  joint.margin = row_margin(sides, bodies);
   return joint;
 }
 
 void introduce(Joint& joint, Bodies& bodies) {
+  joint.met = true;
   for (std::size_t s : {0u, 1u})
     bodies.meet(joint.sides[s], bodies.port(joint.sides[1 - s]).geometry,
                 {joint.tied(), joint.points, joint.static_friction, joint.kinetic_friction});

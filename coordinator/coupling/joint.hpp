@@ -40,6 +40,8 @@ class Joint {
   Joint& operator=(Joint&&) noexcept;
 
   std::string name;
+  int interface = 0;  // of the scene's, which has one joint, or one of every pair that came near
+  bool met = false;   // the bodies know of each other, and the sides' partners are numbered
   std::array<Side, 2> sides;
   bool surfaces = false;  // in two and three dimensions: they touch anywhere, one body maps them
   // Of surfaces: rows of single points; Coulomb's coefficients of what sticks and what slides.
@@ -114,7 +116,7 @@ Joint make_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodi
 /// Two surfaces that may touch. Throws InputError when they cannot.
 Joint make_surface_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodies);
 
-/// Tells the bodies whom their ports may meet, before the first window.
+/// Tells the bodies whom their ports may meet, between windows, and numbers the partners.
 void introduce(Joint& joint, Bodies& bodies);
 
 /// Index of the stored time at which a window begins: the last one of the window before, or the

@@ -37,9 +37,17 @@ std::optional<int> only_side(const Joint& joint, const Bodies& bodies) {
 }  // namespace
 
 bool BodyOrder::comes_before(int before, int after) const {
-  return before == after || std::ranges::any_of(after_[index(before)], [this, after](int next) {
-           return comes_before(next, after);
-         });
+  std::vector<bool> seen(after_.size(), false);
+  std::vector<int> waiting = {before};
+  while (!waiting.empty()) {
+    const int body = waiting.back();
+    waiting.pop_back();
+    if (body == after) return true;
+    if (seen[index(body)]) continue;
+    seen[index(body)] = true;
+    waiting.insert(waiting.end(), after_[index(body)].begin(), after_[index(body)].end());
+  }
+  return false;
 }
 
 /// As its two bodies alone would have it; both take obstacles.
@@ -102,10 +110,15 @@ void Roles::start(std::span<Joint> joints) {
   }
   for (Joint& joint : joints) {
     if (joint.tied()) choose(joint);
-    if (!joint.surfaces || joint.role_fixed) continue;
-    if (!only_side(joint, bodies_)) settle(joint, contact_finder(joint, bodies_), true);
-    joint.role_fixed = true;
+    if (joint.surfaces) join(joint);
   }
+}
+
+void Roles::join(Joint& joint) {
+  if (joint.role_fixed) return;
+  const std::optional<int> only = only_side(joint, bodies_);
+  settle(joint, only ? *only : contact_finder(joint, bodies_), !only);
+  joint.role_fixed = true;
 }
 
 bool Roles::choose(Joint& joint) {

@@ -37,6 +37,8 @@ class Roles {
   /// Before the first window: what the scene fixes, what only one side can take, and ties. Throws
   /// InputError where that goes round in a circle.
   void start(std::span<Joint> joints);
+  /// Of surfaces, where it is open: for the rest of the run. Throws as start does.
+  void join(Joint& joint);
   /// At first touch, for the rest of the run; true when the role was open.
   bool choose(Joint& joint);
 

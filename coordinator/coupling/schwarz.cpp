@@ -12,6 +12,9 @@ namespace abut {
 
 namespace {
 
+/// Islands of the past whose secants are kept. Many bodies hang together in ever new ways.
+constexpr std::size_t most_kept = 256;
+
 /// Tells window lengths and layouts apart; single precision, because ends of equal windows are
 /// rounded differently.
 std::uint64_t layout_key(const TimeWindow& window, const std::vector<Eigen::Index>& first) {
@@ -40,15 +43,15 @@ Eigen::VectorXd Schwarz::relaxed(Eigen::VectorXd r, std::span<const Joint> joint
   return r;
 }
 
-Accelerator& Schwarz::accelerator_of(const Island& island, std::span<const Joint> joints) {
+Accelerator& Schwarz::accelerator_of(const Island& island) {
   std::unique_ptr<Accelerator>& slot = accelerators_[island.joints];
   if (slot == nullptr) {
-    auto by_joint = [this, joints](auto apply) {
-      return [this, joints, apply](const Eigen::VectorXd& r) {
+    auto by_joint = [this](auto apply) {
+      return [this, apply](const Eigen::VectorXd& r) {
         Eigen::VectorXd out(r.size());
         for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
           const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
-          const Transmission& t = *joints[index(layout_.joints[i])].how;
+          const Transmission& t = *joints_[index(layout_.joints[i])].how;
           // accelerators see scaled values; contact does not scale, its gaps and forces are given
           const auto unit = s_.segment(layout_.first[i], count);
           const Eigen::VectorXd plain = r.segment(layout_.first[i], count).cwiseQuotient(unit);
@@ -70,18 +73,13 @@ Accelerator& Schwarz::accelerator_of(const Island& island, std::span<const Joint
 std::optional<Failed> Schwarz::sweep(const Island& island, std::span<const Joint> joints,
                                      const Layout& layout, const Eigen::VectorXd& x,
                                      Bodies& bodies) const {
-  for (const std::vector<int>& level : island.levels) {
-    for (std::size_t i = 0; i < layout.joints.size(); ++i) {
+  for (std::size_t level = 0; level < island.levels.size(); ++level) {
+    for (const auto& [i, side] : island.ends[level]) {
       const Joint& joint = joints[index(layout.joints[i])];
-      for (int side : {0, 1}) {
-        const int body = joint.sides[index(side)].body;
-        if (std::find(level.begin(), level.end(), body) == level.end()) continue;
-        const Eigen::Index count = layout.first[i + 1] - layout.first[i];
-        joint.how->impose(side, x.segment(layout.first[i], count), joint,
-                                   bodies);
-      }
+      const Eigen::Index count = layout.first[i + 1] - layout.first[i];
+      joint.how->impose(side, x.segment(layout.first[i], count), joint, bodies);
     }
-    if (std::optional<Failed> failed = bodies.advance(level)) return failed;
+    if (std::optional<Failed> failed = bodies.advance(island.levels[level])) return failed;
   }
   return std::nullopt;
 }
@@ -95,31 +93,33 @@ std::optional<Failed> Schwarz::fly(const Island& island, std::span<const Joint> 
     const Joint& joint = joints[index(layout_.joints[i])];
     if (!joint.how->flies()) joint.how->predict(part(x_, i));
   }
-  for (auto level = island.levels.rbegin(); level != island.levels.rend(); ++level) {
-    const auto flies = [&level](const Joint& joint) {
-      return joint.how->flies() && std::ranges::count(*level, joint.neumann_side().body) > 0;
+  for (auto ends = island.ends.rbegin(); ends != island.ends.rend(); ++ends) {
+    const auto joint_at = [&](const Island::End& end) -> const Joint& {
+      return joints[index(layout_.joints[end.joint])];
+    };
+    const auto flies = [&joint_at](const Island::End& end) {
+      return joint_at(end).how->flies() && end.side != joint_at(end).kinematic;
     };
     std::vector<int> flown;
-    for (int j : layout_.joints) {
-      const Joint& joint = joints[index(j)];
-      if (!flies(joint)) continue;
-      joint.how->release(joint, bodies);
-      flown.push_back(joint.neumann_side().body);
+    for (const Island::End& end : *ends) {
+      if (!flies(end)) continue;
+      joint_at(end).how->release(joint_at(end), bodies);
+      flown.push_back(joint_at(end).neumann_side().body);
     }
     if (flown.empty()) continue;
     std::ranges::sort(flown);
     flown.erase(std::unique(flown.begin(), flown.end()), flown.end());
-    for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
-      const Joint& joint = joints[index(layout_.joints[i])];
-      if (std::ranges::count(flown, joint.kinematic_side().body) > 0)
-        joint.how->impose(joint.kinematic, part(x_, i), joint, bodies);
+    for (const Island::End& end : *ends) {
+      const Joint& joint = joint_at(end);
+      if (end.side == joint.kinematic &&
+          std::ranges::binary_search(flown, joint.kinematic_side().body))
+        joint.how->impose(end.side, part(x_, end.joint), joint, bodies);
     }
     if (std::optional<Failed> failed = bodies.advance(flown)) return failed;
-    for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
-      const Joint& joint = joints[index(layout_.joints[i])];
-      if (!flies(joint)) continue;
-      joint.how->see_flight(joint, bodies);
-      joint.how->predict(part(x_, i));
+    for (const Island::End& end : *ends) {
+      if (!flies(end)) continue;
+      joint_at(end).how->see_flight(joint_at(end), bodies);
+      joint_at(end).how->predict(part(x_, end.joint));
     }
     for (int body : flown) bodies[body].restore();
   }
@@ -141,7 +141,8 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     return joints[index(island.joints[i])];
   };
   if (std::optional<Failed> failed = fly(island, joints, bodies)) return *failed;
-  Accelerator& accelerator = accelerator_of(island, joints);
+  joints_ = joints;
+  Accelerator& accelerator = accelerator_of(island);
   accelerator.reset(layout_key(window, layout_.first));
 
   const bool contracts = std::ranges::all_of(
@@ -194,6 +195,16 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     Accelerator& next = careful != nullptr ? *careful : accelerator;
     x_ = next.next(x_.cwiseProduct(s_), g_.cwiseProduct(s_)).cwiseQuotient(s_);
   }
+}
+
+void Schwarz::keep(std::span<const Island> islands) {
+  if (accelerators_.size() <= most_kept + islands.size()) return;
+  std::map<std::vector<int>, std::unique_ptr<Accelerator>> kept;
+  for (const Island& island : islands) {
+    auto node = accelerators_.extract(island.joints);
+    if (!node.empty()) kept.insert(std::move(node));
+  }
+  accelerators_ = std::move(kept);
 }
 
 void Schwarz::accept(const Island& island) { accelerators_.at(island.joints)->accept(); }

@@ -45,6 +45,8 @@ class Schwarz {
                                                           const Island& island,
                                                           std::span<const Joint> joints,
                                                           Bodies& bodies);
+  /// These are the islands now: those of long ago are forgotten.
+  void keep(std::span<const Island> islands);
   /// The window was accepted.
   void accept(const Island& island);
 
@@ -64,13 +66,15 @@ class Schwarz {
   Eigen::VectorBlock<Eigen::VectorXd> part(Eigen::VectorXd& v, std::size_t i) const {
     return v.segment(layout_.first[i], layout_.first[i + 1] - layout_.first[i]);
   }
-  Accelerator& accelerator_of(const Island& island, std::span<const Joint> joints);
+  Accelerator& accelerator_of(const Island& island);
 
   Options options_;
   MakeAccelerator make_;
   // iterate, image, scales, last iterate that has an image: kept, so that windows allocate nothing
   Eigen::VectorXd x_, g_, s_, held_;
-  Layout layout_;              // of the window being solved: the accelerators' inverse reads it
+  // of the window being solved: the accelerators' inverse reads them
+  Layout layout_;
+  std::span<const Joint> joints_;
   std::map<std::vector<int>, std::unique_ptr<Accelerator>> accelerators_;
 };
 

@@ -84,11 +84,14 @@ void BalanceMeasures::follow_exchange(const WindowReport& report) {
   for (std::size_t i = 0; i < report.interfaces.size(); ++i) {
     if (!report.interfaces[i].closed) continue;
     const InterfaceInfo& info = start_.interfaces[i];
-    for (const int side : {0, 1}) {
-      const int on = recorded_body_of(start_.bodies, info.body[side], info.port[side]);
-      bodies_[index(on)].exchanged = true;
-    }
+    if (!info.many) exchange(info.body, info.port);
   }
+  for (const PairReport& pair : report.pairs) exchange(pair.body, pair.port);
+}
+
+void BalanceMeasures::exchange(const int (&body)[2], const int (&port)[2]) {
+  for (const int side : {0, 1})
+    bodies_[index(recorded_body_of(start_.bodies, body[side], port[side]))].exchanged = true;
 }
 
 /// Of whole bodies: what acts between the members of one belongs to none of them.

@@ -39,6 +39,7 @@ class BalanceMeasures {
 
   void begin(const WindowReport& report);
   void follow_exchange(const WindowReport& report);
+  void exchange(const int (&body)[2], const int (&port)[2]);
   double total_energy(const WindowReport& report, std::size_t record) const;  // [J]
   void add(const WindowReport& report, std::size_t record);
   void add_angular(const WindowReport& report, std::size_t record);

@@ -61,6 +61,10 @@ void CsvHistory::on_start(const RunStart& start) {
   }
   for (std::size_t i = 0; i < start.interfaces.size(); ++i) {
     const InterfaceInfo& info = start.interfaces[i];
+    if (info.many) {
+      interfaces_.push_back({info, {0, 0}, false});
+      continue;
+    }
     const Port& port = start.bodies[info.body[0]]->ports[info.port[0]];
     interfaces_.push_back({info,
                            {index[info.body[0]][info.port[0]], index[info.body[1]][info.port[1]]},

@@ -53,6 +53,7 @@ MeasureScope measure_scope(const RunStart& start, std::vector<std::string> exact
   scope.told = told_measures(start.bodies);
   for (const InterfaceInfo& interface : start.interfaces) {
     scope.interfaces.push_back(interface.name);
+    if (interface.many) continue;
     for (const int side : {0, 1}) {
       const Description& body = *start.bodies[interface.body[side]];
       scope.ports.push_back(body.name + "." + body.ports[interface.port[side]].name);

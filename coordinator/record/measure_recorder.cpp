@@ -21,6 +21,10 @@ void MeasureRecorder::on_start(const RunStart& start) {
   measures_.scope.filtered = filter_.has_value();
   for (std::size_t i = 0; i < start_.interfaces.size(); ++i) {
     const InterfaceInfo& info = start_.interfaces[i];
+    if (info.many) {
+      many_.emplace_back(start_, static_cast<int>(i));
+      continue;
+    }
     const int exact = form_ != nullptr ? form_->interface_index(info.name) : -1;
     std::optional<ContactErrors> errors;
     if (exact >= 0) errors.emplace(form_->row, form_->row.contacts()[index(exact)]);
@@ -43,10 +47,12 @@ void MeasureRecorder::on_window(const WindowReport& report) {
   follow_positions(report);
   balance_->on_window(report);
   for (ContactMeasures& contact : contacts_) contact.on_window(report);
+  for (ManyContacts& contact : many_) contact.on_window(report);
 }
 
 void MeasureRecorder::on_event(const RunEvent& event) {
   for (ContactMeasures& contact : contacts_) contact.on_event(event);
+  for (ManyContacts& contact : many_) contact.on_event(event);
 }
 
 void MeasureRecorder::count_iterations(const WindowReport& report) {
@@ -122,6 +128,7 @@ void MeasureRecorder::write_told(const RunEnd& end) {
 
 void MeasureRecorder::on_end(const RunEnd& end) {
   for (ContactMeasures& contact : contacts_) contact.write(last_time_, measures_);
+  for (const ManyContacts& contact : many_) contact.write(measures_);
   if (balance_) balance_->write(measures_);
   write_positions();
   write_told(end);

@@ -9,6 +9,7 @@
 #include "coordinator/exact/closed_form.hpp"
 #include "coordinator/record/balance_measures.hpp"
 #include "coordinator/record/contact_measures.hpp"
+#include "coordinator/record/many_contacts.hpp"
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/observer.hpp"
 
@@ -47,6 +48,7 @@ class MeasureRecorder : public Observer {
   std::optional<ForceFilterSpec> filter_;
   RunStart start_;
   std::vector<ContactMeasures> contacts_;
+  std::vector<ManyContacts> many_;
   std::optional<BalanceMeasures> balance_;
   std::vector<PositionMax> positions_;
   std::int64_t contact_windows_ = 0, iterations_ = 0;

@@ -19,6 +19,7 @@ struct InterfaceInfo {
   double initial_gap = 0.0;  // [m] 1D: normal distance of the reference positions
   bool tied = false;         // joined from the start, for the whole run
   int partner[2] = {0, 0};   // number of the other side among those that the port meets
+  bool many = false;         // of any two surfaces: it has pairs in place of bodies and ports
 };
 
 struct RunStart {
@@ -35,6 +36,14 @@ struct InterfaceReport {
   double residual = 0.0;  // largest scaled residual over the exchanged fields when accepted
 };
 
+/// Two surfaces that were iterated in an accepted window, of an interface of many.
+struct PairReport {
+  int interface = 0;                       // index into RunStart::interfaces
+  int body[2] = {0, 0}, port[2] = {0, 0};  // as of an InterfaceInfo
+  int partner[2] = {0, 0};
+  int kinematic = 0;  // which side is
+};
+
 /// An accepted stretch of time: one window, or several windows of free flight in one request.
 /// All bodies hold the same number of records at the same times.
 struct WindowReport {
@@ -42,6 +51,7 @@ struct WindowReport {
   std::span<const Response> responses;          // by body
   std::span<const InterfaceReport> interfaces;  // by interface
   std::int64_t windows = 0;                     // accepted so far, these included
+  std::span<const PairReport> pairs;            // of interfaces of many
 };
 
 /// Something that happened at a time.

@@ -118,11 +118,14 @@ Json ports_object(const RunStart& start) {
 
 Json interfaces_object(const RunStart& start) {
   Json object = Json::object();
-  for (const InterfaceInfo& info : start.interfaces)
+  for (const InterfaceInfo& info : start.interfaces) {
+    if (info.many) object[info.name]["sides"] = Json::array();
     for (const int side : {0, 1}) {
+      if (info.many) continue;
       const Description& body = *start.bodies[info.body[side]];
       object[info.name]["sides"].push_back(body.name + "." + body.ports[info.port[side]].name);
     }
+  }
   return object;
 }
 

@@ -9,7 +9,7 @@
 
 namespace abut {
 
-void PointObstacle::impose(const BoundaryData& data, const std::vector<Partner>& met,
+void PointObstacle::impose(const BoundaryData& data, const std::deque<Partner>& met,
                            const Substeps& grid) {
   partner_ = nullptr;
   grid_ = grid;

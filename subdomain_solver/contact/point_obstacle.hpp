@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ class PointObstacle {
 
   /// Takes what is imposed on the port over a window, which must live until the next. Throws
   /// RunError for what a point cannot take.
-  void impose(const BoundaryData& data, const std::vector<Partner>& met, const Substeps& grid);
+  void impose(const BoundaryData& data, const std::deque<Partner>& met, const Substeps& grid);
   /// One acts in this window.
   bool acts() const { return partner_ != nullptr; }
   /// At the end of substep i, 0: at the window's begin. `reaction`: [N] the force on the

@@ -28,7 +28,7 @@ SurfaceContact::SurfaceContact(std::vector<Surface> surfaces, const std::string&
     const int dim = surface.geometry->dim;
     for (const std::int32_t node : surface.nodes)
       for (int i = 0; i < dim; ++i) dofs_.push_back(node * dim + i);
-    surfaces_.push_back({std::move(surface), {}, {}, {}, 0.0});
+    surfaces_.push_back({std::move(surface), {}, {}, {}, 0.0, 0});
   }
   std::ranges::sort(dofs_);
   dofs_.erase(std::unique(dofs_.begin(), dofs_.end()), dofs_.end());
@@ -65,12 +65,11 @@ std::span<double> SurfaceContact::anchor(const Meeting& m) {
   return std::span(anchors_).subspan(m.anchor, m.law.rubs() ? m.obstacle->width() : 0);
 }
 
-/// Whom the ports may meet is known when the first window begins.
+/// Partners that the ports have not met yet: any window may bring some.
 void SurfaceContact::meet(const Window& window) {
-  std::size_t pressed = 0, reacted = 0, slid = 0, anchor = 0;
   for (std::size_t s = 0; s < surfaces_.size(); ++s) {
     const Surface& own = surfaces_[s].surface;
-    for (std::size_t k = 0; k < window.partners[own.port].size(); ++k) {
+    for (std::size_t& k = surfaces_[s].met; k < window.partners[own.port].size(); ++k) {
       const Partner& met = window.partners[own.port][k];
       if (met.law.tied) {
         throw RunError("is tied: surfaces of bodies of this kind touch, and do not join yet",
@@ -80,46 +79,37 @@ void SurfaceContact::meet(const Window& window) {
       m.obstacle = std::make_unique<SurfaceObstacle>(own.port, k, *own.geometry, met, body_);
       m.own = s;
       m.law = met.law;
-      m.pressed = pressed;
-      m.reacted = reacted;
-      m.slid = slid;
-      m.anchor = anchor;
+      m.pressed = sizes_.pressed;
+      m.reacted = sizes_.reacted;
+      m.slid = sizes_.slid;
+      m.anchor = sizes_.anchor;
       if (met.law.rubs()) {
         m.parts = own.geometry->dim;
-        slid += own.nodes.size();
-        anchor += m.obstacle->width();
+        sizes_.slid += own.nodes.size();
+        sizes_.shears += surfaces_[s].at.size();
+        sizes_.anchor += m.obstacle->width();
       }
-      pressed += surfaces_[s].at.size();
-      reacted += m.obstacle->width();
+      sizes_.pressed += surfaces_[s].at.size();
+      sizes_.reacted += m.obstacle->width();
       meetings_.push_back(std::move(m));
     }
   }
 }
 
-/// States of before the first window hold no forces yet; resumed ones do.
+/// States of before a partner was met hold no forces of it yet.
 void SurfaceContact::begin_forces() {
-  if (meetings_.empty()) return;
-  const Meeting& last = meetings_.back();
-  const std::size_t pressed = last.pressed + surfaces_[last.own].at.size();
-  const std::size_t reacted = last.reacted + last.obstacle->width();
-  if (pressed_.size() != pressed) pressed_.assign(pressed, 0.0);
-  if (reactions_.size() != reacted) reactions_.assign(reacted, 0.0);
-  const bool rubs = last.law.rubs();
-  const std::size_t slid = last.slid + (rubs ? surfaces_[last.own].surface.nodes.size() : 0);
-  const std::size_t anchors = last.anchor + (rubs ? last.obstacle->width() : 0);
-  const auto fit = [](std::vector<double>& values, std::size_t size) {
-    if (values.size() != size) values.assign(size, 0.0);
-  };
-  fit(turned_, meetings_.size());
-  fit(slid_, slid);
-  fit(shears_, slid * index(surfaces_[last.own].surface.geometry->dim));
-  fit(anchors_, anchors);
-  fit(anchored_, meetings_.size());
-  fit(dissipated_, meetings_.size());
+  pressed_.resize(sizes_.pressed, 0.0);
+  reactions_.resize(sizes_.reacted, 0.0);
+  turned_.resize(meetings_.size(), 0.0);
+  slid_.resize(sizes_.slid, 0.0);
+  shears_.resize(sizes_.shears, 0.0);
+  anchors_.resize(sizes_.anchor, 0.0);
+  anchored_.resize(meetings_.size(), 0.0);
+  dissipated_.resize(meetings_.size(), 0.0);
 }
 
 void SurfaceContact::impose(const Window& window) {
-  if (meetings_.empty()) meet(window);
+  meet(window);
   begin_forces();
   for (std::size_t k = 0; k < meetings_.size(); ++k) {
     Meeting& m = meetings_[k];

@@ -52,6 +52,7 @@ class SurfaceContact final : public PortContact {
     std::vector<double> pose;   // [m] (points, dim)
     std::vector<double> begin;  // [m] (points, dim) where the substep began
     double travel = 0.0;        // [m] from there to the free pose, at most
+    std::size_t met = 0;        // partners that have meetings
   };
   struct Meeting {
     std::unique_ptr<SurfaceObstacle> obstacle;
@@ -90,7 +91,11 @@ class SurfaceContact final : public PortContact {
   std::vector<Own> surfaces_;
   std::string body_;
   std::vector<int> dofs_;
-  std::vector<Meeting> meetings_;  // by port and partner
+  struct Sizes {  // of what all meetings so far have in the state
+    std::size_t pressed = 0, reacted = 0, slid = 0, shears = 0, anchor = 0;
+  };
+  Sizes sizes_;
+  std::vector<Meeting> meetings_;  // in the order in which partners came
   std::vector<double> pressed_;    // [N] (meetings, values of the port) on the body: state
   std::vector<double> reactions_;  // [N] (meetings, values of the partner) on partners: state
   std::vector<double> turned_;     // (meetings) 1: rows of the partner's nodes: state

@@ -58,4 +58,8 @@ std::vector<SceneContact> contacts_of(const Document& scene, const std::string& 
   return out;
 }
 
+bool touches(const Document& scene, const std::string& body, const std::string& port) {
+  return scene.has("contact.everything") || !contacts_of(scene, body, port).empty();
+}
+
 }  // namespace abut

@@ -99,8 +99,7 @@ std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Pla
   for (const auto& [name, port] : spec.ports) {
     named(place, "ports." + name + ".side", [&] { return mesh.nodes_of(port.side); });
     const int end = mesh.dim == 1 ? spec.end_of(port.side) : -1;  // by a point's name too
-    const bool touched =
-        mesh.dim == 1 ? !port.tied : !contacts_of(place.document, place.name(), name).empty();
+    const bool touched = mesh.dim == 1 ? !port.tied : touches(place.document, place.name(), name);
     ports.push_back({name, end < 0 ? port.side : end == 0 ? "left" : "right", port.tied, touched});
   }
   return ports;

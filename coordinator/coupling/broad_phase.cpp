@@ -1,0 +1,167 @@
+#include "coordinator/coupling/broad_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+
+#include "coordinator/coupling/row_margin.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Places of bodies in the order of sweeps: their numbers with the bits reversed. Neighbours in a
+/// row, a stack or a lattice alternate, so that few levels follow each other in a sweep.
+std::vector<int> ranks(int bodies) {
+  const auto reversed = [](int number) {
+    std::uint32_t in = static_cast<std::uint32_t>(number), out = 0;
+    for (int bit = 0; bit < 32; ++bit, in >>= 1) out = (out << 1) | (in & 1u);
+    return out;
+  };
+  std::vector<int> order(index(bodies)), rank(index(bodies));
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, reversed);
+  for (std::size_t k = 0; k < order.size(); ++k) rank[index(order[k])] = static_cast<int>(k);
+  return rank;
+}
+
+constexpr Box nothing = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+
+/// A box around those that a reply swept in its parts from `first` on, larger by `more` [m].
+Box box_of(const PortResponse& reply, std::size_t dim, std::size_t first, double more) {
+  Box box = nothing;
+  for (std::size_t i = 0; i < dim; ++i) {
+    box.low[i] = std::numeric_limits<double>::infinity();
+    box.high[i] = -box.low[i];
+    for (std::size_t k = first + i; k < reply.lower.size(); k += dim) {
+      box.low[i] = std::min(box.low[i], reply.lower[k] - more);
+      box.high[i] = std::max(box.high[i], reply.upper[k] + more);
+    }
+  }
+  return box;
+}
+
+Box box_of(const PortGeometry& surface, double more) {
+  Box box = nothing;
+  const std::size_t dim = index(surface.dim);
+  for (std::size_t i = 0; i < dim; ++i) {
+    box.low[i] = std::numeric_limits<double>::infinity();
+    box.high[i] = -box.low[i];
+    for (std::size_t k = i; k < surface.points.size(); k += dim) {
+      box.low[i] = std::min(box.low[i], surface.points[k] - more);
+      box.high[i] = std::max(box.high[i], surface.points[k] + more);
+    }
+  }
+  return box;
+}
+
+/// The axis along which the boxes' centres are spread most, and the order along it.
+std::vector<int> sorted_along(const std::vector<Box>& boxes, std::size_t& axis) {
+  double widest = -1.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Box& box : boxes) {
+      const double centre = 0.5 * (box.low[i] + box.high[i]);
+      if (!std::isfinite(centre)) continue;
+      low = std::min(low, centre);
+      high = std::max(high, centre);
+    }
+    if (high - low > widest) {
+      widest = high - low;
+      axis = i;
+    }
+  }
+  std::vector<int> order(boxes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&boxes, axis](int k) { return boxes[index(k)].low[axis]; });
+  return order;
+}
+
+}  // namespace
+
+BroadPhase::BroadPhase(const Bodies& bodies, std::span<const Joint> joined) {
+  const std::vector<int> rank = ranks(bodies.count());
+  std::vector<Side> sides;
+  place_.resize(index(bodies.count()));
+  for (int b = 0; b < bodies.count(); ++b) {
+    const Description& body = bodies.describe(b);
+    for (std::size_t p = 0; p < body.ports.size(); ++p) {
+      const PortGeometry& surface = body.ports[p].geometry;
+      const bool touches = surface.dim > 1 && !surface.facets.empty();
+      place_[index(b)].push_back(touches ? static_cast<int>(ports_.size()) : -1);
+      if (!touches) continue;
+      ports_.push_back({{b, static_cast<int>(p)}, std::isinf(body.mass), rank[index(b)]});
+      sides.push_back(ports_.back().side);
+    }
+  }
+  margin_ = row_margin_of_all(sides, bodies);
+  for (const Joint& joint : joined)
+    if (joint.surfaces) join(joint.sides);
+}
+
+void BroadPhase::join(const PortPair& pair) {
+  const int a = place_[index(pair[0].body)][index(pair[0].port)];
+  const int b = place_[index(pair[1].body)][index(pair[1].port)];
+  joined_.insert(std::minmax(a, b));
+}
+
+std::vector<PortPair> BroadPhase::overlapping() const {
+  std::size_t axis = 0;
+  const std::vector<int> order = sorted_along(boxes_, axis);
+  std::vector<std::pair<int, int>> found;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Box& box = boxes_[index(order[i])];
+    const Surface& one = ports_[index(order[i])];
+    for (std::size_t k = i + 1; k < order.size(); ++k) {
+      const Box& other = boxes_[index(order[k])];
+      if (other.low[axis] > box.high[axis]) break;
+      const Surface& two = ports_[index(order[k])];
+      if (one.side.body == two.side.body || (one.stands && two.stands)) continue;
+      if (overlap(box, other)) found.push_back(std::minmax(order[i], order[k]));
+    }
+  }
+  std::ranges::sort(found);
+  std::vector<PortPair> pairs;
+  for (const auto& [a, b] : found) {
+    if (joined_.contains({a, b})) continue;
+    const Surface &one = ports_[index(a)], &two = ports_[index(b)];
+    pairs.push_back(one.rank < two.rank ? PortPair{one.side, two.side}
+                                        : PortPair{two.side, one.side});
+  }
+  return pairs;
+}
+
+std::vector<PortPair> BroadPhase::near_at_start(const Bodies& bodies) {
+  boxes_.clear();
+  for (const Surface& port : ports_)
+    boxes_.push_back(box_of(bodies.port(port.side).geometry, 0.5 * margin_));
+  return overlapping();
+}
+
+std::vector<PortPair> BroadPhase::near(const Bodies& bodies, double time) {
+  boxes_.clear();
+  for (const Surface& port : ports_) {
+    const PortResponse& reply = port_of(bodies, port.side);
+    const std::size_t dim = index(bodies.port(port.side).geometry.dim);
+    const double way = (reply.speed_bound + 0.5 * reply.acceleration_bound * time) * time;
+    boxes_.push_back(box_of(reply, dim, reply.lower.size() - dim, 0.5 * margin_ + way));
+  }
+  return overlapping();
+}
+
+std::vector<PortPair> BroadPhase::crossed(const Bodies& bodies) {
+  boxes_.clear();
+  for (const Surface& port : ports_)
+    boxes_.push_back(box_of(port_of(bodies, port.side), index(bodies.port(port.side).geometry.dim),
+                            0, 0.5 * margin_));
+  return overlapping();
+}
+
+int BroadPhase::free_windows(const Bodies& bodies, double length, int most) {
+  while (most > 0 && !empty() && !near(bodies, most * length).empty()) most /= 2;
+  return most;
+}
+
+}  // namespace abut

@@ -1,0 +1,82 @@
+#include "coordinator/record/many_contacts.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "base/index.hpp"
+
+namespace abut {
+
+ManyContacts::ManyContacts(const RunStart& start, int interface)
+    : start_(start), index_(interface) {}
+
+void ManyContacts::on_event(const RunEvent& event) {
+  if (event.subject != start_.interfaces[index(index_)].name) return;
+  if (event.kind == RunEvent::Kind::contact_closed) {
+    begin_ = closings_ == 0 ? event.time : std::min(begin_, event.time);
+    ++closings_;
+    ++open_;
+  } else if (event.kind == RunEvent::Kind::contact_opened) {
+    end_ = std::max(end_, event.time);
+    --open_;
+  }
+}
+
+void ManyContacts::on_window(const WindowReport& report) {
+  for (const PairReport& pair : report.pairs) {
+    if (pair.interface != index_) continue;
+    const std::size_t k = index(pair.kinematic);
+    const PortResponse& reply = report.responses[index(pair.body[k])].ports[index(pair.port[k])];
+    const std::size_t partner = index(pair.partner[k]);
+    if (partner >= reply.reactions.size() || reply.reactions[partner].force.empty()) continue;
+    const Reaction& reaction = reply.reactions[partner];
+    read_force(reaction.force,
+               PortReader(start_.bodies[index(pair.body[k])]->ports[index(pair.port[k])]));
+    pairs_[{pair.body[0], pair.port[0], pair.body[1], pair.port[1]}].dissipated =
+        reaction.dissipated;
+  }
+}
+
+void ManyContacts::read_force(const Waveform& force, const PortReader& reader) {
+  if (force.f.empty()) return;
+  double before = reader.compression(force, 0);
+  peak_ = std::max(peak_, before);
+  for (std::size_t i = 1; i < force.size(); ++i) {
+    const double now = reader.compression(force, i);
+    impulse_ += 0.5 * (before + now) * (force.time[i] - force.time[i - 1]);
+    peak_ = std::max(peak_, now);
+    before = now;
+  }
+}
+
+void ManyContacts::write(Measures& out) const {
+  const auto name = [this](const char* what) {
+    return fmt::format("contact.{}.{}", start_.interfaces[index(index_)].name, what);
+  };
+  double dissipated = 0.0;
+  for (const auto& [key, pair] : pairs_) dissipated += pair.dissipated;
+  out.set(name("impulse"), impulse_);
+  out.set(name("force_peak"), peak_);
+  out.set(name("dissipated"), dissipated);
+  out.set(name("closings"), closings_);
+  out.set(name("count"), closings_);
+  const std::string never = "no two surfaces touched", many = "it is of many pairs";
+  if (closings_ > 0) {
+    out.set(name("begin"), begin_);
+  } else {
+    out.none(name("begin"), never);
+  }
+  if (closings_ > 0 && open_ == 0) {
+    out.set(name("end"), end_);
+    out.set(name("duration"), end_ - begin_);
+  } else {
+    const std::string why = closings_ > 0 ? "surfaces touched when the run ended" : never;
+    out.none(name("end"), why);
+    out.none(name("duration"), why);
+  }
+  for (const char* what : {"force_mean", "velocity_rms", "gap_min"}) out.none(name(what), many);
+}
+
+}  // namespace abut

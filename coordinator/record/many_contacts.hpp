@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "coordinator/record/measure_names.hpp"
+#include "coordinator/record/observer.hpp"
+#include "coordinator/record/port_reader.hpp"
+
+namespace abut {
+
+/// Measures of an interface of any two surfaces: sums over its pairs, and the largest of any.
+class ManyContacts {
+ public:
+  /// `interface`: index into the run's; it is one of many.
+  ManyContacts(const RunStart& start, int interface);
+
+  void on_window(const WindowReport& report);
+  void on_event(const RunEvent& event);
+  void write(Measures& out) const;
+
+ private:
+  struct Pair {
+    double dissipated = 0.0;  // [J] so far
+  };
+  void read_force(const Waveform& force, const PortReader& reader);
+
+  const RunStart& start_;
+  int index_;
+  std::map<std::array<int, 4>, Pair> pairs_;  // by bodies and ports
+  int closings_ = 0, open_ = 0;               // open_: pairs that press now
+  double begin_ = 0.0, end_ = 0.0;            // [s] first touch, last release
+  double impulse_ = 0.0, peak_ = 0.0;         // [N s], [N]
+};
+
+}  // namespace abut
