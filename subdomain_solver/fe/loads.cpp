@@ -86,7 +86,8 @@ void BodyForce::add(double time, std::span<const double>, Vector& force) const {
   const int dim = mesh.dim;
   Vector& b = nodal_;
   b.setZero(model_.dofs());
-  for (int node = 0; node < mesh.node_count(); ++node) {
+  const int nodes = mesh.node_count();
+  for (int node = 0; node < nodes; ++node) {
     std::array<double, 3> at = {0.0, 0.0, 0.0};
     for (int i = 0; i < dim; ++i) at[index(i)] = mesh.points[index(node * dim + i)];
     for (int i = 0; i < dim; ++i) b(node * dim + i) = value(acceleration_[index(i)], at, time);

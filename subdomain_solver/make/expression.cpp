@@ -59,6 +59,19 @@ bool has_loose_comma(const std::string& text) {
   return false;
 }
 
+/// A formula without places, worked out once at every time.
+std::function<double(const std::array<double, 3>&, double)> uniform(
+    std::shared_ptr<Formula> formula) {
+  formula->x = formula->y = formula->z = 0.0;
+  return [formula = std::move(formula), known = false, of = 0.0, value = 0.0](
+             const std::array<double, 3>&, double time) mutable {
+    if (known && time == of) return value;
+    known = true;
+    of = formula->t = time;
+    return value = formula->parser.Eval();
+  };
+}
+
 }  // namespace
 
 std::function<double(const std::array<double, 3>&, double)> expression(const std::string& text,
@@ -73,6 +86,9 @@ std::function<double(const std::array<double, 3>&, double)> expression(const std
   }
   try {
     std::shared_ptr<Formula> formula = std::make_shared<Formula>(text);  // std::function copies
+    const auto& used = formula->parser.GetUsedVar();
+    // What is the same everywhere is asked for at every node of every step.
+    if (!used.contains("x") && !used.contains("y") && !used.contains("z")) return uniform(formula);
     return [formula](const std::array<double, 3>& at, double time) {
       formula->x = at[0];
       formula->y = at[1];
