@@ -340,9 +340,12 @@ BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
                             const Bodies& bodies) {
   if (scene.everything() == nullptr) return {};
   BroadPhase all(bodies, joints);
-  for (const PortPair& pair : all.near_at_start(bodies))
-    check_start(spec_of(scene, pair, bodies), std::string(everything_path),
-                make_pair(scene, pair, bodies), bodies);
+  try {
+    for (const PortPair& pair : all.near_at_start(bodies))
+      check_start(spec_of(scene, pair, bodies), "", make_pair(scene, pair, bodies), bodies);
+  } catch (const InputError& error) {
+    throw InputError(error.what_is_wrong, std::string(everything_path), error.remedy);
+  }
   return all;
 }
 

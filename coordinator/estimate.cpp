@@ -39,11 +39,13 @@ void list_features(const Scene& scene, Estimate& e) {
   for (const auto& [name, body] : scene.bodies) {
     connected = connected || std::holds_alternative<ConnectLaunch>(body.launch);
   }
+  unilateral = unilateral || scene.everything() != nullptr;
   const bool coupled = unilateral || published;
   feature(unilateral, "unilateral transmission");
   feature(published, "published Dirichlet-Neumann form");
   feature(internal, "contact inside a body");
   feature(tied, "tied interfaces");
+  feature(scene.everything() != nullptr, "contact between everything");
   feature(coupled && scene.schwarz.parallel, "parallel form");
   feature(coupled && std::holds_alternative<KernelAcceleration>(scene.schwarz.accelerator),
           "port kernels");
@@ -142,7 +144,8 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
     known.push_back(body);
   }
   const std::int64_t count = static_cast<std::int64_t>(bodies.size());
-  const std::int64_t joints = static_cast<std::int64_t>(scene.interfaces.size());
+  std::int64_t joints = static_cast<std::int64_t>(scene.interfaces.size());
+  if (scene.everything() != nullptr) joints += count;  // pairs that touch, about
   const bool tied = std::any_of(scene.interfaces.begin(), scene.interfaces.end(),
                                 [](const auto& entry) { return entry.second.tied.has_value(); });
   if (tied) {

@@ -1,8 +1,10 @@
 #include "coordinator/everything.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -58,7 +60,58 @@ void validate_body(const Description& body, const Document& document) {
     throw InputError("has no port with a surface, so nothing could touch it", where,
                      "Give it one under ports, or write interfaces in place of "
                      "contact.everything.");
+  for (const Port& port : body.ports)
+    if (port.tied)
+      throw InputError(fmt::format("has the port {} for tied interfaces", port.name), where,
+                       "Take tied off the port.");
   require_single_facets(body, document);
+}
+
+/// One of two that touch has to find out where.
+void require_finders(std::span<const Description* const> bodies, const Document& document) {
+  const Description *moved = nullptr, *other = nullptr;
+  for (const Description* body : bodies) {
+    if (body == nullptr || body->can.obstacle) continue;
+    const Description*& place = moved == nullptr && std::isfinite(body->mass) ? moved : other;
+    place = body;
+  }
+  if (moved == nullptr || other == nullptr) return;
+  throw InputError(
+      fmt::format("lets {} ({}) meet {} ({}), of which neither can find contact on its surface",
+                  moved->name, moved->model, other->name, other->model),
+      document.where(std::string(everything_path)),
+      "Model one of them as fe, integrated in time, or write interfaces one by one.");
+}
+
+void require_friction(const ContactSpec& law, std::span<const Description* const> bodies,
+                      const Document& document) {
+  if (law.static_friction.value_or(law.friction) == 0.0) return;
+  for (const Description* body : bodies) {
+    if (body == nullptr || !body->can.obstacle || body->can.friction) continue;
+    throw InputError(fmt::format("has friction, but {} ({}) finds contact without", body->name,
+                                 body->model),
+                     document.where(std::string(everything_path)),
+                     "Leave friction out, or write interfaces one by one.");
+  }
+}
+
+/// Surfaces of one kind: flat ones beside rings only where nothing moves them.
+void require_one_kind(std::span<const Description* const> bodies, const Document& document) {
+  const Description* first = nullptr;
+  for (const Description* body : bodies) {
+    if (body == nullptr || body->ports.empty()) continue;
+    const auto kind = [](const Description& of) {
+      return std::pair(of.dim, of.ports.front().geometry.round);
+    };
+    if (first == nullptr && std::isfinite(body->mass)) first = body;
+    if (first == nullptr || kind(*first) == kind(*body)) continue;
+    if (first->dim == body->dim && std::isinf(body->mass)) continue;
+    throw InputError(
+        fmt::format("has surfaces of another kind than those of {}: {}D{} and {}D{}", first->name,
+                    body->dim, kind(*body).second ? " round an axis" : "", first->dim,
+                    kind(*first).second ? " round an axis" : ""),
+        document.where("bodies." + body->name), "Give all bodies one dimension and one plane.");
+  }
 }
 
 }  // namespace
@@ -76,6 +129,9 @@ void validate_everything(const Scene& scene, std::span<const Description* const>
                   document.where("interfaces." + name), "Give it another name."});
   for (const Description* body : bodies)
     if (body != nullptr) errors.gather([&] { validate_body(*body, document); });
+  errors.gather([&] { require_finders(bodies, document); });
+  errors.gather([&] { require_friction(*scene.everything(), bodies, document); });
+  errors.gather([&] { require_one_kind(bodies, document); });
   errors.raise();
 }
 

@@ -123,7 +123,8 @@ void validate_expectations(const Scene& scene, const std::vector<const Descripti
 /// Every interface can be joined as the scene says.
 void validate_coupling(const Scene& scene, const Placement& placement, const Document& document) {
   try {
-    make_joints(scene, Bodies(placement.pointers()));
+    const Bodies bodies(placement.pointers());
+    make_broad_phase(scene, make_joints(scene, bodies), bodies);
   } catch (const InputError& error) {
     throw InputError(error.what_is_wrong, document.where(error.where), error.remedy);
   }
