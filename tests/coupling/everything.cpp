@@ -1,0 +1,98 @@
+// Goal: where everything may touch everything, bodies move as if every pair that touches were
+// written, whenever it comes near.
+// Oracles: the same scene with its interfaces written, bit for bit; balances of momentum and
+// energy.
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/solid_scenes.hpp"
+
+namespace abut {
+namespace {
+
+struct Case {
+  std::string name;
+  int dim = 2;
+  std::string law, integrator, contact;
+};
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+std::vector<Case> cases() {
+  std::vector<Case> out;
+  for (const int dim : {2, 3})
+    for (const std::string law : {"linear_elastic", "neo_hookean"})
+      for (const std::string scheme : {"central_difference", "newmark", "generalized_alpha"})
+        for (const std::string contact :
+             {"", "friction: 0.3", "friction: 0.1, static_friction: 0.2"}) {
+          if (dim == 3 && law == "neo_hookean" && scheme != "central_difference") continue;
+          const std::string rubs = contact.empty() ? "smooth" : contact.size() > 14 ? "two" : "one";
+          out.push_back({fmt::format("{}d_{}_{}_{}", dim, law, scheme, rubs), dim,
+                         unit_law(law, 0.25), scheme + ": {step: 0.0125}", contact});
+        }
+  return out;
+}
+
+/// Bars of a length of 1 in a row, the outer ones on their way to the middle one at speeds of
+/// their own.
+std::vector<SolidText> row(const Case& c) {
+  std::vector<SolidText> bars;
+  for (const int k : {0, 1, 2}) {
+    SolidText bar;
+    bar.name = std::vector<std::string>{"middle", "left", "right"}[index(k)];
+    bar.dim = c.dim;
+    bar.mesh = bar_mesh(c.dim, 2 + k % 2);
+    bar.material = c.law;
+    bar.integrator = c.integrator;
+    bar.position = {k == 0 ? 0.0 : k == 1 ? -1.0002 : 1.004};
+    bar.velocity = {k == 0 ? 0.0 : k == 1 ? 1.0e-3 : -1.0e-3, k == 1 ? 2.0e-4 : 0.0};
+    bar.side = k == 1 ? "right" : "left";
+    if (k == 0) bar.more = "    ports: {west: {side: left}, east: {side: right}}\n";
+    bars.push_back(bar);
+  }
+  return bars;
+}
+
+std::unique_ptr<RunResult> run(const Case& c, bool everything) {
+  std::string rest = fmt::format("contact: {{everything: {{{}}}}}\n", c.contact);
+  if (!everything) {
+    const auto pair = [&c](const char* name, const char* sides) {
+      return fmt::format("  {}: {{sides: [{}], contact: {{{}}}}}\n", name, sides, c.contact);
+    };
+    rest = "interfaces:\n" + pair("west", "middle.west, left.face") +
+           pair("east", "middle.east, right.face");
+  }
+  std::string text = "meta: {title: test}\ntime: {begin: 0.0, end: 6.0, window: 0.025}\nbodies:\n";
+  for (const SolidText& bar : row(c)) {
+    std::string one = bar.text();
+    if (!bar.more.empty())
+      one.erase(one.find("    ports: {face"), one.find(bar.more) - one.find("    ports: {face"));
+    text += one;
+  }
+  return run_document(Document::from_text("test", text + rest));
+}
+
+class Everything : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Combinations, Everything, testing::ValuesIn(cases()),
+                         [](const auto& c) { return c.param.name; });
+
+TEST_P(Everything, IsThePairsThatTouchBitForBit) {
+  const auto pairs = run(GetParam(), false), all = run(GetParam(), true);
+  ASSERT_TRUE(pairs->completed());
+  ASSERT_TRUE(all->completed());
+  EXPECT_EQ(all->end.body_hashes, pairs->end.body_hashes);
+  EXPECT_EQ(all->measure("contact.everything.closings"),
+            pairs->measure("contact.west.closings") + pairs->measure("contact.east.closings"));
+  EXPECT_EQ(all->measure("contact.everything.dissipated"),
+            pairs->measure("contact.west.dissipated") + pairs->measure("contact.east.dissipated"));
+  EXPECT_EQ(all->measure("contact.everything.force_peak"),
+            std::max(pairs->measure("contact.west.force_peak"),
+                     pairs->measure("contact.east.force_peak")));
+  EXPECT_GT(pairs->measure("contact.east.begin"), pairs->measure("contact.west.begin") + 1.0);
+}
+
+}  // namespace
+}  // namespace abut
