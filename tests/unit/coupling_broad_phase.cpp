@@ -33,7 +33,7 @@ struct Crowd {
       PortGeometry& surface = told.ports[0].geometry;
       surface.dim = dim;
       surface.points.clear();
-      surface.normals.assign(index(2 * dim), 1.0);
+      surface.normals.assign(index(2 * dim), 0.0);  // rows need no margin
       PortResponse& port = bodies.back()->reply.ports[0];
       for (int corner = 0; corner < 2; ++corner)
         for (int i = 0; i < dim; ++i)
