@@ -38,6 +38,8 @@ struct InitialPlace {
   }
 };
 
+constexpr std::size_t most_of_place = 9;  // values: keys and numbers of position and velocity
+
 std::string path_of(std::string_view body) { return fmt::format("bodies.{}", body); }
 
 /// Walls and pairs of bars tell no dimension and have one; 0: what tells it is missing, which the
@@ -160,11 +162,12 @@ YAML::Node Copies::written_out(const Document& document) const {
     }
     const Body& body = found->second;
     const std::string at = path_of(found->first) + ".copies";
-    values += body.places.size() * values_of(pair.second);
+    const YAML::Node places = child(pair.second, "copies")->node;
+    values += body.places.size() * (values_of(pair.second) - values_of(places) + most_of_place);
     if (values > max_values)
       throw InputError("makes too many values, written out", document.where(at),
                        "Give fewer copies.");
-    const std::optional<Found> list = child(child(pair.second, "copies")->node, "list");
+    const std::optional<Found> list = child(places, "list");
     for (std::size_t i = 0; i < body.places.size(); ++i) {
       YAML::Node own(YAML::NodeType::Map);
       if (list) {

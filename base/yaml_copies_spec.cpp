@@ -17,7 +17,7 @@ std::vector<double> GridCopies::offset(std::size_t i) const {
   std::vector<double> place;
   for (std::size_t axis = 0; axis < count.size(); ++axis) {
     const std::size_t along = static_cast<std::size_t>(count[axis]);
-    place.push_back(static_cast<double>(i % along) * spacing[axis]);
+    place.push_back(static_cast<double>(i % along) * spacing[axis] + 0.0);  // no -0
     i /= along;
   }
   return place;

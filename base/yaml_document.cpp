@@ -162,7 +162,7 @@ void Document::write_out(const YAML::Node& text) {
   root.reset(tree_->root());
   for (const std::string& override_text : later) {
     const std::string body = copied_by(override_text, written_ ? written_->root() : root);
-    if (!body.empty() && !has(join_path("bodies", split_path(override_text)[1])))
+    if (!body.empty() && !has(join_path("bodies", split_path(override_path(override_text))[1])))
       throw InputError(fmt::format("is of no copy: {} has the copies {}", body, copies_of(body)),
                        "--set " + override_text, "Name one of them.");
     put(override_text, root);
