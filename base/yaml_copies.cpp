@@ -185,6 +185,25 @@ YAML::Node Copies::written_out(const Document& document) const {
   return out;
 }
 
+std::vector<std::string> Copies::tables_as_lists() const {
+  std::vector<std::string> overrides;
+  for (const auto& [name, body] : bodies_) {
+    if (!body.spec.table) continue;
+    std::vector<std::string> items;
+    for (const Place& place : body.places) {
+      std::vector<std::string> keys;
+      if (!place.position.empty())
+        keys.push_back(fmt::format("position: [{}]", fmt::join(place.position, ", ")));
+      if (!place.velocity.empty())
+        keys.push_back(fmt::format("velocity: [{}]", fmt::join(place.velocity, ", ")));
+      items.push_back(fmt::format("{{{}}}", fmt::join(keys, ", ")));
+    }
+    overrides.push_back(
+        fmt::format("{}.copies={{list: [{}]}}", path_of(name), fmt::join(items, ", ")));
+  }
+  return overrides;
+}
+
 std::string Copies::body_of(std::string_view copy) const {
   const auto found = copies_.find(copy);
   return found == copies_.end() ? "" : found->second.first;

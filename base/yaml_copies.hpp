@@ -31,6 +31,9 @@ class Copies {
   /// can hold.
   YAML::Node written_out(const Document& document) const;
 
+  /// Overrides that put lists in the place of tables, with the same numbers.
+  std::vector<std::string> tables_as_lists() const;
+
   /// The body that a name is a copy of; empty: none.
   std::string body_of(std::string_view copy) const;
   /// "ball_1 to ball_9" of a body; empty when it has no copies.

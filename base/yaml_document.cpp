@@ -205,6 +205,13 @@ bool Document::chooses(std::string_view path, std::string_view name) const {
   return child(*node, name).has_value();
 }
 
+std::vector<std::string> Document::overrides_elsewhere() const {
+  std::vector<std::string> all = overrides_;
+  if (copies_ != nullptr)
+    for (std::string& text : copies_->tables_as_lists()) all.push_back(std::move(text));
+  return all;
+}
+
 std::string Document::body_of_copy(std::string_view name) const {
   return copies_ != nullptr ? copies_->body_of(name) : "";
 }

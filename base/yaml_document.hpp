@@ -32,6 +32,9 @@ class Document {
   const std::string& name() const { return name_; }
   const std::string& text() const { return text_; }
   const std::vector<std::string>& overrides() const { return overrides_; }
+  /// Those with which another process builds the same document, without the tables that this one
+  /// has read: they could be others there, or none.
+  std::vector<std::string> overrides_elsewhere() const;
 
   bool has(std::string_view path) const;
   /// Keys of the map at a path, in the file's order; empty when there is no map.

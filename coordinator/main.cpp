@@ -88,7 +88,7 @@ Placement place(const Scene& scene, const Document& document, bool local,
   }
   LaunchOptions options;
   options.interrupted = &interrupted;
-  const Specification text{document.name(), document.text(), document.overrides(), ""};
+  const Specification text{document.name(), document.text(), document.overrides_elsewhere(), ""};
   placement.launch = std::make_unique<Launch>(scene, text, options);
   placement.bodies = placement.launch->take_bodies();
   return placement;

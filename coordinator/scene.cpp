@@ -53,8 +53,9 @@ void BodyEntry::fields(Fields& f) {
     std::optional<CopiesSpec> copies;
     f.optional_section("copies", copies,
                        "many equal bodies: name_1, name_2, ..., with as many digits as the last "
-                       "has, each with all keys of this one; points and initial fields move with "
-                       "them, a turned body is one of its own");
+                       "has, each with all keys of this one. Points and initial fields move with "
+                       "them; loads and constraints stay where they are in space. None is turned: "
+                       "spin stands in velocity_field, and a turned mesh is a body of its own");
   }
   f.choice("launch", launch, "way in which the body's process comes to life", Presence::optional);
   f.ignore_rest();

@@ -202,6 +202,22 @@ TEST_F(CopiesOfATable, HaveItsRows) {
             "{position: [1, 1], velocity: [2, 0]}");
 }
 
+/// Another process, perhaps on another machine, reads no table.
+TEST_F(CopiesOfATable, AreTheSameWhereThereIsNoTable) {
+  const Document here = read("x,vy\n0.1,0.30000000000000004\n1e-300,-5e22\n");
+  const Document there =
+      Document::from_text("elsewhere/s.yaml", here.text(), here.overrides_elsewhere());
+  ASSERT_EQ(there.keys("bodies"), here.keys("bodies"));
+  for (const std::string& name : here.keys("bodies"))
+    EXPECT_EQ(value(there, name, "initial"), value(here, name, "initial"));
+  EXPECT_EQ(value(there, "ball_2", "initial"), "{position: [1e-300, 0], velocity: [0, -5e+22]}");
+  const Document set = Document::from_text(
+      here.name(), here.text(), {"bodies.ball_1.initial.velocity=[1, 2]"});  // of a copy, as well
+  const Document set_there =
+      Document::from_text("elsewhere/s.yaml", set.text(), set.overrides_elsewhere());
+  EXPECT_EQ(value(set_there, "ball_1", "initial"), "{position: [0.1, 0], velocity: [1, 2]}");
+}
+
 TEST_F(CopiesOfATable, AreRefusedByLineAndColumn) {
   const std::string columns =
       "Begin the table with a line of its columns, some of x, y, z in m and vx, vy, vz in m/s.";
