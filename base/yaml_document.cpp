@@ -89,6 +89,17 @@ std::string copied_by(const std::string& override_text, const YAML::Node& root) 
   return bodies && child(bodies->node, steps[1]) ? "" : possible_body_of(root, steps[1]);
 }
 
+/// Whatever a copy has from its body, it has when its own overrides come.
+void check_copy(const std::string& override_text, const YAML::Node& root) {
+  const std::vector<std::string> steps = split_path(override_path(override_text));
+  const std::optional<Found> copy = child(child(root, "bodies")->node, steps[1]);
+  for (const char* key : {"copies", "like"})
+    if (copy && child(copy->node, key) && (steps.size() == 2 || steps[2] == key))
+      throw InputError(fmt::format("has no effect: {} is a copy", steps[1]),
+                       "--set " + override_text,
+                       fmt::format("Leave {} out, or give it to the body.", key));
+}
+
 }  // namespace
 
 std::vector<std::string> split_path(std::string_view path) {
@@ -166,6 +177,7 @@ void Document::write_out(const YAML::Node& text) {
       throw InputError(fmt::format("is of no copy: {} has the copies {}", body, copies_of(body)),
                        "--set " + override_text, "Name one of them.");
     put(override_text, root);
+    if (!body.empty()) check_copy(override_text, root);
   }
   tree_ = std::make_unique<YamlTree>(root);
 }

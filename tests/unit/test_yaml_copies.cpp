@@ -146,6 +146,13 @@ TEST(Copies, FollowOverridesOfTheirBodyAndHaveTheirOwn) {
       refusal(text, {"bodies.ball_7.initial.velocity=[7, 8]"}),
       "--set bodies.ball_7.initial.velocity=[7, 8]: is of no copy: ball has the copies ball_1 "
       "to ball_6. Name one of them.");
+  for (const std::string set : {"bodies.ball_2.like=ball", "bodies.ball_2={like: ball}"})
+    EXPECT_EQ(refusal(text, {set}), "--set " + set +
+                                        ": has no effect: ball_2 is a copy. Leave like out, or "
+                                        "give it to the body.");
+  EXPECT_EQ(refusal(text, {"bodies.ball_2.copies={list: [{}]}"}),
+            "--set bodies.ball_2.copies={list: [{}]}: has no effect: ball_2 is a copy. Leave "
+            "copies out, or give it to the body.");
 }
 
 TEST(Copies, KeysAreLocatedWhereTheyAreWrittenOnce) {
