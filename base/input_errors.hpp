@@ -15,10 +15,11 @@ class InputErrorList : public InputError {
   std::vector<InputError> all;
 };
 
-/// Gathers the errors of checks that do not depend on each other, so that one run tells of all.
+/// Gathers the errors of checks that do not depend on each other, so that one run tells of all. The
+/// same error, as copies of a body have it, is told once.
 class InputErrors {
  public:
-  void add(InputError error) { found_.push_back(std::move(error)); }
+  void add(const InputError& error);
   std::size_t count() const { return found_.size(); }
 
   /// Runs a check and keeps the errors that it throws.
@@ -27,9 +28,9 @@ class InputErrors {
     try {
       check();
     } catch (const InputErrorList& errors) {
-      found_.insert(found_.end(), errors.all.begin(), errors.all.end());
+      for (const InputError& error : errors.all) add(error);
     } catch (const InputError& error) {
-      found_.push_back(error);
+      add(error);
     }
   }
 

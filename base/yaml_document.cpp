@@ -4,48 +4,21 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/input_file.hpp"
+#include "base/yaml_copies.hpp"
 #include "base/yaml_like.hpp"
 #include "base/yaml_text.hpp"
+#include "base/yaml_tree.hpp"
 
 namespace abut {
 namespace {
 
 constexpr std::size_t max_bytes = 16'000'000;
 constexpr const char* scene_file = "Give the path of a scene file.";
-
-/// Position in a list from "[3]"; nothing when the step is a key.
-std::optional<std::size_t> list_index(std::string_view step) {
-  if (step.size() < 3 || step.front() != '[' || step.back() != ']') return std::nullopt;
-  std::size_t index = 0;
-  const char* end = step.data() + step.size() - 1;
-  const std::from_chars_result result = std::from_chars(step.data() + 1, end, index);
-  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
-  return index;
-}
-
-struct Found {
-  YAML::Node node;
-  int line = 0;  // counted from 1; 0: not from a file
-};
-
-std::optional<Found> child(const YAML::Node& node, std::string_view step) {
-  const std::optional<std::size_t> index = list_index(step);
-  if (index) {
-    if (!node.IsSequence() || *index >= node.size()) return std::nullopt;
-    const YAML::Node item = node[*index];
-    return Found{item, item.Mark().line + 1};
-  }
-  if (!node.IsMap()) return std::nullopt;
-  for (const auto& pair : node)
-    if (pair.first.Scalar() == step) return Found{pair.second, pair.first.Mark().line + 1};
-  return std::nullopt;
-}
 
 /// A map or list of the same entries, but for the one that is replaced or added.
 YAML::Node replaced(const YAML::Node& node, const std::string& step, const YAML::Node& value) {
@@ -94,6 +67,39 @@ bool is_at_or_below(const std::string& path, const std::string& ancestor) {
   return b.size() <= a.size() && std::equal(b.begin(), b.end(), a.begin());
 }
 
+/// Puts what the command line says in its place; whether it stays there: null takes a key out.
+bool put(const std::string& override_text, YAML::Node& root) {
+  const std::string where = "--set " + override_text;
+  const std::vector<std::string> steps = split_path(override_path(override_text));
+  if (override_text.find('=') == std::string::npos || steps.empty())
+    throw InputError("is not of the form key.path=value", where,
+                     "Write for example --set time.window=1e-6.");
+  const YAML::Node value =
+      parse_yaml(override_text.substr(override_text.find('=') + 1), where,
+                 override_path(override_text), "Give the value as in a scene file.");
+  root.reset(with_value(root, steps, 0, value, where));
+  return !value.IsNull();
+}
+
+/// The body whose copy an override is of, before copies are written out; empty: none.
+std::string copied_by(const std::string& override_text, const YAML::Node& root) {
+  const std::vector<std::string> steps = split_path(override_path(override_text));
+  if (steps.size() < 2 || steps[0] != "bodies") return "";
+  const std::optional<Found> bodies = child(root, "bodies");
+  return bodies && child(bodies->node, steps[1]) ? "" : possible_body_of(root, steps[1]);
+}
+
+/// Whatever a copy has from its body, it has when its own overrides come.
+void check_copy(const std::string& override_text, const YAML::Node& root) {
+  const std::vector<std::string> steps = split_path(override_path(override_text));
+  const std::optional<Found> copy = child(child(root, "bodies")->node, steps[1]);
+  for (const char* key : {"copies", "like"})
+    if (copy && child(copy->node, key) && (steps.size() == 2 || steps[2] == key))
+      throw InputError(fmt::format("has no effect: {} is a copy", steps[1]),
+                       "--set " + override_text,
+                       fmt::format("Leave {} out, or give it to the body.", key));
+}
+
 }  // namespace
 
 std::vector<std::string> split_path(std::string_view path) {
@@ -132,98 +138,134 @@ Document::Document(std::string name, std::string text, std::vector<std::string> 
     : name_(std::move(name)), text_(std::move(text)), overrides_(std::move(overrides)) {
   if (text_.size() > max_bytes)
     throw InputError(fmt::format("is larger than {} MB", max_bytes / 1'000'000), name_, scene_file);
-  root_ = std::make_unique<YAML::Node>(
-      parse_yaml(text_, name_, "",
-                 "Correct the line; most often it is an indentation, a bracket or a colon."));
-  if (!root_->IsMap())
-    throw InputError(root_->IsNull() ? "is empty" : "is not a map of keys", name_,
+  const YAML::Node root = parse_yaml(
+      text_, name_, "", "Correct the line; most often it is an indentation, a bracket or a colon.");
+  if (!root.IsMap())
+    throw InputError(root.IsNull() ? "is empty" : "is not a map of keys", name_,
                      "Write a scene as key: value lines, beginning with meta:, time:, bodies:.");
-  write_out();
+  write_out(root);
 }
 
-/// Overrides change the text, so that bodies have what was changed in those that they are like.
-/// What has no place there, or takes out what was not there, is of a body that is written out.
-void Document::write_out() {
+/// Overrides change the text, so that bodies have what was changed in those that they are like or
+/// copies of. What has no place there, or takes out what was not there, is of a body that is
+/// written out.
+void Document::write_out(const YAML::Node& text) {
   std::vector<std::string> later;
+  YAML::Node root(text);
   for (std::size_t i = 0; i < overrides_.size(); ++i) {
-    const std::string& text = overrides_[i];
+    const std::string& override_text = overrides_[i];
     const bool changed_again =
         std::any_of(overrides_.begin() + static_cast<std::ptrdiff_t>(i) + 1, overrides_.end(),
-                    [&text](const std::string& other) {
-                      return is_at_or_below(override_path(other), override_path(text));
+                    [&override_text](const std::string& other) {
+                      return is_at_or_below(override_path(other), override_path(override_text));
                     });
     try {
-      if (put(text) || changed_again) continue;
+      if (copied_by(override_text, root).empty() && (put(override_text, root) || changed_again))
+        continue;
     } catch (const InputError&) {  // told below, where it still has no place
     }
-    later.push_back(text);
+    later.push_back(override_text);
   }
-  if (has_likes(*root_)) {
-    written_ = std::move(root_);
-    const Where where = [this](const std::string& path) { return place_of(path, path); };
-    root_ = std::make_unique<YAML::Node>(with_likes(*written_, where));
+  tree_ = std::make_unique<YamlTree>(root);
+  write_out_likes();
+  write_out_copies();
+  if (later.empty()) return;
+  root.reset(tree_->root());
+  for (const std::string& override_text : later) {
+    const std::string body = copied_by(override_text, written_ ? written_->root() : root);
+    if (!body.empty() && !has(join_path("bodies", split_path(override_path(override_text))[1])))
+      throw InputError(fmt::format("is of no copy: {} has the copies {}", body, copies_of(body)),
+                       "--set " + override_text, "Name one of them.");
+    put(override_text, root);
+    if (!body.empty()) check_copy(override_text, root);
   }
-  for (const std::string& text : later) put(text);
+  tree_ = std::make_unique<YamlTree>(root);
 }
 
-bool Document::put(const std::string& override_text) {
-  const std::string where = "--set " + override_text;
-  const std::vector<std::string> steps = split_path(override_path(override_text));
-  if (override_text.find('=') == std::string::npos || steps.empty())
-    throw InputError("is not of the form key.path=value", where,
-                     "Write for example --set time.window=1e-6.");
-  const YAML::Node value =
-      parse_yaml(override_text.substr(override_text.find('=') + 1), where,
-                 override_path(override_text), "Give the value as in a scene file.");
-  root_ = std::make_unique<YAML::Node>(with_value(*root_, steps, 0, value, where));
-  return !value.IsNull();
+void Document::write_out_likes() {
+  if (!has_likes(tree_->root())) return;
+  written_ = std::move(tree_);
+  const Where where = [this](const std::string& path) { return place_of(path, path); };
+  tree_ = std::make_unique<YamlTree>(with_likes(written_->root(), where));
 }
 
-bool Document::has(std::string_view path) const {
-  YAML::Node node(*root_);
-  for (const std::string& step : split_path(path)) {
-    const std::optional<Found> found = child(node, step);
-    if (!found) return false;
-    node.reset(found->node);
-  }
-  return true;
+void Document::write_out_copies() {
+  std::unique_ptr<Copies> copies = std::make_unique<Copies>(*this);
+  if (copies->empty()) return;
+  std::unique_ptr<YamlTree> all = std::make_unique<YamlTree>(copies->written_out(*this));
+  if (written_ == nullptr) written_ = std::move(tree_);
+  tree_ = std::move(all);
+  copies_ = std::move(copies);
 }
+
+const YAML::Node& Document::root() const { return tree_->root(); }
+
+bool Document::has(std::string_view path) const { return tree_->find(path).has_value(); }
 
 std::vector<std::string> Document::keys(std::string_view path) const {
-  YAML::Node node(*root_);
-  for (const std::string& step : split_path(path)) {
-    const std::optional<Found> found = child(node, step);
-    if (!found) return {};
-    node.reset(found->node);
-  }
+  const std::optional<YAML::Node> node = tree_->find(path);
   std::vector<std::string> names;
-  if (node.IsMap())
-    for (const auto& pair : node) names.push_back(pair.first.Scalar());
+  if (node && node->IsMap())
+    for (const auto& pair : *node) names.push_back(pair.first.Scalar());
+  return names;
+}
+
+std::vector<std::string> Document::keys_with(std::string_view path, std::string_view key,
+                                             std::string_view word) const {
+  const std::optional<YAML::Node> node = tree_->find(path);
+  const auto is_word = [word](const YAML::Node& item) {
+    return item.IsScalar() && item.Scalar() == word;
+  };
+  std::vector<std::string> names;
+  if (!node || !node->IsMap()) return names;
+  for (const auto& pair : *node) {
+    const std::optional<Found> list = child(pair.second, key);
+    if (list && list->node.IsSequence() &&
+        std::any_of(list->node.begin(), list->node.end(), is_word))
+      names.push_back(pair.first.Scalar());
+  }
   return names;
 }
 
 bool Document::chooses(std::string_view path, std::string_view name) const {
-  YAML::Node node(*root_);
-  for (const std::string& step : split_path(path)) {
-    const std::optional<Found> found = child(node, step);
-    if (!found) return false;
-    node.reset(found->node);
-  }
-  if (node.IsScalar()) return node.Scalar() == name;
-  return node.IsMap() && child(node, std::string(name)).has_value();
+  const std::optional<YAML::Node> node = tree_->find(path);
+  if (!node) return false;
+  if (node->IsScalar()) return node->Scalar() == name;
+  return child(*node, name).has_value();
+}
+
+std::vector<std::string> Document::overrides_elsewhere() const {
+  std::vector<std::string> all = overrides_;
+  if (copies_ != nullptr)
+    for (std::string& text : copies_->tables_as_lists()) all.push_back(std::move(text));
+  return all;
+}
+
+std::string Document::body_of_copy(std::string_view name) const {
+  return copies_ != nullptr ? copies_->body_of(name) : "";
+}
+
+std::string Document::copies_of(std::string_view body) const {
+  return copies_ != nullptr ? copies_->names_of(body) : "";
+}
+
+bool Document::is_set_at(std::string_view path) const {
+  return std::any_of(overrides_.begin(), overrides_.end(), [path](const std::string& text) {
+    return is_at_or_below(std::string(path), override_path(text));
+  });
 }
 
 std::string Document::where(std::string_view path) const {
-  std::vector<std::string> steps = split_path(path);
-  const std::string origin = written_ != nullptr ? origin_of(*written_, path) : std::string();
-  if (origin.empty() || steps[1] == origin) return place_of(path, path);
+  if (is_set_at(path) || written_ == nullptr) return place_of(path, path);
+  const auto has = [this](const std::string& there) { return written_->find(there).has_value(); };
+  const std::string own = copies_ != nullptr ? copies_->origin_of(path, has) : std::string(path);
+  std::vector<std::string> steps = split_path(own);
+  const std::string origin = origin_of(*written_, own);
+  if (origin.empty() || steps[1] == origin) return place_of(own, own);
   steps[1] = origin;
   std::string there;
   for (const std::string& step : steps) there = join_path(there, step);
-  for (const std::string& override_text : overrides_)
-    if (is_at_or_below(std::string(path), override_path(override_text)))
-      return place_of(path, path);
-  return place_of(there, fmt::format("{} (like {})", path, origin));
+  return place_of(there, fmt::format("{} (like {})", own, origin));
 }
 
 /// Where a path of the text stands, shown as another one.
@@ -232,21 +274,20 @@ std::string Document::place_of(std::string_view path, std::string_view shown) co
   for (auto it = overrides_.rbegin(); it != overrides_.rend(); ++it)
     if (is_at_or_below(text, override_path(*it)))
       return fmt::format("{}, from --set {}: {}", name_, *it, shown);
-  YAML::Node node(written_ != nullptr ? *written_ : *root_);
+  const std::vector<std::string> steps = split_path(path);
   std::string there;  // the part of the path that the document has
   int line = 0;
-  for (const std::string& step : split_path(path)) {
-    const std::optional<Found> found = child(node, step);
-    if (!found) break;
+  std::size_t depth = 0;
+  for (const Found& found : (written_ != nullptr ? *written_ : *tree_).walk(steps)) {
+    const std::string& step = steps[depth++];
     there = join_path(there, step);
-    if (found->line > 0) line = found->line;
-    if (found->line == 0 && !list_index(step)) {  // an override made it on the way to its own key
+    if (found.line > 0) line = found.line;
+    if (found.line == 0 && !list_index(step)) {  // an override made it on the way to its own key
       for (const std::string& override_text : overrides_)
         if (is_at_or_below(override_path(override_text), there))
           return fmt::format("{}, from --set {}{}: {}", name_, override_text,
                              there == path ? "" : ", which adds " + there, shown);
     }
-    node.reset(found->node);
   }
   const std::string file = line > 0 ? fmt::format("{}:{}", name_, line) : name_;
   return path.empty() ? file : fmt::format("{}: {}", file, shown);

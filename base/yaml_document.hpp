@@ -11,12 +11,15 @@ class Node;
 
 namespace abut {
 
+class Copies;
+class YamlTree;
+
 /// One parsed YAML file with the values that the command line puts in place (`key.path=value`, the
 /// value in YAML; null takes the key out). Text, name and overrides are kept as given, so that
 /// another process can build the same document from them. Key paths read
 /// `bodies.left.initial.velocity` and `meta.expect[0].measure`. Bodies that are `like` another one
-/// are written out: what a document has at a path, they have. All that is wrong with the file's
-/// form throws InputError: syntax, duplicate keys, several documents.
+/// and copies of bodies are written out: what a document has at a path, they have. All that is
+/// wrong with the file's form throws InputError: syntax, duplicate keys, several documents.
 class Document {
  public:
   static Document load(const std::string& path, std::vector<std::string> overrides = {});
@@ -29,30 +32,46 @@ class Document {
   const std::string& name() const { return name_; }
   const std::string& text() const { return text_; }
   const std::vector<std::string>& overrides() const { return overrides_; }
+  /// Those with which another process builds the same document, without the tables that this one
+  /// has read: they could be others there, or none.
+  std::vector<std::string> overrides_elsewhere() const;
 
   bool has(std::string_view path) const;
   /// Keys of the map at a path, in the file's order; empty when there is no map.
   std::vector<std::string> keys(std::string_view path) const;
+  /// Those whose map has a list under `key` with this word in it: interfaces with a side. One look
+  /// at each, for scenes of many.
+  std::vector<std::string> keys_with(std::string_view path, std::string_view key,
+                                     std::string_view word) const;
   /// Whether the choice at a path is this one: the bare word, or a map with this key.
   bool chooses(std::string_view path, std::string_view name) const;
   /// For InputError::where: "scene.yaml:12: bodies.left", or "scene.yaml, from --set key=value:
   /// key". A path that is not there is located at its nearest ancestor; what a body has from
-  /// another one where it stands, with " (like left)" after the path.
+  /// another one where it stands, with " (like left)" after the path; what copies have where it is
+  /// written once.
   std::string where(std::string_view path) const;
 
-  const YAML::Node& root() const { return *root_; }
+  /// The body that another one is a copy of; empty: none.
+  std::string body_of_copy(std::string_view name) const;
+  /// "ball_1 to ball_9": the copies for which a name stands in the text; empty: none.
+  std::string copies_of(std::string_view body) const;
+
+  const YAML::Node& root() const;
+  const YamlTree& tree() const { return *tree_; }
 
  private:
   Document(std::string name, std::string text, std::vector<std::string> overrides);
-  bool put(const std::string& override_text);  // false: it takes a key out
-  void write_out();
+  void write_out(const YAML::Node& text);
+  void write_out_likes();
+  void write_out_copies();
+  bool is_set_at(std::string_view path) const;
   std::string place_of(std::string_view path, std::string_view shown) const;
 
   std::string name_, text_;
   std::vector<std::string> overrides_;
-  std::unique_ptr<YAML::Node> root_;
-  std::unique_ptr<YAML::Node>
-      written_;  // before bodies were written out; null: none is like another
+  std::unique_ptr<YamlTree> tree_;
+  std::unique_ptr<YamlTree> written_;  // before bodies were written out; null: it is the same
+  std::unique_ptr<Copies> copies_;     // null: there are none
 };
 
 /// "bodies.left[0]" into "bodies", "left", "[0]".

@@ -11,6 +11,7 @@
 #include "base/assert.hpp"
 #include "base/index.hpp"
 #include "base/input_errors.hpp"
+#include "base/yaml_tree.hpp"
 #include "base/yaml_values.hpp"
 
 namespace abut {
@@ -407,12 +408,9 @@ void Reader::fill(std::array<std::string, 2>& value, const Key& key, const std::
 
 void read_fields(const Document& document, std::string_view path,
                  const std::function<void(Fields&)>& visit) {
-  YAML::Node node(document.root());
-  for (const std::string& step : split_path(path)) {
-    if (!document.has(path) || !node.IsMap())
-      throw InputError("is missing", document.where(path), "Give its keys as a map.");
-    node.reset(node[step]);
-  }
+  const std::optional<YAML::Node> found = document.tree().find(path);
+  if (!found) throw InputError("is missing", document.where(path), "Give its keys as a map.");
+  const YAML::Node node(*found);
   if (!node.IsMap())
     throw InputError("must be a map of keys, but is " + describe(node), document.where(path),
                      "Give its keys as a map.");

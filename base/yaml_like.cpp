@@ -16,6 +16,7 @@
 #include "base/input_errors.hpp"
 #include "base/yaml_document.hpp"
 #include "base/yaml_text.hpp"
+#include "base/yaml_tree.hpp"
 #include "base/yaml_values.hpp"
 
 namespace abut {
@@ -42,6 +43,9 @@ std::optional<YAML::Node> find(const YAML::Node& map, const std::string& key) {
     if (pair.first.Scalar() == key) return pair.second;
   return std::nullopt;
 }
+
+/// Keys of a body that none has from another one.
+bool is_own(const std::string& key) { return key == "like" || key == "copies"; }
 
 /// `path`: keys of a body.
 bool is_choice(const std::vector<std::string>& path) {
@@ -139,7 +143,7 @@ class Bodies {
     YAML::Node out(YAML::NodeType::Map);
     for (const auto& pair : inherited) {
       const std::string& key = pair.first.Scalar();
-      if (path.empty() && key == "like") continue;
+      if (path.empty() && is_own(key)) continue;
       const auto found = mine.find(key);
       if (found == mine.end()) {
         out.force_insert(YAML::Clone(pair.first), YAML::Clone(pair.second));
@@ -151,7 +155,7 @@ class Bodies {
     }
     for (const auto& pair : own) {
       const std::string& key = pair.first.Scalar();
-      if (!theirs.contains(key) || (path.empty() && key == "like"))
+      if (!theirs.contains(key) || (path.empty() && is_own(key)))
         out.force_insert(YAML::Clone(pair.first), YAML::Clone(pair.second));
     }
     return out;
@@ -163,19 +167,6 @@ class Bodies {
   std::map<std::string, YAML::Node> done_;
   std::size_t values_ = 0;
 };
-
-/// Number of a body's steps of a path that the text has: keys, and the lists that they lead to.
-std::size_t depth_of(const YAML::Node& body, std::span<const std::string> steps) {
-  YAML::Node node(body);
-  std::size_t depth = 0;
-  for (const std::string& step : steps) {
-    const std::optional<YAML::Node> next = find(node, step);
-    if (!next) break;
-    node.reset(*next);
-    ++depth;
-  }
-  return depth;
-}
 
 }  // namespace
 
@@ -197,24 +188,22 @@ YAML::Node with_likes(const YAML::Node& scene, const Where& where) {
   return out;
 }
 
-std::string origin_of(const YAML::Node& scene, std::string_view path) {
-  const std::vector<std::string> steps = split_path(path);
+std::string origin_of(const YamlTree& scene, std::string_view path) {
+  std::vector<std::string> steps = split_path(path);
   if (steps.size() < 3 || steps[0] != "bodies") return steps.size() < 2 ? "" : steps[1];
-  const Index bodies = index_of(*find(scene, "bodies"));
-  const std::span<const std::string> keys(steps.begin() + 2, steps.end());
-  std::string origin = steps[1];
+  const std::string own = steps[1];
+  std::string origin = own;
   std::size_t most = 0;
-  std::set<std::string> seen;
-  for (std::string name = steps[1]; bodies.contains(name) && seen.insert(name).second;) {
-    const YAML::Node& body = bodies.at(name).second;
-    const std::size_t depth = depth_of(body, keys);
-    if (depth > most || name == steps[1]) {
-      most = depth;
-      origin = name;
+  for (std::set<std::string> seen; seen.insert(steps[1]).second;) {
+    const std::vector<Found> way = scene.walk(steps);
+    if (way.size() < 2) break;
+    if (way.size() > most || steps[1] == own) {
+      most = way.size();
+      origin = steps[1];
     }
-    const std::optional<YAML::Node> like = find(body, "like");
-    if (!like || !like->IsScalar()) break;
-    name = like->Scalar();
+    const std::optional<Found> like = child(way[1].node, "like");
+    if (!like || !like->node.IsScalar()) break;
+    steps[1] = like->node.Scalar();
   }
   return origin;
 }

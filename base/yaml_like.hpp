@@ -12,6 +12,8 @@ class Node;
 
 namespace abut {
 
+class YamlTree;
+
 /// Key paths of the choices in a body, such as `integrator: {newmark: ...}`, where another name
 /// replaces all that was there. `*` stands for any key.
 std::span<const std::string_view> body_choices();
@@ -28,6 +30,6 @@ YAML::Node with_likes(const YAML::Node& scene, const Where& where);
 
 /// In such a scene as it was before: where the text of a key path stands. That of another body when
 /// the path's own body has less of it.
-std::string origin_of(const YAML::Node& scene, std::string_view path);
+std::string origin_of(const YamlTree& scene, std::string_view path);
 
 }  // namespace abut

@@ -178,20 +178,34 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
   return e;
 }
 
-std::string to_text(const Estimate& e, bool verbose) {
+namespace {
+
+std::string text_of(const Estimate::Body& body) {
+  if (!body.known)
+    return "external, not known before it connects; ports, steps and expectations are checked then";
+  return fmt::format("{}; {} degrees of freedom, {} substeps, about {:.1f} MiB in a process",
+                     body.model, body.dofs, body.substeps, body.memory_mib);
+}
+
+/// One line per body; many equal ones that follow each other, as copies do, share one.
+std::string text_of(const std::vector<Estimate::Body>& bodies) {
+  constexpr std::size_t many = 4;
   std::string text;
-  for (const Estimate::Body& body : e.bodies) {
-    if (!body.known) {
-      text += fmt::format(
-          "  {}: external, not known before it connects; ports, steps and "
-          "expectations are checked then\n",
-          body.name);
-      continue;
-    }
-    text +=
-        fmt::format("  {}: {}; {} degrees of freedom, {} substeps, about {:.1f} MiB in a process\n",
-                    body.name, body.model, body.dofs, body.substeps, body.memory_mib);
+  for (std::size_t first = 0, last = 0; first < bodies.size(); first = last + 1) {
+    const std::string words = text_of(bodies[first]);
+    for (last = first; last + 1 < bodies.size() && text_of(bodies[last + 1]) == words;) ++last;
+    if (last - first + 1 < many) last = first;
+    text += last == first ? fmt::format("  {}: {}\n", bodies[first].name, words)
+                          : fmt::format("  {} to {}, each of {}: {}\n", bodies[first].name,
+                                        bodies[last].name, last - first + 1, words);
   }
+  return text;
+}
+
+}  // namespace
+
+std::string to_text(const Estimate& e, bool verbose) {
+  std::string text = text_of(e.bodies);
   const auto range = [](std::int64_t low, std::int64_t high) {
     return low == high ? fmt::format("about {}", low) : fmt::format("{} to {}", low, high);
   };

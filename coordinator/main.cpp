@@ -88,7 +88,7 @@ Placement place(const Scene& scene, const Document& document, bool local,
   }
   LaunchOptions options;
   options.interrupted = &interrupted;
-  const Specification text{document.name(), document.text(), document.overrides(), ""};
+  const Specification text{document.name(), document.text(), document.overrides_elsewhere(), ""};
   placement.launch = std::make_unique<Launch>(scene, text, options);
   placement.bodies = placement.launch->take_bodies();
   return placement;
@@ -350,7 +350,10 @@ int main(int argc, char** argv) {
     return abut::delivered(std::visit(abut::Verbs{}, abut::parse_command_line(argc, argv)));
   } catch (const abut::InputErrorList& errors) {
     int code = abut::exit_input;
-    for (const abut::InputError& error : errors.all) code = abut::fail(error, abut::exit_input);
+    const std::size_t most = std::min<std::size_t>(errors.all.size(), 20);  // that anybody reads
+    for (std::size_t i = 0; i < most; ++i) code = abut::fail(errors.all[i], abut::exit_input);
+    if (most < errors.all.size())
+      std::fputs(fmt::format("and {} more\n", errors.all.size() - most).c_str(), stderr);
     return code;
   } catch (const abut::InputError& error) {
     return abut::fail(error, abut::exit_input);

@@ -10,6 +10,7 @@
 
 #include "base/assert.hpp"
 #include "base/input_errors.hpp"
+#include "base/yaml_copies_spec.hpp"
 #include "base/yaml_fields.hpp"
 #include "coordinator/adjusted_body.hpp"
 #include "coordinator/coupling/joint.hpp"
@@ -49,6 +50,14 @@ void BodyEntry::fields(Fields& f) {
     f.optional("like", like, "",
                "name of a body whose keys this one has beside its own: maps key by key, lists and "
                "values as a whole, a choice of another name instead; null leaves a key out");
+  if (f.purpose() == Fields::Purpose::document) {  // the document has written copies out
+    std::optional<CopiesSpec> copies;
+    f.optional_section("copies", copies,
+                       "many equal bodies: name_1, name_2, ..., with as many digits as the last "
+                       "has, each with all keys of this one. Points and initial fields move with "
+                       "them; loads and constraints stay where they are in space. None is turned: "
+                       "spin stands in velocity_field, and a turned mesh is a body of its own");
+  }
   f.choice("launch", launch, "way in which the body's process comes to life", Presence::optional);
   f.ignore_rest();
 }
@@ -180,9 +189,13 @@ namespace {
 
 template <class Named>
 std::string names_of(const Named& entries) {
+  constexpr std::size_t most = 20;  // that anybody reads through
   std::vector<std::string> names;
-  for (const auto& [name, entry] : entries) names.push_back(name);
-  return fmt::format("{}", fmt::join(names, ", "));
+  for (const auto& [name, entry] : entries)
+    if (names.size() < most) names.push_back(name);
+  const std::size_t more = entries.size() - names.size();
+  return fmt::format("{}{}", fmt::join(names, ", "),
+                     more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
 template <class Named>
@@ -209,6 +222,10 @@ void validate_interface(const Scene& scene, const InterfaceSpec& interface,
     if (name.body.empty() || name.port.empty() || name.port.find('.') != std::string::npos)
       throw InputError(fmt::format("is {}, which is not of the form body.port", side), where,
                        "Name a body and one of its ports, for example left.tip.");
+    const std::string copies = document.copies_of(name.body);
+    if (!copies.empty())
+      throw InputError(fmt::format("is {}, but {} is written once for copies", side, name.body),
+                       where, fmt::format("Name one of them: {}.", copies));
     if (!has_name(scene.bodies, name.body))
       throw InputError(fmt::format("is {}, but there is no body {}", side, name.body), where,
                        fmt::format("Choose one of the bodies: {}.", names_of(scene.bodies)));

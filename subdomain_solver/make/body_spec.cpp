@@ -195,6 +195,7 @@ void PortSpec::fields(Fields& f) {
 void BodySpec::fields(Fields& f) {
   f.ignore("launch");
   f.ignore("like");
+  f.ignore("copies");
   f.choice("model", model, "model of the body");
   f.choice("material", material, "material of the body; a rigid wall has none");
   f.choice("integrator", integrator, "time integrator; a rigid wall has none");

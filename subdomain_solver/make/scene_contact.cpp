@@ -41,9 +41,9 @@ std::string kinematic_of(const Document& scene, const std::string& interface) {
 std::vector<SceneContact> contacts_of(const Document& scene, const std::string& body,
                                       const std::string& port) {
   std::vector<SceneContact> out;
-  for (const std::string& name : scene.keys("interfaces")) {
+  for (const std::string& name : scene.keys_with("interfaces", "sides", body + "." + port)) {
     const std::string path = "interfaces." + name;
-    if (!scene.has(path + ".contact") || !scene.has(path + ".sides")) continue;
+    if (!scene.has(path + ".contact")) continue;
     const SidesSpec interface = read<SidesSpec>(scene, path);
     for (const std::size_t s : {0u, 1u}) {
       if (interface.sides[s] != body + "." + port) continue;

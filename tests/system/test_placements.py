@@ -44,6 +44,17 @@ interfaces:
   second: {sides: [b.skin, c.skin], contact: {}, transmission: {unilateral: {kinematic: b.skin}}}
 """
 
+THROWN = """\
+meta: {title: Bars from a table}
+time: {begin: 0.0, end: 1.0e-4, window: 1.0e-5}
+bodies:
+  bar:
+    copies: {table: {file: bars.csv}}
+    model: {fe: {dimension: 1, mesh: {bar: {length: 0.25, elements: 10, area: 1.0e-6}}}}
+    material: {linear_elastic: {youngs_modulus: 1.0e9, density: 1000.0}}
+    integrator: {central_difference: {step: 5.0e-6}}
+"""
+
 
 class Placements(SystemTest):
     def run_in(self, name: str, scene: Path, *arguments: object) -> Path:
@@ -87,6 +98,20 @@ class Placements(SystemTest):
         local = self.run_in("here", scene, "--local")
         self.assertEqual(bits(self.run_in("there", scene)), bits(local))
         self.assertEqual(self.summary(local)["measures"]["contact.second.closings"], 1.0)
+
+    def test_solvers_get_the_rows_of_a_table_that_they_do_not_have(self):
+        scene, table = self.folder / "scene.yaml", self.folder / "bars.csv"
+        wrapper = self.folder / "solver-without-the-table"
+        scene.write_text(THROWN, encoding="utf-8")
+        table.write_text("x, vx\n0.0, 0.1\n0.3, 0.30000000000000004\n", encoding="utf-8")
+        wrapper.write_text(f"#!/bin/sh\nrm -f {table}\nexec {SOLVER} \"$@\"\n", encoding="utf-8")
+        wrapper.chmod(0o755)
+        local = self.run_in("here", scene, "--local")
+        self.assertAlmostEqual(self.summary(local)["measures"]["mean_velocity.bar_2.end"], 0.3,
+                               delta=1e-15)
+        there = self.run_in("there", scene, "--set", f"bodies.bar.launch.spawn.program={wrapper}")
+        self.assertFalse(table.exists())
+        self.assertEqual(bits(there), bits(local))
 
     def test_load_priority_and_a_single_core_change_no_bit(self):
         once = bits(self.run_in("once", TWO_BARS))

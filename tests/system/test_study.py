@@ -294,6 +294,28 @@ claims: [{text: better, checks: [{runs: corrected, value: release, below: plain}
         self.assertEqual(facts["claims"][0]["verdict"],
                          "holds" if corrected < plain else "does not hold")
 
+    def test_copies_are_set_all_at_once_in_number_and_one_by_one(self):
+        scene = SCENE[SCENE.index("time:"):SCENE.index("bodies:")] + "bodies:\n" + BAR.format(
+            name="bar", x=0.0, v=1.0, side="right") + """\
+    copies: {grid: {count: [3], spacing: [1.0]}}
+meta: {title: Three bars}
+"""
+        text = """\
+title: Copies
+variants:
+  - {label: three, scene: scene.yaml}
+  - {label: fast, scene: scene.yaml, set: {bodies.*.initial.velocity: [5.0]}}
+  - {label: one, scene: scene.yaml, set: {bodies.bar.copies.grid.count: [1]}}
+  - {label: first, scene: scene.yaml, set: {bodies.bar_1.initial.velocity: [7.0]}}
+errors: {speed: {measure: mean_velocity.bar_1.end}}
+"""
+        self.succeed(self.abut("study", write(self.folder / "s", text, scene), "--out", self.out))
+        found = {row["label"]: row for row in self.rows()}
+        for label, speed in (("three", 1.0), ("fast", 5.0), ("one", 1.0), ("first", 7.0)):
+            self.assertAlmostEqual(found[label]["errors"]["speed"], speed, delta=1e-12, msg=label)
+        self.assertEqual(3 * found["one"]["cost"]["exchanges"],
+                         found["three"]["cost"]["exchanges"])
+
     def test_every_mistake_is_named_with_its_place(self):
         knob = "set: [bodies.*.integrator.*.step]"
         for old, new, words in [

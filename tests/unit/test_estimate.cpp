@@ -55,6 +55,19 @@ TEST(Estimate, HoldsWhatTheShippedSceneTakes) {
   EXPECT_GE(e.exchanges_high, 222);  // unequal_bars.yaml: two sweeps in most windows
 }
 
+/// Copies of a body, and not two bodies that a reader compares.
+TEST(Estimate, TellsManyEqualBodiesInOneLine) {
+  Estimate e;
+  for (const std::string name : {"a_1", "a_2", "a_3", "a_4", "b", "c_1", "c_2", "c_3"})
+    e.bodies.push_back({name, name[0] == 'b' ? "modal" : "fe", true, 3, 5, 2.0});
+  const std::string each = "fe; 3 degrees of freedom, 5 substeps, about 2.0 MiB in a process\n";
+  const std::string text = to_text(e);
+  EXPECT_EQ(text.substr(0, text.find("  windows")),
+            "  a_1 to a_4, each of 4: " + each +
+                "  b: modal; 3 degrees of freedom, 5 substeps, about 2.0 MiB in a process\n" +
+                "  c_1: " + each + "  c_2: " + each + "  c_3: " + each);
+}
+
 TEST(Estimate, KnowsNothingOfContactWithoutAClosedForm) {
   const Description left = bar(1.0e-7);
   const Description* bodies[] = {&left, &left};

@@ -15,6 +15,12 @@ def nearest(word: str, known: list[str]) -> str:
     return f" Did you mean {' or '.join(found)}?" if found else ""
 
 
+def has_body(bodies: dict, name: str) -> bool:
+    """As written, or as a copy, whose number the program knows: ball_3 where ball has copies."""
+    copied = bodies.get(name.rpartition("_")[0]) if re.search(r"_\d+$", name) else None
+    return name in bodies or isinstance(copied, dict) and "copies" in copied
+
+
 class KeyList:
     """What the program calls a key; <name> stands for the scene's own names."""
 
@@ -28,15 +34,15 @@ class KeyList:
         self.keys = re.findall(r"^\| `([^`]+)` \|", text, re.MULTILINE)
 
     def refuse_unknown(self, key: str, scene: dict, where: str) -> None:
-        parts, names = key.split("."), list(scene.get("bodies") or {})
+        parts, bodies = key.split("."), scene.get("bodies") or {}
         for known in self.keys:
             pattern = known.split(".")
             if len(pattern) == len(parts) and all(
                     p == k or p.startswith("<") or re.sub(r"\[\w+\]$", "", p) ==
                     re.sub(r"\[\d+\]$", "", k) for p, k in zip(pattern, parts)):
-                if parts[0] == "bodies" and len(parts) > 1 and parts[1] not in names:
+                if parts[0] == "bodies" and len(parts) > 1 and not has_body(bodies, parts[1]):
                     raise ToolError(f"{where}: the scene has no body '{parts[1]}' (key '{key}'); "
-                                    f"its bodies are {', '.join(names)}.", 2)
+                                    f"its bodies are {', '.join(bodies)}.", 2)
                 return
         own = [known.replace("<name>", parts[1], 1) if len(parts) > 1 else known
                for known in self.keys]

@@ -1,0 +1,130 @@
+#include "base/yaml_moved.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/yaml_tree.hpp"
+#include "base/yaml_values.hpp"
+
+namespace abut {
+namespace {
+
+/// Nothing where a value is no list of numbers.
+std::optional<std::vector<double>> numbers_in(const YAML::Node& node) {
+  if (!node.IsSequence()) return std::nullopt;
+  std::vector<double> values;
+  for (const YAML::Node& item : node) {
+    const std::optional<double> value =
+        is_plain(item) ? parse<double>(item.Scalar()) : std::optional<double>();
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+  }
+  return values;
+}
+
+/// Of lists of different lengths, the shorter one is 0 beyond its end.
+YAML::Node sum(const YAML::Node& list, const std::vector<double>& more) {
+  std::optional<std::vector<double>> values = numbers_in(list);
+  if (!values) return YAML::Clone(list);
+  values->resize(std::max(values->size(), more.size()));
+  for (std::size_t i = 0; i < more.size(); ++i) (*values)[i] += more[i];
+  return numbers_of(*values);
+}
+
+/// An expression in x, y, z of a body that has moved: "2 * x" is "2 * (x - 0.1)".
+std::string moved(const std::string& text, const std::vector<double>& way) {
+  const auto is_of_word = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '.'; };
+  std::string out;
+  for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end) {
+    end = begin;
+    while (end < text.size() && is_of_word(static_cast<unsigned char>(text[end]))) ++end;
+    end = std::max(end, begin + 1);
+    const std::string word = text.substr(begin, end - begin);
+    const std::size_t axis = word.size() == 1 ? std::string_view("xyz").find(word[0]) : 3;
+    const double along = axis < way.size() ? way[axis] : 0.0;
+    out += along == 0.0 ? word
+                        : fmt::format("({} {} {})", word, along < 0.0 ? '+' : '-', std::abs(along));
+  }
+  return out;
+}
+
+YAML::Node moved_fields(const YAML::Node& texts, const std::vector<double>& way) {
+  if (!texts.IsSequence()) return YAML::Clone(texts);
+  YAML::Node list(YAML::NodeType::Sequence);
+  for (const YAML::Node& text : texts)
+    list.push_back(text.IsScalar() ? YAML::Node(moved(text.Scalar(), way)) : YAML::Clone(text));
+  return list;
+}
+
+YAML::Node moved_points(const YAML::Node& points, const std::vector<double>& way) {
+  if (!points.IsMap()) return YAML::Clone(points);
+  YAML::Node out(YAML::NodeType::Map);
+  for (const auto& pair : points) {
+    YAML::Node point = YAML::Clone(pair.second);
+    const std::optional<Found> at = child(point, "at");
+    if (at) point["at"] = sum(at->node, way);
+    out.force_insert(pair.first.Scalar(), point);
+  }
+  return out;
+}
+
+YAML::Node moved_initial(const YAML::Node& initial, const YAML::Node& own,
+                         const std::vector<double>& way) {
+  YAML::Node out(YAML::NodeType::Map);
+  const auto put = [&out, &way](const std::string& key, const YAML::Node& value) {
+    const bool field = key == "displacement_field" || key == "velocity_field";
+    out.force_insert(key, field ? moved_fields(value, way) : YAML::Clone(value));
+  };
+  for (const auto& pair : initial) {
+    const std::string& key = pair.first.Scalar();
+    const std::optional<Found> other = child(own, key);
+    if (!other) {
+      put(key, pair.second);
+    } else if (key == "position" || key == "velocity") {
+      out.force_insert(key, sum(pair.second, numbers_in(other->node).value_or(way)));
+    } else if (!other->node.IsNull()) {
+      put(key, other->node);
+    }
+  }
+  for (const auto& pair : own)
+    if (!child(initial, pair.first.Scalar())) put(pair.first.Scalar(), pair.second);
+  return out;
+}
+
+}  // namespace
+
+YAML::Node numbers_of(const std::vector<double>& values) {
+  YAML::Node list(YAML::NodeType::Sequence);
+  for (const double value : values) list.push_back(fmt::format("{}", value));
+  list.SetStyle(YAML::EmitterStyle::Flow);
+  return list;
+}
+
+YAML::Node moved_copy(const YAML::Node& body, const YAML::Node& own) {
+  const std::optional<Found> position = child(own, "position");
+  const std::vector<double> way =
+      position ? numbers_in(position->node).value_or(std::vector<double>()) : std::vector<double>();
+  YAML::Node out(YAML::NodeType::Map);
+  bool begins = false;
+  for (const auto& pair : body) {
+    const std::string& key = pair.first.Scalar();
+    if (key == "copies") continue;
+    const bool initial = key == "initial" && pair.second.IsMap();
+    begins = begins || key == "initial";
+    out.force_insert(key, initial           ? moved_initial(pair.second, own, way)
+                          : key == "points" ? moved_points(pair.second, way)
+                                            : YAML::Clone(pair.second));
+  }
+  if (!begins)
+    out.force_insert("initial", moved_initial(YAML::Node(YAML::NodeType::Map), own, way));
+  return out;
+}
+
+}  // namespace abut
