@@ -111,8 +111,7 @@ class Fields {
   }
 
   /// A one-key map `{name: {keys}}`, or the name alone when all its keys have defaults. Each
-  /// alternative has `static constexpr std::string_view name` and `fields`; where it names a key of
-  /// text as its `shorthand`, `{name: text}` is short for `{name: {shorthand: text}}`.
+  /// alternative has `static constexpr std::string_view name` and `fields`.
   template <HasFields... A>
   void choice(std::string_view key, std::variant<A...>& value, std::string_view help,
               Presence presence = Presence::required) {
@@ -156,7 +155,6 @@ class Fields {
   /// Empty: absent. A reader returns the name found, the others the `current` one.
   virtual std::string enter_choice(const Key& key, std::span<const std::string_view> names,
                                    std::string_view current) = 0;
-  /// A plain value in the place of the map stands for its key `shorthand`, where that is not empty.
   virtual void descend(std::string_view name, std::string_view shorthand = {}) = 0;
   virtual void leave() = 0;
   virtual void broken(std::string_view key, const std::string& what, const std::string& remedy) = 0;
@@ -170,11 +168,7 @@ class Fields {
   }
   template <class S>
   void item(std::string_view name, S& value) {
-    if constexpr (requires { S::shorthand; }) {
-      descend(name, S::shorthand);
-    } else {
-      descend(name);
-    }
+    descend(name, shorthand_of<S>());
     value.fields(*this);
     leave();
   }
