@@ -109,7 +109,10 @@ class Placements(SystemTest):
         local = bits(self.run_in("here", chain, "--local"))
         for name, arguments in placements.items():
             with self.subTest(placement=name):
-                self.assertEqual(bits(self.run_in(name, chain, *arguments)), local)
+                folder = self.run_in(name, chain, *arguments)
+                self.assertEqual(bits(folder), local)
+                again = self.run_in(f"{name} again", folder / "scene.resolved.yaml")
+                self.assertEqual(bits(again), local)
         two = bits(self.run_in("two", TWO_BARS, "--local"))
         self.assertEqual(
             bits(self.run_in("one", TWO_BARS, "--set", "network.processes=1")), two)
