@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Whole runs of bodies that share processes, against a process for each body and against one process.
+"""Whole runs of bodies that share processes, against a process for each body and against --local.
 
 usage: shared_processes.py DIRECTORY_OF_PROGRAMS
 
-Prints medians and ratios beside their limits; exit code 1 when a limit is passed. Ratios are of runs
-that follow each other; they pass their limit when the lower quartile does, so that noise does not
-decide.
+Prints medians and ratios beside their limits; exit code 1 when a limit is passed. Ratios are of
+runs that follow each other; they pass their limit when the lower quartile does, so that noise does
+not decide.
 """
 
 import json
