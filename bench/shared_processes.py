@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 REPEATS = 9
-REPEATS_OF_MANY = 5
+REPEATS_OF_MANY = 3
 TWO_BARS = pathlib.Path(__file__).resolve().parent.parent / "configs" / "two_bars.yaml"
 # One connection and no second process to wake: an exchange costs no more than with a process each.
 RATIO_LIMIT = 1.0
