@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 REPEATS = 9
-REPEATS_OF_MANY = 3
+REPEATS_OF_MANY = 5
 TWO_BARS = pathlib.Path(__file__).resolve().parent.parent / "configs" / "two_bars.yaml"
 # One connection and no second process to wake: an exchange costs no more than with a process each.
 RATIO_LIMIT = 1.0
@@ -84,10 +84,12 @@ def many(abut, folder, count, meet, placements):
     for name, arguments in placements.items():
         runs = [run(abut, scene, *arguments) for _ in range(REPEATS_OF_MANY)]
         hashes |= {summary["state_hash"] for summary in runs}
-        wall = statistics.median(summary["timing"]["wall_s"] for summary in runs)
+        walls = sorted(summary["timing"]["wall_s"] for summary in runs)
+        wall = statistics.median(walls)
         start = statistics.median(summary["timing"]["startup_s"] for summary in runs)
         exchanges, windows = runs[0]["exchanges"], runs[0]["windows"]
-        print(f"{count:5} squares {kind:16} {name:13} start-up {start:7.3f} s, wall {wall:7.3f} s: "
+        print(f"{count:5} squares {kind:16} {name:13} start-up {start:7.3f} s, wall {wall:7.3f} s "
+              f"({walls[0]:.3f} to {walls[-1]:.3f}): "
               f"{wall / count / windows * 1e6:7.2f} us a body and window, "
               f"{wall / exchanges * 1e6:7.1f} us an exchange")
     if len(hashes) != 1:

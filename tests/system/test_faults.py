@@ -182,6 +182,12 @@ class SharedProcesses(FaultTest):
                 self.assertEqual(marked(self.mark), [])
                 self.assertEqual(self.summary()["status"], "interrupted")
 
+    def test_several_bodies_need_the_name_of_their_process(self):
+        result = self.end(self.start(SOLVER, "--connect", f"tcp://127.0.0.1:{free_port()}",
+                                     "--body", "left", "--body", "right"), ENDING)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("several bodies need --process", result.stderr)
+
     def test_a_process_ends_with_a_killed_coordinator(self):
         run = self.run_in_background(*LONG, *self.TOGETHER)
         self.solvers(1)
