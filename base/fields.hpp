@@ -155,7 +155,7 @@ class Fields {
   /// Empty: absent. A reader returns the name found, the others the `current` one.
   virtual std::string enter_choice(const Key& key, std::span<const std::string_view> names,
                                    std::string_view current) = 0;
-  virtual void descend(std::string_view name) = 0;
+  virtual void descend(std::string_view name, std::string_view shorthand = {}) = 0;
   virtual void leave() = 0;
   virtual void broken(std::string_view key, const std::string& what, const std::string& remedy) = 0;
 
@@ -168,7 +168,7 @@ class Fields {
   }
   template <class S>
   void item(std::string_view name, S& value) {
-    descend(name);
+    descend(name, shorthand_of<S>());
     value.fields(*this);
     leave();
   }

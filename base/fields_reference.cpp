@@ -81,7 +81,7 @@ class Documenter final : public Fields {
     descend(key.name);
     return std::string(current);
   }
-  void descend(std::string_view name) override {
+  void descend(std::string_view name, std::string_view = {}) override {
     stack_.push_back(join_path(stack_.back(), name == "[]" ? "[i]" : name));
   }
   void broken(std::string_view, const std::string&, const std::string&) override {}

@@ -66,4 +66,13 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// The candidate a user may have meant; empty when none is near.
 std::string nearest(std::string_view word, std::span<const std::string> candidates);
 
+/// The key for which a plain value stands in the place of a map of S: where S has `static constexpr
+/// std::string_view shorthand`, `{name: value}` is short for `{name: {shorthand: value}}`. Empty:
+/// none.
+template <class S>
+constexpr std::string_view shorthand_of() {
+  if constexpr (requires { S::shorthand; }) return S::shorthand;
+  return {};
+}
+
 }  // namespace abut

@@ -40,7 +40,7 @@ class Reader final : public Fields {
   void enter_map(const Key& key, std::vector<std::string>& names) override;
   std::string enter_choice(const Key& key, std::span<const std::string_view> names,
                            std::string_view current) override;
-  void descend(std::string_view name) override;
+  void descend(std::string_view name, std::string_view shorthand) override;
   void broken(std::string_view key, const std::string& what, const std::string& remedy) override;
 
  private:
@@ -242,7 +242,7 @@ std::string Reader::chosen(const Key& key, const std::string& path, const YAML::
   return name;
 }
 
-void Reader::descend(std::string_view name) {
+void Reader::descend(std::string_view name, std::string_view shorthand) {
   const Frame& parent = frames_.back();
   const std::string path = join_path(parent.path, name);
   YAML::Node node;
@@ -250,6 +250,11 @@ void Reader::descend(std::string_view name) {
     node.reset(parent.node[index(std::stoul(std::string(name.substr(1))))]);
   else
     node.reset(parent.node[std::string(name)]);
+  if (!shorthand.empty() && node.IsScalar()) {
+    YAML::Node map(YAML::NodeType::Map);
+    map[std::string(shorthand)] = node;
+    node.reset(map);
+  }
   const std::size_t earlier = errors_.count();
   if (!node.IsMap()) {
     errors_.gather([&] {

@@ -155,7 +155,7 @@ class Writer final : public Fields {
     if (!current.empty()) descend(key.name);
     return std::string(current);
   }
-  void descend(std::string_view name) override {
+  void descend(std::string_view name, std::string_view = {}) override {
     Node& child = stack_.back()->child(name);
     stack_.push_back(&child);
   }

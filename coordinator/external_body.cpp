@@ -24,6 +24,11 @@ bool is_external(const Document& document, const std::string& body) {
 
 void check_external_launch(const BodyEntry& entry, const Document& document) {
   if (!entry.external) return;
+  if (std::holds_alternative<GroupLaunch>(entry.launch))
+    throw InputError("is of another program, whose process holds no other body",
+                     document.where("bodies." + entry.name + ".launch.group"),
+                     "Give launch: {connect: {}} and start that program yourself, or launch: "
+                     "{spawn: {program: its path}}.");
   const SpawnLaunch* spawn = std::get_if<SpawnLaunch>(&entry.launch);
   if (spawn == nullptr || !spawn->program.empty()) return;
   throw InputError("is of another program, but abut-solver would be started for it",

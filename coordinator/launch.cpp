@@ -15,6 +15,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "coordinator/solver_processes.hpp"
 #include "messaging/codec.hpp"
 #include "messaging/descriptors.hpp"
 #include "messaging/liveness.hpp"
@@ -28,12 +29,35 @@ namespace {
 constexpr Milliseconds time_to_finish{2'000};     // from Finish to the end of the process
 constexpr Milliseconds time_to_die{500};          // from SIGTERM to SIGKILL
 constexpr std::size_t longest_socket_path = 100;  // the kernel allows 107 bytes
-// Measured: the hub opens 9 and a body 2; pipes of a start and files of a run come on top.
+// Measured: the hub opens 9 and a process 2; pipes of a start and files of a run come on top.
 constexpr int descriptors_of_a_run = 32;
-constexpr int descriptors_of_a_body = 4;
+constexpr int descriptors_of_a_process = 4;
+constexpr std::size_t most_names = 20;  // of bodies that share a process, in a message
 
 Milliseconds milliseconds(double seconds) {
   return Milliseconds(static_cast<Milliseconds::rep>(seconds * 1000.0));
+}
+
+/// Not below zero.
+Milliseconds time_left(TimePoint until) {
+  return std::max(Milliseconds(0),
+                  std::chrono::ceil<Milliseconds>(until - std::chrono::steady_clock::now()));
+}
+
+/// Bodies with processes that somebody else starts.
+std::size_t connected(const Scene& scene) {
+  return static_cast<std::size_t>(std::count_if(
+      scene.bodies.begin(), scene.bodies.end(),
+      [](const auto& body) { return std::holds_alternative<ConnectLaunch>(body.second.launch); }));
+}
+
+Frame refusal(std::uint64_t session, const std::string& reason) {
+  v1::Request request;
+  request.set_session(session);
+  request.mutable_refuse()->set_reason(reason);
+  Frame out;
+  out.seal(request);
+  return out;
 }
 
 std::string make_private_directory() {
@@ -64,14 +88,34 @@ std::string command_for(std::string endpoint, const std::string& body, bool exte
 
 }  // namespace
 
+/// A process that we start, and the bodies in it.
+struct Launch::Process {
+  std::string program;
+  std::string routing_id;  // of several bodies; empty: the name of its one body
+  std::vector<std::string> bodies;
+  std::unique_ptr<ChildProcess> child;
+  bool has_scene = false;  // its text is under way or there
+
+  /// With whom the body shares it, for messages; empty: with nobody.
+  std::string others_than(const std::string& body) const {
+    std::string names;
+    std::size_t count = 0;
+    for (const std::string& other : bodies) {
+      if (other == body || count++ >= most_names) continue;
+      names += (names.empty() ? "" : ", ") + other;
+    }
+    if (count > most_names) names += fmt::format(" and {} more bodies", count - most_names);
+    return names;
+  }
+};
+
 /// One body, its process if we started it, and the way to talk to it.
 struct Launch::Member {
   std::string name;
-  bool spawned = true;
+  Process* process = nullptr;  // null: somebody else's
   bool external = false;  // no abut-solver can be this body
   Milliseconds patience{0};
   int peer = 0;
-  std::unique_ptr<ChildProcess> child;
   std::unique_ptr<Liveness> liveness;
   std::unique_ptr<Caller> caller;
   std::unique_ptr<RemoteSubdomain> body;  // until it is handed out
@@ -82,13 +126,13 @@ Launch::Launch(const Scene& scene, const Specification& scene_text, const Launch
     : options_(options) {
   options_.deadlines.request = milliseconds(scene.network.request_deadline);
   if (options_.solver.empty()) options_.solver = solver_beside_this_program();
-  const int bodies = static_cast<int>(scene.bodies.size());
-  require_descriptors(descriptors_of_a_run + descriptors_of_a_body * bodies);
+  const int processes = static_cast<int>(solver_processes(scene).size() + connected(scene));
+  require_descriptors(descriptors_of_a_run + descriptors_of_a_process * processes);
   hub_ = std::make_unique<ZmqHub>(options_.limits);
   try {
     add_members(scene);
     listen(scene);
-    spawn_all(scene);
+    spawn_all();
     greet_all(scene_text);
     for (const std::unique_ptr<Member>& member : members_) member->body->finish_configure();
   } catch (...) {
@@ -103,73 +147,100 @@ Launch::Launch(const Scene& scene, const Specification& scene_text, const Launch
 Launch::~Launch() { end_processes(); }
 
 void Launch::add_members(const Scene& scene) {
-  for (const auto& [name, entry] : scene.bodies) {
+  std::vector<Process*> process_of(scene.bodies.size(), nullptr);
+  for (const SolverProcess& plan : solver_processes(scene)) {
+    std::unique_ptr<Process> process = std::make_unique<Process>();
+    process->program = plan.program.empty() ? options_.solver : plan.program;
+    // No body can be called so: names have no blanks.
+    if (plan.bodies.size() > 1) process->routing_id = fmt::format("process {}", processes_.size());
+    for (const std::size_t body : plan.bodies) {
+      process->bodies.push_back(scene.bodies[body].first);
+      process_of[body] = process.get();
+    }
+    processes_.push_back(std::move(process));
+  }
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const auto& [name, entry] = scene.bodies[b];
     std::unique_ptr<Member> member = std::make_unique<Member>();
     member->name = name;
-    const ConnectLaunch* connect = std::get_if<ConnectLaunch>(&entry.launch);
-    member->spawned = connect == nullptr;
+    member->process = process_of[b];
     member->external = entry.external;
+    const ConnectLaunch* connect = std::get_if<ConnectLaunch>(&entry.launch);
     member->patience =
         milliseconds(connect != nullptr ? connect->patience : scene.network.startup_deadline);
-    member->peer = hub_->add_peer(name);
+    const bool shared = member->process != nullptr && !member->process->routing_id.empty();
+    member->peer =
+        shared ? hub_->add_peer(name, member->process->routing_id) : hub_->add_peer(name);
     members_.push_back(std::move(member));
   }
 }
 
 void Launch::listen(const Scene& scene) {
   for (const std::unique_ptr<Member>& member : members_) {
-    if (member->spawned && ipc_endpoint_.empty()) {
+    if (member->process != nullptr && ipc_endpoint_.empty()) {
       directory_ = make_private_directory();
       ipc_endpoint_ = hub_->bind("ipc://" + directory_ + "/hub");
     }
-    if (!member->spawned && tcp_endpoint_.empty()) {
+    if (member->process == nullptr && tcp_endpoint_.empty()) {
       tcp_endpoint_ = hub_->bind(scene.network.endpoint);
     }
-    if (!member->spawned) {
+    if (member->process == nullptr) {
       log_info(fmt::format("waiting for body '{}': {}", member->name,
                            command_for(tcp_endpoint_, member->name, member->external)));
     }
   }
 }
 
-void Launch::spawn_all(const Scene& scene) {
-  for (std::size_t i = 0; i < members_.size(); ++i) {
-    Member& member = *members_[i];
-    if (member.spawned) {
-      const SpawnLaunch* spawn = std::get_if<SpawnLaunch>(&scene.bodies[i].second.launch);
-      const bool named = spawn != nullptr && !spawn->program.empty();
-      member.child = std::make_unique<ChildProcess>(
-          named ? spawn->program : options_.solver,
-          std::vector<std::string>{"--connect", ipc_endpoint_, "--body", member.name});
-    }
-    member.liveness = std::make_unique<BodyLiveness>(*hub_, member.peer, member.child.get(),
-                                                     options_.limits, options_.deadlines);
-    member.caller = std::make_unique<Caller>(
-        member.name, CallContext{hub_->channel(member.peer), *member.liveness, options_.interrupted,
-                                 options_.limits, options_.deadlines});
-    member.body = std::make_unique<RemoteSubdomain>(*member.caller);
+void Launch::spawn_all() {
+  for (const std::unique_ptr<Process>& process : processes_) {
+    std::vector<std::string> arguments{"--connect", ipc_endpoint_};
+    if (!process->routing_id.empty())
+      arguments.insert(arguments.end(), {"--process", process->routing_id});
+    for (const std::string& body : process->bodies)
+      arguments.insert(arguments.end(), {"--body", body});
+    process->child = std::make_unique<ChildProcess>(process->program, arguments);
+  }
+  for (const std::unique_ptr<Member>& member : members_) {
+    const Process* process = member->process;
+    member->liveness = std::make_unique<BodyLiveness>(
+        *hub_, member->peer, process != nullptr ? process->child.get() : nullptr,
+        process != nullptr ? process->others_than(member->name) : "", options_.limits,
+        options_.deadlines);
+    member->caller = std::make_unique<Caller>(
+        member->name, CallContext{hub_->channel(member->peer), *member->liveness,
+                                  options_.interrupted, options_.limits, options_.deadlines});
+    member->body = std::make_unique<RemoteSubdomain>(*member->caller);
   }
 }
 
 void Launch::greet_all(const Specification& scene_text) {
   const TimePoint begin = std::chrono::steady_clock::now();
+  TimePoint looked = begin;
   std::size_t missing = members_.size();
   while (missing > 0) {
     hub_->pump(options_.deadlines.slice);
     refuse_strangers();
+    const bool look = std::chrono::steady_clock::now() - looked >= options_.deadlines.slice;
+    if (look) looked = std::chrono::steady_clock::now();
     for (const std::unique_ptr<Member>& member : members_) {
       if (member->welcome) continue;
-      if (greet(*member)) {
-        // It builds itself while the others are still on their way.
-        Specification specification = scene_text;
-        specification.path = "bodies." + member->name;
-        member->body->start_configure(specification);
+      if (hub_->has_frame(member->peer) && greet(*member)) {
+        configure(*member, scene_text);
         --missing;
-      } else {
+      } else if (look) {
         check_startup(*member, begin);
       }
     }
   }
+}
+
+/// It builds itself while the others are still on their way. A process has the scene's text once.
+void Launch::configure(Member& member, const Specification& scene_text) {
+  Specification specification;
+  if (member.process == nullptr || !member.process->has_scene) specification = scene_text;
+  if (member.process != nullptr) member.process->has_scene = true;
+  specification.path = "bodies." + member.name;
+  member.body->start_configure(specification);
 }
 
 /// The last Hello that has come: an earlier one may be of a solver that has been restarted since.
@@ -199,16 +270,16 @@ bool Launch::welcome(Member& member, const v1::Hello& hello) {
         "the solver of body '{}' (build {}) speaks protocol {}, this coordinator (build {}) "
         "speaks protocol {}",
         member.name, hello.build(), hello.protocol(), build_version(), protocol_version);
-    refuse(member.name, hello.session(), versions);
+    refuse(member, hello.session(), versions);
     throw RunError(versions, "", "install the same version at both ends");
   }
   if (hello.last_request() > 0) {
-    refuse(member.name, hello.session(), "it has taken part in another run");
+    refuse(member, hello.session(), "it has taken part in another run");
     return false;  // a fresh one may still come
   }
   if (hello.session() == 0) {
     const std::string reason = "its Hello has no session";
-    refuse(member.name, 0, reason);
+    refuse(member, 0, reason);
     throw RunError(fmt::format("the solver of body '{}' is no sound one: {}", member.name, reason),
                    "", "let the solver draw a number above 0 when it starts (proto/README.md)");
   }
@@ -219,20 +290,14 @@ bool Launch::welcome(Member& member, const v1::Hello& hello) {
   welcome.mutable_welcome()->set_frame_limit(options_.limits.frame_bytes);
   Frame out;
   out.seal(welcome);
-  hub_->send_to(member.name, out.bytes());
+  hub_->channel(member.peer).send(out.bytes());
   member.caller->accept_session(hello.session());
   member.welcome = true;
   return true;
 }
 
-void Launch::refuse(const std::string& routing_id, std::uint64_t session,
-                    const std::string& reason) {
-  v1::Request refusal;
-  refusal.set_session(session);
-  refusal.mutable_refuse()->set_reason(reason);
-  Frame out;
-  out.seal(refusal);
-  hub_->send_to(routing_id, out.bytes());
+void Launch::refuse(const Member& member, std::uint64_t session, const std::string& reason) {
+  hub_->channel(member.peer).send(refusal(session, reason).bytes());
 }
 
 void Launch::refuse_strangers() {
@@ -246,27 +311,29 @@ void Launch::refuse_strangers() {
     Bytes bulk;
     const std::optional<Bytes> payload = open_frame(stranger->second);
     if (!payload || !parse_into(hello, *payload, bulk)) hello.Clear();
-    refuse(stranger->first, hello.hello().session(),
-           "the scene has no body of this name, only " + names);
+    const std::string reason = "the scene has no body of this name, only " + names;
+    hub_->send_to(stranger->first, refusal(hello.hello().session(), reason).bytes());
   }
 }
 
 void Launch::check_startup(Member& member, TimePoint begin) {
-  const std::string& endpoint = member.spawned ? ipc_endpoint_ : tcp_endpoint_;
+  const std::string& endpoint = member.process != nullptr ? ipc_endpoint_ : tcp_endpoint_;
   if (options_.interrupted != nullptr && options_.interrupted->load()) {
     throw RunError(fmt::format("interrupted before body '{}' had connected", member.name), "",
                    "start the run again");
   }
-  if (member.child && member.child->ended(Milliseconds(0))) {
-    throw RunError(fmt::format("the solver of body '{}' {} before it had connected", member.name,
-                               member.child->ending()),
-                   "", "look at the solver's own messages above");
+  if (member.process != nullptr && member.process->child->ended(Milliseconds(0))) {
+    const std::string others = member.process->others_than(member.name);
+    throw RunError(
+        fmt::format("the solver of body '{}'{} {} before it had connected", member.name,
+                    others.empty() ? "" : " and of " + others, member.process->child->ending()),
+        "", "look at the solver's own messages above");
   }
   if (std::chrono::steady_clock::now() - begin < member.patience) return;
   const double seconds = static_cast<double>(member.patience.count()) / 1000.0;
   const std::string what =
       fmt::format("body '{}' did not connect to {} within {} s", member.name, endpoint, seconds);
-  if (member.spawned) {
+  if (member.process != nullptr) {
     throw RunError(what, "", "raise network.startup_deadline on a slow machine");
   }
   throw RunError(what, "",
@@ -290,20 +357,18 @@ void Launch::finish() {
   }
   const TimePoint until = std::chrono::steady_clock::now() + time_to_finish;
   for (const std::unique_ptr<Member>& member : members_) {
-    const Milliseconds left = std::max(
-        Milliseconds(1), std::chrono::ceil<Milliseconds>(until - std::chrono::steady_clock::now()));
+    const Milliseconds left = std::max(Milliseconds(1), time_left(until));
     member->caller->await_at_most(left);
-    if (member->child) member->child->ended(left);
   }
+  for (const std::unique_ptr<Process>& process : processes_)
+    process->child->ended(time_left(until));
   finished_ = true;
   end_processes();
 }
 
 std::vector<std::int64_t> Launch::process_ids() const {
   std::vector<std::int64_t> ids;
-  for (const std::unique_ptr<Member>& member : members_) {
-    if (member->child) ids.push_back(member->child->pid());
-  }
+  for (const std::unique_ptr<Process>& process : processes_) ids.push_back(process->child->pid());
   return ids;
 }
 
@@ -317,19 +382,18 @@ void Launch::remove_directory() {
 void Launch::end_processes() {
   for (const std::unique_ptr<Member>& member : members_) {
     // Somebody else's solver is told; ours is ended.
-    if (!finished_ && !member->child && member->welcome) {
-      refuse(member->name, member->caller->session(), "the run has ended early");
-    }
-    if (member->child && !member->child->ended(Milliseconds(0)))
-      member->child->send_signal(SIGTERM);
+    if (!finished_ && member->process == nullptr && member->welcome)
+      refuse(*member, member->caller->session(), "the run has ended early");
+  }
+  for (const std::unique_ptr<Process>& process : processes_) {
+    if (process->child && !process->child->ended(Milliseconds(0)))
+      process->child->send_signal(SIGTERM);
   }
   const TimePoint until = std::chrono::steady_clock::now() + time_to_die;
-  for (const std::unique_ptr<Member>& member : members_) {
-    if (!member->child) continue;
-    const Milliseconds left =
-        std::chrono::ceil<Milliseconds>(until - std::chrono::steady_clock::now());
-    member->child->ended(std::max(Milliseconds(0), left));
-    member->child.reset();  // kills what is still there
+  for (const std::unique_ptr<Process>& process : processes_) {
+    if (!process->child) continue;
+    process->child->ended(time_left(until));
+    process->child.reset();  // kills what is still there
   }
 }
 

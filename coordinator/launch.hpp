@@ -28,8 +28,8 @@ struct LaunchOptions {
   Deadlines deadlines;  // `request` is taken from the scene
 };
 
-/// Body entries to Subdomains in processes of their own: `spawn` starts one, `connect` waits for
-/// one. However this object ends, the processes that it has started end with it.
+/// Body entries to Subdomains in other processes: `spawn` and `group` start them, `connect` waits
+/// for one. However this object ends, the processes that it has started end with it.
 class Launch {
  public:
   /// Starts and greets all bodies and hands each the scene (`scene_text.path` is filled in per
@@ -48,14 +48,16 @@ class Launch {
   std::vector<std::int64_t> process_ids() const;
 
  private:
+  struct Process;
   struct Member;
   void add_members(const Scene& scene);
   void listen(const Scene& scene);
-  void spawn_all(const Scene& scene);
+  void spawn_all();
   void greet_all(const Specification& scene_text);
   bool greet(Member& member);
+  void configure(Member& member, const Specification& scene_text);
   bool welcome(Member& member, const v1::Hello& hello);
-  void refuse(const std::string& routing_id, std::uint64_t session, const std::string& reason);
+  void refuse(const Member& member, std::uint64_t session, const std::string& reason);
   void refuse_strangers();
   void check_startup(Member& member, TimePoint begin);
   void remove_directory();
@@ -65,6 +67,7 @@ class Launch {
   std::string directory_;  // private, of the ipc socket; empty when there is none
   std::string ipc_endpoint_, tcp_endpoint_;
   std::unique_ptr<ZmqHub> hub_;
+  std::vector<std::unique_ptr<Process>> processes_;  // that this object starts
   std::vector<std::unique_ptr<Member>> members_;
   bool finished_ = false;
 };

@@ -41,6 +41,7 @@
 #include "coordinator/run_directory.hpp"
 #include "coordinator/same_body.hpp"
 #include "coordinator/scene.hpp"
+#include "coordinator/solver_processes.hpp"
 
 namespace abut {
 namespace {
@@ -249,6 +250,7 @@ int run_verb(const RunCommand& command) {
   const std::atomic<bool>& interrupted = watch_for_interrupts();
   const Document document = Document::load(command.scene, command.overrides);
   const Scene scene = read_all_keys(document);
+  if (!command.local) check_processes(scene, document);
   Validated valid = validate_all(scene, document);
   // Held until the last file is written.
   RunDirectory held(
@@ -293,6 +295,7 @@ int run_verb(const RunCommand& command) {
 int check_verb(const CheckCommand& command) {
   const Document document = Document::load(command.scene, command.overrides);
   const Scene scene = read_all_keys(document);
+  check_processes(scene, document);
   const Validated valid = validate_all(scene, document);
   fmt::print("{}: valid\n{}", command.scene, to_text(valid.estimate, command.verbose));
   return 0;

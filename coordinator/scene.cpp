@@ -17,6 +17,7 @@
 #include "coordinator/everything.hpp"
 #include "coordinator/external_body.hpp"
 #include "coordinator/scene_times.hpp"
+#include "coordinator/solver_processes.hpp"
 
 namespace abut {
 
@@ -43,6 +44,16 @@ void SpawnLaunch::fields(Fields& f) {
 
 void ConnectLaunch::fields(Fields& f) {
   f.optional("patience", patience, "s", "time to wait for the body to connect", patience_rule);
+}
+
+void GroupLaunch::fields(Fields& f) {
+  f.required("name", group, "",
+             "name of the group, whose bodies share one process; launch: {group: NAME} is short "
+             "for launch: {group: {name: NAME}}");
+  f.optional("program", program, "",
+             "path of the solver program, the same for all bodies of the group; empty: abut-solver "
+             "beside abut");
+  f.check(!group.empty(), "name", "is empty", "Give the group a name.");
 }
 
 void BodyEntry::fields(Fields& f) {
@@ -146,6 +157,10 @@ void NetworkSpec::fields(Fields& f) {
              patience_rule);
   f.optional("startup_deadline", startup_deadline, "s",
              "time within which a started process must report", patience_rule);
+  f.optional("processes", processes, "",
+             "number of processes to which the bodies are dealt in turns that the coordinator "
+             "starts and that have neither a group nor a program of their own; 0: one for each",
+             between(0, most_processes));
   f.check(endpoint.starts_with("tcp://") || endpoint.starts_with("ipc://"), "endpoint",
           fmt::format("must begin with tcp:// or ipc://, but is {}", endpoint),
           "Give for example tcp://127.0.0.1:5555.");
@@ -177,6 +192,9 @@ void Scene::idle_keys(Fields& f) const {
          "no body has launch: connect");
   f.idle(std::all_of(bodies.begin(), bodies.end(), waits), "network.startup_deadline",
          "no body is started by the coordinator");
+  f.idle(std::none_of(bodies.begin(), bodies.end(),
+                      [](const auto& entry) { return is_dealt(entry.second); }),
+         "network.processes", "every body has a group, a program or connect of its own");
 }
 
 PortName split_port(std::string_view text) {
@@ -429,6 +447,7 @@ void validate(const Scene& scene, const Document& document) {
       check_external_launch(entry.second, document);
       check_external_like(entry.second, document);
     });
+  errors.gather([&] { check_groups(scene, document); });
   for (const auto& entry : scene.interfaces)
     errors.gather([&] { validate_interface(scene, entry.second, document); });
   errors.gather([&] { validate_pairs(scene, document); });

@@ -34,11 +34,18 @@ struct ConnectLaunch {  // the coordinator waits for a process that somebody els
   double patience = 60.0;  // [s]
   void fields(Fields& f);
 };
+struct GroupLaunch {  // the coordinator starts one process for all bodies of this group
+  static constexpr std::string_view name = "group";
+  static constexpr std::string_view shorthand = "name";
+  std::string group;    // key name
+  std::string program;  // as of SpawnLaunch; the same for all of a group
+  void fields(Fields& f);
+};
 
 /// What the coordinator reads of a body entry; all other keys are the body's own specification.
 struct BodyEntry {
   std::string name;
-  std::variant<SpawnLaunch, ConnectLaunch> launch;
+  std::variant<SpawnLaunch, ConnectLaunch, GroupLaunch> launch;
   bool external = false;  // of another program, which alone can describe it
   std::string like;       // body that it has the rest from; the document has written it out
   bool adjusts = false;   // its own specification has initial: {adjust: true}
@@ -110,7 +117,8 @@ struct NetworkSpec {
   // Where bodies with launch: connect find the coordinator.
   std::string endpoint = "tcp://127.0.0.1:5555";
   double request_deadline = 60.0;  // [s] without reply or sign of progress
-  double startup_deadline = 10.0;  // [s] for spawned bodies
+  double startup_deadline = 10.0;  // [s] for processes that the coordinator starts
+  int processes = 0;               // that bodies without a group are dealt to; 0: one for each
   void fields(Fields& f);
 };
 

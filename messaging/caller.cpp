@@ -63,7 +63,9 @@ void Caller::send_request() {
   under_way_ = true;
   corrupt_ = 0;
   begun_ = context_.channel.now();
-  deadline_ = begun_ + context_.deadlines.request;
+  heard_ = begun_;
+  patience_ = context_.deadlines.request;
+  deadline_ = begun_ + patience_;
   pause_ = context_.deadlines.repeat;
   repeat_at_ = begun_ + pause_;
   // What the transport refuses now is repeated later.
@@ -96,6 +98,7 @@ const v1::Reply& Caller::await() {
 }
 
 bool Caller::await_at_most(Milliseconds time) {
+  patience_ = time;
   deadline_ = context_.channel.now() + time;
   try {
     await();
@@ -140,13 +143,19 @@ bool Caller::is_reply(Bytes frame) {
   if (reply_.has_progress()) {
     // It has the request. Repeats that it cannot look at would fill its queue, and a full queue
     // takes no heartbeats; only when it is silent again may its reply have been lost.
-    deadline_ = context_.channel.now() + context_.deadlines.request;
-    pause_ = context_.deadlines.repeat;
-    repeat_at_ = context_.channel.now() + pause_;
+    heard(context_.channel.now());
     return false;
   }
   if (reply_.body_case() == v1::Reply::BODY_NOT_SET) refuse_reply("is empty");
   return true;
+}
+
+/// A sign that the body is at work on its request, or on those that came before it.
+void Caller::heard(TimePoint when) {
+  heard_ = when;
+  deadline_ = when + patience_;
+  pause_ = context_.deadlines.repeat;
+  repeat_at_ = when + pause_;
 }
 
 void Caller::greeted_again(const v1::Hello& hello) {
@@ -172,6 +181,8 @@ void Caller::look_around() {
     throw RunError(fmt::format("body '{}' {} while at {}", body_, loss, under_way_text()), "",
                    "look at the solver's own messages above, then start the run again");
   }
+  const TimePoint sign = context_.liveness.last_sign();
+  if (sign > heard_) heard(sign);
   const TimePoint now = context_.channel.now();
   if (now >= deadline_) {
     std::string noise;

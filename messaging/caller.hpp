@@ -63,6 +63,7 @@ class Caller {
   bool is_reply(Bytes frame);
   void greeted_again(const v1::Hello& hello);
   void look_around();
+  void heard(TimePoint when);
   void repeat();
   [[noreturn]] void rethrow(const v1::Fault& fault) const;
   std::string under_way_text() const;
@@ -79,7 +80,9 @@ class Caller {
   int foreign_ = 0;
   bool under_way_ = false;
   TimePoint begun_{};     // of the request
+  TimePoint heard_{};     // the last sign of its body, or of what its process did meanwhile
   TimePoint deadline_{};  // moves with every sign of progress
+  Milliseconds patience_{};  // from a sign to the deadline
   TimePoint repeat_at_{};
   Milliseconds pause_{};           // until the next repeat; doubles
   int corrupt_ = 0;                // damaged frames during this request

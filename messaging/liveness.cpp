@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace abut {
 
 namespace {
@@ -11,11 +13,22 @@ constexpr int most_disconnects = 3;
 constexpr Milliseconds time_to_exit{1'000};
 }  // namespace
 
-BodyLiveness::BodyLiveness(ZmqHub& hub, int peer, ChildProcess* child, const Limits& limits,
-                           const Deadlines& deadlines)
-    : hub_(hub), peer_(peer), child_(child), limits_(limits), deadlines_(deadlines) {}
+BodyLiveness::BodyLiveness(ZmqHub& hub, int peer, ChildProcess* child, std::string shares,
+                           const Limits& limits, const Deadlines& deadlines)
+    : hub_(hub),
+      peer_(peer),
+      child_(child),
+      shares_(std::move(shares)),
+      limits_(limits),
+      deadlines_(deadlines) {}
 
 std::string BodyLiveness::loss(TimePoint since) {
+  const std::string what = loss_of_process(since);
+  if (what.empty() || shares_.empty()) return what;
+  return fmt::format("shares a process with {}, which {}", shares_, what);
+}
+
+std::string BodyLiveness::loss_of_process(TimePoint since) {
   const std::string hint = fmt::format(
       "(a frame far above the limit of {} bytes ends a connection)", limits_.frame_bytes);
   if (child_ != nullptr && child_->ended(Milliseconds(0))) {

@@ -20,6 +20,9 @@ class Liveness {
   /// Empty while the peer may still answer; else a predicate: "was killed by signal 9 (Killed)".
   /// `since` is when the wait began.
   virtual std::string loss(TimePoint since) = 0;
+  /// When something last came from a process that serves several bodies one after the other: whose
+  /// turn has not come need not answer. The clock's begin: never, or the peer shares no process.
+  virtual TimePoint last_sign() { return {}; }
 };
 
 /// For peers that share this process.
@@ -32,15 +35,20 @@ class AlwaysAlive : public Liveness {
 /// connection.
 class BodyLiveness : public Liveness {
  public:
-  /// `child` may be null: somebody else started the solver.
-  BodyLiveness(ZmqHub& hub, int peer, ChildProcess* child, const Limits& limits,
+  /// `child` may be null: somebody else started the solver. `shares`: with whom the body shares its
+  /// process, for messages; empty: with nobody.
+  BodyLiveness(ZmqHub& hub, int peer, ChildProcess* child, std::string shares, const Limits& limits,
                const Deadlines& deadlines);
   std::string loss(TimePoint since) override;
+  TimePoint last_sign() override { return hub_.last_frame(peer_); }
 
  private:
+  std::string loss_of_process(TimePoint since);
+
   ZmqHub& hub_;
   int peer_;
   ChildProcess* child_;
+  std::string shares_;
   Limits limits_;
   Deadlines deadlines_;
 };

@@ -53,23 +53,26 @@ void Server::say_hello() {
 
 void Server::greet(Milliseconds patience) {
   const TimePoint begin = channel_.now();
-  TimePoint next = begin;
   while (!welcome_) {
-    const TimePoint now = channel_.now();
-    if (now - begin >= patience) {
-      const std::string foreign =
-          foreign_ > 0 ? fmt::format("; {} requests of another session came", foreign_) : "";
-      throw CoordinatorLost(
-          fmt::format("no coordinator has answered body '{}' within {} s{}", name_,
-                      static_cast<double>(patience.count()) / 1000.0, foreign),
-          "", "start `abut run` with the scene that has this body and this endpoint");
-    }
-    if (now >= next) {
-      say_hello();
-      next = now + deadlines_.hello;
-    }
+    greet_when_due(begin, patience);
     if (const std::optional<Bytes> frame = channel_.receive(deadlines_.slice)) handle(*frame);
   }
+}
+
+void Server::greet_when_due(TimePoint begin, Milliseconds patience) {
+  if (welcome_) return;
+  const TimePoint now = channel_.now();
+  if (now - begin >= patience) {
+    const std::string foreign =
+        foreign_ > 0 ? fmt::format("; {} requests of another session came", foreign_) : "";
+    throw CoordinatorLost(fmt::format("no coordinator has answered body '{}' within {} s{}", name_,
+                                      static_cast<double>(patience.count()) / 1000.0, foreign),
+                          "",
+                          "start `abut run` with the scene that has this body and this endpoint");
+  }
+  if (now < next_hello_) return;
+  say_hello();
+  next_hello_ = now + deadlines_.hello;
 }
 
 bool Server::step(Milliseconds wait) {

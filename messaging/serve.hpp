@@ -43,9 +43,16 @@ class Server {
 
   /// Says hello until the coordinator answers. Throws RunError after `patience`, or when refused.
   void greet(Milliseconds patience);
+  /// The same of a body that waits beside others: says hello when it is time to, as long as nobody
+  /// has answered since `begin`.
+  void greet_when_due(TimePoint begin, Milliseconds patience);
   /// Handles at most one frame; false after Finish. Throws CoordinatorLost when there is no
   /// coordinator any more.
   bool step(Milliseconds wait);
+  /// After Finish.
+  bool finished() const { return finished_; }
+  /// Throws CoordinatorLost when there is no coordinator any more.
+  void check_coordinator();
 
   /// Drawn for this process; every request and reply carries it.
   std::uint64_t session() const { return session_; }
@@ -68,7 +75,6 @@ class Server {
              const std::string& remedy);
   void seal_reply();
   void show_progress();
-  void check_coordinator();
 
   std::string name_;
   MakeBody make_;
@@ -91,6 +97,7 @@ class Server {
   std::size_t reply_limit_;     // [bytes]
   bool welcome_ = false;
   bool finished_ = false;
+  TimePoint next_hello_{};
   TimePoint next_progress_{};
   TimePoint last_look_{};
   int hook_calls_ = 0;  // since the clock was looked at

@@ -23,8 +23,6 @@ constexpr std::size_t most_disconnects = 256;  // times remembered per peer
 /// Everything that libzmq would otherwise choose for us.
 void configure(zmq::socket_t& socket, const Limits& limits) {
   socket.set(zmq::sockopt::linger, 500);  // [ms] a refusal or a last reply may still leave
-  socket.set(zmq::sockopt::sndhwm, 64);   // frames; one request is under way per body
-  socket.set(zmq::sockopt::rcvhwm, 64);
   socket.set(zmq::sockopt::sndtimeo, 0);  // never blocks: requests are repeated by whoever waits
   // Frames above the limit are refused by size and name; far above it the connection ends before
   // memory does.
@@ -35,6 +33,13 @@ void configure(zmq::socket_t& socket, const Limits& limits) {
   socket.set(zmq::sockopt::heartbeat_ttl, 10'000);      // [ms]
   socket.set(zmq::sockopt::tcp_keepalive, 1);
   socket.set(zmq::sockopt::ipv6, 0);
+}
+
+/// Of a connection that so many bodies share; heeded by connections that begin later.
+void set_queues(zmq::socket_t& socket, std::size_t bodies) {
+  const int frames = static_cast<int>(64 * bodies);  // one request is under way per body
+  socket.set(zmq::sockopt::sndhwm, frames);
+  socket.set(zmq::sockopt::rcvhwm, frames);
 }
 
 void set_receive_timeout(zmq::socket_t& socket, Milliseconds wait, int& current) {
@@ -50,6 +55,18 @@ bool receive_part(zmq::socket_t& socket, zmq::message_t& part) {
   if (zmq_errno() == EAGAIN || zmq_errno() == EINTR) return false;
   throw RunError(fmt::format("a socket failed: {}", zmq_strerror(zmq_errno())), "messaging",
                  "look at the limits of open files and memory of this machine");
+}
+
+/// What is left of a message: the frame, and before it the body's name where bodies share the
+/// connection. More parts are not ours: the last one is no frame of that body. False as above.
+bool receive_frame(zmq::socket_t& socket, zmq::message_t& body, zmq::message_t& frame) {
+  if (!receive_part(socket, frame)) return false;
+  while (frame.more()) {
+    body = std::move(frame);
+    frame.rebuild();
+    if (!receive_part(socket, frame)) return false;
+  }
+  return true;
 }
 
 /// False when the transport cannot take the part now (no such peer, full queue, signal).
@@ -90,6 +107,10 @@ void refuse_existing_file(const std::string& endpoint) {
                    "removed by hand");
 }
 
+std::string_view text_of(const zmq::message_t& message) {
+  return {static_cast<const char*>(message.data()), message.size()};
+}
+
 Bytes bytes_of(const zmq::message_t& message) {
   return Bytes(static_cast<const std::byte*>(message.data()), message.size());
 }
@@ -99,22 +120,38 @@ Bytes bytes_of(const zmq::message_t& message) {
 // ---- hub
 // --------------------------------------------------------------------------------------------
 
-struct ZmqHub::Peer : Channel {
-  Peer(ZmqHub& owner, int number, std::string routing_id)
-      : hub(owner), index(number), name(std::move(routing_id)) {}
+/// With one process; of one body, or of several that are named in every message.
+struct ZmqHub::Connection {
+  std::string routing_id;
+  bool shared = false;
+  std::map<std::string, Peer*, std::less<>> peers;
+  int descriptor = -1;  // once a frame has come through it
+  std::optional<TimePoint> gone;
+  std::vector<TimePoint> disconnects;
+  TimePoint last_frame{};  // where it is shared
 
-  bool send(Bytes frame) override { return note(hub.send_to(name, frame)); }
-  bool send(Bytes frame, std::shared_ptr<const void> owner) override {
-    return note(hub.send_to(name, frame, std::move(owner)));
-  }
   /// The ROUTER knows best who can be reached: this also sees a connection that has come back.
   bool note(bool sent) {
     if (sent) {
       gone.reset();
     } else if (zmq_errno() == EHOSTUNREACH && !gone) {
-      gone = now();
+      gone = std::chrono::steady_clock::now();
     }
     return sent;
+  }
+};
+
+struct ZmqHub::Peer : Channel {
+  Peer(ZmqHub& owner, Connection& its, int number, std::string own_name)
+      : hub(owner), connection(its), index(number), name(std::move(own_name)) {}
+
+  bool send(Bytes frame) override {
+    return connection.note(hub.send_head(connection, name) &&
+                           send_part(hub.socket_, frame.data(), frame.size(), 0));
+  }
+  bool send(Bytes frame, std::shared_ptr<const void> owner) override {
+    return connection.note(hub.send_head(connection, name) &&
+                           send_part(hub.socket_, frame, std::move(owner)));
   }
   std::optional<Bytes> receive(Milliseconds wait) override {
     if (!waiting.empty()) {
@@ -127,13 +164,11 @@ struct ZmqHub::Peer : Channel {
   }
 
   ZmqHub& hub;
+  Connection& connection;
   int index;
   std::string name;
   zmq::message_t current;
   std::deque<zmq::message_t> waiting;
-  int descriptor = -1;  // of the connection, once a frame has come through it
-  std::optional<TimePoint> gone;
-  std::vector<TimePoint> disconnects;
 };
 
 ZmqHub::ZmqHub(const Limits& limits) : context_(1), socket_(context_, zmq::socket_type::router) {
@@ -148,6 +183,10 @@ ZmqHub::~ZmqHub() = default;
 
 std::string ZmqHub::bind(const std::string& endpoint) {
   refuse_existing_file(endpoint);
+  std::size_t bodies = 1;
+  for (const auto& [id, connection] : connections_)
+    bodies = std::max(bodies, connection.peers.size());
+  set_queues(socket_, bodies);
   try {
     socket_.bind(endpoint);
   } catch (const zmq::error_t& error) {
@@ -160,8 +199,18 @@ std::string ZmqHub::bind(const std::string& endpoint) {
 }
 
 int ZmqHub::add_peer(const std::string& name) {
+  const int peer = add_peer(name, name);
+  peers_.back()->connection.shared = false;
+  return peer;
+}
+
+int ZmqHub::add_peer(const std::string& name, const std::string& process) {
   const int index = static_cast<int>(peers_.size());
-  peers_.push_back(std::make_unique<Peer>(*this, index, name));
+  Connection& connection = connections_[process];
+  connection.routing_id = process;
+  connection.shared = true;
+  peers_.push_back(std::make_unique<Peer>(*this, connection, index, name));
+  connection.peers.emplace(name, peers_.back().get());
   return index;
 }
 
@@ -172,31 +221,30 @@ bool ZmqHub::send_to(const std::string& routing_id, Bytes frame) {
          send_part(socket_, frame.data(), frame.size(), 0);
 }
 
-bool ZmqHub::send_to(const std::string& routing_id, Bytes frame,
-                     std::shared_ptr<const void> owner) {
-  return send_part(socket_, routing_id.data(), routing_id.size(), ZMQ_SNDMORE) &&
-         send_part(socket_, frame, std::move(owner));
+bool ZmqHub::send_head(const Connection& connection, const std::string& name) {
+  const std::string& id = connection.routing_id;
+  return send_part(socket_, id.data(), id.size(), ZMQ_SNDMORE) &&
+         (!connection.shared || send_part(socket_, name.data(), name.size(), ZMQ_SNDMORE));
 }
 
 bool ZmqHub::receive_message(Milliseconds wait) {
   set_receive_timeout(socket_, wait, receive_timeout_);
   if (!receive_part(socket_, sender_)) return false;
   // Parts of one message arrive together, so the second one never waits.
-  bool whole = sender_.more() && receive_part(socket_, incoming_);
-  while (whole &&
-         incoming_.more()) {  // not ours: one part is a frame; the last one fails the checksum
-    whole = receive_part(socket_, incoming_);
-  }
+  addressee_.rebuild();
+  const bool whole = sender_.more() && receive_frame(socket_, addressee_, incoming_);
   if (!whole) incoming_.rebuild();
   return true;
 }
 
-int ZmqHub::find_sender() const {
-  const std::string_view id(static_cast<const char*>(sender_.data()), sender_.size());
-  for (const std::unique_ptr<Peer>& peer : peers_) {
-    if (peer->name == id) return peer->index;
-  }
-  return -1;
+/// Null: nobody that is known.
+ZmqHub::Peer* ZmqHub::find_sender() {
+  const auto connection = connections_.find(text_of(sender_));
+  if (connection == connections_.end()) return nullptr;
+  const auto& [id, found] = *connection;
+  if (!found.shared) return found.peers.begin()->second;
+  const auto peer = found.peers.find(text_of(addressee_));
+  return peer == found.peers.end() ? nullptr : peer->second;
 }
 
 void ZmqHub::keep_stranger() {
@@ -209,20 +257,19 @@ void ZmqHub::keep_stranger() {
 bool ZmqHub::receive_for(int wanted, Milliseconds wait) {
   const TimePoint until = std::chrono::steady_clock::now() + wait;
   while (receive_message(wait)) {
-    const int from = find_sender();
-    if (from < 0) {
+    if (Peer* peer = find_sender(); peer == nullptr) {
       keep_stranger();
     } else {
-      Peer& peer = *peers_[index(from)];
-      if (peer.descriptor < 0 && incoming_.size() > 0) {
-        peer.descriptor = zmq_msg_get(incoming_.handle(), ZMQ_SRCFD);
-      }
-      peer.gone.reset();
-      if (from == wanted) {
-        peer.current = std::move(incoming_);
+      Connection& connection = peer->connection;
+      if (connection.descriptor < 0 && incoming_.size() > 0)
+        connection.descriptor = zmq_msg_get(incoming_.handle(), ZMQ_SRCFD);
+      connection.gone.reset();
+      if (connection.shared) connection.last_frame = std::chrono::steady_clock::now();
+      if (peer->index == wanted) {
+        peer->current = std::move(incoming_);
         return true;
       }
-      peer.waiting.push_back(std::move(incoming_));
+      peer->waiting.push_back(std::move(incoming_));
       if (wanted < 0) return true;
     }
     wait = std::max(Milliseconds(0),
@@ -232,6 +279,8 @@ bool ZmqHub::receive_for(int wanted, Milliseconds wait) {
 }
 
 bool ZmqHub::pump(Milliseconds wait) { return receive_for(-1, wait); }
+
+bool ZmqHub::has_frame(int peer) const { return !peers_.at(index(peer))->waiting.empty(); }
 
 std::optional<std::pair<std::string, std::vector<std::byte>>> ZmqHub::take_stranger() {
   if (strangers_.empty()) return std::nullopt;
@@ -243,45 +292,52 @@ std::optional<std::pair<std::string, std::vector<std::byte>>> ZmqHub::take_stran
 void ZmqHub::read_monitor() {
   while (const std::optional<ZmqMonitor::Event> event = monitor_->next()) {
     if (event->connected) continue;  // who it is, the first frame tells
-    for (const std::unique_ptr<Peer>& peer : peers_) {
+    for (auto& [id, connection] : connections_) {
       // A connection that ended before its first frame belongs to one who was trying to come back.
-      const bool nameless = peer->descriptor < 0 && !peer->disconnects.empty();
-      if (peer->descriptor != event->descriptor && !nameless) continue;
-      peer->descriptor = -1;
-      peer->gone = std::chrono::steady_clock::now();
-      if (peer->disconnects.size() < most_disconnects) peer->disconnects.push_back(*peer->gone);
+      const bool nameless = connection.descriptor < 0 && !connection.disconnects.empty();
+      if (connection.descriptor != event->descriptor && !nameless) continue;
+      connection.descriptor = -1;
+      connection.gone = std::chrono::steady_clock::now();
+      if (connection.disconnects.size() < most_disconnects)
+        connection.disconnects.push_back(*connection.gone);
     }
   }
 }
 
 int ZmqHub::disconnects(int peer, TimePoint since) {
   read_monitor();
-  const std::vector<TimePoint>& times = peers_.at(index(peer))->disconnects;
+  const std::vector<TimePoint>& times = peers_.at(index(peer))->connection.disconnects;
   return static_cast<int>(std::count_if(times.begin(), times.end(),
                                         [since](const TimePoint& time) { return time >= since; }));
 }
 
 std::optional<TimePoint> ZmqHub::gone_since(int peer) {
   read_monitor();
-  return peers_.at(index(peer))->gone;
+  return peers_.at(index(peer))->connection.gone;
+}
+
+TimePoint ZmqHub::last_frame(int peer) const {
+  return peers_.at(index(peer))->connection.last_frame;
 }
 
 // ---- dealer
 // -----------------------------------------------------------------------------------------
 
-ZmqDealer::ZmqDealer(const std::string& endpoint, const std::string& body, const Limits& limits)
+ZmqDealer::ZmqDealer(const std::string& endpoint, const std::string& routing_id,
+                     const Limits& limits, std::size_t bodies)
     : context_(1), socket_(context_, zmq::socket_type::dealer) {
   configure(socket_, limits);
+  set_queues(socket_, bodies);
   socket_.set(zmq::sockopt::connect_timeout, 2'000);  // [ms]
   socket_.set(zmq::sockopt::reconnect_ivl, 20);       // [ms] start order does not matter,
   socket_.set(zmq::sockopt::reconnect_ivl_max, 500);  // [ms] and costs little
   try {
-    socket_.set(zmq::sockopt::routing_id, body);
+    socket_.set(zmq::sockopt::routing_id, routing_id);
     monitor_ = std::make_unique<ZmqMonitor>(context_, socket_);
     socket_.connect(endpoint);
   } catch (const zmq::error_t& error) {
     throw InputError(
-        fmt::format("cannot connect body '{}' to '{}': {}", body, endpoint, error.what()),
+        fmt::format("cannot connect body '{}' to '{}': {}", routing_id, endpoint, error.what()),
         "--connect", "give the coordinator's endpoint, for example tcp://127.0.0.1:5555");
   }
 }
@@ -296,11 +352,22 @@ bool ZmqDealer::send(Bytes frame, std::shared_ptr<const void> owner) {
 
 std::optional<Bytes> ZmqDealer::receive(Milliseconds wait) {
   set_receive_timeout(socket_, wait, receive_timeout_);
-  if (!receive_part(socket_, current_)) return std::nullopt;
-  while (current_.more() && receive_part(socket_, current_)) {
-  }
+  addressee_.rebuild();
+  if (!receive_frame(socket_, addressee_, current_)) return std::nullopt;
   return bytes_of(current_);
 }
+
+bool ZmqDealer::send_of(std::string_view body, Bytes frame) {
+  return send_part(socket_, body.data(), body.size(), ZMQ_SNDMORE) &&
+         send_part(socket_, frame.data(), frame.size(), 0);
+}
+
+bool ZmqDealer::send_of(std::string_view body, Bytes frame, std::shared_ptr<const void> owner) {
+  return send_part(socket_, body.data(), body.size(), ZMQ_SNDMORE) &&
+         send_part(socket_, frame, std::move(owner));
+}
+
+std::string_view ZmqDealer::addressee() const { return text_of(addressee_); }
 
 void ZmqDealer::read_monitor() {
   while (const std::optional<ZmqMonitor::Event> event = monitor_->next()) {

@@ -1,56 +1,96 @@
-// One body in a process of its own: connects, is told what it is, and serves until it is told to
-// finish. Exit codes: 0 after Finish, 2 for a command line that cannot be, 3 when the coordinator
-// is gone.
+// One body in a process of its own, or several in one: connects, is told what it is, and serves
+// until it is told to finish. Exit codes: 0 after Finish, 2 for a command line that cannot be, 3
+// when the coordinator is gone.
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "base/denormals.hpp"
 #include "base/error.hpp"
 #include "messaging/descriptors.hpp"
 #include "messaging/liveness.hpp"
 #include "messaging/serve.hpp"
+#include "messaging/serve_group.hpp"
 #include "messaging/zmq_channel.hpp"
+#include "messaging/zmq_group.hpp"
 #include "subdomain_solver/make/body_spec.hpp"
 
 namespace {
 
 constexpr int descriptors = 20;  // measured: 12; files of meshes come on top
 
-std::unique_ptr<abut::Subdomain> make(const abut::Specification& specification,
-                                      const abut::ProgressHook& progress) {
-  const abut::Document document = abut::Document::from_text(
-      specification.document, specification.text, specification.overrides);
-  return abut::make_body(document, specification.path, progress);
-}
+/// Makes the bodies of this process from one scene. Its text comes with the first body; the others
+/// bring none, and it is read once.
+class Maker {
+ public:
+  std::unique_ptr<abut::Subdomain> operator()(const abut::Specification& specification,
+                                              const abut::ProgressHook& progress) {
+    if (!specification.text.empty() || !scene_) {
+      scene_ = abut::Document::from_text(specification.document, specification.text,
+                                         specification.overrides);
+    }
+    return abut::make_body(*scene_, specification.path, progress);
+  }
 
-void serve_body(const std::string& endpoint, const std::string& name, double patience) {
+ private:
+  std::optional<abut::Document> scene_;
+};
+
+/// What a command line says.
+struct Command {
+  std::string endpoint;
+  std::string process;  // routing id of a process that several bodies may share
+  std::vector<std::string> bodies;
+  double patience = 60.0;  // [s]
+};
+
+void serve_bodies(const Command& command) {
   const abut::Limits limits;
   const abut::Deadlines deadlines;
+  const abut::Milliseconds patience(
+      static_cast<abut::Milliseconds::rep>(1000.0 * command.patience));
   abut::require_descriptors(descriptors);
-  abut::ZmqDealer dealer(endpoint, name, limits);
-  abut::CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
-  abut::Server server(name, &make, dealer, coordinator, limits, deadlines);
-  const double milliseconds = 1000.0 * patience;
-  abut::serve(server, abut::Milliseconds(static_cast<abut::Milliseconds::rep>(milliseconds)));
+  const bool shared = !command.process.empty();
+  abut::ZmqDealer dealer(command.endpoint, shared ? command.process : command.bodies.front(),
+                         limits, command.bodies.size());
+  abut::CoordinatorLiveness coordinator(dealer, command.endpoint, deadlines);
+  Maker maker;
+  const abut::MakeBody make = std::ref(maker);
+  if (!shared) {
+    abut::Server server(command.bodies.front(), make, dealer, coordinator, limits, deadlines);
+    abut::serve(server, patience);
+    return;
+  }
+  abut::ZmqGroup group(dealer, command.bodies);
+  std::vector<std::unique_ptr<abut::Server>> servers;
+  for (std::size_t b = 0; b < command.bodies.size(); ++b) {
+    servers.push_back(std::make_unique<abut::Server>(command.bodies[b], make, group.channel(b),
+                                                     coordinator, limits, deadlines));
+  }
+  abut::serve_group(servers, group, patience);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const abut::FlushedDenormals flushed;  // also of threads that bodies start
-  CLI::App app("One body of an abut scene; started by abut, or by hand for `launch: connect`.",
+  CLI::App app("Bodies of an abut scene; started by abut, or by hand for `launch: connect`.",
                "abut-solver");
-  std::string endpoint;
-  std::string name;
-  double patience = 60.0;
-  app.add_option("--connect", endpoint, "the coordinator's endpoint, e.g. tcp://127.0.0.1:5555")
+  Command command;
+  app.add_option("--connect", command.endpoint,
+                 "the coordinator's endpoint, e.g. tcp://127.0.0.1:5555")
       ->required();
-  app.add_option("--body", name, "name of the body in the scene")->required();
-  app.add_option("--patience", patience, "how long to wait for a coordinator [s]")
+  app.add_option("--body", command.bodies,
+                 "name of the body in the scene; with --process of each of its bodies")
+      ->required();
+  app.add_option("--process", command.process,
+                 "of several bodies: the name by which the coordinator that starts it knows it");
+  app.add_option("--patience", command.patience, "how long to wait for a coordinator [s]")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 86'400.0));
   app.set_version_flag("--version", fmt::format("abut-solver {}, protocol {}",
@@ -60,14 +100,19 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  if (command.process.empty() && command.bodies.size() > 1) {
+    std::fputs("abut-solver: several bodies need --process\n", stderr);
+    return 2;
+  }
   try {
-    serve_body(endpoint, name, patience);
+    serve_bodies(command);
     return 0;
   } catch (const abut::InputError& error) {
     std::fputs(fmt::format("abut-solver: {}\n", error.what()).c_str(), stderr);
     return 2;
   } catch (const std::exception& error) {
-    std::fputs(fmt::format("abut-solver at {}: {}\n", endpoint, error.what()).c_str(), stderr);
+    std::fputs(fmt::format("abut-solver at {}: {}\n", command.endpoint, error.what()).c_str(),
+               stderr);
     return 3;
   }
 }

@@ -43,6 +43,16 @@ interfaces:
   first: {sides: [a.skin, b.skin], contact: {}, transmission: {unilateral: {kinematic: a.skin}}}
   second: {sides: [b.skin, c.skin], contact: {}, transmission: {unilateral: {kinematic: b.skin}}}
 """
+MANY = """\
+meta: {title: Many bars that fly}
+time: {begin: 0.0, end: 1.0e-4, window: 1.0e-5}
+bodies:
+  b0:
+    model: {fe: {dimension: 1, mesh: {bar: {length: 0.25, elements: 10, area: 1.0e-6}}}}
+    material: {linear_elastic: {youngs_modulus: 1.0e9, density: 1000.0}}
+    integrator: {central_difference: {step: 1.0e-6}}
+    initial: {position: [0.0], velocity: [1.0]}
+"""
 
 THROWN = """\
 meta: {title: Bars from a table}
@@ -112,6 +122,39 @@ class Placements(SystemTest):
         there = self.run_in("there", scene, "--set", f"bodies.bar.launch.spawn.program={wrapper}")
         self.assertFalse(table.exists())
         self.assertEqual(bits(there), bits(local))
+
+    def test_bodies_that_share_a_process_reach_the_same_bits(self):
+        chain = self.folder / "chain.yaml"
+        chain.write_text(CHAIN, encoding="utf-8")
+        groups = {body: ("--set", f"bodies.{body}.launch.group=g") for body in "abc"}
+        placements = {"together": [*groups["a"], *groups["b"], *groups["c"]],
+                      "mixed": [*groups["a"], *groups["c"]],
+                      "dealt": ["--set", "network.processes=2"],
+                      "beside a group": ["--set", "network.processes=1", *groups["b"]]}
+        local = bits(self.run_in("here", chain, "--local"))
+        for name, arguments in placements.items():
+            with self.subTest(placement=name):
+                folder = self.run_in(name, chain, *arguments)
+                self.assertEqual(bits(folder), local)
+                again = self.run_in(f"{name} again", folder / "scene.resolved.yaml")
+                self.assertEqual(bits(again), local)
+        two = bits(self.run_in("two", TWO_BARS, "--local"))
+        self.assertEqual(
+            bits(self.run_in("one", TWO_BARS, "--set", "network.processes=1")), two)
+
+    def test_two_hundred_bodies_run_in_four_processes_and_end_them(self):
+        scene = self.folder / "many.yaml"
+        bodies = "".join(f"  b{i}: {{like: b0, initial: {{position: [{i}]}}}}\n"
+                         for i in range(1, 200))
+        scene.write_text(MANY + bodies, encoding="utf-8")
+        for command in (("check", scene), ("run", scene, "--out", self.out)):
+            refused = self.abut(*command)
+            self.assertEqual(refused.returncode, 2, refused.stderr)
+            self.assertIn("would be 200 processes, more than 64. Give network: {processes: 8}",
+                          refused.stderr)
+        local = bits(self.run_in("here", scene, "--local"))
+        self.assertEqual(
+            bits(self.run_in("there", scene, "--set", "network.processes=4")), local)
 
     def test_load_priority_and_a_single_core_change_no_bit(self):
         once = bits(self.run_in("once", TWO_BARS))

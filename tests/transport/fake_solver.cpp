@@ -10,10 +10,13 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "messaging/serve.hpp"
+#include "messaging/serve_group.hpp"
 #include "messaging/zmq_channel.hpp"
+#include "messaging/zmq_group.hpp"
 #include "tests/support/fakes.hpp"
 
 namespace {
@@ -48,6 +51,8 @@ std::unique_ptr<Subdomain> make(const std::string& manners, const std::string& n
   if (specification.text.find("no such key") != std::string::npos) {
     throw InputError("unknown key", specification.path, "remove it");
   }
+  if (manners == "wants_scene" && specification.text.empty())
+    throw InputError("no scene", specification.path, "send it");
   FakeSubdomain::Options options;
   options.name = name;
   std::unique_ptr<FakeSubdomain> body = std::make_unique<FakeSubdomain>(options);
@@ -96,19 +101,53 @@ int run(const std::string& endpoint, const std::string& name, const std::string&
   return 0;
 }
 
+std::string manners_of(const std::string& body) {
+  const char* chosen = std::getenv(("ABUT_FAKE_" + body).c_str());
+  return chosen != nullptr ? chosen : "";
+}
+
+/// Several bodies, each with its manners of solving.
+int run_group(const std::string& endpoint, const std::string& process,
+              const std::vector<std::string>& bodies) {
+  const Limits limits;
+  Deadlines deadlines;
+  deadlines.progress = Milliseconds(100);
+  ZmqDealer dealer(endpoint, process, limits, bodies.size());
+  CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
+  ZmqGroup group(dealer, bodies);
+  std::vector<std::unique_ptr<Server>> servers;
+  bool spoiling = false;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::string& name = bodies[b];
+    servers.push_back(std::make_unique<Server>(
+        name,
+        [&name, &spoiling](const Specification& specification, const ProgressHook& progress) {
+          return make(manners_of(name), name, specification, progress, spoiling);
+        },
+        group.channel(b), coordinator, limits, deadlines));
+  }
+  serve_group(servers, group, Milliseconds(10'000));
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string endpoint, body;
+  std::string endpoint, process;
+  std::vector<std::string> bodies;
   for (int i = 1; i + 1 < argc; i += 2) {
-    (std::string(argv[i]) == "--connect" ? endpoint : body) = argv[i + 1];
+    const std::string option = argv[i];
+    if (option == "--connect") endpoint = argv[i + 1];
+    if (option == "--process") process = argv[i + 1];
+    if (option == "--body") bodies.emplace_back(argv[i + 1]);
   }
-  const char* chosen = std::getenv(("ABUT_FAKE_" + body).c_str());
-  const std::string manners = chosen != nullptr ? chosen : "";
-  if (manners == "exit") return 7;
-  if (manners == "never") pause();
+  for (const std::string& body : bodies) {
+    if (manners_of(body) == "exit") return 7;
+    if (manners_of(body) == "never") pause();
+  }
   try {
-    return run(endpoint, body, manners);
+    return process.empty() ? run(endpoint, bodies.front(), manners_of(bodies.front()))
+                           : run_group(endpoint, process, bodies);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 3;
