@@ -3,8 +3,8 @@
 
 usage: bolt.py DIRECTORY   writes bolt.msh there
 
-A shank of 0.25 by 50 with a head of 1.55 by 6 on it, of quadrilaterals; the seat is the head's lower
-side, from the shank outwards. Cells are small where shank and head meet.
+A shank of 0.25 by 50 with a head of 1.55 by 6 on it, of quadrilaterals; the seat is the lower side
+of the head, from the shank outwards. Cells are small where shank and head meet.
 """
 import pathlib
 import sys
