@@ -17,6 +17,7 @@ class Meshes(unittest.TestCase):
     SCRIPTS = {
         "elliptic_rings.py": ["elliptic_membrane.msh", "elliptic_plate.msh"],
         "bolt.py": ["bolt.msh"],
+        "gears.py": ["gear_12.msh", "gear_18.msh"],
     }
 
     def test_files_are_those_of_their_script(self):
