@@ -27,6 +27,7 @@ NodalReactions::NodalReactions(const FeModel& model, const Problem& problem,
     : model_(model),
       problem_(problem),
       integrator_(integrator),
+      own_loads_(problem.loads.size()),
       step_(step),
       constraints_(std::move(constraints)) {
   const int supports = static_cast<int>(problem.supports.size());
@@ -35,15 +36,18 @@ NodalReactions::NodalReactions(const FeModel& model, const Problem& problem,
   mass_ = columns.transpose();
 }
 
-/// Forces on ports are among the problem's loads.
-void NodalReactions::forces(const Motion& motion, double time, const Vector&, Vector& out) {
+/// Loads of the problem tell forces that partners give, not those of a contact that the body finds.
+void NodalReactions::forces(const Motion& motion, double time, const Vector& on_ports,
+                            Vector& out) {
   integrator_.acceleration(motion, time, step_, acceleration_);
   inertia_.noalias() = mass_ * acceleration_;
-  const Vector& external = problem_.external_force(time, motion.q);
-  out.setZero(external.size());
+  external_.setZero(on_ports.size());
+  for (std::size_t k = 0; k < own_loads_; ++k) problem_.loads[k]->add(time, motion.q, external_);
+  external_ += on_ports;
+  out.setZero(on_ports.size());
   int k = 0;
   for (const Prescribed& p : problem_.supports)
-    out(p.dof) = inertia_(k++) + motion.force[index(p.dof)] - external(p.dof);
+    out(p.dof) = inertia_(k++) + motion.force[index(p.dof)] - external_(p.dof);
 }
 
 void NodalReactions::sums(const Motion& motion, double time, const Vector& on_ports,

@@ -33,7 +33,7 @@ class Reactions {
 class NodalReactions final : public Reactions {
  public:
   /// The mass is of the scheme's form, the step [s] the scheme's; what is referred to must outlive
-  /// this.
+  /// this. Loads that the problem has by now are the body's own, later ones are of its ports.
   NodalReactions(const FeModel& model, const Problem& problem, const Integrator& integrator,
                  const SparseMatrix& mass, double step, std::vector<HeldCoordinates> constraints);
   void forces(const Motion& motion, double time, const Vector& on_ports, Vector& out) override;
@@ -45,9 +45,10 @@ class NodalReactions final : public Reactions {
   const Problem& problem_;
   const Integrator& integrator_;
   SparseMatrix mass_;  // (supports, dofs)
+  std::size_t own_loads_;
   double step_;
   std::vector<HeldCoordinates> constraints_;
-  Vector acceleration_, inertia_, forces_;
+  Vector acceleration_, inertia_, external_, forces_;
 };
 
 /// Direction in space of a coordinate of the mesh's model.

@@ -14,15 +14,21 @@ MESHES = ROOT / "configs" / "meshes"
 
 
 class Meshes(unittest.TestCase):
+    SCRIPTS = {
+        "elliptic_rings.py": ["elliptic_membrane.msh", "elliptic_plate.msh"],
+        "bolt.py": ["bolt.msh"],
+        "gears.py": ["gear_12.msh", "gear_18.msh"],
+    }
+
     def test_files_are_those_of_their_script(self):
-        with tempfile.TemporaryDirectory() as directory:
-            script = MESHES / "elliptic_rings.py"
-            subprocess.run([sys.executable, "-B", script, directory], check=True)
-            written = sorted(path.name for path in Path(directory).iterdir())
-            self.assertEqual(written, ["elliptic_membrane.msh", "elliptic_plate.msh"])
-            for name in written:
-                same = (Path(directory) / name).read_text() == (MESHES / name).read_text()
-                self.assertTrue(same, f"{name} differs: run configs/meshes/elliptic_rings.py")
+        for script, names in self.SCRIPTS.items():
+            with self.subTest(script), tempfile.TemporaryDirectory() as directory:
+                subprocess.run([sys.executable, "-B", MESHES / script, directory], check=True)
+                written = sorted(path.name for path in Path(directory).iterdir())
+                self.assertEqual(written, names)
+                for name in written:
+                    same = (Path(directory) / name).read_text() == (MESHES / name).read_text()
+                    self.assertTrue(same, f"{name} differs: run configs/meshes/{script}")
 
 
 if __name__ == "__main__":

@@ -39,8 +39,8 @@ std::vector<Case> cases() {
   return out;
 }
 
-/// A block on the floor, its top free to be pressed.
-std::unique_ptr<Subdomain> block(const Case& c) {
+/// A block on the floor, its top free to be pressed; `more`: other constraints, after a comma.
+std::unique_ptr<Subdomain> block(const Case& c, const std::string& more = "") {
   const std::string mesh =
       c.dim == 2
           ? "rectangle: {lengths: [1.0, 1.0], elements: [3, 3], element: " + c.element + "}"
@@ -49,10 +49,10 @@ std::unique_ptr<Subdomain> block(const Case& c) {
       "bodies: {{it: {{model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}, material: "
       "{{{}youngs_modulus: "
       "1.0, poissons_ratio: 0.3, density: 1.0}}}}, integrator: {{{}}}, ports: {{face: {{side: "
-      "{}}}}}, constraints: {{floor: {{on: {}, fixed: true}}}}}}}}\n"
+      "{}}}}}, constraints: {{floor: {{on: {}, fixed: true}}{}}}}}}}\n"
       "interfaces: {{touch: {{sides: [it.face, other.face], contact: {{}}}}}}\n",
       c.dim, mesh, c.law, c.integrator, c.dim == 2 ? "top" : "front",
-      c.dim == 2 ? "bottom" : "back");
+      c.dim == 2 ? "bottom" : "back", more);
   return make_body(Document::from_text("test", text), "bodies.it");
 }
 
@@ -140,6 +140,36 @@ TEST_P(SurfaceContactOf, PressesAndNeverPulls) {
     }
   }
   EXPECT_GT(most, 1.0e-3);  // it was pressed
+}
+
+/// Forces balance without inertia.
+std::vector<Case> static_cases() {
+  std::vector<Case> out = cases();
+  std::erase_if(out, [](const Case& c) { return !c.name.starts_with("quasi_static"); });
+  return out;
+}
+
+class StaticContactOf : public SurfaceContactOf {};
+INSTANTIATE_TEST_SUITE_P(Bodies, StaticContactOf, testing::ValuesIn(static_cases()),
+                         [](const auto& c) { return c.param.name; });
+
+/// Nodes of the port at its rim are held as well, and pressed: what presses there goes into them.
+TEST_P(StaticContactOf, ReactionsBearAllThatPresses) {
+  const std::size_t dim = index(GetParam().dim);
+  body = block(GetParam(), ", wall: {on: left, fixed: true}");
+  body->meet(0, plate(GetParam().dim), {});
+  const Response r = advance(*body, 0.0, 0.2);
+  const Waveform& trace = r.ports[0].trace;
+  const std::size_t last = trace.size() - 1;
+  double pressing = 0.0, borne = 0.0;
+  for (std::size_t k = dim - 1; k < index(trace.width); k += dim)
+    pressing += trace.f[last * index(trace.width) + k];
+  const std::vector<double> values = body->measure();
+  const std::vector<std::string>& names = body->describe().measures;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (names[k] == (dim == 2 ? "reaction.y" : "reaction.z")) borne = values[k];
+  EXPECT_LT(pressing, -1.0e-3);                             // it was pressed
+  EXPECT_NEAR(borne / pressing, -1.0, 1.0e-7) << pressing;  // Newton's residual, 1e-9 of a force
 }
 
 TEST_P(SurfaceContactOf, ComesBackBitForBit) {
