@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "contract/force_means.hpp"
 #include "coordinator/coupling/kernel_bytes.hpp"
@@ -36,7 +37,8 @@ void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodi
   flies_ = !stands && !looked;
   looks_ = !stands && free_ahead() ? window.length() : 0.0;
   scale_.step = std::max(kinematic_grid_.step, iterate_.steps.step);
-  scale_.velocity = joint.closing_speed;
+  usual_speed_ = joint.closing_speed;
+  swept_ = false;
 }
 
 /// Where its last reply told the Neumann side would fly: over a window like this one.
@@ -168,8 +170,10 @@ void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>& x, const 
   const int width = iterate_.width;
   for (int i = 1; i <= iterate_.steps.count; ++i)
     trace.interpolate(trace.u, iterate_.steps.time(i), {&g[iterate_.at(i)], index(width)});
-  scale_.velocity = std::max(
-      {scale_.velocity, reached(trace), reached(trace_of(bodies, joint.kinematic_side()))});
+  // A later sweep that goes astray must not let those after it pass.
+  const double now = std::max(reached(trace), reached(trace_of(bodies, joint.kinematic_side())));
+  if (!std::exchange(swept_, true)) usual_speed_ = std::max(usual_speed_, now);
+  scale_.velocity = std::max(usual_speed_, now);
   // Gaps are differences of places, and no rounder than these.
   const double place = largest(bodies.port(joint.neumann_side()).geometry.points);
   scale_.roundoff =

@@ -71,6 +71,8 @@ class CompliantObstacle final : public Transmission {
   Eigen::VectorXd flight_;  // [m] as the iterate; empty: none was flown
   Waveform given_;          // the obstacle of this sweep
   ReferenceScales scale_;
+  bool swept_ = false;        // in this window
+  double usual_speed_ = 0.0;  // [m/s] of the closing, and of the first sweep
   double first_factor_ = 1.0;
   Eigen::MatrixXd pressed_;  // [N] (width, times of the reaction)
   Eigen::MatrixXd taken_;  // [N] (width, levels) of the reaction by the Neumann side, beyond d's
