@@ -4,8 +4,8 @@
 usage: many_bodies.py DIRECTORY_OF_PROGRAMS
 
 Columns of ten disks fall on one floor and on each other, so that a body has as many neighbours in
-a scene of a thousand as in one of ten. Prints medians and their ratios to those of ten bodies beside
-the limit; exit code 1 when it is passed.
+a scene of a thousand as in one of ten. Prints medians and their ratios to those of ten bodies
+beside the limit; exit code 1 when it is passed.
 """
 
 import json
@@ -24,13 +24,18 @@ time: {{begin: 0.0, end: 0.04, window: 1.0e-3}}
 bodies:
   disk:
     copies: {{grid: {{count: [{columns}, 10], spacing: [0.25, 0.2005]}}}}
-    model: {{fe: {{dimension: 2, plane: stress, mesh: {{disk: {{radius: 0.1, core: 4, layers: 3}}}}}}}}
+    model:
+      fe: {{dimension: 2, plane: stress, mesh: {{disk: {{radius: 0.1, core: 4, layers: 3}}}}}}
     material: {{linear_elastic: {{youngs_modulus: 1.0e6, poissons_ratio: 0.3, density: 1000.0}}}}
     integrator: {{central_difference: {{step: 1.0e-4}}}}
     ports: {{skin: {{side: mantle}}}}
     initial: {{position: [0.0, 0.1015], velocity: [0.0, -0.2]}}
   floor:
-    model: {{rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [{width}, 0.1], elements: [1, 1]}}}}, way: ["0", "0"]}}}}
+    model:
+      rigid_tool:
+        dimension: 2
+        mesh: {{rectangle: {{lengths: [{width}, 0.1], elements: [1, 1]}}}}
+        way: ["0", "0"]
     initial: {{position: [-1.0, -0.1]}}
     ports: {{face: {{side: top}}}}
 contact: {{everything: {{friction: 0.3}}}}
