@@ -94,5 +94,49 @@ TEST_P(Everything, IsThePairsThatTouchBitForBit) {
   EXPECT_GT(pairs->measure("contact.east.begin"), pairs->measure("contact.west.begin") + 1.0);
 }
 
+/// Bars in a row whose moduli and densities differ alike; the first comes, a little sideways.
+std::string chain(const std::vector<double>& ratios, const std::string& scheme, int steps,
+                  double friction) {
+  std::string text = fmt::format(
+      "meta: {{title: test}}\ntime: {{begin: 0.0, end: 12.0, window: "
+      "{}}}\nbodies:\n",
+      number(0.0125 * steps));
+  for (std::size_t k = 0; k < ratios.size(); ++k) {
+    SolidText bar;
+    bar.name = fmt::format("bar_{}", k);
+    bar.mesh = bar_mesh(2, 2 + static_cast<int>(k % 2));
+    bar.material =
+        fmt::format("linear_elastic: {{youngs_modulus: {0}, poissons_ratio: 0.25, density: {0}}}",
+                    number(ratios[k]));
+    bar.integrator = scheme + ": {step: 0.0125}";
+    bar.position = {1.0001 * static_cast<double>(k)};
+    bar.velocity = {k == 0 ? 1.0e-3 : 0.0, k == 0 ? 2.0e-4 : 0.0};
+    bar.port = "west";
+    bar.side = "left}, east: {side: right";
+    text += bar.text();
+  }
+  return text + fmt::format("contact: {{everything: {{friction: {}}}}}\n", number(friction));
+}
+
+/// The goal of chains is 4 sweeps. Trapezoidal bars lose and gain what one step of a flat impact is
+/// worth; explicit ones what rows that close one by one leave.
+TEST(ChainsOfFive, SweepAtMostTwiceWhateverTheirMassesAndWindows) {
+  for (const std::string scheme : {"central_difference", "newmark"})
+    for (const std::vector<double>& ratios : {std::vector<double>{1.0, 1.0, 1.0, 1.0, 1.0},
+                                              {1.0, 100.0, 1.0, 0.01, 1.0},
+                                              {0.01, 0.1, 1.0, 10.0, 100.0},
+                                              {100.0, 10.0, 1.0, 0.1, 0.01}})
+      for (const int steps : {1, 5, 20})
+        for (const double friction : {0.0, 0.3}) {
+          SCOPED_TRACE(fmt::format("{} {} {} {}", scheme, fmt::join(ratios, ":"), steps, friction));
+          const auto result =
+              run_document(Document::from_text("test", chain(ratios, scheme, steps, friction)));
+          ASSERT_TRUE(result->completed());
+          EXPECT_LE(result->measure("schwarz.iterations_max"), 2.0);
+          EXPECT_NEAR(result->measure("energy.total.relative_drift_max"), 0.0, 5.0e-4);
+          EXPECT_LE(result->measure("momentum.total"), scheme == "newmark" ? 1.0e-8 : 1.0e-11);
+        }
+}
+
 }  // namespace
 }  // namespace abut
