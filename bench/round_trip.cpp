@@ -187,7 +187,7 @@ class OurExchange {
   explicit OurExchange(const std::string& endpoint)
       : hub_(limits_),
         peer_(hub_.add_peer("body")),
-        liveness_(hub_, peer_, nullptr, limits_, Deadlines{}),
+        liveness_(hub_, peer_, nullptr, "", limits_, Deadlines{}),
         caller_("body", CallContext{hub_.channel(peer_), liveness_, nullptr, limits_, Deadlines{}}),
         body_(caller_) {
     hub_.bind(endpoint);
