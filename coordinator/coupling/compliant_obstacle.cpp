@@ -37,7 +37,7 @@ void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodi
   flies_ = !stands && !looked;
   looks_ = !stands && free_ahead() ? window.length() : 0.0;
   scale_.step = std::max(kinematic_grid_.step, iterate_.steps.step);
-  usual_speed_ = joint.closing_speed;
+  scale_.velocity = usual_speed_ = measured_speed_ = joint.closing_speed;
   swept_ = false;
 }
 
@@ -170,10 +170,10 @@ void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>& x, const 
   const int width = iterate_.width;
   for (int i = 1; i <= iterate_.steps.count; ++i)
     trace.interpolate(trace.u, iterate_.steps.time(i), {&g[iterate_.at(i)], index(width)});
-  // A later sweep that goes astray must not let those after it pass.
   const double now = std::max(reached(trace), reached(trace_of(bodies, joint.kinematic_side())));
   if (!std::exchange(swept_, true)) usual_speed_ = std::max(usual_speed_, now);
-  scale_.velocity = std::max(usual_speed_, now);
+  measured_speed_ = std::max(usual_speed_, now);
+  scale_.velocity = std::max(scale_.velocity, now);
   // Gaps are differences of places, and no rounder than these.
   const double place = largest(bodies.port(joint.neumann_side()).geometry.points);
   scale_.roundoff =
@@ -255,6 +255,12 @@ FieldResiduals CompliantObstacle::measure(const Eigen::Ref<const Eigen::VectorXd
   r.displacement =
       scaled((g - x).lpNorm<Eigen::Infinity>(), scale_.velocity * scale_.step, scale_.roundoff);
   return r;
+}
+
+double CompliantObstacle::stray() const {
+  constexpr double nothing = 1.0e-200;  // [m/s]
+  return scale_.velocity > measured_speed_ ? scale_.velocity / std::max(measured_speed_, nothing)
+                                           : 1.0;
 }
 
 void CompliantObstacle::scales(Eigen::Ref<Eigen::VectorXd> s) const {

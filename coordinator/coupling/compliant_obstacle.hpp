@@ -37,6 +37,7 @@ class CompliantObstacle final : public Transmission {
   }
   double first_factor() const override { return first_factor_; }
   bool contracts() const override { return true; }
+  double stray() const override;
   bool ordered() const override { return true; }
 
  private:
@@ -71,8 +72,9 @@ class CompliantObstacle final : public Transmission {
   Eigen::VectorXd flight_;  // [m] as the iterate; empty: none was flown
   Waveform given_;          // the obstacle of this sweep
   ReferenceScales scale_;
-  bool swept_ = false;        // in this window
-  double usual_speed_ = 0.0;  // [m/s] of the closing, and of the first sweep
+  bool swept_ = false;  // in this window
+  // [m/s] Of the closing and of the first sweep; the same, or of the present one.
+  double usual_speed_ = 0.0, measured_speed_ = 0.0;
   double first_factor_ = 1.0;
   Eigen::MatrixXd pressed_;  // [N] (width, times of the reaction)
   Eigen::MatrixXd taken_;  // [N] (width, levels) of the reaction by the Neumann side, beyond d's

@@ -13,11 +13,11 @@ struct FieldResiduals {
   double displacement = 0.0, velocity = 0.0, acceleration = 0.0, force = 0.0;
 
   double largest() const { return std::max({displacement, velocity, acceleration, force}); }
-  void include(const FieldResiduals& other) {
-    displacement = std::max(displacement, other.displacement);
-    velocity = std::max(velocity, other.velocity);
-    acceleration = std::max(acceleration, other.acceleration);
-    force = std::max(force, other.force);
+  void include(const FieldResiduals& other, double factor = 1.0) {
+    displacement = std::max(displacement, factor * other.displacement);
+    velocity = std::max(velocity, factor * other.velocity);
+    acceleration = std::max(acceleration, factor * other.acceleration);
+    force = std::max(force, factor * other.force);
   }
 };
 

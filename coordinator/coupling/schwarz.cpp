@@ -152,7 +152,8 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   };
   std::unique_ptr<Accelerator> careful;
   double share = 1.0;  // of a plain step
-  int growths = 0;     // of the residual
+  double mismatch = 0.0;  // by units that only grow in a window, so that sweeps can be compared
+  int growths = 0;        // of it
   SchwarzReport report;
   for (report.iterations = 1;; ++report.iterations) {
     if (report.iterations > 1) {
@@ -172,17 +173,20 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
       continue;
     }
     held_ = x_;
-    const double before = std::exchange(report.residual, {}).largest();
+    const double before = std::exchange(mismatch, 0.0);
+    report.residual = {};
     for (std::size_t i = 0; i < island.joints.size(); ++i) {
       const Joint& joint = joint_at(i);
       joint.how->image(part(x_, i), joint, bodies, part(g_, i));
-      report.residual.include(joint.how->measure(part(x_, i), part(g_, i)));
+      const FieldResiduals residual = joint.how->measure(part(x_, i), part(g_, i));
+      mismatch = std::max(mismatch, residual.largest());
+      report.residual.include(residual, joint.how->stray());
       joint.how->scales(part(s_, i));
     }
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
     const bool early = 2 * report.iterations <= options_.max_iterations;  // later it is no bad luck
-    if (contracts && early && report.iterations > 1 && report.residual.largest() > before) {
+    if (contracts && early && report.iterations > 1 && mismatch > before) {
       accelerator.forget();
       if (growths++ > 0 && careful == nullptr) careful = std::make_unique<Aitken>(plain, 0.5);
     }

@@ -40,6 +40,9 @@ class Transmission {
                      const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) = 0;
   virtual FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                                  const Eigen::Ref<const Eigen::VectorXd>& g) const = 0;
+  /// Motion that mismatches are measured by, over that of this sweep and the first: above 1 after a
+  /// sweep that went astray, which must not let those after it pass.
+  virtual double stray() const { return 1.0; }
   /// Factors that make all entries of the iterate comparable: 1 / unit of each entry.
   virtual void scales(Eigen::Ref<Eigen::VectorXd> s) const = 0;
   /// Approximate J^-1 r, J = -d(G - x)/dx, from the port kernels.
