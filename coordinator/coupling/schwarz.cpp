@@ -126,6 +126,21 @@ std::optional<Failed> Schwarz::fly(const Island& island, std::span<const Joint> 
   return std::nullopt;
 }
 
+double Schwarz::see_images(std::span<const Joint> joints, const Bodies& bodies,
+                           FieldResiduals& residual) {
+  double mismatch = 0.0;
+  residual = {};
+  for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
+    const Joint& joint = joints[index(layout_.joints[i])];
+    joint.how->image(part(x_, i), joint, bodies, part(g_, i));
+    const FieldResiduals own = joint.how->measure(part(x_, i), part(g_, i));
+    mismatch = std::max(mismatch, own.largest());
+    residual.include(own, joint.how->stray());
+    joint.how->scales(part(s_, i));
+  }
+  return mismatch;
+}
+
 std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, const Island& island,
                                                    std::span<const Joint> joints, Bodies& bodies) {
   layout_.joints = island.joints;
@@ -137,9 +152,6 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   }
   const Eigen::Index size = layout_.first.back();
   for (Eigen::VectorXd* v : {&x_, &g_, &s_}) v->resize(size);
-  auto joint_at = [&joints, &island](std::size_t i) -> const Joint& {
-    return joints[index(island.joints[i])];
-  };
   if (std::optional<Failed> failed = fly(island, joints, bodies)) return *failed;
   joints_ = joints;
   Accelerator& accelerator = accelerator_of(island);
@@ -152,8 +164,8 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   };
   std::unique_ptr<Accelerator> careful;
   double share = 1.0;  // of a plain step
-  double mismatch = 0.0;  // by units that only grow in a window, so that sweeps can be compared
-  int growths = 0;        // of it
+  double mismatch = 0.0;
+  int growths = 0;  // of the mismatch
   SchwarzReport report;
   for (report.iterations = 1;; ++report.iterations) {
     if (report.iterations > 1) {
@@ -173,16 +185,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
       continue;
     }
     held_ = x_;
-    const double before = std::exchange(mismatch, 0.0);
-    report.residual = {};
-    for (std::size_t i = 0; i < island.joints.size(); ++i) {
-      const Joint& joint = joint_at(i);
-      joint.how->image(part(x_, i), joint, bodies, part(g_, i));
-      const FieldResiduals residual = joint.how->measure(part(x_, i), part(g_, i));
-      mismatch = std::max(mismatch, residual.largest());
-      report.residual.include(residual, joint.how->stray());
-      joint.how->scales(part(s_, i));
-    }
+    const double before = std::exchange(mismatch, see_images(joints, bodies, report.residual));
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
     const bool early = 2 * report.iterations <= options_.max_iterations;  // later it is no bad luck

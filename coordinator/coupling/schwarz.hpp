@@ -59,6 +59,10 @@ class Schwarz {
   std::optional<Failed> fly(const Island& island, std::span<const Joint> joints, Bodies& bodies);
   std::optional<Failed> sweep(const Island& island, std::span<const Joint> joints,
                               const Layout& layout, const Eigen::VectorXd& x, Bodies& bodies) const;
+  /// Images of the iterate, out of the responses of a sweep, and by how much they miss it: its
+  /// residual, and the largest mismatch by units that only grow in a window, so that sweeps can be
+  /// compared.
+  double see_images(std::span<const Joint> joints, const Bodies& bodies, FieldResiduals& residual);
   Eigen::VectorXd apply_inverses(const Eigen::VectorXd& r, std::span<const Joint> joints) const;
   /// The residual, of every joint relaxed by its first factor.
   Eigen::VectorXd relaxed(Eigen::VectorXd r, std::span<const Joint> joints) const;
