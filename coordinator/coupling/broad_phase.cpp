@@ -29,29 +29,16 @@ std::vector<int> ranks(int bodies) {
 
 constexpr Box nothing = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
 
-/// A box around those that a reply swept in its parts from `first` on, larger by `more` [m].
-Box box_of(const PortResponse& reply, std::size_t dim, std::size_t first, double more) {
+/// A box around those between `lower` and `upper`, (parts, dim), larger by `more` [m].
+Box box_of(std::span<const double> lower, std::span<const double> upper, std::size_t dim,
+           double more) {
   Box box = nothing;
   for (std::size_t i = 0; i < dim; ++i) {
     box.low[i] = std::numeric_limits<double>::infinity();
     box.high[i] = -box.low[i];
-    for (std::size_t k = first + i; k < reply.lower.size(); k += dim) {
-      box.low[i] = std::min(box.low[i], reply.lower[k] - more);
-      box.high[i] = std::max(box.high[i], reply.upper[k] + more);
-    }
-  }
-  return box;
-}
-
-Box box_of(const PortGeometry& surface, double more) {
-  Box box = nothing;
-  const std::size_t dim = index(surface.dim);
-  for (std::size_t i = 0; i < dim; ++i) {
-    box.low[i] = std::numeric_limits<double>::infinity();
-    box.high[i] = -box.low[i];
-    for (std::size_t k = i; k < surface.points.size(); k += dim) {
-      box.low[i] = std::min(box.low[i], surface.points[k] - more);
-      box.high[i] = std::max(box.high[i], surface.points[k] + more);
+    for (std::size_t k = i; k < lower.size(); k += dim) {
+      box.low[i] = std::min(box.low[i], lower[k] - more);
+      box.high[i] = std::max(box.high[i], upper[k] + more);
     }
   }
   return box;
@@ -135,8 +122,10 @@ std::vector<PortPair> BroadPhase::overlapping() const {
 
 std::vector<PortPair> BroadPhase::near_at_start(const Bodies& bodies) {
   boxes_.clear();
-  for (const Surface& port : ports_)
-    boxes_.push_back(box_of(bodies.port(port.side).geometry, 0.5 * margin_));
+  for (const Surface& port : ports_) {
+    const PortGeometry& surface = bodies.port(port.side).geometry;
+    boxes_.push_back(box_of(surface.points, surface.points, index(surface.dim), 0.5 * margin_));
+  }
   return overlapping();
 }
 
@@ -146,16 +135,19 @@ std::vector<PortPair> BroadPhase::near(const Bodies& bodies, double time) {
     const PortResponse& reply = port_of(bodies, port.side);
     const std::size_t dim = index(bodies.port(port.side).geometry.dim);
     const double way = (reply.speed_bound + 0.5 * reply.acceleration_bound * time) * time;
-    boxes_.push_back(box_of(reply, dim, reply.lower.size() - dim, 0.5 * margin_ + way));
+    boxes_.push_back(box_of(std::span(reply.lower).last(dim), std::span(reply.upper).last(dim), dim,
+                            0.5 * margin_ + way));
   }
   return overlapping();
 }
 
 std::vector<PortPair> BroadPhase::crossed(const Bodies& bodies) {
   boxes_.clear();
-  for (const Surface& port : ports_)
-    boxes_.push_back(box_of(port_of(bodies, port.side), index(bodies.port(port.side).geometry.dim),
-                            0, 0.5 * margin_));
+  for (const Surface& port : ports_) {
+    const PortResponse& reply = port_of(bodies, port.side);
+    const std::size_t dim = index(bodies.port(port.side).geometry.dim);
+    boxes_.push_back(box_of(reply.lower, reply.upper, dim, 0.5 * margin_));
+  }
   return overlapping();
 }
 

@@ -34,8 +34,7 @@ void ManyContacts::on_window(const WindowReport& report) {
     const Reaction& reaction = reply.reactions[partner];
     read_force(reaction.force,
                PortReader(start_.bodies[index(pair.body[k])]->ports[index(pair.port[k])]));
-    pairs_[{pair.body[0], pair.port[0], pair.body[1], pair.port[1]}].dissipated =
-        reaction.dissipated;
+    dissipated_[{pair.body[0], pair.port[0], pair.body[1], pair.port[1]}] = reaction.dissipated;
   }
 }
 
@@ -56,7 +55,7 @@ void ManyContacts::write(Measures& out) const {
     return fmt::format("contact.{}.{}", start_.interfaces[index(index_)].name, what);
   };
   double dissipated = 0.0;
-  for (const auto& [key, pair] : pairs_) dissipated += pair.dissipated;
+  for (const auto& [pair, heat] : dissipated_) dissipated += heat;
   out.set(name("impulse"), impulse_);
   out.set(name("force_peak"), peak_);
   out.set(name("dissipated"), dissipated);

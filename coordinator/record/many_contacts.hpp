@@ -21,14 +21,11 @@ class ManyContacts {
   void write(Measures& out) const;
 
  private:
-  struct Pair {
-    double dissipated = 0.0;  // [J] so far
-  };
   void read_force(const Waveform& force, const PortReader& reader);
 
   const RunStart& start_;
   int index_;
-  std::map<std::array<int, 4>, Pair> pairs_;  // by bodies and ports
+  std::map<std::array<int, 4>, double> dissipated_;  // [J] so far, by bodies and ports
   int closings_ = 0, open_ = 0;               // open_: pairs that press now
   double begin_ = 0.0, end_ = 0.0;            // [s] first touch, last release
   double impulse_ = 0.0, peak_ = 0.0;         // [N s], [N]
