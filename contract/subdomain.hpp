@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/assert.hpp"
 #include "contract/boundary_data.hpp"
 #include "contract/field.hpp"
 #include "contract/outcome.hpp"
@@ -108,6 +109,14 @@ class Subdomain {
   /// Responses of a port to patterns of force (patterns, points x dim) over `count` substeps of
   /// length `step`; the state is left untouched.
   virtual PortKernel probe(int port, std::span<const double> patterns, double step, int count) = 0;
+  /// The same, as responses of these ports, one after the other: what a force on one port does at
+  /// the others. Its quasi-static part and that of the window's begin are left out. Bodies that
+  /// tell of their own ports alone answer for `seen` = {port}.
+  virtual PortKernel probe(int port, std::span<const double> patterns, double step, int count,
+                           std::span<const int> seen) {
+    ABUT_ASSERT(seen.size() == 1 && seen.front() == port);
+    return probe(port, patterns, step, count);
+  }
   virtual std::vector<std::byte> checkpoint() = 0;  // durable form of the state
   virtual void resume(std::span<const std::byte> bytes) = 0;
   virtual std::uint64_t state_hash() = 0;  // equal states, equal hashes

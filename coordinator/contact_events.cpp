@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "coordinator/coupling/nearness.hpp"
+#include "coordinator/coupling/tie.hpp"
 #include "coordinator/coupling/transmission.hpp"
 
 namespace abut {
@@ -48,6 +49,10 @@ void ContactEvents::start() {
   for (Joint& joint : joints_) {
     if (!joint.tied()) continue;
     joint.press();
+    if (const Tie* tie = joint.how->tie()) {
+      joint.jump = tie->jump(joint, bodies_);
+      continue;
+    }
     if (has_shared_node(joint, bodies_))  // which has one velocity
       joint.impulse = closing_impulse(joint, bodies_);
   }

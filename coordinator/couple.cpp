@@ -16,6 +16,7 @@
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/transmission.hpp"
 #include "coordinator/surface_start.hpp"
+#include "coordinator/tied_surfaces.hpp"
 
 namespace abut {
 
@@ -295,9 +296,15 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     const std::array<Side, 2> sides = {find_side(spec.sides[0], bodies, where),
                                        find_side(spec.sides[1], bodies, where)};
     const bool surfaces = bodies.port(sides[0]).geometry.dim > 1 && spec.contact;
+    const int number = static_cast<int>(joints.size());
+    if (bodies.port(sides[0]).geometry.dim > 1 && spec.tied) {
+      joints.push_back(make_tied_joint(spec, sides, scene.time.window, bodies));
+      joints.back().interface = number;
+      continue;
+    }
     Joint& joint = joints.emplace_back(surfaces ? make_surface_joint(name, sides, bodies)
                                                 : make_joint(name, sides, bodies));
-    joint.interface = static_cast<int>(joints.size()) - 1;
+    joint.interface = number;
     see_adjusted(scene, joint);
     if (std::holds_alternative<InternalTransmission>(spec.transmission)) {
       joint.decision = Decision::inside;

@@ -347,11 +347,6 @@ void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
   if (ports[0]->dim != ports[1]->dim)
     throw InputError(fmt::format("join a port in {}D and one in {}D", ports[0]->dim, ports[1]->dim),
                      document.where(path), "Give both bodies the same dimension.");
-  if (ports[0]->dim != 1 && interface.tied)
-    throw InputError(
-        fmt::format("are surfaces in {} dimensions, which touch but cannot be tied yet",
-                    ports[0]->dim),
-        document.where(path), "Give contact: {}, or model both bodies as bars (dimension: 1).");
   if (ports[0]->dim != 1) return;
   if (interface.contact && interface.contact->points)  // a resolved scene names the default
     throw InputError("has no effect: ends of bars are points",

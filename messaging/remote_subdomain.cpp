@@ -83,7 +83,13 @@ Outcome RemoteSubdomain::finish(Response& response) {
 
 PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, double step,
                                   int count) {
-  const Probing probing{port, {patterns.begin(), patterns.end()}, step, count};
+  return probe(port, patterns, step, count, {});
+}
+
+PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, double step,
+                                  int count, std::span<const int> seen) {
+  const Probing probing{
+      port, {patterns.begin(), patterns.end()}, step, count, {seen.begin(), seen.end()}};
   encode(probing, *caller_.request().mutable_probe());
   carry_flags();
   const v1::Reply& reply = caller_.call("probe");

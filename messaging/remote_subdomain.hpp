@@ -34,6 +34,8 @@ class RemoteSubdomain : public Subdomain {
   void start(const Advance& request) override;
   [[nodiscard]] Outcome finish(Response& response) override;
   PortKernel probe(int port, std::span<const double> patterns, double step, int count) override;
+  PortKernel probe(int port, std::span<const double> patterns, double step, int count,
+                   std::span<const int> seen) override;
   std::vector<std::byte> checkpoint() override;
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override;

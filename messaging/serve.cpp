@@ -279,7 +279,9 @@ void Server::probe(const v1::Probe& request) {
                                probing.count, probing.patterns.size(), least, reply_limit_),
                    name_, remedy_of_large_frame(request_));
   }
-  encode(body_->probe(probing.port, probing.patterns, probing.step, probing.count),
+  const auto& [port, patterns, step, count, seen] = probing;
+  encode(seen.empty() ? body_->probe(port, patterns, step, count)
+                      : body_->probe(port, patterns, step, count, seen),
          *reply_.mutable_kernel());
 }
 

@@ -228,7 +228,8 @@ void Body::look_ahead(const Advance& request, Response& response) {
 }
 
 /// The forces that a request ends with on a port, and none from the end of the next step on of
-/// those who gave them. At a point that found contact itself that is its own.
+/// those who gave them; those that are constant in steps end with the request. At a point that
+/// found contact itself that is its own.
 void Body::release(std::size_t p, const Advance& request, const Substeps& grid,
                    const Waveform& trace) {
   const std::size_t width = ports_[p].width, dim = index(ports_[p].geometry->dim);
@@ -244,7 +245,7 @@ void Body::release(std::size_t p, const Advance& request, const Substeps& grid,
   gone.time = levels_of(grid);
   gone.f.assign(gone.time.size() * width, 0.0);
   for (const Waveform& force : request.boundary[p].forces) {
-    if (force.empty()) continue;
+    if (force.empty() || force.support == ForceSupport::step) continue;
     pressing_.resize(index(force.width));
     force.force_at(request.window.end, pressing_);
     for (std::size_t k = 0; k < pressing_.size(); ++k) {
@@ -410,6 +411,20 @@ std::optional<Failed> Body::record(double time, Response& response) {
 }
 
 PortKernel Body::probe(int port, std::span<const double> patterns, double step, int count) {
+  const int own[] = {port};
+  PortKernel kernel = probe(port, patterns, step, count, own, true);
+  if (const double compliance = interior_->compliance(index(port)); compliance > 0.0)
+    for (const double value : patterns) kernel.compliance.push_back(compliance * value);
+  return kernel;
+}
+
+PortKernel Body::probe(int port, std::span<const double> patterns, double step, int count,
+                       std::span<const int> seen) {
+  return probe(port, patterns, step, count, seen, false);
+}
+
+PortKernel Body::probe(int port, std::span<const double> patterns, double step, int count,
+                       std::span<const int> seen, bool begin) {
   const std::string where = fmt::format("body '{}'", describe().name);
   if (!describe().can.kernel) {
     throw RunError("does not answer for port kernels", where,
@@ -420,19 +435,16 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
   std::vector<std::byte> kept;
   write(*interior_, kept, Archive::Form::bare);
   const Substeps grid{0.0, count * step, step, step, count};
-  PortKernel kernel{step,
-                    interior_->support(p),
-                    static_cast<int>(patterns.size() / width),
-                    static_cast<int>(width),
-                    {},
-                    {},
-                    {},
-                    {}};
-  kernel.displacement.assign(index(count) * patterns.size(), 0.0);
-  const bool nodal = kernel.support == ForceSupport::nodal;
+  PortKernel kernel;
+  kernel.step = step;
+  kernel.support = interior_->support(p);
+  kernel.patterns = static_cast<int>(patterns.size() / width);
+  kernel.width = 0;
+  for (const int s : seen)
+    kernel.width += static_cast<int>(describe().ports.at(index(s)).geometry.points.size());
+  kernel.displacement.assign(index(count) * kernel.per_step(), 0.0);
+  const bool nodal = begin && kernel.support == ForceSupport::nodal;
   if (nodal) kernel.begin = kernel.displacement;
-  if (const double compliance = interior_->compliance(p); compliance > 0.0)
-    for (const double value : patterns) kernel.compliance.push_back(compliance * value);
   Advance request;
   request.window = {0, grid.begin, grid.end};
   request.boundary.resize(ports_.size());
@@ -440,21 +452,24 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
   force.support = kernel.support;
   for (int i = 0; i <= count; ++i) force.time.push_back(i == 0 ? grid.begin : grid.time(i));
   const double light = interior_->light_force(p);
+  const std::size_t values = index(kernel.width);
   std::vector<double> alone, moved;
   std::optional<Failed> failed;
   force.f.assign(force.time.size() * width, 0.0);
-  if (interior_->rest(p)) failed = respond(request, grid, p, alone);
-  alone.resize(index(count) * width, 0.0);
-  for (std::size_t from = 0; from < patterns.size() && !failed; from += width) {
+  if (interior_->rest(p)) failed = respond(request, grid, seen, alone);
+  alone.resize(index(count) * values, 0.0);
+  for (std::size_t k = 0; k < index(kernel.patterns) && !failed; ++k) {
     for (const std::size_t at : {0u, 1u}) {  // at the begin, at the end of the first substep
       if (at == 0 && !nodal) continue;
       std::vector<double>& to = at == 0 ? kernel.begin : kernel.displacement;
       force.f.assign(force.time.size() * width, 0.0);
-      for (std::size_t k = 0; k < width; ++k) force.f[at * width + k] = light * patterns[from + k];
+      for (std::size_t i = 0; i < width; ++i)
+        force.f[at * width + i] = light * patterns[k * width + i];
       interior_->rest(p);
-      failed = respond(request, grid, p, moved);
-      for (std::size_t k = 0; k < moved.size(); ++k)
-        to[k / width * patterns.size() + from + k % width] = (moved[k] - alone[k]) / light;
+      failed = respond(request, grid, seen, moved);
+      for (std::size_t i = 0; i < moved.size(); ++i)
+        to[i / values * kernel.per_step() + k * values + i % values] =
+            (moved[i] - alone[i]) / light;
     }
   }
   interior_->wake();
@@ -465,16 +480,20 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
                  "Give the body inertia or supports that hold it.");
 }
 
-/// Displacements (substeps, values) of a port under the forces of a request [m].
-std::optional<Failed> Body::respond(const Advance& request, const Substeps& grid, std::size_t port,
-                                    std::vector<double>& displacement) {
+/// Displacements (substeps, values) of ports, one after the other, under the forces of a request
+/// [m].
+std::optional<Failed> Body::respond(const Advance& request, const Substeps& grid,
+                                    std::span<const int> ports, std::vector<double>& displacement) {
   const Window window{request, grid, partners_};
-  const std::size_t width = describe().ports[port].geometry.points.size();
   displacement.clear();
   return walk(window, [&](int i) {
     if (i == 0) return;
-    const double* u = interior_->see(window, grid.time(i), false).u.data() + ports_[port].first;
-    displacement.insert(displacement.end(), u, u + width);
+    const std::vector<double>& u = interior_->see(window, grid.time(i), false).u;
+    for (const int port : ports) {
+      const auto from = u.begin() + static_cast<std::ptrdiff_t>(ports_[index(port)].first);
+      displacement.insert(displacement.end(), from,
+                          from + static_cast<std::ptrdiff_t>(ports_[index(port)].width));
+    }
   });
 }
 

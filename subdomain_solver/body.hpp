@@ -26,6 +26,8 @@ class Body final : public Subdomain {
   void start(const Advance& request) override { request_ = &request; }
   [[nodiscard]] Outcome finish(Response& response) override;
   PortKernel probe(int port, std::span<const double> patterns, double step, int count) override;
+  PortKernel probe(int port, std::span<const double> patterns, double step, int count,
+                   std::span<const int> seen) override;
   std::vector<std::byte> checkpoint() override;
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override;
@@ -34,6 +36,8 @@ class Body final : public Subdomain {
   std::vector<FieldValues> fields() override { return interior_->fields(); }
 
  private:
+  PortKernel probe(int port, std::span<const double> patterns, double step, int count,
+                   std::span<const int> seen, bool begin);
   /// A port as substeps see it.
   struct Watched {
     const PortGeometry* geometry = nullptr;
@@ -61,8 +65,8 @@ class Body final : public Subdomain {
   void begin_sweep();
   void widen_sweep();
   std::optional<Failed> record(double time, Response& response);
-  std::optional<Failed> respond(const Advance& request, const Substeps& grid, std::size_t port,
-                                std::vector<double>& displacement);
+  std::optional<Failed> respond(const Advance& request, const Substeps& grid,
+                                std::span<const int> ports, std::vector<double>& displacement);
   template <class Call>
   std::optional<Failed> patiently(const Call& call) const;
   void report_progress();

@@ -24,9 +24,23 @@ void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substep
     bool first = true;
     for (const Waveform& force : boundary[p].forces) {
       if (force.empty()) continue;
-      add_sampled(force, p, first);
+      if (joined(p)) {
+        add_constant(force, p, first);
+      } else {
+        add_sampled(force, p, first);
+      }
       first = false;
     }
+  }
+}
+
+void PortForces::add_constant(const Waveform& imposed, std::size_t port, bool first) {
+  forces_.resize(index(grid_.count + 1) * map_.values(), 0.0);
+  mean_.resize(index(imposed.width));
+  for (int i = 1; i <= grid_.count; ++i) {
+    imposed.impulse(i == 1 ? grid_.begin : grid_.time(i - 1), grid_.time(i), mean_);
+    for (double& f : mean_) f /= grid_.length(i);
+    add(imposed, mean_.data(), first, forces_.data() + index(i) * map_.values() + map_.first(port));
   }
 }
 
@@ -88,13 +102,16 @@ void PortForces::at(double time, std::vector<double>& out) const {
   const auto instant = [this](int i) { return i == 0 ? grid_.begin : grid_.time(i); };
   if (grid_.count == 0 || std::abs(time - instant(near)) <= rounding * length) {
     std::copy_n(row(near), map_.values(), out.begin());
-    return;
+  } else {
+    const int after = count_within(std::ceil(place), 1, grid_.count);
+    const double share =
+        std::clamp((time - instant(after - 1)) / (instant(after) - instant(after - 1)), 0.0, 1.0);
+    for (std::size_t k = 0; k < map_.values(); ++k)
+      out[k] = (1.0 - share) * row(after - 1)[k] + share * row(after)[k];
   }
-  const int after = count_within(std::ceil(place), 1, grid_.count);
-  const double share =
-      std::clamp((time - instant(after - 1)) / (instant(after) - instant(after - 1)), 0.0, 1.0);
-  for (std::size_t k = 0; k < map_.values(); ++k)
-    out[k] = (1.0 - share) * row(after - 1)[k] + share * row(after)[k];
+  for (const std::size_t port : joined_)
+    std::copy_n(row(std::min(substep_, grid_.count)) + map_.first(port), map_.width(port),
+                out.begin() + static_cast<std::ptrdiff_t>(map_.first(port)));
 }
 
 void PortForces::add(double time, std::span<const double> q, Vector& force) const {

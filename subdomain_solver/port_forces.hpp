@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace abut {
 /// Forces imposed by partners on the ports of a body over a window, as its own substeps take them:
 /// values at their ends, equal to those of the waveform where it is sampled there, else means over
 /// the dual cells [M.8], so that the impulse is exact; linear in between. Lists of values are those
-/// of PortMap.
+/// of PortMap. On ports that are joined, forces are constant in every substep: means over it
+/// [M.106].
 class PortForces final : public Load {
  public:
   /// The map must outlive the load.
@@ -22,6 +24,10 @@ class PortForces final : public Load {
 
   /// What is imposed over a window that the body divides like this.
   void impose(const std::vector<BoundaryData>& boundary, const Substeps& grid);
+  /// From now on, forces on this port are those of joined sides.
+  void join(std::size_t port) { joined_.push_back(port); }
+  /// The substep that begins, from 1: of joined ports at() tells its forces.
+  void enter(int substep) { substep_ = substep; }
   bool acts() const { return !forces_.empty(); }
 
   /// From now on, instants are kept beside the means.
@@ -37,6 +43,8 @@ class PortForces final : public Load {
 
  private:
   void add_sampled(const Waveform& imposed, std::size_t port, bool first);
+  bool joined(std::size_t port) const { return std::ranges::find(joined_, port) != joined_.end(); }
+  void add_constant(const Waveform& imposed, std::size_t port, bool first);
   void add_swing(const Waveform& imposed, double now, std::size_t row);
   void add(const Waveform& imposed, const double* values, bool first, double* row) const;
 
@@ -48,6 +56,8 @@ class PortForces final : public Load {
   std::vector<double> mean_;    // [N] of a waveform over a dual cell
   std::vector<double> instant_;
   mutable std::vector<double> now_;
+  std::vector<std::size_t> joined_;  // ports
+  int substep_ = 1;
 };
 
 }  // namespace abut

@@ -41,6 +41,9 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
     port_map_ = std::make_unique<PortMap>(*parts_.model, *parts_.map, ports_);
     std::unique_ptr<PortForces> forces = std::make_unique<PortForces>(*port_map_);
     port_forces_ = forces.get();
+    for (std::size_t p = 0; p < ports_.size(); ++p)
+      if (joined_[p]) port_forces_->join(p);
+    if (joins_ && parts_.scheme.integrator->has_inertia()) description_.can.kernel = true;
     places_.assign(port_map_->values(), 0.0);
     before_ = now_ = seen_.u = state_.port_force = places_;
     change_.setZero(parts_.problem->model->dofs());
@@ -117,6 +120,8 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   for (const PortNodes& p : ports) {
     ports_.push_back({p.name, mesh.nodes_of(p.side)});
     may_touch_.push_back(p.touched);
+    joined_.push_back(p.joined);
+    joins_ = joins_ || p.joined;
     Port port{p.name, port_geometry(*parts_.model, p.side, ports_.back().nodes), p.tied};
     if (parts_.deforms) port.geometry.transit = port.geometry.spacing / fastest_wave(*parts_.model);
     description_.ports.push_back(std::move(port));
@@ -160,7 +165,10 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
         compressed_to_nothing(u_, parts_.model->mesh(), time, description_.name);
     if (failed) return failed;
   }
-  if (port_forces_ != nullptr) port_forces_->impose(window.request.boundary, window.grid);
+  if (port_forces_ != nullptr) {
+    port_forces_->impose(window.request.boundary, window.grid);
+    port_forces_->enter(1);
+  }
   substep_ = 0;
   if (contact_) contact_->impose(window);
   parts_.problem->contact = contact_ && contact_->acts() ? contact_.get() : nullptr;
@@ -185,6 +193,10 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i) {
   Integrator& integrator = *parts_.scheme.integrator;
   const double begin = window.grid.time(i - 1), dt = window.grid.length(i);
   substep_ = i;
+  if (joins_ && i > 1) {  // forces of joined sides jump
+    port_forces_->enter(i);
+    if (std::optional<Failed> failed = meet_port_forces(begin)) return failed;
+  }
   if (parts_.problem->contact != nullptr) contact_->aim(i, state_.port_force, places_);
   if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);

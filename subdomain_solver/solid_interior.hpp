@@ -28,6 +28,7 @@ class SolidInterior final : public Interior {
     std::string name, side;
     bool tied = false;
     bool touched = false;  // something may touch it
+    bool joined = false;   // tied to another surface: forces are constant in a step
   };
   struct Scheme {
     std::unique_ptr<Integrator> integrator;
@@ -66,6 +67,9 @@ class SolidInterior final : public Interior {
   }
   void finish(std::size_t port, PortResponse& reply) const override;
   bool takes(int port, const PortKernel& kernel) const override;
+  ForceSupport support(std::size_t port) const override {
+    return joined_[port] ? ForceSupport::step : ForceSupport::nodal;
+  }
   ForceSupport reaction_support(std::size_t) const override {
     return description_.dim == 1 ? ForceSupport::nodal : ForceSupport::linear;
   }
@@ -107,7 +111,8 @@ class SolidInterior final : public Interior {
   Parts parts_;
   SparseMatrix mass_;  // [kg] of the nodes, in the form of the scheme
   std::vector<NamedNodes> ports_;
-  std::vector<char> may_touch_;        // (ports)
+  std::vector<char> may_touch_, joined_;  // (ports)
+  bool joins_ = false;                    // one of them is joined
   std::unique_ptr<PortMap> port_map_;  // null: no ports
   std::unique_ptr<PortContact> contact_;  // null: no port meets obstacles
   std::vector<TouchedSurface> touched_;   // its ports, where they are surfaces

@@ -77,6 +77,10 @@ class Bodies {
   /// empty: all.
   PortKernel full_kernel(int body, int port, int count, const std::vector<std::int32_t>& points);
 
+  /// Responses of some ports, one after the other, to a force on one of them.
+  PortKernel probe(int body, int port, std::span<const double> pattern, int count,
+                   std::span<const int> seen);
+
   /// [m/(N s)] (substeps) outward displacement of a port of one point after a unit impulse against
   /// its normal at the begin of a window, of a linear body. Precondition: all stand as saved.
   std::vector<double> impulse_response(const Side& side, const TimeWindow& window);

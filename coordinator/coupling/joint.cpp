@@ -31,6 +31,7 @@ void Joint::state(Archive& archive) {
   archive.field("debt", debt);
   archive.field("rebound_impulse", rebound_impulse);
   archive.field("impulse", impulse);
+  if (how != nullptr && how->tie() != nullptr) archive.field("jump", jump);
 }
 
 void Joint::engage(double speed) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/archive.hpp"
 #include "base/index.hpp"
@@ -47,6 +48,7 @@ class Joint {
   // Of surfaces: rows of single points; Coulomb's coefficients of what sticks and what slides.
   bool points = false;
   double static_friction = 0.0, kinetic_friction = 0.0;
+  std::vector<double> jump;  // [m] of joined surfaces: their displacements' at the start, by rows
   double margin = 0.0;    // [m] of surfaces: rows of facets may press before these touch
   int width = 1;          // values of a port's motion: points x dimension; of surfaces not used
   // Of one point: outward, +1 or -1. Of surfaces tied point by point: the signs with which their

@@ -25,14 +25,14 @@ std::uint64_t layout_key(const TimeWindow& window, const std::vector<Eigen::Inde
 
 }  // namespace
 
-Eigen::VectorXd Schwarz::apply_inverses(const Eigen::VectorXd& r,
-                                        std::span<const Joint> joints) const {
-  Eigen::VectorXd out(r.size());
+Eigen::VectorXd Schwarz::inverse_of(const Eigen::VectorXd& r, std::span<const Joint> joints) const {
+  Eigen::VectorXd out = r;
   for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
     const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
     const Transmission& t = *joints[index(layout_.joints[i])].how;
     out.segment(layout_.first[i], count) = t.apply_inverse(r.segment(layout_.first[i], count));
   }
+  ties_->apply_inverse(out);
   return out;
 }
 
@@ -44,30 +44,19 @@ Eigen::VectorXd Schwarz::relaxed(Eigen::VectorXd r, std::span<const Joint> joint
 }
 
 Accelerator& Schwarz::accelerator_of(const Island& island) {
-  std::unique_ptr<Accelerator>& slot = accelerators_[island.joints];
-  if (slot == nullptr) {
-    auto by_joint = [this](auto apply) {
-      return [this, apply](const Eigen::VectorXd& r) {
-        Eigen::VectorXd out(r.size());
-        for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
-          const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
-          const Transmission& t = *joints_[index(layout_.joints[i])].how;
-          // accelerators see scaled values; contact does not scale, its gaps and forces are given
-          const auto unit = s_.segment(layout_.first[i], count);
-          const Eigen::VectorXd plain = r.segment(layout_.first[i], count).cwiseQuotient(unit);
-          out.segment(layout_.first[i], count) = apply(t, plain).cwiseProduct(unit);
-        }
-        return out;
-      };
-    };
-    using Values = Eigen::VectorXd;
-    slot =
-        make_(by_joint([](const Transmission& t, const Values& r) { return t.apply_inverse(r); }),
-              by_joint([](const Transmission& t, const Values& r) -> Values {
-                return t.first_factor() * r;
-              }));
-  }
-  return *slot;
+  Memory& memory = memories_[island.joints];
+  if (memory.ties == nullptr) memory.ties = std::make_unique<TieNet>(options_.tie_kernels);
+  ties_ = memory.ties.get();
+  if (memory.accelerator != nullptr) return *memory.accelerator;
+  // Accelerators see scaled values; contact does not scale, its gaps and forces are given.
+  memory.accelerator = make_(
+      [this](const Eigen::VectorXd& r) -> Eigen::VectorXd {
+        return inverse_of(r.cwiseQuotient(s_), joints_).cwiseProduct(s_);
+      },
+      [this](const Eigen::VectorXd& r) -> Eigen::VectorXd {
+        return relaxed(r.cwiseQuotient(s_), joints_).cwiseProduct(s_);
+      });
+  return *memory.accelerator;
 }
 
 std::optional<Failed> Schwarz::sweep(const Island& island, std::span<const Joint> joints,
@@ -152,9 +141,11 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   }
   const Eigen::Index size = layout_.first.back();
   for (Eigen::VectorXd* v : {&x_, &g_, &s_}) v->resize(size);
-  if (std::optional<Failed> failed = fly(island, joints, bodies)) return *failed;
   joints_ = joints;
   Accelerator& accelerator = accelerator_of(island);
+  ties_->begin(island, joints, layout_.first, bodies);
+  if (std::optional<Failed> failed = fly(island, joints, bodies)) return *failed;
+  ties_->predict(x_);
   accelerator.reset(layout_key(window, layout_.first));
 
   const bool contracts = std::ranges::all_of(
@@ -196,7 +187,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     if (options_.kernels && std::ranges::any_of(island.joints, [&joints](int j) {
           return joints[index(j)].how->projects();
         })) {
-      x_ += apply_inverses(g_ - x_, joints);
+      x_ += inverse_of(g_ - x_, joints);
       continue;
     }
     Accelerator& next = careful != nullptr ? *careful : accelerator;
@@ -205,15 +196,15 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
 }
 
 void Schwarz::keep(std::span<const Island> islands) {
-  if (accelerators_.size() <= most_kept + islands.size()) return;
-  std::map<std::vector<int>, std::unique_ptr<Accelerator>> kept;
+  if (memories_.size() <= most_kept + islands.size()) return;
+  std::map<std::vector<int>, Memory> kept;
   for (const Island& island : islands) {
-    auto node = accelerators_.extract(island.joints);
+    auto node = memories_.extract(island.joints);
     if (!node.empty()) kept.insert(std::move(node));
   }
-  accelerators_ = std::move(kept);
+  memories_ = std::move(kept);
 }
 
-void Schwarz::accept(const Island& island) { accelerators_.at(island.joints)->accept(); }
+void Schwarz::accept(const Island& island) { memories_.at(island.joints).accelerator->accept(); }
 
 }  // namespace abut

@@ -13,6 +13,7 @@
 #include "coordinator/coupling/convergence.hpp"
 #include "coordinator/coupling/islands.hpp"
 #include "coordinator/coupling/joint.hpp"
+#include "coordinator/coupling/tie_net.hpp"
 #include "coordinator/coupling/transmission.hpp"
 
 namespace abut {
@@ -31,6 +32,7 @@ class Schwarz {
     double tolerance = 1.0e-6;
     bool kernels =
         true;  // the accelerator uses port kernels: they answer contact that comes and goes
+    double tie_kernels = 512.0 * 1048576.0;  // [B] of an island's ties
   };
   /// Of the inverse Jacobian and of the probed relaxation factors.
   using MakeAccelerator = std::function<std::unique_ptr<Accelerator>(ApplyInverse, ApplyInverse)>;
@@ -63,13 +65,14 @@ class Schwarz {
   /// residual, and the largest mismatch by units that only grow in a window, so that sweeps can be
   /// compared.
   double see_images(std::span<const Joint> joints, const Bodies& bodies, FieldResiduals& residual);
-  Eigen::VectorXd apply_inverses(const Eigen::VectorXd& r, std::span<const Joint> joints) const;
   /// The residual, of every joint relaxed by its first factor.
   Eigen::VectorXd relaxed(Eigen::VectorXd r, std::span<const Joint> joints) const;
   /// A joint's part of a stacked vector.
   Eigen::VectorBlock<Eigen::VectorXd> part(Eigen::VectorXd& v, std::size_t i) const {
     return v.segment(layout_.first[i], layout_.first[i + 1] - layout_.first[i]);
   }
+  /// What the joints know of the inverse of the Jacobian, on a plain residual g - x.
+  Eigen::VectorXd inverse_of(const Eigen::VectorXd& r, std::span<const Joint> joints) const;
   Accelerator& accelerator_of(const Island& island);
 
   Options options_;
@@ -79,7 +82,12 @@ class Schwarz {
   // of the window being solved: the accelerators' inverse reads them
   Layout layout_;
   std::span<const Joint> joints_;
-  std::map<std::vector<int>, std::unique_ptr<Accelerator>> accelerators_;
+  struct Memory {  // of an island
+    std::unique_ptr<Accelerator> accelerator;
+    std::unique_ptr<TieNet> ties;
+  };
+  TieNet* ties_ = nullptr;  // of the window being solved
+  std::map<std::vector<int>, Memory> memories_;
 };
 
 }  // namespace abut

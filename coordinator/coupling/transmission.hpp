@@ -15,6 +15,8 @@
 
 namespace abut {
 
+class Tie;
+
 /// What the partner's response imposes on each side of a closed joint, and what is iterated: values
 /// of its ports' points and components at the substeps of a window, (substeps, width), in SI units.
 /// A window runs  begin, (release, see_flight), predict, (impose side by side, image, measure)*;  x
@@ -59,6 +61,8 @@ class Transmission {
   virtual bool contracts() const { return false; }
   /// True when motion is overwritten on a side: that does work of which nobody knows.
   virtual bool overwrites_motion() const { return false; }
+  /// Itself where it is one of a net's ties, which are answered together (TieNet).
+  virtual Tie* tie() { return nullptr; }
   /// True when the sides must be advanced one after the other, the kinematic one first.
   virtual bool ordered() const = 0;
 };

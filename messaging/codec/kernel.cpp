@@ -41,6 +41,7 @@ void encode(const Probing& from, v1::Probe& to) {
   to.set_step(from.step);
   to.set_count(from.count);
   copy(from.patterns, *to.mutable_patterns());
+  to.mutable_seen()->Assign(from.seen.begin(), from.seen.end());
 }
 
 void decode(const v1::Probe& from, const Description& body, Probing& to) {
@@ -58,6 +59,9 @@ void decode(const v1::Probe& from, const Description& body, Probing& to) {
     patterns.fail(fmt::format("has {} numbers, no whole number of patterns of {}",
                               to.patterns.size(), width));
   }
+  to.seen.clear();
+  for (const std::int32_t port : from.seen())
+    to.seen.push_back(position(port, body.ports.size(), FieldPath{&path, "seen"}));
 }
 
 void encode(const PortKernel& from, v1::PortKernel& to) {
@@ -77,8 +81,12 @@ void decode(const v1::PortKernel& from, const Description& body, const Probing& 
   const FieldPath path{nullptr, "kernel"};
   if (from.points_size() > 0) FieldPath{&path, "points"}.fail("was not asked for");
   to.points.clear();
-  const int width = size_of(body.ports[index(asked.port)].geometry).width();
-  decode(from, static_cast<int>(asked.patterns.size()) / width, width, path, to);
+  const auto width_of = [&body](int port) {
+    return size_of(body.ports[index(port)].geometry).width();
+  };
+  int width = asked.seen.empty() ? width_of(asked.port) : 0;
+  for (const int port : asked.seen) width += width_of(port);
+  decode(from, static_cast<int>(asked.patterns.size()) / width_of(asked.port), width, path, to);
   if (to.count() == asked.count) return;
   FieldPath{&path, "displacement"}.fail(
       fmt::format("has {} substeps where {} were asked for", to.count(), asked.count));

@@ -137,7 +137,7 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
   parts.motion = modal_start(initial_motion(spec, place, nodes), constraints.supports,
                              mass_matrix(nodes, form), basis, nodes, *model, parts.rung);
   parts.scheme =
-      make_scheme(spec, place, *parts.problem, [&model] { return model->stable_step(); });
+      make_scheme(spec, place, *parts.problem, ports, [&model] { return model->stable_step(); });
   parts.reduced = std::move(model);
   if (!constraints.held.empty()) {
     parts.reactions = std::make_unique<ModalReactions>(

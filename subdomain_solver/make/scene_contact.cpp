@@ -1,5 +1,6 @@
 #include "subdomain_solver/make/scene_contact.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "base/fields.hpp"
@@ -56,6 +57,13 @@ std::vector<SceneContact> contacts_of(const Document& scene, const std::string& 
     }
   }
   return out;
+}
+
+bool joins(const Document& scene, const std::string& body, const std::string& port) {
+  const std::vector<std::string> names = scene.keys_with("interfaces", "sides", body + "." + port);
+  return std::ranges::any_of(names, [&scene](const std::string& name) {
+    return scene.has("interfaces." + name + ".tied");
+  });
 }
 
 bool touches(const Document& scene, const std::string& body, const std::string& port) {

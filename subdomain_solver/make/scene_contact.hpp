@@ -20,6 +20,9 @@ struct SceneContact {
 std::vector<SceneContact> contacts_of(const Document& scene, const std::string& body,
                                       const std::string& port);
 
+/// Whether a port is tied to another one.
+bool joins(const Document& scene, const std::string& body, const std::string& port);
+
 /// Whether a port of a body in two or three dimensions may touch anything.
 bool touches(const Document& scene, const std::string& body, const std::string& port);
 

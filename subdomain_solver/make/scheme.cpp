@@ -2,11 +2,13 @@
 
 #include "subdomain_solver/make/scene_contact.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
+#include "subdomain_solver/time/drift_kick_drift.hpp"
 #include "subdomain_solver/time/explicit_dynamics.hpp"
 #include "subdomain_solver/time/implicit_dynamics.hpp"
 #include "subdomain_solver/time/quasi_static.hpp"
@@ -24,6 +26,7 @@ struct SchemeMaker {
   const BodySpec& spec;
   const Place& place;
   const Problem& problem;
+  bool joined;  // a port is
   const std::function<double()>& stable_limit;
   const MakeWatch& watch;
 
@@ -47,14 +50,19 @@ struct SchemeMaker {
       throw InputError("has a stable limit of 0 s: stiffness over mass is beyond all numbers",
                        place.where(key), "Give the material's constants in SI units.");
     }
+    const bool drifts = joined && problem.model->massless().empty();
     std::unique_ptr<Integrator> steps;
-    if (watch && std::isfinite(limit))
-      steps = std::make_unique<StableSteps>(problem, watch(),
-                                            StableSteps::Options{step, limit, s.clamp});
-    else
+    if (drifts) {
+      steps = std::make_unique<DriftKickDrift>(problem, step);
+    } else {
       steps = std::make_unique<ExplicitDynamics>(problem);
+    }
+    if (watch && std::isfinite(limit))
+      steps = std::make_unique<StableSteps>(std::move(steps), watch(),
+                                            StableSteps::Options{step, limit, s.clamp});
     return {std::move(steps), step, limit, MassForm::lumped,
-            fmt::format("central difference, step {:.4g} s, stable limit {:.4g} s{}", step, limit,
+            fmt::format("central difference{}, step {:.4g} s, stable limit {:.4g} s{}",
+                        drifts ? " in drifts" : "", step, limit,
                         parts > 1.0 ? fmt::format(" ({:.10g} to one of the scene)", parts) : "")};
   }
   SolidInterior::Scheme operator()(const NewmarkSpec& s) const {
@@ -78,10 +86,13 @@ struct SchemeMaker {
 
   SolidInterior::Scheme implicit(const AlphaWeights& weights, double step, MassForm mass,
                              const char* words) const {
-    return {std::make_unique<ImplicitDynamics>(
-                problem, ImplicitDynamics::Options{weights, mass, newton()}, linear(Pivots::every)),
-            step, std::numeric_limits<double>::infinity(), mass,
-            fmt::format("{}, step {:g} s", words, step)};
+    return {
+        std::make_unique<ImplicitDynamics>(
+            problem,
+            ImplicitDynamics::Options{weights, mass, newton(), joined && weights.is_trapezoidal()},
+            linear(Pivots::every)),
+        step, std::numeric_limits<double>::infinity(), mass,
+        fmt::format("{}, step {:g} s", words, step)};
   }
   NewtonOptions newton() const { return {spec.equations.tolerance, spec.equations.max_iterations}; }
   std::unique_ptr<LinearSolver> linear(Pivots pivots) const {
@@ -100,7 +111,12 @@ std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Pla
     named(place, "ports." + name + ".side", [&] { return mesh.nodes_of(port.side); });
     const int end = mesh.dim == 1 ? spec.end_of(port.side) : -1;  // by a point's name too
     const bool touched = mesh.dim == 1 ? !port.tied : touches(place.document, place.name(), name);
-    ports.push_back({name, end < 0 ? port.side : end == 0 ? "left" : "right", port.tied, touched});
+    const bool joined = mesh.dim > 1 && joins(place.document, place.name(), name);
+    ports.push_back({name,
+                     end < 0    ? port.side
+                     : end == 0 ? "left"
+                                : "right",
+                     port.tied, touched, joined});
   }
   return ports;
 }
@@ -114,8 +130,12 @@ MassForm mass_form(const BodySpec::Integrator& integrator) {
 }
 
 SolidInterior::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
-                              const std::function<double()>& stable_limit, const MakeWatch& watch) {
-  return std::visit(SchemeMaker{spec, place, problem, stable_limit, watch}, *spec.integrator);
+                                  const std::vector<SolidInterior::PortNodes>& ports,
+                                  const std::function<double()>& stable_limit,
+                                  const MakeWatch& watch) {
+  const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
+  return std::visit(SchemeMaker{spec, place, problem, joined, stable_limit, watch},
+                    *spec.integrator);
 }
 
 }  // namespace abut

@@ -122,7 +122,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
     parts.rung += " in place of the bars' own core, for " + why;
   MakeWatch watch;  // the tangent of linear bodies stays
   if (!model.is_linear()) watch = [&] { return std::make_unique<HighestFrequency>(model); };
-  parts.scheme = make_scheme(spec, place, *parts.problem, limit, watch);
+  parts.scheme = make_scheme(spec, place, *parts.problem, ports, limit, watch);
   if (!constraints.held.empty()) {
     parts.reactions = std::make_unique<NodalReactions>(
         model, *parts.problem, *parts.scheme.integrator, mass_matrix(model, parts.scheme.mass),

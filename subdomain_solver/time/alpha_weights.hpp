@@ -9,6 +9,7 @@ struct AlphaWeights {
   double alpha_m = 0.0, alpha_f = 0.0, beta = 0.25, gamma = 0.5;
 
   bool is_newmark() const { return alpha_m == 0.0 && alpha_f == 0.0; }
+  bool is_trapezoidal() const { return is_newmark() && beta == 0.25 && gamma == 0.5; }
 
   static AlphaWeights newmark(double beta, double gamma) { return {0.0, 0.0, beta, gamma}; }
   /// alpha in [-1/3, 0]

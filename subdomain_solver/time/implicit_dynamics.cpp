@@ -21,21 +21,32 @@ class ImplicitDynamics::Balance final : public Equations {
         end_(time + dt),
         dt_(dt) {
     const auto q = view(motion.q), v = view(motion.v), a = view(motion.a);
-    b_.q_start = q + dt * v + (0.5 - w_.beta) * dt * dt * a;  // for no acceleration at the end
-    b_.v_start = v + (1.0 - w_.gamma) * dt * a;
     b_.a = a;
+    if (o_.options_.sums) {  // for no acceleration
+      b_.q_start = q + dt * v;
+      b_.v_start = v;
+      b_.a *= 2.0;
+    } else {  // for none at the end
+      b_.q_start = q + dt * v + (0.5 - w_.beta) * dt * dt * a;
+      b_.v_start = v + (1.0 - w_.gamma) * dt * a;
+    }
     for (const Prescribed& p : o_.problem_.supports)
       b_.a(p.dof) = (p.value(end_) - b_.q_start(p.dof)) / (w_.beta * dt * dt);
     // Factors of another state would leave their rounding in contact's turns.
     if (!o_.problem_.model->is_linear()) o_.factored_dt_ = 0.0;
-    o_.times_mass(a, b_.inertia);
+    see_past(time);
+  }
+
+  /// What the forces of the step's begin add to the balance.
+  void see_past(double time) {
+    const double share = o_.options_.sums ? 1.0 : w_.alpha_f;
+    o_.times_mass(view(motion_.a), b_.inertia);
     b_.past = w_.alpha_m * b_.inertia;
-    if (!w_.is_newmark()) {
-      b_.external_start = o_.problem_.external_force(time, motion.q);
-      b_.past += w_.alpha_f * (view(motion.force) - b_.external_start);
-      // Without mass there was balance at the begin, contact included.
-      for (const int dof : o_.layer_.dofs()) b_.past(dof) = 0.0;
-    }
+    if (w_.is_newmark() && !o_.options_.sums) return;
+    b_.external_start = o_.problem_.external_force(time, motion_.q);
+    b_.past += share * (view(motion_.force) - b_.external_start);
+    // Without mass there was balance at the begin, contact included.
+    for (const int dof : o_.layer_.dofs()) b_.past(dof) = 0.0;
   }
 
   Vector& first_guess() {
@@ -108,6 +119,7 @@ class ImplicitDynamics::Balance final : public Equations {
     motion.history = b_.response.history;
     store(b_.q, motion.q);
     store(b_.v, motion.v);
+    if (o_.options_.sums) b_.a *= 0.5;
     store(b_.a, motion.a);
     store(b_.response.force, motion.force);
     // Their velocity is that of the step: nothing but traces reads it.
@@ -126,7 +138,11 @@ class ImplicitDynamics::Balance final : public Equations {
     b_.moved = b_.q - view(motion_.q);
     if (w_.is_newmark()) {
       o_.times_mass(b_.a, b_.inner);
-      o_.times_mass(a, b_.outer);
+      if (o_.options_.sums) {
+        b_.outer.setZero(b_.inner.size());
+      } else {
+        o_.times_mass(a, b_.outer);
+      }
       b_.inner = b_.response.force + b_.inner;
       b_.outer = force + b_.outer;
       return 0.5 * (b_.inner + b_.outer).dot(b_.moved);
@@ -156,6 +172,7 @@ ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& option
       inertial_(problem.model->dofs(), problem.supports, problem.model->massless()),
       layer_(problem),
       contact_(free_, *solver_) {
+  ABUT_ASSERT(!options.sums || options.weights.is_trapezoidal());
   mass_ = mass_matrix(*problem.model, options.mass);
   if (!layer_.empty()) of_mass_.answer.setZero(problem.model->dofs());
 }
@@ -186,6 +203,7 @@ std::optional<Failed> ImplicitDynamics::jump(Motion& motion, double time, const 
     if (auto failed = layer_.jump(time, motion, change, of_mass_.answer)) return failed;
     rest -= of_mass_.answer;
   }
+  if (options_.sums) return std::nullopt;
   Vector& a = of_mass_.acceleration;
   a = view(motion.a);
   const bool solved = solve_mass(rest, a);
@@ -198,11 +216,11 @@ double ImplicitDynamics::compliance(const Motion& motion, int dof) {
   return layer_.compliance(motion.q, motion.history, dof);
 }
 
-/// Newmark's are those of the balance at every step's end. With other weights they lag: the balance
-/// is solved for them.
+/// Newmark's are those of the balance at every step's end. With other weights they lag, and sums
+/// tell of none: the balance is solved for them.
 void ImplicitDynamics::acceleration(const Motion& motion, double time, double step,
                                     Vector& out) const {
-  if (options_.weights.is_newmark()) {
+  if (options_.weights.is_newmark() && !options_.sums) {
     out = view(motion.a);
     return;
   }

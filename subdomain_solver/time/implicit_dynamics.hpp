@@ -22,6 +22,9 @@ class ImplicitDynamics final : public Integrator {
     AlphaWeights weights;
     MassForm mass = MassForm::consistent;
     NewtonOptions newton;
+    // Of the trapezoidal rule alone: unknown is the sum of the accelerations at both ends, and none
+    // is kept, so that forces may jump from step to step [M.104].
+    bool sums = false;
   };
 
   ImplicitDynamics(const Problem& problem, const Options& options,

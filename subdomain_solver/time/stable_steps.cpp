@@ -48,10 +48,11 @@ struct StableSteps::Control {
   }
 };
 
-StableSteps::StableSteps(const Problem& problem, std::unique_ptr<FrequencyWatch> watch,
+StableSteps::StableSteps(std::unique_ptr<Integrator> steps, std::unique_ptr<FrequencyWatch> watch,
                          const Options& options)
-    : problem_(problem), watch_(std::move(watch)), options_(options), steps_(problem) {
-  ABUT_ASSERT(watch_ != nullptr && options.step > 0.0 && options.step <= options.limit);
+    : watch_(std::move(watch)), options_(options), steps_(std::move(steps)) {
+  ABUT_ASSERT(steps_ != nullptr && watch_ != nullptr && options.step > 0.0 &&
+              options.step <= options.limit);
 }
 
 /// The square of the frequency at which a step of some parts is at its limit.
@@ -61,7 +62,7 @@ double StableSteps::square_of(double parts) const {
 }
 
 std::optional<Failed> StableSteps::begin(Motion& motion, double time) {
-  if (std::optional<Failed> failed = steps_.begin(motion, time)) return failed;
+  if (std::optional<Failed> failed = steps_->begin(motion, time)) return failed;
   const std::optional<FrequencyWatch::Bound> found = watch_->bound(
       motion.q, motion.history, far * square_of(1.0), FrequencyWatch::Effort::bounded);
   if (!found) return failed_newton({NewtonReport::End::inadmissible}, time);
@@ -91,7 +92,7 @@ std::optional<Failed> StableSteps::step(Motion& motion, double time, double dt) 
   const int parts = count_within(needed, 1, static_cast<int>(most_parts));
   if (parts > 1) before_ = motion;
   for (int k = 0; k < parts; ++k) {
-    if (std::optional<Failed> failed = steps_.step(motion, time + k * (dt / parts), dt / parts)) {
+    if (std::optional<Failed> failed = steps_->step(motion, time + k * (dt / parts), dt / parts)) {
       if (k > 0) motion = before_;
       return failed;
     }

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "subdomain_solver/time/explicit_dynamics.hpp"
 #include "subdomain_solver/time/frequency_watch.hpp"
+#include "subdomain_solver/time/integrator.hpp"
 
 namespace abut {
 
@@ -18,22 +18,23 @@ class StableSteps final : public Integrator {
     double limit = 0.0;  // [s] stable limit at the begin, at least the step
     bool clamp = false;  // parts instead of a refusal
   };
-  StableSteps(const Problem& problem, std::unique_ptr<FrequencyWatch> watch,
+  /// `steps`: the explicit scheme itself.
+  StableSteps(std::unique_ptr<Integrator> steps, std::unique_ptr<FrequencyWatch> watch,
               const Options& options);
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
   [[nodiscard]] std::optional<Failed> jump(Motion& motion, double time,
                                            const Vector& change) override {
-    return steps_.jump(motion, time, change);
+    return steps_->jump(motion, time, change);
   }
   double compliance(const Motion& motion, int dof) override {
-    return steps_.compliance(motion, dof);
+    return steps_->compliance(motion, dof);
   }
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override {
-    steps_.acceleration(motion, time, step, out);
+    steps_->acceleration(motion, time, step, out);
   }
-  double kinetic(const Motion& motion) const override { return steps_.kinetic(motion); }
+  double kinetic(const Motion& motion) const override { return steps_->kinetic(motion); }
   /// stable_step.min [s], of all bounds so far; stable_step.parts, the most of a step.
   std::vector<std::string> measure_names() const override;
   std::vector<double> measure(const Motion& motion) const override;
@@ -46,10 +47,9 @@ class StableSteps final : public Integrator {
   void divide(Control& control, bool whole_is_stable) const;
   void set_interval(Control& control, double square) const;
 
-  const Problem& problem_;
   std::unique_ptr<FrequencyWatch> watch_;
   Options options_;
-  ExplicitDynamics steps_;
+  std::unique_ptr<Integrator> steps_;
   Motion before_;  // a step of several parts
 };
 

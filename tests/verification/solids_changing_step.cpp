@@ -8,6 +8,7 @@
 #include "base/index.hpp"
 #include "subdomain_solver/fe/highest_frequency.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
+#include "subdomain_solver/time/explicit_dynamics.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/solid_runs.hpp"
 
@@ -57,8 +58,8 @@ struct Pressed {
   }
 
   StableSteps steps(bool clamp) {
-    return StableSteps(solid.problem, std::make_unique<HighestFrequency>(solid.model),
-                       {step, limit, clamp});
+    return StableSteps(std::make_unique<ExplicitDynamics>(solid.problem),
+                       std::make_unique<HighestFrequency>(solid.model), {step, limit, clamp});
   }
 
   /// Supports work against the internal force, not against the inertia of their own nodes.

@@ -1,0 +1,126 @@
+#include "coordinator/coupling/tie.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/assert.hpp"
+#include "coordinator/coupling/transmission_parts.hpp"
+
+namespace abut {
+
+void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
+  for (const int s : {0, 1}) grids_[index(s)] = substeps_of(bodies, joint.sides[index(s)], window);
+  iterate_ = {grids_[index(joint.kinematic)], rows_.width()};
+  window_ = window;
+  first_speed_ = -1.0;
+  scale_.step = std::min(grids_[0].step, grids_[1].step);
+  trial_.resize(0);
+  std::array<const Waveform*, 2> looks;
+  for (const std::size_t s : {0u, 1u}) looks[s] = look_of(bodies, joint.sides[s], grids_[s]);
+  if (looks[0] != nullptr && looks[1] != nullptr) part(joint, looks, trial_);
+}
+
+/// Of motions of both sides, by how much they part at the ends of the kinematic side's steps.
+void Tie::part(const Joint& joint, const std::array<const Waveform*, 2>& motions,
+               Eigen::VectorXd& out) const {
+  out.resize(iterate_.size());
+  std::vector<double> u, seen(index(rows_.width()));
+  for (int i = 1; i <= iterate_.steps.count; ++i) {
+    const Eigen::Index at = iterate_.at(i);
+    const double time = iterate_.steps.time(i);
+    for (const std::size_t s : {0u, 1u}) {
+      const Waveform& motion = *motions[s];
+      u.resize(index(motion.width));
+      motion.interpolate(motion.u, time, u);
+      apply(rows_.of[s], rows_.dim, u, seen);
+      const bool kinematic = s == index(joint.kinematic);
+      for (std::size_t k = 0; k < seen.size(); ++k) {
+        double& to = out[at + static_cast<Eigen::Index>(k)];
+        if (s == 0) to = -joint.jump[k] * (joint.kinematic == 0 ? 1.0 : -1.0);
+        to += kinematic ? seen[k] : -seen[k];
+      }
+    }
+  }
+}
+
+std::vector<double> Tie::jump(const Joint& joint, const Bodies& bodies) const {
+  std::vector<double> out(index(rows_.width()), 0.0), seen(out.size());
+  for (const std::size_t s : {0u, 1u}) {
+    const Waveform& trace = trace_of(bodies, joint.sides[s]);
+    apply(rows_.of[s], rows_.dim, row(trace, trace.u, trace.size() - 1), seen);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] += s == 0 ? seen[k] : -seen[k];
+  }
+  return out;
+}
+
+/// As at the end of the window before, or of a longer attempt at this one. Where bodies have told
+/// how they would part, TieNet knows better.
+void Tie::predict(Eigen::Ref<Eigen::VectorXd> x) const {
+  x.setZero();
+  if (guess_.empty()) return;
+  std::vector<double> f(index(iterate_.width));
+  for (int i = 1; i <= iterate_.steps.count; ++i) {
+    const bool inside = covers(guess_, iterate_.steps);
+    guess_.force_at(inside ? iterate_.steps.time(i) : guess_.time.back(), f);
+    std::ranges::copy(f, &x[iterate_.at(i)]);
+  }
+}
+
+void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
+                 Bodies& bodies) {
+  if (side == 0 || force_.empty() || force_.time.front() != window_.begin) {
+    force_.clear();
+    force_.width = iterate_.width;
+    force_.support = ForceSupport::step;
+    for (int i = 0; i <= iterate_.steps.count; ++i)
+      force_.time.push_back(i == 0 ? iterate_.steps.begin : iterate_.steps.time(i));
+  }
+  force_.f.assign(index(iterate_.width), 0.0);
+  force_.f.insert(force_.f.end(), x.begin(), x.end());
+  guess_ = force_;
+  const Side& end = joint.sides[index(side)];
+  Waveform& on_body = bodies.force(end);
+  const std::size_t width = bodies.port(end).geometry.points.size();
+  on_body.clear();
+  on_body.width = static_cast<int>(width);
+  on_body.support = ForceSupport::step;
+  on_body.points.clear();
+  on_body.time = force_.time;
+  on_body.f.assign(on_body.time.size() * width, 0.0);
+  const double sign = side == joint.kinematic ? 1.0 : -1.0;
+  for (std::size_t i = 1; i < on_body.time.size(); ++i)
+    add_transposed(rows_.of[index(side)], rows_.dim, sign, row(force_, force_.f, i),
+                   std::span(on_body.f).subspan(i * width, width));
+  bodies.request(end.body).ahead = bodies.window() > 0.0 ? bodies.window() : window_.length();
+}
+
+void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
+                const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
+  double speed = joint.closing_speed, travelled = 0.0;
+  std::array<const Waveform*, 2> motions;
+  for (const std::size_t s : {0u, 1u}) {
+    motions[s] = &trace_of(bodies, joint.sides[s]);
+    if (first_speed_ < 0.0) speed = std::max(speed, largest(motions[s]->v));
+    travelled = std::max(travelled, largest(motions[s]->u));
+  }
+  if (first_speed_ < 0.0) first_speed_ = speed;
+  part(joint, motions, jump_);
+  g = x - jump_ / compliance_;
+  scale_.velocity = first_speed_;
+  scale_.roundoff = roundoff_of(travelled, 0.0);
+}
+
+FieldResiduals Tie::measure(const Eigen::Ref<const Eigen::VectorXd>&,
+                            const Eigen::Ref<const Eigen::VectorXd>&) const {
+  FieldResiduals r;
+  r.displacement =
+      scaled(jump_.lpNorm<Eigen::Infinity>(), scale_.velocity * scale_.step, scale_.roundoff);
+  return r;
+}
+
+void Tie::scales(Eigen::Ref<Eigen::VectorXd> s) const {
+  const double unit = scale_.velocity * scale_.step / compliance_;
+  s.setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
+}
+
+}  // namespace abut

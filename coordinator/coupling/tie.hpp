@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "coordinator/coupling/tie_rows.hpp"
+#include "coordinator/coupling/transmission.hpp"
+
+namespace abut {
+
+/// Two surfaces that are one, of any meshes, steps and integrators: both sides take the same force
+/// in the rows that join them, constant in every step of the kinematic side, and advance at once;
+/// iterated is this force until both sides move alike at those steps' ends  [M.106], [M.107]. What
+/// answers it knows all joints of a net at once (TieNet).
+class Tie final : public Transmission {
+ public:
+  explicit Tie(TieRows rows) : rows_(std::move(rows)) {}
+
+  void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
+  int values() const override { return static_cast<int>(iterate_.size()); }
+  void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
+  void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
+              Bodies& bodies) override;
+  void image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint, const Bodies& bodies,
+             Eigen::Ref<Eigen::VectorXd> g) override;
+  FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
+                         const Eigen::Ref<const Eigen::VectorXd>& g) const override;
+  void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
+  Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override { return r; }
+  Tie* tie() override { return this; }
+  bool ordered() const override { return false; }
+
+  const TieRows& rows() const { return rows_; }
+  /// Substeps of a side in the window.
+  const Substeps& grid(int side) const { return grids_[index(side)]; }
+  /// [m] (steps of the kinematic side, rows, dim) by which the sides part without forces between
+  /// them, as they told after the window before; empty: they did not tell.
+  const Eigen::VectorXd& trial() const { return trial_; }
+  /// [m/N] of both sides over a step: what makes forces of mismatches.
+  void set_unit(double compliance) { compliance_ = compliance; }
+  double unit() const { return compliance_; }
+
+  /// [m] (rows, dim) by which displacements of the sides differ where they stand now, by the latest
+  /// responses.
+  std::vector<double> jump(const Joint& joint, const Bodies& bodies) const;
+  /// [N] (rows, dim) at the steps of the kinematic side that the latest sweep took.
+  const Waveform& force() const { return force_; }
+
+ private:
+  void part(const Joint& joint, const std::array<const Waveform*, 2>& motions,
+            Eigen::VectorXd& out) const;
+
+  TieRows rows_;
+  std::array<Substeps, 2> grids_;
+  IterateGrid iterate_;  // of the force
+  Waveform force_, guess_;
+  TimeWindow window_;
+  Eigen::VectorXd trial_, jump_;
+  double compliance_ = 1.0;
+  double first_speed_ = -1.0;  // [m/s] of the first sweep; below 0: none yet
+  ReferenceScales scale_;
+};
+
+}  // namespace abut

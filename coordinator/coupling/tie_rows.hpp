@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "contract/port.hpp"
+#include "surface/sparse_rows.hpp"
+
+namespace abut {
+
+/// Rows in which the motions of two joined surfaces are compared: each sums up to 1 over the nodes
+/// of either side, so that a force of a row acts on both alike.
+struct TieRows {
+  int dim = 1;
+  std::array<SparseRows, 2> of;  // by side: over its nodes
+  std::vector<double> area;      // [m^(dim-1)] (rows) of the joint
+  double apart = 0.0;            // [m] between the surfaces, at the place where it is most
+  std::vector<double> place;     // [m] (dim) there
+  int count() const { return of[0].count(); }
+  int width() const { return count() * dim; }
+};
+
+/// Of the reference configuration: the dual mortar rows of the side with the coarser mesh  [M.107].
+/// In one dimension one row of two points. No rows: the surfaces do not face each other.
+TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other);
+
+}  // namespace abut

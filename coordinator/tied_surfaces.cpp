@@ -1,0 +1,106 @@
+#include "coordinator/tied_surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.hpp"
+#include "coordinator/coupling/tie.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Of the coarser facets: curved faces of unlike meshes are this far apart, and no more.
+constexpr double usual_gap = 0.25;
+/// Of a step: a window that holds a whole number of them, rounded.
+constexpr double whole = 1.0e-6;
+
+void check_side(const Description& body, const PortGeometry& face, const std::string& side,
+                double window, const std::string& where) {
+  if (face.facets.empty()) {
+    throw InputError(fmt::format("joins {}, which has no facets", side), where + ".sides",
+                     "Put the port on a side of the mesh.");
+  }
+  const bool stands = std::isinf(body.mass);
+  if (!stands && (!body.can.force || !body.can.kernel)) {
+    throw InputError(fmt::format("joins body '{}' ({}), which does not tell how its port gives way",
+                                 body.name, body.model),
+                     where, "Integrate the body in time.");
+  }
+  const double steps = body.step > 0.0 ? window / body.step : 1.0;
+  if (stands || std::abs(steps - std::round(steps)) <= whole * steps) return;
+  throw InputError(
+      fmt::format(
+          "joins body '{}' of steps of {:g} s, of which a window of {:g} s holds {:g}: ties "
+          "need whole ones",
+          body.name, body.step, window, steps),
+      where,
+      fmt::format("Give the body a step of {:.10g} s, or another time.window.",
+                  window / std::ceil(steps)));
+}
+
+/// The side of longer steps has the force: on the other one energy would be kept and the motion
+/// wrong.
+int coarser_steps(const std::array<Side, 2>& sides, const Bodies& bodies) {
+  double step[2];
+  for (const std::size_t s : {0u, 1u}) {
+    const Description& body = bodies.describe(sides[s].body);
+    step[s] = std::isinf(body.mass) ? 0.0 : body.step > 0.0 ? body.step : bodies.window();
+  }
+  if (step[0] != step[1]) return step[0] > step[1] ? 0 : 1;
+  const auto spacing = [&](std::size_t s) { return bodies.port(sides[s]).geometry.spacing; };
+  return spacing(0) >= spacing(1) ? 0 : 1;
+}
+
+}  // namespace
+
+Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, double window,
+                      const Bodies& bodies) {
+  const std::string where = "interfaces." + spec.name;
+  if (!std::holds_alternative<UnilateralTransmission>(spec.transmission)) {
+    throw InputError("is of ends of bars only: tied surfaces have a rule of their own",
+                     where + ".transmission", "Leave transmission out.");
+  }
+  std::array<const PortGeometry*, 2> faces;
+  for (const std::size_t s : {0u, 1u}) {
+    faces[s] = &bodies.port(sides[s]).geometry;
+    check_side(bodies.describe(sides[s].body), *faces[s], spec.sides[s], window, where);
+  }
+  if (std::isinf(bodies.describe(sides[0].body).mass) &&
+      std::isinf(bodies.describe(sides[1].body).mass)) {
+    throw InputError("ties two bodies that nothing moves", where, "Take the interface out.");
+  }
+  if (faces[0]->round != faces[1]->round) {
+    throw InputError("ties a plane surface to one of rings", where,
+                     "Give both bodies plane: axisymmetric, or none.");
+  }
+  TieRows rows = make_tie_rows(*faces[0], *faces[1]);
+  const double most = usual_gap * std::max(faces[0]->spacing, faces[1]->spacing);
+  if (rows.count() == 0) {
+    throw InputError(fmt::format("joins {} and {}, which do not face each other anywhere",
+                                 spec.sides[0], spec.sides[1]),
+                     where + ".tied", "Move a body with initial.position until its side meets.");
+  }
+  if (rows.apart > most) {
+    throw InputError(fmt::format("its sides are {:g} m apart at ({:g}), more than a quarter of a "
+                                 "facet",
+                                 rows.apart, fmt::join(rows.place, ", ")),
+                     where + ".tied",
+                     "Move a body with initial.position until its side meets the other.");
+  }
+  Joint joint;
+  joint.name = spec.name;
+  joint.sides = sides;
+  joint.decision = Decision::never;
+  joint.kinematic = coarser_steps(sides, bodies);
+  joint.role_fixed = true;
+  joint.normal = {1.0, -1.0};
+  joint.jump.assign(static_cast<std::size_t>(rows.width()), 0.0);
+  joint.how = std::make_unique<Tie>(std::move(rows));
+  return joint;
+}
+
+}  // namespace abut

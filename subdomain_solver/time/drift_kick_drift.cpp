@@ -1,0 +1,88 @@
+#include "subdomain_solver/time/drift_kick_drift.hpp"
+
+#include <cmath>
+
+#include "base/assert.hpp"
+#include "base/index.hpp"
+#include "subdomain_solver/time/motion_views.hpp"
+
+namespace abut {
+
+DriftKickDrift::DriftKickDrift(const Problem& problem, double step)
+    : problem_(problem), step_(step), inverse_mass_(problem.model->lumped_mass().cwiseInverse()) {
+  ABUT_ASSERT(problem.model->massless().empty());
+  for (const Prescribed& p : problem_.supports) inverse_mass_(p.dof) = 0.0;
+}
+
+void DriftKickDrift::find_loads(double time, std::span<const double> q) {
+  loads_.setZero(problem_.model->dofs());
+  for (const std::unique_ptr<Load>& load : problem_.loads) load->add(time, q, loads_);
+}
+
+/// The stored energy is that of the scheme's invariant: as if a step lay behind.
+std::optional<Failed> DriftKickDrift::begin(Motion& motion, double time) {
+  motion.history.resize(problem_.model->history_size(), 0.0);
+  for (const Prescribed& p : problem_.supports) motion.q[index(p.dof)] = p.value(time);
+  middle_ = motion.q;
+  view(middle_) -= 0.5 * step_ * view(motion.v);
+  if (!problem_.model->evaluate(middle_, motion.history, Model::Want::force, response_))
+    return failed_newton({NewtonReport::End::inadmissible}, time);
+  store(response_.force, motion.force);
+  motion.stored = response_.stored + 0.5 * step_ * response_.force.dot(view(motion.v));
+  find_loads(time, motion.q);
+  motion.a.resize(motion.q.size());
+  view(motion.a) = inverse_mass_.cwiseProduct(loads_ - response_.force);
+  return std::nullopt;
+}
+
+std::optional<Failed> DriftKickDrift::step(Motion& motion, double time, double dt) {
+  const double half = 0.5 * dt;
+  middle_.resize(motion.q.size());
+  view(middle_) = view(motion.q) + half * view(motion.v);
+  given_.clear();
+  for (const Prescribed& p : problem_.supports) {
+    const double value = given_.emplace_back(p.value(time + dt));
+    if (!std::isfinite(value)) return not_finite(time + dt);
+    middle_[index(p.dof)] = 0.5 * (motion.q[index(p.dof)] + value);
+  }
+  if (!problem_.model->evaluate(middle_, motion.history, Model::Want::force, response_))
+    return failed_newton({NewtonReport::End::inadmissible}, time + half);
+  find_loads(time + half, middle_);
+  double work = 0.0;
+  const double *inverse = inverse_mass_.data(), *r = response_.force.data(), *load = loads_.data();
+  double *q = motion.q.data(), *v = motion.v.data(), *a = motion.a.data();
+  for (std::size_t i = 0; i < motion.q.size(); ++i) {
+    if (inverse[i] == 0.0) continue;
+    a[i] = inverse[i] * (load[i] - r[i]);
+    v[i] += dt * a[i];
+    const double next = middle_[i] + half * v[i];
+    work += load[i] * (next - q[i]);
+    q[i] = next;
+  }
+  for (std::size_t k = 0; k < given_.size(); ++k) {  // as ExplicitDynamics moves them
+    const std::size_t i = index(problem_.supports[k].dof);
+    const double moved = given_[k] - q[i], before = v[i];
+    const double mass = problem_.model->lumped_mass()(problem_.supports[k].dof);
+    v[i] = moved / dt;
+    a[i] = (v[i] - before) / dt;
+    work += r[i] * moved + 0.5 * mass * (v[i] * v[i] - before * before);
+    q[i] = given_[k];
+  }
+  motion.external_work += work;
+  motion.dissipated += response_.dissipation;
+  motion.stored = response_.stored + half * response_.force.dot(view(motion.v));
+  store(response_.force, motion.force);
+  motion.history.swap(response_.history);
+  return std::nullopt;
+}
+
+void DriftKickDrift::acceleration(const Motion& motion, double, double, Vector& out) const {
+  out = view(motion.a);
+}
+
+double DriftKickDrift::kinetic(const Motion& motion) const {
+  const auto v = view(motion.v);
+  return 0.5 * v.dot(problem_.model->lumped_mass().cwiseProduct(v));
+}
+
+}  // namespace abut
