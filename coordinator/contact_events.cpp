@@ -206,6 +206,10 @@ void ContactEvents::settle(const TimeWindow& window, double energy) {
       settle_surfaces(joint);
       continue;
     }
+    if (const Tie* tie = joint.how->tie()) {
+      joint.closing_speed = std::max(joint.closing_speed, tie->speed());
+      continue;
+    }
     if (!joint.unilateral()) {
       joint.force_scale = std::max(joint.force_scale, peak_force(joint, bodies_));
       continue;

@@ -14,6 +14,7 @@
 #include "base/index.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/horizon.hpp"
+#include "coordinator/coupling/tie.hpp"
 #include "coordinator/coupling/transmission.hpp"
 #include "coordinator/flight_work.hpp"
 #include "coordinator/record/validity_notes.hpp"
@@ -282,6 +283,10 @@ void Controller::fill_reports(bool flown) {
     InterfaceReport& report = reports_[index(joint.interface)];
     report.closed = report.closed || (joint.closed() && !silent);
     report.kinematic = joint.kinematic;
+    if (const Tie* tie = joint.how != nullptr ? joint.how->tie() : nullptr) {
+      report.missed = tie->missed();
+      report.force = tie->largest_force();
+    }
   }
   if (flown) return;
   events_.watch_inside(reports_);

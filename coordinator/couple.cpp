@@ -71,6 +71,10 @@ void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies, const Jo
 
 /// Sides of a tied interface are one as they stand: the rounding of their places is no gap.
 void tie(const InterfaceSpec& spec, const Bodies& bodies, Joint& joint) {
+  if (spec.tied->finer) {
+    throw InputError("is of surfaces: ends of bars choose by themselves",
+                     "interfaces." + spec.name + ".tied.steps", "Leave steps out.");
+  }
   joint.decision = Decision::never;
   const double spacing = std::max(bodies.port(joint.sides[0]).geometry.spacing,
                                   bodies.port(joint.sides[1]).geometry.spacing);

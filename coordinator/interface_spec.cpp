@@ -36,6 +36,12 @@ void ContactSpec::fields(Fields& f) {
           "What sticks holds at least as much as what slides: give both, or leave it out.");
 }
 
+void TiedSpec::fields(Fields& f) {
+  f.word("steps", finer, {"coarser", "finer"},
+         "of surfaces, in whose steps the force between them is constant: of the side with coarser "
+         "ones, or, for comparisons, of the other, which keeps energy and moves wrongly");
+}
+
 void SceneContact::fields(Fields& f) {
   f.section("everything", everything,
             "law of contact between all surfaces (ports) of different bodies, but for pairs that "

@@ -31,7 +31,8 @@ struct SceneContact {
 constexpr std::string_view everything_path = "contact.everything", everything_name = "everything";
 
 struct TiedSpec {  // joined from the start, for the whole run
-  void fields(Fields&) {}
+  bool finer = false;  // "steps: coarser | finer"
+  void fields(Fields& f);
 };
 /// [MiB] of the port kernel of a surface, where the scene does not say.
 constexpr double usual_kernel_memory = 512.0;

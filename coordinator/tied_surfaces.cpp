@@ -95,7 +95,8 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, doub
   joint.name = spec.name;
   joint.sides = sides;
   joint.decision = Decision::never;
-  joint.kinematic = coarser_steps(sides, bodies);
+  const int coarser = coarser_steps(sides, bodies);
+  joint.kinematic = spec.tied->finer ? 1 - coarser : coarser;
   joint.role_fixed = true;
   joint.normal = {1.0, -1.0};
   joint.jump.assign(static_cast<std::size_t>(rows.width()), 0.0);

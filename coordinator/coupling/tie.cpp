@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/assert.hpp"
+#include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/transmission_parts.hpp"
 
 namespace abut {
@@ -45,10 +47,15 @@ void Tie::part(const Joint& joint, const std::array<const Waveform*, 2>& motions
 
 std::vector<double> Tie::jump(const Joint& joint, const Bodies& bodies) const {
   std::vector<double> out(index(rows_.width()), 0.0), seen(out.size());
+  const double step = bodies.describe(joint.kinematic_side().body).step;
+  const double half = 0.5 * (step > 0.0 ? step : bodies.window());
   for (const std::size_t s : {0u, 1u}) {
     const Waveform& trace = trace_of(bodies, joint.sides[s]);
-    apply(rows_.of[s], rows_.dim, row(trace, trace.u, trace.size() - 1), seen);
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] += s == 0 ? seen[k] : -seen[k];
+    for (const auto& [field, factor] : {std::pair(&trace.u, 1.0), std::pair(&trace.v, half)}) {
+      apply(rows_.of[s], rows_.dim, row(trace, *field, trace.size() - 1), seen);
+      for (std::size_t k = 0; k < out.size(); ++k)
+        out[k] += s == 0 ? factor * seen[k] : -factor * seen[k];
+    }
   }
   return out;
 }
@@ -96,18 +103,26 @@ void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joi
 
 void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                 const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
-  double speed = joint.closing_speed, travelled = 0.0;
+  double travelled = 0.0;
+  speed_ = 0.0;
   std::array<const Waveform*, 2> motions;
   for (const std::size_t s : {0u, 1u}) {
     motions[s] = &trace_of(bodies, joint.sides[s]);
-    if (first_speed_ < 0.0) speed = std::max(speed, largest(motions[s]->v));
+    speed_ = std::max(speed_, largest(motions[s]->v));
     travelled = std::max(travelled, largest(motions[s]->u));
   }
-  if (first_speed_ < 0.0) first_speed_ = speed;
+  if (first_speed_ < 0.0) first_speed_ = speed_;
   part(joint, motions, jump_);
   g = x - jump_ / compliance_;
-  scale_.velocity = first_speed_;
+  scale_.velocity = std::max(joint.closing_speed, std::min(first_speed_, speed_));
   scale_.roundoff = roundoff_of(travelled, 0.0);
+}
+
+double Tie::largest_force() const {
+  double most = 0.0;
+  for (std::size_t i = 1; i < force_.size(); ++i)
+    most = std::max(most, resultant(force_, i, rows_.dim));
+  return most;
 }
 
 FieldResiduals Tie::measure(const Eigen::Ref<const Eigen::VectorXd>&,

@@ -40,11 +40,15 @@ class Tie final : public Transmission {
   void set_unit(double compliance) { compliance_ = compliance; }
   double unit() const { return compliance_; }
 
-  /// [m] (rows, dim) by which displacements of the sides differ where they stand now, by the latest
-  /// responses.
+  /// [m] (rows, dim) by which displacements of the sides are to differ for good, from where they
+  /// stand: as they do, and where their velocities differ, as they will when the force of one step
+  /// of the kinematic side has made these one.
   std::vector<double> jump(const Joint& joint, const Bodies& bodies) const;
-  /// [N] (rows, dim) at the steps of the kinematic side that the latest sweep took.
-  const Waveform& force() const { return force_; }
+  /// Of the latest sweep: [m/s] how fast anything on the sides moved, [m] by how much they missed
+  /// each other at most, [N] the largest resultant of the forces between them.
+  double speed() const { return speed_; }
+  double missed() const { return jump_.size() > 0 ? jump_.lpNorm<Eigen::Infinity>() : 0.0; }
+  double largest_force() const;
 
  private:
   void part(const Joint& joint, const std::array<const Waveform*, 2>& motions,
@@ -57,7 +61,8 @@ class Tie final : public Transmission {
   TimeWindow window_;
   Eigen::VectorXd trial_, jump_;
   double compliance_ = 1.0;
-  double first_speed_ = -1.0;  // [m/s] of the first sweep; below 0: none yet
+  double speed_ = 0.0;         // [m/s] of the latest sweep
+  double first_speed_ = -1.0;  // and of the first one; below 0: none yet
   ReferenceScales scale_;
 };
 

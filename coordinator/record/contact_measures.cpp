@@ -60,6 +60,11 @@ void ContactMeasures::on_window(const WindowReport& report) {
   if (traces[0]->empty() || traces[1]->empty()) return;
   if (readers_[0].port().geometry.dim == 1) read_gap(report, traces);
   const InterfaceReport& mine = report.interfaces[index_];
+  if (joins_surfaces()) {
+    missed_ = std::max(missed_, mine.missed);
+    peak_ = std::max(peak_, mine.force);
+    return;
+  }
   const std::size_t kinematic = index(mine.kinematic);
   velocity_.on_window(readers_, traces, mine.kinematic, mine.closed, errors_ ? &*errors_ : nullptr);
   if (const Waveform* force = force_of(report, kinematic)) {
@@ -142,8 +147,16 @@ void ContactMeasures::write(double run_end, Measures& out) {
 }
 
 void ContactMeasures::write_force(double closed, Measures& out) {
-  out.set(name("impulse"), impulse_);
   out.set(name("force_peak"), peak_);
+  if (joins_surfaces()) {
+    const std::string both = "joined surfaces press and pull";
+    for (const char* what : {"impulse", "force_mean", "velocity_rms"}) out.none(name(what), both);
+    out.set(name("jump_max"), missed_);
+    out.set(name("dissipated"), 0.0);
+    return;
+  }
+  out.none(name("jump_max"), "its sides are no joined surfaces");
+  out.set(name("impulse"), impulse_);
   out.set(name("dissipated"), dissipated_);
   if (filter_) out.set(name("force_peak_filtered"), filter_->peak());
   const std::string never = "the interface never closed";

@@ -40,8 +40,12 @@ class ContactMeasures {
   std::string name(const char* what) const;
 
   const RunStart& start_;
+  /// In two and three dimensions: they have no gap, and the iteration tells of their force.
+  bool joins_surfaces() const { return info_.tied && readers_[0].port().geometry.dim > 1; }
+
   int index_;
   InterfaceInfo info_;
+  double missed_ = 0.0;  // [m] of joined surfaces
   std::array<PortReader, 2> readers_;
 
   ContactTimes times_;

@@ -75,7 +75,8 @@ void ManyContacts::write(Measures& out) const {
     out.none(name("end"), why);
     out.none(name("duration"), why);
   }
-  for (const char* what : {"force_mean", "velocity_rms", "gap_min"}) out.none(name(what), many);
+  for (const char* what : {"force_mean", "velocity_rms", "gap_min", "jump_max"})
+    out.none(name(what), many);
 }
 
 }  // namespace abut

@@ -74,8 +74,9 @@ std::vector<std::string> known_measures(const MeasureScope& scope) {
                                     "contact_windows"};
   if (scope.dim > 1) names.push_back("angular_momentum.total");
   for (const std::string& interface : scope.interfaces) {
-    for (const char* what : {"begin", "end", "duration", "count", "closings", "impulse",
-                             "force_mean", "force_peak", "velocity_rms", "gap_min", "dissipated"})
+    for (const char* what :
+         {"begin", "end", "duration", "count", "closings", "impulse", "force_mean", "force_peak",
+          "velocity_rms", "gap_min", "dissipated", "jump_max"})
       names.push_back(fmt::format("contact.{}.{}", interface, what));
     if (scope.filtered) names.push_back(fmt::format("contact.{}.force_peak_filtered", interface));
   }

@@ -34,6 +34,9 @@ struct InterfaceReport {
   int kinematic = 0;      // which side (0 or 1) is kinematic; meaningful when closed
   int iterations = 0;     // Schwarz iterations of its island; 0: advanced free
   double residual = 0.0;  // largest scaled residual over the exchanged fields when accepted
+  // Of tied surfaces: [m] by how much they missed each other, [N] the largest resultant between
+  // them.
+  double missed = 0.0, force = 0.0;
 };
 
 /// Two surfaces that were iterated in an accepted window, of an interface of many.
