@@ -208,6 +208,7 @@ void ContactEvents::settle(const TimeWindow& window, double energy) {
     }
     if (const Tie* tie = joint.how->tie()) {
       joint.closing_speed = std::max(joint.closing_speed, tie->speed());
+      joint.force_scale = std::max(joint.force_scale, tie->row_force());
       continue;
     }
     if (!joint.unilateral()) {

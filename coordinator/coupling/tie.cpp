@@ -115,6 +115,10 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   part(joint, motions, jump_);
   g = x - jump_ / compliance_;
   scale_.velocity = std::max(joint.closing_speed, std::min(first_speed_, speed_));
+  row_force_ = x.lpNorm<Eigen::Infinity>();
+  // Or what the force moves in a step: bodies at rest have no other measure.
+  const double force = joint.force_scale > 0.0 ? joint.force_scale : row_force_;
+  scale_.velocity = std::max(scale_.velocity, force * compliance_ / scale_.step);
   scale_.roundoff = roundoff_of(travelled, 0.0);
 }
 

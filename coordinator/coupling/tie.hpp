@@ -49,6 +49,7 @@ class Tie final : public Transmission {
   double speed() const { return speed_; }
   double missed() const { return jump_.size() > 0 ? jump_.lpNorm<Eigen::Infinity>() : 0.0; }
   double largest_force() const;
+  double row_force() const { return row_force_; }  // [N] the largest of a row
 
  private:
   void part(const Joint& joint, const std::array<const Waveform*, 2>& motions,
@@ -61,6 +62,7 @@ class Tie final : public Transmission {
   TimeWindow window_;
   Eigen::VectorXd trial_, jump_;
   double compliance_ = 1.0;
+  double row_force_ = 0.0;
   double speed_ = 0.0;         // [m/s] of the latest sweep
   double first_speed_ = -1.0;  // and of the first one; below 0: none yet
   ReferenceScales scale_;
