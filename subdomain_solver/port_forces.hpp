@@ -16,7 +16,7 @@ namespace abut {
 /// values at their ends, equal to those of the waveform where it is sampled there, else means over
 /// the dual cells [M.8], so that the impulse is exact; linear in between. Lists of values are those
 /// of PortMap. On ports that are joined, forces are constant in every substep: means over it
-/// [M.106].
+/// [M.107].
 class PortForces final : public Load {
  public:
   /// The map must outlive the load.

@@ -190,12 +190,12 @@ PortKernel Bodies::ask(int body, int port, std::span<const double> patterns, int
   return (*this)[body].probe(port, patterns, step > 0.0 ? step : window_, count);
 }
 
-PortKernel Bodies::probe(int body, int port, std::span<const double> pattern, int count,
+PortKernel Bodies::probe(int body, int port, std::span<const double> patterns, int count,
                          std::span<const int> seen) {
-  if (seen.size() == 1 && seen.front() == port) return ask(body, port, pattern, count);
+  if (seen.size() == 1 && seen.front() == port) return ask(body, port, patterns, count);
   const double step = describe(body).step;
   ++exchanges_;
-  return (*this)[body].probe(port, pattern, step > 0.0 ? step : window_, count, seen);
+  return (*this)[body].probe(port, patterns, step > 0.0 ? step : window_, count, seen);
 }
 
 const PortKernel& Bodies::kernel(int body, int port, int count) {

@@ -77,8 +77,8 @@ class Bodies {
   /// empty: all.
   PortKernel full_kernel(int body, int port, int count, const std::vector<std::int32_t>& points);
 
-  /// Responses of some ports, one after the other, to a force on one of them.
-  PortKernel probe(int body, int port, std::span<const double> pattern, int count,
+  /// Responses of some ports, one after the other, to patterns of force on one of them.
+  PortKernel probe(int body, int port, std::span<const double> patterns, int count,
                    std::span<const int> seen);
 
   /// [m/(N s)] (substeps) outward displacement of a port of one point after a unit impulse against

@@ -10,7 +10,7 @@ namespace abut {
 
 /// Two surfaces that are one, of any meshes, steps and integrators: both sides take the same force
 /// in the rows that join them, constant in every step of the kinematic side, and advance at once;
-/// iterated is this force until both sides move alike at those steps' ends  [M.106], [M.107]. What
+/// iterated is this force until both sides move alike at those steps' ends  [M.107], [M.108]. What
 /// answers it knows all joints of a net at once (TieNet).
 class Tie final : public Transmission {
  public:

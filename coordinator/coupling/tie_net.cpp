@@ -17,9 +17,11 @@ namespace {
 constexpr double singular = 1.0e-13;
 /// Of the largest pivot, below which a combination of rows moves nothing.
 constexpr double nothing = 1.0e-10;
+/// [B] of the answers to a probe, about.
+constexpr double reply_bytes = 3.2e7;
 
 /// Share of cell i of `here` equal cells that cell k of `there` cells of the same time takes: W of
-/// [M.106].
+/// [M.107].
 double shared(int i, int here, int k, int there) {
   const double begin = std::max(i / static_cast<double>(here), k / static_cast<double>(there));
   const double end =
@@ -114,41 +116,54 @@ void TieNet::find_kernels(int lags, Bodies& bodies) {
       seen.push_back(members_[end.member].joint->sides[index(end.side)].port);
     std::ranges::sort(seen);
     seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-    for (const End& by : part.ends) {
-      const Member& pressed = members_[by.member];
-      const Side& side = pressed.joint->sides[index(by.side)];
-      const SparseRows& rows = pressed.tie->rows().of[index(by.side)];
-      const std::size_t dim = index(pressed.tie->rows().dim);
-      const std::size_t width = bodies.port(side).geometry.points.size();
-      for (std::size_t k = 0; k < index(pressed.width); ++k) {
-        std::vector<double> unit(index(pressed.width), 0.0), pattern(width, 0.0);
-        unit[k] = 1.0;
-        add_transposed(rows, static_cast<int>(dim), 1.0, unit, pattern);
-        const PortKernel kernel =
-            bodies.probe(part.body, side.port, pattern, part.steps * lags, seen);
-        read(part, by, static_cast<Eigen::Index>(k), kernel, seen, bodies);
-      }
-    }
+    for (const End& by : part.ends) press(part, by, seen, bodies);
   }
 }
 
-/// A column of a body's kernel, out of what its ports answered.
-void TieNet::read(Part& part, const End& by, Eigen::Index column, const PortKernel& kernel,
+/// Answers to unit forces of the rows of one end, so many in a request that its reply is no burden.
+void TieNet::press(Part& part, const End& by, std::span<const int> seen, Bodies& bodies) const {
+  const Member& pressed = members_[by.member];
+  const Side& side = pressed.joint->sides[index(by.side)];
+  const TieRows& rows = pressed.tie->rows();
+  const std::size_t width = bodies.port(side).geometry.points.size();
+  std::size_t values = 0;
+  for (const int port : seen) values += bodies.port({part.body, port}).geometry.points.size();
+  const int steps = static_cast<int>(part.kernel.size());
+  const double each = 8.0 * steps * static_cast<double>(values);
+  const int at_once = std::clamp(static_cast<int>(reply_bytes / each), 1, pressed.width);
+  for (int from = 0; from < pressed.width; from += at_once) {
+    const int count = std::min(at_once, pressed.width - from);
+    std::vector<double> patterns(index(count) * width, 0.0);
+    for (int k = 0; k < count; ++k) {
+      std::vector<double> unit(index(pressed.width), 0.0);
+      unit[index(from + k)] = 1.0;
+      add_transposed(rows.of[index(by.side)], rows.dim, 1.0, unit,
+                     std::span(patterns).subspan(index(k) * width, width));
+    }
+    const PortKernel kernel = bodies.probe(part.body, side.port, patterns, steps, seen);
+    read(part, by, from, kernel, seen, bodies);
+  }
+}
+
+/// Columns of a body's kernel from one on, out of what its ports answered.
+void TieNet::read(Part& part, const End& by, int from, const PortKernel& kernel,
                   std::span<const int> seen, const Bodies& bodies) const {
   std::vector<double> moved;
-  for (std::size_t l = 0; l < part.kernel.size(); ++l) {
-    const double* values = kernel.displacement.data() + l * kernel.per_step();
-    for (const int port : seen) {
-      const std::size_t width = bodies.port({part.body, port}).geometry.points.size();
-      for (const End& end : part.ends) {
-        const Member& member = members_[end.member];
-        if (member.joint->sides[index(end.side)].port != port) continue;
-        const TieRows& rows = member.tie->rows();
-        moved.resize(index(member.width));
-        apply(rows.of[index(end.side)], rows.dim, std::span(values, width), moved);
-        part.kernel[l].col(by.first + column).segment(end.first, member.width) = vector_of(moved);
+  const double* values = kernel.displacement.data();
+  for (Eigen::MatrixXd& later : part.kernel) {
+    for (int k = 0; k < kernel.patterns; ++k) {
+      for (const int port : seen) {
+        const std::size_t width = bodies.port({part.body, port}).geometry.points.size();
+        for (const End& end : part.ends) {
+          const Member& member = members_[end.member];
+          if (member.joint->sides[index(end.side)].port != port) continue;
+          const TieRows& rows = member.tie->rows();
+          moved.resize(index(member.width));
+          apply(rows.of[index(end.side)], rows.dim, std::span(values, width), moved);
+          later.col(by.first + from + k).segment(end.first, member.width) = vector_of(moved);
+        }
+        values += width;
       }
-      values += width;
     }
   }
 }

@@ -11,7 +11,7 @@
 namespace abut {
 
 /// All ties of an island at once: how forces in any of them move the sides of any other apart, by
-/// the port kernels of the bodies, which reach from port to port [M.108]. Bodies repeat themselves
+/// the port kernels of the bodies, which reach from port to port [M.109]. Bodies repeat themselves
 /// after the shortest time that is a whole number of everybody's steps, so the map is one of equal
 /// blocks below each other, and its inverse needs the factors of one. Linear bodies are answered
 /// exactly, whatever the net.
@@ -59,7 +59,8 @@ class TieNet {
                     std::span<const Eigen::Index> first);
   void find_parts(const Bodies& bodies);
   void find_kernels(int lags, Bodies& bodies);
-  void read(Part& part, const End& by, Eigen::Index column, const PortKernel& kernel,
+  void press(Part& part, const End& by, std::span<const int> seen, Bodies& bodies) const;
+  void read(Part& part, const End& by, int from, const PortKernel& kernel,
             std::span<const int> seen, const Bodies& bodies) const;
   void find_block(int lag);
   void add(const Part& part, const End& of, const End& by, int lag, Eigen::MatrixXd& block) const;

@@ -5,7 +5,7 @@
 namespace abut {
 
 /// Central differences on any model with lumped mass, seen at the times of their velocities: half a
-/// drift, the force there, half a drift [M.104], [M.105]. Positions obey  q' = q + dt (v + v') / 2,
+/// drift, the force there, half a drift [M.105], [M.106]. Positions obey  q' = q + dt (v + v') / 2,
 /// so that a force that is constant in the step, as joined bodies pass it, does exactly the work by
 /// which the scheme's own energy changes,  1/2 v (M - dt^2/4 K) v + 1/2 q K q  of linear models.
 /// Keeps no accelerations: forces that set in or end find nothing to correct. Every coordinate must

@@ -23,7 +23,7 @@ class ImplicitDynamics final : public Integrator {
     MassForm mass = MassForm::consistent;
     NewtonOptions newton;
     // Of the trapezoidal rule alone: unknown is the sum of the accelerations at both ends, and none
-    // is kept, so that forces may jump from step to step [M.104].
+    // is kept, so that forces may jump from step to step [M.105].
     bool sums = false;
   };
 

@@ -1,5 +1,5 @@
 // Goal: joined surfaces move as one body would, whatever their meshes, steps and integrators, at
-// one call of every body per window. Oracles: the energy identity [M.107], balance of momentum,
+// one call of every body per window. Oracles: the energy identity [M.108], balance of momentum,
 // the undivided body, linear fields, and order two in the step.
 
 #include <cmath>
