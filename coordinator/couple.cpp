@@ -302,7 +302,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     const bool surfaces = bodies.port(sides[0]).geometry.dim > 1 && spec.contact;
     const int number = static_cast<int>(joints.size());
     if (bodies.port(sides[0]).geometry.dim > 1 && spec.tied) {
-      joints.push_back(make_tied_joint(spec, sides, scene.time.window, bodies));
+      joints.push_back(make_tied_joint(spec, sides, bodies));
       joints.back().interface = number;
       continue;
     }

@@ -15,31 +15,18 @@ namespace {
 
 /// Of the coarser facets: curved faces of unlike meshes are this far apart, and no more.
 constexpr double usual_gap = 0.25;
-/// Of a step: a window that holds a whole number of them, rounded.
-constexpr double whole = 1.0e-6;
 
 void check_side(const Description& body, const PortGeometry& face, const std::string& side,
-                double window, const std::string& where) {
+                const std::string& where) {
   if (face.facets.empty()) {
     throw InputError(fmt::format("joins {}, which has no facets", side), where + ".sides",
                      "Put the port on a side of the mesh.");
   }
-  const bool stands = std::isinf(body.mass);
-  if (!stands && (!body.can.force || !body.can.kernel)) {
+  if (!std::isinf(body.mass) && (!body.can.force || !body.can.kernel)) {
     throw InputError(fmt::format("joins body '{}' ({}), which does not tell how its port gives way",
                                  body.name, body.model),
                      where, "Integrate the body in time.");
   }
-  const double steps = body.step > 0.0 ? window / body.step : 1.0;
-  if (stands || std::abs(steps - std::round(steps)) <= whole * steps) return;
-  throw InputError(
-      fmt::format(
-          "joins body '{}' of steps of {:g} s, of which a window of {:g} s holds {:g}: ties "
-          "need whole ones",
-          body.name, body.step, window, steps),
-      where,
-      fmt::format("Give the body a step of {:.10g} s, or another time.window.",
-                  window / std::ceil(steps)));
 }
 
 /// The side of longer steps has the force: on the other one energy would be kept and the motion
@@ -57,7 +44,7 @@ int coarser_steps(const std::array<Side, 2>& sides, const Bodies& bodies) {
 
 }  // namespace
 
-Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, double window,
+Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides,
                       const Bodies& bodies) {
   const std::string where = "interfaces." + spec.name;
   if (!std::holds_alternative<UnilateralTransmission>(spec.transmission)) {
@@ -67,7 +54,7 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, doub
   std::array<const PortGeometry*, 2> faces;
   for (const std::size_t s : {0u, 1u}) {
     faces[s] = &bodies.port(sides[s]).geometry;
-    check_side(bodies.describe(sides[s].body), *faces[s], spec.sides[s], window, where);
+    check_side(bodies.describe(sides[s].body), *faces[s], spec.sides[s], where);
   }
   if (std::isinf(bodies.describe(sides[0].body).mass) &&
       std::isinf(bodies.describe(sides[1].body).mass)) {

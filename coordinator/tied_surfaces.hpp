@@ -5,9 +5,8 @@
 
 namespace abut {
 
-/// Two surfaces that a scene ties. `window` [s]: of the scene, which is to hold whole steps of both
-/// bodies. Throws InputError where the faces do not meet, or a body cannot be joined.
-Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, double window,
-                      const Bodies& bodies);
+/// Two surfaces that a scene ties. Throws InputError where the faces do not meet, or a body cannot
+/// be joined.
+Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, const Bodies& bodies);
 
 }  // namespace abut

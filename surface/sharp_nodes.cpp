@@ -33,20 +33,26 @@ std::vector<HalfEdge> sorted_edges(const PosedSurface& surface) {
 
 }  // namespace
 
-std::vector<std::int32_t> sharp_nodes(const PosedSurface& surface, double angle) {
+std::vector<SharpEdge> sharp_edges(const PosedSurface& surface, double angle) {
   const std::vector<HalfEdge> edges = sorted_edges(surface);
   const double limit = std::cos(angle);
-  std::vector<std::int32_t> nodes;
+  std::vector<SharpEdge> sharp;
   for (std::size_t i = 1; i < edges.size(); ++i) {
     if (!edges[i].same_edge(edges[i - 1])) continue;
     const Corners one = corners(surface, edges[i - 1].facet);
     const Corners other = corners(surface, edges[i].facet);
     const Eigen::Vector3d n = mean_normal(one);
     const bool convex = n.dot(centre(other) - centre(one)) < 0.0;
-    if (!convex || n.dot(mean_normal(other)) >= limit) continue;
-    nodes.push_back(edges[i].a);
-    nodes.push_back(edges[i].b);
+    if (convex && n.dot(mean_normal(other)) < limit)
+      sharp.push_back({{edges[i].a, edges[i].b}, {edges[i - 1].facet, edges[i].facet}});
   }
+  return sharp;
+}
+
+std::vector<std::int32_t> sharp_nodes(const PosedSurface& surface, double angle) {
+  std::vector<std::int32_t> nodes;
+  for (const SharpEdge& edge : sharp_edges(surface, angle))
+    nodes.insert(nodes.end(), edge.ends.begin(), edge.ends.end());
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;

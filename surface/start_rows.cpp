@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/index.hpp"
+#include "surface/meeting_corners.hpp"
 #include "surface/mortar.hpp"
 #include "surface/point_rows.hpp"
 #include "surface/sharp_nodes.hpp"
@@ -68,9 +69,15 @@ SurfaceRows average_rows(const StartSurface& one, const StartSurface& other) {
   overlapping_pairs(own, its, pairs);
   MortarOptions options;
   options.reach = one.spacing;
+  MeetingCorners corners;
+  const Wedges wedges(one.surface), its_wedges(other.surface);
+  corners.find({one.surface, one.surface, &wedges}, {other.surface, other.surface, &its_wedges},
+               pairs, {options.facing, 0.0});
+  std::erase_if(pairs, [&corners](const FacetPair& pair) { return corners.drops(pair); });
   MortarBuffers buffers;
   SurfaceRows rows;
   mortar_rows(one.surface, other.surface, pairs, options, buffers, rows);
+  corners.join(rows);
   return rows;
 }
 

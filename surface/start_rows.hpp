@@ -29,8 +29,9 @@ double roundness(const StartSurface& one, const StartSurface& other);
 /// Nodes of `one` before the facets of `other`: closest-point rows.
 SurfaceRows node_rows(const StartSurface& one, const StartSurface& other);
 
-/// Rows of the nodes of `one` as contact has them, averaged over their surroundings (mortar_rows):
-/// facets of polygons that stand for round bodies overlap in them before any node does.
+/// Rows of the nodes of `one` as contact has them, averaged over their surroundings (mortar_rows)
+/// or, where edges and corners of both meet, of single points (MeetingCorners). Facets of polygons
+/// that stand for round bodies overlap in them before any node does.
 SurfaceRows average_rows(const StartSurface& one, const StartSurface& other);
 
 /// Whether a surface has edges that are sharp to contact. Where one of two has, rows are of its

@@ -17,6 +17,7 @@ EdgedSurface::EdgedSurface(const PortGeometry& surface, double size) {
   const PosedSurface parts = pose_of(surface.points);
   sharp_ = sharp_nodes(parts, sharp_edge);
   longest_ = longest_edge(parts);
+  parts_ = parts.facet_count() / whole.facet_count();
   build(tree_, parts, 0.0);
   sum_.resize(whole.node_count());
 }
@@ -40,12 +41,16 @@ bool EdgedSurface::is_near(std::span<const double> pose, const PosedSurface& oth
 }
 
 void EdgedSurface::join(std::span<const double> pose, const PosedSurface& other,
-                        const BoxTree& tree, double way, SurfaceRows& rows) {
+                        const BoxTree& tree, double way, const MeetingCorners& corners,
+                        SurfaceRows& rows) {
   PosedSurface parts = pose_of(pose);
   parts.round = parts.round || other.round;  // a tool has no radius of its own
   options_.reach = longest_ + way;
   refit(tree_, parts, options_.reach);
   overlapping_pairs(tree_, tree, pairs_);
+  std::erase_if(pairs_, [this, &corners](const FacetPair& pair) {
+    return corners.drops({pair.n, pair.k / parts_});
+  });
   mortar_rows(parts, other, pairs_, options_, buffers_, rows);
   mapped_.clear();
   for (int r = 0; r < rows.count(); ++r) {
@@ -59,6 +64,11 @@ void EdgedSurface::join(std::span<const double> pose, const PosedSurface& other,
   }
   std::swap(rows.k, rows.n);
   std::swap(rows.n, mapped_);
+  for (int r = 0; r < rows.count(); ++r) {
+    const auto first = rows.k.values.begin() + rows.k.offsets[index(r)];
+    const auto most = std::max_element(first, rows.k.values.begin() + rows.k.offsets[index(r) + 1]);
+    rows.nodes[index(r)] = rows.k.columns[index(most - rows.k.values.begin())];
+  }
   for (double& component : rows.normals) component = -component;
 }
 

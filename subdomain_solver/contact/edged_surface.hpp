@@ -7,6 +7,7 @@
 #include "contract/port.hpp"
 #include "surface/boxes.hpp"
 #include "surface/divided_surface.hpp"
+#include "surface/meeting_corners.hpp"
 #include "surface/mortar.hpp"
 
 namespace abut {
@@ -26,9 +27,9 @@ class EdgedSurface {
                double reach);
   /// Rows of this surface's nodes against the other's facets, told as those of the other: T over
   /// its nodes, P over the points of this surface, normals out of this surface. `way`: [m] that the
-  /// two go in the substep.
+  /// two go in the substep. `corners`: of the other surface and this one.
   void join(std::span<const double> pose, const PosedSurface& other, const BoxTree& tree,
-            double way, SurfaceRows& rows);
+            double way, const MeetingCorners& corners, SurfaceRows& rows);
 
  private:
   PosedSurface pose_of(std::span<const double> pose);
@@ -37,6 +38,7 @@ class EdgedSurface {
   std::vector<std::int32_t> sharp_;  // nodes
   std::vector<double> points_;       // [m] (nodes, dim)
   double longest_ = 0.0;             // [m] edge
+  std::int32_t parts_ = 1;           // of a facet
   BoxTree tree_;
   std::vector<FacetPair> pairs_;
   MortarOptions options_;

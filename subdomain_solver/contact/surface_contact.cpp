@@ -272,7 +272,8 @@ void SurfaceContact::make_rows() {
     m.first_row = static_cast<int>(rows_.size());
     m.rows = 0;
     if (!m.obstacle->acts()) continue;
-    m.obstacle->join(surfaces_[m.own].pose, surfaces_[m.own].travel, reacted(m));
+    const Own& own = surfaces_[m.own];
+    m.obstacle->join(own.pose, own.begin, own.travel, reacted(m));
     add_components(m);
     rubs_ = rubs_ || (m.parts > 1 && m.rows > 0);
   }

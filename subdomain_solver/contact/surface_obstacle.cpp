@@ -23,6 +23,8 @@ SurfaceObstacle::SurfaceObstacle(std::size_t port, std::size_t partner, const Po
       reach_(longest_edge(posed(own, own.points))),
       edges_(met.surface, own.spacing),
       own_edges_(own, reach_),
+      wedges_(posed(met.surface)),
+      own_wedges_(posed(own)),
       near_(met.surface, own) {
   options_.reach = reach_;
   build(own_tree_, posed(own), 0.0);
@@ -115,6 +117,7 @@ void SurfaceObstacle::aim(int i, std::span<const double> reaction, bool turned) 
   held_ = turned && std::ranges::any_of(reaction, [](double force) { return force != 0.0; });
   turned_ = turned;
   chosen_ = false;
+  begin_ = i <= 1 ? grid_.begin : grid_.time(i - 1);
   find_travel(i);
   if (!yields()) return;
   memory_.assign(z, 0.0);
@@ -186,6 +189,11 @@ void SurfaceObstacle::place(double time) {
   motion_->interpolate(motion_->u, time, near_.values(), given_);
   for (std::size_t v = 0; v < free_.size(); ++v) free_[v] = near_.points[v] + given_[v];
   for (std::size_t v = 0; yields() && v < zone_.size(); ++v) free_[zone_near_[v]] += memory_[v];
+  if (!corners_may_meet()) return;
+  before_.resize(given_.size());
+  motion_->interpolate(motion_->u, begin_, near_.values(), before_);
+  pose_before_ = free_;
+  for (std::size_t v = 0; v < free_.size(); ++v) pose_before_[v] += before_[v] - given_[v];
 }
 
 void SurfaceObstacle::give_way(std::span<const double> reaction) {
@@ -215,8 +223,27 @@ void SurfaceObstacle::join_points(const PosedSurface& own, const PosedSurface& o
   point_rows(own, own_nodes_, other, tree_, options, point_buffers_, rows_);
 }
 
-void SurfaceObstacle::join(std::span<const double> pose, double travel,
-                           std::span<const double> reaction) {
+/// Rows of averages, and of single points where edges or corners of both meet [M.104].
+void SurfaceObstacle::join_averages(const PosedSurface& k, std::span<const double> begin,
+                                    const PosedSurface& n, double way) {
+  if (!turned_ || !chosen_ || corners_may_meet()) overlapping_pairs(own_tree_, tree_, pairs_);
+  if (!chosen_) choose_side(k.points);
+  if (corners_may_meet())
+    corners_.find({k, posed(k, begin), &own_wedges_}, {n, posed(n, pose_before_), &wedges_}, pairs_,
+                  {options_.facing, way});
+  if (turned_) {
+    edges_.join(pose_, k, own_tree_, way, corners_, rows_);
+  } else {
+    averaged_.clear();
+    std::ranges::remove_copy_if(pairs_, std::back_inserter(averaged_),
+                                [this](const FacetPair& pair) { return corners_.drops(pair); });
+    mortar_rows(k, n, averaged_, options_, buffers_, rows_);
+  }
+  if (corners_.count() > 0) corners_.join(rows_);
+}
+
+void SurfaceObstacle::join(std::span<const double> pose, std::span<const double> begin,
+                           double travel, std::span<const double> reaction) {
   const double way = travel_ + travel;
   options_.reach = reach_ + way;
   if (!near_.holds(pose, options_.reach)) {
@@ -232,13 +259,7 @@ void SurfaceObstacle::join(std::span<const double> pose, double travel,
     fitted_ = pose_;
   }
   if (met_->law.points) return join_points(k, n);
-  if (!turned_ || !chosen_) overlapping_pairs(own_tree_, tree_, pairs_);
-  if (!chosen_) choose_side(pose);
-  if (turned_) {
-    edges_.join(pose_, k, own_tree_, way, rows_);
-  } else {
-    mortar_rows(k, n, pairs_, options_, buffers_, rows_);
-  }
+  join_averages(k, begin, n, way);
 }
 
 void SurfaceObstacle::begin_slip(int i, std::span<const double> anchor) {

@@ -7,6 +7,7 @@
 #include "subdomain_solver/contact/near_surface.hpp"
 #include "subdomain_solver/interior.hpp"
 #include "surface/boxes.hpp"
+#include "surface/meeting_corners.hpp"
 #include "surface/mortar.hpp"
 #include "surface/point_rows.hpp"
 
@@ -46,8 +47,9 @@ class SurfaceObstacle {
   void place(double time);
   /// Rows for the port's present pose [m] (points, dim) and its own, to which a reaction [N]
   /// (values of the partner) moves it. What a long substep may lead through each other is still
-  /// seen: `travel` [m] is the port's way in it.
-  void join(std::span<const double> pose, double travel, std::span<const double> reaction);
+  /// seen: `travel` [m] is the port's way in it, from the pose at its `begin`.
+  void join(std::span<const double> pose, std::span<const double> begin, double travel,
+            std::span<const double> reaction);
 
   const SurfaceRows& rows() const { return rows_; }
   /// [m] (near points, dim) where it lies without the substep's own reaction.
@@ -71,6 +73,9 @@ class SurfaceObstacle {
   void find_travel(int i);
   void give_way(std::span<const double> reaction);
   void choose_side(std::span<const double> pose);
+  bool corners_may_meet() const { return wedges_.any() && own_wedges_.any(); }
+  void join_averages(const PosedSurface& k, std::span<const double> begin, const PosedSurface& n,
+                     double way);
   void join_points(const PosedSurface& own, const PosedSurface& other);
   void recall(int level, double share);
   void find_give(int level, double share);
@@ -83,9 +88,11 @@ class SurfaceObstacle {
   MortarOptions options_;
   double reach_ = 0.0, travel_ = 0.0;  // [m] of a substep of no length; own way in this one
   EdgedSurface edges_, own_edges_;
+  Wedges wedges_, own_wedges_;
+  MeetingCorners corners_;
   NearSurface near_;
   std::vector<std::int32_t> needed_;    // points that are to be in it
-  double time_ = 0.0;                   // [s] that it was placed for
+  double time_ = 0.0, begin_ = 0.0;     // [s] that it was placed for; the substep's begin
   bool turned_ = false;                 // rows are of the partner's nodes
   bool chosen_ = false, held_ = false;  // in this substep; it pressed in the one before
   const Waveform* motion_ = nullptr;
@@ -100,11 +107,12 @@ class SurfaceObstacle {
   std::vector<std::size_t> zone_, zone_near_;  // values that give way, of the partner, of the near
   std::vector<int> in_zone_;                   // (near values) where in the zone; -1: they do not
   std::vector<double> free_, pose_;            // [m] (near points, dim)
+  std::vector<double> pose_before_;            // the same, when the substep began
   std::vector<double> given_, before_;  // [m] (values) displacements
   std::vector<double> slip_begin_;      // [m] (values of the partner)
   BoxTree tree_, own_tree_;             // the port's with the reach around its boxes
   std::vector<double> fitted_;          // [m] (near points, dim) pose of tree_; empty: of none
-  std::vector<FacetPair> pairs_;
+  std::vector<FacetPair> pairs_, averaged_;
   MortarBuffers buffers_;
   std::vector<std::int32_t> own_nodes_;  // where rows are of single points
   PointRowBuffers point_buffers_;

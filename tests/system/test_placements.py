@@ -142,6 +142,21 @@ class Placements(SystemTest):
         self.assertEqual(
             bits(self.run_in("one", TWO_BARS, "--set", "network.processes=1")), two)
 
+    def test_everything_that_rubs_with_two_coefficients_reaches_the_same_bits(self):
+        scene = self.folder / "everything.yaml"
+        text = CHAIN[:CHAIN.index("interfaces:")].replace("[0.01, 0.0]", "[0.01, 0.003]")
+        scene.write_text(
+            text + "contact: {everything: {friction: 0.1, static_friction: 0.2}}\n",
+            encoding="utf-8")
+        local = self.run_in("here", scene, "--local")
+        self.assertGreater(self.summary(local)["measures"]["contact.everything.dissipated"], 0.0)
+        for name, arguments in {"two": ["--set", "network.processes=2"],
+                                "three": [],
+                                "a group": ["--set", "bodies.a.launch.group=g",
+                                            "--set", "bodies.c.launch.group=g"]}.items():
+            with self.subTest(placement=name):
+                self.assertEqual(bits(self.run_in(name, scene, *arguments)), bits(local))
+
     def test_two_hundred_bodies_run_in_four_processes_and_end_them(self):
         scene = self.folder / "many.yaml"
         bodies = "".join(f"  b{i}: {{like: b0, initial: {{position: [{i}]}}}}\n"

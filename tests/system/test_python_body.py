@@ -115,6 +115,21 @@ class Motion(PythonTest):
         self.succeed(self.end(self.run_scene()))
         self.assertEqual(self.end(body).returncode, 0)
 
+    def test_a_group_lives_beside_it(self):
+        alone = self.body()
+        self.succeed(self.end(self.run_scene()))
+        self.end(alone)
+        hashes = self.summary(self.out)["body_hashes"]
+        copy = ("  copy: {like: bar, launch: {group: g}, "
+                "initial: {position: [-2.0], velocity: [0.0]}}\n  mass:\n")
+        scene = self.scene_with("  mass:\n", copy)
+        run, body = self.run_scene("--force", "--set", "bodies.bar.launch.group=g",
+                                   scene=scene), self.body()
+        self.succeed(self.end(run))
+        self.assertEqual(self.end(body).returncode, 0)
+        together = self.summary(self.out)["body_hashes"]
+        self.assertEqual({name: together[name] for name in hashes}, hashes)
+
     def test_the_program_can_be_spawned(self):
         program = self.folder / "program"
         program.write_text(f'#!/bin/sh\nexec {sys.executable} {PROGRAM} "$@"\n', encoding="utf-8")

@@ -1,0 +1,213 @@
+#include "surface/meeting_corners.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/index.hpp"
+#include "surface/clip.hpp"
+#include "surface/plane_facet.hpp"
+
+namespace abut {
+namespace {
+
+constexpr double degrees = std::numbers::pi / 180.0;
+/// Cosines: facets that lie along a plane, and those that are averaged over along a plane of N's.
+const double same = std::cos(10.0 * degrees), along = std::cos(35.0 * degrees);
+
+// Of a facet's size: planes that separate worse by less than `round` share the normal. Wedges that
+// overlap by more than `deep` are not of this side. Differences of `rounding` choose no plane.
+constexpr double round = 0.02, deep = 0.25, rounding = 1.0e-9;
+
+/// Of a facet: what covers less only touches it.
+constexpr double touching = 1.0e-6;
+
+/// Squared sine between edges that tell no plane: what runs along each other.
+constexpr double parallel = 0.01;
+
+double size_of(const PosedSurface& surface, const Wedge& wedge) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::int32_t f : wedge.facets) {
+    const Corners facet = corners(surface, f);
+    least = std::min(least, facet.count == 2 ? area(facet) : std::sqrt(area(facet)));
+  }
+  return least;
+}
+
+Eigen::Vector3d normal_of(const PosedSurface& surface, std::int32_t facet) {
+  return mean_normal(corners(surface, facet));
+}
+
+Eigen::Vector3d along_edge(const PosedSurface& surface, const std::array<std::int32_t, 2>& ends) {
+  return surface.point(ends[1]) - surface.point(ends[0]);
+}
+
+/// Whether facets cover each other, seen along the normal of the first, by more than rounding.
+bool cover(const Corners& one, const Corners& other) {
+  const AuxiliaryPlane plane = auxiliary_plane(one);
+  const PlaneFacet own = seen_in(plane, one), its = seen_in(plane, other);
+  const double least = touching * area(one);
+  if (one.count > 2) return signed_area(clip(its.polygon(), own.polygon())) > least;
+  const auto part = [](const PlaneFacet& f) {
+    return Interval{std::min(f.x[0].x(), f.x[1].x()), std::max(f.x[0].x(), f.x[1].x())};
+  };
+  return clip(part(own), part(its)).length() > least;
+}
+
+bool has(const Wedge& wedge, std::int32_t facet) {
+  return std::ranges::find(wedge.facets, facet) != wedge.facets.end();
+}
+
+}  // namespace
+
+void MeetingCorners::find(const CornerSurface& k, const CornerSurface& n,
+                          std::span<const FacetPair> pairs, const CornerOptions& options) {
+  verdicts_.clear();
+  dropped_.clear();
+  rows_.clear();
+  if (!k.wedges->any() || !n.wedges->any()) return;
+  k_ = k;
+  n_ = n;
+  options_ = options;
+  find_verdicts(pairs);
+  if (verdicts_.empty()) return;
+  crosses_ = std::ranges::any_of(verdicts_, &Verdict::crosses);
+  for (const FacetPair& pair : pairs)
+    if (is_dropped(pair)) dropped_.push_back(pair);
+}
+
+bool MeetingCorners::drops(FacetPair pair) const {
+  return std::ranges::binary_search(dropped_, pair);
+}
+
+/// Of all wedges of which facets are pairs.
+void MeetingCorners::find_verdicts(std::span<const FacetPair> pairs) {
+  for (const FacetPair& pair : pairs)
+    for (const std::int32_t one : k_.wedges->at(pair.k)) {
+      if (!has((*k_.wedges)[one], pair.k)) continue;
+      for (const std::int32_t two : n_.wedges->at(pair.n))
+        if (has((*n_.wedges)[two], pair.n)) verdicts_.push_back({.k = one, .n = two});
+    }
+  std::ranges::sort(verdicts_, {}, wedges);
+  const auto twice = std::ranges::unique(verdicts_, {}, wedges);
+  verdicts_.erase(twice.begin(), twice.end());
+  for (Verdict& verdict : verdicts_) judge(verdict);
+}
+
+/// One candidate; planes of a kind that are nearly the same count once. Edges that go on straight
+/// beyond their wedge do so by another length of it.
+void MeetingCorners::look_along(const Wedge& a, const Wedge& b, Plane plane) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const std::int32_t node : a.nodes)
+    low = std::min(low, plane.normal.dot(k_.before.point(node)));
+  for (const std::int32_t node : b.nodes)
+    high = std::max(high, plane.normal.dot(n_.before.point(node)));
+  const double up = plane.normal.dot(along_edge(k_.before, a.ends));
+  const double on = plane.normal.dot(along_edge(n_.before, b.ends));
+  low -= std::max({0.0, a.beyond[0] >= 0 ? up : 0.0, a.beyond[1] >= 0 ? -up : 0.0});
+  high += std::max({0.0, b.beyond[0] >= 0 ? -on : 0.0, b.beyond[1] >= 0 ? on : 0.0});
+  plane.apart = low - high;
+  for (Plane& known : planes_) {
+    if (known.kind != plane.kind || known.normal.dot(plane.normal) < same) continue;
+    if (plane.apart > known.apart + rounding * size_) known = plane;
+    return;
+  }
+  planes_.push_back(plane);
+}
+
+void MeetingCorners::look_across(const Wedge& a, const Wedge& b, const Ends& one, const Ends& two) {
+  const Eigen::Vector3d u = along_edge(k_.before, one), v = along_edge(n_.before, two);
+  const Eigen::Vector3d across = u.cross(v);
+  if (!(across.squaredNorm() > parallel * u.squaredNorm() * v.squaredNorm())) return;
+  for (const double sign : {1.0, -1.0})
+    look_along(a, b, {Kind::edges, -1, one, two, sign, sign * across.normalized(), 0.0});
+}
+
+Eigen::Vector3d MeetingCorners::normal_now(const Plane& plane) const {
+  if (plane.kind == Kind::n_plane) return normal_of(n_.now, plane.facet);
+  if (plane.kind == Kind::k_plane) return -normal_of(k_.now, plane.facet);
+  return plane.sign * along_edge(k_.now, plane.k).cross(along_edge(n_.now, plane.n)).normalized();
+}
+
+/// A plane of N's that separates nearly as well as the best, and along which facets of both cover
+/// each other; null: there is none.
+const MeetingCorners::Plane* MeetingCorners::joining(const Plane& best, const Wedge& a,
+                                                     const Wedge& b) const {
+  const auto lies_along = [&](const Plane& plane) {
+    return std::ranges::any_of(a.planes, [&](std::int32_t f) {
+      return -normal_of(k_.before, f).dot(plane.normal) >= along &&
+             std::ranges::any_of(b.planes, [&](std::int32_t g) {
+               return normal_of(n_.before, g).dot(plane.normal) >= same &&
+                      cover(corners(k_.now, f), corners(n_.now, g));
+             });
+    });
+  };
+  const Plane* most = nullptr;
+  for (const Plane& plane : planes_) {
+    if (plane.kind != Kind::n_plane || plane.apart < best.apart - round * size_) continue;
+    if ((most == nullptr || plane.apart > most->apart) && lies_along(plane)) most = &plane;
+  }
+  return most;
+}
+
+void MeetingCorners::judge(Verdict& verdict) {
+  const Wedge &a = (*k_.wedges)[verdict.k], &b = (*n_.wedges)[verdict.n];
+  size_ = std::min(size_of(k_.before, a), size_of(n_.before, b));
+  planes_.clear();
+  for (const std::int32_t f : b.planes)
+    look_along(a, b, {Kind::n_plane, f, {}, {}, 1.0, normal_of(n_.before, f), 0.0});
+  for (const std::int32_t f : a.planes)
+    look_along(a, b, {Kind::k_plane, f, {}, {}, 1.0, -normal_of(k_.before, f), 0.0});
+  for (const Ends& one : a.edges)
+    for (const Ends& two : b.edges) look_across(a, b, one, two);
+  const Plane& best = *std::ranges::max_element(planes_, [this](const Plane& p, const Plane& q) {
+    return p.apart + rounding * size_ < q.apart;
+  });
+  if (best.apart < -options_.way - deep * size_) return;
+  verdict.told = true;
+  const Plane* joined = joining(best, a, b);
+  verdict.joined = joined != nullptr;
+  verdict.normal = joined != nullptr ? joined->normal : best.normal;
+  if (verdict.joined || best.apart > reach()) return;
+  shared_.setZero();
+  for (const Plane& plane : planes_) {
+    const double share = 1.0 - (best.apart - plane.apart) / (round * size_);
+    if (share > 0.0 && &plane != &best) shared_ += share * normal_now(plane);
+  }
+  if (best.kind == Kind::n_plane) add_nodes(best, a, b);
+  if (best.kind == Kind::k_plane) add_nodes(best, b, a);
+  verdict.crosses = best.kind == Kind::edges && add_crossing(best, a, b);
+}
+
+/// Edges that cross tell of all facets around them. Else a pair stays where a plane that joins its
+/// wedges lies along it, and is dropped where there is another: by wedges that hold it or, where it
+/// is steep, that it touches.
+bool MeetingCorners::is_dropped(FacetPair pair) const {
+  const Eigen::Vector3d out_k = normal_of(k_.now, pair.k), out_n = normal_of(n_.now, pair.n);
+  if (out_k.dot(out_n) > -options_.facing) return false;  // it is none
+  const bool faced = out_k.dot(out_n) <= -same;
+  const auto touches = [&pair, this](const Verdict& v) {
+    return std::ranges::binary_search(k_.wedges->at(pair.k), v.k) &&
+           std::ranges::binary_search(n_.wedges->at(pair.n), v.n);
+  };
+  bool stays = false, other = false;
+  const std::span<const std::int32_t> ones =
+      crosses_ ? k_.wedges->around(pair.k) : k_.wedges->at(pair.k);
+  const std::span<const std::int32_t> twos =
+      crosses_ ? n_.wedges->around(pair.n) : n_.wedges->at(pair.n);
+  for (const std::int32_t one : ones)
+    for (const std::int32_t two : twos) {
+      const bool holds = has((*k_.wedges)[one], pair.k) && has((*n_.wedges)[two], pair.n);
+      if (faced && !holds) continue;
+      const auto at = std::ranges::lower_bound(verdicts_, std::pair(one, two), {}, wedges);
+      if (at == verdicts_.end() || wedges(*at) != std::pair(one, two) || !at->told) continue;
+      if (at->crosses) return true;
+      if (!touches(*at)) continue;
+      const bool fits = out_n.dot(at->normal) >= along && -out_k.dot(at->normal) >= along;
+      (at->joined && fits ? stays : other) = true;
+    }
+  return other && !stays;
+}
+
+}  // namespace abut

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "surface/boxes.hpp"
+#include "surface/posed_surface.hpp"
+#include "surface/surface_rows.hpp"
+#include "surface/wedges.hpp"
+
+namespace abut {
+
+struct CornerOptions {
+  double facing = 0.5;  // of pairs that a mortar method joins (MortarOptions)
+  double way = 0.0;     // [m] that the two have come closer at most, from `before` on
+};
+
+/// A surface in its pose and where it was when it was not yet pressed through the other.
+struct CornerSurface {
+  PosedSurface now, before;
+  const Wedges* wedges = nullptr;
+};
+
+/// Where sharp edges or corners of two surfaces meet, averages over facets mean nothing: a facet
+/// sees the plane of another beyond that one's edge. What keeps two wedges apart is one plane, of
+/// their facets or along both edges: that which separated them best before,
+///   s(n) = min n.x over the wedge of K - max n.y over that of N.
+/// Where facets of both lie along it, they are joined as elsewhere. Else their pairs are dropped,
+/// and rows of single points hold the two: nodes of one edge before a facet beside the other, or
+/// an edge across an edge. Planes that separate nearly as well share the normal, so that it turns
+/// steadily around a corner.
+class MeetingCorners {
+ public:
+  /// `pairs`: candidates, ordered. What the surfaces view must live until join().
+  void find(const CornerSurface& k, const CornerSurface& n, std::span<const FacetPair> pairs,
+            const CornerOptions& options);
+  bool drops(FacetPair pair) const;
+  int count() const { return static_cast<int>(rows_.size()); }
+  /// Appends the rows, in the place of those of their nodes.
+  void join(SurfaceRows& rows);
+
+ private:
+  enum class Kind { n_plane, k_plane, edges };
+  using Ends = std::array<std::int32_t, 2>;
+  struct Plane {
+    Kind kind = Kind::n_plane;
+    std::int32_t facet = -1;  // whose plane it is
+    Ends k{}, n{};            // edges that it lies along
+    double sign = 1.0;        // of the normal
+    Eigen::Vector3d normal;   // out of N into K, before
+    double apart = 0.0;       // [m] s of it
+  };
+  struct Verdict {
+    std::int32_t k = 0, n = 0;  // wedges
+    bool told = false;          // a plane that means something was found
+    bool joined = false;        // facets of both lie along it
+    bool crosses = false;       // edge across edge, near
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  };
+  struct Side {  // of a row: nodes and their shares
+    int count = 0;
+    std::array<std::int32_t, 4> nodes{};
+    std::array<double, 4> shares{};
+  };
+  struct Row {
+    Kind kind = Kind::n_plane;
+    Side k, n;
+    Eigen::Vector3d normal;
+    double apart = 0.0;
+  };
+
+  static std::pair<std::int32_t, std::int32_t> wedges(const Verdict& v) { return {v.k, v.n}; }
+  /// [m] What is farther apart has no row yet.
+  double reach() const;
+  void find_verdicts(std::span<const FacetPair> pairs);
+  void judge(Verdict& verdict);
+  bool is_dropped(FacetPair pair) const;
+  void look_along(const Wedge& a, const Wedge& b, Plane plane);
+  void look_across(const Wedge& a, const Wedge& b, const Ends& one, const Ends& two);
+  Eigen::Vector3d normal_now(const Plane& plane) const;
+  const Plane* joining(const Plane& best, const Wedge& a, const Wedge& b) const;
+  void add_nodes(const Plane& best, const Wedge& of_nodes, const Wedge& of_facets);
+  bool add_crossing(const Plane& best, const Wedge& a, const Wedge& b);
+  bool add(const Row& row);
+  bool is_again(const Row& known, const Row& row) const;
+  bool has_row(const SparseRows& of, std::size_t r, Kind kind) const;
+  double gap(const Row& row) const;
+  static Eigen::Vector3d place(const PosedSurface& surface, const Side& side);
+  static void append(Side side, SparseRows& to);
+
+  CornerSurface k_, n_;
+  CornerOptions options_;
+  double size_ = 0.0;  // [m] of the edges looked at
+  std::vector<Plane> planes_;
+  Eigen::Vector3d shared_;  // normals of planes that separate nearly as well as the best
+  std::vector<Verdict> verdicts_;
+  bool crosses_ = false;  // one of them does
+  std::vector<FacetPair> dropped_;
+  std::vector<Row> rows_;
+  SurfaceRows others_;
+};
+
+}  // namespace abut

