@@ -107,6 +107,7 @@ void validate_expectations(const Scene& scene, const std::vector<const Descripti
   }
   if (scene.everything() != nullptr) scope.interfaces.emplace_back(everything_name);
   scope.filtered = scene.output.force_filter.has_value();
+  scope.steady = scene.output.steady_after.has_value();
   scope.exact = exact_interfaces(scene);
   scope.told = told_measures(bodies);
   InputErrors errors;
@@ -272,7 +273,7 @@ int run_verb(const RunCommand& command) {
   held.clear();
   write_whole(directory / "scene.resolved.yaml", resolved_text(scene, document));
   const ClosedForm* form = valid.form ? &*valid.form : nullptr;
-  MeasureRecorder recorder(form, scene.output.force_filter);
+  MeasureRecorder recorder(form, scene.output.force_filter, scene.output.steady_after);
   CsvHistory history(directory, form);
   EventLog events(directory);
   Summary summary(directory,

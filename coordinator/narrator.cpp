@@ -1,5 +1,7 @@
 #include "coordinator/narrator.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "base/index.hpp"
@@ -88,14 +90,14 @@ std::string Narrator::words_of(const EnergyGuard& guard) const {
   const std::string whose =
       guard.culprit() < 0 ? ""
                           : fmt::format(" of body '{}'", bodies_.describe(guard.culprit()).name);
-  return growth < 0.0 ? fmt::format(
-                            "energy{} has fallen by {:.2g} % of the most there was in motion, and "
-                            "nothing in this scene takes any; give smaller steps",
-                            whose, -100.0 * growth)
-                      : fmt::format(
-                            "energy{} has grown by {:.2g} % of the most there was in motion, and "
-                            "contact makes none; give smaller steps, or contact_layer: massless",
-                            whose, 100.0 * growth);
+  bool surfaces = false;  // those that are round move by facets, METHOD [M.103]
+  for (int b = 0; b < bodies_.count(); ++b) surfaces = surfaces || bodies_.describe(b).dim > 1;
+  return fmt::format(
+      "energy{} has {} by {:.2g} % of the most there was in motion, and {}; give smaller steps{}{}",
+      whose, growth < 0.0 ? "fallen" : "grown", 100.0 * std::abs(growth),
+      growth < 0.0 ? "nothing in this scene takes any" : "contact makes none",
+      surfaces ? ", a finer mesh of round surfaces" : "",
+      growth < 0.0 ? "" : ", or contact_layer: massless");
 }
 
 void Narrator::energy(const EnergyGuard& guard, double time) {

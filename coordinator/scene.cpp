@@ -147,6 +147,9 @@ void OutputSpec::fields(Fields& f) {
   f.choice("force_filter", force_filter,
            "filter behind which the largest contact force is the measure "
            "contact.INTERFACE.force_peak_filtered");
+  f.optional("steady_after", steady_after, "s",
+             "time from which contact forces should not change: how much they do is the measure "
+             "contact.INTERFACE.force_ripple");
 }
 
 void NetworkSpec::fields(Fields& f) {
@@ -266,6 +269,14 @@ void validate_interface(const Scene& scene, const InterfaceSpec& interface,
   if (const auto* d = std::get_if<DirichletNeumannTransmission>(&interface.transmission))
     require_side(interface, d->dirichlet, path + ".transmission.dirichlet_neumann.dirichlet",
                  document);
+}
+
+void validate_steady_after(const Scene& scene, const Document& document) {
+  const std::optional<double> after = scene.output.steady_after;
+  if (!after || (!scene.interfaces.empty() && *after < scene.time.end)) return;
+  throw InputError("has no effect: no contact force comes after it",
+                   document.where("output.steady_after"),
+                   "Give a time before time.end in a scene with interfaces, or leave it out.");
 }
 
 /// A filter that would see nothing of the run, or would take the run's time many times over.
@@ -447,6 +458,7 @@ void validate(const Scene& scene, const Document& document) {
     errors.gather([&] { validate_interface(scene, entry.second, document); });
   errors.gather([&] { validate_pairs(scene, document); });
   errors.gather([&] { validate_force_filter(scene, document); });
+  errors.gather([&] { validate_steady_after(scene, document); });
   if (scene.meta.closed_form) {
     for (const std::string& name : exact_interfaces(scene))
       if (!has_name(scene.interfaces, name))

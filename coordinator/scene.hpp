@@ -110,6 +110,7 @@ struct OutputSpec {
   int records_per_window = 1;  // rows of history.csv per controller window
   std::optional<FieldOutputSpec> field_output;  // key fields; absent: no body is asked
   std::optional<ForceFilterSpec> force_filter;  // absent: no measure of filtered forces
+  std::optional<double> steady_after;           // [s] absent: no measure of ripple
   void fields(Fields& f);
 };
 

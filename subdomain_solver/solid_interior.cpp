@@ -350,7 +350,7 @@ std::vector<double> SolidInterior::measure() {
         parts_.scheme.integrator->measure(state_.motion),
         validity_measures(*parts_.model, parts_.deforms, u_, state_.motion.stored, state_.turned)})
     out.insert(out.end(), more.begin(), more.end());
-  touch_measures(touched_, state_.port_force, places_, out);
+  if (contact_) touch_measures(touched_, *contact_, state_.port_force, places_, out);
   if (crossings_) out.push_back(state_.crossed);
   return out;
 }

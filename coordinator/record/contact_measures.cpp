@@ -26,7 +26,8 @@ double together(const RunStart& start, const InterfaceInfo& interface) {
 
 ContactMeasures::ContactMeasures(const RunStart& start, int interface,
                                  std::optional<ContactErrors> errors,
-                                 std::unique_ptr<ForceFilter> filter)
+                                 std::unique_ptr<ForceFilter> filter,
+                                 std::optional<double> steady_after)
     : start_(start),
       index_(interface),
       info_(start.interfaces[interface]),
@@ -36,6 +37,7 @@ ContactMeasures::ContactMeasures(const RunStart& start, int interface,
       gap_min_(std::numeric_limits<double>::infinity()),
       errors_(std::move(errors)),
       filter_(std::move(filter)) {
+  if (steady_after) ripple_.emplace(*steady_after);
   if (!info_.tied) return;
   times_.join(start.begin);
   velocity_.join(start.begin);
@@ -118,6 +120,7 @@ void ContactMeasures::read_force(const Waveform& trace, const PortReader& reader
     impulse_ += 0.5 * (before + now) * (to - from);
     peak_ = std::max(peak_, now);
     if (filter_) filter_->add(from, to, before, now);
+    if (ripple_) ripple_->add(from, to, before, now);
     if (errors_) {
       errors_->add_force(from, to, before, now);
       errors_->follow(nodal ? to : 0.5 * (from + to), now);
@@ -126,10 +129,12 @@ void ContactMeasures::read_force(const Waveform& trace, const PortReader& reader
   }
 }
 
-/// A filter remembers: it is told of times without force as well.
+/// A filter remembers, and a force that goes away ripples: both are told of times without force.
 void ContactMeasures::read_rest(const Waveform& trace) {
-  for (std::size_t i = 1; filter_ && i < trace.size(); ++i)
-    filter_->add(trace.time[i - 1], trace.time[i], 0.0, 0.0);
+  for (std::size_t i = 1; i < trace.size(); ++i) {
+    if (filter_) filter_->add(trace.time[i - 1], trace.time[i], 0.0, 0.0);
+    if (ripple_) ripple_->add(trace.time[i - 1], trace.time[i], 0.0, 0.0);
+  }
 }
 
 void ContactMeasures::write(double run_end, Measures& out) {
@@ -159,6 +164,11 @@ void ContactMeasures::write_force(double closed, Measures& out) {
   out.set(name("impulse"), impulse_);
   out.set(name("dissipated"), dissipated_);
   if (filter_) out.set(name("force_peak_filtered"), filter_->peak());
+  if (ripple_ && std::isfinite(ripple_->value())) {
+    out.set(name("force_ripple"), ripple_->value());
+  } else if (ripple_) {
+    out.none(name("force_ripple"), "no force was told after output.steady_after");
+  }
   const std::string never = "the interface never closed";
   if (closed > 0.0) {
     out.set(name("force_mean"), impulse_ / closed);

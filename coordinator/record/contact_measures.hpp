@@ -9,6 +9,7 @@
 #include "coordinator/record/contact_errors.hpp"
 #include "coordinator/record/contact_times.hpp"
 #include "coordinator/record/force_filter.hpp"
+#include "coordinator/record/force_ripple.hpp"
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/port_reader.hpp"
@@ -20,9 +21,9 @@ namespace abut {
 /// traces: how windows lie, and in which of them the interface was iterated, makes no difference.
 class ContactMeasures {
  public:
-  /// `start` must outlive this; `filter` may be null.
+  /// `start` must outlive this; `filter` may be null; `steady_after` [s]: from when ripple counts.
   ContactMeasures(const RunStart& start, int interface, std::optional<ContactErrors> errors,
-                  std::unique_ptr<ForceFilter> filter);
+                  std::unique_ptr<ForceFilter> filter, std::optional<double> steady_after);
 
   void on_window(const WindowReport& report);
   void on_event(const RunEvent& event);
@@ -56,6 +57,7 @@ class ContactMeasures {
   double gap_min_;        // [m]
   std::optional<ContactErrors> errors_;
   std::unique_ptr<ForceFilter> filter_;
+  std::optional<ForceRipple> ripple_;
 };
 
 }  // namespace abut

@@ -23,6 +23,11 @@ bool needs_filter(const std::string& measure, MeasureScope scope) {
   return contains(known_measures(scope), measure);
 }
 
+bool needs_time(const std::string& measure, MeasureScope scope) {
+  scope.steady = true;
+  return contains(known_measures(scope), measure);
+}
+
 bool needs_closed_form(const std::string& measure, MeasureScope scope) {
   scope.exact = scope.interfaces;
   return contains(known_measures(scope), measure);
@@ -79,6 +84,7 @@ std::vector<std::string> known_measures(const MeasureScope& scope) {
           "velocity_rms", "gap_min", "dissipated", "jump_max"})
       names.push_back(fmt::format("contact.{}.{}", interface, what));
     if (scope.filtered) names.push_back(fmt::format("contact.{}.force_peak_filtered", interface));
+    if (scope.steady) names.push_back(fmt::format("contact.{}.force_ripple", interface));
   }
   for (const std::string& interface : scope.exact)
     for (const char* what : contact_errors)
@@ -114,6 +120,12 @@ void require_measure(const std::string& measure, const MeasureScope& scope) {
         fmt::format("measure '{}' is of filtered forces, and no filter is named", measure),
         "meta.expect",
         "Name output.force_filter, for example {cfc: {class: 600}}, or leave the expectation out.");
+  if (needs_time(measure, scope))
+    throw InputError(
+        fmt::format("measure '{}' is of forces that should not change, and no time is named",
+                    measure),
+        "meta.expect",
+        "Name output.steady_after, the time from which they count, or leave the expectation out.");
   std::vector<std::string> near = known;
   std::stable_sort(near.begin(), near.end(),
                    [&measure](const std::string& a, const std::string& b) {

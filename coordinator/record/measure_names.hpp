@@ -22,6 +22,7 @@ struct MeasureScope {
   std::vector<std::string> ports;  // "body.port" of those that interfaces join
   std::vector<std::string> interfaces;
   bool filtered = false;           // the scene names a filter of contact forces
+  bool steady = false;             // and a time after which they should not change
   std::vector<std::string> exact;  // the interfaces that a closed form describes
   std::vector<std::string> told;   // "body.<name>.<measure>" of Description::measures
 };

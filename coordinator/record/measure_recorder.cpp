@@ -19,6 +19,7 @@ void MeasureRecorder::on_start(const RunStart& start) {
   measures_.scope =
       measure_scope(start_, form_ != nullptr ? form_->interfaces : std::vector<std::string>());
   measures_.scope.filtered = filter_.has_value();
+  measures_.scope.steady = steady_after_.has_value();
   for (std::size_t i = 0; i < start_.interfaces.size(); ++i) {
     const InterfaceInfo& info = start_.interfaces[i];
     if (info.many) {
@@ -29,7 +30,7 @@ void MeasureRecorder::on_start(const RunStart& start) {
     std::optional<ContactErrors> errors;
     if (exact >= 0) errors.emplace(form_->row, form_->row.contacts()[index(exact)]);
     contacts_.emplace_back(start_, static_cast<int>(i), std::move(errors),
-                           filter_ ? make_force_filter(*filter_) : nullptr);
+                           filter_ ? make_force_filter(*filter_) : nullptr, steady_after_);
     for (const int side : {0, 1}) {
       const int dim = start_.bodies[info.body[side]]->ports[info.port[side]].geometry.dim;
       positions_.push_back(

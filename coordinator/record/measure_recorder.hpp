@@ -19,9 +19,11 @@ namespace abut {
 /// after on_end, so it is told of the end before those who read it.
 class MeasureRecorder : public Observer {
  public:
-  /// `form` may be null; else it must outlive this. `filter`: of contact forces.
-  explicit MeasureRecorder(const ClosedForm* form, std::optional<ForceFilterSpec> filter = {})
-      : form_(form), filter_(filter) {}
+  /// `form` may be null; else it must outlive this. `filter`: of contact forces; `steady_after`:
+  /// [s] from when their ripple counts.
+  explicit MeasureRecorder(const ClosedForm* form, std::optional<ForceFilterSpec> filter = {},
+                           std::optional<double> steady_after = {})
+      : form_(form), filter_(filter), steady_after_(steady_after) {}
 
   void on_start(const RunStart& start) override;
   void on_window(const WindowReport& report) override;
@@ -46,6 +48,7 @@ class MeasureRecorder : public Observer {
 
   const ClosedForm* form_;
   std::optional<ForceFilterSpec> filter_;
+  std::optional<double> steady_after_;
   RunStart start_;
   std::vector<ContactMeasures> contacts_;
   std::vector<ManyContacts> many_;

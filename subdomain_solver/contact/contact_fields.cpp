@@ -44,17 +44,24 @@ Touch touch_of(const TouchedSurface& s, std::span<const double> forces,
 std::vector<std::string> touch_measure_names(const std::vector<TouchedSurface>& surfaces) {
   std::vector<std::string> names;
   for (const TouchedSurface& s : surfaces)
-    for (const char* what : {".contact.pressure_max", ".contact.area", ".contact.spread"})
+    for (const char* what :
+         {".contact.pressure_max", ".contact.area", ".contact.stick_area", ".contact.spread"})
       names.push_back(s.name + what);
   return names;
 }
 
-void touch_measures(const std::vector<TouchedSurface>& surfaces, std::span<const double> forces,
-                    std::span<const double> places, std::vector<double>& out) {
+void touch_measures(const std::vector<TouchedSurface>& surfaces, const PortContact& contact,
+                    std::span<const double> forces, std::span<const double> places,
+                    std::vector<double>& out) {
+  std::vector<bool> held;  // (points)
   for (const TouchedSurface& s : surfaces) {
     const Touch t = touch_of(s, forces, places);
     const std::size_t dim = index(s.geometry->dim);
-    double area = 0.0, force = 0.0, square = 0.0;
+    double area = 0.0, stick_area = 0.0, force = 0.0, square = 0.0;
+    held.assign(t.pressure.size(), false);
+    contact.see_gaps(s.port, [&held](std::size_t point, double, bool sticks) {
+      if (sticks) held[point] = true;
+    });
     std::vector<double> centre(dim, 0.0);
     const auto each = [&](const auto& visit) {
       for (std::size_t a = 0; a < t.pressure.size(); ++a)
@@ -62,6 +69,7 @@ void touch_measures(const std::vector<TouchedSurface>& surfaces, std::span<const
     };
     each([&](std::size_t a, double part) {
       area += t.weights[a];
+      if (held[a]) stick_area += t.weights[a];
       force += part;
       for (std::size_t i = s.geometry->round ? 1 : 0; i < dim; ++i)
         centre[i] += part * t.pose[a * dim + i];  // that of rings is on the axis
@@ -72,7 +80,8 @@ void touch_measures(const std::vector<TouchedSurface>& surfaces, std::span<const
         square += part * away * away;
       }
     });
-    out.insert(out.end(), {t.most, area, force > 0.0 ? std::sqrt(square / force) : 0.0});
+    out.insert(out.end(),
+               {t.most, area, stick_area, force > 0.0 ? std::sqrt(square / force) : 0.0});
   }
 }
 

@@ -17,12 +17,14 @@ struct TouchedSurface : PortSurface {
 };
 
 /// What is told of every such port: contact.pressure_max [Pa], contact.area [m^2] where it is
-/// pressed, by the weights of its nodes; contact.spread [m], the root of the mean square distance
-/// of the pressure from its centre.
+/// pressed, by the weights of its nodes; contact.stick_area [m^2] of these, where friction holds it
+/// (of the side that finds contact; else 0); contact.spread [m], the root of the mean square
+/// distance of the pressure from its centre.
 std::vector<std::string> touch_measure_names(const std::vector<TouchedSurface>& surfaces);
 /// Their values, of forces [N] and displacements [m] of the ports (port values).
-void touch_measures(const std::vector<TouchedSurface>& surfaces, std::span<const double> forces,
-                    std::span<const double> places, std::vector<double>& out);
+void touch_measures(const std::vector<TouchedSurface>& surfaces, const PortContact& contact,
+                    std::span<const double> forces, std::span<const double> places,
+                    std::vector<double>& out);
 
 /// At the nodes of the mesh: contact_pressure [Pa], contact_gap [m] of the side that finds contact
 /// (0 where it finds nothing near), contact_status (0 nothing near, 1 near, 2 pressed, 3 pressed

@@ -8,6 +8,7 @@
 
 #include "coordinator/energy_guard.hpp"
 #include "tests/support/runs.hpp"
+#include "tests/support/solid_scenes.hpp"
 
 namespace abut {
 namespace {
@@ -128,6 +129,30 @@ TEST(EnergyGuard, FailsARunThatGains) {
   EXPECT_NE(r->events.back().text.find("energy has grown"), std::string::npos);
   EXPECT_NE(r->events.back().text.find("schwarz.energy_guard"), std::string::npos);
   EXPECT_LT(r->energy_error(), 0.05) << "it ends soon after the bound is passed";
+}
+
+/// What says the remedy in a failure: a finer mesh where surfaces may be round, not to bars.
+TEST(EnergyGuard, NamesTheRemedyOfWhatGains) {
+  const auto words = [](const std::unique_ptr<RunResult>& r) {
+    EXPECT_EQ(r->end.status, "failed");
+    return r->events.empty() ? std::string() : r->events.back().text;
+  };
+  EXPECT_EQ(words(run(gaining())).find("round surfaces"), std::string::npos);
+  // Octagons whose corners dig in: the guard's bound is below what the first contact leaves.
+  const auto disk = [](const char* name, double x, double v) {
+    return SolidText{.name = name,
+                     .mesh = "disk: {radius: 0.5, core: 2, layers: 1}",
+                     .material = unit_law("linear_elastic", 0.3),
+                     .integrator = "central_difference: {step: 0.02}",
+                     .position = {x, x < 0.0 ? 0.1 : 0.0},
+                     .velocity = {v},
+                     .port = "skin",
+                     .side = "mantle"};
+  };
+  const std::string told = words(run_solids(
+      8.0, 0.1, {disk("left", -0.52, 0.05), disk("right", 0.52, -0.05)},
+      touching("impact", "left.skin", "right.skin") + "schwarz: {energy_guard: 1.0e-7}\n"));
+  EXPECT_NE(told.find("smaller steps, a finer mesh of round surfaces"), std::string::npos) << told;
 }
 
 TEST(EnergyGuard, IsSetByItsKey) {

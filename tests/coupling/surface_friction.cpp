@@ -70,11 +70,13 @@ std::vector<Pair> pairs() {
 
 /// Bars of a length of 1 hit each other with their ends, which slide past each other.
 std::unique_ptr<RunResult> impact(const Pair& pair, double along, const std::string& friction) {
-  const auto bar = [&pair, along](const std::string& name, int across, double way) {
+  // In space as few cells across as do not match; a face that yields leans by its cells.
+  const int less = pair.dim == 3 && !pair.material.starts_with("j2") ? 1 : 0;
+  const auto bar = [&pair, along, less](const std::string& name, int across, double way) {
     return SolidText{
         .name = name,
         .dim = pair.dim,
-        .mesh = bar_mesh(pair.dim, across),
+        .mesh = bar_mesh(pair.dim, across - less),
         .material = way < 0.0 && pair.material.starts_with("j2") ? unit_law("linear_elastic", 0.25)
                                                                  : pair.material,
         .integrator = way > 0.0 ? pair.left : pair.right,

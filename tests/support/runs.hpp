@@ -154,7 +154,8 @@ inline std::unique_ptr<RunResult> run_document(const Document& document) {
   validate_bodies(scene, descriptions, document);
   const std::optional<ClosedForm> form = make_closed_form(scene, document);
   std::unique_ptr<RunResult> result = std::make_unique<RunResult>();
-  MeasureRecorder recorder(form ? &*form : nullptr, scene.output.force_filter);
+  MeasureRecorder recorder(form ? &*form : nullptr, scene.output.force_filter,
+                           scene.output.steady_after);
   Controller(scene, pointers, {&recorder, result.get()}).run();
   result->measures = recorder.measures();
   return result;

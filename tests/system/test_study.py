@@ -176,6 +176,22 @@ class Studies(SystemTest):
         self.assertEqual(len(before), 4)  # the first two values of both knobs
         self.assertEqual(len(self.stamps()), 8)
 
+    def test_another_file_that_the_scene_names_is_another_run(self):
+        scene = SCENE.replace("  left:\n", "  left:\n    copies: {table: {file: 'places a.csv'}}\n")
+        scene = scene.replace("left.tip", "left_1.tip")
+        study = ("title: A table\nbase: scene.yaml\n"
+                 "knobs: {bodies.left.copies.table.file: ['places a.csv', places_b.csv]}\n"
+                 "errors: {mass: windows}\n")
+        path = write(self.folder / "s", study, scene)
+        first, second = path.with_name("places a.csv"), path.with_name("places_b.csv")
+        runs = [(0.0, 0.0, 2, "both are new"), (0.0, 0.0, 2, "nothing has changed"),
+                (0.0, -1.0, 3, "what a setting names"), (-1.0, -1.0, 5, "what the scene names")]
+        for one, other, count, what in runs:
+            for table, x in ((first, one), (second, other)):
+                table.write_text(f"x\n{x}\n", encoding="utf-8")
+            self.succeed(self.abut("study", path, "--out", self.out))
+            self.assertEqual(len(self.stamps()), count, what)
+
     def test_interrupted_study_goes_on_where_it_was(self):
         slow = STUDY.replace("5.0e-6, 2.5e-6, 1e-6", "5.0e-8, 2.0e-8, 1.0e-8")
         path = write(self.folder / "s", slow)

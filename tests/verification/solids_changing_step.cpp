@@ -192,7 +192,8 @@ TEST(StableSteps, AreWholeWhereOnlyTheBoundIsAboveTheLimit) {
     for (double& v : solid.motion.v) v = 1.0e-4 * draw.between(-1.0, 1.0);
     const double limit = stable_step(solid.model);
     const double step = 0.99 * limit;
-    StableSteps steps(solid.problem, std::make_unique<HighestFrequency>(solid.model),
+    StableSteps steps(std::make_unique<ExplicitDynamics>(solid.problem),
+                      std::make_unique<HighestFrequency>(solid.model),
                       {step, limit, clamp});
     ASSERT_FALSE(steps.begin(solid.motion, 0.0));
     for (int k = 0; k < 1000; ++k) ASSERT_FALSE(steps.step(solid.motion, k * step, step));

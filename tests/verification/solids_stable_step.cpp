@@ -67,14 +67,16 @@ std::vector<Case> cases() {
 
 class StableStepOf : public testing::TestWithParam<Case> {};
 
-TEST_P(StableStepOf, BoundsAHundredThousandSteps) {
+/// In ten thousand steps a mode that is above the limit by 1e-6 of it grows a million times: one
+/// that does not is below by all that the factor leaves.
+TEST_P(StableStepOf, BoundsTenThousandSteps) {
   const Case& c = GetParam();
   FeModel model(slender_mesh(c.element, 2, c.aspect),
                 std::make_unique<LinearElastic>(isotropic(1.0, 0.3), 1.0),
                 {Plane::strain, c.formulation});
   // At omega dt/2 = 0.99 the conserved form of the energy holds 1 - 0.99^2 = 1/50 of the highest
   // mode's: no mode can show more than 50 times what it began with.
-  EXPECT_LT(growth(model, 0.99 * stable_step(model), 100'000), 51.0);
+  EXPECT_LT(growth(model, 0.99 * stable_step(model), 10'000), 51.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, StableStepOf, testing::ValuesIn(cases()));

@@ -1,6 +1,7 @@
 """Runs of a study: each in a folder of its own, kept when it is done, several at once."""
 
 import concurrent.futures
+import functools
 import hashlib
 import json
 import re
@@ -29,8 +30,21 @@ def digest(*parts: object) -> str:
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:16]
 
 
+@functools.cache  # what a study begins with holds for all its runs
 def digest_of_file(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
+
+
+NAMED_FILE = re.compile(r"""\bfile: *("[^"]*"|'[^']*'|[^\s,{}\[\]"'#]+)""")
+
+
+def files_of(point: Point) -> list[Path]:
+    """Meshes and tables that its scene and its settings name, relative to the scene."""
+    texts = [point.scene.read_text(encoding="utf-8")]
+    texts += [f"{key.rsplit('.', 1)[-1]}: {flow_text(value)}"
+              for key, value in point.settings.items()]
+    names = {name.strip("\"'") for text in texts for name in NAMED_FILE.findall(text)}
+    return [point.scene.parent / name for name in sorted(names)]
 
 
 class Progress:
@@ -80,7 +94,8 @@ class Runner:
 
     def identity(self, point: Point) -> str:
         return digest(point.scene.read_text(encoding="utf-8"), list(point.settings.items()),
-                      self.study.placement, self.programs)
+                      self.study.placement, self.programs,
+                      [digest_of_file(path) for path in files_of(point)])
 
     def definition(self, point: Point) -> str:
         """Of what is taken from tables that may be gone afterwards."""
