@@ -25,6 +25,7 @@
 #include "subdomain_solver/fe/stable_step.hpp"
 #include "subdomain_solver/materials/j2_plasticity.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
+#include "subdomain_solver/time/explicit_dynamics.hpp"
 #include "subdomain_solver/time/stable_steps.hpp"
 
 namespace abut {
@@ -143,7 +144,8 @@ void run_deforming(int edge, double distortion, int steps) {
   double bounds = 0.0;
   int count = 0;
   const double limit = stable_step(model), speed = 0.25 * std::sqrt(rubber.p_wave() / 1000.0);
-  StableSteps scheme(problem, std::make_unique<TimedWatch>(model, bounds, count),
+  StableSteps scheme(std::make_unique<ExplicitDynamics>(problem),
+                     std::make_unique<TimedWatch>(model, bounds, count),
                      {0.95 * limit, limit, true});
   Motion motion;
   motion.q.assign(index(model.dofs()), 0.0);
