@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <limits>
+
+#include "base/index.hpp"
+#include "subdomain_solver/body.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Of a port's values, those of the points that are listed; all, where none is.
+void append(std::span<const double> port, const std::vector<std::int32_t>& points, std::size_t dim,
+            std::vector<double>& to) {
+  if (points.empty()) to.insert(to.end(), port.begin(), port.end());
+  for (const std::int32_t point : points) {
+    const std::span<const double> one = port.subspan(index(point) * dim, dim);
+    to.insert(to.end(), one.begin(), one.end());
+  }
+}
+
+/// A force on some points as one on more of them; empty: on all, which are `width` values.
+void list(Waveform& force, const std::vector<std::int32_t>& points, int width, int dim) {
+  const Waveform before = force;
+  force.points = points;
+  force.width = points.empty() ? width : static_cast<int>(points.size()) * dim;
+  force.f.assign(force.time.size() * index(force.width), 0.0);
+  for (std::size_t k = 0; k < before.f.size(); ++k) {
+    const std::size_t w = index(before.width), n = index(dim), value = k % w;
+    const std::int32_t point = before.points[value / n];
+    const auto now =
+        points.empty() ? point : std::ranges::lower_bound(points, point) - points.begin();
+    force.f[k / w * index(force.width) + index(now) * n + value % n] = before.f[k];
+  }
+}
+
+}  // namespace
+
+void Body::push_trace(const Watched& port, double time) const {
+  const Want& want = *port.want;
+  Waveform& trace = port.reply->trace;
+  const std::size_t first = port.first;
+  trace.time.push_back(time);
+  if (port.width == 1 && want.points.empty()) {  // the end of a bar, whose substeps are short
+    if (want.u) trace.u.push_back(seen_->u[first]);
+    if (want.v) trace.v.push_back(seen_->v[first]);
+    if (want.a) trace.a.push_back(seen_->a[first]);
+    if (want.f) trace.f.push_back(seen_->f[first]);
+    return;
+  }
+  const auto push = [&](bool wanted, const std::vector<double>& from, std::vector<double>& to) {
+    const std::span<const double> own = std::span(from).subspan(first, port.width);
+    if (wanted) append(own, want.points, index(port.geometry->dim), to);
+  };
+  push(want.u, seen_->u, trace.u);
+  push(want.v, seen_->v, trace.v);
+  push(want.a, seen_->a, trace.a);
+  push(want.f, seen_->f, trace.f);
+}
+
+void Body::push_reactions(std::size_t p, double time) const {
+  const Watched& port = ports_[p];
+  for (std::size_t k = 0; k < port.reply->reactions.size(); ++k) {
+    if ((*port.obstacles)[k].empty()) continue;
+    Waveform& force = port.reply->reactions[k].force;
+    const std::vector<std::int32_t>* points = interior_->reacting(p, k);
+    if (points != nullptr && (force.time.empty() || force.points != *points))
+      list(force, *points, (*port.obstacles)[k].motion.width, port.geometry->dim);
+    force.time.push_back(time);
+    interior_->react(p, k, force.f);
+  }
+}
+
+void Body::begin_sweep() {
+  for (Watched& port : ports_) {
+    const std::size_t dim = index(port.geometry->dim);
+    port.lower.assign(dim, std::numeric_limits<double>::infinity());
+    port.upper.assign(dim, -std::numeric_limits<double>::infinity());
+  }
+  widen_sweep();
+}
+
+void Body::widen_sweep() {
+  for (Watched& port : ports_) {
+    const double* u = seen_->u.data() + port.first;
+    const double* place = port.geometry->points.data();
+    double* lower = port.lower.data();
+    double* upper = port.upper.data();
+    if (port.width == 1) {
+      const double at = *place + *u;
+      *lower = std::min(*lower, at);
+      *upper = std::max(*upper, at);
+      continue;
+    }
+    const int dim = port.geometry->dim;
+    for (const double* end = place + port.width; place < end; place += dim) {
+      for (int i = 0; i < dim; ++i) {
+        const double at = place[i] + *u++;
+        lower[i] = std::min(lower[i], at);
+        upper[i] = std::max(upper[i], at);
+      }
+    }
+  }
+}
+
+}  // namespace abut
