@@ -29,6 +29,11 @@ void check_side(const Description& body, const PortGeometry& face, const std::st
   }
 }
 
+int coarser_mesh(const std::array<Side, 2>& sides, const Bodies& bodies) {
+  const auto spacing = [&](std::size_t s) { return bodies.port(sides[s]).geometry.spacing; };
+  return spacing(0) >= spacing(1) ? 0 : 1;
+}
+
 /// The side of longer steps has the force: on the other one energy would be kept and the motion
 /// wrong.
 int coarser_steps(const std::array<Side, 2>& sides, const Bodies& bodies) {
@@ -38,8 +43,19 @@ int coarser_steps(const std::array<Side, 2>& sides, const Bodies& bodies) {
     step[s] = std::isinf(body.mass) ? 0.0 : body.step > 0.0 ? body.step : bodies.window();
   }
   if (step[0] != step[1]) return step[0] > step[1] ? 0 : 1;
-  const auto spacing = [&](std::size_t s) { return bodies.port(sides[s]).geometry.spacing; };
-  return spacing(0) >= spacing(1) ? 0 : 1;
+  return coarser_mesh(sides, bodies);
+}
+
+/// The side of the coarser mesh has the rows. What does not deform has none where the other does:
+/// the nodes that it meets would be free between its own.
+int side_of_rows(const std::array<Side, 2>& sides, const Bodies& bodies) {
+  bool rigid[2];
+  for (const std::size_t s : {0u, 1u}) {
+    const bool stands = std::isinf(bodies.describe(sides[s].body).mass);
+    rigid[s] = stands || bodies.port(sides[s]).geometry.transit == 0.0;
+  }
+  if (rigid[0] != rigid[1]) return rigid[0] ? 1 : 0;
+  return coarser_mesh(sides, bodies);
 }
 
 }  // namespace
@@ -64,7 +80,7 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides,
     throw InputError("ties a plane surface to one of rings", where,
                      "Give both bodies plane: axisymmetric, or none.");
   }
-  TieRows rows = make_tie_rows(*faces[0], *faces[1]);
+  TieRows rows = make_tie_rows(*faces[0], *faces[1], side_of_rows(sides, bodies));
   const double most = usual_gap * std::max(faces[0]->spacing, faces[1]->spacing);
   if (rows.count() == 0) {
     throw InputError(fmt::format("joins {} and {}, which do not face each other anywhere",

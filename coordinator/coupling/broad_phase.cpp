@@ -68,7 +68,15 @@ std::vector<int> sorted_along(const std::vector<Box>& boxes, std::size_t& axis) 
 
 }  // namespace
 
+/// Surfaces that are tied are none any more: they touch nothing.
 BroadPhase::BroadPhase(const Bodies& bodies, std::span<const Joint> joined) {
+  const auto tied = [joined](int body, std::size_t port) {
+    return std::ranges::any_of(joined, [body, port](const Joint& joint) {
+      return joint.tied() && std::ranges::any_of(joint.sides, [body, port](const Side& side) {
+               return side.body == body && index(side.port) == port;
+             });
+    });
+  };
   const std::vector<int> rank = ranks(bodies.count());
   std::vector<Side> sides;
   place_.resize(index(bodies.count()));
@@ -76,7 +84,7 @@ BroadPhase::BroadPhase(const Bodies& bodies, std::span<const Joint> joined) {
     const Description& body = bodies.describe(b);
     for (std::size_t p = 0; p < body.ports.size(); ++p) {
       const PortGeometry& surface = body.ports[p].geometry;
-      const bool touches = surface.dim > 1 && !surface.facets.empty();
+      const bool touches = surface.dim > 1 && !surface.facets.empty() && !tied(b, p);
       place_[index(b)].push_back(touches ? static_cast<int>(ports_.size()) : -1);
       if (!touches) continue;
       ports_.push_back({{b, static_cast<int>(p)}, std::isinf(body.mass), rank[index(b)]});

@@ -36,9 +36,9 @@ void see_gaps(const SurfaceRows& found, const PosedSurface& k, TieRows& rows) {
 
 }  // namespace
 
-TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other) {
+TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int side) {
   if (one.dim == 1) return of_points(one, other);
-  const bool first = one.spacing >= other.spacing;  // has the rows
+  const bool first = side == 0;  // has the rows
   const PosedSurface k = posed(first ? one : other), n = posed(first ? other : one);
   const double far = reach * std::max(one.spacing, other.spacing);
   BoxTree of_k, of_n;

@@ -67,7 +67,8 @@ bool joins(const Document& scene, const std::string& body, const std::string& po
 }
 
 bool touches(const Document& scene, const std::string& body, const std::string& port) {
-  return scene.has("contact.everything") || !contacts_of(scene, body, port).empty();
+  const bool everything = scene.has("contact.everything") && !joins(scene, body, port);
+  return everything || !contacts_of(scene, body, port).empty();
 }
 
 }  // namespace abut

@@ -23,7 +23,8 @@ std::vector<SceneContact> contacts_of(const Document& scene, const std::string& 
 /// Whether a port is tied to another one.
 bool joins(const Document& scene, const std::string& body, const std::string& port);
 
-/// Whether a port of a body in two or three dimensions may touch anything.
+/// Whether a port of a body in two or three dimensions may touch anything: one that is tied does so
+/// only where an interface says it.
 bool touches(const Document& scene, const std::string& body, const std::string& port);
 
 }  // namespace abut
