@@ -404,9 +404,15 @@ void SolidInterior::finish(std::size_t port, PortResponse& reply) const {
   reply.acceleration_bound = parts_.body_acceleration;
 }
 
-/// Of a nonlinear body: far above the rounding of strains, far below where they matter.
+/// Of a nonlinear body: far above the rounding of strains, or of places where it is rigid, far
+/// below where they matter.
 double SolidInterior::light_force(std::size_t port) const {
   const FeModel& model = *parts_.model;
+  if (!parts_.deforms) {
+    constexpr double moved = 1.0e-8;  // of a facet, in a step
+    const double step = description_.step;
+    return moved * description_.ports[port].geometry.spacing * description_.mass / (step * step);
+  }
   if (parts_.problem->model->is_linear()) return 1.0;
   constexpr double strain = 1.0e-7;
   const double area = description_.dim == 1 ? model.options().area
