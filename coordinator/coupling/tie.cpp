@@ -64,27 +64,24 @@ std::vector<double> Tie::jump(const Joint& joint, const Bodies& bodies) const {
 /// how they would part, TieNet knows better.
 void Tie::predict(Eigen::Ref<Eigen::VectorXd> x) const {
   x.setZero();
-  if (guess_.empty()) return;
+  if (force_.empty()) return;
   std::vector<double> f(index(iterate_.width));
   for (int i = 1; i <= iterate_.steps.count; ++i) {
-    const bool inside = covers(guess_, iterate_.steps);
-    guess_.force_at(inside ? iterate_.steps.time(i) : guess_.time.back(), f);
+    const bool inside = covers(force_, iterate_.steps);
+    force_.force_at(inside ? iterate_.steps.time(i) : force_.time.back(), f);
     std::ranges::copy(f, &x[iterate_.at(i)]);
   }
 }
 
 void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                  Bodies& bodies) {
-  if (side == 0 || force_.empty() || force_.time.front() != window_.begin) {
-    force_.clear();
-    force_.width = iterate_.width;
-    force_.support = ForceSupport::step;
-    for (int i = 0; i <= iterate_.steps.count; ++i)
-      force_.time.push_back(i == 0 ? iterate_.steps.begin : iterate_.steps.time(i));
-  }
+  force_.clear();
+  force_.width = iterate_.width;
+  force_.support = ForceSupport::step;
+  for (int i = 0; i <= iterate_.steps.count; ++i)
+    force_.time.push_back(i == 0 ? iterate_.steps.begin : iterate_.steps.time(i));
   force_.f.assign(index(iterate_.width), 0.0);
   force_.f.insert(force_.f.end(), x.begin(), x.end());
-  guess_ = force_;
   const Side& end = joint.sides[index(side)];
   Waveform& on_body = bodies.force(end);
   const std::size_t width = bodies.port(end).geometry.points.size();

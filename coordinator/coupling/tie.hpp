@@ -58,7 +58,7 @@ class Tie final : public Transmission {
   TieRows rows_;
   std::array<Substeps, 2> grids_;
   IterateGrid iterate_;  // of the force
-  Waveform force_, guess_;
+  Waveform force_;       // of the last sweep, the first guess of the next window
   TimeWindow window_;
   Eigen::VectorXd trial_, jump_;
   double compliance_ = 1.0;
