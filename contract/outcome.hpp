@@ -75,6 +75,9 @@ struct PortResponse {
 struct Response {
   std::vector<PortResponse> ports;  // in the order of Description::ports
   std::vector<BodyRecord> records;
+  // [N] (substeps, k) of what acts on the body along its loose motions: no equilibrium before it is
+  // nothing. Empty: it has none.
+  std::vector<double> unbalanced;
   int steps = 0;                 // substeps taken
   double compute_seconds = 0.0;  // wall time inside the solver; never decides anything
 };

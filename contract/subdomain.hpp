@@ -46,6 +46,10 @@ struct Description {
   bool conserves = false;
   bool quasi_static = false;  // it has no inertia: its energy follows its loads step by step
   bool linear = false;  // it answers forces linearly: port kernels tell it exactly
+  // Of a body without inertia whose supports leave it rigid motions: (k, dim + rotations) small
+  // ones, translation [m] and rotation [rad] about the origin (one number in 2D, three in 3D) per
+  // unit of each. Empty: it is held, or has inertia.
+  std::vector<double> loose;
   std::vector<Port> ports;
   Capabilities can;
   std::vector<Member> members;        // empty: the body is one solid
@@ -55,6 +59,12 @@ struct Description {
   std::vector<std::string> columns;
   std::vector<double> frequencies;  // [Hz] of a body that moves in modes, ascending
 };
+
+/// Of Description::loose.
+inline int loose_motions(const Description& body) {
+  const int each = body.dim == 2 ? 3 : 6;
+  return static_cast<int>(body.loose.size()) / each;
+}
 
 /// Which traces a response holds.
 enum class Sampling {
@@ -79,6 +89,9 @@ struct Advance {
   // [s] by which the body goes on after the window, while forces of partners are gone at once, to
   // tell where its ports would be (PortResponse::ahead); it stands at the window's end all the same
   double ahead = 0.0;
+  // (substeps, k) where Description::loose motions carry the body, at the substeps' ends; empty:
+  // they stay where they are
+  std::vector<double> carry;
 };
 
 /// A body: something that can be advanced through a window with given data on its ports, and

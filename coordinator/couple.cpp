@@ -16,6 +16,7 @@
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/transmission.hpp"
 #include "coordinator/surface_start.hpp"
+#include "coordinator/coupling/loose_motions.hpp"
 #include "coordinator/tied_surfaces.hpp"
 
 namespace abut {
@@ -332,6 +333,8 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
                     bodies, joint);
     }
   }
+  check_supports(joints, bodies);
+  share_out_loose_motions(joints, bodies);
   return joints;
 }
 

@@ -142,6 +142,8 @@ std::optional<Failed> Body::advance(const Window& window, Response& response) {
   RecordClock clock(window.request, grid.count);
   for (int i = 1; i <= grid.count; ++i) {
     if (auto failed = patiently([&] { return interior_->step(window, i); })) return failed;
+    const std::span<const double> left = interior_->unbalanced();
+    response.unbalanced.insert(response.unbalanced.end(), left.begin(), left.end());
     const bool due = i == clock.substep();
     if (due) interior_->settle(window, i);
     if (window.request.sampling == Sampling::substeps) {
@@ -261,6 +263,7 @@ void Body::begin_replies(const Advance& request, Response& response) {
   ABUT_ASSERT(request.boundary.size() == ports_.size());
   response.records.resize(index(std::max(1, request.records)));
   response.ports.resize(ports_.size());
+  response.unbalanced.clear();
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     const PortGeometry& geometry = *ports_[p].geometry;
     const std::vector<Obstacle>& obstacles = request.boundary[p].obstacles;
@@ -341,6 +344,7 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
   }
   const std::size_t p = index(port), width = describe().ports.at(p).geometry.points.size();
   ABUT_ASSERT(step > 0.0 && patterns.size() % width == 0);
+  if (describe().quasi_static) return probe_statics(port, patterns, step, count, seen);
   std::vector<std::byte> kept;
   write(*interior_, kept, Archive::Form::bare);
   const Substeps grid{0.0, count * step, step, step, count};
@@ -387,6 +391,32 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
   if (!failed) return kernel;
   throw RunError("has no port kernel: " + failed->detail, where,
                  "Give the body inertia or supports that hold it.");
+}
+
+/// What has no inertia answers at once, and forgets.
+PortKernel Body::probe_statics(int port, std::span<const double> patterns, double step, int count,
+                               std::span<const int> seen) {
+  const std::size_t p = index(port), width = ports_[p].width;
+  PortKernel kernel;
+  kernel.step = step;
+  kernel.support = interior_->support(p);
+  kernel.patterns = static_cast<int>(patterns.size() / width);
+  kernel.width = 0;
+  for (const int s : seen) kernel.width += static_cast<int>(ports_[index(s)].width);
+  std::vector<double> moved;
+  for (std::size_t k = 0; k < index(kernel.patterns); ++k) {
+    if (!interior_->give(p, patterns.subspan(k * width, width), moved)) {
+      throw RunError("has no port kernel: its stiffness is singular",
+                     fmt::format("body '{}'", describe().name), "Give the body more supports.");
+    }
+    for (const int s : seen) {
+      const auto from = moved.begin() + static_cast<std::ptrdiff_t>(ports_[index(s)].first);
+      kernel.displacement.insert(kernel.displacement.end(), from,
+                                 from + static_cast<std::ptrdiff_t>(ports_[index(s)].width));
+    }
+  }
+  kernel.displacement.resize(index(count) * kernel.per_step(), 0.0);
+  return kernel;
 }
 
 /// Displacements (substeps, values) of ports, one after the other, under the forces of a request

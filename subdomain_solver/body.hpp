@@ -38,6 +38,8 @@ class Body final : public Subdomain {
  private:
   PortKernel probe(int port, std::span<const double> patterns, double step, int count,
                    std::span<const int> seen, bool begin);
+  PortKernel probe_statics(int port, std::span<const double> patterns, double step, int count,
+                           std::span<const int> seen);
   /// A port as substeps see it.
   struct Watched {
     const PortGeometry* geometry = nullptr;

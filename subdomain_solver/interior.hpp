@@ -48,6 +48,13 @@ class Interior {
   /// Impulses and the first half of a step, which the ports do not show at the window's begin.
   virtual void set_off(const Window&) {}
   [[nodiscard]] virtual std::optional<Failed> step(const Window& window, int i) = 0;
+  /// [N] of the last substep, along Description::loose motions.
+  virtual std::span<const double> unbalanced() const { return {}; }
+  /// [m] (values of all ports) by which a force [N] on a port moves a body without inertia, by its
+  /// present tangent; the state is left untouched. False: it has none.
+  [[nodiscard]] virtual bool give(std::size_t, std::span<const double>, std::vector<double>&) {
+    return false;
+  }
   /// Brings the state of the last substep to one time, for records.
   virtual void settle(const Window&, int) {}
   /// Ports now; the displacements alone, unless all is wanted for their traces at `time`.

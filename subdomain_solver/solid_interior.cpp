@@ -12,6 +12,7 @@
 #include "subdomain_solver/port_geometry.hpp"
 #include "subdomain_solver/solid_fields.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
+#include "subdomain_solver/time/quasi_static.hpp"
 #include "subdomain_solver/validity_measures.hpp"
 
 namespace abut {
@@ -43,7 +44,7 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
     port_forces_ = forces.get();
     for (std::size_t p = 0; p < ports_.size(); ++p)
       if (joined_[p]) port_forces_->join(p);
-    if (joins_ && parts_.scheme.integrator->has_inertia()) description_.can.kernel = true;
+    if (joins_) description_.can.kernel = true;
     places_.assign(port_map_->values(), 0.0);
     before_ = now_ = seen_.u = state_.port_force = places_;
     change_.setZero(parts_.problem->model->dofs());
@@ -111,6 +112,7 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   description_.mass = parts_.model->material().density() * parts_.model->volume();
   description_.step = parts_.scheme.step;
   description_.quasi_static = !parts_.scheme.integrator->has_inertia();
+  description_.loose = parts_.loose;
   description_.stable_step = parts_.scheme.stable_step;
   description_.can.force = true;
   const bool small = parts_.problem->model->is_linear() && parts_.deforms;
@@ -198,10 +200,35 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i) {
     if (std::optional<Failed> failed = meet_port_forces(begin)) return failed;
   }
   if (parts_.problem->contact != nullptr) contact_->aim(i, state_.port_force, places_);
+  if (!description_.loose.empty()) {
+    const std::span<const double> carry = window.request.carry;
+    const std::size_t each = index(loose_motions(description_));
+    integrator.statics()->carry_to(carry.empty() ? carry : carry.subspan(index(i - 1) * each, each));
+  }
   if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);
   if (port_map_) follow_ports(state_.time);
   return std::nullopt;
+}
+
+std::span<const double> SolidInterior::unbalanced() const {
+  if (description_.loose.empty()) return {};
+  return parts_.scheme.integrator->statics()->unbalanced();
+}
+
+bool SolidInterior::give(std::size_t port, std::span<const double> force,
+                         std::vector<double>& moved) {
+  const Motion& motion = state_.motion;
+  before_.assign(port_map_->values(), 0.0);
+  std::ranges::copy(force,
+                    before_.begin() + static_cast<std::ptrdiff_t>(port_map_->first(port)));
+  change_.setZero(parts_.problem->model->dofs());
+  port_map_->lift(motion.q, before_, change_);
+  Vector gives;
+  if (!parts_.scheme.integrator->statics()->give(motion, state_.time, change_, gives)) return false;
+  moved.resize(port_map_->values());
+  port_map_->velocity(motion.q, {gives.data(), index(gives.size())}, moved);
+  return true;
 }
 
 /// Where the nodes are and how they move now.

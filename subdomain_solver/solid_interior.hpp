@@ -50,6 +50,7 @@ class SolidInterior final : public Interior {
     double body_acceleration = 0.0;        // [m/s^2] of the body force
     std::string rung = "fe";               // for people
     bool deforms = true;                   // there is stress to tell of
+    std::vector<double> loose;             // Description::loose
   };
 
   SolidInterior(std::string name, Parts parts, const std::vector<PortNodes>& ports);
@@ -59,6 +60,8 @@ class SolidInterior final : public Interior {
   void restored() override;
   std::optional<Failed> begin(const Window& window) override;
   std::optional<Failed> step(const Window& window, int i) override;
+  std::span<const double> unbalanced() const override;
+  bool give(std::size_t port, std::span<const double> force, std::vector<double>& moved) override;
   const PortValues& see(const Window& window, double time, bool all) override;
   std::optional<Failed> record(BodyRecord& record) override;
   void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;

@@ -132,6 +132,7 @@ void Bodies::prepare(const TimeWindow& window, int records, Sampling sampling) {
     request.records = records;
     request.sampling = sampling;
     request.ahead = 0.0;
+    request.carry.clear();
     for (BoundaryData& data : request.boundary) data.clear();
   }
 }

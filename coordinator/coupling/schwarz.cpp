@@ -179,6 +179,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     const double before = std::exchange(mismatch, see_images(joints, bodies, report.residual));
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
+    ties_->renew(bodies);
     const bool early = 2 * report.iterations <= options_.max_iterations;  // later it is no bad luck
     if (contracts && early && report.iterations > 1 && mismatch > before) {
       accelerator.forget();

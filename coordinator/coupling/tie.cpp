@@ -48,7 +48,10 @@ void Tie::part(const Joint& joint, const std::array<const Waveform*, 2>& motions
 std::vector<double> Tie::jump(const Joint& joint, const Bodies& bodies) const {
   std::vector<double> out(index(rows_.width()), 0.0), seen(out.size());
   const double step = bodies.describe(joint.kinematic_side().body).step;
-  const double half = 0.5 * (step > 0.0 ? step : bodies.window());
+  bool inert = true;  // what has no inertia follows at once
+  for (const Side& side : joint.sides)
+    inert = inert && !bodies.describe(side.body).quasi_static;
+  const double half = inert ? 0.5 * (step > 0.0 ? step : bodies.window()) : 0.0;
   for (const std::size_t s : {0u, 1u}) {
     const Waveform& trace = trace_of(bodies, joint.sides[s]);
     for (const auto& [field, factor] : {std::pair(&trace.u, 1.0), std::pair(&trace.v, half)}) {
@@ -64,6 +67,11 @@ std::vector<double> Tie::jump(const Joint& joint, const Bodies& bodies) const {
 /// how they would part, TieNet knows better.
 void Tie::predict(Eigen::Ref<Eigen::VectorXd> x) const {
   x.setZero();
+  for (const int s : {0, 1}) {
+    const auto& last = place_[index(s)];
+    for (std::size_t k = 0; k < index(static_cast<int>(places(s))) && !last.empty(); ++k)
+      x[first_place(s) + static_cast<Eigen::Index>(k)] = last[k % last.size()];
+  }
   if (force_.empty()) return;
   std::vector<double> f(index(iterate_.width));
   for (int i = 1; i <= iterate_.steps.count; ++i) {
@@ -81,7 +89,7 @@ void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joi
   for (int i = 0; i <= iterate_.steps.count; ++i)
     force_.time.push_back(i == 0 ? iterate_.steps.begin : iterate_.steps.time(i));
   force_.f.assign(index(iterate_.width), 0.0);
-  force_.f.insert(force_.f.end(), x.begin(), x.end());
+  force_.f.insert(force_.f.end(), x.begin(), x.begin() + iterate_.size());
   const Side& end = joint.sides[index(side)];
   Waveform& on_body = bodies.force(end);
   const std::size_t width = bodies.port(end).geometry.points.size();
@@ -95,7 +103,22 @@ void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joi
   for (std::size_t i = 1; i < on_body.time.size(); ++i)
     add_transposed(rows_.of[index(side)], rows_.dim, sign, row(force_, force_.f, i),
                    std::span(on_body.f).subspan(i * width, width));
-  bodies.request(end.body).ahead = bodies.window() > 0.0 ? bodies.window() : window_.length();
+  Advance& request = bodies.request(end.body);
+  if (looks(joint, bodies))
+    request.ahead = bodies.window() > 0.0 ? bodies.window() : window_.length();
+  if (loose_[index(side)] == 0) return;
+  const double* places_here = x.data() + first_place(side);
+  request.carry.assign(places_here, places_here + places(side));
+  place_[index(side)].assign(request.carry.end() - loose_[index(side)], request.carry.end());
+}
+
+/// Without inertia, a body lets go of at once would be far away, where it is not linear; and where
+/// nothing holds it, nowhere.
+bool Tie::looks(const Joint& joint, const Bodies& bodies) const {
+  return std::ranges::all_of(joint.sides, [&](const Side& side) {
+    const Description& body = bodies.describe(side.body);
+    return !body.quasi_static || (body.linear && body.loose.empty());
+  });
 }
 
 void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
@@ -110,9 +133,19 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   }
   if (first_speed_ < 0.0) first_speed_ = speed_;
   part(joint, motions, jump_);
-  g = x - jump_ / compliance_;
+  g.head(iterate_.size()) = x.head(iterate_.size()) - jump_ / compliance_;
+  unbalanced_ = 0.0;
+  for (const int s : {0, 1}) {
+    if (loose_[index(s)] == 0) continue;
+    const std::vector<double>& left = bodies.response(joint.sides[index(s)].body).unbalanced;
+    ABUT_ASSERT(static_cast<Eigen::Index>(left.size()) == places(s));
+    const Eigen::Map<const Eigen::VectorXd> sum(left.data(), places(s));
+    g.segment(first_place(s), places(s)) =
+        x.segment(first_place(s), places(s)) - compliance_ * sum;
+    unbalanced_ = std::max(unbalanced_, sum.lpNorm<Eigen::Infinity>());
+  }
   scale_.velocity = std::max(joint.closing_speed, std::min(first_speed_, speed_));
-  row_force_ = x.lpNorm<Eigen::Infinity>();
+  row_force_ = x.head(iterate_.size()).lpNorm<Eigen::Infinity>();
   // Or what the force moves in a step: bodies at rest have no other measure.
   const double force = joint.force_scale > 0.0 ? joint.force_scale : row_force_;
   scale_.velocity = std::max(scale_.velocity, force * compliance_ / scale_.step);
@@ -131,12 +164,14 @@ FieldResiduals Tie::measure(const Eigen::Ref<const Eigen::VectorXd>&,
   FieldResiduals r;
   r.displacement =
       scaled(jump_.lpNorm<Eigen::Infinity>(), scale_.velocity * scale_.step, scale_.roundoff);
+  r.force = scaled(unbalanced_ * compliance_, scale_.velocity * scale_.step, scale_.roundoff);
   return r;
 }
 
 void Tie::scales(Eigen::Ref<Eigen::VectorXd> s) const {
-  const double unit = scale_.velocity * scale_.step / compliance_;
-  s.setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
+  const double moved = scale_.velocity * scale_.step, unit = moved / compliance_;
+  s.setConstant(moved > 0.0 ? 1.0 / moved : 1.0);
+  s.head(iterate_.size()).setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
 }
 
 }  // namespace abut

@@ -17,7 +17,9 @@ class Tie final : public Transmission {
   explicit Tie(TieRows rows) : rows_(std::move(rows)) {}
 
   void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
-  int values() const override { return static_cast<int>(iterate_.size()); }
+  int values() const override {
+    return static_cast<int>(iterate_.size() + places(0) + places(1));
+  }
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
@@ -29,6 +31,16 @@ class Tie final : public Transmission {
   Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override { return r; }
   Tie* tie() override { return this; }
   bool ordered() const override { return false; }
+
+  /// From now on, where these many loose motions of a side's body are is part of the iterate, which
+  /// is (forces, places of side 0, places of side 1): what is left over of the forces along them
+  /// is to be nothing  [M.110].
+  void carry(int side, int motions) { loose_[index(side)] = motions; }
+  int carried(int side) const { return loose_[index(side)]; }
+  /// Where the places of a side begin in the iterate.
+  Eigen::Index first_place(int side) const {
+    return iterate_.size() + (side == 1 ? places(0) : 0);
+  }
 
   const TieRows& rows() const { return rows_; }
   /// Substeps of a side in the window.
@@ -55,7 +67,14 @@ class Tie final : public Transmission {
   void part(const Joint& joint, const std::array<const Waveform*, 2>& motions,
             Eigen::VectorXd& out) const;
 
+  Eigen::Index places(int side) const {
+    return Eigen::Index{loose_[index(side)]} * grids_[index(side)].count;
+  }
+  bool looks(const Joint& joint, const Bodies& bodies) const;
+
   TieRows rows_;
+  std::array<int, 2> loose_ = {0, 0};
+  std::array<std::vector<double>, 2> place_;  // [m] of the last sweep, at its end
   std::array<Substeps, 2> grids_;
   IterateGrid iterate_;  // of the force
   Waveform force_;       // of the last sweep, the first guess of the next window
@@ -63,6 +82,7 @@ class Tie final : public Transmission {
   Eigen::VectorXd trial_, jump_;
   double compliance_ = 1.0;
   double row_force_ = 0.0;
+  double unbalanced_ = 0.0;    // [N] largest of the latest sweep
   double speed_ = 0.0;         // [m/s] of the latest sweep
   double first_speed_ = -1.0;  // and of the first one; below 0: none yet
   ReferenceScales scale_;

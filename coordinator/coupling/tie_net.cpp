@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/assert.hpp"
+#include "coordinator/coupling/loose_motions.hpp"
 #include "coordinator/coupling/transmission_parts.hpp"
 
 namespace abut {
@@ -43,17 +44,19 @@ void TieNet::begin(const Island& island, std::span<const Joint> joints,
   std::vector<int> pattern;
   for (const Part& part : parts_) pattern.insert(pattern.end(), {part.body, part.steps});
   for (const Member& member : members_) pattern.insert(pattern.end(), {member.steps, member.width});
-  if (pattern != pattern_) blocks_.clear();
+  if (pattern != pattern_) {
+    blocks_.clear();
+    scales_.clear();
+  }
   pattern_ = pattern;
   const int wanted = std::min(count_, lags_that_fit(count_));
   if (static_cast<int>(blocks_.size()) < wanted) {
     find_kernels(wanted, bodies);
-    blocks_.clear();
-    for (int lag = 0; lag < wanted; ++lag) find_block(lag);
-    for (Part& part : parts_) part.kernel.clear();
-    factor();
+    find_blocks(wanted);
   }
+  set_scales();
   for (const Member& member : members_) {
+    if (member.carried >= 0) continue;
     const auto own = blocks_[0].diagonal().segment(member.inner, member.width);
     member.tie->set_unit(own.maxCoeff() > 0.0 ? own.maxCoeff() : 1.0);
   }
@@ -68,6 +71,11 @@ void TieNet::find_members(const Island& island, std::span<const Joint> joints,
     if (tie == nullptr) continue;
     members_.push_back(
         {&joint, tie, first[i], 0, tie->rows().width(), 0, tie->grid(joint.kinematic).count});
+    for (const int s : {0, 1}) {
+      if (tie->carried(s) == 0) continue;
+      members_.push_back({&joint, tie, first[i] + tie->first_place(s), 0, tie->carried(s), 0,
+                          tie->grid(s).count, s});
+    }
   }
 }
 
@@ -76,15 +84,9 @@ void TieNet::find_parts(const Bodies& bodies) {
   count_ = 0;
   for (std::size_t m = 0; m < members_.size(); ++m) {
     for (const int s : {0, 1}) {
-      const int body = members_[m].joint->sides[index(s)].body;
-      auto part = std::ranges::find(parts_, body, &Part::body);
-      if (part == parts_.end()) {
-        parts_.push_back({body, members_[m].tie->grid(s).count, 0, {}, {}});
-        part = parts_.end() - 1;
-        if (bodies.describe(body).can.kernel) count_ = std::gcd(count_, part->steps);
-      }
-      part->ends.push_back({m, s, part->width});
-      part->width += members_[m].width;
+      if (members_[m].carried < 0 || members_[m].carried == s)
+        add_end(members_[m].joint->sides[index(s)].body, {m, s, 0}, members_[m].tie->grid(s).count,
+                bodies);
     }
   }
   for (const Member& member : members_) count_ = std::gcd(count_, member.total);
@@ -95,6 +97,18 @@ void TieNet::find_parts(const Bodies& bodies) {
     member.inner = size_;
     size_ += Eigen::Index{member.width} * member.steps;
   }
+}
+
+void TieNet::add_end(int body, const End& end, int steps, const Bodies& bodies) {
+  auto part = std::ranges::find(parts_, body, &Part::body);
+  if (part == parts_.end()) {
+    const Description& told = bodies.describe(body);
+    parts_.push_back({body, steps, 0, {}, told.quasi_static && !told.linear, {}});
+    part = parts_.end() - 1;
+    if (told.can.kernel) count_ = std::gcd(count_, steps);
+  }
+  part->ends.push_back({end.member, end.side, part->width});
+  part->width += members_[end.member].width;
 }
 
 /// Blocks that kernels and their products may be kept for; at least one.
@@ -111,13 +125,69 @@ void TieNet::find_kernels(int lags, Bodies& bodies) {
     part.kernel.clear();
     if (!bodies.describe(part.body).can.kernel) continue;
     part.kernel.assign(index(part.steps * lags), Eigen::MatrixXd::Zero(part.width, part.width));
-    std::vector<int> seen;
-    for (const End& end : part.ends)
-      seen.push_back(members_[end.member].joint->sides[index(end.side)].port);
-    std::ranges::sort(seen);
-    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-    for (const End& by : part.ends) press(part, by, seen, bodies);
+    find_kernel(part, bodies);
   }
+}
+
+void TieNet::find_kernel(Part& part, Bodies& bodies) {
+  std::vector<int> seen;
+  for (const End& end : part.ends)
+    seen.push_back(members_[end.member].joint->sides[index(end.side)].port);
+  std::ranges::sort(seen);
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  for (const End& by : part.ends)
+    if (members_[by.member].carried < 0) press(part, by, seen, bodies);
+  for (const End& end : part.ends)
+    if (members_[end.member].carried >= 0) carry(part, end, bodies);
+}
+
+/// How loose motions move the rows of their body, and what forces of rows leave over along them:
+/// the one is the transpose of the other.
+void TieNet::carry(Part& part, const End& loose, const Bodies& bodies) {
+  const Member& member = members_[loose.member];
+  Eigen::MatrixXd& now = part.kernel.front();
+  const Description& body = bodies.describe(part.body);
+  const double given = now.diagonal().cwiseAbs().maxCoeff(), scale = given > 0.0 ? given : 1.0;
+  scales_[loose.member] = scale;
+  std::vector<double> moved;
+  for (int k = 0; k < member.width; ++k) {
+    for (const End& end : part.ends) {
+      const Member& rows = members_[end.member];
+      if (rows.carried >= 0) continue;
+      const Side& side = rows.joint->sides[index(end.side)];
+      moved.resize(index(rows.width));
+      apply(rows.tie->rows().of[index(end.side)], rows.tie->rows().dim,
+            loose_motion(body, k, bodies.port(side).geometry), moved);
+      now.col(loose.first + k).segment(end.first, rows.width) = scale * vector_of(moved);
+      now.row(loose.first + k).segment(end.first, rows.width) =
+          scale * vector_of(moved).transpose();
+    }
+  }
+}
+
+void TieNet::set_scales() {
+  for (const auto& [member, scale] : scales_) members_[member].scale = scale;
+}
+
+void TieNet::renew(Bodies& bodies) {
+  bool any = false;
+  for (Part& part : parts_) {
+    if (!part.renewed || part.kernel.empty()) continue;
+    any = true;
+    for (Eigen::MatrixXd& later : part.kernel) later.setZero();
+    find_kernel(part, bodies);
+  }
+  if (!any) return;
+  find_blocks(static_cast<int>(blocks_.size()));
+  set_scales();
+}
+
+void TieNet::find_blocks(int lags) {
+  blocks_.clear();
+  for (int lag = 0; lag < lags; ++lag) find_block(lag);
+  factor();
+  if (std::ranges::any_of(parts_, &Part::renewed)) return;
+  for (Part& part : parts_) part.kernel.clear();
 }
 
 /// Answers to unit forces of the rows of one end, so many in a request that its reply is no burden.
@@ -156,7 +226,7 @@ void TieNet::read(Part& part, const End& by, int from, const PortKernel& kernel,
         const std::size_t width = bodies.port({part.body, port}).geometry.points.size();
         for (const End& end : part.ends) {
           const Member& member = members_[end.member];
-          if (member.joint->sides[index(end.side)].port != port) continue;
+          if (member.carried >= 0 || member.joint->sides[index(end.side)].port != port) continue;
           const TieRows& rows = member.tie->rows();
           moved.resize(index(member.width));
           apply(rows.of[index(end.side)], rows.dim, std::span(values, width), moved);
@@ -183,9 +253,6 @@ void TieNet::find_block(int lag) {
 void TieNet::add(const Part& part, const End& of, const End& by, int lag,
                  Eigen::MatrixXd& block) const {
   const Member &row = members_[of.member], &column = members_[by.member];
-  const auto sign = [](const Member& member, const End& end) {
-    return end.side == member.joint->kinematic ? 1.0 : -1.0;
-  };
   const double turn = sign(row, of) * sign(column, by);
   for (int k = 0; k < row.steps; ++k) {
     const double place = (lag + (k + 1) / static_cast<double>(row.steps)) * part.steps;
@@ -237,7 +304,7 @@ void TieNet::predict(Eigen::VectorXd& x) const {
   if (members_.empty()) return;
   Eigen::VectorXd jump(count_ * size_);
   for (const Member& member : members_) {
-    if (member.tie->trial().size() == 0) return;
+    if (member.carried >= 0 || member.tie->trial().size() == 0) return;
     spread(member, member.tie->trial(), jump);
   }
   const Eigen::VectorXd force = -solve(jump);
@@ -249,7 +316,7 @@ void TieNet::apply_inverse(Eigen::VectorXd& r) const {
   if (members_.empty()) return;
   Eigen::VectorXd jump(count_ * size_);
   for (const Member& member : members_)
-    spread(member, member.tie->unit() * r.segment(member.first, values_of(member)), jump);
+    spread(member, residual_unit(member) * r.segment(member.first, values_of(member)), jump);
   const Eigen::VectorXd force = solve(jump);
   for (const Member& member : members_)
     gather(member, force, r.segment(member.first, values_of(member)));
@@ -266,7 +333,7 @@ void TieNet::gather(const Member& member, const Eigen::VectorXd& all,
                     Eigen::Ref<Eigen::VectorXd> own) const {
   const Eigen::Index length = Eigen::Index{member.width} * member.steps;
   for (int m = 0; m < count_; ++m)
-    own.segment(m * length, length) = all.segment(m * size_ + member.inner, length);
+    own.segment(m * length, length) = member.scale * all.segment(m * size_ + member.inner, length);
 }
 
 }  // namespace abut

@@ -11,7 +11,7 @@ namespace {
 static_assert(sizeof(TimeWindow) == 3 * sizeof(double));
 static_assert(sizeof(Want) == sizeof(double) + sizeof(std::vector<std::int32_t>));
 static_assert(sizeof(Advance) ==
-              sizeof(TimeWindow) + 2 * sizeof(double) + 2 * sizeof(std::vector<double>));
+              sizeof(TimeWindow) + 2 * sizeof(double) + 3 * sizeof(std::vector<double>));
 
 using Wire = v1::Advance;
 
@@ -86,6 +86,17 @@ Sampling decode_sampling(std::int64_t from, const FieldPath& path) {
   path.fail("has an unknown value");
 }
 
+/// Of every substep all loose motions, or none.
+void check_motions(const std::vector<double>& carry, const Description& body,
+                   const FieldPath& path) {
+  if (carry.empty()) return;
+  const std::size_t each = index(loose_motions(body));
+  if (each == 0) path.fail("is of a body without loose motions");
+  if (carry.size() % each != 0)
+    path.fail(fmt::format("has {} values, not a multiple of {}", carry.size(), each));
+  check(carry, carry.size(), false, path);
+}
+
 int decode_records(std::int64_t from, const FieldPath& path) {
   if (from >= 1 && from <= most_records) return static_cast<int>(from);
   path.fail(fmt::format("is {}, not 1 to {}", from, most_records));
@@ -100,6 +111,7 @@ SurfaceSize surface_at(const Description& body, std::size_t place, const FieldPa
 }  // namespace
 
 void encode(const Advance& from, WireWriter& to) {
+  to.numbers(Wire::kCarryFieldNumber, from.carry);
   to.number(Wire::kAheadFieldNumber, from.ahead);
   for (std::size_t i = from.want.size(); i-- > 0;) encode(from.want[i], to);
   for (std::size_t i = from.boundary.size(); i-- > 0;) {
@@ -123,6 +135,7 @@ void decode(Bytes bytes, const Description& body, const Partners& met, Advance& 
   std::int64_t records = 0, sampling = 0;
   bool windowed = false;
   to.ahead = 0.0;
+  to.carry.clear();
   for (WireReader from(bytes, path); from.next();) {
     switch (from.field()) {
       case Wire::kWindowFieldNumber:
@@ -137,6 +150,9 @@ void decode(Bytes bytes, const Description& body, const Partners& met, Advance& 
         break;
       case Wire::kAheadFieldNumber:
         to.ahead = number(from.number(), FieldPath{&path, "ahead"}, Allow::not_negative);
+        break;
+      case Wire::kCarryFieldNumber:
+        from.numbers(to.carry);
         break;
       case Wire::kBoundaryFieldNumber: {
         const SurfaceSize surface = surface_at(body, boundaries, boundary);
@@ -162,6 +178,7 @@ void decode(Bytes bytes, const Description& body, const Partners& met, Advance& 
   require_count(boundaries, ports, "ports", boundary);
   if (wants > 0) require_count(wants, ports, "ports", want);
   to.want.resize(wants);
+  check_motions(to.carry, body, FieldPath{&path, "carry"});
 }
 
 }  // namespace abut

@@ -212,6 +212,7 @@ void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance
 }  // namespace
 
 void encode(const Response& from, const Advance& asked, WireWriter& to) {
+  to.numbers(v1::Advanced::kUnbalancedFieldNumber, from.unbalanced);
   to.number(v1::Advanced::kComputeSecondsFieldNumber, from.compute_seconds);
   to.integer(v1::Advanced::kStepsFieldNumber, from.steps, Zero::told);
   for (std::size_t i = from.records.size(); i-- > 0;) {
@@ -232,6 +233,7 @@ void decode(Bytes bytes, const Description& body, const Advance& asked, Response
   to.ports.resize(body.ports.size());
   to.records.resize(index(asked.records));
   to.compute_seconds = 0.0;
+  to.unbalanced.clear();
   std::size_t ports = 0, records = 0;
   std::int64_t steps = -1;
   for (WireReader from(bytes, path); from.next();) {
@@ -261,6 +263,9 @@ void decode(Bytes bytes, const Description& body, const Advance& asked, Response
       case v1::Advanced::kComputeSecondsFieldNumber:
         to.compute_seconds = number(from.number(), FieldPath{&path, "compute_seconds"});
         break;
+      case v1::Advanced::kUnbalancedFieldNumber:
+        from.numbers(to.unbalanced);
+        break;
       default:
         from.skip();
     }
@@ -269,6 +274,8 @@ void decode(Bytes bytes, const Description& body, const Advance& asked, Response
   require_count(ports, body.ports.size(), "ports", all_ports);
   require_count(records, to.records.size(), "records that were asked for", all_records);
   to.steps = static_cast<int>(steps);
+  check(to.unbalanced, index(steps) * index(loose_motions(body)), false,
+        FieldPath{&path, "unbalanced"});
 }
 
 }  // namespace abut

@@ -116,6 +116,34 @@ std::optional<LoosePiece> find_loose_piece(const FeModel& model, const std::vect
   return std::nullopt;
 }
 
+Eigen::MatrixXd loose_motions(const FeModel& model, const std::vector<int>& held) {
+  const Eigen::MatrixXd left = vanishing_on(held, rigid_motions(model));
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(left);
+  const double others = static_cast<double>(left.rows()) - static_cast<double>(held.size());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Identity(left.rows(), left.cols());
+  out.applyOnTheLeft(qr.householderQ());
+  for (const int row : held) out.row(row).setZero();  // to the last bit
+  return std::sqrt(others) * out;
+}
+
+std::vector<double> translations_and_rotations(const FeModel& model,
+                                               const Eigen::MatrixXd& motions) {
+  const Mesh& mesh = model.mesh();
+  const int dim = mesh.dim, rotations = dim * (dim - 1) / 2;
+  Eigen::MatrixXd units = Eigen::MatrixXd::Zero(model.dofs(), dim + rotations);
+  for (int node = 0; node < mesh.node_count(); ++node) {
+    const double* x = &mesh.points[index(node * dim)];
+    for (int i = 0; i < dim; ++i) units(node * dim + i, i) = 1.0;
+    if (dim == 2) units.block(node * 2, 2, 2, 1) << -x[1], x[0];
+    if (dim == 3)
+      units.block(node * 3, 3, 3, 3) << 0.0, x[2], -x[1], -x[2], 0.0, x[0], x[1], -x[0], 0.0;
+  }
+  for (Eigen::Index k = 0; k < units.cols(); ++k)
+    model.to_frames({units.col(k).data(), index(units.rows())});
+  const Eigen::MatrixXd found = units.colPivHouseholderQr().solve(motions);  // (dim + r, k)
+  return {found.data(), found.data() + found.size()};
+}
+
 std::vector<int> determining_rows(const Eigen::MatrixXd& motions, Eigen::Index rank) {
   if (rank == 0) return {};
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(motions.transpose());

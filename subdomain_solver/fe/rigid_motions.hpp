@@ -28,6 +28,15 @@ struct LoosePiece {
 /// The first one; held: sorted coordinates.
 std::optional<LoosePiece> find_loose_piece(const FeModel& model, const std::vector<int>& held);
 
+/// Rigid motions that held coordinates (sorted) leave a mesh, 0 there: (dofs, k), columns of length
+/// sqrt(others) at right angles.
+Eigen::MatrixXd loose_motions(const FeModel& model, const std::vector<int>& held);
+
+/// The same in small translations [m] and rotations [rad] about the origin per unit of each
+/// motion: (k, dim + rotations), flat.
+std::vector<double> translations_and_rotations(const FeModel& model,
+                                               const Eigen::MatrixXd& motions);
+
 /// Rows of motions (n, k), as many as their rank, that determine the others best; sorted.
 std::vector<int> determining_rows(const Eigen::MatrixXd& motions, Eigen::Index rank);
 

@@ -240,13 +240,15 @@ void check_hourglasses(const FeModel& model, const Place& place) {
 
 }  // namespace
 
-void check_statics(const BodySpec& spec, const Place& place, const FeModel& model,
-                   const std::vector<Prescribed>& supports) {
-  if (!spec.integrator || !std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return;
+Eigen::MatrixXd check_statics(const BodySpec& spec, const Place& place, const FeModel& model,
+                              const std::vector<Prescribed>& supports, bool joined) {
+  if (!spec.integrator || !std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return {};
   std::vector<int> held;
   for (const Prescribed& p : supports) held.push_back(p.dof);
   const std::optional<LoosePiece> loose = find_loose_piece(model, held);
-  if (!loose) return check_hourglasses(model, place);
+  check_hourglasses(model, place);
+  if (!loose) return {};
+  if (joined && loose->pieces == 1) return loose_motions(model, held);
   const std::string motions =
       fmt::format("{} rigid motion{}", loose->motions, loose->motions == 1 ? "" : "s");
   if (loose->pieces == 1) {
@@ -255,7 +257,8 @@ void check_statics(const BodySpec& spec, const Place& place, const FeModel& mode
                     "({})",
                     motions),
         place.where("integrator.quasi_static"),
-        "Hold it by constraints, of points where sides do not suffice, or use newmark.");
+        "Hold it by constraints, of points where sides do not suffice, tie it to others that are "
+        "held, or use newmark.");
   }
   throw InputError(
       fmt::format("has no answer: the mesh is of {} pieces that share no node, and the constraints "

@@ -21,8 +21,9 @@ struct Constraints {
 /// What a scene's constraints prescribe on a mesh. Throws InputError.
 Constraints make_constraints(const BodySpec& spec, const Place& place, const Mesh& mesh);
 
-/// Throws InputError for a quasi-static body that its supports leave a rigid motion.
-void check_statics(const BodySpec& spec, const Place& place, const FeModel& model,
-                   const std::vector<Prescribed>& supports);
+/// Rigid motions that its supports leave a quasi-static body, as QuasiStatic::Options has them.
+/// Throws InputError where there are any and no port is joined: nothing else would stop them.
+Eigen::MatrixXd check_statics(const BodySpec& spec, const Place& place, const FeModel& model,
+                              const std::vector<Prescribed>& supports, bool joined);
 
 }  // namespace abut

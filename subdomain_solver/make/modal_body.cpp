@@ -114,7 +114,7 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
       constraints.frames);
   FeModel& nodes = *parts.model;
   check_mass(nodes.lumped_mass().minCoeff(), nodes.lumped_mass().maxCoeff(), spec, place);
-  check_statics(spec, place, nodes, constraints.supports);
+  check_statics(spec, place, nodes, constraints.supports, false);
   std::vector<int> supports;
   for (const Prescribed& p : constraints.supports) supports.push_back(p.dof);
   const MassForm form = mass_form(*spec.integrator);

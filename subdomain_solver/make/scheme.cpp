@@ -29,6 +29,7 @@ struct SchemeMaker {
   bool joined;  // a port is
   const std::function<double()>& stable_limit;
   const MakeWatch& watch;
+  const Eigen::MatrixXd& loose;
 
   SolidInterior::Scheme operator()(const CentralDifferenceSpec& s) const {
     const double limit = stable_limit();
@@ -76,7 +77,7 @@ struct SchemeMaker {
                     "generalised alpha");
   }
   SolidInterior::Scheme operator()(const QuasiStaticSpec& s) const {
-    return {std::make_unique<QuasiStatic>(problem, QuasiStatic::Options{newton(), s.halvings},
+    return {std::make_unique<QuasiStatic>(problem, QuasiStatic::Options{newton(), s.halvings, loose, joined},
                                           linear(Pivots::with_digits)),
             s.step, std::numeric_limits<double>::infinity(), MassForm::lumped,
             fmt::format("quasi-static, step {:g} s", s.step)};
@@ -136,9 +137,9 @@ MassForm mass_form(const BodySpec::Integrator& integrator) {
 SolidInterior::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
                                   const std::vector<SolidInterior::PortNodes>& ports,
                                   const std::function<double()>& stable_limit,
-                                  const MakeWatch& watch) {
+                                  const MakeWatch& watch, const Eigen::MatrixXd& loose) {
   const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
-  return std::visit(SchemeMaker{spec, place, problem, joined, stable_limit, watch},
+  return std::visit(SchemeMaker{spec, place, problem, joined, stable_limit, watch, loose},
                     *spec.integrator);
 }
 

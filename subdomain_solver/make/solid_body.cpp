@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "subdomain_solver/fe/highest_frequency.hpp"
+#include "subdomain_solver/fe/rigid_motions.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
 #include "subdomain_solver/make/adjust.hpp"
 #include "subdomain_solver/make/constraints.hpp"
@@ -106,7 +107,10 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
       return 0;
     });
   }
-  check_statics(spec, place, model, constraints.supports);
+  const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
+  const Eigen::MatrixXd loose =
+      check_statics(spec, place, model, constraints.supports, joined);
+  if (loose.cols() > 0) parts.loose = translations_and_rotations(model, loose);
   parts.map = std::make_unique<IdentityMap>();
   parts.problem = std::make_unique<Problem>();
   parts.body_acceleration = body_acceleration(spec);
@@ -122,7 +126,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
     parts.rung += " in place of the bars' own core, for " + why;
   MakeWatch watch;  // the tangent of linear bodies stays
   if (!model.is_linear()) watch = [&] { return std::make_unique<HighestFrequency>(model); };
-  parts.scheme = make_scheme(spec, place, *parts.problem, ports, limit, watch);
+  parts.scheme = make_scheme(spec, place, *parts.problem, ports, limit, watch, loose);
   if (!constraints.held.empty()) {
     parts.reactions = std::make_unique<NodalReactions>(
         model, *parts.problem, *parts.scheme.integrator, mass_matrix(model, parts.scheme.mass),

@@ -9,6 +9,8 @@
 
 namespace abut {
 
+class QuasiStatic;
+
 /// Advances a problem's motion in time. Sees nothing of the body but its Model.
 class Integrator {
  public:
@@ -30,6 +32,7 @@ class Integrator {
   virtual void acceleration(const Motion& motion, double time, double step, Vector& out) const = 0;
   /// Whether the body answers a force in time: statics do not.
   virtual bool has_inertia() const { return true; }
+  virtual QuasiStatic* statics() { return nullptr; }
   /// [J] in the form that the scheme conserves where it conserves one.
   virtual double kinetic(const Motion& motion) const = 0;
   double stored(const Motion& motion) const { return motion.stored; }

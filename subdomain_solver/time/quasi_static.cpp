@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/index.hpp"
+#include "subdomain_solver/solve/loose_solver.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -28,7 +29,10 @@ class QuasiStatic::Balance final : public Equations {
       : o_(owner), b_(owner.buffers_), motion_(motion), time_(time) {
     b_.q = view(motion.q);
     for (const Prescribed& p : o_.problem_.supports) b_.q(p.dof) = p.value(time);
-    // Factors of another state would leave their rounding here.
+  }
+
+  /// Factors of another state would leave their rounding here.
+  void forget_factors() {
     if (!o_.problem_.model->is_linear()) o_.factored_ = false;
   }
 
@@ -37,6 +41,12 @@ class QuasiStatic::Balance final : public Equations {
     return b_.x;
   }
   bool finite() const { return b_.q.allFinite(); }
+
+  /// Rigidly to where the loose motions are to be.
+  void carry(Vector& x) const {
+    if (o_.loose_.cols() > 0)
+      x += o_.loose_ * (o_.place_ - o_.loose_.transpose() * x / static_cast<double>(x.size()));
+  }
 
   /// The change of the prescribed coordinates drags the body along linearly, from the tangent at
   /// the begin: else the elements beside them would take all of it at once.
@@ -62,6 +72,10 @@ class QuasiStatic::Balance final : public Equations {
     o_.contact_.add_to(b_.external);
     b_.sum = b_.response.force - b_.external;
     o_.free_.pick(b_.sum, r);
+    if (o_.loose_.cols() > 0) {
+      o_.unbalanced_ = -(o_.loose_.transpose() * r);
+      r += o_.loose_ * o_.unbalanced_ / static_cast<double>(x.size());
+    }
     scale = std::max({b_.response.force.norm(), b_.external.norm(),
                       model.roundoff(q) / o_.options_.newton.tolerance});
     b_.scale = scale;
@@ -73,6 +87,16 @@ class QuasiStatic::Balance final : public Equations {
     if (!kept && !factor_here()) return false;
     if (!o_.solver_->solve(r, dx)) return false;
     dx = -dx;
+    return true;
+  }
+
+  /// Displacements that a force adds at the tangent of the last correction.
+  [[nodiscard]] bool give(const Vector& force, Vector& moved) {
+    if (!o_.factored_ && !factor_here()) return false;
+    o_.free_.pick(force, b_.pull);
+    if (!o_.solver_->solve(b_.pull, b_.dx)) return false;
+    moved.setZero(force.size());
+    o_.free_.add(b_.dx, moved);
     return true;
   }
 
@@ -181,24 +205,56 @@ QuasiStatic::QuasiStatic(const Problem& problem, const Options& options,
                          std::unique_ptr<LinearSolver> solver)
     : problem_(problem),
       options_(options),
-      solver_(std::move(solver)),
       free_(problem.model->dofs(), problem.supports),
-      contact_(free_, *solver_) {}
+      loose_(options.loose.cols() > 0 ? Eigen::MatrixXd(options.loose(free_.list(), Eigen::all))
+                                      : Eigen::MatrixXd()),
+      solver_(loose_.cols() > 0 ? std::make_unique<LooseSolver>(std::move(solver), loose_)
+                                : std::move(solver)),
+      contact_(free_, *solver_) {
+  unbalanced_.setZero(loose_.cols());
+}
+
+Vector QuasiStatic::place_of(const Motion& motion) const {
+  Vector x;
+  free_.pick(view(motion.q), x);
+  return loose_.transpose() * x / static_cast<double>(x.size());
+}
+
+void QuasiStatic::carry_to(std::span<const double> place) {
+  carried_ = Eigen::Map<const Vector>(place.data(), static_cast<Eigen::Index>(place.size()));
+}
+
+bool QuasiStatic::give(const Motion& motion, double time, const Vector& force, Vector& moved) {
+  return Balance(*this, motion, time).give(force, moved);
+}
 
 std::optional<Failed> QuasiStatic::begin(Motion& motion, double time) {
   motion.history.resize(problem_.model->history_size(), 0.0);
   motion.a.assign(motion.q.size(), 0.0);
   motion.force.assign(motion.q.size(), 0.0);
+  if (options_.joined) return stand(motion, time);
   const NewtonReport report = part(motion, time, nullptr);
   if (!report.converged()) return failed_newton(report, time);
+  return std::nullopt;
+}
+
+/// As it was put: what it is joined to takes part in its first equilibrium.
+std::optional<Failed> QuasiStatic::stand(Motion& motion, double time) {
+  ModelResponse& here = buffers_.response;
+  if (!problem_.model->evaluate(motion.q, motion.history, Model::Want::force, here))
+    return failed_newton({NewtonReport::End::inadmissible}, time);
+  motion.stored = here.stored;
+  store(here.force, motion.force);
   return std::nullopt;
 }
 
 NewtonReport QuasiStatic::part(Motion& motion, double end, Contact* contact) {
   Balance balance(*this, motion, end);
   if (!balance.finite()) return {.residual = std::numeric_limits<double>::infinity()};
+  balance.forget_factors();
   Vector& x = balance.first_guess();
   if (!balance.drag(x)) return {NewtonReport::End::singular};
+  balance.carry(x);
   contact_.begin(contact, motion.force);
   NewtonReport report;
   for (int turn = 0;; ++turn) {
@@ -219,9 +275,11 @@ std::optional<Failed> QuasiStatic::step(Motion& motion, double time, double dt) 
   before_ = motion;
   const double smallest = std::ldexp(dt, -options_.most_halvings);
   double done = 0.0, length = dt;
+  const Vector from = place_of(before_), to = carried_.size() > 0 ? carried_ : from;
   while (done < dt) {
     const bool last = done + length >= dt * (1.0 - 1.0e-12);
     const double end = last ? time + dt : time + done + length;
+    place_ = last ? to : from + (end - time) / dt * (to - from);
     const NewtonReport report = part(motion, end, problem_.contact);
     if (report.converged()) {
       done = last ? dt : done + length;

@@ -11,11 +11,19 @@ namespace abut {
 /// is left out. A step that Newton's method does not solve is halved, down to a smallest part, and
 /// parts grow again after quick solves. A step allocates nothing itself once its buffers have
 /// grown.
+///
+/// A body that its supports leave rigid motions is carried by them where it is told (carry_to), and
+/// the rest of its balance is solved; what is left over of the forces along these motions is told
+/// (unbalanced), for partners to make it nothing  [M.110].
 class QuasiStatic final : public Integrator {
  public:
   struct Options {
     NewtonOptions newton;
     int most_halvings = 8;  // the smallest part is step / 2^n
+    // (dofs, k) rigid motions that its supports leave it, 0 there; columns of length sqrt(n) at
+    // right angles, n: free coordinates
+    Eigen::MatrixXd loose;
+    bool joined = false;  // the first equilibrium is that of the first step, with its partners
   };
 
   QuasiStatic(const Problem& problem, const Options& options, std::unique_ptr<LinearSolver> solver);
@@ -26,6 +34,15 @@ class QuasiStatic final : public Integrator {
     out.setZero(static_cast<Eigen::Index>(motion.q.size()));
   }
   bool has_inertia() const override { return false; }
+  QuasiStatic* statics() override { return this; }
+
+  /// [m] (k) where its loose motions are at the end of the next step; empty: where they are.
+  void carry_to(std::span<const double> place);
+  /// [N] (k) of what acts, along the loose motions, in the last step.
+  std::span<const double> unbalanced() const { return {unbalanced_.data(), index(unbalanced_.size())}; }
+  /// [m] (dofs) by which a force [N] would move the body, by the tangent of the last balance.
+  /// False: it has none.
+  [[nodiscard]] bool give(const Motion& motion, double time, const Vector& force, Vector& moved);
   double kinetic(const Motion&) const override { return 0.0; }
 
  private:
@@ -39,11 +56,15 @@ class QuasiStatic final : public Integrator {
   };
 
   [[nodiscard]] NewtonReport part(Motion& motion, double end, Contact* contact);
+  [[nodiscard]] std::optional<Failed> stand(Motion& motion, double time);
+  Vector place_of(const Motion& motion) const;
 
   const Problem& problem_;
   Options options_;
-  std::unique_ptr<LinearSolver> solver_;
   FreeCoordinates free_;
+  Eigen::MatrixXd loose_;  // of the free coordinates
+  Vector carried_, place_, unbalanced_;  // to where in the step, and in a part of it
+  std::unique_ptr<LinearSolver> solver_;
   ContactTurns contact_;
   SparseMatrix matrix_;  // of the free coordinates
   bool factored_ = false;

@@ -1,0 +1,48 @@
+#include "subdomain_solver/solve/loose_solver.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/QR>
+
+namespace abut {
+
+LooseSolver::LooseSolver(std::unique_ptr<LinearSolver> inner, Eigen::MatrixXd motions)
+    : inner_(std::move(inner)), motions_(std::move(motions)) {
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(motions_.transpose());
+  const Eigen::VectorXi& order = qr.colsPermutation().indices();
+  held_.assign(order.data(), order.data() + motions_.cols());
+}
+
+bool LooseSolver::factor(const SparseMatrix& matrix) {
+  const Eigen::Index n = motions_.rows(), k = motions_.cols();
+  const double spring = matrix.diagonal().cwiseAbs().maxCoeff();
+  if (!(spring > 0.0)) return false;
+  sprung_ = matrix;
+  for (const int at : held_) sprung_.coeffRef(at, at) += spring;
+  if (!inner_->factor(sprung_)) return false;
+  Eigen::MatrixXd columns(n, 2 * k);
+  columns.leftCols(k).setZero();
+  for (Eigen::Index i = 0; i < k; ++i) columns(held_[static_cast<std::size_t>(i)], i) = spring;
+  columns.rightCols(k) = motions_ / static_cast<double>(n);
+  if (!inner_->solve_columns(columns, answers_)) return false;
+  // x = y + answers [w; -m] with w = x at the springs, and nothing of the motions.
+  Eigen::MatrixXd closing(2 * k, 2 * k);
+  closing.topRows(k) = -answers_(held_, Eigen::all);
+  closing.topLeftCorner(k, k).diagonal().array() += 1.0;
+  closing.bottomRows(k) = -(motions_.transpose() * answers_) / static_cast<double>(n);
+  closing_.compute(closing);
+  return true;
+}
+
+bool LooseSolver::solve(const Vector& b, Vector& x) {
+  if (!inner_->solve(b, x)) return false;
+  const Eigen::Index k = motions_.cols();
+  values_.resize(2 * k);
+  values_.head(k) = x(held_);
+  values_.tail(k) = motions_.transpose() * x / static_cast<double>(motions_.rows());
+  x += answers_ * closing_.solve(values_);
+  return x.allFinite();
+}
+
+}  // namespace abut

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Dense>
+
+#include "subdomain_solver/solve/linear_solver.hpp"
+
+namespace abut {
+
+/// Solves K x = b for the stiffness of a body that its supports leave rigid motions R: of b what no
+/// stiffness can answer is left out, and of x what R would add  [M.110]:
+///
+///   K x + C m = b,  C^T x = 0,   C = R / n,  R^T C = 1
+///
+/// The inner solver factors K with springs at as many coordinates as there are motions; what these
+/// do wrong is taken back exactly.
+class LooseSolver final : public LinearSolver {
+ public:
+  /// `motions`: R (n, k), columns of length sqrt(n) at right angles; n: coordinates of K.
+  LooseSolver(std::unique_ptr<LinearSolver> inner, Eigen::MatrixXd motions);
+
+  [[nodiscard]] bool factor(const SparseMatrix& matrix) override;
+  [[nodiscard]] bool solve(const Vector& b, Vector& x) override;
+
+ private:
+  std::unique_ptr<LinearSolver> inner_;
+  Eigen::MatrixXd motions_;
+  std::vector<int> held_;  // coordinates with springs, which determine R
+  SparseMatrix sprung_;
+  Eigen::MatrixXd answers_;  // (n, 2k) of the inner solver: to the springs' forces, to C
+  Eigen::PartialPivLU<Eigen::MatrixXd> closing_;  // (2k, 2k)
+  Eigen::VectorXd values_;
+};
+
+}  // namespace abut
