@@ -48,6 +48,10 @@ struct PortKernel {
   // of the port, ascending, that patterns and responses are of; empty: all. Others do not give way.
   std::vector<std::int32_t> points;
 
+  // Of bodies with loose motions (Description::loose): (motions, width) displacements by a unit of
+  // each, and [N/m] (motions, motions) what it leaves over along all.
+  std::vector<double> carried, left;
+
   std::size_t per_step() const { return index(patterns) * index(width); }
   int count() const { return static_cast<int>(displacement.size() / per_step()); }
 };

@@ -396,26 +396,37 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
 /// What has no inertia answers at once, and forgets.
 PortKernel Body::probe_statics(int port, std::span<const double> patterns, double step, int count,
                                std::span<const int> seen) {
-  const std::size_t p = index(port), width = ports_[p].width;
+  const Watched& pressed = ports_[index(port)];
   PortKernel kernel;
   kernel.step = step;
-  kernel.support = interior_->support(p);
-  kernel.patterns = static_cast<int>(patterns.size() / width);
+  kernel.support = interior_->support(index(port));
+  kernel.patterns = static_cast<int>(patterns.size() / pressed.width);
   kernel.width = 0;
   for (const int s : seen) kernel.width += static_cast<int>(ports_[index(s)].width);
-  std::vector<double> moved;
-  for (std::size_t k = 0; k < index(kernel.patterns); ++k) {
-    if (!interior_->give(p, patterns.subspan(k * width, width), moved)) {
+  std::vector<double> force(ports_.back().first + ports_.back().width, 0.0), moved;
+  Eigen::VectorXd place = Eigen::VectorXd::Zero(loose_motions(describe())), left;
+  const auto see = [&](std::vector<double>& to) {
+    if (!interior_->give(force, place, moved, left)) {
       throw RunError("has no port kernel: its stiffness is singular",
                      fmt::format("body '{}'", describe().name), "Give the body more supports.");
     }
     for (const int s : seen) {
       const auto from = moved.begin() + static_cast<std::ptrdiff_t>(ports_[index(s)].first);
-      kernel.displacement.insert(kernel.displacement.end(), from,
-                                 from + static_cast<std::ptrdiff_t>(ports_[index(s)].width));
+      to.insert(to.end(), from, from + static_cast<std::ptrdiff_t>(ports_[index(s)].width));
     }
+  };
+  for (std::size_t k = 0; k < index(kernel.patterns); ++k) {
+    std::ranges::copy(patterns.subspan(k * pressed.width, pressed.width),
+                      force.begin() + static_cast<std::ptrdiff_t>(pressed.first));
+    see(kernel.displacement);
   }
   kernel.displacement.resize(index(count) * kernel.per_step(), 0.0);
+  std::ranges::fill(force, 0.0);
+  for (Eigen::Index k = 0; k < place.size(); ++k) {
+    place.setUnit(k);
+    see(kernel.carried);
+    kernel.left.insert(kernel.left.end(), left.begin(), left.end());
+  }
   return kernel;
 }
 

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Dense>
+
 #include "base/archive.hpp"
 #include "contract/subdomain.hpp"
 #include "subdomain_solver/substeps.hpp"
@@ -50,9 +52,11 @@ class Interior {
   [[nodiscard]] virtual std::optional<Failed> step(const Window& window, int i) = 0;
   /// [N] of the last substep, along Description::loose motions.
   virtual std::span<const double> unbalanced() const { return {}; }
-  /// [m] (values of all ports) by which a force [N] on a port moves a body without inertia, by its
-  /// present tangent; the state is left untouched. False: it has none.
-  [[nodiscard]] virtual bool give(std::size_t, std::span<const double>, std::vector<double>&) {
+  /// By the present tangent of a body without inertia: [m] by which a force [N] on the ports moves
+  /// them (values of all ports), at places [m] of its loose motions, and what is left over along
+  /// these [N]. The state is left untouched. False: it has none.
+  [[nodiscard]] virtual bool give(std::span<const double> /*force*/, const Eigen::VectorXd&,
+                                  std::vector<double>& /*moved*/, Eigen::VectorXd& /*left*/) {
     return false;
   }
   /// Brings the state of the last substep to one time, for records.

@@ -216,16 +216,15 @@ std::span<const double> SolidInterior::unbalanced() const {
   return parts_.scheme.integrator->statics()->unbalanced();
 }
 
-bool SolidInterior::give(std::size_t port, std::span<const double> force,
-                         std::vector<double>& moved) {
+bool SolidInterior::give(std::span<const double> force, const Eigen::VectorXd& place,
+                         std::vector<double>& moved, Eigen::VectorXd& left) {
   const Motion& motion = state_.motion;
-  before_.assign(port_map_->values(), 0.0);
-  std::ranges::copy(force,
-                    before_.begin() + static_cast<std::ptrdiff_t>(port_map_->first(port)));
+  before_.assign(force.begin(), force.end());
   change_.setZero(parts_.problem->model->dofs());
   port_map_->lift(motion.q, before_, change_);
+  QuasiStatic& statics = *parts_.scheme.integrator->statics();
   Vector gives;
-  if (!parts_.scheme.integrator->statics()->give(motion, state_.time, change_, gives)) return false;
+  if (!statics.give(motion, state_.time, change_, place, gives, left)) return false;
   moved.resize(port_map_->values());
   port_map_->velocity(motion.q, {gives.data(), index(gives.size())}, moved);
   return true;

@@ -179,13 +179,13 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     const double before = std::exchange(mismatch, see_images(joints, bodies, report.residual));
     report.converged = report.residual.largest() <= options_.tolerance;
     if (report.converged || report.iterations >= options_.max_iterations) return report;
-    ties_->renew(bodies);
+    const bool tangent = ties_->renew(bodies);
     const bool early = 2 * report.iterations <= options_.max_iterations;  // later it is no bad luck
     if (contracts && early && report.iterations > 1 && mismatch > before) {
       accelerator.forget();
       if (growths++ > 0 && careful == nullptr) careful = std::make_unique<Aitken>(plain, 0.5);
     }
-    if (options_.kernels && std::ranges::any_of(island.joints, [&joints](int j) {
+    if (tangent || options_.kernels && std::ranges::any_of(island.joints, [&joints](int j) {
           return joints[index(j)].how->projects();
         })) {
       x_ += inverse_of(g_ - x_, joints);

@@ -11,6 +11,8 @@
 namespace abut {
 
 void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
+  remember(window);
+  straight_ = !looks(joint, bodies);
   for (const int s : {0, 1}) grids_[index(s)] = substeps_of(bodies, joint.sides[index(s)], window);
   iterate_ = {grids_[index(joint.kinematic)], rows_.width()};
   window_ = window;
@@ -63,15 +65,36 @@ std::vector<double> Tie::jump(const Joint& joint, const Bodies& bodies) const {
   return out;
 }
 
+/// What ended is past where the next window begins at its end, not where it is tried anew.
+void Tie::remember(const TimeWindow& window) {
+  if (last_.force.empty() || window.begin < last_.time - 1.0e-9 * window.length()) return;
+  if (!past_.empty() && past_.front().time == last_.time) return;
+  past_.insert(past_.begin(), last_);
+  if (past_.size() > 2) past_.pop_back();
+}
+
+/// Loads of statics mostly grow as they grew.
+void Tie::go_straight_on(Eigen::Ref<Eigen::VectorXd> x) const {
+  if (past_.empty()) return;
+  const Past &b = past_.front(), &a = past_.back();
+  const auto follow = [&](const Substeps& steps, const std::vector<double>& from,
+                          const std::vector<double>& to, Eigen::Index first) {
+    for (int i = 1; i <= steps.count; ++i) {
+      const double share = a.time < b.time ? (steps.time(i) - b.time) / (b.time - a.time) : 0.0;
+      for (std::size_t k = 0; k < to.size(); ++k)
+        x[first++] = to[k] + share * (to[k] - from[k]);
+    }
+  };
+  follow(iterate_.steps, a.force, b.force, 0);
+  for (const std::size_t s : {0u, 1u})
+    follow(grids_[s], a.place[s], b.place[s], first_place(static_cast<int>(s)));
+}
+
 /// As at the end of the window before, or of a longer attempt at this one. Where bodies have told
 /// how they would part, TieNet knows better.
 void Tie::predict(Eigen::Ref<Eigen::VectorXd> x) const {
   x.setZero();
-  for (const int s : {0, 1}) {
-    const auto& last = place_[index(s)];
-    for (std::size_t k = 0; k < index(static_cast<int>(places(s))) && !last.empty(); ++k)
-      x[first_place(s) + static_cast<Eigen::Index>(k)] = last[k % last.size()];
-  }
+  if (straight_) return go_straight_on(x);
   if (force_.empty()) return;
   std::vector<double> f(index(iterate_.width));
   for (int i = 1; i <= iterate_.steps.count; ++i) {
@@ -90,6 +113,8 @@ void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joi
     force_.time.push_back(i == 0 ? iterate_.steps.begin : iterate_.steps.time(i));
   force_.f.assign(index(iterate_.width), 0.0);
   force_.f.insert(force_.f.end(), x.begin(), x.begin() + iterate_.size());
+  last_.time = window_.end;
+  last_.force.assign(x.begin() + iterate_.size() - iterate_.width, x.begin() + iterate_.size());
   const Side& end = joint.sides[index(side)];
   Waveform& on_body = bodies.force(end);
   const std::size_t width = bodies.port(end).geometry.points.size();
@@ -109,7 +134,7 @@ void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joi
   if (loose_[index(side)] == 0) return;
   const double* places_here = x.data() + first_place(side);
   request.carry.assign(places_here, places_here + places(side));
-  place_[index(side)].assign(request.carry.end() - loose_[index(side)], request.carry.end());
+  last_.place[index(side)].assign(request.carry.end() - loose_[index(side)], request.carry.end());
 }
 
 /// Without inertia, a body lets go of at once would be far away, where it is not linear; and where

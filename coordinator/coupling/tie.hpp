@@ -71,10 +71,20 @@ class Tie final : public Transmission {
     return Eigen::Index{loose_[index(side)]} * grids_[index(side)].count;
   }
   bool looks(const Joint& joint, const Bodies& bodies) const;
+  void remember(const TimeWindow& window);
+  void go_straight_on(Eigen::Ref<Eigen::VectorXd> x) const;
 
   TieRows rows_;
   std::array<int, 2> loose_ = {0, 0};
-  std::array<std::vector<double>, 2> place_;  // [m] of the last sweep, at its end
+  /// At the end of a window: of the last sweep, and of windows that went before.
+  struct Past {
+    double time = 0.0;             // [s]
+    std::vector<double> force;     // [N]
+    std::array<std::vector<double>, 2> place;  // [m] of loose motions, by side
+  };
+  Past last_;
+  std::vector<Past> past_;  // two at most, the later one first
+  bool straight_ = false;   // guesses go on as the past went
   std::array<Substeps, 2> grids_;
   IterateGrid iterate_;  // of the force
   Waveform force_;       // of the last sweep, the first guess of the next window

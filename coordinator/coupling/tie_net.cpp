@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/assert.hpp"
-#include "coordinator/coupling/loose_motions.hpp"
 #include "coordinator/coupling/transmission_parts.hpp"
 
 namespace abut {
@@ -40,6 +39,7 @@ void TieNet::begin(const Island& island, std::span<const Joint> joints,
                    std::span<const Eigen::Index> first, Bodies& bodies) {
   find_members(island, joints, first);
   if (members_.empty()) return;
+  std::vector<Part> before = std::move(parts_);
   find_parts(bodies);
   std::vector<int> pattern;
   for (const Part& part : parts_) pattern.insert(pattern.end(), {part.body, part.steps});
@@ -47,6 +47,9 @@ void TieNet::begin(const Island& island, std::span<const Joint> joints,
   if (pattern != pattern_) {
     blocks_.clear();
     scales_.clear();
+  } else {
+    for (std::size_t k = 0; k < parts_.size(); ++k)
+      parts_[k].kernel = std::move(before[k].kernel);
   }
   pattern_ = pattern;
   const int wanted = std::min(count_, lags_that_fit(count_));
@@ -137,31 +140,29 @@ void TieNet::find_kernel(Part& part, Bodies& bodies) {
   seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
   for (const End& by : part.ends)
     if (members_[by.member].carried < 0) press(part, by, seen, bodies);
-  for (const End& end : part.ends)
-    if (members_[end.member].carried >= 0) carry(part, end, bodies);
 }
 
-/// How loose motions move the rows of their body, and what forces of rows leave over along them:
-/// the one is the transpose of the other.
-void TieNet::carry(Part& part, const End& loose, const Bodies& bodies) {
-  const Member& member = members_[loose.member];
+/// How loose motions move the rows of their body, and what is left over along them of forces of
+/// rows: the one is the transpose of the other.
+void TieNet::carry(Part& part, const PortKernel& kernel, std::span<const int> seen,
+                   const Bodies& bodies) {
+  const auto loose = std::ranges::find_if(
+      part.ends, [this](const End& end) { return members_[end.member].carried >= 0; });
+  if (loose == part.ends.end()) return;
   Eigen::MatrixXd& now = part.kernel.front();
-  const Description& body = bodies.describe(part.body);
+  const int motions = members_[loose->member].width;
+  ABUT_ASSERT(kernel.left.size() == index(motions) * index(motions));
   const double given = now.diagonal().cwiseAbs().maxCoeff(), scale = given > 0.0 ? given : 1.0;
-  scales_[loose.member] = scale;
-  std::vector<double> moved;
-  for (int k = 0; k < member.width; ++k) {
-    for (const End& end : part.ends) {
-      const Member& rows = members_[end.member];
-      if (rows.carried >= 0) continue;
-      const Side& side = rows.joint->sides[index(end.side)];
-      moved.resize(index(rows.width));
-      apply(rows.tie->rows().of[index(end.side)], rows.tie->rows().dim,
-            loose_motion(body, k, bodies.port(side).geometry), moved);
-      now.col(loose.first + k).segment(end.first, rows.width) = scale * vector_of(moved);
-      now.row(loose.first + k).segment(end.first, rows.width) =
-          scale * vector_of(moved).transpose();
-    }
+  scales_[loose->member] = scale;
+  const double* values = kernel.carried.data();
+  for (int k = 0; k < motions; ++k) {
+    const Eigen::Index own = loose->first + k;
+    see(part, values, seen, bodies, [&](const End& end, const Eigen::VectorXd& moved) {
+      now.col(own).segment(end.first, moved.size()) = scale * moved;
+      now.row(own).segment(end.first, moved.size()) = scale * moved.transpose();
+    });
+    for (int l = 0; l < motions; ++l)
+      now(loose->first + l, own) = scale * scale * kernel.left[index(k * motions + l)];
   }
 }
 
@@ -169,7 +170,7 @@ void TieNet::set_scales() {
   for (const auto& [member, scale] : scales_) members_[member].scale = scale;
 }
 
-void TieNet::renew(Bodies& bodies) {
+bool TieNet::renew(Bodies& bodies) {
   bool any = false;
   for (Part& part : parts_) {
     if (!part.renewed || part.kernel.empty()) continue;
@@ -177,9 +178,10 @@ void TieNet::renew(Bodies& bodies) {
     for (Eigen::MatrixXd& later : part.kernel) later.setZero();
     find_kernel(part, bodies);
   }
-  if (!any) return;
+  if (!any) return false;
   find_blocks(static_cast<int>(blocks_.size()));
   set_scales();
+  return true;
 }
 
 void TieNet::find_blocks(int lags) {
@@ -191,7 +193,7 @@ void TieNet::find_blocks(int lags) {
 }
 
 /// Answers to unit forces of the rows of one end, so many in a request that its reply is no burden.
-void TieNet::press(Part& part, const End& by, std::span<const int> seen, Bodies& bodies) const {
+void TieNet::press(Part& part, const End& by, std::span<const int> seen, Bodies& bodies) {
   const Member& pressed = members_[by.member];
   const Side& side = pressed.joint->sides[index(by.side)];
   const TieRows& rows = pressed.tie->rows();
@@ -212,29 +214,39 @@ void TieNet::press(Part& part, const End& by, std::span<const int> seen, Bodies&
     }
     const PortKernel kernel = bodies.probe(part.body, side.port, patterns, steps, seen);
     read(part, by, from, kernel, seen, bodies);
+    if (!kernel.left.empty()) carry(part, kernel, seen, bodies);
   }
 }
 
 /// Columns of a body's kernel from one on, out of what its ports answered.
 void TieNet::read(Part& part, const End& by, int from, const PortKernel& kernel,
                   std::span<const int> seen, const Bodies& bodies) const {
-  std::vector<double> moved;
   const double* values = kernel.displacement.data();
   for (Eigen::MatrixXd& later : part.kernel) {
     for (int k = 0; k < kernel.patterns; ++k) {
-      for (const int port : seen) {
-        const std::size_t width = bodies.port({part.body, port}).geometry.points.size();
-        for (const End& end : part.ends) {
-          const Member& member = members_[end.member];
-          if (member.carried >= 0 || member.joint->sides[index(end.side)].port != port) continue;
-          const TieRows& rows = member.tie->rows();
-          moved.resize(index(member.width));
-          apply(rows.of[index(end.side)], rows.dim, std::span(values, width), moved);
-          later.col(by.first + from + k).segment(end.first, member.width) = vector_of(moved);
-        }
-        values += width;
-      }
+      see(part, values, seen, bodies, [&](const End& end, const Eigen::VectorXd& moved) {
+        later.col(by.first + from + k).segment(end.first, moved.size()) = moved;
+      });
     }
+  }
+}
+
+/// Motions of ports, one after the other, as those of a body's rows; goes on to what follows them.
+template <class Visit>
+void TieNet::see(const Part& part, const double*& values, std::span<const int> seen,
+                 const Bodies& bodies, const Visit& visit) const {
+  std::vector<double> moved;
+  for (const int port : seen) {
+    const std::size_t width = bodies.port({part.body, port}).geometry.points.size();
+    for (const End& end : part.ends) {
+      const Member& member = members_[end.member];
+      if (member.carried >= 0 || member.joint->sides[index(end.side)].port != port) continue;
+      const TieRows& rows = member.tie->rows();
+      moved.resize(index(member.width));
+      apply(rows.of[index(end.side)], rows.dim, std::span(values, width), moved);
+      visit(end, vector_of(moved));
+    }
+    values += width;
   }
 }
 

@@ -29,7 +29,8 @@ class TieNet {
              std::span<const Eigen::Index> first, Bodies& bodies);
   bool empty() const { return members_.empty(); }
   /// After a sweep: what has no inertia and is not linear is asked anew how it gives way.
-  void renew(Bodies& bodies);
+  /// False: there is none, or one that secants know more about.
+  bool renew(Bodies& bodies);
   /// First guesses, where all bodies have told how they would part.
   void predict(Eigen::VectorXd& x) const;
   /// Answers the ties' parts of a residual g - x, in the ties' units; leaves the others alone.
@@ -69,9 +70,13 @@ class TieNet {
   void add_end(int body, const End& end, int steps, const Bodies& bodies);
   void find_kernels(int lags, Bodies& bodies);
   void find_kernel(Part& part, Bodies& bodies);
-  void carry(Part& part, const End& loose, const Bodies& bodies);
+  void carry(Part& part, const PortKernel& kernel, std::span<const int> seen,
+             const Bodies& bodies);
+  template <class Visit>
+  void see(const Part& part, const double*& values, std::span<const int> seen,
+           const Bodies& bodies, const Visit& visit) const;
   void find_blocks(int lags);
-  void press(Part& part, const End& by, std::span<const int> seen, Bodies& bodies) const;
+  void press(Part& part, const End& by, std::span<const int> seen, Bodies& bodies);
   void read(Part& part, const End& by, int from, const PortKernel& kernel,
             std::span<const int> seen, const Bodies& bodies) const;
   void find_block(int lag);

@@ -8,7 +8,7 @@ namespace abut {
 namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
-static_assert(sizeof(PortKernel) == 3 * sizeof(double) + 4 * sizeof(std::vector<double>));
+static_assert(sizeof(PortKernel) == 3 * sizeof(double) + 6 * sizeof(std::vector<double>));
 
 /// The arrays are whole and of one size; patterns and width are those that the caller expects.
 void decode(const v1::PortKernel& from, int patterns, int width, const FieldPath& path,
@@ -73,6 +73,8 @@ void encode(const PortKernel& from, v1::PortKernel& to) {
   copy(from.compliance, *to.mutable_compliance());
   copy(from.displacement, *to.mutable_displacement());
   copy(from.begin, *to.mutable_begin());
+  copy(from.carried, *to.mutable_carried());
+  copy(from.left, *to.mutable_left());
   to.mutable_points()->Assign(from.points.begin(), from.points.end());
 }
 
@@ -87,6 +89,9 @@ void decode(const v1::PortKernel& from, const Description& body, const Probing& 
   int width = asked.seen.empty() ? width_of(asked.port) : 0;
   for (const int port : asked.seen) width += width_of(port);
   decode(from, static_cast<int>(asked.patterns.size()) / width_of(asked.port), width, path, to);
+  const std::size_t motions = index(loose_motions(body));
+  take(from.carried(), motions * index(width), true, FieldPath{&path, "carried"}, to.carried);
+  take(from.left(), motions * motions, true, FieldPath{&path, "left"}, to.left);
   if (to.count() == asked.count) return;
   FieldPath{&path, "displacement"}.fail(
       fmt::format("has {} substeps where {} were asked for", to.count(), asked.count));

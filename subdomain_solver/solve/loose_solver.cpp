@@ -36,12 +36,19 @@ bool LooseSolver::factor(const SparseMatrix& matrix) {
 }
 
 bool LooseSolver::solve(const Vector& b, Vector& x) {
+  none_.setZero(motions_.cols());
+  return solve(b, none_, x, left_);
+}
+
+bool LooseSolver::solve(const Vector& b, const Vector& a, Vector& x, Vector& m) {
   if (!inner_->solve(b, x)) return false;
   const Eigen::Index k = motions_.cols();
   values_.resize(2 * k);
   values_.head(k) = x(held_);
-  values_.tail(k) = motions_.transpose() * x / static_cast<double>(motions_.rows());
-  x += answers_ * closing_.solve(values_);
+  values_.tail(k) = motions_.transpose() * x / static_cast<double>(motions_.rows()) - a;
+  values_ = closing_.solve(values_).eval();
+  x += answers_ * values_;
+  m = -values_.tail(k);
   return x.allFinite();
 }
 

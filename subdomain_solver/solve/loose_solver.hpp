@@ -22,6 +22,8 @@ class LooseSolver final : public LinearSolver {
 
   [[nodiscard]] bool factor(const SparseMatrix& matrix) override;
   [[nodiscard]] bool solve(const Vector& b, Vector& x) override;
+  /// The same for C^T x = a (k); and m (k).
+  [[nodiscard]] bool solve(const Vector& b, const Vector& a, Vector& x, Vector& m);
 
  private:
   std::unique_ptr<LinearSolver> inner_;
@@ -30,7 +32,7 @@ class LooseSolver final : public LinearSolver {
   SparseMatrix sprung_;
   Eigen::MatrixXd answers_;  // (n, 2k) of the inner solver: to the springs' forces, to C
   Eigen::PartialPivLU<Eigen::MatrixXd> closing_;  // (2k, 2k)
-  Eigen::VectorXd values_;
+  Vector values_, none_, left_;
 };
 
 }  // namespace abut

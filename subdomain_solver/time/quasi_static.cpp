@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/index.hpp"
-#include "subdomain_solver/solve/loose_solver.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -91,10 +90,13 @@ class QuasiStatic::Balance final : public Equations {
   }
 
   /// Displacements that a force adds at the tangent of the last correction.
-  [[nodiscard]] bool give(const Vector& force, Vector& moved) {
+  [[nodiscard]] bool give(const Vector& force, const Vector& place, Vector& moved, Vector& left) {
     if (!o_.factored_ && !factor_here()) return false;
     o_.free_.pick(force, b_.pull);
-    if (!o_.solver_->solve(b_.pull, b_.dx)) return false;
+    left.resize(0);
+    if (!(o_.loose_solver_ != nullptr ? o_.loose_solver_->solve(b_.pull, place, b_.dx, left)
+                                      : o_.solver_->solve(b_.pull, b_.dx)))
+      return false;
     moved.setZero(force.size());
     o_.free_.add(b_.dx, moved);
     return true;
@@ -208,10 +210,16 @@ QuasiStatic::QuasiStatic(const Problem& problem, const Options& options,
       free_(problem.model->dofs(), problem.supports),
       loose_(options.loose.cols() > 0 ? Eigen::MatrixXd(options.loose(free_.list(), Eigen::all))
                                       : Eigen::MatrixXd()),
-      solver_(loose_.cols() > 0 ? std::make_unique<LooseSolver>(std::move(solver), loose_)
-                                : std::move(solver)),
+      solver_(with_motions(std::move(solver))),
       contact_(free_, *solver_) {
   unbalanced_.setZero(loose_.cols());
+}
+
+std::unique_ptr<LinearSolver> QuasiStatic::with_motions(std::unique_ptr<LinearSolver> solver) {
+  if (loose_.cols() == 0) return solver;
+  auto wrapped = std::make_unique<LooseSolver>(std::move(solver), loose_);
+  loose_solver_ = wrapped.get();
+  return wrapped;
 }
 
 Vector QuasiStatic::place_of(const Motion& motion) const {
@@ -224,8 +232,9 @@ void QuasiStatic::carry_to(std::span<const double> place) {
   carried_ = Eigen::Map<const Vector>(place.data(), static_cast<Eigen::Index>(place.size()));
 }
 
-bool QuasiStatic::give(const Motion& motion, double time, const Vector& force, Vector& moved) {
-  return Balance(*this, motion, time).give(force, moved);
+bool QuasiStatic::give(const Motion& motion, double time, const Vector& force, const Vector& place,
+                       Vector& moved, Vector& left) {
+  return Balance(*this, motion, time).give(force, place, moved, left);
 }
 
 std::optional<Failed> QuasiStatic::begin(Motion& motion, double time) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "subdomain_solver/solve/linear_solver.hpp"
+#include "subdomain_solver/solve/loose_solver.hpp"
 #include "subdomain_solver/solve/newton.hpp"
 #include "subdomain_solver/time/contact_turns.hpp"
 #include "subdomain_solver/time/integrator.hpp"
@@ -40,9 +40,10 @@ class QuasiStatic final : public Integrator {
   void carry_to(std::span<const double> place);
   /// [N] (k) of what acts, along the loose motions, in the last step.
   std::span<const double> unbalanced() const { return {unbalanced_.data(), index(unbalanced_.size())}; }
-  /// [m] (dofs) by which a force [N] would move the body, by the tangent of the last balance.
-  /// False: it has none.
-  [[nodiscard]] bool give(const Motion& motion, double time, const Vector& force, Vector& moved);
+  /// [m] (dofs) by which a force [N] and places [m] (k) of the loose motions would move the body, by
+  /// the tangent of the last balance, and what they would leave over [N] (k). False: it has none.
+  [[nodiscard]] bool give(const Motion& motion, double time, const Vector& force,
+                          const Vector& place, Vector& moved, Vector& left);
   double kinetic(const Motion&) const override { return 0.0; }
 
  private:
@@ -57,6 +58,7 @@ class QuasiStatic final : public Integrator {
 
   [[nodiscard]] NewtonReport part(Motion& motion, double end, Contact* contact);
   [[nodiscard]] std::optional<Failed> stand(Motion& motion, double time);
+  std::unique_ptr<LinearSolver> with_motions(std::unique_ptr<LinearSolver> solver);
   Vector place_of(const Motion& motion) const;
 
   const Problem& problem_;
@@ -64,6 +66,7 @@ class QuasiStatic final : public Integrator {
   FreeCoordinates free_;
   Eigen::MatrixXd loose_;  // of the free coordinates
   Vector carried_, place_, unbalanced_;  // to where in the step, and in a part of it
+  LooseSolver* loose_solver_ = nullptr;  // the solver, where there are loose motions
   std::unique_ptr<LinearSolver> solver_;
   ContactTurns contact_;
   SparseMatrix matrix_;  // of the free coordinates
