@@ -81,7 +81,7 @@ TEST(TiedStatics, FloatingRowsOfAnyContrastTakeTwoCalls) {
       const std::string end = fmt::format("body.b{}.right.displacement.", count - 1);
       // Round-off of factors of 1e9 entries: 1e-16 times a condition of some 1e5.
       EXPECT_NEAR(result->measure(end + "x"), stretch, 1.0e-10 * stretch);
-      EXPECT_NEAR(result->measure("body.b0.clamp.reaction_x"), -1.0e-8, 1.0e-8 * 1.0e-8);
+      EXPECT_NEAR(result->measure("body.b0.clamp.reaction.x"), -1.0e-8, 1.0e-8 * 1.0e-8);
     }
   }
 }
