@@ -108,7 +108,8 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
     speed_ = std::max(speed_, largest(motions[s]->v));
     travelled = std::max(travelled, largest(motions[s]->u));
   }
-  if (first_speed_ < 0.0) first_speed_ = speed_;
+  const bool first = first_speed_ < 0.0;
+  if (first) first_speed_ = speed_;
   part(joint, motions, jump_);
   g = x - jump_ / compliance_;
   scale_.velocity = std::max(joint.closing_speed, std::min(first_speed_, speed_));
@@ -117,6 +118,9 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   const double force = joint.force_scale > 0.0 ? joint.force_scale : row_force_;
   scale_.velocity = std::max(scale_.velocity, force * compliance_ / scale_.step);
   scale_.roundoff = roundoff_of(travelled, 0.0);
+  if (!first) return;
+  const double unit = scale_.velocity * scale_.step / compliance_;
+  unit_ = unit > 0.0 ? 1.0 / unit : 1.0;
 }
 
 double Tie::largest_force() const {
@@ -134,9 +138,6 @@ FieldResiduals Tie::measure(const Eigen::Ref<const Eigen::VectorXd>&,
   return r;
 }
 
-void Tie::scales(Eigen::Ref<Eigen::VectorXd> s) const {
-  const double unit = scale_.velocity * scale_.step / compliance_;
-  s.setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
-}
+void Tie::scales(Eigen::Ref<Eigen::VectorXd> s) const { s.setConstant(unit_); }
 
 }  // namespace abut
