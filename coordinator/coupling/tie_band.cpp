@@ -93,9 +93,11 @@ void find_reached(const Places& places, const std::vector<double>& reach, TieBan
     const auto from = std::ranges::lower_bound(order, place[along] - most, {},
                                                [&](std::int32_t r) { return at[index(r)][along]; });
     for (auto r = from; r != order.end() && at[index(*r)][along] <= place[along] + most; ++r) {
-      const std::array<double, 3>& other = at[index(*r)];
-      const double far =
-          std::hypot(other[0] - place[0], other[1] - place[1], other[2] - place[2]) - slack;
+      double square = 0.0;
+      for (std::size_t d = 0; d < 3; ++d)
+        square += (at[index(*r)][d] - place[d]) * (at[index(*r)][d] - place[d]);
+      if (square > most * most) continue;
+      const double far = std::sqrt(square) - slack;
       const auto first = std::ranges::lower_bound(reach, far);
       if (first == reach.end()) continue;
       band.reached.push_back({*r, static_cast<std::int32_t>(first - reach.begin())});

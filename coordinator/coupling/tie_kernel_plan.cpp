@@ -8,8 +8,10 @@ namespace abut {
 
 namespace {
 
-/// Of the way of waves: where no more of it fits than this, later lags are left out.
-constexpr double usual_cones = 1.5, least_cones = 0.1, narrower = 0.8;
+/// Of the way of waves.
+constexpr double usual_cones = 1.5;
+/// Trials that find the widest band that fits.
+constexpr int halvings = 5;
 constexpr double value_bytes = 8.0, entry_bytes = 12.0;
 
 /// Blocks that kernels and their products may be kept for; at least one.
@@ -93,19 +95,20 @@ TieKernelPlan plan_tie_kernel(const TieLayout& layout, const TieKernelOptions& o
   TieKernelPlan plan;
   plan.lags = dense_lags(layout, options.memory, plan);
   if (plan.lags == layout.blocks && !options.banded) return plan;
-  TieBandWidth width{options.rows, usual_cones};
-  int lags = layout.blocks;
-  plan = banded(layout, width, lags, bodies);
-  while (plan.bytes > options.memory) {
-    if (!width.rows && width.cones * narrower >= least_cones) {
-      width.cones *= narrower;
-    } else if (lags > 1) {
-      lags = (lags + 1) / 2;
-    } else {
-      break;
+  plan = banded(layout, {options.rows, usual_cones}, layout.blocks, bodies);
+  if (plan.bytes <= options.memory) return plan;
+  if (!options.rows) {
+    plan = banded(layout, {std::nullopt, 0.0}, layout.blocks, bodies);
+    double fits = 0.0, too_wide = usual_cones;
+    for (int k = 0; k < halvings && plan.bytes <= options.memory; ++k) {
+      const double between = 0.5 * (fits + too_wide);
+      const TieKernelPlan trial = banded(layout, {std::nullopt, between}, layout.blocks, bodies);
+      (trial.bytes <= options.memory ? fits : too_wide) = between;
+      if (fits == between) plan = trial;
     }
-    plan = banded(layout, width, lags, bodies);
   }
+  while (plan.bytes > options.memory && plan.lags > 1)
+    plan = banded(layout, plan.width, (plan.lags + 1) / 2, bodies);
   return plan;
 }
 

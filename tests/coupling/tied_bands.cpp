@@ -42,17 +42,22 @@ struct Slabs {
     std::vector<int> cells(index(dim), across[k]);
     lengths[0] = thick;
     cells[0] = (5 * across[k] + across[0] - 1) / across[0];
+    const bool whole = k == 1 && partner != "fe";  // stands at the start
+    const std::string start =
+        whole ? "velocity: " + components({}, dim)
+              : fmt::format("velocity_field: [\"sin(2*x + 5*y)\", \"0.3*cos(3*x + 7*y)\"{}]",
+                            dim == 3 ? ", \"sin(6*z - y)\"" : "");
     return fmt::format(
         "  {}:\n    model: {{{}: {{dimension: {}, {}mesh: {{{}}}}}}}\n    material: {{{}}}\n"
-        "    integrator: {{{}: {{step: {}}}}}\n    initial: {{position: {}, velocity_field: "
-        "[\"sin(2*x + 5*y)\", \"0.3*cos(3*x + 7*y)\"{}]}}\n    ports: {{face: {{side: {}}}}}\n",
-        name, k == 0 ? "fe" : partner, dim, k == 1 && partner == "modal" ? "modes: 12, " : "",
+        "    integrator: {{{}: {{step: {}}}}}\n    initial: {{position: {}, {}}}\n    ports: "
+        "{{face: {{side: {}}}}}\n",
+        name, whole ? partner : "fe", dim, whole && partner == "modal" ? "modes: 12, " : "",
         block_mesh(lengths, cells), unit_law("linear_elastic", 0.25),
-        k == 1 && partner == "rigid" ? "rigid_motion"
-        : schemes[k] == 'I'          ? "newmark"
-                                     : "central_difference",
-        number(k == 0 ? step() : step() / ratio), components({k == 0 ? 0.0 : thick}, dim),
-        dim == 3 ? ", \"sin(6*z - y)\"" : "", k == 0 ? "right" : "left");
+        whole && partner == "rigid" ? "rigid_motion"
+        : schemes[k] == 'I'         ? "newmark"
+                                    : "central_difference",
+        number(k == 0 ? step() : step() / ratio), components({k == 0 ? 0.0 : thick}, dim), start,
+        k == 0 ? "right" : "left");
   }
   Document document() const {
     const double window = steps * step();
