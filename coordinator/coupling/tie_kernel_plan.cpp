@@ -14,17 +14,17 @@ constexpr double usual_cones = 1.5;
 constexpr int halvings = 5;
 constexpr double value_bytes = 8.0, entry_bytes = 12.0;
 
-/// Blocks that kernels and their products may be kept for; at least one.
-int dense_lags(const TieLayout& layout, double memory, TieKernelPlan& plan) {
+TieKernelPlan dense(const TieLayout& layout) {
   double each = value_bytes * static_cast<double>(layout.size) * static_cast<double>(layout.size);
+  TieKernelPlan plan;
   for (const TieLayout::Part& part : layout.parts) {
     const double width = static_cast<double>(part.width);
     each += value_bytes * part.steps * width * width;
     if (!part.stands) plan.probes += static_cast<int>(part.width);
   }
-  const double fit = memory / each - 1.0;  // the factors
-  plan.bytes = each * (layout.blocks + 1);
-  return fit >= layout.blocks ? layout.blocks : std::max(1, static_cast<int>(fit));
+  plan.lags = layout.blocks;
+  plan.bytes = each * (layout.blocks + 1);  // and the factors
+  return plan;
 }
 
 /// Pairs of rows of two ends of a body, by the step from which one answers the other.
@@ -92,9 +92,8 @@ TieKernelPlan banded(const TieLayout& layout, const TieBandWidth& width, int lag
 TieKernelPlan plan_tie_kernel(const TieLayout& layout, const TieKernelOptions& options,
                               const Bodies& bodies) {
   if (!options.used) return banded(layout, {std::nullopt, 0.0}, 1, bodies);
-  TieKernelPlan plan;
-  plan.lags = dense_lags(layout, options.memory, plan);
-  if (plan.lags == layout.blocks && !options.banded) return plan;
+  TieKernelPlan plan = dense(layout);
+  if (plan.bytes <= options.memory && !options.banded) return plan;
   plan = banded(layout, {options.rows, usual_cones}, layout.blocks, bodies);
   if (plan.bytes <= options.memory) return plan;
   if (!options.rows) {

@@ -188,6 +188,14 @@ TEST(TiedBands, FitTheMemoryThatIsGiven) {
   }
 }
 
+/// A kernel of one step that is too large as well.
+TEST(TiedBands, FitOneStep) {
+  const Slabs slabs{.across = {24, 32}, .steps = 1, .schwarz = "ties: {memory: 0.06}"};
+  EXPECT_TRUE(slabs.estimate().banded);
+  EXPECT_LE(slabs.estimate().memory_mib, 0.06);
+  EXPECT_LE(calls(*slabs.run()), 1.0);
+}
+
 /// Four blocks around a point, where rows say the same twice: forces that move nothing stay small.
 TEST(TiedBands, NetsWithRedundantRowsConverge) {
   const auto run = run_file(std::string(ABUT_SOURCE_DIR) + "/configs/joined/blocks_2x2x2.yaml",
