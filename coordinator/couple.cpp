@@ -14,6 +14,7 @@
 #include "coordinator/coupling/parallel_force.hpp"
 #include "coordinator/coupling/robin.hpp"
 #include "coordinator/coupling/roles.hpp"
+#include "coordinator/coupling/tie.hpp"
 #include "coordinator/coupling/transmission.hpp"
 #include "coordinator/surface_start.hpp"
 #include "coordinator/coupling/loose_motions.hpp"
@@ -335,6 +336,11 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
   }
   check_supports(joints, bodies);
   share_out_loose_motions(joints, bodies);
+  const auto has_rows = [](const Joint& joint) { return joint.how && joint.how->tie() != nullptr; };
+  if (scene.schwarz.ties && std::ranges::none_of(joints, has_rows)) {
+    throw InputError("has no effect: no surfaces are tied", std::string(TieKernelSpec::path),
+                     "Leave it out.");
+  }
   return joints;
 }
 
@@ -361,6 +367,16 @@ BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
     throw InputError(error.what_is_wrong, std::string(everything_path), error.remedy);
   }
   return all;
+}
+
+TieKernelOptions tie_kernel_options(const SchwarzSpec& spec) {
+  TieKernelOptions options;
+  options.used = std::holds_alternative<KernelAcceleration>(spec.accelerator);
+  if (!spec.ties) return options;
+  options.memory = spec.ties->memory * 1048576.0;
+  options.banded = spec.ties->band != "auto";
+  options.rows = spec.ties->rows;
+  return options;
 }
 
 Schwarz make_schwarz(const SchwarzSpec& spec) {
@@ -396,7 +412,8 @@ Schwarz make_schwarz(const SchwarzSpec& spec) {
     bool operator()(const KernelAcceleration&) const { return true; }
   };
   const Schwarz::Options options{spec.max_iterations, spec.tolerance,
-                                 std::visit(UsesKernels{}, spec.accelerator)};
+                                 std::visit(UsesKernels{}, spec.accelerator),
+                                 tie_kernel_options(spec)};
   return Schwarz(options,
                  [accelerator = spec.accelerator](ApplyInverse inverse, ApplyInverse probe) {
                    return std::visit(Maker{std::move(inverse), std::move(probe)}, accelerator);

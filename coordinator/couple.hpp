@@ -21,6 +21,9 @@ Joint make_pair(const Scene& scene, const PortPair& pair, const Bodies& bodies);
 BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
                             const Bodies& bodies);
 
+/// What a scene says of the kernels of ties.
+TieKernelOptions tie_kernel_options(const SchwarzSpec& spec);
+
 Schwarz make_schwarz(const SchwarzSpec& spec);
 
 }  // namespace abut

@@ -202,6 +202,28 @@ std::string text_of(const std::vector<Estimate::Body>& bodies) {
   return text;
 }
 
+/// Calls of all bodies in a window, as measured at tolerances of 1e-4 to 1e-6.
+std::string calls_of(const Estimate::Ties& ties) {
+  if (!ties.used) return "no kernel: 3 calls of the bodies in a window and more, if they converge";
+  if (ties.narrow) return "2 calls of the bodies in a window and more";
+  const std::string_view calls = ties.linear ? (ties.banded ? "1 to 3 calls" : "1 call")
+                                             : (ties.banded ? "2 to 4 calls" : "2 to 3 calls");
+  return fmt::format("{} of the bodies in a window{}", calls,
+                     ties.linear ? "" : ", more where they deform much");
+}
+
+std::string text_of(const Estimate::Ties& ties) {
+  std::string text;
+  for (const Estimate::Ties::Joint& joint : ties.joints)
+    text += fmt::format("  {:<10} {} rows, whose force is constant in the steps of {}, {:g} s\n",
+                        joint.interface, joint.rows, joint.force, joint.step);
+  if (!ties.used) return text + fmt::format("  {:<10} {}\n", "", calls_of(ties));
+  return text + fmt::format("  {:<10} kernel of {} on {}: {:.3g} MiB, {} probes; {}\n", "",
+                            ties.joints.size() > 1 ? "their rows" : "its rows",
+                            ties.banded ? "near rows" : "all rows", ties.memory_mib, ties.probes,
+                            calls_of(ties));
+}
+
 }  // namespace
 
 std::string to_text(const Estimate& e, bool verbose) {
@@ -224,6 +246,7 @@ std::string to_text(const Estimate& e, bool verbose) {
     }
     text += '\n';
   }
+  for (const Estimate::Ties& ties : e.ties) text += text_of(ties);
   if (!e.in_use.empty()) text += fmt::format("  in use     {}\n", fmt::join(e.in_use, ", "));
   if (verbose) text += fmt::format("  unused     {}\n", fmt::join(e.not_built, ", "));
   return text;

@@ -29,7 +29,24 @@ struct Estimate {
     double memory_mib = 0.0, allowed_mib = 0.0;
   };
 
+  /// Tied surfaces that hang together, and the kernel that answers them.
+  struct Ties {
+    struct Joint {
+      std::string interface, force;  // the side in whose steps the force is constant
+      double step = 0.0;             // [s]
+      std::int64_t rows = 0;
+    };
+    std::vector<Joint> joints;
+    bool used = true;     // false: an accelerator that uses no kernels
+    bool banded = false;  // rows answer their neighbours; false: every other one
+    bool narrow = false;  // so near that waves come farther in a window
+    bool linear = true;   // all bodies
+    double memory_mib = 0.0;
+    std::int64_t probes = 0;
+  };
+
   std::vector<Body> bodies;
+  std::vector<Ties> ties;  // told by estimate_ties
   std::vector<Kernel> kernels;
   std::int64_t windows = 0;
   std::int64_t contact_windows_low = 0, contact_windows_high = 0;

@@ -42,6 +42,7 @@
 #include "coordinator/same_body.hpp"
 #include "coordinator/scene.hpp"
 #include "coordinator/solver_processes.hpp"
+#include "coordinator/tied_estimate.hpp"
 
 namespace abut {
 namespace {
@@ -122,11 +123,14 @@ void validate_expectations(const Scene& scene, const std::vector<const Descripti
   errors.raise();
 }
 
-/// Every interface can be joined as the scene says.
-void validate_coupling(const Scene& scene, const Placement& placement, const Document& document) {
+/// Every interface can be joined as the scene says; tells what ties will pay for.
+std::vector<Estimate::Ties> validate_coupling(const Scene& scene, const Placement& placement,
+                                              const Document& document) {
   try {
-    const Bodies bodies(placement.pointers());
-    make_broad_phase(scene, make_joints(scene, bodies), bodies);
+    const Bodies bodies(placement.pointers(), scene.time.window);
+    std::vector<Joint> joints = make_joints(scene, bodies);
+    make_broad_phase(scene, joints, bodies);
+    return estimate_ties(scene, joints, bodies);
   } catch (const InputError& error) {
     throw InputError(error.what_is_wrong, document.where(error.where), error.remedy);
   }
@@ -169,16 +173,18 @@ void validate_joined(const Scene& scene, const Placement& placement, const Docum
   validate_placed(valid, placement, document);
   const auto here = [](const std::optional<Description>& body) { return body.has_value(); };
   if (std::all_of(valid.bodies.begin(), valid.bodies.end(), here)) return;
-  validate_coupling(scene, placement, document);
+  std::vector<Estimate::Ties> ties = validate_coupling(scene, placement, document);
   validate_expectations(scene, placement.descriptions(), document);
   valid.estimate = estimate(scene, placement.descriptions(), std::nullopt);
+  valid.estimate.ties = std::move(ties);
 }
 
 Validated validate_all(const Scene& scene, const Document& document) {
   const Placement here{nullptr, launch_local(scene, document)};
   validate_bodies(scene, here.descriptions(), document);
+  std::vector<Estimate::Ties> ties;
   if (here.whole()) {
-    validate_coupling(scene, here, document);
+    ties = validate_coupling(scene, here, document);
     validate_expectations(scene, here.descriptions(), document);
   }
   check_speeds(scene, document);
@@ -186,6 +192,7 @@ Validated validate_all(const Scene& scene, const Document& document) {
   std::optional<double> contact;
   if (valid.form) contact = valid.form->contact_time();
   valid.estimate = estimate(scene, here.descriptions(), contact);
+  valid.estimate.ties = std::move(ties);
   for (const Description* body : here.descriptions())
     valid.bodies.push_back(body != nullptr ? std::optional(*body) : std::nullopt);
   return valid;

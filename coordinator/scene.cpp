@@ -125,6 +125,9 @@ void SchwarzSpec::fields(Fields& f) {
   f.optional("max_iterations", max_iterations, "",
              "number of iterations after which a window fails", between(1, 10000));
   f.choice("accelerator", accelerator, "choice of the next iterate", Presence::optional);
+  f.optional_section("ties", ties, "kernels of tied surfaces, in two and three dimensions");
+  f.idle(!std::holds_alternative<KernelAcceleration>(accelerator), "ties",
+         "only the accelerator kernel uses kernels");
   f.word("on_nonconvergence", on_nonconvergence, {"stop", "halve", "accept"},
          "answer to a window that does not converge: end the run, halve the window, or go on");
   f.optional("energy_guard", energy_guard, "",

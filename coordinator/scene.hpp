@@ -16,6 +16,7 @@
 #include "coordinator/force_filter_spec.hpp"
 #include "coordinator/interface_spec.hpp"
 #include "coordinator/scene_meta.hpp"
+#include "coordinator/tie_kernel_spec.hpp"
 
 namespace abut {
 
@@ -96,6 +97,7 @@ struct SchwarzSpec {
   std::variant<KernelAcceleration, NoAcceleration, FixedRelaxation, AitkenAcceleration,
                AndersonAcceleration>
       accelerator;
+  std::optional<TieKernelSpec> ties;  // absent: its defaults
   OnNonconvergence on_nonconvergence = OnNonconvergence::stop;
   double energy_guard = 0.01;  // of the most energy in motion: growth that ends the run
   void fields(Fields& f);

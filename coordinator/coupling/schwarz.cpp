@@ -45,7 +45,7 @@ Eigen::VectorXd Schwarz::relaxed(Eigen::VectorXd r, std::span<const Joint> joint
 
 Accelerator& Schwarz::accelerator_of(const Island& island) {
   Memory& memory = memories_[island.joints];
-  if (memory.ties == nullptr) memory.ties = std::make_unique<TieNet>(options_.tie_kernels);
+  if (memory.ties == nullptr) memory.ties = std::make_unique<TieNet>(options_.ties);
   ties_ = memory.ties.get();
   if (memory.accelerator != nullptr) return *memory.accelerator;
   // Accelerators see scaled values; contact does not scale, its gaps and forces are given.

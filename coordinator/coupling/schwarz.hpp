@@ -32,7 +32,7 @@ class Schwarz {
     double tolerance = 1.0e-6;
     bool kernels =
         true;  // the accelerator uses port kernels: they answer contact that comes and goes
-    double tie_kernels = 512.0 * 1048576.0;  // [B] of an island's ties
+    TieKernelOptions ties = {};
   };
   /// Of the inverse Jacobian and of the probed relaxation factors.
   using MakeAccelerator = std::function<std::unique_ptr<Accelerator>(ApplyInverse, ApplyInverse)>;

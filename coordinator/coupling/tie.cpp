@@ -156,7 +156,8 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
     speed_ = std::max(speed_, largest(motions[s]->v));
     travelled = std::max(travelled, largest(motions[s]->u));
   }
-  if (first_speed_ < 0.0) first_speed_ = speed_;
+  const bool first = first_speed_ < 0.0;
+  if (first) first_speed_ = speed_;
   part(joint, motions, jump_);
   g.head(iterate_.size()) = x.head(iterate_.size()) - jump_ / compliance_;
   unbalanced_ = 0.0;
@@ -175,6 +176,9 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   const double force = joint.force_scale > 0.0 ? joint.force_scale : row_force_;
   scale_.velocity = std::max(scale_.velocity, force * compliance_ / scale_.step);
   scale_.roundoff = roundoff_of(travelled, 0.0);
+  if (!first) return;
+  const double unit = scale_.velocity * scale_.step / compliance_;
+  unit_ = unit > 0.0 ? 1.0 / unit : 1.0;
 }
 
 double Tie::largest_force() const {
@@ -194,9 +198,8 @@ FieldResiduals Tie::measure(const Eigen::Ref<const Eigen::VectorXd>&,
 }
 
 void Tie::scales(Eigen::Ref<Eigen::VectorXd> s) const {
-  const double moved = scale_.velocity * scale_.step, unit = moved / compliance_;
-  s.setConstant(moved > 0.0 ? 1.0 / moved : 1.0);
-  s.head(iterate_.size()).setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
+  s.setConstant(unit_ / compliance_);
+  s.head(iterate_.size()).setConstant(unit_);
 }
 
 }  // namespace abut

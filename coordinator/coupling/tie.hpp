@@ -91,6 +91,7 @@ class Tie final : public Transmission {
   TimeWindow window_;
   Eigen::VectorXd trial_, jump_;
   double compliance_ = 1.0;
+  double unit_ = 1.0;  // [1/N] of a window's first sweep: secants compare sweeps
   double row_force_ = 0.0;
   double unbalanced_ = 0.0;    // [N] largest of the latest sweep
   double speed_ = 0.0;         // [m/s] of the latest sweep

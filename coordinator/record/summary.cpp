@@ -156,11 +156,21 @@ Json estimate_object(const Estimate& estimate) {
                                  {"points_that_fit", kernel.points_that_fit},
                                  {"memory_mib", number(kernel.memory_mib)}};
   }
+  Json ties = Json::array();
+  for (const Estimate::Ties& net : estimate.ties) {
+    Json rows = Json::object();
+    for (const Estimate::Ties::Joint& joint : net.joints) rows[joint.interface] = joint.rows;
+    ties.push_back({{"rows", rows},
+                    {"banded", net.banded},
+                    {"memory_mib", number(net.memory_mib)},
+                    {"probes", net.probes}});
+  }
   return {{"windows", estimate.windows},
           {"contact_windows", {estimate.contact_windows_low, estimate.contact_windows_high}},
           {"exchanges", {estimate.exchanges_low, estimate.exchanges_high}},
           {"bodies", bodies},
           {"kernels", kernels},
+          {"ties", ties},
           {"in_use", estimate.in_use},
           {"not_built", estimate.not_built}};
 }

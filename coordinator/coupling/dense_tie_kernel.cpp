@@ -1,0 +1,170 @@
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "coordinator/coupling/tie_kernel.hpp"
+#include "coordinator/coupling/tie_probes.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Reciprocal condition below which rows say the same twice: at points where three bodies meet, or
+/// where both sides are held.
+constexpr double singular = 1.0e-13;
+/// Of the largest pivot, below which a combination of rows moves nothing.
+constexpr double nothing = 1.0e-10;
+
+/// [m/N] (steps) of (width, width): at the end of a step after a force in the first one.
+using Responses = std::vector<Eigen::MatrixXd>;
+
+class DenseTieKernel final : public TieKernel {
+ public:
+  DenseTieKernel(const TieLayout& layout, int lags, Bodies& bodies);
+  Eigen::VectorXd diagonal() const override { return blocks_[0].diagonal(); }
+  Eigen::Index size() const override { return blocks_[0].rows(); }
+  int lags() const override { return static_cast<int>(blocks_.size()); }
+  double bytes() const override {
+    return 8.0 * static_cast<double>(blocks_.size() + 1) * static_cast<double>(blocks_[0].size());
+  }
+
+ private:
+  void subtract(int lag, const Eigen::Ref<const Eigen::VectorXd>& force,
+                Eigen::VectorXd& left) const override {
+    left -= blocks_[index(lag)] * force;
+  }
+  Eigen::VectorXd invert(const Eigen::VectorXd& jump) const override;
+  bool renew(const TieLayout& layout, Bodies& bodies) override;
+  void find_blocks(const TieLayout& layout, int lags);
+  void find_scale(const TieLayout& layout);
+
+  std::vector<Responses> responses_;  // by part; kept where bodies bend
+  std::vector<Eigen::MatrixXd> blocks_;  // [m/N] by lag
+  // Of the first block: factors, or where rows are redundant the inverse of least size.
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+  Eigen::MatrixXd inverse_;
+  Eigen::VectorXd scale_;  // of its unknowns, which makes them forces all; empty: they are
+};
+
+/// Of unit forces of the rows, one by one.
+Responses responses_of(const TieLayout& layout, const TieLayout::Part& part, int steps,
+                       Bodies& bodies) {
+  Responses responses(index(steps), Eigen::MatrixXd::Zero(part.width, part.width));
+  const auto loose = std::ranges::find_if(
+      part.ends, [&layout](const TieLayout::End& end) { return layout.carries(end); });
+  // What a loose motion does to rows, forces of these leave over along it: the transpose.
+  TakeLoose carried;
+  carried.motion = [&](int k, int, const TieLayout::End& of, std::span<const double> moved) {
+    const auto count = static_cast<Eigen::Index>(moved.size());
+    const Eigen::Map<const Eigen::VectorXd> rows(moved.data(), count);
+    responses[0].col(loose->first + k).segment(of.first, count) = rows;
+    responses[0].row(loose->first + k).segment(of.first, count) = rows.transpose();
+  };
+  carried.left = [&](int k, std::span<const double> left) {
+    for (std::size_t l = 0; l < left.size(); ++l)
+      responses[0](loose->first + static_cast<Eigen::Index>(l), loose->first + k) = left[l];
+  };
+  for (const TieLayout::End& by : part.ends) {
+    if (layout.carries(by)) continue;
+    const auto unit = [](int k, std::span<double> forces) { forces[index(k)] = 1.0; };
+    const auto take = [&](int k, int later, const TieLayout::End& of,
+                          std::span<const double> moved) {
+      const auto count = static_cast<Eigen::Index>(moved.size());
+      responses[index(later)].col(by.first + k).segment(of.first, count) =
+          Eigen::Map<const Eigen::VectorXd>(moved.data(), count);
+    };
+    press(layout, part, by, layout.members[by.member].width, steps, unit, take, bodies, carried);
+  }
+  return responses;
+}
+
+/// What forces of one joint in the first block do to the rows of another so many blocks later,
+/// through one body.
+void add(const TieLayout& layout, const TieLayout::Part& part, const Responses& responses,
+         const TieLayout::End& of, const TieLayout::End& by, int lag, Eigen::MatrixXd& block) {
+  const TieLayout::Member& row = layout.members[of.member];
+  const TieLayout::Member& column = layout.members[by.member];
+  for (const TieLayout::Share& share :
+       layout.shares(part, of, by, lag, static_cast<int>(responses.size()))) {
+    block.block(row.inner + Eigen::Index{share.of} * row.width,
+                column.inner + Eigen::Index{share.by} * column.width, row.width, column.width) +=
+        share.weight *
+        responses[index(share.later)].block(of.first, by.first, row.width, column.width);
+  }
+}
+
+DenseTieKernel::DenseTieKernel(const TieLayout& layout, int lags, Bodies& bodies) {
+  for (const TieLayout::Part& part : layout.parts)
+    responses_.push_back(part.stands ? Responses()
+                                     : responses_of(layout, part, part.steps * lags, bodies));
+  find_blocks(layout, lags);
+  if (std::ranges::none_of(layout.parts, &TieLayout::Part::bends)) responses_.clear();
+}
+
+bool DenseTieKernel::renew(const TieLayout& layout, Bodies& bodies) {
+  if (responses_.empty()) return false;
+  for (std::size_t p = 0; p < layout.parts.size(); ++p) {
+    const TieLayout::Part& part = layout.parts[p];
+    if (part.bends) responses_[p] = responses_of(layout, part, part.steps * lags(), bodies);
+  }
+  find_blocks(layout, lags());
+  return true;
+}
+
+/// Places of loose motions, so that what they do is of the size of what forces do.
+void DenseTieKernel::find_scale(const TieLayout& layout) {
+  scale_.resize(0);
+  const auto carries = [](const TieLayout::Member& member) { return member.carried >= 0; };
+  if (std::ranges::none_of(layout.members, carries)) return;
+  scale_.setOnes(layout.size);
+  double most = 0.0;
+  for (const TieLayout::Member& member : layout.members)
+    if (!carries(member))
+      most = std::max(most, diagonal().segment(member.inner, member.width).maxCoeff());
+  for (const TieLayout::Member& member : layout.members)
+    if (carries(member) && most > 0.0)
+      scale_.segment(member.inner, Eigen::Index{member.width} * member.steps).setConstant(most);
+}
+
+void DenseTieKernel::find_blocks(const TieLayout& layout, int lags) {
+  blocks_.clear();
+  for (int lag = 0; lag < lags; ++lag) {
+    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(layout.size, layout.size);
+    for (std::size_t p = 0; p < layout.parts.size(); ++p) {
+      const TieLayout::Part& part = layout.parts[p];
+      if (part.stands) continue;
+      for (const TieLayout::End& of : part.ends)
+        for (const TieLayout::End& by : part.ends)
+          add(layout, part, responses_[p], of, by, lag, block);
+    }
+    blocks_.push_back(std::move(block));
+  }
+  find_scale(layout);
+  inverse_.resize(0, 0);
+  const Eigen::MatrixXd first =
+      scale_.size() > 0 ? Eigen::MatrixXd(scale_.asDiagonal() * blocks_[0] * scale_.asDiagonal())
+                        : blocks_[0];
+  factors_.compute(first);
+  if (factors_.rcond() > singular) return;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least;
+  least.setThreshold(nothing);
+  inverse_ = least.compute(first).pseudoInverse();
+}
+
+Eigen::VectorXd DenseTieKernel::invert(const Eigen::VectorXd& jump) const {
+  const auto of = [this](const Eigen::VectorXd& r) -> Eigen::VectorXd {
+    if (inverse_.size() > 0) return inverse_ * r;
+    return factors_.solve(r);
+  };
+  if (scale_.size() == 0) return of(jump);
+  return scale_.cwiseProduct(of(scale_.cwiseProduct(jump)));
+}
+
+}  // namespace
+
+std::unique_ptr<TieKernel> make_dense_tie_kernel(const TieLayout& layout, int lags,
+                                                 Bodies& bodies) {
+  return std::make_unique<DenseTieKernel>(layout, lags, bodies);
+}
+
+}  // namespace abut

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Dense>
+
+#include "coordinator/coupling/tie_layout.hpp"
+
+namespace abut {
+
+/// How forces of all ties of a net move their rows apart, and the forces that make up for jumps:
+/// equal blocks below each other by lag, so that the inverse needs that of the first  [M.109].
+class TieKernel {
+ public:
+  virtual ~TieKernel() = default;
+  /// Forces that make up for jumps; both (blocks, size of a block).
+  Eigen::VectorXd solve(const Eigen::VectorXd& jump) const;
+  /// [m/N] of the first block.
+  virtual Eigen::VectorXd diagonal() const = 0;
+  virtual Eigen::Index size() const = 0;  // of a block
+  virtual int lags() const = 0;           // blocks
+  virtual double bytes() const = 0;       // with its factors
+  /// Asks bodies that bend (TieLayout::Part) anew. False: there are none.
+  virtual bool renew(const TieLayout&, Bodies&) { return false; }
+
+ private:
+  /// left -= block of a lag times forces.
+  virtual void subtract(int lag, const Eigen::Ref<const Eigen::VectorXd>& force,
+                        Eigen::VectorXd& left) const = 0;
+  /// Of the first block.
+  virtual Eigen::VectorXd invert(const Eigen::VectorXd& jump) const = 0;
+};
+
+/// Every row on every other one: exact for linear bodies, which are probed row by row. `lags`:
+/// blocks; what a force does after them is left out.
+std::unique_ptr<TieKernel> make_dense_tie_kernel(const TieLayout& layout, int lags, Bodies& bodies);
+
+}  // namespace abut
