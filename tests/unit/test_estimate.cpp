@@ -55,6 +55,33 @@ TEST(Estimate, HoldsWhatTheShippedSceneTakes) {
   EXPECT_GE(e.exchanges_high, 222);  // unequal_bars.yaml: two sweeps in most windows
 }
 
+/// Rows, steps of the force, kernel and calls.
+TEST(Estimate, TellsOfTies) {
+  Estimate e;
+  Estimate::Ties ties;
+  ties.joints = {{"joint", "left.face", 1.0e-6, 15}};
+  ties.memory_mib = 2.5;
+  ties.probes = 90;
+  const auto told = [&e, &ties] {
+    e.ties = {ties};
+    return to_text(e);
+  };
+  EXPECT_NE(told().find("joint      15 rows, whose force is constant in the steps of left.face, "
+                        "1e-06 s\n"),
+            std::string::npos);
+  EXPECT_NE(told().find("kernel of its rows on all rows: 2.5 MiB, 90 probes; 1 call of the bodies"),
+            std::string::npos);
+  ties.banded = true;
+  EXPECT_NE(told().find("on near rows: 2.5 MiB, 90 probes; 1 to 3 calls"), std::string::npos);
+  ties.linear = false;
+  EXPECT_NE(told().find("2 to 4 calls of the bodies in a window, more where they deform much"),
+            std::string::npos);
+  ties.narrow = true;
+  EXPECT_NE(told().find("2 calls of the bodies in a window and more"), std::string::npos);
+  ties.used = false;
+  EXPECT_NE(told().find("no kernel: 3 calls"), std::string::npos);
+}
+
 /// Copies of a body, and not two bodies that a reader compares.
 TEST(Estimate, TellsManyEqualBodiesInOneLine) {
   Estimate e;
