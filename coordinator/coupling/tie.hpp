@@ -34,7 +34,7 @@ class Tie final : public Transmission {
 
   /// From now on, where these many loose motions of a side's body are is part of the iterate, which
   /// is (forces, places of side 0, places of side 1): what is left over of the forces along them
-  /// is to be nothing  [M.110].
+  /// is to be nothing  [M.112].
   void carry(int side, int motions) { loose_[index(side)] = motions; }
   int carried(int side) const { return loose_[index(side)]; }
   /// Where the places of a side begin in the iterate.

@@ -16,7 +16,7 @@ namespace abut {
 /// the port kernels of the bodies, which reach from port to port [M.109]. Linear bodies are
 /// answered exactly, whatever the net, where kernels of all rows on all others fit. Where nothing
 /// but ties holds bodies without inertia, places of their loose motions are found with the forces
-/// [M.110].
+/// [M.112].
 class TieNet {
  public:
   explicit TieNet(const TieKernelOptions& options) : options_(options) {}

@@ -9,7 +9,7 @@
 namespace abut {
 
 /// Solves K x = b for the stiffness of a body that its supports leave rigid motions R: of b what no
-/// stiffness can answer is left out, and of x what R would add  [M.110]:
+/// stiffness can answer is left out, and of x what R would add  [M.112]:
 ///
 ///   K x + C m = b,  C^T x = 0,   C = R / n,  R^T C = 1
 ///

@@ -14,7 +14,7 @@ namespace abut {
 ///
 /// A body that its supports leave rigid motions is carried by them where it is told (carry_to), and
 /// the rest of its balance is solved; what is left over of the forces along these motions is told
-/// (unbalanced), for partners to make it nothing  [M.110].
+/// (unbalanced), for partners to make it nothing  [M.112].
 class QuasiStatic final : public Integrator {
  public:
   struct Options {
