@@ -65,6 +65,7 @@ class Schwarz {
   /// residual, and the largest mismatch by units that only grow in a window, so that sweeps can be
   /// compared.
   double see_images(std::span<const Joint> joints, const Bodies& bodies, FieldResiduals& residual);
+  double step_from(const Eigen::VectorXd& before, std::span<const Joint> joints);
   /// The residual, of every joint relaxed by its first factor.
   Eigen::VectorXd relaxed(Eigen::VectorXd r, std::span<const Joint> joints) const;
   /// A joint's part of a stacked vector.
