@@ -140,8 +140,9 @@ double Schwarz::step_from(const Eigen::VectorXd& before, std::span<const Joint> 
   return most;
 }
 
-std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, const Island& island,
-                                                   std::span<const Joint> joints, Bodies& bodies) {
+/// The joints of an island begin a window.
+void Schwarz::lay_out(const TimeWindow& window, const Island& island, std::span<const Joint> joints,
+                      Bodies& bodies) {
   layout_.joints = island.joints;
   layout_.first.assign(1, 0);
   for (int j : island.joints) {
@@ -153,6 +154,11 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   const Eigen::Index size = layout_.first.back();
   for (Eigen::VectorXd* v : {&x_, &g_, &s_}) v->resize(size);
   joints_ = joints;
+}
+
+std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, const Island& island,
+                                                   std::span<const Joint> joints, Bodies& bodies) {
+  lay_out(window, island, joints, bodies);
   Accelerator& accelerator = accelerator_of(island);
   ties_->begin(island, joints, layout_.first, bodies);
   if (std::optional<Failed> failed = fly(island, joints, bodies)) return *failed;

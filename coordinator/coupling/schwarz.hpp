@@ -57,6 +57,8 @@ class Schwarz {
     std::vector<int> joints;
     std::vector<Eigen::Index> first;  // of every joint's part in the stacked iterate, and the total
   };
+  void lay_out(const TimeWindow& window, const Island& island, std::span<const Joint> joints,
+               Bodies& bodies);
   /// First guesses of all joints.
   std::optional<Failed> fly(const Island& island, std::span<const Joint> joints, Bodies& bodies);
   std::optional<Failed> sweep(const Island& island, std::span<const Joint> joints,
