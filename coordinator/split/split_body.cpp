@@ -1,0 +1,130 @@
+#include "coordinator/split/split_body.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.hpp"
+#include "base/yaml_fields.hpp"
+#include "subdomain_solver/make/mesh.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Why a body cannot be divided, of a key of its own, and what to do; empty: it can be.
+struct Refusal {
+  std::string key, why, remedy;
+};
+
+Refusal refusal_of(const BodySpec& spec) {
+  const FeModelSpec* fe = std::get_if<FeModelSpec>(&spec.model);
+  if (fe == nullptr) {
+    const auto name = [](const auto& model) { return std::string(model.name); };
+    return {"model", fmt::format("{} has no cells to deal out", std::visit(name, spec.model)),
+            "Divide bodies with model fe."};
+  }
+  if (fe->dimension == 1)
+    return {"model.fe.dimension", "is 1: a bar is divided by hand",
+            "Write shorter bars, and tie the ends that meet."};
+  if (spec.integrator && std::holds_alternative<QuasiStaticSpec>(*spec.integrator))
+    return {"integrator", "quasi_static has no inertia, without which bodies are not tied",
+            "Integrate the body in time."};
+  if (spec.initial.adjust)
+    return {"initial.adjust", "moves nodes of the whole body, which its parts could not agree on",
+            "Leave it out, and let the mesh meet what it touches."};
+  return {};
+}
+
+bool can_be_divided(const Document& document, const std::string& path, bool external) {
+  return !external && refusal_of(read<BodySpec>(document, path)).why.empty();
+}
+
+std::string only_body(const Document& document, const Scene& scene) {
+  std::vector<std::string> names;
+  for (const auto& [name, entry] : scene.bodies)
+    if (can_be_divided(document, "bodies." + name, entry.external)) names.push_back(name);
+  if (names.size() == 1) return names.front();
+  if (names.empty())
+    throw InputError("has no body that can be divided", document.where("bodies"),
+                     "Give one model: {fe: ...} in two or three dimensions and an integrator in "
+                     "time.");
+  throw InputError(fmt::format("has {} bodies that can be divided", names.size()),
+                   document.where("bodies"),
+                   fmt::format("Name one by --body: {}.", fmt::join(names, ", ")));
+}
+
+std::string chosen(const Document& document, const Scene& scene, const std::string& name) {
+  if (name.empty()) return only_body(document, scene);
+  std::vector<std::string> names;
+  for (const auto& [other, entry] : scene.bodies) {
+    names.push_back(other);
+    if (other != name) continue;
+    if (entry.external)
+      throw InputError("is of another program, which alone knows its mesh",
+                       document.where("bodies." + name + ".model"), "Divide another body.");
+    return name;
+  }
+  throw InputError(fmt::format("has no body {}", name), document.where("bodies"),
+                   fmt::format("Choose one of {}.", fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+std::string WholeBody::set_called(const std::string& called) const {
+  for (const auto& [port, spec] : this->spec.ports)
+    if (port == called) return spec.side;
+  for (const auto& [constraint, spec] : this->spec.constraints)
+    if (constraint == called) return spec.on;
+  return mesh.node_sets.contains(called) ? called : "";
+}
+
+WholeBody whole_body(const Document& document, const Scene& scene, const std::string& name) {
+  WholeBody whole;
+  whole.name = chosen(document, scene, name);
+  const std::string path = "bodies." + whole.name;
+  whole.spec = read<BodySpec>(document, path);
+  const Refusal refusal = refusal_of(whole.spec);
+  if (!refusal.why.empty())
+    throw InputError(refusal.why, document.where(path + "." + refusal.key), refusal.remedy);
+  whole.spec.place_files(document.name().substr(0, document.name().rfind('/') + 1));
+  const Place place{document, path};
+  whole.mesh = make_mesh(std::get<FeModelSpec>(whole.spec.model), whole.spec.initial.position,
+                         place, "model.fe");
+  name_points(whole.spec, place, whole.mesh);
+  return whole;
+}
+
+BodySpec part_spec(const WholeBody& whole, const SplitNames& where, std::size_t part,
+                   const std::string& file, const std::map<int, std::string>& towards) {
+  BodySpec spec = whole.spec;
+  FeModelSpec& fe = std::get<FeModelSpec>(spec.model);
+  GmshSpec mesh;
+  mesh.file = file;
+  fe.mesh = std::move(mesh);
+  fe.map.clear();
+  std::ranges::fill(spec.initial.position, 0.0);  // the mesh is where the body is
+  const auto reaches = [&](const std::string& name) { return where.reaches(part, name); };
+  std::erase_if(spec.ports, [&](const auto& port) { return !reaches(port.second.side); });
+  std::erase_if(spec.points, [&](const auto& point) { return !reaches(point.first); });
+  std::erase_if(spec.constraints, [&](const auto& held) { return !reaches(held.second.on); });
+  std::erase_if(spec.loads, [&](const auto& load) {
+    return !load.second.on.empty() && !reaches(load.second.on);
+  });
+  if (spec.ports.empty()) spec.contact_layer = {};
+  for (const auto& [other, side] : towards) {
+    PortSpec port;
+    port.side = side;
+    const auto same = [&name = side](const auto& own) { return own.first == name; };
+    if (std::ranges::any_of(spec.ports, same))
+      throw InputError(fmt::format("has a port {}, as a part would have", side),
+                       "bodies." + whole.name + ".ports", "Give the port another name.");
+    spec.ports.emplace_back(side, port);
+  }
+  return spec;
+}
+
+}  // namespace abut

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "base/yaml_document.hpp"
+#include "coordinator/scene.hpp"
+#include "coordinator/split/split_names.hpp"
+#include "subdomain_solver/fe/mesh.hpp"
+#include "subdomain_solver/make/body_spec.hpp"
+
+namespace abut {
+
+/// The body that is to be divided: its keys, and its mesh where it stands, named points as sets.
+struct WholeBody {
+  std::string name;
+  BodySpec spec;
+  Mesh mesh;
+
+  /// The side, set or point that a port, a constraint or a point of this name is; empty: none is
+  /// called so.
+  std::string set_called(const std::string& name) const;
+};
+
+/// The body of this name; without a name the only one of the scene that can be divided. Throws
+/// InputError: no such body, or one that cannot be divided, with the reason.
+WholeBody whole_body(const Document& document, const Scene& scene, const std::string& name);
+
+/// The keys of a part: those of the whole, but for the mesh, for what does not reach into it, and
+/// for the sides towards other parts, each a port.
+BodySpec part_spec(const WholeBody& whole, const SplitNames& where, std::size_t part,
+                   const std::string& file, const std::map<int, std::string>& towards);
+
+}  // namespace abut
