@@ -211,7 +211,9 @@ void TieNet::add(const Part& part, const End& of, const End& by, int lag,
 void TieNet::factor() {
   factors_.compute(blocks_[0]);
   inverse_.resize(0, 0);
-  if (factors_.rcond() > singular) return;
+  // Not by rcond(): of a matrix without some pivots its estimate is any number.
+  const Eigen::ArrayXd pivots = factors_.matrixLU().diagonal().array().abs();
+  if (pivots.minCoeff() > singular * pivots.maxCoeff()) return;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least;
   least.setThreshold(nothing);
   inverse_ = least.compute(blocks_[0]).pseudoInverse();

@@ -75,19 +75,13 @@ class Divider {
     std::ranges::sort(part.nodes);
     part.nodes.erase(std::unique(part.nodes.begin(), part.nodes.end()), part.nodes.end());
     for (CellBlock& block : part.mesh.blocks)
-      for (std::int32_t& node : block.nodes) node = number_in(part, node);
+      for (std::int32_t& node : block.nodes) node = part.number_of(node);
     const std::size_t dim = index(mesh_.dim);
     part.mesh.dim = mesh_.dim;
     for (std::int32_t node : part.nodes) {
       const auto at = mesh_.points.begin() + static_cast<std::ptrdiff_t>(index(node) * dim);
       part.mesh.points.insert(part.mesh.points.end(), at, at + mesh_.dim);
     }
-  }
-
-  /// Of a node of the whole that the part has.
-  static std::int32_t number_in(const MeshPart& part, std::int32_t node) {
-    return static_cast<std::int32_t>(std::ranges::lower_bound(part.nodes, node) -
-                                     part.nodes.begin());
   }
 
   void add_facet(const std::string& side, const Facet& facet) {
@@ -100,7 +94,7 @@ class Divider {
       std::vector<std::int32_t> own;
       std::ranges::set_intersection(nodes, part.nodes, std::back_inserter(own));
       if (own.empty()) continue;
-      for (std::int32_t& node : own) node = number_in(part, node);
+      for (std::int32_t& node : own) node = part.number_of(node);
       part.mesh.node_sets[name] = std::move(own);
     }
   }
@@ -166,6 +160,10 @@ class Divider {
 };
 
 }  // namespace
+
+std::int32_t MeshPart::number_of(std::int32_t node) const {
+  return static_cast<std::int32_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
+}
 
 std::vector<MeshPart> divide(const Mesh& mesh, const CellGraph& graph, const std::vector<int>& part,
                              const std::vector<std::string>& names, const std::string& where) {

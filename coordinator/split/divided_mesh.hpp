@@ -16,6 +16,9 @@ struct MeshPart {
   Mesh mesh;
   std::vector<std::int32_t> nodes;     // of the whole mesh, ascending
   std::map<int, std::string> towards;  // names of the sides to other parts
+
+  /// Of a node of the whole mesh that it has.
+  std::int32_t number_of(std::int32_t node) const;
 };
 
 /// Cuts a mesh along the facets between parts (cells). `names` (parts): the side of part i towards

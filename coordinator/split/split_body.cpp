@@ -1,6 +1,7 @@
 #include "coordinator/split/split_body.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <variant>
 
@@ -9,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/yaml_fields.hpp"
+#include "subdomain_solver/make/constraints.hpp"
 #include "subdomain_solver/make/mesh.hpp"
 
 namespace abut {
@@ -72,6 +74,8 @@ std::string chosen(const Document& document, const Scene& scene, const std::stri
                    fmt::format("Choose one of {}.", fmt::join(names, ", ")));
 }
 
+std::string held_set(const std::string& constraint) { return "held_" + constraint; }
+
 }  // namespace
 
 std::string WholeBody::set_called(const std::string& called) const {
@@ -98,6 +102,27 @@ WholeBody whole_body(const Document& document, const Scene& scene, const std::st
   return whole;
 }
 
+void hold_single_nodes(const Document& document, const WholeBody& whole,
+                       std::vector<MeshPart>& parts) {
+  for (const auto& [name, spec] : whole.spec.constraints) {
+    const std::string set = held_set(name);
+    if (whole.mesh.sides.contains(set) || whole.mesh.node_sets.contains(set))
+      throw InputError(fmt::format("needs the name {} in the mesh, which has it", set),
+                       document.where(fmt::format("bodies.{}.constraints.{}", whole.name, name)),
+                       "Give the constraint another name.");
+    if (!whole.mesh.sides.contains(spec.on)) continue;
+    const std::vector<std::int32_t> all = whole.mesh.nodes_of(spec.on);
+    for (MeshPart& part : parts) {
+      std::vector<std::int32_t> own;
+      std::ranges::set_intersection(all, part.nodes, std::back_inserter(own));
+      for (std::int32_t& node : own) node = part.number_of(node);
+      const bool faced = part.mesh.sides.contains(spec.on);
+      if (own != (faced ? part.mesh.nodes_of(spec.on) : std::vector<std::int32_t>()))
+        part.mesh.node_sets[set] = std::move(own);
+    }
+  }
+}
+
 BodySpec part_spec(const WholeBody& whole, const SplitNames& where, std::size_t part,
                    const std::string& file, const std::map<int, std::string>& towards) {
   BodySpec spec = whole.spec;
@@ -110,6 +135,11 @@ BodySpec part_spec(const WholeBody& whole, const SplitNames& where, std::size_t 
   const auto reaches = [&](const std::string& name) { return where.reaches(part, name); };
   std::erase_if(spec.ports, [&](const auto& port) { return !reaches(port.second.side); });
   std::erase_if(spec.points, [&](const auto& point) { return !reaches(point.first); });
+  for (auto& [name, held] : spec.constraints) {
+    if (!reaches(held_set(name))) continue;
+    if (held.symmetry) held = mirrored(whole.mesh, held);
+    held.on = held_set(name);
+  }
   std::erase_if(spec.constraints, [&](const auto& held) { return !reaches(held.second.on); });
   std::erase_if(spec.loads, [&](const auto& load) {
     return !load.second.on.empty() && !reaches(load.second.on);

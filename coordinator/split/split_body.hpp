@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "base/yaml_document.hpp"
 #include "coordinator/scene.hpp"
@@ -25,6 +26,12 @@ struct WholeBody {
 /// The body of this name; without a name the only one of the scene that can be divided. Throws
 /// InputError: no such body, or one that cannot be divided, with the reason.
 WholeBody whole_body(const Document& document, const Scene& scene, const std::string& name);
+
+/// A part may have nodes of a side that is held and not the facets around them: there the
+/// constraint is of a node set "held_" + its name, so that it holds the same nodes as in the whole.
+/// Throws InputError where the mesh has such a name.
+void hold_single_nodes(const Document& document, const WholeBody& whole,
+                       std::vector<MeshPart>& parts);
 
 /// The keys of a part: those of the whole, but for the mesh, for what does not reach into it, and
 /// for the sides towards other parts, each a port.

@@ -61,7 +61,9 @@ class Splitter {
     const std::string where = document_.where("bodies." + whole_.name + ".model.fe.mesh");
     const CellGraph graph = cell_graph(whole_.mesh);
     const std::vector<int> part = partition(graph, options_.bodies, where);
-    return divide(whole_.mesh, graph, part, names_, where);
+    std::vector<MeshPart> parts = divide(whole_.mesh, graph, part, names_, where);
+    hold_single_nodes(document_, whole_, parts);
+    return parts;
   }
 
   std::string words(std::size_t p) const {
