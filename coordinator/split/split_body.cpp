@@ -74,15 +74,26 @@ std::string chosen(const Document& document, const Scene& scene, const std::stri
                    fmt::format("Choose one of {}.", fmt::join(names, ", ")));
 }
 
+/// Whether anything may touch a port: where everything does, tied ones do not.
+bool touches(const Scene& scene, const std::string& side) {
+  bool touched = scene.contact.has_value();
+  for (const auto& [name, interface] : scene.interfaces) {
+    if (std::ranges::find(interface.sides, side) == interface.sides.end()) continue;
+    if (interface.contact) return true;
+    touched = false;
+  }
+  return touched;
+}
+
 std::string held_set(const std::string& constraint) { return "held_" + constraint; }
 
 }  // namespace
 
 std::string WholeBody::set_called(const std::string& called) const {
-  for (const auto& [port, spec] : this->spec.ports)
-    if (port == called) return spec.side;
-  for (const auto& [constraint, spec] : this->spec.constraints)
-    if (constraint == called) return spec.on;
+  for (const auto& [port, of] : spec.ports)
+    if (port == called) return of.side;
+  for (const auto& [constraint, of] : spec.constraints)
+    if (constraint == called) return of.on;
   return mesh.node_sets.contains(called) ? called : "";
 }
 
@@ -100,6 +111,16 @@ WholeBody whole_body(const Document& document, const Scene& scene, const std::st
                          place, "model.fe");
   name_points(whole.spec, place, whole.mesh);
   return whole;
+}
+
+std::vector<std::int32_t> touched_nodes(const Scene& scene, const WholeBody& whole) {
+  std::vector<std::int32_t> nodes;
+  for (const auto& [name, port] : whole.spec.ports) {
+    if (!touches(scene, whole.name + "." + name) || !whole.mesh.sides.contains(port.side)) continue;
+    const std::vector<std::int32_t> more = whole.mesh.nodes_of(port.side);
+    nodes.insert(nodes.end(), more.begin(), more.end());
+  }
+  return nodes;
 }
 
 void hold_single_nodes(const Document& document, const WholeBody& whole,

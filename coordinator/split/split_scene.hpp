@@ -28,7 +28,8 @@ struct SplitScene {
 /// Divides the mesh of one finite element body of two or three dimensions into connected parts of
 /// about equal numbers of cells. Each part is a body with the keys of the whole and those of its
 /// ports, points, constraints and loads that reach into it; parts that share facets are tied there.
-/// Interfaces of the whole become one for every part that has facets of the port. Throws
+/// Interfaces of the whole become one for every part that has facets of the port; ports that may
+/// touch lie in one part. Throws
 /// InputError: no such body, one that has no cells to deal out, one that is not stepped in time.
 SplitScene split_scene(const Document& document, const Scene& scene, const SplitOptions& options);
 
