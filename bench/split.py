@@ -27,7 +27,9 @@ bodies:
       fe:
         dimension: 3
         mesh:
-          box: {{lengths: [{across}.0, {across}.0, {along}.0], elements: [{across}, {across}, {along}]}}
+          box:
+            lengths: [{across}.0, {across}.0, {along}.0]
+            elements: [{across}, {across}, {along}]
         threads: {threads}
     material: {{linear_elastic: {{youngs_modulus: 1.0, poissons_ratio: 0.25, density: 1.0}}}}
     integrator: {{central_difference: {{step: 0.25}}}}
