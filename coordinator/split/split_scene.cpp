@@ -1,7 +1,9 @@
 #include "coordinator/split/split_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,6 +44,7 @@ class Splitter {
         where_(whole_.mesh, parts_) {}
 
   SplitScene split() {
+    shorten_windows();
     divide_interfaces();
     divide_bodies();
     divide_expectations();
@@ -65,6 +68,19 @@ class Splitter {
     std::vector<MeshPart> parts = divide(whole_.mesh, graph, part, names_, where);
     hold_single_nodes(document_, whole_, parts);
     return parts;
+  }
+
+  /// Windows of a body alone couple nothing, and may be long; ties want short ones: of one step,
+  /// kernels are small, and next to exact where laws are not linear.
+  void shorten_windows() {
+    if (scene_.bodies.size() > 1) return;
+    const double step =
+        std::visit([](const auto& scheme) { return scheme.step; }, *whole_.spec.integrator);
+    const double steps = std::round(scene_.time.window / step);
+    if (steps < 2.0) return;
+    scene_.time.window = step;
+    if (scene_.output.field_output)
+      scene_.output.field_output->every *= static_cast<int>(std::min(steps, 1.0e3));
   }
 
   std::string words(std::size_t p) const {

@@ -29,7 +29,7 @@ struct SplitScene {
 /// about equal numbers of cells. Each part is a body with the keys of the whole and those of its
 /// ports, points, constraints and loads that reach into it; parts that share facets are tied there.
 /// Interfaces of the whole become one for every part that has facets of the port; ports that may
-/// touch lie in one part. Throws
+/// touch lie in one part. A body that was alone gets windows of one step. Throws
 /// InputError: no such body, one that has no cells to deal out, one that is not stepped in time.
 SplitScene split_scene(const Document& document, const Scene& scene, const SplitOptions& options);
 

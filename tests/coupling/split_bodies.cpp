@@ -132,8 +132,8 @@ TEST(SplitBodies, NonlinearOnesToo) {
   const Plate plate{.element = "hex8", .law = "neo_hookean"};
   const auto whole = run_document(written(folder.path(), plate.text()));
   const auto parts = run_split(folder, plate.text(), 3);
-  // The tolerance of the iteration, 1e-6 of what moves in a step, in each of ten windows.
-  constexpr double close = 1.0e-6 * 0.02 * 0.2 * 10.0;
+  // The tolerance of the iteration, 1e-6 of what moves in a step, in each of a hundred windows.
+  constexpr double close = 1.0e-6 * 0.02 * 0.2 * 100.0;
   EXPECT_NEAR(corner(*parts, "displacement.x"), corner(*whole, "displacement.x"), close);
   EXPECT_NEAR(corner(*parts, "displacement.y"), corner(*whole, "displacement.y"), close);
 }
