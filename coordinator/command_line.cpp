@@ -9,7 +9,9 @@
 namespace abut {
 namespace {
 
-constexpr std::array<std::string_view, 3> own_verbs{"run", "check", "reference"};
+constexpr int most_parts = 64;  // as many as processes of a run
+
+constexpr std::array<std::string_view, 4> own_verbs{"run", "check", "split", "reference"};
 
 void add_scene(CLI::App& verb, std::string& scene, std::vector<std::string>& overrides) {
   verb.add_option("scene", scene, "scene file")->required()->type_name("SCENE");
@@ -17,6 +19,20 @@ void add_scene(CLI::App& verb, std::string& scene, std::vector<std::string>& ove
                   "use this value in place of the scene's, null for none; repeatable")
       ->type_name("key.path=value")
       ->allow_extra_args(false);
+}
+
+CLI::App& add_split(CLI::App& app, SplitCommand& split) {
+  CLI::App& verb = *app.add_subcommand("split", "write a scene with one body as several tied ones");
+  add_scene(verb, split.scene, split.overrides);
+  verb.add_option("--bodies", split.bodies, "number of bodies that it becomes")
+      ->required()
+      ->check(CLI::Range(2, most_parts));
+  verb.add_option("--body", split.body, "body to divide; default the only one that can be")
+      ->type_name("NAME");
+  verb.add_option("--out", split.out, "folder of the new scene; default <scene name>_split_N")
+      ->type_name("DIR");
+  verb.add_flag("--force", split.force, "replace the files that DIR holds");
+  return verb;
 }
 
 }  // namespace
@@ -47,6 +63,9 @@ Command parse_command_line(int argc, const char* const* argv) {
 
   check_verb.add_flag("--verbose", check.verbose, "tell as well what the scene leaves unused");
 
+  SplitCommand split;
+  const CLI::App& split_verb = add_split(app, split);
+
   CLI::App& reference_verb =
       *app.add_subcommand("reference", "print every key of a scene file, as Markdown");
 
@@ -59,6 +78,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   }
   if (run_verb.parsed()) return run;
   if (check_verb.parsed()) return check;
+  if (split_verb.parsed()) return split;
   if (reference_verb.parsed()) return ReferenceCommand{};
   return PrintCommand{app.help(), 2};
 }

@@ -19,6 +19,14 @@ struct CheckCommand {
   std::vector<std::string> overrides;
   bool verbose = false;
 };
+struct SplitCommand {
+  std::string scene;
+  int bodies = 2;
+  std::string body;  // empty: the only one that can be divided
+  std::string out;   // empty: <scene name>_split_<bodies>
+  std::vector<std::string> overrides;
+  bool force = false;
+};
 struct ReferenceCommand {};
 /// `abut V ...` where V is none of ours: the program abut-V.
 struct ExternalCommand {
@@ -31,8 +39,8 @@ struct PrintCommand {
   int exit_code = 0;  // other than 0: for standard error
 };
 
-using Command =
-    std::variant<RunCommand, CheckCommand, ReferenceCommand, ExternalCommand, PrintCommand>;
+using Command = std::variant<RunCommand, CheckCommand, SplitCommand, ReferenceCommand,
+                             ExternalCommand, PrintCommand>;
 
 /// Never throws: a command line that is wrong becomes a PrintCommand with exit code 2.
 Command parse_command_line(int argc, const char* const* argv);

@@ -42,6 +42,7 @@
 #include "coordinator/same_body.hpp"
 #include "coordinator/scene.hpp"
 #include "coordinator/solver_processes.hpp"
+#include "coordinator/split/split_scene.hpp"
 #include "coordinator/tied_estimate.hpp"
 
 namespace abut {
@@ -309,6 +310,44 @@ int check_verb(const CheckCommand& command) {
   return 0;
 }
 
+/// Where a divided scene goes when the command line does not say.
+fs::path split_directory(const SplitCommand& command) {
+  if (!command.out.empty()) return command.out;
+  return fmt::format("{}_split_{}", fs::path(command.scene).stem().string(), command.bodies);
+}
+
+/// Writes nothing where a file is in the way.
+void write_split(const SplitScene& split, const fs::path& directory, const fs::path& scene,
+                 bool force) {
+  std::vector<std::pair<fs::path, const std::string*>> files;
+  for (const auto& [name, text] : split.meshes) files.emplace_back(directory / name, &text);
+  files.emplace_back(scene, &split.scene);  // the last one: it needs the others
+  for (const auto& [path, text] : files) {
+    if (!force && fs::exists(fs::symlink_status(path)))
+      throw InputError("is there already", path.string(), "Give another --out, or --force.");
+  }
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error)
+    throw InputError(fmt::format("cannot be made: {}", error.message()), directory.string(),
+                     "Give a folder that can be written to.");
+  for (const auto& [path, text] : files) write_whole(path, *text);
+}
+
+int split_verb(const SplitCommand& command) {
+  const Document document = Document::load(command.scene, command.overrides);
+  const Scene scene = read_all_keys(document);
+  const fs::path directory = split_directory(command);
+  const SplitScene split = split_scene(document, scene, {command.bodies, command.body, directory});
+  const fs::path written = directory / fs::path(command.scene).filename();
+  write_split(split, directory, written, command.force);
+  for (const std::string& part : split.parts) fmt::print("{}\n", part);
+  for (const std::string& measure : split.left_out)
+    fmt::print("left out: what is expected of {}, which no part alone has\n", measure);
+  fmt::print("written: {}\n", written.string());
+  return check_verb({written.string(), {}, false});
+}
+
 int reference_verb() {
   Reference reference;
   reference.heading("The scene");
@@ -326,6 +365,7 @@ int reference_verb() {
 struct Verbs {
   int operator()(const RunCommand& command) const { return run_verb(command); }
   int operator()(const CheckCommand& command) const { return check_verb(command); }
+  int operator()(const SplitCommand& command) const { return split_verb(command); }
   int operator()(const ReferenceCommand&) const { return reference_verb(); }
   int operator()(const ExternalCommand& command) const {
     become_external_verb(command.verb, command.arguments);

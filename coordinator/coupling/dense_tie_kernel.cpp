@@ -145,7 +145,9 @@ void DenseTieKernel::find_blocks(const TieLayout& layout, int lags) {
       scale_.size() > 0 ? Eigen::MatrixXd(scale_.asDiagonal() * blocks_[0] * scale_.asDiagonal())
                         : blocks_[0];
   factors_.compute(first);
-  if (factors_.rcond() > singular) return;
+  // Not by rcond(): of a matrix without some pivots its estimate is any number.
+  const Eigen::ArrayXd pivots = factors_.matrixLU().diagonal().array().abs();
+  if (pivots.minCoeff() > singular * pivots.maxCoeff()) return;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least;
   least.setThreshold(nothing);
   inverse_ = least.compute(first).pseudoInverse();

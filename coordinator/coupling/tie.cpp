@@ -148,13 +148,14 @@ bool Tie::looks(const Joint& joint, const Bodies& bodies) const {
 
 void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                 const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
-  double travelled = 0.0;
+  double travelled = 0.0, spacing = 0.0;
   speed_ = 0.0;
   std::array<const Waveform*, 2> motions;
   for (const std::size_t s : {0u, 1u}) {
     motions[s] = &trace_of(bodies, joint.sides[s]);
     speed_ = std::max(speed_, largest(motions[s]->v));
     travelled = std::max(travelled, largest(motions[s]->u));
+    spacing = std::max(spacing, bodies.port(joint.sides[s]).geometry.spacing);
   }
   const bool first = first_speed_ < 0.0;
   if (first) first_speed_ = speed_;
@@ -175,7 +176,9 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   // Or what the force moves in a step: bodies at rest have no other measure.
   const double force = joint.force_scale > 0.0 ? joint.force_scale : row_force_;
   scale_.velocity = std::max(scale_.velocity, force * compliance_ / scale_.step);
-  scale_.roundoff = roundoff_of(travelled, 0.0);
+  // Laws of finite strain know strains to the round-off of 1: ends that no wave has reached yet
+  // answer a force with noise.
+  scale_.roundoff = roundoff_of(travelled, spacing);
   if (!first) return;
   const double unit = scale_.velocity * scale_.step / compliance_;
   unit_ = unit > 0.0 ? 1.0 / unit : 1.0;

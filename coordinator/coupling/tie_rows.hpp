@@ -20,8 +20,9 @@ struct TieRows {
   int width() const { return count() * dim; }
 };
 
-/// Of the reference configuration: the dual mortar rows of one side, 0 or 1  [M.108]. In one
-/// dimension one row of two points. No rows: the surfaces do not face each other.
+/// Of the reference configuration: the dual mortar rows of one side, 0 or 1  [M.108]; where its
+/// facets are facets of the other side as well, a row for each node and its twin. In one dimension
+/// one row of two points. No rows: the surfaces do not face each other.
 TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int side);
 
 }  // namespace abut

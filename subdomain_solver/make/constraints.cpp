@@ -66,8 +66,8 @@ Eigen::Vector3d plane_normal(const Mesh& mesh, const std::string& side) {
   return normal;
 }
 
-/// The same constraint in terms of its direction: a component where the side lies along axes, which
-/// may share nodes with others.
+}  // namespace
+
 ConstraintSpec mirrored(const Mesh& mesh, ConstraintSpec spec) {
   const Eigen::Vector3d normal = plane_normal(mesh, spec.on);
   spec.symmetry = false;
@@ -79,6 +79,8 @@ ConstraintSpec mirrored(const Mesh& mesh, ConstraintSpec spec) {
   }
   return spec;
 }
+
+namespace {
 
 class ConstraintMaker {
  public:

@@ -18,6 +18,10 @@ struct Constraints {
   std::vector<HeldCoordinates> held;
 };
 
+/// A symmetry in terms of its direction: a component where the side lies along axes, which may
+/// share nodes with others. Throws InputError, told of nothing, where the side is not plane.
+ConstraintSpec mirrored(const Mesh& mesh, ConstraintSpec spec);
+
 /// What a scene's constraints prescribe on a mesh. Throws InputError.
 Constraints make_constraints(const BodySpec& spec, const Place& place, const Mesh& mesh);
 

@@ -19,19 +19,30 @@ void DriftKickDrift::find_loads(double time, std::span<const double> q) {
   for (const std::unique_ptr<Load>& load : problem_.loads) load->add(time, q, loads_);
 }
 
+ModelResponse* DriftKickDrift::respond(const std::vector<double>& history) {
+  if (known_[1].at == middle_ && history.empty()) std::swap(known_[0], known_[1]);
+  if (known_[0].at == middle_ && history.empty()) return &known_[0].response;
+  std::swap(known_[0], known_[1]);
+  known_[0].at.clear();
+  if (!problem_.model->evaluate(middle_, history, Model::Want::force, known_[0].response))
+    return nullptr;
+  known_[0].at = middle_;
+  return &known_[0].response;
+}
+
 /// The stored energy is that of the scheme's invariant: as if a step lay behind.
 std::optional<Failed> DriftKickDrift::begin(Motion& motion, double time) {
   motion.history.resize(problem_.model->history_size(), 0.0);
   for (const Prescribed& p : problem_.supports) motion.q[index(p.dof)] = p.value(time);
   middle_ = motion.q;
   view(middle_) -= 0.5 * step_ * view(motion.v);
-  if (!problem_.model->evaluate(middle_, motion.history, Model::Want::force, response_))
-    return failed_newton({NewtonReport::End::inadmissible}, time);
-  store(response_.force, motion.force);
-  motion.stored = response_.stored + 0.5 * step_ * response_.force.dot(view(motion.v));
+  const ModelResponse* response = respond(motion.history);
+  if (response == nullptr) return failed_newton({NewtonReport::End::inadmissible}, time);
+  store(response->force, motion.force);
+  motion.stored = response->stored + 0.5 * step_ * response->force.dot(view(motion.v));
   find_loads(time, motion.q);
   motion.a.resize(motion.q.size());
-  view(motion.a) = inverse_mass_.cwiseProduct(loads_ - response_.force);
+  view(motion.a) = inverse_mass_.cwiseProduct(loads_ - response->force);
   return std::nullopt;
 }
 
@@ -45,11 +56,11 @@ std::optional<Failed> DriftKickDrift::step(Motion& motion, double time, double d
     if (!std::isfinite(value)) return not_finite(time + dt);
     middle_[index(p.dof)] = 0.5 * (motion.q[index(p.dof)] + value);
   }
-  if (!problem_.model->evaluate(middle_, motion.history, Model::Want::force, response_))
-    return failed_newton({NewtonReport::End::inadmissible}, time + half);
+  ModelResponse* response = respond(motion.history);
+  if (response == nullptr) return failed_newton({NewtonReport::End::inadmissible}, time + half);
   find_loads(time + half, middle_);
   double work = 0.0;
-  const double *inverse = inverse_mass_.data(), *r = response_.force.data(), *load = loads_.data();
+  const double *inverse = inverse_mass_.data(), *r = response->force.data(), *load = loads_.data();
   double *q = motion.q.data(), *v = motion.v.data(), *a = motion.a.data();
   for (std::size_t i = 0; i < motion.q.size(); ++i) {
     if (inverse[i] == 0.0) continue;
@@ -69,10 +80,10 @@ std::optional<Failed> DriftKickDrift::step(Motion& motion, double time, double d
     q[i] = given_[k];
   }
   motion.external_work += work;
-  motion.dissipated += response_.dissipation;
-  motion.stored = response_.stored + half * response_.force.dot(view(motion.v));
-  store(response_.force, motion.force);
-  motion.history.swap(response_.history);
+  motion.dissipated += response->dissipation;
+  motion.stored = response->stored + half * response->force.dot(view(motion.v));
+  store(response->force, motion.force);
+  if (!motion.history.empty()) motion.history.swap(response->history);
   return std::nullopt;
 }
 

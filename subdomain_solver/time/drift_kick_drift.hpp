@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "subdomain_solver/time/integrator.hpp"
 
 namespace abut {
@@ -9,7 +12,10 @@ namespace abut {
 /// so that a force that is constant in the step, as joined bodies pass it, does exactly the work by
 /// which the scheme's own energy changes,  1/2 v (M - dt^2/4 K) v + 1/2 q K q  of linear models.
 /// Keeps no accelerations: forces that set in or end find nothing to correct. Every coordinate must
-/// have mass. Allocates nothing once buffers have grown.
+/// have mass. The two latest forces of models without history are kept beside the positions that
+/// they are of: a window that begins where the trial of the one before began, or is repeated, finds
+/// its first force there, and windows of one step cost one force each. Allocates nothing once
+/// buffers have grown.
 class DriftKickDrift final : public Integrator {
  public:
   /// `step` [s]: the usual one, which the energy of the begin is told for.
@@ -22,7 +28,14 @@ class DriftKickDrift final : public Integrator {
   double kinetic(const Motion& motion) const override;
 
  private:
+  struct Known {
+    std::vector<double> at;  // [m] (dofs)
+    ModelResponse response;
+  };
+
   void find_loads(double time, std::span<const double> q);
+  /// The model's answer in the middle of the step, good until the next one; null: inadmissible.
+  ModelResponse* respond(const std::vector<double>& history);
 
   const Problem& problem_;
   double step_;
@@ -30,7 +43,7 @@ class DriftKickDrift final : public Integrator {
   std::vector<double> middle_;  // [m] (dofs) q in the middle of the step
   std::vector<double> given_;   // [m] (supports) at its end
   Vector loads_;                // [N] (dofs) in its middle
-  ModelResponse response_;
+  std::array<Known, 2> known_;  // the latest is the first one
 };
 
 }  // namespace abut

@@ -37,6 +37,16 @@ TEST(CommandLine, CheckTakesASceneAndOverrides) {
   EXPECT_EQ(check.overrides, std::vector<std::string>{"a=1"});
 }
 
+TEST(CommandLine, SplitTakesANumberOfBodies) {
+  const SplitCommand split = std::get<SplitCommand>(
+      parsed({"split", "a.yaml", "--bodies", "4", "--body", "plate", "--out", "d", "--force"}));
+  EXPECT_EQ(split.scene, "a.yaml");
+  EXPECT_EQ(split.bodies, 4);
+  EXPECT_EQ(split.body, "plate");
+  EXPECT_EQ(split.out, "d");
+  EXPECT_TRUE(split.force && split.overrides.empty());
+}
+
 TEST(CommandLine, OtherVerbsKeepTheirArgumentsUntouched) {
   const ExternalCommand report =
       std::get<ExternalCommand>(parsed({"report", "dir", "--help", "--set"}));
@@ -57,6 +67,8 @@ TEST(CommandLine, WhatIsWrongEndsWithCodeTwo) {
   for (const std::vector<const char*>& arguments :
        std::vector<std::vector<const char*>>{{},
                                              {"run"},
+                                             {"split", "a"},
+                                             {"split", "a", "--bodies", "1"},
                                              {"run", "a", "b"},
                                              {"run", "a", "--nonsense"},
                                              {"check", "a", "--out", "d"},

@@ -1,0 +1,270 @@
+// Goal: a body that was divided moves as the whole one. Oracles: the undivided body, step by step
+// the same equations for implicit bodies; for explicit ones, whose steps are cut differently where
+// bodies are tied, other numbers of parts.
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "coordinator/split/split_scene.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/solid_scenes.hpp"
+
+namespace abut {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own that goes with the test.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "abut_split_XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path_); }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+struct Plate {
+  std::string element = "quad4", scheme = "newmark";
+  std::string law = "linear_elastic";
+  std::string more = {};  // keys of the body
+  std::string rest = {};  // of the scene
+
+  int dim() const { return element.starts_with("hex") || element.starts_with("tet") ? 3 : 2; }
+
+  /// Held at one end, pushed on a side, with a start that is no field of one part alone.
+  std::string text() const {
+    const bool space = dim() == 3;
+    const std::string mesh = space ? block_mesh({2.0, 0.9, 0.8}, {6, 3, 3}, element)
+                                   : block_mesh({2.0, 0.9}, {10, 5}, element);
+    return fmt::format(
+        "meta: {{title: test}}\ntime: {{begin: 0.0, end: 2.0, window: 0.2}}\nbodies:\n  plate:\n"
+        "    model: {{fe: {{dimension: {}, mesh: {{{}}}, map: [{}]}}}}\n    material: {{{}}}\n"
+        "    integrator: {{{}: {{step: {}}}}}\n"
+        "    initial: {{position: {}, velocity_field: [{}]}}\n"
+        "    constraints: {{wall: {{on: left, fixed: true}}, ground: {{on: bottom, symmetry: "
+        "true}}}}\n    loads: {{push: {{on: top, traction: [{}]}}}}\n"
+        "    points: {{corner: {{at: {}}}}}\n    ports: {{corner: {{side: corner}}}}\n{}{}",
+        dim(), mesh, space ? "\"x\", \"y\", \"z + 0.1*x*z\"" : "\"x\", \"y + 0.1*x*y\"",
+        unit_law(law, 0.25), scheme, scheme == "newmark" ? 0.02 : 0.01,
+        space ? "[0.3, 0.0, 0.1]" : "[0.3, 0.0]",
+        space ? "\"0.1*sin(2*x)*y\", \"0.02*z\", \"0.03*x*y\"" : "\"0.1*sin(2*x)\", \"0.03*x*y\"",
+        space ? "\"0\", \"0.001\", \"0.002\"" : "\"0.002\", \"0.001\"",
+        space ? "[2.3, 0.9, 1.06]" : "[2.3, 1.08]", more, rest);
+  }
+};
+
+Document written(const fs::path& folder, const std::string& text) {
+  std::ofstream(folder / "plate.yaml") << text;
+  return Document::load((folder / "plate.yaml").string());
+}
+
+SplitScene split(const Document& document, int bodies, const fs::path& out,
+                 const std::string& body = "plate") {
+  return split_scene(document, read_scene(document), {bodies, body, out});
+}
+
+std::unique_ptr<RunResult> run_split(const Folder& folder, const std::string& text, int bodies) {
+  const fs::path out = folder.path() / std::to_string(bodies);
+  const SplitScene parts = split(written(folder.path(), text), bodies, out);
+  fs::create_directory(out);
+  for (const auto& [name, mesh] : parts.meshes) std::ofstream(out / name) << mesh;
+  std::ofstream(out / "plate.yaml") << parts.scene;
+  return run_file((out / "plate.yaml").string());
+}
+
+/// The sum over the parts.
+double sum(const RunResult& run, const std::string& measure, int bodies) {
+  double all = 0.0;
+  for (int p = 1; p <= bodies; ++p) all += run.measure(fmt::format("body.plate_{}.{}", p, measure));
+  return all;
+}
+
+/// Of a point that one part has.
+double corner(const RunResult& run, const std::string& measure) {
+  for (const auto& [name, value] : run.measures.values)
+    if (name.starts_with("body.plate") && name.ends_with(".corner." + measure)) return value;
+  ADD_FAILURE() << "no part has the corner";
+  return 0.0;
+}
+
+// Displacements and velocities are of the order of 0.1, a hundred steps; Newton's method leaves
+// 1e-9 of the forces in each. Goal of the method: 1e-8 over 1e4 steps.
+constexpr double same_motion = 1.0e-9;
+
+TEST(SplitBodies, MoveAsTheWholeOne) {
+  for (const char* element : {"quad4", "tri3", "quad8", "hex8", "tet4", "tet10"}) {
+    const Folder folder;
+    const Plate plate{.element = element};
+    const auto whole = run_document(written(folder.path(), plate.text()));
+    for (const int bodies : {2, 3, 4}) {
+      SCOPED_TRACE(fmt::format("{} {}", element, bodies));
+      const auto parts = run_split(folder, plate.text(), bodies);
+      ASSERT_TRUE(parts->completed());
+      for (const char* measure : {"energy.kinetic", "energy.stored", "momentum.x", "momentum.y"})
+        EXPECT_NEAR(sum(*parts, measure, bodies),
+                    whole->measure(fmt::format("body.plate.{}", measure)), same_motion)
+            << measure;
+      for (const char* measure : {"displacement.x", "displacement.y", "velocity.y"})
+        EXPECT_NEAR(corner(*parts, measure), corner(*whole, measure), same_motion) << measure;
+      double mass = 0.0, all = 0.0;
+      for (const double m : parts->masses) mass += m;
+      for (const double m : whole->masses) all += m;
+      EXPECT_NEAR(mass, all, 1.0e-13);                           // sums of some hundred cells
+      EXPECT_EQ(parts->measure("schwarz.iterations_max"), 2.0);  // the first window has a trial
+      EXPECT_LE(parts->measure("schwarz.iterations_mean"), 1.1);
+    }
+  }
+}
+
+TEST(SplitBodies, NonlinearOnesToo) {
+  const Folder folder;
+  const Plate plate{.element = "hex8", .law = "neo_hookean"};
+  const auto whole = run_document(written(folder.path(), plate.text()));
+  const auto parts = run_split(folder, plate.text(), 3);
+  // The tolerance of the iteration, 1e-6 of what moves in a step, in each of a hundred windows.
+  constexpr double close = 1.0e-6 * 0.02 * 0.2 * 100.0;
+  EXPECT_NEAR(corner(*parts, "displacement.x"), corner(*whole, "displacement.x"), close);
+  EXPECT_NEAR(corner(*parts, "displacement.y"), corner(*whole, "displacement.y"), close);
+}
+
+TEST(SplitBodies, ExplicitOnesMoveAlikeHoweverManyTheyAre) {
+  for (const char* element : {"quad4", "tet4"}) {
+    const Folder folder;
+    const Plate plate{.element = element, .scheme = "central_difference"};
+    const auto two = run_split(folder, plate.text(), 2);
+    for (const int bodies : {3, 4, 6}) {
+      SCOPED_TRACE(fmt::format("{} {}", element, bodies));
+      const auto more = run_split(folder, plate.text(), bodies);
+      for (const char* measure : {"displacement.x", "displacement.y", "velocity.y"})
+        EXPECT_NEAR(corner(*more, measure), corner(*two, measure), same_motion) << measure;
+      EXPECT_NEAR(sum(*more, "energy.kinetic", bodies), sum(*two, "energy.kinetic", 2),
+                  same_motion);
+    }
+  }
+}
+
+TEST(SplitBodies, AreTheSameBytesEveryTime) {
+  const Folder folder;
+  const Document document = written(folder.path(), Plate{.element = "tet4"}.text());
+  const SplitScene one = split(document, 3, folder.path() / "out");
+  const SplitScene other = split(document, 3, folder.path() / "out");
+  EXPECT_EQ(one.scene, other.scene);
+  EXPECT_EQ(one.meshes, other.meshes);
+}
+
+/// A parts' scene is a scene: one of its bodies is divided again, ties and all.
+TEST(SplitBodies, AreDividedAgain) {
+  const Folder folder;
+  const Plate plate{.element = "hex8"};
+  const auto whole = run_document(written(folder.path(), plate.text()));
+  run_split(folder, plate.text(), 2);
+  const fs::path once = folder.path() / "2", twice = folder.path() / "again";
+  const Document document = Document::load((once / "plate.yaml").string());
+  const SplitScene parts = split(document, 2, twice, "plate_1");
+  fs::create_directory(twice);
+  for (const auto& [name, mesh] : parts.meshes) std::ofstream(twice / name) << mesh;
+  std::ofstream(twice / "plate.yaml") << parts.scene;
+  const auto again = run_file((twice / "plate.yaml").string());
+  ASSERT_EQ(again->masses.size(), 3u);
+  EXPECT_NEAR(corner(*again, "displacement.y"), corner(*whole, "displacement.y"), same_motion);
+}
+
+/// What touched the whole touches the part that has the face: a block that strikes the plate.
+TEST(SplitBodies, TouchWithFacesThatStayWhole) {
+  const Folder folder;
+  const Plate plate{
+      .scheme = "central_difference",
+      .rest =
+          "  block:\n    model: {fe: {dimension: 2, mesh: {rectangle: {lengths: [1.0, 0.4], "
+          "elements: [8, 3]}}}}\n    material: {linear_elastic: {youngs_modulus: 1.0, "
+          "poissons_ratio: 0.25, density: 1.0}}\n    integrator: {central_difference: {step: "
+          "0.01}}\n    initial: {position: [2.31, 0.2], velocity: [-0.1, 0.0]}\n"
+          "    ports: {sole: {side: left}}\n"
+          "interfaces:\n  hit: {sides: [plate.face, block.sole], contact: {}}\n"};
+  std::string text = plate.text();
+  const std::string ports = "ports: {corner: {side: corner}", field = ", velocity_field";
+  text.replace(text.find(ports), ports.size(), "ports: {face: {side: right}");
+  // Of one step: what lies behind a cut is not known to a contact before the window is over.
+  text.replace(text.find("window: 0.2"), 11, "window: 0.01");
+  const std::size_t start = text.find(field);
+  text.erase(start, text.find('}', start) - start);
+  const auto whole = run_document(written(folder.path(), text));
+  const double after = whole->measure("body.block.momentum.x");
+  EXPECT_GT(after, 0.0);  // it springs back
+  for (const int bodies : {2, 3}) {  // more meet in points, beside which contact does not converge
+    SCOPED_TRACE(bodies);
+    const auto parts = run_split(folder, text, bodies);
+    ASSERT_TRUE(parts->completed());
+    // Explicit bodies step differently where they are tied; those that touch do not.
+    EXPECT_NEAR(parts->measure("body.block.momentum.x"), after, 1.0e-3 * after);
+    EXPECT_NEAR(parts->measure("contact.hit.impulse"), whole->measure("contact.hit.impulse"),
+                1.0e-3 * after);
+  }
+}
+
+/// Expectations follow what they are of.
+TEST(SplitBodies, KeepTheExpectationsThatMakeSense) {
+  const Folder folder;
+  Plate plate;
+  std::string text = plate.text();
+  text.replace(0, text.find('\n'),
+               "meta: {title: test, expect: ["
+               "{measure: momentum.total, at_most: 1.0, because: a}, "
+               "{measure: body.plate.corner.displacement.x, at_most: 1.0, because: b}, "
+               "{measure: body.plate.displacement.x.max, at_most: 1.0, because: c}]}");
+  const Document document = written(folder.path(), text);
+  const SplitScene parts = split(document, 2, folder.path() / "out");
+  EXPECT_EQ(parts.left_out, std::vector<std::string>{"body.plate.displacement.x.max"});
+  EXPECT_NE(parts.scene.find("measure: momentum.total"), std::string::npos);
+  EXPECT_NE(parts.scene.find(".corner.displacement.x"), std::string::npos);
+  EXPECT_EQ(parts.scene.find("body.plate."), std::string::npos);
+}
+
+TEST(SplitBodies, WhatCannotBeDividedIsRefusedByName) {
+  const Folder folder;
+  const std::string text = Plate{}.text();
+  const auto said = [&](const std::string& from, const std::string& to,
+                        const std::string& body = "plate") {
+    std::string other = text;
+    if (!from.empty()) other.replace(other.find(from), from.size(), to);
+    const Document document = written(folder.path(), other);
+    return refusal([&] { split(document, 2, folder.path() / "out", body); });
+  };
+  const auto expect = [](const std::string& told, const char* words) {
+    EXPECT_NE(told.find(words), std::string::npos) << told;
+  };
+  expect(said("", "", "disk"), "has no body disk. Choose one of plate.");
+  std::string still = text;
+  still.erase(still.find(", velocity_field"),
+              still.find("]}", still.find("velocity_field")) - still.find(", velocity_field") + 1);
+  still.replace(still.find("newmark"), 7, "quasi_static");
+  const Document statics = written(folder.path(), still);
+  expect(refusal([&] { split(statics, 2, folder.path() / "out"); }),
+         "without which bodies are not tied");
+  expect(said("initial: {", "initial: {adjust: true, "), "moves nodes of the whole body");
+  expect(said("  plate:",
+              "  plate_1:\n    model: {rigid_tool: {dimension: 2, mesh: {disk: "
+              "{radius: 1.0, core: 2, layers: 1}}}}\n    ports: {a: {side: mantle}}\n"
+              "  plate:"),
+         "is the name that a part would have");
+  expect(said("  plate:",
+              "  tool:\n    model: {rigid_tool: {dimension: 2, mesh: {disk: "
+              "{radius: 1.0, core: 2, layers: 1}}}}\n    ports: {a: {side: mantle}}\n"
+              "  plate:",
+              "tool"),
+         "rigid_tool has no cells to deal out");
+}
+
+}  // namespace
+}  // namespace abut
