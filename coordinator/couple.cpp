@@ -54,6 +54,16 @@ void require(bool able, const Description& body, const std::string& where, const
   }
 }
 
+/// Whether ends of bars share a node and step apart: joined as surfaces are, by a force that is
+/// constant in steps.
+bool steps_apart(const std::array<Side, 2>& sides, const Bodies& bodies) {
+  const Description& a = bodies.describe(sides[0].body);
+  const Description& b = bodies.describe(sides[1].body);
+  const bool shared = bodies.port(sides[0]).tied && bodies.port(sides[1]).tied;
+  const bool alike = a.step == b.step && std::isinf(a.stable_step) == std::isinf(b.stable_step);
+  return shared && !alike && !std::isinf(a.mass) && !std::isinf(b.mass);
+}
+
 /// A node whose mass both sides share has one motion only where both step alike: at other steps
 /// roundings of the partner's path become accelerations that grow.
 void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies, const Joint& joint) {
@@ -65,10 +75,10 @@ void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies, const Jo
   const bool alike = a.step == b.step && std::isinf(a.stable_step) == std::isinf(b.stable_step);
   if (held || (shared[0] && shared[1] && alike)) return;
   throw InputError(
-      "joins a port with tied: true to one of another kind of node, integrator or step",
+      "joins a port with tied: true to one of another kind of node",
       "interfaces." + spec.name + ".sides",
-      "Make both ports tied: true and both bodies explicit or both implicit with one step, or take "
-      "tied off both ports and give contact_layer: {massless: {stiffness_factor: 1}}.");
+      "Make both ports tied: true, or take tied off both and give contact_layer: {massless: "
+      "{stiffness_factor: 1}}.");
 }
 
 /// Sides of a tied interface are one as they stand: the rounding of their places is no gap.
@@ -303,7 +313,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
                                        find_side(spec.sides[1], bodies, where)};
     const bool surfaces = bodies.port(sides[0]).geometry.dim > 1 && spec.contact;
     const int number = static_cast<int>(joints.size());
-    if (bodies.port(sides[0]).geometry.dim > 1 && spec.tied) {
+    if (spec.tied && (bodies.port(sides[0]).geometry.dim > 1 || steps_apart(sides, bodies))) {
       joints.push_back(make_tied_joint(spec, sides, bodies));
       joints.back().interface = number;
       continue;

@@ -15,6 +15,7 @@
 #include "coordinator/external_body.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 #include "subdomain_solver/make/body_spec.hpp"
+#include "subdomain_solver/make/read_body.hpp"
 
 namespace abut {
 namespace {
@@ -88,7 +89,7 @@ Row row_of(const Scene& scene, const Document& document) {
   for (const std::unique_ptr<Subdomain>& body : built) bodies.push_back(&body->describe());
   Row row;
   for (const auto& [name, entry] : scene.bodies) {
-    const BodySpec spec = read<BodySpec>(document, path_of(name));
+    const BodySpec spec = read_body(document, path_of(name));
     if (spec.shape() != nullptr && !spec.is_uniform_bar()) {
       throw InputError(fmt::format("describes bars and walls without loads, initial fields, points "
                                    "and constraints, but the body {} is neither",
@@ -143,7 +144,7 @@ struct Meeting {
 
 Meeting meeting_of(const Document& document, const PortName& name) {
   if (is_external(document, name.body)) return {};
-  const BodySpec spec = read<BodySpec>(document, path_of(name.body));
+  const BodySpec spec = read_body(document, path_of(name.body));
   if (std::holds_alternative<BarPairSpec>(spec.model)) {
     const std::size_t member = name.port == "left_tip" ? 0 : 1;
     const BarProperties bar = pair_properties(spec)[member];
@@ -224,7 +225,7 @@ void check_body_keys(const Document& document) {
       if (is_external(document, name)) {
         read<ExternalBody>(document, path_of(name));
       } else {
-        read<BodySpec>(document, path_of(name));
+        read_body(document, path_of(name));
       }
     });
   errors.raise();
@@ -260,7 +261,7 @@ void resolve_body_keys(const Scene& scene, const Document& document, ResolvedYam
       resolved.copy(path_of(name) + ".model", document);
       continue;
     }
-    BodySpec spec = read<BodySpec>(document, path_of(name));
+    BodySpec spec = read_body(document, path_of(name));
     spec.place_files((folder / "").string());
     resolved.add(path_of(name), spec);
   }

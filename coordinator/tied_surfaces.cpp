@@ -18,7 +18,7 @@ constexpr double usual_gap = 0.25;
 
 void check_side(const Description& body, const PortGeometry& face, const std::string& side,
                 const std::string& where) {
-  if (face.facets.empty()) {
+  if (face.facets.empty() && face.dim > 1) {
     throw InputError(fmt::format("joins {}, which has no facets", side), where + ".sides",
                      "Put the port on a side of the mesh.");
   }

@@ -12,6 +12,7 @@
 #include "base/yaml_fields.hpp"
 #include "subdomain_solver/make/constraints.hpp"
 #include "subdomain_solver/make/mesh.hpp"
+#include "subdomain_solver/make/read_body.hpp"
 
 namespace abut {
 
@@ -42,7 +43,7 @@ Refusal refusal_of(const BodySpec& spec) {
 }
 
 bool can_be_divided(const Document& document, const std::string& path, bool external) {
-  return !external && refusal_of(read<BodySpec>(document, path)).why.empty();
+  return !external && refusal_of(read_body(document, path)).why.empty();
 }
 
 std::string only_body(const Document& document, const Scene& scene) {
@@ -101,7 +102,7 @@ WholeBody whole_body(const Document& document, const Scene& scene, const std::st
   WholeBody whole;
   whole.name = chosen(document, scene, name);
   const std::string path = "bodies." + whole.name;
-  whole.spec = read<BodySpec>(document, path);
+  whole.spec = read_body(document, path);
   const Refusal refusal = refusal_of(whole.spec);
   if (!refusal.why.empty())
     throw InputError(refusal.why, document.where(path + "." + refusal.key), refusal.remedy);

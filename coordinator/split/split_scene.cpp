@@ -15,6 +15,7 @@
 #include "coordinator/split/split_body.hpp"
 #include "coordinator/split/split_names.hpp"
 #include "subdomain_solver/fe/gmsh_text.hpp"
+#include "subdomain_solver/make/read_body.hpp"
 
 namespace abut {
 
@@ -209,7 +210,7 @@ class Splitter {
       } else if (entry.external) {
         resolved.copy(path + ".model", document_);
       } else {
-        BodySpec spec = read<BodySpec>(document_, path);
+        BodySpec spec = read_body(document_, path);
         spec.place_files(folder);
         resolved.add(path, spec);
       }

@@ -12,6 +12,7 @@
 #include "base/index.hpp"
 #include "base/yaml_fields.hpp"
 #include "subdomain_solver/make/mesh.hpp"
+#include "subdomain_solver/make/read_body.hpp"
 #include "subdomain_solver/make/scene_contact.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/port_geometry.hpp"
@@ -148,7 +149,7 @@ void Adjuster::meet(const std::string& port, const std::string& side) {
                        place_.where(key), "Move the body with initial.position instead.");
     BodySpec partner;
     try {
-      partner = read<BodySpec>(place_.document, path);
+      partner = read_body(place_.document, path);
     } catch (const InputError&) {
       continue;  // told of the partner itself
     }

@@ -15,6 +15,7 @@
 #include "subdomain_solver/make/bar_extras.hpp"
 #include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/make/mass_range.hpp"
+#include "subdomain_solver/make/read_body.hpp"
 #include "subdomain_solver/make/scheme.hpp"
 #include "subdomain_solver/rigid/rigid_wall.hpp"
 
@@ -174,7 +175,7 @@ BarProperties fe_bar_properties(const BodySpec& spec) {
 namespace {
 
 std::unique_ptr<Interior> build(const Document& document, const std::string& path) {
-  BodySpec spec = read<BodySpec>(document, path);
+  BodySpec spec = read_body(document, path);
   spec.place_files(document.name().substr(0, document.name().rfind('/') + 1));
   const Place place{document, path};
   if (std::holds_alternative<BarPairSpec>(spec.model))

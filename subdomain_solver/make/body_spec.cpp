@@ -279,7 +279,7 @@ bool BodySpec::is_uniform_bar() const {
 }
 
 bool BodySpec::is_bar() const {
-  return is_linear_bar() && constraints.empty() && !has_port_inside() &&
+  return is_linear_bar() && constraints.empty() && !has_port_inside() && !steps_apart &&
          std::get<BarMeshSpec>(std::get<FeModelSpec>(model).mesh).grading == 1.0;
 }
 
@@ -287,6 +287,7 @@ std::string BodySpec::why_general() const {
   if (!is_linear_bar() || std::get<BarMeshSpec>(std::get<FeModelSpec>(model).mesh).grading != 1.0)
     return "";
   if (!constraints.empty()) return "constraints";
+  if (steps_apart) return "a joint of unlike steps";
   return has_port_inside() ? "a port inside the bar" : "";
 }
 

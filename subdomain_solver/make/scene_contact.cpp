@@ -29,6 +29,43 @@ struct KinematicSpec {
   }
 };
 
+/// Of a scheme and of a port, what tells whether a node can be shared.
+struct StepSpec {
+  double step = 0.0;
+  void fields(Fields& f) {
+    f.optional("step", step, "s", "of the scheme");
+    f.ignore_rest();
+  }
+};
+struct SharedSpec {
+  bool tied = false;
+  void fields(Fields& f) {
+    f.optional("tied", tied, "", "its node is shared");
+    f.ignore_rest();
+  }
+};
+
+struct Stepping {
+  bool known = false, in_drifts = false;
+  double step = 0.0;
+  bool operator==(const Stepping&) const = default;
+};
+
+Stepping stepping_of(const Document& scene, const std::string& body) {
+  const std::string path = "bodies." + body + ".integrator";
+  for (const char* scheme : {"central_difference", "newmark", "hht_alpha", "generalized_alpha"}) {
+    const std::string own = path + "." + scheme;
+    if (scene.has(own))
+      return {true, own.ends_with("difference"), read<StepSpec>(scene, own).step};
+  }
+  return {};
+}
+
+bool shares(const Document& scene, const std::string& body, const std::string& port) {
+  const std::string path = "bodies." + body + ".ports." + port;
+  return scene.has(path) && read<SharedSpec>(scene, path).tied;
+}
+
 std::string kinematic_of(const Document& scene, const std::string& interface) {
   const std::string path = interface + ".transmission.unilateral";
   KinematicSpec spec;
@@ -64,6 +101,25 @@ bool joins(const Document& scene, const std::string& body, const std::string& po
   return std::ranges::any_of(names, [&scene](const std::string& name) {
     return scene.has("interfaces." + name + ".tied");
   });
+}
+
+bool steps_apart(const Document& scene, const std::string& body, const std::string& port) {
+  if (!shares(scene, body, port)) return false;
+  const Stepping own = stepping_of(scene, body);
+  for (const std::string& name : scene.keys_with("interfaces", "sides", body + "." + port)) {
+    const std::string path = "interfaces." + name;
+    if (!scene.has(path + ".tied")) continue;
+    for (const std::string& side : read<SidesSpec>(scene, path).sides) {
+      const std::size_t dot = side.find('.');
+      if (side == body + "." + port || dot == std::string::npos) continue;
+      const std::string other = side.substr(0, dot);
+      const Stepping theirs = stepping_of(scene, other);
+      if (own.known && theirs.known && own != theirs &&
+          shares(scene, other, side.substr(dot + 1)))
+        return true;
+    }
+  }
+  return false;
 }
 
 bool touches(const Document& scene, const std::string& body, const std::string& port) {
