@@ -77,8 +77,8 @@ void add_dilatation(const Eigen::MatrixXd& x, const Tabulation& t, int fields, C
 /// over the cell's own part [M.111].
 Eigen::VectorXd shares_at_points(const CellBlock& cells, int cell, const Tabulation& t) {
   if (!is_shared(cells, cell)) return Eigen::VectorXd::Ones(t.points);
-  const Eigen::Map<const Eigen::VectorXd> share(
-      cells.shares.data() + index(cell) * index(t.nodes), t.nodes);
+  const Eigen::Map<const Eigen::VectorXd> share(cells.shares.data() + index(cell) * index(t.nodes),
+                                                t.nodes);
   if ((share.array() == share(0)).all()) return Eigen::VectorXd::Constant(t.points, share(0));
   const Eigen::Map<const Rows> n(t.n.data(), t.points, t.nodes);
   const Eigen::Map<const Eigen::VectorXd> weight(t.weight.data(), t.points);
