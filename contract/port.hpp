@@ -13,6 +13,9 @@ namespace abut {
 struct PortGeometry {
   int dim = 1;                        // 1, 2 or 3
   bool round = false;                 // in 2D: of rings about the axis x = 0, each as a whole
+  // so many points, the last ones, are inside the body: where a body that overlaps it has its own
+  // surface. Their facets are the last ones too, and look as that surface's do from the other side.
+  std::int32_t embedded = 0;
   std::vector<double> points;         // [m] (n, dim), reference configuration
   std::vector<double> normals;        // (n, dim), unit, out of the body
   std::vector<std::int32_t> facets;   // facet connectivity; empty in 1D

@@ -87,6 +87,11 @@ void tie(const InterfaceSpec& spec, const Bodies& bodies, Joint& joint) {
     throw InputError("is of surfaces: ends of bars choose by themselves",
                      "interfaces." + spec.name + ".tied.steps", "Leave steps out.");
   }
+  if (spec.tied->overlap) {
+    throw InputError("is of bodies in two and three dimensions",
+                     "interfaces." + spec.name + ".tied.overlap",
+                     "Leave overlap out, and let the ends of the bars meet.");
+  }
   joint.decision = Decision::never;
   const double spacing = std::max(bodies.port(joint.sides[0]).geometry.spacing,
                                   bodies.port(joint.sides[1]).geometry.spacing);

@@ -36,10 +36,19 @@ void ContactSpec::fields(Fields& f) {
           "What sticks holds at least as much as what slides: give both, or leave it out.");
 }
 
+void OverlapSpec::fields(Fields& f) {
+  f.word("material", doubled, {"halves", "doubled"},
+         "of which the bodies have halves each where both are, or, for comparisons, all of it "
+         "each, which reflects waves");
+}
+
 void TiedSpec::fields(Fields& f) {
   f.word("steps", finer, {"coarser", "finer"},
          "of surfaces, in whose steps the force between them is constant: of the side with coarser "
          "ones, or, for comparisons, of the other, which keeps energy and moves wrongly");
+  f.optional_section("overlap", overlap,
+                     "of surfaces of bodies that take the same place: each side is inside the "
+                     "other body, and moves as that one does there");
 }
 
 void SceneContact::fields(Fields& f) {

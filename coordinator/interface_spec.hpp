@@ -30,8 +30,14 @@ struct SceneContact {
 /// Its key, and the name of its interface in what a run tells.
 constexpr std::string_view everything_path = "contact.everything", everything_name = "everything";
 
+/// Bodies that take the same place at their sides, each side inside the other body.
+struct OverlapSpec {
+  bool doubled = false;  // "material: halves | doubled"
+  void fields(Fields& f);
+};
 struct TiedSpec {  // joined from the start, for the whole run
   bool finer = false;  // "steps: coarser | finer"
+  std::optional<OverlapSpec> overlap;  // absent: their sides meet
   void fields(Fields& f);
 };
 /// [MiB] of the port kernel of a surface, where the scene does not say.

@@ -58,6 +58,16 @@ int side_of_rows(const std::array<Side, 2>& sides, const Bodies& bodies) {
   return coarser_mesh(sides, bodies);
 }
 
+void check_overlap(const InterfaceSpec& spec, const std::array<const PortGeometry*, 2>& faces) {
+  for (const std::size_t s : {0u, 1u}) {
+    if (faces[s]->embedded > 0) continue;
+    throw InputError(fmt::format("body of {} does not tell how it moves where side {} is inside it",
+                                 spec.sides[s], spec.sides[1 - s]),
+                     "interfaces." + spec.name + ".tied.overlap",
+                     "Give both bodies model: {fe: ...}, and a port on a side of their meshes.");
+  }
+}
+
 }  // namespace
 
 Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides,
@@ -80,7 +90,10 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides,
     throw InputError("ties a plane surface to one of rings", where,
                      "Give both bodies plane: axisymmetric, or none.");
   }
-  TieRows rows = make_tie_rows(*faces[0], *faces[1], side_of_rows(sides, bodies));
+  if (spec.tied->overlap) check_overlap(spec, faces);
+  TieRows rows = spec.tied->overlap
+                     ? make_overlap_rows(*faces[0], *faces[1])
+                     : make_tie_rows(*faces[0], *faces[1], side_of_rows(sides, bodies));
   const double most = usual_gap * std::max(faces[0]->spacing, faces[1]->spacing);
   if (rows.count() == 0) {
     throw InputError(fmt::format("joins {} and {}, which do not face each other anywhere",

@@ -11,8 +11,8 @@
 
 namespace abut {
 
-/// How a body's coordinates move the nodes of its ports. Lists of values go over all nodes of all
-/// ports (nodes, dim), along the axes of space.
+/// How a body's coordinates move the nodes of its ports, and points inside it that belong to them.
+/// Lists of values go over all ports (nodes and then points, dim), along the axes of space.
 class PortMap {
  public:
   /// The model and the map must outlive it.
@@ -36,6 +36,15 @@ class PortMap {
   void lift(std::span<const double> q, const std::vector<double>& forces, Vector& force) const;
 
  private:
+  /// Points of a port: shape functions over the nodes of the list that the map fills.
+  struct Inside {
+    std::size_t port = 0;
+    SparseRows rows;
+  };
+
+  void add_inside(std::size_t port, const SparseRows& rows, std::vector<std::int32_t>& nodes);
+  std::vector<double>& filled(std::vector<double>& out) const;
+  void show(std::vector<double>& filled, std::vector<double>& out) const;
   void turn(std::vector<double>& values, bool into_frames) const;
 
   int dim_;
@@ -44,6 +53,12 @@ class PortMap {
   std::vector<std::pair<std::size_t, Matrix3>>
       frames_;  // of nodes that have one, and where they begin
   std::unique_ptr<NodalMap> map_;
+  // Where ports have points inside: where the list that the map fills has a port's nodes, and how
+  // many values these are. Nodes of cells that hold points come last.
+  std::vector<std::size_t> filled_first_, own_width_;
+  std::vector<Inside> inside_;
+  std::size_t filled_ = 0;
+  mutable std::vector<double> list_;
   mutable std::vector<double> turned_;
 };
 

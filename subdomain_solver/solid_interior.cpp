@@ -120,11 +120,12 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   description_.can.kernel =
       (small || mesh.dim == 1) && parts_.scheme.integrator->has_inertia() && !ports.empty();
   for (const PortNodes& p : ports) {
-    ports_.push_back({p.name, mesh.nodes_of(p.side)});
+    ports_.push_back({p.name, mesh.nodes_of(p.side), p.inside.rows});
     may_touch_.push_back(p.touched);
     joined_.push_back(p.joined);
     joins_ = joins_ || p.joined;
     Port port{p.name, port_geometry(*parts_.model, p.side, ports_.back().nodes), p.tied};
+    add_to(p.inside, port.geometry);
     if (parts_.deforms) port.geometry.transit = port.geometry.spacing / fastest_wave(*parts_.model);
     description_.ports.push_back(std::move(port));
   }
@@ -342,11 +343,16 @@ const Vector& SolidInterior::forces_on_ports() {
   all.setZero(static_cast<Eigen::Index>(nodal_values()));
   if (port_forces_ == nullptr) return all;
   std::size_t k = 0;
+  const std::size_t dim = index(description_.dim);
   for (const NamedNodes& port : ports_) {
     for (std::int32_t node : port.nodes) {
       for (int i = 0; i < description_.dim; ++i)
         all(node * description_.dim + i) += state_.port_force[k++];
     }
+    const std::size_t inside = index(port.inside.count()) * dim;
+    add_transposed(port.inside, description_.dim, 1.0,
+                   std::span(state_.port_force).subspan(k, inside), {all.data(), nodal_values()});
+    k += inside;
   }
   parts_.model->to_frames({all.data(), nodal_values()});
   return all;

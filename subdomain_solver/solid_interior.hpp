@@ -11,6 +11,7 @@
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/interior.hpp"
 #include "subdomain_solver/nodal_map.hpp"
+#include "subdomain_solver/overlap/embedded_surface.hpp"
 #include "subdomain_solver/port_forces.hpp"
 #include "subdomain_solver/reactions.hpp"
 #include "subdomain_solver/solid_measures.hpp"
@@ -29,6 +30,7 @@ class SolidInterior final : public Interior {
     bool tied = false;
     bool touched = false;  // something may touch it
     bool joined = false;   // tied to another surface: forces are constant in a step
+    EmbeddedSurface inside = {};  // of a body that overlaps this one
   };
   struct Scheme {
     std::unique_ptr<Integrator> integrator;

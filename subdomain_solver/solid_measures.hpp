@@ -6,13 +6,15 @@
 
 #include "contract/outcome.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
+#include "surface/sparse_rows.hpp"
 
 namespace abut {
 
-/// Nodes under a name: a port.
+/// Nodes under a name: a port. With it may go points inside the body, whose measures are not told.
 struct NamedNodes {
   std::string name;
   std::vector<std::int32_t> nodes;
+  SparseRows inside = {};  // shape functions at these points, over all nodes
 };
 
 /// Names of what a solid tells of its state, in the order of solid_measures: displacement.x.min,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/index.hpp"
 #include "coordinator/coupling/twin_nodes.hpp"
@@ -49,6 +50,69 @@ void see_gaps(const SurfaceRows& found, const PosedSurface& k, TieRows& rows) {
   rows.place.assign(at.data(), at.data() + rows.dim);
 }
 
+/// Rows of K's side first.
+TieRows of_surfaces(const PosedSurface& k, const PosedSurface& n, double far) {
+  BoxTree of_k, of_n;
+  build(of_k, k, far);
+  build(of_n, n, far);
+  std::vector<FacetPair> pairs;
+  overlapping_pairs(of_k, of_n, pairs);
+  MortarOptions options;
+  options.reach = far;
+  MortarBuffers buffers;
+  SurfaceRows found;
+  mortar_rows(k, n, pairs, options, buffers, found);
+  TieRows rows;
+  rows.dim = k.dim;
+  if (found.count() == 0) return rows;
+  see_gaps(found, k, rows);
+  rows.of = {std::move(found.k), std::move(found.n)};
+  rows.area = std::move(found.weights);
+  return rows;
+}
+
+/// A port without what is inside its body, or that alone; nodes are those of the whole port.
+PortGeometry part_of(const PortGeometry& port, bool inside) {
+  PortGeometry part = port;
+  part.facets.clear();
+  part.offsets = {0};
+  for (std::size_t f = 1; f < port.offsets.size(); ++f) {
+    const auto begin = port.facets.begin() + port.offsets[f - 1];
+    if ((*begin >= port.count() - port.embedded) != inside) continue;
+    part.facets.insert(part.facets.end(), begin, port.facets.begin() + port.offsets[f]);
+    part.offsets.push_back(static_cast<std::int32_t>(part.facets.size()));
+  }
+  return part;
+}
+
+/// Where the points without facets begin, which are the last ones.
+std::int32_t first_lone(const PortGeometry& port) {
+  return port.facets.empty() ? 0 : *std::ranges::max_element(port.facets) + 1;
+}
+
+/// Points of both bodies in the same places, one by one.
+void add_lone_points(const PortGeometry& one, const PortGeometry& other, TieRows& rows) {
+  const std::int32_t first[] = {first_lone(one), first_lone(other)};
+  for (std::int32_t k = 0; k < one.count() - first[0]; ++k) {
+    for (const std::size_t s : {0u, 1u}) {
+      rows.of[s].columns.push_back(first[s] + k);
+      rows.of[s].values.push_back(1.0);
+      rows.of[s].end_row();
+    }
+    rows.area.push_back(0.0);  // no part of a surface
+  }
+}
+
+void append(const SparseRows& more, SparseRows& rows) {
+  for (int r = 0; r < more.count(); ++r) {
+    for (std::int32_t e = more.offsets[index(r)]; e < more.offsets[index(r) + 1]; ++e) {
+      rows.columns.push_back(more.columns[index(e)]);
+      rows.values.push_back(more.values[index(e)]);
+    }
+    rows.end_row();
+  }
+}
+
 }  // namespace
 
 TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int side) {
@@ -63,22 +127,27 @@ TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int si
     rows.place.assign(one.points.begin(), one.points.begin() + one.dim);
     return rows;
   }
+  rows = of_surfaces(k, n, reach * std::max(one.spacing, other.spacing));
+  if (!first) std::swap(rows.of[0], rows.of[1]);
+  return rows;
+}
+
+TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other) {
   const double far = reach * std::max(one.spacing, other.spacing);
-  BoxTree of_k, of_n;
-  build(of_k, k, far);
-  build(of_n, n, far);
-  std::vector<FacetPair> pairs;
-  overlapping_pairs(of_k, of_n, pairs);
-  MortarOptions options;
-  options.reach = far;
-  MortarBuffers buffers;
-  SurfaceRows found;
-  mortar_rows(k, n, pairs, options, buffers, found);
-  if (found.count() == 0) return rows;
-  see_gaps(found, k, rows);
-  rows.of[first ? 0 : 1] = std::move(found.k);
-  rows.of[first ? 1 : 0] = std::move(found.n);
-  rows.area = std::move(found.weights);
+  const PortGeometry cut = part_of(one, false), in_other = part_of(other, true);
+  TieRows rows = of_surfaces(posed(cut), posed(in_other), far);
+  const PortGeometry its_cut = part_of(other, false), in_one = part_of(one, true);
+  TieRows more = of_surfaces(posed(its_cut), posed(in_one), far);
+  const bool paired = one.count() - first_lone(one) == other.count() - first_lone(other);
+  if (rows.count() == 0 || more.count() == 0 || !paired) return {};
+  append(more.of[1], rows.of[0]);
+  append(more.of[0], rows.of[1]);
+  rows.area.insert(rows.area.end(), more.area.begin(), more.area.end());
+  add_lone_points(one, other, rows);
+  if (more.apart > rows.apart) {
+    rows.apart = more.apart;
+    rows.place = more.place;
+  }
   return rows;
 }
 

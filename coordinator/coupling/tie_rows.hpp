@@ -25,4 +25,8 @@ struct TieRows {
 /// one row of two points. No rows: the surfaces do not face each other.
 TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int side);
 
+/// Of bodies that overlap, whose ports tell where the other one's side is inside them: rows of both
+/// sides, each against the inside of the other body  [M.113].
+TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other);
+
 }  // namespace abut

@@ -9,7 +9,7 @@ namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
 static_assert(sizeof(PortGeometry) ==
-              4 * sizeof(std::vector<double>) + 3 * sizeof(double));  // two are dim and round
+              4 * sizeof(std::vector<double>) + 4 * sizeof(double));  // dim, round and embedded
 static_assert(sizeof(ContactLaw) == 3 * sizeof(double));              // the first are two flags
 
 /// Facets are nodes one facet after the other; offsets say where each begins, and the last ends.
@@ -44,6 +44,7 @@ void encode(const PortGeometry& from, v1::Surface& to) {
   to.set_spacing(from.spacing);
   to.set_transit(from.transit);
   to.set_round(from.round);
+  to.set_embedded(from.embedded);
 }
 
 void decode(const v1::Surface& from, const FieldPath& path, PortGeometry& to) {
@@ -60,6 +61,9 @@ void decode(const v1::Surface& from, const FieldPath& path, PortGeometry& to) {
   to.transit = number(from.transit(), FieldPath{&path, "transit"}, Allow::not_negative);
   to.round = from.round();
   if (to.round && to.dim != 2) FieldPath{&path, "round"}.fail("is not for this dimension");
+  to.embedded = from.embedded();
+  if (to.embedded < 0 || to.embedded > to.count())
+    FieldPath{&path, "embedded"}.fail(fmt::format("is {} of {} points", to.embedded, to.count()));
 }
 
 void encode(const Meeting& from, v1::Meet& to) {

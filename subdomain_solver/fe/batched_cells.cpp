@@ -62,7 +62,7 @@ std::vector<const KernelTable*> batched_kernels() {
 bool BatchedCells::can(const Mesh& mesh, const Material& material) {
   return law_of(material) &&
          std::all_of(mesh.blocks.begin(), mesh.blocks.end(), [](const CellBlock& block) {
-           return cell_of(*block.element, false).has_value();
+           return block.shares.empty() && cell_of(*block.element, false).has_value();
          });
 }
 

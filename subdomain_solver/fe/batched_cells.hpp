@@ -27,7 +27,8 @@ std::vector<const KernelTable*> batched_kernels();
 /// from memory. The same bits for every number of threads and every width of registers.
 class BatchedCells {
  public:
-  /// Whether all cells (hex8, quad4, tet4) and the law have a batched form.
+  /// Whether all cells (hex8, quad4, tet4) and the law have a batched form; cells that share their
+  /// place with another body's have none.
   static bool can(const Mesh& mesh, const Material& material);
 
   BatchedCells(const Mesh& mesh, const Material& material, const BatchedOptions& options);

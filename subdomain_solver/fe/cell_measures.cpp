@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "base/assert.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/fe/hourglass.hpp"
 
@@ -72,6 +73,22 @@ void add_dilatation(const Eigen::MatrixXd& x, const Tabulation& t, int fields, C
   out.dilatation.insert(out.dilatation.end(), made.data(), made.data() + made.size());
 }
 
+/// What of its volume every point of a cell has, so that integrals of shape functions are those
+/// over the cell's own part [M.114].
+Eigen::VectorXd shares_at_points(const CellBlock& cells, int cell, const Tabulation& t) {
+  if (!is_shared(cells, cell)) return Eigen::VectorXd::Ones(t.points);
+  const Eigen::Map<const Eigen::VectorXd> share(cells.shares.data() + index(cell) * index(t.nodes),
+                                                t.nodes);
+  if ((share.array() == share(0)).all()) return Eigen::VectorXd::Constant(t.points, share(0));
+  const Eigen::Map<const Rows> n(t.n.data(), t.points, t.nodes);
+  const Eigen::Map<const Eigen::VectorXd> weight(t.weight.data(), t.points);
+  const Eigen::VectorXd whole = n.transpose() * weight;
+  if (t.points == 1) return Eigen::VectorXd::Constant(1, share.dot(whole) / whole.sum());
+  ABUT_ASSERT(t.points == t.nodes);
+  const Eigen::MatrixXd sums = n.transpose() * weight.asDiagonal();
+  return sums.partialPivLu().solve(Eigen::VectorXd(share.cwiseProduct(whole)));
+}
+
 }  // namespace
 
 double FeOptions::depth(int dim, double radius) const {
@@ -110,12 +127,14 @@ void measure_cell(const Mesh& mesh, const CellBlock& cells, int cell, const Tabu
     const std::int32_t node = cells.nodes[index(cell) * index(t.nodes) + index(a)];
     for (int i = 0; i < dim; ++i) x(a, i) = mesh.points[index(node) * index(dim) + index(i)];
   }
+  const Eigen::VectorXd share = shares_at_points(cells, cell, t);
   for (int p = 0; p < t.points; ++p) {
     const Eigen::Map<const Rows> dn(t.dn.data() + index(p * t.nodes * dim), t.nodes, dim);
     const Eigen::Map<const Eigen::VectorXd> n(t.n.data() + index(p * t.nodes), t.nodes);
     const Eigen::MatrixXd jacobian = x.transpose() * dn;  // dX/dxi
     const double radius = round ? n.dot(x.col(0)) : 0.0;
-    out.volume.push_back(t.weight[index(p)] * jacobian.determinant() * options.depth(dim, radius));
+    out.volume.push_back(share(p) * t.weight[index(p)] * jacobian.determinant() *
+                         options.depth(dim, radius));
     const Rows gradient = dn * jacobian.inverse();
     out.gradient.insert(out.gradient.end(), gradient.data(), gradient.data() + gradient.size());
     if (!round) continue;

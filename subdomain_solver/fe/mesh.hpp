@@ -16,6 +16,9 @@ struct CellBlock {
   const Element* element = nullptr;
   std::vector<std::int32_t> nodes;  // (cells, element->nodes)
   std::string name;                 // of the group of cells in the file; empty: none
+  // (cells, element->nodes) of cells that share their place with those of another body: how much
+  // of the material is theirs, as means over their shape functions [M.114]; empty: all of it
+  std::vector<double> shares;
 
   int count() const;
 };
@@ -24,6 +27,14 @@ struct CellBlock {
 inline std::span<const std::int32_t> nodes_of(const CellBlock& cells, int cell) {
   const std::size_t n = index(cells.element->nodes);
   return std::span(cells.nodes).subspan(index(cell) * n, n);
+}
+
+/// Whether a cell has less than all of the material where it is.
+inline bool is_shared(const CellBlock& cells, int cell) {
+  const std::size_t n = index(cells.element->nodes);
+  for (std::size_t a = 0; a < n && !cells.shares.empty(); ++a)
+    if (cells.shares[index(cell) * n + a] != 1.0) return true;
+  return false;
 }
 
 /// One facet of one cell.

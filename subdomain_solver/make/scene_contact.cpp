@@ -96,6 +96,23 @@ std::vector<SceneContact> contacts_of(const Document& scene, const std::string& 
   return out;
 }
 
+std::optional<SceneOverlap> overlap_of(const Document& scene, const std::string& body,
+                                       const std::string& port) {
+  const std::string side = body + "." + port;
+  for (const std::string& name : scene.keys_with("interfaces", "sides", side)) {
+    const std::string path = "interfaces." + name;
+    if (!scene.has(path + ".tied.overlap")) continue;
+    const SidesSpec interface = read<SidesSpec>(scene, path);
+    const std::string& other = interface.sides[interface.sides[0] == side ? 1 : 0];
+    const std::size_t dot = other.find('.');
+    if (dot == std::string::npos) continue;
+    return SceneOverlap{name, other.substr(0, dot), other.substr(dot + 1),
+                        interface.sides[0] == side,
+                        !scene.chooses(path + ".tied.overlap.material", "doubled")};
+  }
+  return std::nullopt;
+}
+
 bool joins(const Document& scene, const std::string& body, const std::string& port) {
   const std::vector<std::string> names = scene.keys_with("interfaces", "sides", body + "." + port);
   return std::ranges::any_of(names, [&scene](const std::string& name) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,18 @@ struct SceneContact {
 /// without interfaces: a body alone.
 std::vector<SceneContact> contacts_of(const Document& scene, const std::string& body,
                                       const std::string& port);
+
+/// An interface over whose sides a body overlaps another one.
+struct SceneOverlap {
+  std::string interface;
+  std::string body, port;  // the partner's
+  bool first = true;       // this body's side is the interface's first
+  bool halves = true;      // the material is shared
+};
+
+/// That of a port; nothing: it has none.
+std::optional<SceneOverlap> overlap_of(const Document& scene, const std::string& body,
+                                       const std::string& port);
 
 /// Whether a port is tied to another one.
 bool joins(const Document& scene, const std::string& body, const std::string& port);

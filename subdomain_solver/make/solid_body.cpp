@@ -15,6 +15,7 @@
 #include "subdomain_solver/make/mass_range.hpp"
 #include "subdomain_solver/make/material.hpp"
 #include "subdomain_solver/make/mesh.hpp"
+#include "subdomain_solver/make/overlap.hpp"
 #include "subdomain_solver/make/scheme.hpp"
 #include "subdomain_solver/place.hpp"
 #include "subdomain_solver/port_geometry.hpp"
@@ -81,9 +82,10 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   const FeModelSpec& fe = std::get<FeModelSpec>(spec.model);
   Mesh mesh = make_mesh(fe, spec.initial.position, place, "model.fe");
   name_points(spec, place, mesh);
-  const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
+  std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
   Constraints constraints = make_constraints(spec, place, mesh);
   const std::string adjusted = adjust_ports(spec, place, ports, constraints, mesh);
+  overlap_partners(spec, place, mesh, ports);
   check_formulation(fe, mesh, place, "model.fe");
   const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
   SolidInterior::Parts parts;
@@ -95,7 +97,10 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   FeModel& model = *parts.model;
   check_mass(model.lumped_mass().minCoeff(), model.lumped_mass().maxCoeff(), spec, place);
   if (fe.threads > 1 && model.threads() == nullptr) {
-    throw InputError("have no effect: one thread computes the elements of this law or formulation",
+    const bool shares = std::ranges::any_of(
+        model.mesh().blocks, [](const CellBlock& block) { return !block.shares.empty(); });
+    throw InputError(fmt::format("have no effect: one thread computes the elements of {}",
+                                 shares ? "bodies that overlap" : "this law or formulation"),
                      place.where("model.fe.threads"), "Leave threads out.");
   }
   std::vector<int> layer = layer_coordinates(model, spec, ports, constraints, place);

@@ -46,6 +46,7 @@ class Dice {
     made.normals = values(made.points.size());
     made.spacing = 0.5 + value();
     made.transit = 0.5 + value();
+    made.embedded = upto(made.count());
     if (dim == 1) return made;
     made.offsets = {0};
     for (int facet = upto(4); facet > 0; --facet) {

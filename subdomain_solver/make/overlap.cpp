@@ -1,0 +1,258 @@
+#include "subdomain_solver/make/overlap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/index.hpp"
+#include "base/yaml_fields.hpp"
+#include "subdomain_solver/fe/facet_index.hpp"
+#include "subdomain_solver/make/mesh.hpp"
+#include "subdomain_solver/make/scene_contact.hpp"
+#include "subdomain_solver/overlap/cell_shares.hpp"
+#include "subdomain_solver/overlap/embed.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Of a cell: boundaries of unlike meshes are this far apart where they are one, and no more.
+constexpr double usual_gap = 0.25;
+
+struct OtherBody {
+  BodySpec spec;
+  Mesh mesh;
+  std::string side;  // of its port
+};
+
+/// Nothing where it is no finite elements, or another process tells what is wrong with it.
+std::optional<OtherBody> read_other(const Place& own, const SceneOverlap& overlap) {
+  const Place place{own.document, "bodies." + overlap.body};
+  try {
+    OtherBody other{read<BodySpec>(place.document, place.path), {}, {}};
+    const auto* fe = std::get_if<FeModelSpec>(&other.spec.model);
+    if (fe == nullptr) return std::nullopt;
+    const std::string& scene = place.document.name();
+    other.spec.place_files(scene.substr(0, scene.rfind('/') + 1));
+    other.mesh = make_mesh(*fe, other.spec.initial.position, place, "model.fe");
+    for (const auto& [name, port] : other.spec.ports)
+      if (name == overlap.port) other.side = port.side;
+    if (!other.mesh.sides.contains(other.side)) return std::nullopt;
+    return other;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+class Overlap {
+ public:
+  Overlap(const Place& place, const SceneOverlap& scene, const OtherBody& other,
+          const std::string& side, Mesh& mesh)
+      : place_(place),
+        scene_(scene),
+        other_(other),
+        side_(side),
+        mesh_(mesh),
+        own_(mesh),
+        its_(other.mesh),
+        skin_(mesh, FacetIndex(mesh).boundary()) {}
+
+  void check(const BodySpec& spec) const;
+  EmbeddedSurface find(const BodySpec& spec) const;
+
+ private:
+  [[noreturn]] void refuse(const std::string& what, const std::string& remedy) const {
+    throw InputError(
+        what, place_.document.where("interfaces." + scene_.interface + ".tied.overlap"), remedy);
+  }
+  std::string at(const Eigen::Vector3d& x) const {
+    return fmt::format("({:.6g}) m", fmt::join(x.data(), x.data() + mesh_.dim, ", "));
+  }
+  std::string its_side() const { return scene_.body + "." + scene_.port; }
+  void share_cells(const CommonParts& common) const;
+  void check_other_sides() const;
+  void check_loads(const BodySpec& spec) const;
+  bool is_wide(double volume) const;
+  void follow(EmbeddedSurface& inside) const;
+
+  const Place& place_;
+  const SceneOverlap& scene_;
+  const OtherBody& other_;
+  const std::string& side_;
+  Mesh& mesh_;
+  MeshSimplices own_, its_;
+  BoundarySimplices skin_;  // of this body
+};
+
+/// What the two of them can be.
+void Overlap::check(const BodySpec& spec) const {
+  const std::pair<const BodySpec*, std::string> both[] = {{&spec, place_.name()},
+                                                          {&other_.spec, scene_.body}};
+  for (const auto& [body, name] : both) {
+    if (body->initial.adjust) {
+      refuse(fmt::format("joins body '{}', which is adjusted: the other body does not see where "
+                         "its nodes go",
+                         name),
+             "Take initial.adjust off it.");
+    }
+    if (body->shape()->plane == Plane::axisymmetric)
+      refuse(fmt::format("joins body '{}' of rings", name),
+             "Give bodies of the plane or of space.");
+  }
+  const SolidShapeSpec &own = *spec.shape(), &its = *other_.spec.shape();
+  if (mesh_.dim == 2 && (own.plane != its.plane || own.thickness != its.thickness)) {
+    refuse("joins bodies of unlike plane or thickness, which are not the same where both are",
+           "Give both bodies the same plane and thickness.");
+  }
+  for (const Mesh* mesh : {&std::as_const(mesh_), &other_.mesh}) {
+    for (const CellBlock& block : mesh->blocks) {
+      if (block.element->order == 1) continue;
+      refuse(fmt::format("joins a body of {}", block.element->name),
+             "Give both bodies elements of first order.");
+    }
+  }
+}
+
+/// What goes with this body's side inside itself, and its cells' shares.
+EmbeddedSurface Overlap::find(const BodySpec& spec) const {
+  const CommonParts common = common_parts(own_, its_);
+  if (common.parts.empty()) {
+    const std::string names[] = {place_.name(), scene_.body};
+    refuse(fmt::format("joins bodies '{}' and '{}', which do not take the same place anywhere",
+                       names[scene_.first ? 0 : 1], names[scene_.first ? 1 : 0]),
+           "Move a body with initial.position into the other, or leave overlap out where their "
+           "sides meet.");
+  }
+  StickingOut out;
+  EmbeddedSurface inside =
+      embed(BoundarySimplices(other_.mesh, other_.mesh.side(other_.side)), own_, skin_, out);
+  if (out.distance > usual_gap * own_.spacing()) {
+    refuse(fmt::format("side {} is not inside body '{}': it is {:.3g} m away from it at {}",
+                       its_side(), place_.name(), out.distance, at(out.at)),
+           "Move a body with initial.position, or give the port a side that lies wholly inside the "
+           "other body.");
+  }
+  check_other_sides();
+  if (is_wide(common.volume)) follow(inside);
+  if (scene_.halves) {
+    share_cells(common);
+    check_loads(spec);
+  }
+  return inside;
+}
+
+/// Each body keeps half of the material where both are.
+void Overlap::share_cells(const CommonParts& common) const {
+  for (CellBlock& block : mesh_.blocks)
+    if (block.shares.empty()) block.shares.assign(block.nodes.size(), 1.0);
+  for (const CommonParts::Part& part : common.parts) {
+    CellBlock& block = mesh_.blocks[index(part.cell.block)];
+    if (is_shared(block, part.cell.cell)) {
+      refuse(fmt::format("gives {} of body '{}' to a second partner",
+                         cell_text(mesh_, index(part.cell.block), index(part.cell.cell)),
+                         place_.name()),
+             "Let no more than two bodies overlap in one place.");
+    }
+    for (std::size_t a = 0; a < part.of.size(); ++a)
+      block.shares[index(part.cell.cell) * part.of.size() + a] = 1.0 - 0.5 * part.of[a];
+  }
+}
+
+/// Bodies of half a material swing by themselves between sides that are farther apart than high.
+bool Overlap::is_wide(double volume) const {
+  double least = 0.0;
+  for (const auto& [mesh, side] :
+       {std::pair(&std::as_const(mesh_), side_), std::pair(&other_.mesh, other_.side)}) {
+    const BoundarySimplices cut(*mesh, mesh->side(side));
+    double area = 0.0;
+    for (int i = 0; i < cut.count(); ++i) area += measure(cut.simplex(i));
+    least = least == 0.0 ? area : std::min(least, area);
+  }
+  constexpr double more = 1.0 + 1.0e-6;
+  return volume > more * least * std::pow(least, 1.0 / (mesh_.dim - 1.0));
+}
+
+/// Nodes of the coarser mesh follow the finer one between the sides: not on the coarser's own side,
+/// and not in cells that the finer's side crosses, whose motion the rows of sides tell.
+void Overlap::follow(EmbeddedSurface& inside) const {
+  const bool coarser =
+      own_.spacing() > its_.spacing() || (own_.spacing() == its_.spacing() && scene_.first);
+  const Mesh& coarse = coarser ? mesh_ : other_.mesh;
+  std::vector<std::int32_t> told = coarse.nodes_of(coarser ? side_ : other_.side);
+  StickingOut out;
+  const EmbeddedSurface crossed =
+      coarser ? inside
+              : embed(BoundarySimplices(mesh_, mesh_.side(side_)), its_,
+                      BoundarySimplices(other_.mesh, FacetIndex(other_.mesh).boundary()), out);
+  told.insert(told.end(), crossed.rows.columns.begin(), crossed.rows.columns.end());
+  std::ranges::sort(told);
+  for (const HeldNode& held : held_nodes(coarse, coarser ? its_ : own_)) {
+    if (std::ranges::binary_search(told, held.node)) continue;
+    if (coarser) {
+      add_node(mesh_, held.node, inside);
+      continue;
+    }
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    for (int i = 0; i < mesh_.dim; ++i) place(i) = coarse.points[index(held.node * mesh_.dim + i)];
+    add_point(mesh_, place, held.cell, inside);
+  }
+}
+
+/// A free boundary inside the body would be a crack in half of its material.
+void Overlap::check_other_sides() const {
+  const std::vector<Facet>& side = other_.mesh.side(other_.side);
+  std::vector<Facet> others;
+  for (const Facet& facet : FacetIndex(other_.mesh).boundary())
+    if (std::ranges::find(side, facet) == side.end()) others.push_back(facet);
+  const BoundarySimplices its(other_.mesh, others);
+  std::vector<FacetPair> pairs;
+  overlapping_pairs(its.tree, own_.tree(), pairs);
+  for (const FacetPair& pair : pairs) {
+    const Simplex facet = its.simplex(pair.k);
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (int i = 0; i < facet.count; ++i) middle += facet.x[index(i)] / facet.count;
+    const std::vector<HalfSpace> cell = sides_of(own_.simplex(pair.n));
+    const auto outside = [&](const HalfSpace& half) { return half.distance(middle) > 0.0; };
+    if (std::ranges::any_of(cell, outside)) continue;
+    const double depth = distance(skin_, middle);
+    if (depth <= usual_gap * own_.spacing()) continue;
+    refuse(fmt::format("body '{}' ends inside body '{}' at {}, {:.3g} m deep, but not with side {}",
+                       scene_.body, place_.name(), at(middle), depth, its_side()),
+           "Give the port the whole boundary that lies inside the other body.");
+  }
+}
+
+/// Tractions would be there twice.
+void Overlap::check_loads(const BodySpec& spec) const {
+  for (const auto& [name, load] : spec.loads) {
+    if (load.on.empty() || !mesh_.sides.contains(load.on)) continue;
+    for (const Facet& facet : mesh_.side(load.on)) {
+      if (!is_shared(mesh_.blocks[index(facet.block)], facet.cell)) continue;
+      throw InputError(fmt::format("side '{}' reaches into the overlap {}, where body '{}' would "
+                                   "carry the load as well",
+                                   load.on, scene_.interface, scene_.body),
+                       place_.where("loads." + name), "Load sides that end before the overlap.");
+    }
+  }
+}
+
+}  // namespace
+
+void overlap_partners(const BodySpec& spec, const Place& place, Mesh& mesh,
+                      std::vector<SolidInterior::PortNodes>& ports) {
+  for (SolidInterior::PortNodes& port : ports) {
+    const std::optional<SceneOverlap> scene = overlap_of(place.document, place.name(), port.name);
+    if (!scene || !mesh.sides.contains(port.side)) continue;
+    const std::optional<OtherBody> other = read_other(place, *scene);
+    if (!other || other->mesh.dim != mesh.dim) continue;
+    const Overlap overlap(place, *scene, *other, port.side, mesh);
+    overlap.check(spec);
+    port.inside = overlap.find(spec);
+  }
+}
+
+}  // namespace abut
