@@ -190,6 +190,7 @@ void SurfaceContact::see_gaps(std::size_t port, const SeeGap& see) const {
 
 void SurfaceContact::aim(int i, const std::vector<double>&, const std::vector<double>& places) {
   looks_ = 0;
+  missing_.clear();
   for (Own& own : surfaces_) {
     own.begin = own.surface.geometry->points;
     for (std::size_t v = 0; v < own.begin.size(); ++v)
@@ -360,6 +361,7 @@ bool SurfaceContact::move(const Vector& free, Compliance& give) {
 }
 
 const Vector* SurfaceContact::solve(double time, const Vector& free, Compliance& give) {
+  missing_.clear();
   if (looks_ == 0 || time != time_) {
     time_ = time;
     looks_ = 0;
@@ -386,7 +388,10 @@ const Vector* SurfaceContact::solve(double time, const Vector& free, Compliance&
     }
     last_ = force_;
     if (!find_problem(free, give)) return nullptr;
-    if (!find_forces()) return nullptr;
+    if (!find_forces()) {
+      tell_missing();
+      return nullptr;
+    }
     spread();
     const double change = (force_ - last_).lpNorm<Eigen::Infinity>();
     if (change <= settled * force_.lpNorm<Eigen::Infinity>() || looks_ >= most_looks) break;

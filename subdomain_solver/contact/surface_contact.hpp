@@ -44,6 +44,7 @@ class SurfaceContact final : public PortContact {
 
   const std::vector<int>& coordinates() const override { return dofs_; }
   const Vector* solve(double time, const Vector& free, Compliance& give) override;
+  std::string missing() const override { return missing_; }
 
  private:
   struct Own {  // a surface in its pose
@@ -77,6 +78,7 @@ class SurfaceContact final : public PortContact {
   void find_terms(const Own& own, const SurfaceRows& rows, int row, const double* direction);
   void find_slips(const Meeting& m);
   [[nodiscard]] bool find_forces();
+  void tell_missing();
   void guess_forces();
   bool let_slide();
   void settle_friction(std::size_t meeting);
@@ -120,6 +122,7 @@ class SurfaceContact final : public PortContact {
   Vector opened_;  // [m] gaps and slips under the forces
   UnilateralBuffers buffers_;
   FrictionBuffers friction_buffers_;
+  std::string missing_;
   Vector force_, last_, moved_;  // [N], [N], [m] (coordinates)
 };
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
+
+#include <fmt/ranges.h>
 
 #include "base/index.hpp"
 #include "subdomain_solver/contact/surface_contact.hpp"
@@ -133,6 +136,27 @@ bool SurfaceContact::find_forces() {
     if (!friction_forces(compliance_, gaps_, rows_, row_force_, friction_buffers_)) return false;
   } while (let_slide());
   return true;
+}
+
+/// Where the forces that were found last are farthest from what contact asks for, and how far.
+void SurfaceContact::tell_missing() {
+  double most = -1.0;
+  for (const Meeting& m : meetings_) {
+    const SurfaceRows& rows = m.obstacle->rows();
+    const std::vector<double>& pose = surfaces_[m.own].pose;
+    for (int r = 0; r < m.rows; ++r) {
+      const std::span row(&rows_[index(m.first_row + r)], 1);
+      const double miss = friction_residual(compliance_, gaps_, row, row_force_);
+      if (std::isfinite(miss) && miss <= most) continue;
+      most = miss;
+      const std::size_t dim = index(rows.dim), at = index(rows.nodes[index(r)]) * dim;
+      missing_ = fmt::format(
+          "no contact forces were found that fit all of {} rows against {} partners: at ({:.4g}) "
+          "they miss by {:.2g} of the largest; take a smaller step, or materials that are less "
+          "stiff",
+          rows_.size(), meetings_.size(), fmt::join(std::span(pose).subspan(at, dim), ", "), miss);
+    }
+  }
 }
 
 }  // namespace abut

@@ -22,8 +22,8 @@ enum class RowState : char { open, sticks, slips };
 struct FrictionBuffers {
   std::vector<RowState> states;
   std::vector<Eigen::Index> active;
-  Eigen::MatrixXd matrix, part;
-  Vector slip, step, rest, trial, best;
+  Eigen::MatrixXd matrix, part, softened;
+  Vector slip, step, rest, trial, best, path;
   Eigen::PartialPivLU<Eigen::MatrixXd> factors;
 };
 
@@ -32,8 +32,8 @@ struct FrictionBuffers {
 /// with A [m/N] (components) symmetric and positive definite, b [m] gaps and slips without the
 /// forces. Begins with `force`, as far as it fits, and leaves the answer there, in the cone
 /// exactly. Row after row (Gauss and Seidel) until it is known which rows stick, then Newton's
-/// method on Alart and Curnier's equations (1991), and rows again where it goes round in circles.
-/// False: none came to an end.
+/// method on Alart and Curnier's equations (1991); where it goes round in circles, by way of rows
+/// that give way less and less, and rows again. False: none came to an end.
 [[nodiscard]] bool friction_forces(const Eigen::MatrixXd& a, const Vector& b,
                                    std::span<const FrictionRow> rows, Vector& force,
                                    FrictionBuffers& buffers);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "subdomain_solver/model.hpp"
@@ -26,6 +27,8 @@ class Contact {
   /// The forces [N] (coordinates) at a time, where the coordinates [m] would lie at `free` without
   /// them and give way by `give`; good until the next call. Null: none were found.
   virtual const Vector* solve(double time, const Vector& free, Compliance& give) = 0;
+  /// Why the last call found none, for people; empty: it found some, or was not asked for them.
+  virtual std::string missing() const { return {}; }
 };
 
 }  // namespace abut

@@ -281,7 +281,7 @@ NewtonReport ImplicitDynamics::solve(Balance& balance, const Motion& motion) {
 std::optional<Failed> ImplicitDynamics::step(Motion& motion, double time, double dt) {
   Balance balance(*this, motion, time, dt);
   const NewtonReport report = solve(balance, motion);
-  if (!report.converged()) return failed_newton(report, time + dt);
+  if (!report.converged()) return failed_newton(report, time + dt, problem_.contact);
   balance.finish(motion);
   return std::nullopt;
 }

@@ -197,7 +197,7 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     if (anew && !factor()) return not_held(time);
     before = left;
     if (!factors_->solve(rest_, step_) || (contact != nullptr && !press(time, q, *contact)))
-      return failed_newton({NewtonReport::End::singular}, time);
+      return failed_newton({NewtonReport::End::singular}, time, contact);
     if (!step_.allFinite()) return failed_newton({NewtonReport::End::singular}, time);
     if (problem_.model->is_linear()) {
       move(q, 1.0);

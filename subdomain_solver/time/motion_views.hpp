@@ -10,6 +10,7 @@
 #include "contract/outcome.hpp"
 #include "subdomain_solver/model.hpp"
 #include "subdomain_solver/solve/newton.hpp"
+#include "subdomain_solver/time/contact.hpp"
 
 namespace abut {
 
@@ -35,9 +36,12 @@ inline Failed not_finite(double time) {
           "at this time, then at the step"};
 }
 
-/// A Newton solve without an answer, for people.
-inline Failed failed_newton(const NewtonReport& report, double time) {
+/// A Newton solve without an answer, for people. `contact`: that took part; null: none did.
+inline Failed failed_newton(const NewtonReport& report, double time,
+                            const Contact* contact = nullptr) {
   using End = NewtonReport::End;
+  if (report.end == End::singular && contact != nullptr && !contact->missing().empty())
+    return {Failed::Cause::no_convergence, time, contact->missing()};
   switch (report.end) {
     case End::inadmissible:
       return {Failed::Cause::inverted_element, time,

@@ -232,7 +232,7 @@ std::optional<Failed> QuasiStatic::step(Motion& motion, double time, double dt) 
     length *= 0.5;
     if (length < smallest) {
       motion = before_;
-      return failed_newton(report, end);
+      return failed_newton(report, end, problem_.contact);
     }
   }
   view(motion.v) = (view(motion.q) - view(before_.q)) / dt;
