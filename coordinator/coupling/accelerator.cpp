@@ -26,9 +26,10 @@ Eigen::VectorXd Aitken::next(const Eigen::VectorXd& iterate, const Eigen::Vector
   Eigen::VectorXd residual = image - iterate;
   if (probe_) residual = probe_(residual);
   if (previous_.size() == residual.size()) {
-    const Eigen::VectorXd change = residual - previous_;
+    const Eigen::VectorXd change = weighted(residual - previous_);
     const double squared = change.squaredNorm();
-    if (squared > 0.0) factor_ = std::clamp(-factor_ * previous_.dot(change) / squared, -2.0, 2.0);
+    if (squared > 0.0)
+      factor_ = std::clamp(-factor_ * weighted(previous_).dot(change) / squared, -2.0, 2.0);
     if (factor_ == 0.0) factor_ = initial_;
   }
   previous_ = residual;
@@ -53,10 +54,11 @@ QuasiNewton::Selection QuasiNewton::select() const {
   std::vector<Eigen::VectorXd> basis;
   auto offer = [this, &kept, &basis](const std::deque<Secant>& window) {
     for (const Secant& secant : window) {
-      Eigen::VectorXd rest = secant.residual;
+      Eigen::VectorXd rest = weighted(secant.residual);
+      const double whole = rest.norm();
       for (const Eigen::VectorXd& q : basis) rest -= q.dot(rest) * q;
       const double size = rest.norm();
-      if (!(size > filter_ * secant.residual.norm())) continue;
+      if (!(size > filter_ * whole)) continue;
       kept.push_back(&secant);
       basis.push_back(rest / size);
     }
@@ -68,9 +70,11 @@ QuasiNewton::Selection QuasiNewton::select() const {
   }
   Selection selection;
   const Eigen::Index rows = previous_residual_.size();
+  selection.weighted.resize(rows, static_cast<Eigen::Index>(kept.size()));
   selection.residuals.resize(rows, static_cast<Eigen::Index>(kept.size()));
   selection.images.resize(rows, static_cast<Eigen::Index>(kept.size()));
   for (std::size_t c = 0; c < kept.size(); ++c) {
+    selection.weighted.col(static_cast<Eigen::Index>(c)) = weighted(kept[c]->residual);
     selection.residuals.col(static_cast<Eigen::Index>(c)) = kept[c]->residual;
     selection.images.col(static_cast<Eigen::Index>(c)) = kept[c]->image;
   }
@@ -87,7 +91,7 @@ Eigen::VectorXd QuasiNewton::next(const Eigen::VectorXd& iterate, const Eigen::V
   ++updates_;
   const Selection secants = select();
   if (secants.residuals.cols() == 0) return iterate + inverse_(residual);
-  const Eigen::VectorXd weights = secants.residuals.householderQr().solve(-residual);
+  const Eigen::VectorXd weights = secants.weighted.householderQr().solve(-weighted(residual));
   const Eigen::VectorXd rest = residual + secants.residuals * weights;
   return iterate + (secants.images - secants.residuals) * weights + inverse_(rest);
 }

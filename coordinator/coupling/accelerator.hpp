@@ -11,19 +11,32 @@
 namespace abut {
 
 /// Chooses the next iterate from the last one and its image. Sees one stacked vector for the whole
-/// window: every trace of every exchanged field, scaled so that all entries compare.
+/// window: every trace of every exchanged field, in units of its own.
 class Accelerator {
  public:
   virtual ~Accelerator() = default;
+  /// 1 / unit of every entry, by which residuals are compared; without them all are 1. They may
+  /// change from iterate to iterate: what is kept has no part in them.
+  void weigh(const Eigen::VectorXd& weights) { weights_ = weights; }
   /// Starts a window; `key` identifies the layout of its vectors: memory of another layout is not
   /// used.
   virtual void reset(std::uint64_t key) = 0;
   /// x_k, G(x_k) -> x_{k+1}
   virtual Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) = 0;
+  /// In this window the inverse alone is not enough: what earlier ones have learned counts at once.
+  virtual void doubt() {}
   /// What was learned led away from the solution: it holds no longer.
   virtual void forget() {}
   /// The window was accepted: what was learned in it may serve the next one.
   virtual void accept() {}
+
+ protected:
+  Eigen::VectorXd weighted(const Eigen::VectorXd& r) const {
+    return weights_.size() == r.size() ? Eigen::VectorXd(r.cwiseProduct(weights_)) : r;
+  }
+
+ private:
+  Eigen::VectorXd weights_;
 };
 
 /// Multiplies a residual by something that stands for the inverse Jacobian: a matrix, or one number
@@ -61,7 +74,7 @@ class Aitken final : public Accelerator {
 
 /// Quasi-Newton with secants of this and the last `reuse` windows and an approximate inverse of the
 /// Jacobian J = -d(G - x)/dx for what they leave open  [M.11]:
-///   a = argmin |r + V a|,   x += (W - V) a + J^-1 (r + V a)
+///   a = argmin |S (r + V a)|,   x += (W - V) a + J^-1 (r + V a),   S the weights
 /// With J^-1 a number it is IQN-ILS (Anderson acceleration); with the port kernels' Jacobian it is
 /// the kernel method, where secants of earlier windows are used only once the Jacobian alone has
 /// proved not to be enough.
@@ -74,6 +87,7 @@ class QuasiNewton final : public Accelerator {
   QuasiNewton(Inverse inverse, int reuse, double filter, int exact_enough);
   void reset(std::uint64_t key) override;
   Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) override;
+  void doubt() override { needed_ = true; }
   void forget() override;
   void accept() override;
 
@@ -82,7 +96,7 @@ class QuasiNewton final : public Accelerator {
     Eigen::VectorXd residual, image;  // differences
   };
   struct Selection {
-    Eigen::MatrixXd residuals, images;
+    Eigen::MatrixXd weighted, residuals, images;  // residuals twice: as weighed, and as they are
   };
   Selection select() const;
 

@@ -34,6 +34,7 @@ class Bodies {
   const Description& describe(int body) const { return subdomains_[index(body)]->describe(); }
   const Port& port(const Side& side) const { return describe(side.body).ports[index(side.port)]; }
   Advance& request(int body) { return requests_[index(body)]; }
+  const Advance& request(int body) const { return requests_[index(body)]; }
   const Response& response(int body) const { return responses_[index(body)]; }
   std::span<const Response> responses() const { return responses_; }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "contract/force_means.hpp"
+#include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/kernel_bytes.hpp"
 #include "coordinator/coupling/transmission_parts.hpp"
 
@@ -170,18 +171,30 @@ void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>& x, const 
   const int width = iterate_.width;
   for (int i = 1; i <= iterate_.steps.count; ++i)
     trace.interpolate(trace.u, iterate_.steps.time(i), {&g[iterate_.at(i)], index(width)});
-  const double now = std::max(reached(trace), reached(trace_of(bodies, joint.kinematic_side())));
-  if (!std::exchange(swept_, true)) usual_speed_ = std::max(usual_speed_, now);
-  measured_speed_ = std::max(usual_speed_, now);
-  scale_.velocity = std::max(scale_.velocity, now);
+  const double length = iterate_.steps.end - iterate_.steps.begin;
+  double now = std::max(reached(trace), reached(trace_of(bodies, joint.kinematic_side())));
   // Gaps are differences of places, and no rounder than these.
   const double place = largest(bodies.port(joint.neumann_side()).geometry.points);
   scale_.roundoff =
       roundoff_of(place + largest(u_begin_), g.tail(width).lpNorm<Eigen::Infinity>());
-  if (zone_.empty()) return;
-  take(bodies.reaction(joint.kinematic_side()));
-  if (kernel_ != nullptr) take_back(g);
-  leave_far(x, g);
+  if (!zone_.empty()) {
+    take(bodies.reaction(joint.kinematic_side()));
+    if (kernel_ != nullptr) {
+      moved_ = g.tail(width);
+      take_back(g);
+      moved_ -= g.tail(width);  // by the reaction: bodies at rest move by nothing else
+      now = std::max(now, moved_.lpNorm<Eigen::Infinity>() / length);
+    }
+    leave_far(x, g);
+  }
+  see_speed(std::max(now, push_of_all(joint.kinematic_side().body, bodies, length)));
+}
+
+/// A speed [m/s] of this sweep: mismatches are measured by the largest.
+void CompliantObstacle::see_speed(double now) {
+  if (!std::exchange(swept_, true)) usual_speed_ = std::max(usual_speed_, now);
+  measured_speed_ = std::max(usual_speed_, now);
+  scale_.velocity = std::max(scale_.velocity, now);
 }
 
 /// Nothing presses on points outside the zone: where they are is not contact's affair.

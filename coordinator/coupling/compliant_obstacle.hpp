@@ -19,6 +19,7 @@ class CompliantObstacle final : public Transmission {
   /// `largest_kernel`: [B] beyond which the obstacle does not give way.
   explicit CompliantObstacle(double largest_kernel) : largest_kernel_(largest_kernel) {}
 
+  void share(bool shared) override { shared_ = shared; }
   void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
   int values() const override { return static_cast<int>(iterate_.size()); }
   bool flies() const override { return flies_; }
@@ -51,9 +52,13 @@ class CompliantObstacle final : public Transmission {
   void take_back(Eigen::Ref<Eigen::VectorXd> motion) const;
   void leave_far(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> g) const;
   double reached(const Waveform& trace) const;
+  void see_speed(double now);
   /// The Neumann side flies under no force: none presses, or what it moves under forces is known by
   /// its kernel.
-  bool free_ahead() const { return linear_ && (kernel_ != nullptr || zone_.empty()); }
+  /// Others press on it as well: they go on, and are not in this joint's kernel.
+  bool free_ahead() const {
+    return linear_ && !shared_ && (kernel_ != nullptr || zone_.empty());
+  }
 
   double largest_kernel_;  // [B]
   Substeps kinematic_grid_;
@@ -67,6 +72,7 @@ class CompliantObstacle final : public Transmission {
   const PortKernel* kernel_ = nullptr;     // null: the obstacle does not give way
   PortKernel answer_;                      // of the zone, as the kinematic body knows it
   bool linear_ = false;                    // of the Neumann side
+  bool shared_ = false;                    // the Neumann side has other joints
   bool flies_ = false;
   double looks_ = 0.0;  // [s] by which the Neumann side looks on after the window
   Eigen::VectorXd flight_;  // [m] as the iterate; empty: none was flown
@@ -76,6 +82,7 @@ class CompliantObstacle final : public Transmission {
   // [m/s] Of the closing and of the first sweep; the same, or of the present one.
   double usual_speed_ = 0.0, measured_speed_ = 0.0;
   double first_factor_ = 1.0;
+  Eigen::VectorXd moved_;    // [m] (width) by the reaction, at the window's end
   Eigen::MatrixXd pressed_;  // [N] (width, times of the reaction)
   Eigen::MatrixXd taken_;  // [N] (width, levels) of the reaction by the Neumann side, beyond d's
 };

@@ -2,6 +2,7 @@
 #include "base/index.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -131,6 +132,23 @@ double resultant(const Waveform& force, std::size_t i, int dim) {
   double sum[3] = {0.0, 0.0, 0.0};
   for (std::size_t k = 0; k < width; ++k) sum[k % index(dim)] += force.f[i * width + k];
   return std::hypot(sum[0], sum[1], sum[2]);
+}
+
+double push_of_all(int body, const Bodies& bodies, double length) {
+  const Description& about = bodies.describe(body);
+  if (std::isinf(about.mass)) return 0.0;
+  std::array<double, 3> sum{};
+  const auto add = [&sum](const Waveform& force, double sign, std::size_t dim) {
+    if (force.empty()) return;
+    const std::size_t last = force.f.size() - index(force.width);
+    for (std::size_t k = 0; k < index(force.width); ++k) sum[k % dim] += sign * force.f[last + k];
+  };
+  for (std::size_t p = 0; p < about.ports.size(); ++p) {
+    const std::size_t dim = index(about.ports[p].geometry.dim);
+    for (const Reaction& r : bodies.response(body).ports[p].reactions) add(r.force, -1.0, dim);
+    for (const Waveform& force : bodies.request(body).boundary[p].forces) add(force, 1.0, dim);
+  }
+  return std::hypot(sum[0], sum[1], sum[2]) * length / about.mass;
 }
 
 double peak_force(const Joint& joint, const Bodies& bodies) {

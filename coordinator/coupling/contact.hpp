@@ -70,6 +70,10 @@ class ContactHistory {
 /// [N] length of the sum of a force over all points at its i-th time.
 double resultant(const Waveform& force, std::size_t i, int dim);
 
+/// [m/s] What all surfaces together that press on a body, and on which it presses, would give it
+/// over a window of this length [s] with the forces of its end; 0: it is moved by nothing.
+double push_of_all(int body, const Bodies& bodies, double length);
+
 /// Largest contact force [N] on the kinematic side in the latest responses.
 double peak_force(const Joint& joint, const Bodies& bodies);
 

@@ -82,6 +82,18 @@ std::vector<std::vector<Island::End>> ends_of(const Island& island, std::span<co
   return ends;
 }
 
+/// Bodies that more than one joint of an island has.
+std::vector<int> shared_of(const Island& island, std::span<const Joint> joints) {
+  std::vector<int> ends, shared;
+  for (const int j : island.joints)
+    for (const Side& side : joints[index(j)].sides) ends.push_back(side.body);
+  std::ranges::sort(ends);
+  for (std::size_t k = 1; k < ends.size(); ++k)
+    if (ends[k] == ends[k - 1] && (shared.empty() || shared.back() != ends[k]))
+      shared.push_back(ends[k]);
+  return shared;
+}
+
 }  // namespace
 
 std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
@@ -102,6 +114,7 @@ std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
     if (island.joints.empty()) continue;
     island.levels = levels_of(members[index(r)], joints, island.joints, waits_for);
     island.ends = ends_of(island, joints, level_of);
+    island.shared = shared_of(island, joints);
     islands.push_back(std::move(island));
   }
   return islands;

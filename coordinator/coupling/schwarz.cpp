@@ -14,6 +14,9 @@ namespace {
 
 /// Islands of the past whose secants are kept. Many bodies hang together in ever new ways.
 constexpr std::size_t most_kept = 256;
+/// Of the mismatch, from sweep to sweep: where several joints wait for each other, secants that
+/// lead to the answer may let it grow before.
+constexpr double most_growth = 10.0;
 
 /// Tells window lengths and layouts apart; single precision, because ends of equal windows are
 /// rounded differently.
@@ -48,14 +51,9 @@ Accelerator& Schwarz::accelerator_of(const Island& island) {
   if (memory.ties == nullptr) memory.ties = std::make_unique<TieNet>(options_.tie_kernels);
   ties_ = memory.ties.get();
   if (memory.accelerator != nullptr) return *memory.accelerator;
-  // Accelerators see scaled values; contact does not scale, its gaps and forces are given.
-  memory.accelerator = make_(
-      [this](const Eigen::VectorXd& r) -> Eigen::VectorXd {
-        return inverse_of(r.cwiseQuotient(s_), joints_).cwiseProduct(s_);
-      },
-      [this](const Eigen::VectorXd& r) -> Eigen::VectorXd {
-        return relaxed(r.cwiseQuotient(s_), joints_).cwiseProduct(s_);
-      });
+  memory.accelerator =
+      make_([this](const Eigen::VectorXd& r) { return inverse_of(r, joints_); },
+            [this](const Eigen::VectorXd& r) { return relaxed(r, joints_); });
   return *memory.accelerator;
 }
 
@@ -130,18 +128,37 @@ double Schwarz::see_images(std::span<const Joint> joints, const Bodies& bodies,
   return mismatch;
 }
 
-std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, const Island& island,
-                                                   std::span<const Joint> joints, Bodies& bodies) {
+/// The iterate's last step, measured as its residual is.
+double Schwarz::step_from(const Eigen::VectorXd& before, std::span<const Joint> joints) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
+    const Eigen::Index first = layout_.first[i], count = layout_.first[i + 1] - first;
+    const Transmission& how = *joints[index(layout_.joints[i])].how;
+    most = std::max(
+        most, how.measure(before.segment(first, count), x_.segment(first, count)).largest());
+  }
+  return most;
+}
+
+/// The joints of an island begin a window.
+void Schwarz::lay_out(const TimeWindow& window, const Island& island, std::span<const Joint> joints,
+                      Bodies& bodies) {
   layout_.joints = island.joints;
   layout_.first.assign(1, 0);
   for (int j : island.joints) {
     const Joint& joint = joints[index(j)];
+    joint.how->share(std::ranges::binary_search(island.shared, joint.neumann_side().body));
     joint.how->begin(window, joint, bodies);
     layout_.first.push_back(layout_.first.back() + joint.how->values());
   }
   const Eigen::Index size = layout_.first.back();
   for (Eigen::VectorXd* v : {&x_, &g_, &s_}) v->resize(size);
   joints_ = joints;
+}
+
+std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, const Island& island,
+                                                   std::span<const Joint> joints, Bodies& bodies) {
+  lay_out(window, island, joints, bodies);
   Accelerator& accelerator = accelerator_of(island);
   ties_->begin(island, joints, layout_.first, bodies);
   if (std::optional<Failed> failed = fly(island, joints, bodies)) return *failed;
@@ -150,6 +167,9 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
 
   const bool contracts = std::ranges::all_of(
       island.joints, [&joints](int j) { return joints[index(j)].how->contracts(); });
+  // Bodies that others hold answer a sweep with little of what they would if they were left alone.
+  const bool shared = contracts && !island.shared.empty();
+  if (shared) accelerator.doubt();
   const ApplyInverse plain = [this, joints](const Eigen::VectorXd& r) {
     return relaxed(r, joints);
   };
@@ -178,9 +198,11 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     held_ = x_;
     const double before = std::exchange(mismatch, see_images(joints, bodies, report.residual));
     report.converged = report.residual.largest() <= options_.tolerance;
-    if (report.converged || report.iterations >= options_.max_iterations) return report;
     const bool early = 2 * report.iterations <= options_.max_iterations;  // later it is no bad luck
-    if (contracts && early && report.iterations > 1 && mismatch > before) {
+    if (report.iterations >= options_.max_iterations) return report;
+    const bool doubted = shared && early && report.residual.largest() > 0.0;
+    if (report.converged && !doubted) return report;
+    if (contracts && early && report.iterations > 1 && mismatch > most_growth * before) {
       accelerator.forget();
       if (growths++ > 0 && careful == nullptr) careful = std::make_unique<Aitken>(plain, 0.5);
     }
@@ -191,7 +213,10 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
       continue;
     }
     Accelerator& next = careful != nullptr ? *careful : accelerator;
-    x_ = next.next(x_.cwiseProduct(s_), g_.cwiseProduct(s_)).cwiseQuotient(s_);
+    next.weigh(s_);
+    x_ = next.next(x_, g_);
+    // So a residual says little of how far the forces are from those that fit: the step does.
+    if (report.converged && step_from(held_, joints) <= options_.tolerance) return report;
   }
 }
 

@@ -57,6 +57,8 @@ class Schwarz {
     std::vector<int> joints;
     std::vector<Eigen::Index> first;  // of every joint's part in the stacked iterate, and the total
   };
+  void lay_out(const TimeWindow& window, const Island& island, std::span<const Joint> joints,
+               Bodies& bodies);
   /// First guesses of all joints.
   std::optional<Failed> fly(const Island& island, std::span<const Joint> joints, Bodies& bodies);
   std::optional<Failed> sweep(const Island& island, std::span<const Joint> joints,
@@ -65,6 +67,7 @@ class Schwarz {
   /// residual, and the largest mismatch by units that only grow in a window, so that sweeps can be
   /// compared.
   double see_images(std::span<const Joint> joints, const Bodies& bodies, FieldResiduals& residual);
+  double step_from(const Eigen::VectorXd& before, std::span<const Joint> joints);
   /// The residual, of every joint relaxed by its first factor.
   Eigen::VectorXd relaxed(Eigen::VectorXd r, std::span<const Joint> joints) const;
   /// A joint's part of a stacked vector.

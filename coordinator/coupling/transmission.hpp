@@ -25,6 +25,8 @@ class Transmission {
  public:
   virtual ~Transmission() = default;
 
+  /// Whether the Neumann side's body has other closed joints in the window that begins next.
+  virtual void share(bool) {}
   /// Lays out the iterate of a window; the latest responses hold the state at its begin.
   virtual void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) = 0;
   virtual int values() const = 0;
