@@ -1,6 +1,7 @@
 // Goal: stacks of blocks whose masses differ by up to a million come to rest, each joint bearing
 // what lies above it. Oracle: weights.
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -51,33 +52,49 @@ std::string stack(const std::vector<double>& masses, double ratio) {
   ground.position = {-1.0, -0.2};
   ground.side = "top";
   return text + ground.text() + "interfaces:\n" + joints +
-         "schwarz: {max_iterations: 100, tolerance: 3.0e-7}\n";
+         "schwarz: {max_iterations: 100, tolerance: 1.0e-7}\n";
+}
+
+/// Two and three blocks with light and heavy ones in every order, five that alternate or grow.
+std::vector<std::vector<double>> orders(double r) {
+  std::vector<std::vector<double>> all = {{1.0, r}, {r, 1.0}};
+  for (const double a : {1.0, r})
+    for (const double b : {1.0, r})
+      for (const double c : {1.0, r})
+        if (a != b || b != c) all.push_back({a, b, c});
+  for (const double a : {1.0, r}) all.push_back({a, r / a, a, r / a, a});
+  std::vector<double> grow;
+  for (int k = 0; k < 5; ++k) grow.push_back(std::pow(r, 0.25 * k));
+  all.push_back(grow);
+  all.emplace_back(grow.rbegin(), grow.rend());
+  return all;
 }
 
 TEST(StacksAtRest, BearTheirWeight) {
   for (const double r : {1.0e2, 1.0e4, 1.0e6})
-    for (const std::vector<double>& masses :
-         {std::vector<double>{1.0, r},
-          {r, 1.0},
-          {r, 1.0, r},
-          {r, 1.0, r, 1.0, r},
-          {r, std::pow(r, 0.75), std::pow(r, 0.5), std::pow(r, 0.25), 1.0}}) {
-      if (r == 1.0e2 && masses.size() == 5 && masses[4] == r) continue;  // 90 sweeps and more
-      // With one of two linear solvers the light ones on top find no forces of friction that fit:
-      // as other stacks of this ratio with a light block on top, which are not here at all.
-      if (r == 1.0e6 && masses.size() == 5 && masses[4] == 1.0) continue;
+    for (const std::vector<double>& masses : orders(r)) {
       SCOPED_TRACE(fmt::format("{}", fmt::join(masses, " : ")));
       const auto result = run_document(Document::from_text("test", stack(masses, r)));
       ASSERT_TRUE(result->completed());
+      const double heaviest = std::ranges::max(masses);
       double above = 0.0;
       for (std::size_t k = masses.size(); k-- > 0;) {
         above += 9.81 * 500.0 * masses[k];
-        // The goal. Measured 4e-7: what the sweeps leave.
+        // The goal. Measured 9e-7: what the sweeps leave. What bears a millionth of the forces that
+        // hold the block below finds that block's face uneven by their rounding, some 1e-10.
+        const bool finest = above < 1.0e-5 * 9.81 * 500.0 * heaviest;
         EXPECT_NEAR(
             result->measure(fmt::format("body.block_{}.sole.contact.pressure_max", k)) / above, 1.0,
-            1.0e-6);
+            finest ? 5.0e-4 : 1.0e-6);
+        // Its resultant, while it comes to rest too: the end of the loads' rise overshoots by 6e-6.
+        EXPECT_NEAR(result->measure(fmt::format("contact.joint_{}.force_peak", k)) / above, 1.0,
+                    2.0e-5);
       }
-      EXPECT_LE(result->measure("schwarz.iterations_mean"), 6.0);
+      // The goal. Measured 2.3 at most.
+      EXPECT_LE(result->measure("schwarz.iterations_mean"), 4.0);
+      // The goal, but for the first windows of five that grow, whose loads are nothing yet: 27.
+      const bool grow = masses.size() == 5 && masses[1] != masses[3];
+      EXPECT_LE(result->measure("schwarz.iterations_max"), grow ? 50.0 : 10.0);
       EXPECT_EQ(result->measure("contact.joint_0.closings"), 1.0);
     }
 }
