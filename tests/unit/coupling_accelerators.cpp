@@ -77,6 +77,20 @@ TEST(QuasiNewton, ReachesTheFixedPointOfAnAffineMapInOneStepMoreThanItsSize) {
   }
 }
 
+/// Units of a window grow with what moves in it: secants must not be differences of units.
+TEST(QuasiNewton, WeightsThatChangeFromStepToStepLeaveSecantsAsTheyAre) {
+  const int n = 5;
+  const AffineMap map(n);
+  QuasiNewton newton(relaxed(0.5), 0, 1e-12, 0);
+  newton.reset(1);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  for (int step = 0; step < n + 1; ++step) {
+    newton.weigh(Eigen::VectorXd::LinSpaced(n, 1.0, 1.0 + step));
+    x = newton.next(x, map(x));
+  }
+  EXPECT_LT((x - map.fixed).norm(), roundoff(1e6, 1.0));  // as above
+}
+
 TEST(QuasiNewton, AnExactInverseNeedsOneStep) {
   const AffineMap map(6);
   const Eigen::MatrixXd inverse = (Eigen::MatrixXd::Identity(6, 6) - map.a).inverse();
