@@ -207,7 +207,8 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     if (report.iterations >= options_.max_iterations) return report;
     const bool doubted = shared && early && report.residual.largest() > 0.0;
     if (report.converged && !doubted) return report;
-    if (contracts && early && report.iterations > 1 && mismatch > most_growth * before) {
+    if (contracts && early && report.iterations > 1 &&
+        mismatch > (shared ? most_growth : 1.0) * before) {
       accelerator.forget();
       if (growths++ > 0 && careful == nullptr) careful = std::make_unique<Aitken>(plain, 0.5);
     }
