@@ -11,13 +11,13 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "coordinator/coupling/compliant_obstacle.hpp"
+#include "coordinator/coupling/loose_motions.hpp"
 #include "coordinator/coupling/parallel_force.hpp"
 #include "coordinator/coupling/robin.hpp"
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/tie.hpp"
 #include "coordinator/coupling/transmission.hpp"
 #include "coordinator/surface_start.hpp"
-#include "coordinator/coupling/loose_motions.hpp"
 #include "coordinator/tied_surfaces.hpp"
 
 namespace abut {

@@ -204,7 +204,8 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i) {
   if (!description_.loose.empty()) {
     const std::span<const double> carry = window.request.carry;
     const std::size_t each = index(loose_motions(description_));
-    integrator.statics()->carry_to(carry.empty() ? carry : carry.subspan(index(i - 1) * each, each));
+    integrator.statics()->carry_to(carry.empty() ? carry
+                                                 : carry.subspan(index(i - 1) * each, each));
   }
   if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);

@@ -63,8 +63,8 @@ class SolidInterior final : public Interior {
   std::optional<Failed> begin(const Window& window) override;
   std::optional<Failed> step(const Window& window, int i) override;
   std::span<const double> unbalanced() const override;
-  bool give(std::span<const double> force, const Eigen::VectorXd& place,
-            std::vector<double>& moved, Eigen::VectorXd& left) override;
+  bool give(std::span<const double> force, const Eigen::VectorXd& place, std::vector<double>& moved,
+            Eigen::VectorXd& left) override;
   const PortValues& see(const Window& window, double time, bool all) override;
   std::optional<Failed> record(BodyRecord& record) override;
   void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;

@@ -56,9 +56,7 @@ class CompliantObstacle final : public Transmission {
   /// The Neumann side flies under no force: none presses, or what it moves under forces is known by
   /// its kernel.
   /// Others press on it as well: they go on, and are not in this joint's kernel.
-  bool free_ahead() const {
-    return linear_ && !shared_ && (kernel_ != nullptr || zone_.empty());
-  }
+  bool free_ahead() const { return linear_ && !shared_ && (kernel_ != nullptr || zone_.empty()); }
 
   double largest_kernel_;  // [B]
   Substeps kinematic_grid_;

@@ -38,7 +38,7 @@ class DenseTieKernel final : public TieKernel {
   void find_blocks(const TieLayout& layout, int lags);
   void find_scale(const TieLayout& layout);
 
-  std::vector<Responses> responses_;  // by part; kept where bodies bend
+  std::vector<Responses> responses_;     // by part; kept where bodies bend
   std::vector<Eigen::MatrixXd> blocks_;  // [m/N] by lag
   // Of the first block: factors, or where rows are redundant the inverse of least size.
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;

@@ -15,7 +15,7 @@ struct Island {
     std::size_t joint = 0;               // of `joints`
     int side = 0;
   };
-  std::vector<int> shared;  // bodies of several of the joints, ascending
+  std::vector<int> shared;             // bodies of several of the joints, ascending
   std::vector<std::vector<End>> ends;  // by level: those of its bodies, in the order of the joints
 };
 

@@ -4,8 +4,8 @@
 #include <set>
 #include <string>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include "base/error.hpp"
 #include "coordinator/coupling/tie.hpp"

@@ -51,9 +51,8 @@ Accelerator& Schwarz::accelerator_of(const Island& island) {
   if (memory.ties == nullptr) memory.ties = std::make_unique<TieNet>(options_.ties);
   ties_ = memory.ties.get();
   if (memory.accelerator != nullptr) return *memory.accelerator;
-  memory.accelerator =
-      make_([this](const Eigen::VectorXd& r) { return inverse_of(r, joints_); },
-            [this](const Eigen::VectorXd& r) { return relaxed(r, joints_); });
+  memory.accelerator = make_([this](const Eigen::VectorXd& r) { return inverse_of(r, joints_); },
+                             [this](const Eigen::VectorXd& r) { return relaxed(r, joints_); });
   return *memory.accelerator;
 }
 
@@ -134,8 +133,8 @@ double Schwarz::step_from(const Eigen::VectorXd& before, std::span<const Joint> 
   for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
     const Eigen::Index first = layout_.first[i], count = layout_.first[i + 1] - first;
     const Transmission& how = *joints[index(layout_.joints[i])].how;
-    most = std::max(
-        most, how.measure(before.segment(first, count), x_.segment(first, count)).largest());
+    most = std::max(most,
+                    how.measure(before.segment(first, count), x_.segment(first, count)).largest());
   }
   return most;
 }

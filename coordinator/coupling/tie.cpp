@@ -51,8 +51,7 @@ std::vector<double> Tie::jump(const Joint& joint, const Bodies& bodies) const {
   std::vector<double> out(index(rows_.width()), 0.0), seen(out.size());
   const double step = bodies.describe(joint.kinematic_side().body).step;
   bool inert = true;  // what has no inertia follows at once
-  for (const Side& side : joint.sides)
-    inert = inert && !bodies.describe(side.body).quasi_static;
+  for (const Side& side : joint.sides) inert = inert && !bodies.describe(side.body).quasi_static;
   const double half = inert ? 0.5 * (step > 0.0 ? step : bodies.window()) : 0.0;
   for (const std::size_t s : {0u, 1u}) {
     const Waveform& trace = trace_of(bodies, joint.sides[s]);
@@ -81,8 +80,7 @@ void Tie::go_straight_on(Eigen::Ref<Eigen::VectorXd> x) const {
                           const std::vector<double>& to, Eigen::Index first) {
     for (int i = 1; i <= steps.count; ++i) {
       const double share = a.time < b.time ? (steps.time(i) - b.time) / (b.time - a.time) : 0.0;
-      for (std::size_t k = 0; k < to.size(); ++k)
-        x[first++] = to[k] + share * (to[k] - from[k]);
+      for (std::size_t k = 0; k < to.size(); ++k) x[first++] = to[k] + share * (to[k] - from[k]);
     }
   };
   follow(iterate_.steps, a.force, b.force, 0);
@@ -167,8 +165,7 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
     const std::vector<double>& left = bodies.response(joint.sides[index(s)].body).unbalanced;
     ABUT_ASSERT(static_cast<Eigen::Index>(left.size()) == places(s));
     const Eigen::Map<const Eigen::VectorXd> sum(left.data(), places(s));
-    g.segment(first_place(s), places(s)) =
-        x.segment(first_place(s), places(s)) - compliance_ * sum;
+    g.segment(first_place(s), places(s)) = x.segment(first_place(s), places(s)) - compliance_ * sum;
     unbalanced_ = std::max(unbalanced_, sum.lpNorm<Eigen::Infinity>());
   }
   scale_.velocity = std::max(joint.closing_speed, std::min(first_speed_, speed_));

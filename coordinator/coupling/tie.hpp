@@ -17,9 +17,7 @@ class Tie final : public Transmission {
   explicit Tie(TieRows rows) : rows_(std::move(rows)) {}
 
   void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
-  int values() const override {
-    return static_cast<int>(iterate_.size() + places(0) + places(1));
-  }
+  int values() const override { return static_cast<int>(iterate_.size() + places(0) + places(1)); }
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
@@ -38,9 +36,7 @@ class Tie final : public Transmission {
   void carry(int side, int motions) { loose_[index(side)] = motions; }
   int carried(int side) const { return loose_[index(side)]; }
   /// Where the places of a side begin in the iterate.
-  Eigen::Index first_place(int side) const {
-    return iterate_.size() + (side == 1 ? places(0) : 0);
-  }
+  Eigen::Index first_place(int side) const { return iterate_.size() + (side == 1 ? places(0) : 0); }
 
   const TieRows& rows() const { return rows_; }
   /// Substeps of a side in the window.
@@ -78,8 +74,8 @@ class Tie final : public Transmission {
   std::array<int, 2> loose_ = {0, 0};
   /// At the end of a window: of the last sweep, and of windows that went before.
   struct Past {
-    double time = 0.0;             // [s]
-    std::vector<double> force;     // [N]
+    double time = 0.0;                         // [s]
+    std::vector<double> force;                 // [N]
     std::array<std::vector<double>, 2> place;  // [m] of loose motions, by side
   };
   Past last_;

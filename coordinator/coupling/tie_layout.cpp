@@ -47,8 +47,12 @@ void TieLayout::arrange(const Bodies& bodies) {
       auto part = std::ranges::find(parts, body, &Part::body);
       if (part == parts.end()) {
         const Description& told = bodies.describe(body);
-        parts.push_back({body, member.counts[index(s)], 0, !told.can.kernel,
-                         told.quasi_static && !told.linear, {}});
+        parts.push_back({body,
+                         member.counts[index(s)],
+                         0,
+                         !told.can.kernel,
+                         told.quasi_static && !told.linear,
+                         {}});
         part = parts.end() - 1;
         if (!part->stands) blocks = std::gcd(blocks, part->steps);
       }

@@ -16,11 +16,11 @@ struct TieLayout {
     Tie* tie = nullptr;
     std::array<int, 2> counts = {0, 0};  // steps of the sides in the window
     int carried = -1;  // side of whose body it is the places of loose motions, in place of forces
-    Eigen::Index first = 0;              // of its part of the stacked vector
-    Eigen::Index inner = 0;              // of its part of a block
-    int width = 0;                       // rows x dim, or loose motions
-    int steps = 0;                       // of the force, in a block
-    int total = 0;                       // in the window
+    Eigen::Index first = 0;  // of its part of the stacked vector
+    Eigen::Index inner = 0;  // of its part of a block
+    int width = 0;           // rows x dim, or loose motions
+    int steps = 0;           // of the force, in a block
+    int total = 0;           // in the window
   };
   struct End {
     std::size_t member = 0;

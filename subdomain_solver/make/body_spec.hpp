@@ -150,8 +150,7 @@ struct BodySpec {
   std::vector<std::pair<std::string, ConstraintSpec>> constraints;
   std::vector<std::pair<std::string, LoadSpec>> loads;
   EquationsSpec equations;
-  // Not a key: a node is shared with a body of other steps, which finite elements in general do.
-  bool steps_apart = false;
+  bool steps_apart = false;  // no key: a node is shared with a body of other steps
   void fields(Fields& f);
 
   /// Mesh files that are named relative to the scene file are named with its folder ("" or "a/b/").

@@ -55,8 +55,7 @@ Stepping stepping_of(const Document& scene, const std::string& body) {
   const std::string path = "bodies." + body + ".integrator";
   for (const char* scheme : {"central_difference", "newmark", "hht_alpha", "generalized_alpha"}) {
     const std::string own = path + "." + scheme;
-    if (scene.has(own))
-      return {true, own.ends_with("difference"), read<StepSpec>(scene, own).step};
+    if (scene.has(own)) return {true, own.ends_with("difference"), read<StepSpec>(scene, own).step};
   }
   return {};
 }
@@ -131,8 +130,7 @@ bool steps_apart(const Document& scene, const std::string& body, const std::stri
       if (side == body + "." + port || dot == std::string::npos) continue;
       const std::string other = side.substr(0, dot);
       const Stepping theirs = stepping_of(scene, other);
-      if (own.known && theirs.known && own != theirs &&
-          shares(scene, other, side.substr(dot + 1)))
+      if (own.known && theirs.known && own != theirs && shares(scene, other, side.substr(dot + 1)))
         return true;
     }
   }

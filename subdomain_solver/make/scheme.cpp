@@ -77,7 +77,8 @@ struct SchemeMaker {
                     "generalised alpha");
   }
   SolidInterior::Scheme operator()(const QuasiStaticSpec& s) const {
-    return {std::make_unique<QuasiStatic>(problem, QuasiStatic::Options{newton(), s.halvings, loose, joined},
+    return {std::make_unique<QuasiStatic>(problem,
+                                          QuasiStatic::Options{newton(), s.halvings, loose, joined},
                                           linear(Pivots::with_digits)),
             s.step, std::numeric_limits<double>::infinity(), MassForm::lumped,
             fmt::format("quasi-static, step {:g} s", s.step)};

@@ -113,8 +113,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
     });
   }
   const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
-  const Eigen::MatrixXd loose =
-      check_statics(spec, place, model, constraints.supports, joined);
+  const Eigen::MatrixXd loose = check_statics(spec, place, model, constraints.supports, joined);
   if (loose.cols() > 0) parts.loose = translations_and_rotations(model, loose);
   parts.map = std::make_unique<IdentityMap>();
   parts.problem = std::make_unique<Problem>();

@@ -39,9 +39,12 @@ class QuasiStatic final : public Integrator {
   /// [m] (k) where its loose motions are at the end of the next step; empty: where they are.
   void carry_to(std::span<const double> place);
   /// [N] (k) of what acts, along the loose motions, in the last step.
-  std::span<const double> unbalanced() const { return {unbalanced_.data(), index(unbalanced_.size())}; }
-  /// [m] (dofs) by which a force [N] and places [m] (k) of the loose motions would move the body, by
-  /// the tangent of the last balance, and what they would leave over [N] (k). False: it has none.
+  std::span<const double> unbalanced() const {
+    return {unbalanced_.data(), index(unbalanced_.size())};
+  }
+  /// [m] (dofs) by which a force [N] and places [m] (k) of the loose motions would move the body,
+  /// by the tangent of the last balance, and what they would leave over [N] (k). False: it has
+  /// none.
   [[nodiscard]] bool give(const Motion& motion, double time, const Vector& force,
                           const Vector& place, Vector& moved, Vector& left);
   double kinetic(const Motion&) const override { return 0.0; }
@@ -64,7 +67,7 @@ class QuasiStatic final : public Integrator {
   const Problem& problem_;
   Options options_;
   FreeCoordinates free_;
-  Eigen::MatrixXd loose_;  // of the free coordinates
+  Eigen::MatrixXd loose_;                // of the free coordinates
   Vector carried_, place_, unbalanced_;  // to where in the step, and in a part of it
   LooseSolver* loose_solver_ = nullptr;  // the solver, where there are loose motions
   std::unique_ptr<LinearSolver> solver_;

@@ -201,7 +201,7 @@ TEST(SplitBodies, TouchWithFacesThatStayWhole) {
   text.erase(start, text.find('}', start) - start);
   const auto whole = run_document(written(folder.path(), text));
   const double after = whole->measure("body.block.momentum.x");
-  EXPECT_GT(after, 0.0);  // it springs back
+  EXPECT_GT(after, 0.0);             // it springs back
   for (const int bodies : {2, 3}) {  // more meet in points, beside which contact does not converge
     SCOPED_TRACE(bodies);
     const auto parts = run_split(folder, text, bodies);

@@ -303,9 +303,9 @@ TEST(TiedBars, OfAnyStepsAreOfSecondOrder) {
     const auto r = run(unlike(left, right, step, ratio));
     return r->rows.back().momentum[0] + r->rows.back().momentum[1];
   };
-  for (const auto& [left, right] : {std::pair("central_difference", "newmark"),
-                                    std::pair("newmark", "central_difference"),
-                                    std::pair("newmark", "newmark")}) {
+  for (const auto& [left, right] :
+       {std::pair("central_difference", "newmark"), std::pair("newmark", "central_difference"),
+        std::pair("newmark", "newmark")}) {
     for (const double ratio : {4.0, 10.0}) {
       SCOPED_TRACE(fmt::format("{} {} {}", left, right, ratio));
       const double one = momentum(left, right, 1.0e-6, ratio),

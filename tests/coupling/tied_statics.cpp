@@ -51,7 +51,8 @@ std::unique_ptr<RunResult> row(const std::vector<Piece>& pieces, int dim = 2, in
         "    ports: {{left: {{side: left}}, right: {{side: right}}}}\n{}",
         k, dim, p.keys, block_mesh(lengths, p.cells, p.cell), p.law, p.integrator,
         components({static_cast<double>(k)}, dim), p.more);
-    if (k > 0) ties += fmt::format("  t{0}: {{sides: [b{1}.right, b{0}.left], tied: {{}}}}\n", k, k - 1);
+    if (k > 0)
+      ties += fmt::format("  t{0}: {{sides: [b{1}.right, b{0}.left], tied: {{}}}}\n", k, k - 1);
   }
   return run_document(Document::from_text("test", text + (pieces.size() > 1 ? ties : "")));
 }
@@ -120,9 +121,9 @@ TEST(TiedStatics, CutBodyIsAsTheWholeOne) {
                       pull(c.x, c.y))));
       const double size = std::abs(whole->measure("body.whole.right.displacement.y"));
       for (const char* i : {"x", "y"}) {
-        EXPECT_NEAR(
-            divided->measure(fmt::format("body.b{}.right.displacement.{}", count - 1, i)),
-            whole->measure(fmt::format("body.whole.right.displacement.{}", i)), c.tolerance * size)
+        EXPECT_NEAR(divided->measure(fmt::format("body.b{}.right.displacement.{}", count - 1, i)),
+                    whole->measure(fmt::format("body.whole.right.displacement.{}", i)),
+                    c.tolerance * size)
             << i;
       }
     }
@@ -137,8 +138,9 @@ TEST(TiedStatics, UniformStressPasses) {
     left.more = dim == 2 ? "    constraints: {end: {on: left, x: 0}, floor: {on: bottom, y: 0}}\n"
                          : "    constraints: {end: {on: left, x: 0}, floor: {on: bottom, y: 0}, "
                            "back: {on: back, z: 0}}\n";
-    right.more = dim == 2 ? pull("0.01*t", "0")
-                          : "    loads: {pull: {on: right, traction: [\"0.01*t\", \"0\", \"0\"]}}\n";
+    right.more = dim == 2
+                     ? pull("0.01*t", "0")
+                     : "    loads: {pull: {on: right, traction: [\"0.01*t\", \"0\", \"0\"]}}\n";
     const auto result = row({left, right}, dim);
     ASSERT_TRUE(result->completed());
     EXPECT_EQ(result->measure("schwarz.iterations_max"), two_calls);
@@ -167,8 +169,8 @@ TEST(TiedStatics, RingsFloatToo) {
         k, block_mesh({1.0, 1.0}, {4 - k, 4}), linear(k == 0 ? 1.0 : 10.0, 0.0), k,
         k == 0 ? "    constraints: {floor: {on: bottom, y: 0}}\n"
                : "    loads: {pull: {on: top, traction: [\"0\", \"0.01*t\"]}}\n");
-  const auto result = run_document(
-      Document::from_text("test", text + "interfaces: {t: {sides: [b0.high, b1.low], tied: {}}}\n"));
+  const auto result = run_document(Document::from_text(
+      "test", text + "interfaces: {t: {sides: [b0.high, b1.low], tied: {}}}\n"));
   ASSERT_TRUE(result->completed());
   EXPECT_EQ(result->measure("schwarz.iterations_max"), two_calls);
   EXPECT_NEAR(result->measure("body.b1.high.displacement.y"), 0.01 + 0.001, 1.0e-12);
@@ -177,9 +179,10 @@ TEST(TiedStatics, RingsFloatToo) {
 /// Where the material yields, bodies are asked after every sweep how they give way now.
 TEST(TiedStatics, PlasticBodiesTakeFewCalls) {
   const auto law = [](double yield) {
-    return fmt::format("j2_plasticity: {{youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0, "
-                       "yield_stress: {}, hardening: 0.1}}",
-                       number(yield));
+    return fmt::format(
+        "j2_plasticity: {{youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0, "
+        "yield_stress: {}, hardening: 0.1}}",
+        number(yield));
   };
   for (const auto& [first, second] :
        {std::pair(1.0e-3, 1.0), std::pair(1.0, 1.0e-3), std::pair(1.0e-3, 1.0e-3)}) {
@@ -200,10 +203,11 @@ TEST(TiedStatics, PlasticBodiesTakeFewCalls) {
 
 /// A body without inertia that only one with inertia holds goes where that goes.
 TEST(TiedStatics, BodiesWithInertiaHoldThem) {
-  const auto result = row({{.integrator = "newmark: {step: 0.05}",
-                            .more = "    constraints: {clamp: {on: left, x: \"0.1*sin(t)\", y: 0}}\n"},
-                           {.cells = {3, 3}, .integrator = "quasi_static: {step: 0.05}"}},
-                          2, 20);
+  const auto result =
+      row({{.integrator = "newmark: {step: 0.05}",
+            .more = "    constraints: {clamp: {on: left, x: \"0.1*sin(t)\", y: 0}}\n"},
+           {.cells = {3, 3}, .integrator = "quasi_static: {step: 0.05}"}},
+          2, 20);
   ASSERT_TRUE(result->completed());
   EXPECT_LE(result->measure("schwarz.iterations_max"), two_calls);
   // Without forces on it, it is carried without strain.
