@@ -3,7 +3,7 @@
 
 usage: study_documents.py DIRECTORY_OF_PROGRAMS results|joined|extremes
 
-`joined` measures the section of docs/RESULTS.md on joined bodies anew and leaves the others as they are.
+`joined` measures the section of docs/RESULTS.md on joined bodies anew, and leaves the others.
 
 What an earlier run of the study left in runs/ is used again, as the study itself does.
 """
