@@ -24,6 +24,9 @@ constexpr double roundoff = 1.0e-14;
 constexpr double tolerance = 1.0e-13;
 /// 6 to 40 are usual, 150 where rows say the same twice.
 constexpr int most_iterations = 500;
+/// Of the diagonal, added to it: what combinations of rows that move nothing, where they say the
+/// same twice, take of round-off is bounded then.
+constexpr double softness = 1.0e-10;
 
 int dim_of(const TieLayout& layout) { return layout.members.front().tie->rows().dim; }
 
@@ -115,9 +118,10 @@ class BandedTieKernel final : public TieKernel {
                 Eigen::VectorXd& left) const override {
     left -= blocks_[index(lag)] * force;
   }
-  Eigen::VectorXd invert(const Eigen::VectorXd& jump) const override { return first_.solve(jump); }
+  Eigen::VectorXd invert(const Eigen::VectorXd& jump) const override;
 
   std::vector<Sparse> blocks_;  // [m/N] by lag
+  Sparse softened_;             // the first block
   Eigen::BiCGSTAB<Sparse> first_;
 };
 
@@ -147,7 +151,17 @@ BandedTieKernel::BandedTieKernel(const TieLayout& layout, const TieBandWidth& wi
   }
   first_.setTolerance(tolerance);
   first_.setMaxIterations(most_iterations);
-  first_.compute(blocks_[0]);
+  softened_ = blocks_[0];
+  softened_.diagonal() *= 1.0 + softness;
+  first_.compute(softened_);
+}
+
+/// An iteration that breaks down has still its share of every row for itself.
+Eigen::VectorXd BandedTieKernel::invert(const Eigen::VectorXd& jump) const {
+  Eigen::VectorXd force = first_.solve(jump);
+  if (force.allFinite()) return force;
+  const Eigen::VectorXd own = softened_.diagonal();
+  return (own.array() > 0.0).select(jump.cwiseQuotient(own), 0.0);
 }
 
 double BandedTieKernel::bytes() const {
