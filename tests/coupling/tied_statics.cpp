@@ -23,8 +23,9 @@ constexpr double two_calls = 2.0;
 struct Piece {
   std::vector<int> cells = {4, 4};
   std::string law = "linear_elastic: {youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0}";
-  std::string cell = {}, keys = {}, more = {};
+  std::string cell = {}, keys = {};
   std::string integrator = "quasi_static: {step: 0.25}";
+  std::string more = {};
 };
 
 std::string linear(double modulus, double poissons_ratio) {
