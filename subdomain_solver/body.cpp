@@ -344,7 +344,8 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
   }
   const std::size_t p = index(port), width = describe().ports.at(p).geometry.points.size();
   ABUT_ASSERT(step > 0.0 && patterns.size() % width == 0);
-  if (describe().quasi_static) return probe_statics(port, patterns, step, count, seen);
+  const bool joined = interior_->support(p) == ForceSupport::step;
+  if (describe().quasi_static && joined) return probe_statics(port, patterns, step, count, seen);
   std::vector<std::byte> kept;
   write(*interior_, kept, Archive::Form::bare);
   const Substeps grid{0.0, count * step, step, step, count};
