@@ -284,11 +284,15 @@ std::optional<Failed> QuasiStatic::step(Motion& motion, double time, double dt) 
   before_ = motion;
   const double smallest = std::ldexp(dt, -options_.most_halvings);
   double done = 0.0, length = dt;
-  const Vector from = place_of(before_), to = carried_.size() > 0 ? carried_ : from;
+  Vector from, to;
+  if (loose_.cols() > 0) {
+    from = place_of(before_);
+    to = carried_.size() > 0 ? carried_ : from;
+  }
   while (done < dt) {
     const bool last = done + length >= dt * (1.0 - 1.0e-12);
     const double end = last ? time + dt : time + done + length;
-    place_ = last ? to : from + (end - time) / dt * (to - from);
+    if (loose_.cols() > 0) place_ = last ? to : from + (end - time) / dt * (to - from);
     const NewtonReport report = part(motion, end, problem_.contact);
     if (report.converged()) {
       done = last ? dt : done + length;
