@@ -219,6 +219,42 @@ TEST(Codec, ALookAheadIsOfItsTimeAlone) {
   }
 }
 
+/// A body that two rigid motions are left to: where they are, and what is left over along them.
+TEST(Codec, LooseMotionsKeepTheirPlaces) {
+  Description body;
+  body.name = "floats";
+  body.dim = 2;
+  body.loose = {1.0, 0.0, 0.5, 0.0, 1.0, -0.25};
+  Description told;
+  decode(through_bytes<Description, v1::Description>(body), told);
+  EXPECT_EQ(told.loose, body.loose);
+  Advance sent = bare_advance();
+  sent.boundary.clear();
+  sent.carry = {1.0, 2.0, 3.0, 4.0};
+  Advance got;
+  decode(through_bytes<Advance, v1::Advance>(sent), body, {}, got);
+  EXPECT_EQ(got.carry, sent.carry);
+  sent.carry.pop_back();
+  const auto take = [&] { decode(through_bytes<Advance, v1::Advance>(sent), body, {}, got); };
+  EXPECT_EQ(refusal(take), "advance.carry has 3 values, not a multiple of 2");
+  Response reply;
+  reply.records.resize(1);
+  reply.records[0].momentum = {0.0, 0.0};
+  reply.steps = 2;
+  reply.unbalanced = {-1.0, -2.0, -3.0, -4.0};
+  const Advance asked = [] {
+    Advance advance = bare_advance();
+    advance.boundary.clear();
+    return advance;
+  }();
+  Response read;
+  decode(through_bytes(reply, asked), body, asked, read);
+  EXPECT_EQ(read.unbalanced, reply.unbalanced);
+  reply.steps = 1;
+  const auto misread = [&] { decode(through_bytes(reply, asked), body, asked, read); };
+  EXPECT_EQ(refusal(misread), "advanced.unbalanced has 4 numbers where 2 belong");
+}
+
 TEST(Codec, ResponseKeepsEveryField) {
   const Response sent = full_response();
   Response got;
