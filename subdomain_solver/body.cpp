@@ -186,18 +186,24 @@ void Body::look_ahead(const Advance& request, Response& response) {
   const Substeps grid = divide(ahead_);
   for (std::size_t p = 0; p < ports_.size(); ++p)
     release(p, request, grid, response.ports[p].trace);
-  write(*interior_, looked_, Archive::Form::bare);
   const Window window{ahead_, grid, partners_};
-  const std::optional<Failed> failed = walk(window, [&](int i) {
-    const double time = i == 0 ? grid.begin : grid.time(i);
-    const PortValues& seen = interior_->see(window, time, false);
+  const auto tell = [&](double time, const std::vector<double>& u) {
     for (std::size_t p = 0; p < ports_.size(); ++p) {
       Waveform& told = response.ports[p].ahead;
       told.width = static_cast<int>(ports_[p].width);
       told.time.push_back(time);
-      const auto from = seen.u.begin() + static_cast<std::ptrdiff_t>(ports_[p].first);
+      const auto from = u.begin() + static_cast<std::ptrdiff_t>(ports_[p].first);
       told.u.insert(told.u.end(), from, from + static_cast<std::ptrdiff_t>(ports_[p].width));
     }
+  };
+  if (interior_->peek(window, peeked_)) {
+    tell(grid.begin, interior_->see(window, grid.begin, false).u);
+    return tell(grid.time(1), peeked_);
+  }
+  write(*interior_, looked_, Archive::Form::bare);
+  const std::optional<Failed> failed = walk(window, [&](int i) {
+    const double time = i == 0 ? grid.begin : grid.time(i);
+    tell(time, interior_->see(window, time, false).u);
   });
   for (PortResponse& port : response.ports)
     if (failed) port.ahead.clear();

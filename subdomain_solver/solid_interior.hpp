@@ -62,6 +62,7 @@ class SolidInterior final : public Interior {
   void restored() override;
   std::optional<Failed> begin(const Window& window) override;
   std::optional<Failed> step(const Window& window, int i) override;
+  bool peek(const Window& window, std::vector<double>& u) override;
   std::span<const double> unbalanced() const override;
   bool give(std::span<const double> force, const Eigen::VectorXd& place, std::vector<double>& moved,
             Eigen::VectorXd& left) override;
@@ -134,6 +135,7 @@ class SolidInterior final : public Interior {
   Vector momentum_;                   // [kg m/s]
   std::vector<double> before_, now_;  // [m], [N] (port values)
   Vector change_;                     // [N] (coordinates)
+  std::vector<double> peeked_;        // [m] (coordinates)
   Vector on_ports_;                   // [N] (nodes, dim)
 };
 

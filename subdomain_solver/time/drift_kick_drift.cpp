@@ -46,16 +46,35 @@ std::optional<Failed> DriftKickDrift::begin(Motion& motion, double time) {
   return std::nullopt;
 }
 
-std::optional<Failed> DriftKickDrift::step(Motion& motion, double time, double dt) {
-  const double half = 0.5 * dt;
+bool DriftKickDrift::find_middle(const Motion& motion, double time, double dt) {
   middle_.resize(motion.q.size());
-  view(middle_) = view(motion.q) + half * view(motion.v);
+  view(middle_) = view(motion.q) + 0.5 * dt * view(motion.v);
   given_.clear();
   for (const Prescribed& p : problem_.supports) {
     const double value = given_.emplace_back(p.value(time + dt));
-    if (!std::isfinite(value)) return not_finite(time + dt);
+    if (!std::isfinite(value)) return false;
     middle_[index(p.dof)] = 0.5 * (motion.q[index(p.dof)] + value);
   }
+  return true;
+}
+
+/// Its force is that of the step that may follow.
+bool DriftKickDrift::peek(const Motion& motion, double time, double dt, std::vector<double>& q) {
+  const double half = 0.5 * dt;
+  if (!motion.history.empty() || !find_middle(motion, time, dt)) return false;
+  const ModelResponse* response = respond(motion.history);
+  if (response == nullptr) return false;
+  find_loads(time + half, middle_);
+  q.resize(motion.q.size());
+  view(q) = view(middle_) +
+            half * (view(motion.v) + dt * inverse_mass_.cwiseProduct(loads_ - response->force));
+  for (std::size_t k = 0; k < given_.size(); ++k) q[index(problem_.supports[k].dof)] = given_[k];
+  return true;
+}
+
+std::optional<Failed> DriftKickDrift::step(Motion& motion, double time, double dt) {
+  const double half = 0.5 * dt;
+  if (!find_middle(motion, time, dt)) return not_finite(time + dt);
   ModelResponse* response = respond(motion.history);
   if (response == nullptr) return failed_newton({NewtonReport::End::inadmissible}, time + half);
   find_loads(time + half, middle_);

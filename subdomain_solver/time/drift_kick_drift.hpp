@@ -23,6 +23,8 @@ class DriftKickDrift final : public Integrator {
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
+  [[nodiscard]] bool peek(const Motion& motion, double time, double dt,
+                          std::vector<double>& q) override;
   /// Means of the last step, as the balance in its middle has them.
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
   double kinetic(const Motion& motion) const override;
@@ -33,6 +35,8 @@ class DriftKickDrift final : public Integrator {
     ModelResponse response;
   };
 
+  /// Coordinates in the middle of a step, and the values given at its end. False: not finite.
+  [[nodiscard]] bool find_middle(const Motion& motion, double time, double dt);
   void find_loads(double time, std::span<const double> q);
   /// The model's answer in the middle of the step, good until the next one; null: inadmissible.
   ModelResponse* respond(const std::vector<double>& history);

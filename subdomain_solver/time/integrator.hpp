@@ -32,6 +32,11 @@ class Integrator {
   virtual void acceleration(const Motion& motion, double time, double step, Vector& out) const = 0;
   /// Whether the body answers a force in time: statics do not.
   virtual bool has_inertia() const { return true; }
+  /// Coordinates [m] (dofs) a step on, told without taking it. False: only a step tells them.
+  [[nodiscard]] virtual bool peek(const Motion&, double /*time*/, double /*dt*/,
+                                  std::vector<double>& /*q*/) {
+    return false;
+  }
   virtual QuasiStatic* statics() { return nullptr; }
   /// [J] in the form that the scheme conserves where it conserves one.
   virtual double kinetic(const Motion& motion) const = 0;
