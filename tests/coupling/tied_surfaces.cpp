@@ -139,6 +139,25 @@ TEST_P(TiedPair, KeepsEnergyAndMomentumInOneCallPerWindow) {
   EXPECT_LE(result->measure("contact.tie0.jump_max"), 1.0e-7 * 0.02);
 }
 
+/// Planes, rings among them, and how cells are integrated: the identity is of forces and motions.
+TEST(TiedSurfaces, AnyPlaneAndFormulationKeepsEnergy) {
+  for (const char* plane : {"strain", "stress", "axisymmetric"}) {
+    for (const char* formulation : {"full", "one_point", "mean_dilatation"}) {
+      if (plane == std::string("stress") && formulation == std::string("mean_dilatation")) continue;
+      for (const char* schemes : {"II", "IE", "EI", "EE"}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", plane, formulation, schemes));
+        std::vector<Block> blocks = halves(schemes, {2, 3}, 0.005);
+        for (Block& block : blocks)
+          block.keys = fmt::format("plane: {}, formulation: {}, ", plane, formulation);
+        const auto result = run(2.0, 0.2, blocks, middle);
+        ASSERT_TRUE(result->completed());
+        EXPECT_NEAR(result->measure("energy.total.relative_drift_max"), 0.0, rounding);
+        EXPECT_EQ(result->measure("schwarz.iterations_max"), 2.0);
+      }
+    }
+  }
+}
+
 /// Contrasts of stiffness and density, windows of 1 to 100 steps.
 TEST(TiedSurfaces, AnyContrastAndWindowTakeOneCall) {
   for (const double contrast : {1.0e-6, 1.0e-3, 1.0e3, 1.0e6}) {
