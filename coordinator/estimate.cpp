@@ -206,6 +206,9 @@ std::string text_of(const std::vector<Estimate::Body>& bodies) {
 std::string calls_of(const Estimate::Ties& ties) {
   if (!ties.used) return "no kernel: 3 calls of the bodies in a window and more, if they converge";
   if (ties.narrow) return "2 calls of the bodies in a window and more";
+  if (ties.floats)
+    return fmt::format("{} of the bodies in a window, one less where loads go on as they went",
+                       ties.linear ? "2 calls" : "3 to 4 calls");
   const std::string_view calls = ties.linear ? (ties.banded ? "1 to 3 calls" : "1 call")
                                              : (ties.banded ? "2 to 4 calls" : "2 to 3 calls");
   return fmt::format("{} of the bodies in a window{}", calls,

@@ -41,6 +41,7 @@ struct Estimate {
     bool banded = false;  // rows answer their neighbours; false: every other one
     bool narrow = false;  // so near that waves come farther in a window
     bool linear = true;   // all bodies
+    bool floats = false;  // statics that nothing but ties hold, or that bend: no trials
     double memory_mib = 0.0;
     std::int64_t probes = 0;
   };

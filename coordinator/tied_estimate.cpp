@@ -38,6 +38,10 @@ Estimate::Ties ties_of(const TieLayout& layout, const TieKernelOptions& options,
   ties.linear = std::ranges::all_of(layout.parts, [&bodies](const TieLayout::Part& part) {
     return part.stands || bodies.describe(part.body).linear;
   });
+  const auto floats = [&bodies](const TieLayout::Part& part) {
+    return part.bends || !bodies.describe(part.body).loose.empty();
+  };
+  ties.floats = std::ranges::any_of(layout.parts, floats);
   for (const TieLayout::Member& member : layout.members) {
     if (member.carried >= 0) continue;
     const Side& side = member.joint->kinematic_side();

@@ -76,6 +76,10 @@ TEST(Estimate, TellsOfTies) {
   ties.linear = false;
   EXPECT_NE(told().find("2 to 4 calls of the bodies in a window, more where they deform much"),
             std::string::npos);
+  ties.floats = true;
+  EXPECT_NE(told().find("3 to 4 calls of the bodies in a window, one less where loads go on"),
+            std::string::npos);
+  ties.floats = false;
   ties.narrow = true;
   EXPECT_NE(told().find("2 calls of the bodies in a window and more"), std::string::npos);
   ties.used = false;
