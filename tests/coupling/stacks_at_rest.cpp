@@ -16,7 +16,7 @@ namespace {
 /// Blocks of 1 x 0.5 on the ground, masses in units of 500 kg from the lowest up; the lighter of
 /// two finds their contact. They are as stiff as strains of about 1e-3 need, and an undamped mode
 /// would never come to rest: the scheme damps all that is faster than its step.
-std::string stack(const std::vector<double>& masses, double ratio) {
+std::string stack(const std::vector<double>& masses, double ratio, double tolerance) {
   std::string text = "meta: {title: test}\ntime: {begin: 0.0, end: 5.6, window: 0.0125}\nbodies:\n";
   std::string joints =
       "  joint_0: {sides: [block_0.sole, ground.face], contact: {friction: 0.3}}\n";
@@ -52,7 +52,7 @@ std::string stack(const std::vector<double>& masses, double ratio) {
   ground.position = {-1.0, -0.2};
   ground.side = "top";
   return text + ground.text() + "interfaces:\n" + joints +
-         "schwarz: {max_iterations: 100, tolerance: 1.0e-7}\n";
+         fmt::format("schwarz: {{max_iterations: 100, tolerance: {}}}\n", number(tolerance));
 }
 
 /// Two and three blocks with light and heavy ones in every order, five that alternate or grow.
@@ -74,18 +74,25 @@ TEST(StacksAtRest, BearTheirWeight) {
   for (const double r : {1.0e2, 1.0e4, 1.0e6})
     for (const std::vector<double>& masses : orders(r)) {
       SCOPED_TRACE(fmt::format("{}", fmt::join(masses, " : ")));
-      const auto result = run_document(Document::from_text("test", stack(masses, r)));
+      const bool grow = masses.size() == 5 && masses[0] < masses[1] && masses[1] < masses[2];
+      // What sweeps leave of forces is some ten times their tolerance; rounding lets them reach no
+      // less than 1e-7 where masses differ by a million. Of five that grow to it that is 3e-6.
+      const bool hard = grow && r > 1.0e5;
+      const auto result =
+          run_document(Document::from_text("test", stack(masses, r, r > 1.0e5 ? 1.0e-7 : 1.0e-8)));
       ASSERT_TRUE(result->completed());
       const double heaviest = std::ranges::max(masses);
       double above = 0.0;
       for (std::size_t k = masses.size(); k-- > 0;) {
         above += 9.81 * 500.0 * masses[k];
-        // The goal. Measured 9e-7: what the sweeps leave. What bears a millionth of the forces that
-        // hold the block below finds that block's face uneven by their rounding, some 1e-10.
+        // The goal, but for what bears a millionth of the forces that hold the block below: it
+        // finds that block's face uneven by their rounding, some 1e-10; and for the hard ones.
         const bool finest = above < 1.0e-5 * 9.81 * 500.0 * heaviest;
         EXPECT_NEAR(
             result->measure(fmt::format("body.block_{}.sole.contact.pressure_max", k)) / above, 1.0,
-            finest ? 5.0e-4 : 1.0e-6);
+            finest ? 5.0e-4
+            : hard ? 1.0e-5
+                   : 1.0e-6);
         // Its resultant, while it comes to rest too: the end of the loads' rise overshoots by 6e-6.
         EXPECT_NEAR(result->measure(fmt::format("contact.joint_{}.force_peak", k)) / above, 1.0,
                     2.0e-5);
@@ -93,7 +100,6 @@ TEST(StacksAtRest, BearTheirWeight) {
       // The goal. Measured 2.3 at most.
       EXPECT_LE(result->measure("schwarz.iterations_mean"), 4.0);
       // The goal, but for the first windows of five that grow, whose loads are nothing yet: 27.
-      const bool grow = masses.size() == 5 && masses[1] != masses[3];
       EXPECT_LE(result->measure("schwarz.iterations_max"), grow ? 50.0 : 10.0);
       EXPECT_EQ(result->measure("contact.joint_0.closings"), 1.0);
     }
