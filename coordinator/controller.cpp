@@ -48,8 +48,7 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       clock_(scene.time.begin, scene.time.end, scene.time.window),
       roles_(bodies_, scene.time.window, scene.schwarz.parallel),
       events_(joints_, bodies_, roles_, narrator_, scene.schwarz.tolerance, scene.time.window),
-      guard_(scene.schwarz.energy_guard, conserving_bodies(), !presses_quasi_statically(),
-             unresolved_inertia()),
+      guard_(scene.schwarz.energy_guard, conserving_bodies(), sums_energy(), unresolved_inertia()),
       reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {
   end_.status = "completed";
   flight_.longest = flight_.limit = windows_at_once(scene.time.window, descriptions_of(bodies_));
@@ -90,6 +89,12 @@ void Controller::start() {
   const bool accelerations = std::ranges::any_of(joints_, [](const Joint& joint) {
     return joint.how != nullptr && joint.how->overwrites_motion();
   });
+  for (const Joint& joint : joints_) {
+    if (!passes_motions_alone(joint)) continue;
+    narrator_.warning(clock_.time(), joint.name,
+                      "where bodies overlap and exchange motions alone, each has all of the "
+                      "material: energy.total and momentum.total count it twice there");
+  }
   bodies_.want({.a = accelerations, .points = {}});
   const TimeWindow instant{0, clock_.time(), clock_.time()};
   bodies_.save_all();
@@ -347,15 +352,16 @@ std::vector<double> Controller::unresolved_inertia() const {
   return inertia;
 }
 
-/// Rows that close inside a step without inertia leave an energy of the order of the step, whatever
-/// it is: nothing would be unstable.
-bool Controller::presses_quasi_statically() const {
+/// Whether what all bodies have together may not grow. Rows that close inside a step without
+/// inertia leave an energy of the order of the step, whatever it is: nothing would be unstable. And
+/// what bodies that exchange motions alone share is there twice.
+bool Controller::sums_energy() const {
   for (int b = 0; b < bodies_.count() && !broad_phase_.empty(); ++b)
-    if (bodies_.describe(b).quasi_static) return true;
-  return std::ranges::any_of(joints_, [this](const Joint& joint) {
-    return !joint.tied() && std::ranges::any_of(joint.sides, [this](const Side& side) {
-      return bodies_.describe(side.body).quasi_static;
-    });
+    if (bodies_.describe(b).quasi_static) return false;
+  return std::ranges::none_of(joints_, [this](const Joint& joint) {
+    const bool rests = std::ranges::any_of(
+        joint.sides, [this](const Side& side) { return bodies_.describe(side.body).quasi_static; });
+    return joint.tied() ? passes_motions_alone(joint) : rests;
   });
 }
 

@@ -79,7 +79,7 @@ class Controller {
   void watch_energy(EnergyGuard::Verdict verdict);
   std::vector<bool> conserving_bodies() const;
   std::vector<double> unresolved_inertia() const;
-  bool presses_quasi_statically() const;
+  bool sums_energy() const;
   void fail(double time, const std::string& text);
   void state(Archive& archive);
   RunEnd finish(double wall_seconds);

@@ -40,6 +40,22 @@ void OverlapSpec::fields(Fields& f) {
   f.word("material", doubled, {"halves", "doubled"},
          "of which the bodies have halves each where both are, or, for comparisons, all of it "
          "each, which reflects waves");
+  f.word(
+      "exchange", motions, {"forces", "motions"},
+      "what bodies tell each other: forces, which act on both, so that energy is kept; or motions "
+      "alone, as in alternating Schwarz with Dirichlet data: all of the material in each body, "
+      "and each side moved as the other body moves there, which is for statics and for meshes "
+      "whose nodes meet");
+  f.word("answer", alternating, {"together", "alternating"},
+         "of motions alone, how they are found: for both bodies at once, or, for comparisons, for "
+         "each as if the other one stood still, as published: sweeps are its iterations, to which "
+         "schwarz.accelerator applies");
+  f.optional("unstable", unstable, "",
+             "of motions alone, for comparisons: runs bodies with inertia whose nodes do not meet, "
+             "which gain energy by themselves");
+  f.idle(motions, "material", "bodies that exchange motions alone have all of it each");
+  f.idle(!motions, "answer", "forces are found for both bodies at once");
+  f.idle(!motions, "unstable", "bodies that exchange forces keep their energy");
 }
 
 void TiedSpec::fields(Fields& f) {

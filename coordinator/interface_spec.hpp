@@ -32,7 +32,10 @@ constexpr std::string_view everything_path = "contact.everything", everything_na
 
 /// Bodies that take the same place at their sides, each side inside the other body.
 struct OverlapSpec {
-  bool doubled = false;  // "material: halves | doubled"
+  bool doubled = false;      // "material: halves | doubled"
+  bool motions = false;      // "exchange: forces | motions"
+  bool alternating = false;  // "answer: together | alternating"
+  bool unstable = false;     // motions alone where they are known to gain energy
   void fields(Fields& f);
 };
 struct TiedSpec {  // joined from the start, for the whole run

@@ -92,8 +92,9 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides,
   }
   if (spec.tied->overlap) check_overlap(spec, faces);
   TieRows rows = spec.tied->overlap
-                     ? make_overlap_rows(*faces[0], *faces[1])
+                     ? make_overlap_rows(*faces[0], *faces[1], spec.tied->overlap->motions)
                      : make_tie_rows(*faces[0], *faces[1], side_of_rows(sides, bodies));
+  rows.alternating = spec.tied->overlap && spec.tied->overlap->alternating;
   const double most = usual_gap * std::max(faces[0]->spacing, faces[1]->spacing);
   if (rows.count() == 0) {
     throw InputError(fmt::format("joins {} and {}, which do not face each other anywhere",

@@ -17,8 +17,8 @@ import sys
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 # Of joined bodies: study, and what of its results the section holds beside the claims.
-JOINED = ("joined_cantilever", "overlapping_cantilever", "joined_iterations",
-          "joined_fidelity")
+JOINED = ("joined_cantilever", "overlapping_cantilever", "overlapping_motions",
+          "overlapping_statics", "joined_iterations", "joined_fidelity")
 STUDIES = {"results": "two_bars_methods", "extremes": "extremes"}
 OPTIONS = {"results": ["--serial"], "extremes": []}
 RESULTS_HEAD = """\
@@ -46,13 +46,16 @@ VERDICTS = [
      "so do joined faces, and overlaps that share their material, any with any other: "
      "tables below"),
     ("no nonphysical artifacts",
-     "in statics. In time, on meshes whose nodes do not meet, the converged pair grows by "
-     "itself, 2e3 to 1e4 1/s in every scheme (published energies: +22 to +7765 %). Not "
-     "offered therefore; with half of the material in each body energy is an identity, and"
-     " a pulse of two cells leaves 5e-4 of its energy behind"),
+     "in statics. In time only between bodies that are the same where both are: others, of "
+     "unlike meshes, steps or schemes, gain energy without end (published: +22 to +7765 %; "
+     "table below: 2e2 to 2e9 times in two milliseconds). That is refused therefore; with "
+     "half of the material in each body energy is an identity, and a pulse of two cells "
+     "leaves 5e-4 of its energy behind"),
     ("theoretical convergence properties",
-     "of what is solved, not of the motion: see above. Forces of a joint have one "
-     "solution, since the energy that they leave in bodies at rest is positive"),
+     "of the iteration, faster with wider overlaps: holds, 297 to 47 sweeps in a stretched "
+     "bar, 8810 to 431 in a bent one (table below), 2 where both bodies are answered at "
+     "once. Of the motion in time: see above. Forces of a joint have one solution, since the "
+     "energy that they leave in bodies at rest is positive"),
     ("easy to implement in existing codes",
      "true, and of joined faces too: advance under forces that are constant in steps, tell"
      " where ports are, return to a saved state"),

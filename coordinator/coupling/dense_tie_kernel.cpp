@@ -52,13 +52,17 @@ Responses responses_of(const TieLayout& layout, const TieLayout::Part& part, int
   Responses responses(index(steps), Eigen::MatrixXd::Zero(part.width, part.width));
   const auto loose = std::ranges::find_if(
       part.ends, [&layout](const TieLayout::End& end) { return layout.carries(end); });
-  // What a loose motion does to rows, forces of these leave over along it: the transpose.
+  // What a loose motion does to rows, forces of these that act on the body leave over along it: the
+  // transpose.
   TakeLoose carried;
   carried.motion = [&](int k, int, const TieLayout::End& of, std::span<const double> moved) {
     const auto count = static_cast<Eigen::Index>(moved.size());
     const Eigen::Map<const Eigen::VectorXd> rows(moved.data(), count);
     responses[0].col(loose->first + k).segment(of.first, count) = rows;
-    responses[0].row(loose->first + k).segment(of.first, count) = rows.transpose();
+    const TieRows& tied = layout.rows(of);
+    for (Eigen::Index i = 0; i < count; ++i)
+      if (tied.acts(static_cast<int>(i) / tied.dim, of.side))
+        responses[0](loose->first + k, of.first + i) = rows[i];
   };
   carried.left = [&](int k, std::span<const double> left) {
     for (std::size_t l = 0; l < left.size(); ++l)

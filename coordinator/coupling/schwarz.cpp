@@ -215,6 +215,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
       x_ += inverse_of(g_ - x_, joints);
       continue;
     }
+    ties_->answer_alone(x_, g_);
     Accelerator& next = careful != nullptr ? *careful : accelerator;
     next.weigh(s_);
     x_ = next.next(x_, g_);

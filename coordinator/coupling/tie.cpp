@@ -10,6 +10,11 @@
 
 namespace abut {
 
+bool passes_motions_alone(const Joint& joint) {
+  const Tie* tie = joint.how == nullptr ? nullptr : joint.how->tie();
+  return tie != nullptr && !tie->rows().moves.empty();
+}
+
 void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
   remember(window);
   straight_ = !looks(joint, bodies);
@@ -124,8 +129,8 @@ void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joi
   on_body.f.assign(on_body.time.size() * width, 0.0);
   const double sign = side == joint.kinematic ? 1.0 : -1.0;
   for (std::size_t i = 1; i < on_body.time.size(); ++i)
-    add_transposed(rows_.of[index(side)], rows_.dim, sign, row(force_, force_.f, i),
-                   std::span(on_body.f).subspan(i * width, width));
+    rows_.press(side, sign, row(force_, force_.f, i),
+                std::span(on_body.f).subspan(i * width, width));
   Advance& request = bodies.request(end.body);
   if (looks(joint, bodies))
     request.ahead = bodies.window() > 0.0 ? bodies.window() : window_.length();

@@ -95,4 +95,7 @@ class Tie final : public Transmission {
   ReferenceScales scale_;
 };
 
+/// Whether bodies overlap over a joint without forces between them  [M.116].
+bool passes_motions_alone(const Joint& joint);
+
 }  // namespace abut

@@ -1,5 +1,6 @@
 #include "coordinator/coupling/tie_net.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "coordinator/coupling/banded_tie_kernel.hpp"
@@ -25,6 +26,9 @@ void TieNet::begin(const Island& island, std::span<const Joint> joints,
   }
   if (empty()) return;
   layout_.arrange(bodies);
+  alternating_ = std::ranges::any_of(layout_.members, [](const TieLayout::Member& member) {
+    return member.tie->rows().alternating;
+  });
   find_kernel(bodies);
   const Eigen::VectorXd own = kernel_->diagonal();
   for (const TieLayout::Member& member : layout_.members) {
@@ -42,17 +46,20 @@ void TieNet::find_kernel(Bodies& bodies) {
   pattern_ = std::move(pattern);
   blocks_ = layout_.blocks;
   kernel_.reset();  // its memory is wanted
-  const TieKernelPlan plan = plan_tie_kernel(layout_, options_, bodies);
+  TieKernelOptions options = options_;
+  options.used = options_.used || alternating_;
+  const TieKernelPlan plan = plan_tie_kernel(layout_, options, bodies);
   kernel_ = plan.banded ? make_banded_tie_kernel(layout_, plan.width, plan.lags, bodies)
                         : make_dense_tie_kernel(layout_, plan.lags, bodies);
 }
 
 bool TieNet::renew(Bodies& bodies) {
-  return !empty() && options_.used && kernel_->renew(layout_, bodies);
+  if (empty() || !(options_.used || alternating_)) return false;
+  return kernel_->renew(layout_, bodies) && !alternating_;
 }
 
 void TieNet::predict(Eigen::VectorXd& x) const {
-  if (empty() || !options_.used) return;
+  if (empty() || !options_.used || alternating_) return;
   Eigen::VectorXd jump(layout_.blocks * layout_.size);
   for (const TieLayout::Member& member : layout_.members) {
     if (member.carried >= 0 || member.tie->trial().size() == 0) return;
@@ -64,7 +71,17 @@ void TieNet::predict(Eigen::VectorXd& x) const {
 }
 
 void TieNet::apply_inverse(Eigen::VectorXd& r) const {
-  if (empty() || !options_.used) return;
+  if (!empty() && options_.used && !alternating_) solve(r);
+}
+
+void TieNet::answer_alone(const Eigen::VectorXd& x, Eigen::VectorXd& g) const {
+  if (empty() || !alternating_) return;
+  Eigen::VectorXd r = g - x;
+  solve(r);
+  g = x + r;
+}
+
+void TieNet::solve(Eigen::VectorXd& r) const {
   Eigen::VectorXd jump(layout_.blocks * layout_.size);
   for (const TieLayout::Member& member : layout_.members)
     layout_.spread(member, unit_of(member) * r.segment(member.first, layout_.values_of(member)),

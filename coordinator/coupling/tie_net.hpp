@@ -31,16 +31,21 @@ class TieNet {
   bool empty() const { return layout_.empty(); }
   /// First guesses, where all bodies have told how they would part.
   void predict(Eigen::VectorXd& x) const;
+  /// Where bodies answer as if the others stood still, images are what each of them makes of the
+  /// others' motions: alternating Schwarz, in its parallel form.
+  void answer_alone(const Eigen::VectorXd& x, Eigen::VectorXd& g) const;
   /// Answers the ties' parts of a residual g - x, in the ties' units; leaves the others alone.
   void apply_inverse(Eigen::VectorXd& r) const;
 
  private:
   void find_kernel(Bodies& bodies);
+  void solve(Eigen::VectorXd& r) const;
 
   TieKernelOptions options_;
   TieLayout layout_;
   std::vector<int> pattern_;  // of the layout for which the kernel holds
   int blocks_ = 0;            // the same
+  bool alternating_ = false;
   std::unique_ptr<TieKernel> kernel_;
 };
 

@@ -37,6 +37,8 @@ void read(const TieLayout& layout, const TieLayout::Part& part, int from, int pa
         const TieRows& rows = layout.rows(end);
         moved.resize(index(rows.width()));
         apply(rows.of[index(end.side)], rows.dim, std::span(values, width), moved);
+        for (std::size_t i = 0; rows.alternating && i < moved.size(); ++i)
+          if (!rows.acts(static_cast<int>(i) / rows.dim, end.side)) moved[i] = 0.0;
         take(from + k % patterns, k / patterns, end, moved);
       }
       values += width;
@@ -71,8 +73,7 @@ void press(const TieLayout& layout, const TieLayout::Part& part, const TieLayout
     for (int k = 0; k < count; ++k) {
       std::vector<double> unit(index(rows.width()), 0.0);
       fill(from + k, unit);
-      add_transposed(rows.of[index(by.side)], rows.dim, 1.0, unit,
-                     std::span(forces).subspan(index(k) * width, width));
+      rows.press(by.side, 1.0, unit, std::span(forces).subspan(index(k) * width, width));
     }
     const PortKernel kernel = bodies.probe(part.body, pressed, forces, steps, seen);
     read(layout, part, from, kernel.patterns, kernel.displacement, seen, take, bodies);

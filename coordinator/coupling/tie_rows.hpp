@@ -1,8 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
+#include "base/index.hpp"
 #include "contract/port.hpp"
 #include "surface/sparse_rows.hpp"
 
@@ -16,8 +19,14 @@ struct TieRows {
   std::vector<double> area;      // [m^(dim-1)] (rows) of the joint
   double apart = 0.0;            // [m] between the surfaces, at the place where it is most
   std::vector<double> place;     // [m] (dim) there
+  // Where motions alone pass: (rows) the side that a force of a row acts on  [M.116]; empty: both.
+  std::vector<std::int8_t> moves;
+  bool alternating = false;  // of these: a body's rows are answered as if the other one stood still
   int count() const { return of[0].count(); }
   int width() const { return count() * dim; }
+  bool acts(int row, int side) const { return moves.empty() || moves[index(row)] == side; }
+  /// out += factor x forces [N] (rows, dim) of those rows that act on a side, at its nodes.
+  void press(int side, double factor, std::span<const double> forces, std::span<double> out) const;
 };
 
 /// Of the reference configuration: the dual mortar rows of one side, 0 or 1  [M.108]; where its
@@ -26,7 +35,8 @@ struct TieRows {
 TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int side);
 
 /// Of bodies that overlap, whose ports tell where the other one's side is inside them: rows of both
-/// sides, each against the inside of the other body  [M.113].
-TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other);
+/// sides, each against the inside of the other body  [M.113]. `motions`: forces act on a row's own
+/// side alone  [M.116].
+TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other, bool motions);
 
 }  // namespace abut

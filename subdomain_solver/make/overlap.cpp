@@ -10,10 +10,12 @@
 
 #include "base/index.hpp"
 #include "base/yaml_fields.hpp"
+#include "base/yaml_resolved.hpp"
 #include "subdomain_solver/fe/facet_index.hpp"
 #include "subdomain_solver/make/mesh.hpp"
 #include "subdomain_solver/make/scene_contact.hpp"
 #include "subdomain_solver/overlap/cell_shares.hpp"
+#include "subdomain_solver/overlap/conforming.hpp"
 #include "subdomain_solver/overlap/embed.hpp"
 
 namespace abut {
@@ -22,6 +24,16 @@ namespace {
 
 /// Of a cell: boundaries of unlike meshes are this far apart where they are one, and no more.
 constexpr double usual_gap = 0.25;
+
+/// Of a body, what is to be the same in both.
+struct Scheme {
+  std::optional<BodySpec::Integrator> integrator;
+  void fields(Fields& f) { f.choice("integrator", integrator, "in time"); }
+};
+struct Law {
+  std::optional<MaterialSpec> material;
+  void fields(Fields& f) { f.choice("material", material, "of the body"); }
+};
 
 struct OtherBody {
   BodySpec spec;
@@ -76,6 +88,7 @@ class Overlap {
   void share_cells(const CommonParts& common) const;
   void check_other_sides() const;
   void check_loads(const BodySpec& spec) const;
+  void check_motions(const BodySpec& spec, const CommonParts& common) const;
   bool is_wide(double volume) const;
   void follow(EmbeddedSurface& inside) const;
 
@@ -137,6 +150,10 @@ EmbeddedSurface Overlap::find(const BodySpec& spec) const {
            "other body.");
   }
   check_other_sides();
+  if (scene_.motions) {
+    check_motions(spec, common);
+    return inside;
+  }
   if (is_wide(common.volume)) follow(inside);
   if (scene_.halves) {
     share_cells(common);
@@ -224,6 +241,39 @@ void Overlap::check_other_sides() const {
                        scene_.body, place_.name(), at(middle), depth, its_side()),
            "Give the port the whole boundary that lies inside the other body.");
   }
+}
+
+/// With inertia, motions that are told in turn gain energy, but where both bodies are the same.
+void Overlap::check_motions(const BodySpec& spec, const CommonParts& common) const {
+  const auto rests = [](const BodySpec& body) {
+    return body.integrator && std::holds_alternative<QuasiStaticSpec>(*body.integrator);
+  };
+  if (scene_.unstable || (rests(spec) && rests(other_.spec))) return;
+  constexpr const char* why =
+      "the pair would gain energy by itself, up to some thousand times a second";
+  const std::string otherwise =
+      "Leave exchange out, which keeps energy between any meshes and schemes; or see it happen "
+      "with "
+      "unstable: true.";
+  const auto unlike = [](const auto& one, const auto& other) {
+    return to_yaml(one) != to_yaml(other);
+  };
+  if (unlike(Scheme{spec.integrator}, Scheme{other_.spec.integrator})) {
+    refuse(fmt::format("exchanges motions alone between bodies of unlike integrators: {}", why),
+           otherwise);
+  }
+  if (unlike(Law{spec.material}, Law{other_.spec.material})) {
+    refuse(fmt::format("exchanges motions alone between bodies of unlike materials: {}", why),
+           otherwise);
+  }
+  const std::optional<CellPlace> lone = first_without_twin(common, mesh_, other_.mesh);
+  if (!lone) return;
+  refuse(
+      fmt::format("exchanges motions alone where nodes do not meet ({} of body '{}' is no cell of "
+                  "body '{}'): {}",
+                  cell_text(mesh_, index(lone->block), index(lone->cell)), place_.name(),
+                  scene_.body, why),
+      otherwise);
 }
 
 /// Tractions would be there twice.

@@ -45,6 +45,16 @@ struct SharedSpec {
   }
 };
 
+struct OverlapKeys {  // of an overlap
+  bool doubled = false, motions = false, unstable = false;
+  void fields(Fields& f) {
+    f.word("material", doubled, {"halves", "doubled"}, "of both");
+    f.word("exchange", motions, {"forces", "motions"}, "what passes");
+    f.optional("unstable", unstable, "", "for comparisons");
+    f.ignore_rest();
+  }
+};
+
 struct Stepping {
   bool known = false, in_drifts = false;
   double step = 0.0;
@@ -105,9 +115,14 @@ std::optional<SceneOverlap> overlap_of(const Document& scene, const std::string&
     const std::string& other = interface.sides[interface.sides[0] == side ? 1 : 0];
     const std::size_t dot = other.find('.');
     if (dot == std::string::npos) continue;
-    return SceneOverlap{name, other.substr(0, dot), other.substr(dot + 1),
+    const OverlapKeys keys = read<OverlapKeys>(scene, path + ".tied.overlap");
+    return SceneOverlap{name,
+                        other.substr(0, dot),
+                        other.substr(dot + 1),
                         interface.sides[0] == side,
-                        !scene.chooses(path + ".tied.overlap.material", "doubled")};
+                        !keys.doubled && !keys.motions,
+                        keys.motions,
+                        keys.unstable};
   }
   return std::nullopt;
 }

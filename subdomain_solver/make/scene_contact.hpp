@@ -27,6 +27,8 @@ struct SceneOverlap {
   std::string body, port;  // the partner's
   bool first = true;       // this body's side is the interface's first
   bool halves = true;      // the material is shared
+  bool motions = false;    // motions alone pass, no forces
+  bool unstable = false;   // even where they gain energy
 };
 
 /// That of a port; nothing: it has none.

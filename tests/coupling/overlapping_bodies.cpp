@@ -13,52 +13,11 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/overlapping_pair.hpp"
 #include "tests/support/solid_scenes.hpp"
 
 namespace abut {
 namespace {
-
-/// A strip or bar of unit modulus, density and height, of two bodies that overlap in the middle.
-struct Pair {
-  int dim = 2;
-  double overlap = 1.0;
-  std::vector<int> across = {4, 4};  // cells over the height
-  std::string schemes = "II";        // I: newmark, E: central differences
-  double step = 0.02, ratio = 1.0;   // steps of the right body are smaller by the ratio
-  double poissons_ratio = 0.25;
-  // Linear: unlike meshes agree on it, and nothing is lost to make velocities one.
-  std::string start = "velocity_field: [\"x - 2*y\", \"0.5*x + y\"]";
-  std::vector<std::string> cells = {"", ""};
-  std::vector<std::string> more = {"", ""};  // keys of the bodies
-  std::string tied = "overlap: {}", law = "linear_elastic";
-  double shift = 0.0;  // of the overlap, from the middle
-  double length = 6.0;
-
-  std::string body(std::size_t k) const {
-    const double middle = 0.5 * length + shift, half = 0.5 * overlap;
-    const double low = k == 0 ? 0.0 : middle - half, high = k == 0 ? middle + half : length;
-    std::vector<double> lengths = {high - low, 1.0, 1.0};
-    const int n = across[k], along = static_cast<int>(std::lround(n * (high - low)));
-    std::vector<int> count = {along, n, n};
-    lengths.resize(index(dim));
-    count.resize(index(dim));
-    return fmt::format(
-        "  {}:\n    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n    material: {{{}: "
-        "{{youngs_modulus: 1.0, poissons_ratio: {}, density: 1.0}}}}\n    integrator: {{{}: "
-        "{{step: {}}}}}\n    initial: {{position: {}, {}}}\n    ports: {{cut: {{side: {}}}}}\n{}",
-        k == 0 ? "left" : "right", dim, block_mesh(lengths, count, cells[k]), law,
-        number(poissons_ratio), schemes[k] == 'I' ? "newmark" : "central_difference",
-        number(k == 0 ? step : step / ratio), components({low}, dim), start,
-        k == 0 ? "right" : "left", more[k]);
-  }
-  std::unique_ptr<RunResult> run(double end, double window) const {
-    const std::string text = fmt::format(
-        "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n{}{}"
-        "interfaces:\n  seam: {{sides: [left.cut, right.cut], tied: {{{}}}}}\n",
-        number(end), number(window), body(0), body(1), tied);
-    return run_document(Document::from_text("test", text));
-  }
-};
 
 double sum(const RunResult& run, const std::string& what) {
   return run.measure("body.left." + what) + run.measure("body.right." + what);
@@ -92,17 +51,17 @@ std::vector<Combination> combinations() {
   return out;
 }
 
-class OverlappingPair : public testing::TestWithParam<Combination> {};
-INSTANTIATE_TEST_SUITE_P(Combinations, OverlappingPair, testing::ValuesIn(combinations()));
+class OverlappingCombination : public testing::TestWithParam<Combination> {};
+INSTANTIATE_TEST_SUITE_P(Combinations, OverlappingCombination, testing::ValuesIn(combinations()));
 
 /// Unlike meshes, where prescribed motion at the cuts would gain 2e3 to 1e4 of 1/s.
-TEST_P(OverlappingPair, KeepsEnergyAndMomentumInOneCallPerWindow) {
+TEST_P(OverlappingCombination, KeepsEnergyAndMomentumInOneCallPerWindow) {
   const Combination& c = GetParam();
-  Pair pair{.dim = c.dim,
-            .overlap = c.overlap,
-            .across = c.across,
-            .schemes = c.schemes,
-            .ratio = c.ratio};
+  OverlappingPair pair{.dim = c.dim,
+                       .overlap = c.overlap,
+                       .across = c.across,
+                       .schemes = c.schemes,
+                       .ratio = c.ratio};
   if (c.dim == 3) pair.start = "velocity_field: [\"x - 2*y\", \"0.5*x + z\", \"y\"]";
   const auto result = pair.run(4.0, 0.2);
   ASSERT_TRUE(result->completed());
@@ -118,7 +77,7 @@ TEST(OverlappingBodies, ShareTheMaterial) {
   for (const int dim : {2, 3}) {
     for (const char* cell : {"", "simplex"}) {
       for (const double shift : {0.0, 0.1}) {
-        Pair pair{.dim = dim, .across = {2, 3}, .shift = shift};
+        OverlappingPair pair{.dim = dim, .across = {2, 3}, .shift = shift};
         if (*cell != 0) pair.cells = {"", dim == 2 ? "tri3" : "tet4"};
         pair.start = dim == 2 ? "velocity: [1.0, 0.0]" : "velocity: [1.0, 0.0, 0.0]";
         const auto result = pair.run(0.2, 0.2);
@@ -132,13 +91,9 @@ TEST(OverlappingBodies, ShareTheMaterial) {
 /// Nodes on nodes: the pair is the undivided body.
 TEST(OverlappingBodies, ConformingOnesMoveAsTheWhole) {
   for (const char* schemes : {"II", "EE"}) {
-    const Pair pair{.schemes = schemes};
+    const OverlappingPair pair{.schemes = schemes};
     const auto divided = pair.run(4.0, 0.2);
-    Pair one = pair;
-    one.overlap = 6.0;  // the left body is all of it
-    const auto whole = run_document(Document::from_text(
-        "test",
-        "meta: {title: test}\ntime: {begin: 0.0, end: 4.0, window: 0.2}\nbodies:\n" + one.body(0)));
+    const auto whole = pair.run_whole(4.0, 0.2);
     for (const char* what : {"momentum.y", "energy.stored"}) {
       // Central differences of a body that nobody joins hold their energy at other times.
       if (schemes[0] == 'E' && what[0] == 'e') continue;
@@ -150,7 +105,7 @@ TEST(OverlappingBodies, ConformingOnesMoveAsTheWhole) {
 
 /// A uniform stretch between held ends stays at rest, wherever cuts cross the partner's cells.
 TEST(OverlappingBodies, LinearFieldsPass) {
-  const auto check = [](Pair pair, const std::string& trace) {
+  const auto check = [](OverlappingPair pair, const std::string& trace) {
     SCOPED_TRACE(trace);
     pair.poissons_ratio = 0.0;
     pair.start = pair.dim == 2 ? "displacement_field: [\"0.01*x\", \"0\"]"
@@ -189,7 +144,7 @@ TEST(OverlappingBodies, LinearFieldsPass) {
 
 /// Share of the energy of a pulse, of two of the coarser cells, that stays on its side.
 double left_behind(const std::vector<int>& across, double overlap, const std::string& tied) {
-  Pair pair{
+  OverlappingPair pair{
       .overlap = overlap, .across = across, .schemes = "EE", .poissons_ratio = 0.0, .tied = tied};
   const double width = 2.0 / *std::ranges::min_element(across);
   const double begin = 4.5 * width, end = begin + overlap + 9.0 * width;

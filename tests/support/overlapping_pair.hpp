@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/index.hpp"
+#include "tests/support/solid_scenes.hpp"
+
+namespace abut {
+
+/// A strip or bar of unit modulus, density and height, of two bodies that overlap in the middle.
+struct OverlappingPair {
+  int dim = 2;
+  double overlap = 1.0;
+  std::vector<int> across = {4, 4};  // cells over the height
+  std::string schemes = "II";        // I: newmark, E: central differences, S: statics
+  double step = 0.02, ratio = 1.0;   // steps of the right body are smaller by the ratio
+  double poissons_ratio = 0.25;
+  // Linear: unlike meshes agree on it, and nothing is lost to make velocities one.
+  std::string start = "velocity_field: [\"x - 2*y\", \"0.5*x + y\"]";
+  std::vector<std::string> cells = {"", ""};
+  std::vector<std::string> more = {"", ""};  // keys of the bodies
+  std::string tied = "overlap: {}", law = "linear_elastic", schwarz = "";
+  double shift = 0.0;  // of the overlap, from the middle
+  double length = 6.0;
+
+  std::string body(std::size_t k) const {
+    const double middle = 0.5 * length + shift, half = 0.5 * overlap;
+    const double low = k == 0 ? 0.0 : middle - half, high = k == 0 ? middle + half : length;
+    std::vector<double> lengths = {high - low, 1.0, 1.0};
+    const int n = across[k], along = static_cast<int>(std::lround(n * (high - low)));
+    std::vector<int> count = {along, n, n};
+    lengths.resize(index(dim));
+    count.resize(index(dim));
+    return fmt::format(
+        "  {}:\n    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n    material: {{{}: "
+        "{{youngs_modulus: 1.0, poissons_ratio: {}, density: 1.0}}}}\n    integrator: {{{}: "
+        "{{step: {}}}}}\n    initial: {{position: {}, {}}}\n    ports: {{cut: {{side: {}}}}}\n{}",
+        k == 0 ? "left" : "right", dim, block_mesh(lengths, count, cells[k]), law,
+        number(poissons_ratio), scheme(schemes[k]), number(k == 0 ? step : step / ratio),
+        components({low}, dim), start, k == 0 ? "right" : "left", more[k]);
+  }
+  std::unique_ptr<RunResult> run(double end, double window) const {
+    const std::string text = fmt::format(
+        "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n{}{}"
+        "interfaces:\n  seam: {{sides: [left.cut, right.cut], tied: {{{}}}}}\nschwarz: {{{}}}\n",
+        number(end), number(window), body(0), body(1), tied, schwarz);
+    return run_document(Document::from_text("test", text));
+  }
+  /// The undivided body, of the left one's cells and keys and the right one's more.
+  std::unique_ptr<RunResult> run_whole(double end, double window) const {
+    OverlappingPair one = *this;
+    one.overlap = length;
+    one.shift = 0.0;
+    one.more[0] += one.more[1];
+    return run_document(Document::from_text(
+        "test", fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\n"
+                            "bodies:\n{}",
+                            number(end), number(window), one.body(0))));
+  }
+  static const char* scheme(char letter) {
+    return letter == 'I' ? "newmark" : letter == 'S' ? "quasi_static" : "central_difference";
+  }
+};
+
+}  // namespace abut
