@@ -266,6 +266,7 @@ void Overlap::check_motions(const BodySpec& spec, const CommonParts& common) con
     refuse(fmt::format("exchanges motions alone between bodies of unlike materials: {}", why),
            otherwise);
   }
+  if (!scene_.first) return;  // the other body has told: where all its cells have twins, all have
   const std::optional<CellPlace> lone = first_without_twin(common, mesh_, other_.mesh);
   if (!lone) return;
   refuse(
