@@ -12,6 +12,9 @@ namespace {
 constexpr double usual_cones = 1.5;
 /// Trials that find the widest band that fits.
 constexpr int halvings = 5;
+/// [B] Kernels of all rows on all others that are larger take longer to probe and to answer than
+/// bands as far as waves come, which leave nothing out.
+constexpr double largest_dense = 512.0 * 1048576.0;
 constexpr double value_bytes = 8.0, entry_bytes = 12.0;
 
 TieKernelPlan dense(const TieLayout& layout) {
@@ -97,7 +100,8 @@ TieKernelPlan plan_tie_kernel(const TieLayout& layout, const TieKernelOptions& o
     return bodies.describe(part.body).quasi_static;
   };
   if (std::ranges::any_of(layout.parts, at_once)) return plan;
-  if (plan.bytes <= options.memory && !options.banded) return plan;
+  const double most = std::min(options.memory, largest_dense);
+  if (plan.bytes <= most && !options.banded) return plan;
   plan = banded(layout, {options.rows, usual_cones}, layout.blocks, bodies);
   if (plan.bytes <= options.memory) return plan;
   if (!options.rows) {

@@ -7,7 +7,7 @@ namespace abut {
 /// What a scene says of the kernels of ties.
 struct TieKernelOptions {
   bool used = true;                   // false: they only say what a force is worth
-  double memory = 512.0 * 1048576.0;  // [B] of a net
+  double memory = 2048.0 * 1048576.0;  // [B] of a net
   bool banded = false;                // even where every row on every other one fits
   std::optional<double> rows;         // spacings of a band; absent: as far as waves come
 };
