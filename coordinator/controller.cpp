@@ -330,12 +330,12 @@ void Controller::watch_energy(EnergyGuard::Verdict verdict) {
 }
 
 /// Bodies whose every exchange of energy is told. The published form overwrites motion, which does
-/// work that nobody knows.
+/// work that nobody knows, and dashpots take what sides cannot follow.
 std::vector<bool> Controller::conserving_bodies() const {
   std::vector<bool> conserves;
   for (int b = 0; b < bodies_.count(); ++b) conserves.push_back(bodies_.describe(b).conserves);
   for (const Joint& joint : joints_) {
-    if (joint.how != nullptr && !joint.how->overwrites_motion()) continue;
+    if (joint.how != nullptr && !joint.how->overwrites_motion() && !damps(joint)) continue;
     for (const Side& side : joint.sides) conserves[index(side.body)] = false;
   }
   return conserves;

@@ -91,9 +91,11 @@ void DirichletNeumannTransmission::fields(Fields& f) {
 }
 
 void RobinTransmission::fields(Fields& f) {
-  f.optional("impedance", impedance, "kg/s",
-             "impedance that each side sees: matched to the partner's by probe, kernel (step over "
-             "the kernel's first coefficient), or a number");
+  f.optional(
+      "impedance", impedance, "kg/s",
+      "impedance that each side sees: matched to the partner's by probe, kernel (step over "
+      "the kernel's first coefficient), or a number; of tied surfaces a number, shared out by "
+      "area: for comparisons, since unlike meshes lose energy over dashpots");
   if (f.purpose() != Fields::Purpose::read || impedance == "matched" || impedance == "kernel")
     return;
   const char* end = impedance.data() + impedance.size();

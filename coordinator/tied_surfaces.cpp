@@ -68,14 +68,43 @@ void check_overlap(const InterfaceSpec& spec, const std::array<const PortGeometr
   }
 }
 
+/// Each side as a dashpot of the other: for comparisons, since it loses what one side's mesh or
+/// steps cannot follow of the other's.
+void check_robin(const InterfaceSpec& spec, const RobinTransmission& robin,
+                 const std::array<Side, 2>& sides, const Bodies& bodies) {
+  const std::string where = "interfaces." + spec.name;
+  if (spec.tied->overlap) {
+    throw InputError("is of sides that meet, not of bodies that overlap",
+                     where + ".transmission.robin", "Leave transmission out.");
+  }
+  if (robin.number == 0.0) {
+    throw InputError(
+        fmt::format("is {}, which is found for ends of bars only", robin.impedance),
+        where + ".transmission.robin.impedance",
+        "Give a number for the whole face, in kg/s: density x wave speed x area of the "
+        "softer side, for instance.");
+  }
+  for (const Side& side : sides) {
+    const Description& body = bodies.describe(side.body);
+    if (!body.quasi_static) continue;
+    throw InputError(
+        fmt::format("joins body '{}', which has no inertia, by an impedance", body.name),
+        where + ".transmission.robin", "Leave transmission out.");
+  }
+}
+
 }  // namespace
 
 Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides,
                       const Bodies& bodies) {
   const std::string where = "interfaces." + spec.name;
-  if (!std::holds_alternative<UnilateralTransmission>(spec.transmission)) {
+  const auto* robin = std::get_if<RobinTransmission>(&spec.transmission);
+  if (robin != nullptr) {
+    check_robin(spec, *robin, sides, bodies);
+  } else if (!std::holds_alternative<UnilateralTransmission>(spec.transmission)) {
     throw InputError("is of ends of bars only: tied surfaces have a rule of their own",
-                     where + ".transmission", "Leave transmission out.");
+                     where + ".transmission",
+                     "Leave transmission out, or give robin, for comparisons.");
   }
   std::array<const PortGeometry*, 2> faces;
   for (const std::size_t s : {0u, 1u}) {
@@ -94,6 +123,7 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides,
   TieRows rows = spec.tied->overlap
                      ? make_overlap_rows(*faces[0], *faces[1], spec.tied->overlap->motions)
                      : make_tie_rows(*faces[0], *faces[1], side_of_rows(sides, bodies));
+  if (robin != nullptr) rows = make_dashpot_rows(*faces[0], *faces[1], robin->number);
   rows.alternating = spec.tied->overlap && spec.tied->overlap->alternating;
   const double most = usual_gap * std::max(faces[0]->spacing, faces[1]->spacing);
   if (rows.count() == 0) {

@@ -17,8 +17,8 @@ import sys
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 # Of joined bodies: study, and what of its results the section holds beside the claims.
-JOINED = ("joined_cantilever", "overlapping_cantilever", "overlapping_motions",
-          "overlapping_statics", "joined_iterations", "joined_fidelity")
+JOINED = ("joined_cantilever", "joined_controls", "overlapping_cantilever",
+          "overlapping_motions", "overlapping_statics", "joined_iterations", "joined_fidelity")
 STUDIES = {"results": "two_bars_methods", "extremes": "extremes"}
 OPTIONS = {"results": ["--serial"], "extremes": []}
 RESULTS_HEAD = """\

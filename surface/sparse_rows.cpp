@@ -14,6 +14,16 @@ void SparseRows::clear() {
   values.clear();
 }
 
+void append(const SparseRows& more, SparseRows& rows) {
+  for (int r = 0; r < more.count(); ++r) {
+    for (std::int32_t e = more.offsets[index(r)]; e < more.offsets[index(r) + 1]; ++e) {
+      rows.columns.push_back(more.columns[index(e)]);
+      rows.values.push_back(more.values[index(e)]);
+    }
+    rows.end_row();
+  }
+}
+
 void apply(const SparseRows& rows, int dim, std::span<const double> x, std::span<double> out) {
   ABUT_ASSERT(out.size() == index(rows.count() * dim));
   std::fill(out.begin(), out.end(), 0.0);

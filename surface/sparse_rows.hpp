@@ -19,6 +19,9 @@ struct SparseRows {
   void end_row() { offsets.push_back(static_cast<std::int32_t>(columns.size())); }
 };
 
+/// Adds the rows of another list over the same nodes.
+void append(const SparseRows& more, SparseRows& rows);
+
 /// out = rows x: from nodes (n, dim) to rows (r, dim), component by component.
 void apply(const SparseRows& rows, int dim, std::span<const double> x, std::span<double> out);
 

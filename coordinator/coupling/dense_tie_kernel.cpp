@@ -37,6 +37,7 @@ class DenseTieKernel final : public TieKernel {
   bool renew(const TieLayout& layout, Bodies& bodies) override;
   void find_blocks(const TieLayout& layout, int lags);
   void find_scale(const TieLayout& layout);
+  void damp(const TieLayout& layout);
 
   std::vector<Responses> responses_;     // by part; kept where bodies bend
   std::vector<Eigen::MatrixXd> blocks_;  // [m/N] by lag
@@ -130,6 +131,34 @@ void DenseTieKernel::find_scale(const TieLayout& layout) {
       scale_.segment(member.inner, Eigen::Index{member.width} * member.steps).setConstant(most);
 }
 
+/// Of dashpots: what parts in a step, and how much of it their forces are worth  [M.117].
+void DenseTieKernel::damp(const TieLayout& layout) {
+  for (const TieLayout::Member& member : layout.members) {
+    const TieRows& rows = member.tie->rows();
+    if (rows.dashpots.empty()) continue;
+    const auto of = [&member](Eigen::MatrixXd& block, int step) {
+      return block.middleRows(member.inner + Eigen::Index{step} * member.width, member.width);
+    };
+    for (int lag = lags() - 1; lag >= 0; --lag) {
+      for (int step = member.steps - 1; step >= 0; --step) {
+        if (step > 0) of(blocks_[index(lag)], step) -= of(blocks_[index(lag)], step - 1);
+        if (step == 0 && lag > 0)
+          of(blocks_[index(lag)], 0) -= of(blocks_[index(lag - 1)], member.steps - 1);
+      }
+    }
+    const double length = member.tie->grid(member.joint->kinematic).step;
+    for (int k = 0; k < member.width * member.steps; ++k) {
+      const int row = k % member.width / rows.dim;
+      const double worth = length / rows.dashpots[index(row)];
+      const Eigen::Index at = member.inner + k, first = at - row * rows.dim - k % rows.dim;
+      for (auto e = rows.incoming.offsets[index(row)]; e < rows.incoming.offsets[index(row) + 1];
+           ++e)
+        blocks_[0](at, first + rows.incoming.columns[index(e)] * rows.dim + k % rows.dim) +=
+            worth * rows.incoming.values[index(e)];
+    }
+  }
+}
+
 void DenseTieKernel::find_blocks(const TieLayout& layout, int lags) {
   blocks_.clear();
   for (int lag = 0; lag < lags; ++lag) {
@@ -143,6 +172,7 @@ void DenseTieKernel::find_blocks(const TieLayout& layout, int lags) {
     }
     blocks_.push_back(std::move(block));
   }
+  damp(layout);
   find_scale(layout);
   inverse_.resize(0, 0);
   const Eigen::MatrixXd first =

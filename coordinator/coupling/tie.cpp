@@ -12,7 +12,12 @@ namespace abut {
 
 bool passes_motions_alone(const Joint& joint) {
   const Tie* tie = joint.how == nullptr ? nullptr : joint.how->tie();
-  return tie != nullptr && !tie->rows().moves.empty();
+  return tie != nullptr && !tie->rows().moves.empty() && tie->rows().dashpots.empty();
+}
+
+bool damps(const Joint& joint) {
+  const Tie* tie = joint.how == nullptr ? nullptr : joint.how->tie();
+  return tie != nullptr && !tie->rows().dashpots.empty();
 }
 
 void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
@@ -29,26 +34,48 @@ void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
   if (looks[0] != nullptr && looks[1] != nullptr) part(joint, looks, trial_);
 }
 
-/// Of motions of both sides, by how much they part at the ends of the kinematic side's steps.
+/// Of motions of both sides, by how much they part at a time.
+void Tie::part_at(double time, const Joint& joint, const std::array<const Waveform*, 2>& motions,
+                  Eigen::Ref<Eigen::VectorXd> out) const {
+  std::vector<double> u, seen(index(rows_.width()));
+  for (const std::size_t s : {0u, 1u}) {
+    const Waveform& motion = *motions[s];
+    u.resize(index(motion.width));
+    motion.interpolate(motion.u, time, u);
+    apply(rows_.of[s], rows_.dim, u, seen);
+    const bool kinematic = s == index(joint.kinematic);
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      double& to = out[static_cast<Eigen::Index>(k)];
+      if (s == 0) to = -joint.jump[k] * (joint.kinematic == 0 ? 1.0 : -1.0);
+      to += kinematic ? seen[k] : -seen[k];
+    }
+  }
+}
+
+/// At the ends of the kinematic side's steps; of dashpots, in each of these steps.
 void Tie::part(const Joint& joint, const std::array<const Waveform*, 2>& motions,
                Eigen::VectorXd& out) const {
   out.resize(iterate_.size());
-  std::vector<double> u, seen(index(rows_.width()));
+  const Eigen::Index width = iterate_.width;
+  for (int i = 1; i <= iterate_.steps.count; ++i)
+    part_at(iterate_.steps.time(i), joint, motions, out.segment(iterate_.at(i), width));
+  if (rows_.dashpots.empty()) return;
+  for (int i = iterate_.steps.count; i > 1; --i)
+    out.segment(iterate_.at(i), width) -= out.segment(iterate_.at(i - 1), width);
+  Eigen::VectorXd begin(width);
+  part_at(iterate_.steps.begin, joint, motions, begin);
+  out.segment(iterate_.at(1), width) -= begin;
+}
+
+/// What forces leave open of dashpots, as if it were motion.
+void Tie::damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump) const {
+  if (rows_.dashpots.empty()) return;
+  std::vector<double> open(index(iterate_.width));
   for (int i = 1; i <= iterate_.steps.count; ++i) {
     const Eigen::Index at = iterate_.at(i);
-    const double time = iterate_.steps.time(i);
-    for (const std::size_t s : {0u, 1u}) {
-      const Waveform& motion = *motions[s];
-      u.resize(index(motion.width));
-      motion.interpolate(motion.u, time, u);
-      apply(rows_.of[s], rows_.dim, u, seen);
-      const bool kinematic = s == index(joint.kinematic);
-      for (std::size_t k = 0; k < seen.size(); ++k) {
-        double& to = out[at + static_cast<Eigen::Index>(k)];
-        if (s == 0) to = -joint.jump[k] * (joint.kinematic == 0 ? 1.0 : -1.0);
-        to += kinematic ? seen[k] : -seen[k];
-      }
-    }
+    apply(rows_.incoming, rows_.dim, std::span(x.data() + at, open.size()), open);
+    for (int k = 0; k < iterate_.width; ++k)
+      jump[at + k] += iterate_.steps.step / rows_.dashpots[index(k / rows_.dim)] * open[index(k)];
   }
 }
 
@@ -163,6 +190,7 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   const bool first = first_speed_ < 0.0;
   if (first) first_speed_ = speed_;
   part(joint, motions, jump_);
+  damp(x, jump_);
   g.head(iterate_.size()) = x.head(iterate_.size()) - jump_ / compliance_;
   unbalanced_ = 0.0;
   for (const int s : {0, 1}) {

@@ -62,6 +62,9 @@ class Tie final : public Transmission {
  private:
   void part(const Joint& joint, const std::array<const Waveform*, 2>& motions,
             Eigen::VectorXd& out) const;
+  void part_at(double time, const Joint& joint, const std::array<const Waveform*, 2>& motions,
+               Eigen::Ref<Eigen::VectorXd> out) const;
+  void damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump) const;
 
   Eigen::Index places(int side) const {
     return Eigen::Index{loose_[index(side)]} * grids_[index(side)].count;
@@ -97,5 +100,7 @@ class Tie final : public Transmission {
 
 /// Whether bodies overlap over a joint without forces between them  [M.116].
 bool passes_motions_alone(const Joint& joint);
+/// Whether the sides of a joint see each other as dashpots  [M.117].
+bool damps(const Joint& joint);
 
 }  // namespace abut

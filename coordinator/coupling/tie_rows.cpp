@@ -103,16 +103,6 @@ void add_lone_points(const PortGeometry& one, const PortGeometry& other, TieRows
   }
 }
 
-void append(const SparseRows& more, SparseRows& rows) {
-  for (int r = 0; r < more.count(); ++r) {
-    for (std::int32_t e = more.offsets[index(r)]; e < more.offsets[index(r) + 1]; ++e) {
-      rows.columns.push_back(more.columns[index(e)]);
-      rows.values.push_back(more.values[index(e)]);
-    }
-    rows.end_row();
-  }
-}
-
 }  // namespace
 
 TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int side) {

@@ -21,6 +21,10 @@ struct TieRows {
   std::vector<double> place;     // [m] (dim) there
   // Where motions alone pass: (rows) the side that a force of a row acts on  [M.116]; empty: both.
   std::vector<std::int8_t> moves;
+  // Where each side sees the other as a dashpot  [M.117]: (rows) [kg/s] of it, and (rows over rows)
+  // what forces leave open of it: those of the own side less those of the other.
+  std::vector<double> dashpots;
+  SparseRows incoming;
   bool alternating = false;  // of these: a body's rows are answered as if the other one stood still
   int count() const { return of[0].count(); }
   int width() const { return count() * dim; }
@@ -38,5 +42,9 @@ TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int si
 /// sides, each against the inside of the other body  [M.113]. `motions`: forces act on a row's own
 /// side alone  [M.116].
 TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other, bool motions);
+
+/// Rows of both sides, each a dashpot with the partner's force, of `impedance` [kg/s] in all,
+/// shared by area  [M.117]. No rows: as in make_tie_rows.
+TieRows make_dashpot_rows(const PortGeometry& one, const PortGeometry& other, double impedance);
 
 }  // namespace abut

@@ -24,7 +24,8 @@ struct OverlappingPair {
   std::string start = "velocity_field: [\"x - 2*y\", \"0.5*x + y\"]";
   std::vector<std::string> cells = {"", ""};
   std::vector<std::string> more = {"", ""};  // keys of the bodies
-  std::string tied = "overlap: {}", law = "linear_elastic", schwarz = "";
+  std::string tied = "overlap: {}", law = "linear_elastic", schwarz = "",
+              seam = "";  // of the interface
   double shift = 0.0;  // of the overlap, from the middle
   double length = 6.0;
 
@@ -47,8 +48,8 @@ struct OverlappingPair {
   std::unique_ptr<RunResult> run(double end, double window) const {
     const std::string text = fmt::format(
         "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n{}{}"
-        "interfaces:\n  seam: {{sides: [left.cut, right.cut], tied: {{{}}}}}\nschwarz: {{{}}}\n",
-        number(end), number(window), body(0), body(1), tied, schwarz);
+        "interfaces:\n  seam: {{sides: [left.cut, right.cut], tied: {{{}}}{}}}\nschwarz: {{{}}}\n",
+        number(end), number(window), body(0), body(1), tied, seam, schwarz);
     return run_document(Document::from_text("test", text));
   }
   /// The undivided body, of the left one's cells and keys and the right one's more.
