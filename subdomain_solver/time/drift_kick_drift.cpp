@@ -19,15 +19,19 @@ void DriftKickDrift::find_loads(double time, std::span<const double> q) {
   for (const std::unique_ptr<Load>& load : problem_.loads) load->add(time, q, loads_);
 }
 
-ModelResponse* DriftKickDrift::respond(const std::vector<double>& history) {
-  if (known_[1].at == middle_ && history.empty()) std::swap(known_[0], known_[1]);
-  if (known_[0].at == middle_ && history.empty()) return &known_[0].response;
+DriftKickDrift::Known* DriftKickDrift::respond(const std::vector<double>& history) {
+  const auto fits = [&](const Known& known) {
+    return history.empty() && known.holds && known.at == middle_;
+  };
+  if (fits(known_[1])) std::swap(known_[0], known_[1]);
+  if (fits(known_[0])) return &known_[0];
   std::swap(known_[0], known_[1]);
-  known_[0].at.clear();
+  known_[0].holds = false;
   if (!problem_.model->evaluate(middle_, history, Model::Want::force, known_[0].response))
     return nullptr;
-  known_[0].at = middle_;
-  return &known_[0].response;
+  known_[0].at.swap(middle_);
+  known_[0].holds = true;
+  return &known_[0];
 }
 
 /// The stored energy is that of the scheme's invariant: as if a step lay behind.
@@ -36,8 +40,9 @@ std::optional<Failed> DriftKickDrift::begin(Motion& motion, double time) {
   for (const Prescribed& p : problem_.supports) motion.q[index(p.dof)] = p.value(time);
   middle_ = motion.q;
   view(middle_) -= 0.5 * step_ * view(motion.v);
-  const ModelResponse* response = respond(motion.history);
-  if (response == nullptr) return failed_newton({NewtonReport::End::inadmissible}, time);
+  const Known* known = respond(motion.history);
+  if (known == nullptr) return failed_newton({NewtonReport::End::inadmissible}, time);
+  const ModelResponse* response = &known->response;
   store(response->force, motion.force);
   motion.stored = response->stored + 0.5 * step_ * response->force.dot(view(motion.v));
   find_loads(time, motion.q);
@@ -62,12 +67,13 @@ bool DriftKickDrift::find_middle(const Motion& motion, double time, double dt) {
 bool DriftKickDrift::peek(const Motion& motion, double time, double dt, std::vector<double>& q) {
   const double half = 0.5 * dt;
   if (!motion.history.empty() || !find_middle(motion, time, dt)) return false;
-  const ModelResponse* response = respond(motion.history);
-  if (response == nullptr) return false;
-  find_loads(time + half, middle_);
+  const Known* known = respond(motion.history);
+  if (known == nullptr) return false;
+  find_loads(time + half, known->at);
   q.resize(motion.q.size());
-  view(q) = view(middle_) +
-            half * (view(motion.v) + dt * inverse_mass_.cwiseProduct(loads_ - response->force));
+  view(q) =
+      view(known->at) +
+      half * (view(motion.v) + dt * inverse_mass_.cwiseProduct(loads_ - known->response.force));
   for (std::size_t k = 0; k < given_.size(); ++k) q[index(problem_.supports[k].dof)] = given_[k];
   return true;
 }
@@ -75,17 +81,20 @@ bool DriftKickDrift::peek(const Motion& motion, double time, double dt, std::vec
 std::optional<Failed> DriftKickDrift::step(Motion& motion, double time, double dt) {
   const double half = 0.5 * dt;
   if (!find_middle(motion, time, dt)) return not_finite(time + dt);
-  ModelResponse* response = respond(motion.history);
-  if (response == nullptr) return failed_newton({NewtonReport::End::inadmissible}, time + half);
-  find_loads(time + half, middle_);
+  Known* known = respond(motion.history);
+  if (known == nullptr) return failed_newton({NewtonReport::End::inadmissible}, time + half);
+  ModelResponse* response = &known->response;
+  find_loads(time + half, known->at);
   double work = 0.0;
   const double *inverse = inverse_mass_.data(), *r = response->force.data(), *load = loads_.data();
+  const double* middle = known->at.data();
   double *q = motion.q.data(), *v = motion.v.data(), *a = motion.a.data();
+  store(response->force, motion.force);
   for (std::size_t i = 0; i < motion.q.size(); ++i) {
     if (inverse[i] == 0.0) continue;
     a[i] = inverse[i] * (load[i] - r[i]);
     v[i] += dt * a[i];
-    const double next = middle_[i] + half * v[i];
+    const double next = middle[i] + half * v[i];
     work += load[i] * (next - q[i]);
     q[i] = next;
   }
@@ -101,7 +110,6 @@ std::optional<Failed> DriftKickDrift::step(Motion& motion, double time, double d
   motion.external_work += work;
   motion.dissipated += response->dissipation;
   motion.stored = response->stored + half * response->force.dot(view(motion.v));
-  store(response->force, motion.force);
   if (!motion.history.empty()) motion.history.swap(response->history);
   return std::nullopt;
 }

@@ -31,6 +31,7 @@ class DriftKickDrift final : public Integrator {
 
  private:
   struct Known {
+    bool holds = false;
     std::vector<double> at;  // [m] (dofs)
     ModelResponse response;
   };
@@ -38,8 +39,8 @@ class DriftKickDrift final : public Integrator {
   /// Coordinates in the middle of a step, and the values given at its end. False: not finite.
   [[nodiscard]] bool find_middle(const Motion& motion, double time, double dt);
   void find_loads(double time, std::span<const double> q);
-  /// The model's answer in the middle of the step, good until the next one; null: inadmissible.
-  ModelResponse* respond(const std::vector<double>& history);
+  /// The model's answer at middle_, which it takes; good until the next one. Null: inadmissible.
+  Known* respond(const std::vector<double>& history);
 
   const Problem& problem_;
   double step_;
