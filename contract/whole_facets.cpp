@@ -25,8 +25,8 @@ std::int32_t node_of(const PortGeometry& surface, std::size_t facet, std::size_t
 }
 
 /// Its nodes from straight facets, the first of which is `first`.
-std::vector<std::int32_t> joined(const PortGeometry& surface, std::size_t first,
-                                 const Parts& parts, std::size_t nodes) {
+std::vector<std::int32_t> joined(const PortGeometry& surface, std::size_t first, const Parts& parts,
+                                 std::size_t nodes) {
   std::vector<std::int32_t> all(nodes);
   for (std::size_t k = 0; k < parts.size(); ++k)
     for (std::size_t i = 0; i < parts[k].size(); ++i)
@@ -89,8 +89,8 @@ std::string unsound_parts(const PortGeometry& surface) {
   std::size_t first = 0;
   const std::size_t facets = surface.offsets.empty() ? 0 : surface.offsets.size() - 1;
   for (const std::int32_t count : surface.parts) {
-    const bool known =
-        count == 1 || (surface.dim == 2 && count == 2) || (surface.dim == 3 && (count == 4 || count == 5));
+    const bool known = count == 1 || (surface.dim == 2 && count == 2) ||
+                       (surface.dim == 3 && (count == 4 || count == 5));
     if (!known) return "names a facet of " + std::to_string(count) + " parts";
     if (first + index(count) > facets) return "names more than there are";
     const std::size_t nodes = nodes_of(count, size_of(surface, first));

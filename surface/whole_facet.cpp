@@ -51,7 +51,10 @@ double between(const Hats& hats, int corners, int i, int j, const Eigen::Vector2
 }  // namespace
 
 FacetKind::FacetKind(int dim, std::size_t count)
-    : nodes(static_cast<int>(count)), corners(dim == 2 ? 2 : count % 3 == 0 ? 3 : 4) {}
+    : nodes(static_cast<int>(count)),
+      corners(dim == 2         ? 2
+              : count % 3 == 0 ? 3
+                               : 4) {}
 
 Shape4 FacetKind::hats(const Eigen::Vector2d& at) const { return hats_of(corners, at).value; }
 

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include "tests/support/solid_scenes.hpp"
 #include "tests/support/tolerance.hpp"
@@ -28,7 +28,7 @@ struct Half {
   std::vector<double> lengths = {}, position = {};
   std::vector<int> cells = {};
   std::string element = {}, joint = {};
-  std::string keys = {};   // of fe, with commas
+  std::string keys = {};  // of fe, with commas
   std::string law = "linear_elastic: {youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0}";
   std::string integrator = "quasi_static: {step: 1.0}";
   std::string start = {};  // keys of initial beside position, after a comma
@@ -250,8 +250,8 @@ double lame_energy() {
   // Radial stress 2 (lambda + mu) A - 2 mu B / r^2.
   const auto bulk = [&](double modulus) { return 2 * (lambda(modulus) + mu(modulus)); };
   Eigen::Matrix4d m;
-  m << bulk(1.0), -2 * mu(1.0) / (a * a), 0.0, 0.0,            //
-      b, 1 / b, -b, -1 / b,                                    //
+  m << bulk(1.0), -2 * mu(1.0) / (a * a), 0.0, 0.0,                          //
+      b, 1 / b, -b, -1 / b,                                                  //
       bulk(1.0), -2 * mu(1.0) / (b * b), -bulk(3.0), 2 * mu(3.0) / (b * b),  //
       0.0, 0.0, bulk(3.0), -2 * mu(3.0) / (c * c);
   const Eigen::Vector4d at = m.inverse() * Eigen::Vector4d(-pressure, 0.0, 0.0, 0.0);
@@ -273,10 +273,12 @@ double tube_error(const Words& elements, const std::vector<std::vector<int>>& ce
     const double inner = k == 0 ? 0.5 : 1.0;
     half.keys = fmt::format("map: [\"{0}*exp(x)*cos(_pi/2*y)\", \"{0}*exp(x)*sin(_pi/2*y)\"{1}], ",
                             number(inner), dim == 3 ? ", \"z\"" : "");
-    half.law = fmt::format("linear_elastic: {{youngs_modulus: {}, poissons_ratio: 0.3, density: 1.0}}",
-                           k == 0 ? "1.0" : "3.0");
-    half.more = fmt::format("    constraints: {{low: {{on: bottom, y: 0}}, high: {{on: top, x: 0}}{}}}\n",
-                            dim == 3 ? ", back: {on: back, z: 0}, front: {on: front, z: 0}" : "");
+    half.law =
+        fmt::format("linear_elastic: {{youngs_modulus: {}, poissons_ratio: 0.3, density: 1.0}}",
+                    k == 0 ? "1.0" : "3.0");
+    half.more =
+        fmt::format("    constraints: {{low: {{on: bottom, y: 0}}, high: {{on: top, x: 0}}{}}}\n",
+                    dim == 3 ? ", back: {on: back, z: 0}, front: {on: front, z: 0}" : "");
     if (dim == 3) half.lengths.push_back(0.25);
   }
   halves[0].more += "    loads: {inside: {on: left, pressure: \"0.01\"}}\n";
@@ -296,7 +298,8 @@ TEST(TiedSecondOrder, CurvedJointsKeepTheOrder) {
     std::vector<std::vector<int>> fine = cells;
     for (std::vector<int>& body : fine)
       for (int& count : body) count *= refined;
-    const double coarse_error = tube_error(elements, cells), fine_error = tube_error(elements, fine);
+    const double coarse_error = tube_error(elements, cells),
+                 fine_error = tube_error(elements, fine);
     EXPECT_LE(fine_error, allowed);
     EXPECT_GT(observed_order(coarse_error, fine_error, refined), 3.8);
   };
