@@ -173,7 +173,9 @@ TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int si
     return rows;
   }
   const double far = reach * std::max(one.spacing, other.spacing);
-  const bool straight = own.parts.empty() && partner.parts.empty();
+  const bool first_order = own.parts.empty() && partner.parts.empty();
+  // What does not deform is met by every node: nothing moves between them.
+  const bool straight = first_order || partner.transit == 0.0;
   rows = straight ? of_surfaces(k, n, far) : of_whole(own, partner, far);
   if (!first) std::swap(rows.of[0], rows.of[1]);
   return rows;

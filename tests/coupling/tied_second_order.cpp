@@ -258,6 +258,36 @@ double lame_energy() {
   return 0.5 * pressure * (at[0] * a + at[1] / a) * 0.5 * std::numbers::pi * a;
 }
 
+/// A tool that stands holds every node of a face, as a support does.
+TEST(TiedSecondOrder, ToolsHoldEveryNode) {
+  const std::string load = "    loads: {pull: {on: right, traction: [\"0.01\", \"0.002\"]}}\n";
+  for (const std::string element : {"quad8", "tri6"}) {
+    SCOPED_TRACE(element);
+    Half body{.lengths = {1.0, 1.0},
+              .position = {0.0, 0.0},
+              .cells = {3, 3},
+              .element = element,
+              .joint = "left",
+              .more = load};
+    const std::string head =
+        "meta: {title: test}\ntime: {begin: 0.0, end: 1.0, window: 1.0}\nbodies:\n";
+    const auto tied = run_document(Document::from_text(
+        "test",
+        head + body.text("one") +
+            "  tool:\n    model: {rigid_tool: {dimension: 2, mesh: {rectangle: {lengths: [1.0, "
+            "1.0], elements: [2, 2], element: quad8}}, way: [\"0\", \"0\"]}}\n"
+            "    initial: {position: [-1.0, 0.0]}\n    ports: {right: {side: right}}\n"
+            "interfaces: {tie: {sides: [one.joint, tool.right], tied: {}}}\n"));
+    body.more += "    constraints: {clamp: {on: left, fixed: true}}\n";
+    const auto held = run_document(Document::from_text("test", head + body.text("one")));
+    ASSERT_TRUE(tied->completed());
+    for (const char* what : {"nodal_stress.xx.max", "nodal_stress.xy.max", "displacement.y.max"}) {
+      const std::string measure = fmt::format("body.one.{}", what);
+      EXPECT_NEAR(tied->measure(measure), held->measure(measure), 1.0e-12);
+    }
+  }
+}
+
 /// Tubes, one in the other, under pressure inside, a quarter of them: stored energy over Lame's.
 /// Radii 1/2, 1, 2; moduli 1 and 3.
 double tube_error(const Words& elements, const std::vector<std::vector<int>>& cells) {

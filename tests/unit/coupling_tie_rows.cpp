@@ -58,6 +58,7 @@ PortGeometry face(int dim, int n, int nodes, bool flipped, const Map& map) {
   port.dim = dim;
   port.offsets = {0};
   port.spacing = 1.0 / n;
+  port.transit = 1.0;  // it deforms
   const int wide = 2 * n + 1;
   for (int j = 0; j < (dim == 2 ? 1 : wide); ++j) {
     for (int i = 0; i < wide; ++i) {
@@ -247,6 +248,15 @@ TEST(TieRows, NodesAreTwinsWhereFacetsAreTheSame) {
   PortGeometry straight = same;
   straight.parts.clear();
   EXPECT_EQ(make_tie_rows(one, straight, 0).count(), 4);
+}
+
+/// A rigid partner is met by every node, not by corners alone.
+TEST(TieRows, OfRigidPartnersHoldEveryNode) {
+  const PortGeometry own = face(2, 3, 3, false, regular);
+  PortGeometry rigid = face(2, 1, 2, true, regular);
+  EXPECT_EQ(make_tie_rows(own, rigid, 0).count(), 4);
+  rigid.transit = 0.0;
+  EXPECT_EQ(make_tie_rows(own, rigid, 0).count(), 7);
 }
 
 }  // namespace
