@@ -20,6 +20,9 @@ struct PortGeometry {
   std::vector<double> normals;        // (n, dim), unit, out of the body
   std::vector<std::int32_t> facets;   // facet connectivity; empty in 1D
   std::vector<std::int32_t> offsets;  // of the facets; empty in 1D
+  // So many facets, one after the other, show one facet of an element: 1, or of second order those
+  // that straight_parts tells of. Empty: 1 each.
+  std::vector<std::int32_t> parts;
   // [m] typical distance of mesh nodes behind the port; 0: rigid
   double spacing = 0.0;
   // [s] time in which the fastest wave crosses `spacing`; 0: rigid or unknown

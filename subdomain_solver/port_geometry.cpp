@@ -4,31 +4,20 @@
 #include <cmath>
 
 #include "base/index.hpp"
+#include "contract/whole_facets.hpp"
 #include "subdomain_solver/fe/loads.hpp"
 
 namespace abut {
 
 namespace {
 
-using Parts = std::vector<std::vector<int>>;
-
-/// A facet's parts with corners alone, in the same sense; nodes on edges follow the corners.
-const Parts& parts_of(int dim, std::size_t nodes) {
-  static const Parts segment = {{0, 1}}, bent = {{0, 2}, {2, 1}};
-  static const Parts triangle = {{0, 1, 2}}, quadrilateral = {{0, 1, 2, 3}};
-  static const Parts tri6 = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-  static const Parts quad8 = {{0, 4, 7}, {1, 5, 4}, {2, 6, 5}, {3, 7, 6}, {4, 5, 6, 7}};
-  if (dim == 2) return nodes == 2 ? segment : bent;
-  if (nodes == 3) return triangle;
-  if (nodes == 4) return quadrilateral;
-  return nodes == 6 ? tri6 : quad8;
-}
-
 void add_parts(int dim, const std::vector<std::int32_t>& places, PortGeometry& geometry) {
-  for (const std::vector<int>& part : parts_of(dim, places.size())) {
+  const std::vector<std::vector<int>>& parts = straight_parts(dim, places.size());
+  for (const std::vector<int>& part : parts) {
     for (const int local : part) geometry.facets.push_back(places[index(local)]);
     geometry.offsets.push_back(static_cast<std::int32_t>(geometry.facets.size()));
   }
+  geometry.parts.push_back(static_cast<std::int32_t>(parts.size()));
 }
 
 void normalise(std::vector<double>& normals, std::size_t dim) {
@@ -74,6 +63,8 @@ PortGeometry port_geometry(const FeModel& model, const std::string& name,
     for (const SidePoints::Point& point : facet.points) area += point.area;
   }
   normalise(normals, dim);
+  if (std::ranges::all_of(geometry.parts, [](std::int32_t parts) { return parts == 1; }))
+    geometry.parts.clear();
   if (dim == 1) {
     const Facet& end = mesh.side(name).front();
     const CellBlock& cells = mesh.blocks[index(end.block)];

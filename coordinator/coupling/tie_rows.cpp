@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "base/index.hpp"
+#include "contract/whole_facets.hpp"
 #include "coordinator/coupling/twin_nodes.hpp"
 #include "surface/mortar.hpp"
+#include "surface/whole_rows.hpp"
 
 namespace abut {
 
@@ -50,18 +52,17 @@ void see_gaps(const SurfaceRows& found, const PosedSurface& k, TieRows& rows) {
   rows.place.assign(at.data(), at.data() + rows.dim);
 }
 
-/// Rows of K's side first.
-TieRows of_surfaces(const PosedSurface& k, const PosedSurface& n, double far) {
+std::vector<FacetPair> near_pairs(const PosedSurface& k, const PosedSurface& n, double far) {
   BoxTree of_k, of_n;
   build(of_k, k, far);
   build(of_n, n, far);
   std::vector<FacetPair> pairs;
   overlapping_pairs(of_k, of_n, pairs);
-  MortarOptions options;
-  options.reach = far;
-  MortarBuffers buffers;
-  SurfaceRows found;
-  mortar_rows(k, n, pairs, options, buffers, found);
+  return pairs;
+}
+
+/// Rows of K's side first.
+TieRows of_rows(SurfaceRows&& found, const PosedSurface& k) {
   TieRows rows;
   rows.dim = k.dim;
   if (found.count() == 0) return rows;
@@ -69,6 +70,48 @@ TieRows of_surfaces(const PosedSurface& k, const PosedSurface& n, double far) {
   rows.of = {std::move(found.k), std::move(found.n)};
   rows.area = std::move(found.weights);
   return rows;
+}
+
+TieRows of_surfaces(const PosedSurface& k, const PosedSurface& n, double far) {
+  MortarOptions options;
+  options.reach = far;
+  MortarBuffers buffers;
+  SurfaceRows found;
+  mortar_rows(k, n, near_pairs(k, n, far), options, buffers, found);
+  return of_rows(std::move(found), k);
+}
+
+/// A port's facets as its elements have them.
+class Whole {
+ public:
+  explicit Whole(const PortGeometry& port) : port_(port), facets_(whole_facets(port)) {}
+  WholeSurface surface() const {
+    return {posed(port_), facets_.nodes, facets_.offsets, facets_.of};
+  }
+
+ private:
+  const PortGeometry& port_;
+  WholeFacets facets_;
+};
+
+/// Whether nodes that meet are of facets that are the same ones, those of second order too.
+bool wholes_meet(const PortGeometry& one, const PortGeometry& other,
+                 const std::vector<std::int32_t>& twins) {
+  if (one.parts.empty() && other.parts.empty()) return true;
+  const Whole k(one), n(other);
+  const CornerFacets of_k(k.surface()), of_n(n.surface());
+  return facets_meet(of_k.surface(posed(one)), of_n.surface(posed(other)), twins);
+}
+
+/// Facets of second order on either side.
+TieRows of_whole(const PortGeometry& own, const PortGeometry& partner, double far) {
+  const Whole k(own), n(partner);
+  MortarOptions options;
+  options.reach = far;
+  SurfaceRows found;
+  const WholeSurface on = k.surface(), with = n.surface();
+  whole_rows(on, with, near_pairs(on.straight, with.straight, far), options, found);
+  return of_rows(std::move(found), on.straight);
 }
 
 /// A port without what is inside its body, or that alone; nodes are those of the whole port.
@@ -108,16 +151,22 @@ void add_lone_points(const PortGeometry& one, const PortGeometry& other, TieRows
 TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int side) {
   if (one.dim == 1) return of_points(one, other);
   const bool first = side == 0;  // has the rows
-  const PosedSurface k = posed(first ? one : other), n = posed(first ? other : one);
+  const PortGeometry &own = first ? one : other, &partner = first ? other : one;
+  const PosedSurface k = posed(own), n = posed(partner);
   TieRows rows;
   rows.dim = one.dim;
-  if (const std::vector<std::int32_t> twins = twin_nodes(k, n); !twins.empty()) {
+  const std::vector<std::int32_t> twins = twin_nodes(k, n);
+  if (!twins.empty() && wholes_meet(own, partner, twins)) {
     of_twins(twins, rows.of[first ? 0 : 1], rows.of[first ? 1 : 0]);
     tributary_weights(k, rows.area);
     rows.place.assign(one.points.begin(), one.points.begin() + one.dim);
     return rows;
   }
-  rows = of_surfaces(k, n, reach * std::max(one.spacing, other.spacing));
+  const double far = reach * std::max(one.spacing, other.spacing);
+  const bool first_order = own.parts.empty() && partner.parts.empty();
+  // What does not deform is met by every node: nothing moves between them.
+  const bool straight = first_order || partner.transit == 0.0;
+  rows = straight ? of_surfaces(k, n, far) : of_whole(own, partner, far);
   if (!first) std::swap(rows.of[0], rows.of[1]);
   return rows;
 }

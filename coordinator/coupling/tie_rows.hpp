@@ -33,9 +33,10 @@ struct TieRows {
   void press(int side, double factor, std::span<const double> forces, std::span<double> out) const;
 };
 
-/// Of the reference configuration: the dual mortar rows of one side, 0 or 1  [M.108]; where its
-/// facets are facets of the other side as well, a row for each node and its twin. In one dimension
-/// one row of two points. No rows: the surfaces do not face each other.
+/// Of the reference configuration: the dual mortar rows of one side, 0 or 1  [M.108]; of second
+/// order, where the other side deforms, those of its corners  [M.118]; where its facets are facets
+/// of the other side as well, a row for each node and its twin. In one dimension one row of two
+/// points. No rows: the surfaces do not face each other.
 TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int side);
 
 /// Of bodies that overlap, whose ports tell where the other one's side is inside them: rows of both

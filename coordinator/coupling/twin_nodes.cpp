@@ -79,14 +79,19 @@ std::vector<std::int32_t> twin_nodes(const PosedSurface& one, const PosedSurface
     twins.push_back(places.at(one.point(node), reach));
     if (twins.back() < 0) return {};
   }
+  return facets_meet(one, other, twins) ? twins : std::vector<std::int32_t>();
+}
+
+bool facets_meet(const PosedSurface& one, const PosedSurface& other,
+                 const std::vector<std::int32_t>& twins) {
   std::set<Facet> facets;
   for (int f = 0; f < other.facet_count(); ++f)
     facets.insert(facet_of(other, f, [](std::int32_t node) { return node; }));
   for (int f = 0; f < one.facet_count(); ++f) {
     const auto twin = [&twins](std::int32_t node) { return twins[index(node)]; };
-    if (!facets.contains(facet_of(one, f, twin))) return {};
+    if (!facets.contains(facet_of(one, f, twin))) return false;
   }
-  return twins;
+  return true;
 }
 
 }  // namespace abut

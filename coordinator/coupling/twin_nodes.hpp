@@ -12,4 +12,8 @@ namespace abut {
 /// closer than 1e-6 of the shortest edge. The second may go on beyond the first.
 std::vector<std::int32_t> twin_nodes(const PosedSurface& one, const PosedSurface& other);
 
+/// Whether every facet of the first surface has a twin in the second, where its nodes have.
+bool facets_meet(const PosedSurface& one, const PosedSurface& other,
+                 const std::vector<std::int32_t>& twins);
+
 }  // namespace abut

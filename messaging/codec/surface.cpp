@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "base/index.hpp"
+#include "contract/whole_facets.hpp"
 #include "messaging/codec/parts.hpp"
 
 namespace abut {
@@ -9,7 +10,7 @@ namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
 static_assert(sizeof(PortGeometry) ==
-              4 * sizeof(std::vector<double>) + 4 * sizeof(double));  // dim, round and embedded
+              5 * sizeof(std::vector<double>) + 4 * sizeof(double));  // dim, round and embedded
 static_assert(sizeof(ContactLaw) == 3 * sizeof(double));              // the first are two flags
 
 /// Facets are nodes one facet after the other; offsets say where each begins, and the last ends.
@@ -45,6 +46,7 @@ void encode(const PortGeometry& from, v1::Surface& to) {
   to.set_transit(from.transit);
   to.set_round(from.round);
   to.set_embedded(from.embedded);
+  copy(from.parts, *to.mutable_parts());
 }
 
 void decode(const v1::Surface& from, const FieldPath& path, PortGeometry& to) {
@@ -64,6 +66,9 @@ void decode(const v1::Surface& from, const FieldPath& path, PortGeometry& to) {
   to.embedded = from.embedded();
   if (to.embedded < 0 || to.embedded > to.count())
     FieldPath{&path, "embedded"}.fail(fmt::format("is {} of {} points", to.embedded, to.count()));
+  to.parts.assign(from.parts().begin(), from.parts().end());
+  if (const std::string wrong = unsound_parts(to); !wrong.empty())
+    FieldPath{&path, "parts"}.fail(wrong);
 }
 
 void encode(const Meeting& from, v1::Meet& to) {
