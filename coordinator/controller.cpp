@@ -204,6 +204,8 @@ Controller::Judgement Controller::judge_trouble(const TimeWindow& window) {
     if (const std::optional<double> end = events_.earlier_end(window))
       return {Verdict::cut, *end, {}};
   }
+  for (const SchwarzReport& report : attempt_.reports)  // no shorter window changes it
+    if (!report.contradiction.empty()) return {Verdict::fail, window.end, report.contradiction};
   const std::string text = attempt_.trouble(scene_.schwarz.tolerance);
   const OnNonconvergence policy = scene_.schwarz.on_nonconvergence;
   if (policy == OnNonconvergence::accept && !attempt_.failed) {

@@ -196,9 +196,14 @@ void Body::look_ahead(const Advance& request, Response& response) {
       told.u.insert(told.u.end(), from, from + static_cast<std::ptrdiff_t>(ports_[p].width));
     }
   };
+  const auto values = static_cast<std::ptrdiff_t>(ports_.back().first + ports_.back().width);
   if (interior_->peek(window, peeked_)) {
     tell(grid.begin, interior_->see(window, grid.begin, false).u);
-    return tell(grid.time(1), peeked_);
+    for (int i = 1; i <= grid.count; ++i) {
+      const auto from = peeked_.begin() + (i - 1) * values;
+      tell(grid.time(i), {from, from + values});
+    }
+    return;
   }
   write(*interior_, looked_, Archive::Form::bare);
   const std::optional<Failed> failed = walk(window, [&](int i) {

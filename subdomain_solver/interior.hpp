@@ -50,8 +50,8 @@ class Interior {
   /// Impulses and the first half of a step, which the ports do not show at the window's begin.
   virtual void set_off(const Window&) {}
   [[nodiscard]] virtual std::optional<Failed> step(const Window& window, int i) = 0;
-  /// Displacements (values of all ports) [m] at the end of a window of one step, told without going
-  /// there. False: only a walk tells them.
+  /// Displacements (substeps, values of all ports) [m] at the ends of the substeps of a window,
+  /// told without going there. False: only a walk tells them.
   [[nodiscard]] virtual bool peek(const Window&, std::vector<double>&) { return false; }
   /// [N] of the last substep, along Description::loose motions.
   virtual std::span<const double> unbalanced() const { return {}; }

@@ -213,22 +213,6 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i) {
   return std::nullopt;
 }
 
-bool SolidInterior::peek(const Window& window, std::vector<double>& u) {
-  const auto presses = [](const BoundaryData& on) {
-    return std::ranges::any_of(on.forces, [](const Waveform& force) {
-      return std::ranges::any_of(force.f, [](double f) { return f != 0.0; });
-    });
-  };
-  if (!joins_ || contact_ || window.grid.count > 1) return false;
-  if (std::ranges::any_of(window.request.boundary, presses)) return false;
-  port_forces_->impose(window.request.boundary, window.grid);
-  port_forces_->enter(1);
-  const double begin = window.grid.begin, dt = window.grid.length(1);
-  if (!parts_.scheme.integrator->peek(state_.motion, begin, dt, peeked_)) return false;
-  port_map_->displacement(peeked_, u);
-  return true;
-}
-
 std::span<const double> SolidInterior::unbalanced() const {
   if (description_.loose.empty()) return {};
   return parts_.scheme.integrator->statics()->unbalanced();

@@ -91,6 +91,7 @@ class SolidInterior final : public Interior {
   std::vector<FieldValues> fields() override;
 
  private:
+  bool go_on(const Window& window, std::vector<double>& u);
   struct State {
     double time = 0.0;  // [s]
     Motion motion;

@@ -1,6 +1,7 @@
 #include "coordinator/coupling/banded_tie_kernel.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -22,11 +23,14 @@ constexpr double entry_bytes = 12.0;  // of a sparse matrix: value and row
 constexpr double roundoff = 1.0e-14;
 /// Of the first block's equations, relative. What is left is for the next call of the bodies.
 constexpr double tolerance = 1.0e-13;
+/// The same, of what an iteration that ended before has answered.
+constexpr double good_enough = 1.0e-3;
 /// 6 to 40 are usual, 150 where rows say the same twice.
 constexpr int most_iterations = 500;
 /// Of the diagonal, added to it: what combinations of rows that move nothing, where they say the
-/// same twice, take of round-off is bounded then.
-constexpr double softness = 1.0e-10;
+/// same twice, take of round-off is bounded then; and where these contradict each other, which
+/// the iteration cannot answer with so little.
+constexpr double softness[] = {1.0e-10, 1.0e-6};
 
 int dim_of(const TieLayout& layout) { return layout.members.front().tie->rows().dim; }
 
@@ -119,10 +123,12 @@ class BandedTieKernel final : public TieKernel {
     left -= blocks_[index(lag)] * force;
   }
   Eigen::VectorXd invert(const Eigen::VectorXd& jump) const override;
+  /// It is not known: the iteration finds an answer where there is one.
+  bool redundant() const override { return true; }
 
   std::vector<Sparse> blocks_;  // [m/N] by lag
-  Sparse softened_;             // the first block
-  Eigen::BiCGSTAB<Sparse> first_;
+  std::array<Sparse, 2> softened_;  // the first block
+  std::array<Eigen::BiCGSTAB<Sparse>, 2> first_;
 };
 
 BandedTieKernel::BandedTieKernel(const TieLayout& layout, const TieBandWidth& width, int lags,
@@ -149,19 +155,28 @@ BandedTieKernel::BandedTieKernel(const TieLayout& layout, const TieBandWidth& wi
       return std::abs(value) > roundoff * scale[i] * scale[j];
     });
   }
-  first_.setTolerance(tolerance);
-  first_.setMaxIterations(most_iterations);
-  softened_ = blocks_[0];
-  softened_.diagonal() *= 1.0 + softness;
-  first_.compute(softened_);
+  // What does not give way at all has equations of its own.
+  const double most = scale.maxCoeff() > 0.0 ? scale.maxCoeff() : 1.0;
+  for (const std::size_t k : {0u, 1u}) {
+    Sparse own(layout.size, layout.size);
+    own.setIdentity();
+    for (Eigen::Index i = 0; i < layout.size; ++i)
+      own.coeffRef(i, i) = scale[i] > 0.0 ? softness[k] * scale[i] * scale[i] : most * most;
+    softened_[k] = blocks_[0] + own;
+    first_[k].setTolerance(tolerance);
+    first_[k].setMaxIterations(most_iterations);
+    first_[k].compute(softened_[k]);
+  }
 }
 
-/// An iteration that breaks down has still its share of every row for itself.
+/// Iterations that break down have still every row's share for itself.
 Eigen::VectorXd BandedTieKernel::invert(const Eigen::VectorXd& jump) const {
-  Eigen::VectorXd force = first_.solve(jump);
-  if (force.allFinite()) return force;
-  const Eigen::VectorXd own = softened_.diagonal();
-  return (own.array() > 0.0).select(jump.cwiseQuotient(own), 0.0);
+  for (const std::size_t k : {0u, 1u}) {
+    const Eigen::VectorXd force = first_[k].solve(jump);
+    if (force.allFinite() && (softened_[k] * force - jump).norm() <= good_enough * jump.norm())
+      return force;
+  }
+  return jump.cwiseQuotient(softened_[1].diagonal());
 }
 
 double BandedTieKernel::bytes() const {

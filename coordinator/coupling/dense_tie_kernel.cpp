@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -9,11 +10,19 @@ namespace abut {
 
 namespace {
 
-/// Reciprocal condition below which rows say the same twice: at points where three bodies meet, or
-/// where both sides are held.
-constexpr double singular = 1.0e-13;
-/// Of the largest pivot, below which a combination of rows moves nothing.
-constexpr double nothing = 1.0e-10;
+/// Pivots of rows that say the same twice, at points where three bodies meet, or where both sides
+/// are held; all rows give way by one in their own units.
+struct Rounding {
+  double singular = 1.0e-13;  // of the largest, below which there may be such
+  double nothing = 1.0e-10;   // below which a combination of rows moves nothing
+};
+/// Of kernels that are differences of motions under a light push.
+constexpr Rounding light{1.0e-7, 1.0e-6};
+/// Of the softest row: below it a row does not give way.
+constexpr double stiffest = 1.0e-18;
+/// Of what the rows beside it do to a row, squared over their own, below which its own does not
+/// count: no symmetric kernel comes near it.
+constexpr double lopsided = 1.0e-6;
 
 /// [m/N] (steps) of (width, width): at the end of a step after a force in the first one.
 using Responses = std::vector<Eigen::MatrixXd>;
@@ -38,13 +47,15 @@ class DenseTieKernel final : public TieKernel {
   void find_blocks(const TieLayout& layout, int lags);
   void find_scale(const TieLayout& layout);
   void damp(const TieLayout& layout);
+  bool redundant() const override { return inverse_.size() > 0; }
 
   std::vector<Responses> responses_;     // by part; kept where bodies bend
   std::vector<Eigen::MatrixXd> blocks_;  // [m/N] by lag
   // Of the first block: factors, or where rows are redundant the inverse of least size.
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
   Eigen::MatrixXd inverse_;
-  Eigen::VectorXd scale_;  // of its unknowns, which makes them forces all; empty: they are
+  Eigen::VectorXd scale_;  // of its unknowns, by which what each does is of the size of one
+  Rounding rounding_;
 };
 
 /// Of unit forces of the rows, one by one.
@@ -102,6 +113,7 @@ DenseTieKernel::DenseTieKernel(const TieLayout& layout, int lags, Bodies& bodies
   for (const TieLayout::Part& part : layout.parts)
     responses_.push_back(part.stands ? Responses()
                                      : responses_of(layout, part, part.steps * lags, bodies));
+  if (std::ranges::any_of(layout.parts, &TieLayout::Part::light)) rounding_ = light;
   find_blocks(layout, lags);
   if (std::ranges::none_of(layout.parts, &TieLayout::Part::bends)) responses_.clear();
 }
@@ -116,19 +128,33 @@ bool DenseTieKernel::renew(const TieLayout& layout, Bodies& bodies) {
   return true;
 }
 
-/// Places of loose motions, so that what they do is of the size of what forces do.
+/// A joint of stiff bodies counts as much as one of soft ones, and places of loose motions as
+/// forces do.
 void DenseTieKernel::find_scale(const TieLayout& layout) {
-  scale_.resize(0);
-  const auto carries = [](const TieLayout::Member& member) { return member.carried >= 0; };
-  if (std::ranges::none_of(layout.members, carries)) return;
-  scale_.setOnes(layout.size);
+  std::vector<bool> carries(index(layout.size), false);
+  for (const TieLayout::Member& member : layout.members)
+    for (Eigen::Index i = 0; member.carried >= 0 && i < Eigen::Index{member.width} * member.steps;
+         ++i)
+      carries[index(member.inner + i)] = true;
+  const Eigen::ArrayXd each = diagonal().array().abs();
+  Eigen::ArrayXd own = each;
+  for (Eigen::Index k = 0; k < layout.size; ++k)
+    if (!carries[index(k)] && each[k] > 0.0)
+      own = own.max(lopsided * blocks_[0].col(k).array().square() / each[k]);
   double most = 0.0;
-  for (const TieLayout::Member& member : layout.members)
-    if (!carries(member))
-      most = std::max(most, diagonal().segment(member.inner, member.width).maxCoeff());
-  for (const TieLayout::Member& member : layout.members)
-    if (carries(member) && most > 0.0)
-      scale_.segment(member.inner, Eigen::Index{member.width} * member.steps).setConstant(most);
+  for (Eigen::Index i = 0; i < layout.size; ++i)
+    if (!carries[index(i)]) most = std::max(most, own[i]);
+  scale_.setOnes(layout.size);
+  if (most == 0.0) return;
+  for (Eigen::Index i = 0; i < layout.size; ++i)
+    if (!carries[index(i)]) scale_[i] = 1.0 / std::sqrt(own[i] > stiffest * most ? own[i] : most);
+  for (Eigen::Index i = 0; i < layout.size; ++i) {
+    if (!carries[index(i)]) continue;
+    double moved = 0.0;
+    for (Eigen::Index k = 0; k < layout.size; ++k)
+      if (!carries[index(k)]) moved = std::max(moved, std::abs(scale_[k] * blocks_[0](k, i)));
+    if (moved > 0.0) scale_[i] = 1.0 / moved;
+  }
 }
 
 /// Of dashpots: what parts in a step, and how much of it their forces are worth  [M.117].
@@ -175,25 +201,20 @@ void DenseTieKernel::find_blocks(const TieLayout& layout, int lags) {
   damp(layout);
   find_scale(layout);
   inverse_.resize(0, 0);
-  const Eigen::MatrixXd first =
-      scale_.size() > 0 ? Eigen::MatrixXd(scale_.asDiagonal() * blocks_[0] * scale_.asDiagonal())
-                        : blocks_[0];
+  const Eigen::MatrixXd first = scale_.asDiagonal() * blocks_[0] * scale_.asDiagonal();
   factors_.compute(first);
   // Not by rcond(): of a matrix without some pivots its estimate is any number.
   const Eigen::ArrayXd pivots = factors_.matrixLU().diagonal().array().abs();
-  if (pivots.minCoeff() > singular * pivots.maxCoeff()) return;
+  if (pivots.minCoeff() > rounding_.singular * pivots.maxCoeff()) return;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least;
-  least.setThreshold(nothing);
+  least.setThreshold(rounding_.nothing);
   inverse_ = least.compute(first).pseudoInverse();
 }
 
 Eigen::VectorXd DenseTieKernel::invert(const Eigen::VectorXd& jump) const {
-  const auto of = [this](const Eigen::VectorXd& r) -> Eigen::VectorXd {
-    if (inverse_.size() > 0) return inverse_ * r;
-    return factors_.solve(r);
-  };
-  if (scale_.size() == 0) return of(jump);
-  return scale_.cwiseProduct(of(scale_.cwiseProduct(jump)));
+  const Eigen::VectorXd r = scale_.cwiseProduct(jump);
+  if (redundant()) return scale_.cwiseProduct(inverse_ * r);
+  return scale_.cwiseProduct(factors_.solve(r));
 }
 
 }  // namespace

@@ -202,6 +202,11 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     held_ = x_;
     const double before = std::exchange(mismatch, see_images(joints, bodies, report.residual));
     report.converged = report.residual.largest() <= options_.tolerance;
+    report.contradiction = ties_->contradiction(g_ - x_, options_.tolerance, window.end, bodies);
+    if (!report.contradiction.empty()) {
+      report.converged = false;
+      return report;
+    }
     const bool early = 2 * report.iterations <= options_.max_iterations;  // later it is no bad luck
     if (report.iterations >= options_.max_iterations) return report;
     const bool doubted = shared && early && report.residual.largest() > 0.0;

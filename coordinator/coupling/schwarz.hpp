@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct SchwarzReport {
   bool converged = false;
   int iterations = 0;       // sweeps: every body of the island advanced once in each
   FieldResiduals residual;  // of the last sweep
+  std::string contradiction;  // of ties, in words for people: no sweep makes it converge
 };
 
 /// The alternating Schwarz iteration of one window.

@@ -202,6 +202,7 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
     unbalanced_ = std::max(unbalanced_, sum.lpNorm<Eigen::Infinity>());
   }
   scale_.velocity = std::max(joint.closing_speed, std::min(first_speed_, speed_));
+  moved_ = scale_.velocity * scale_.step;
   row_force_ = x.head(iterate_.size()).lpNorm<Eigen::Infinity>();
   // Or what the force moves in a step: bodies at rest have no other measure.
   const double force = joint.force_scale > 0.0 ? joint.force_scale : row_force_;
@@ -214,6 +215,14 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   unit_ = unit > 0.0 ? 1.0 / unit : 1.0;
 }
 
+double Tie::seen(double distance) const {
+  return scaled(distance, scale_.velocity * scale_.step, scale_.roundoff);
+}
+
+double Tie::seen_by_motion(double distance) const {
+  return scaled(distance, moved_, scale_.roundoff);
+}
+
 double Tie::largest_force() const {
   double most = 0.0;
   for (std::size_t i = 1; i < force_.size(); ++i)
@@ -224,9 +233,8 @@ double Tie::largest_force() const {
 FieldResiduals Tie::measure(const Eigen::Ref<const Eigen::VectorXd>&,
                             const Eigen::Ref<const Eigen::VectorXd>&) const {
   FieldResiduals r;
-  r.displacement =
-      scaled(jump_.lpNorm<Eigen::Infinity>(), scale_.velocity * scale_.step, scale_.roundoff);
-  r.force = scaled(unbalanced_ * compliance_, scale_.velocity * scale_.step, scale_.roundoff);
+  r.displacement = seen(jump_.lpNorm<Eigen::Infinity>());
+  r.force = seen(unbalanced_ * compliance_);
   return r;
 }
 

@@ -55,6 +55,10 @@ class Tie final : public Transmission {
   /// Of the latest sweep: [m/s] how fast anything on the sides moved, [m] by how much they missed
   /// each other at most, [N] the largest resultant of the forces between them.
   double speed() const { return speed_; }
+  /// A distance [m] as the tolerance sees it; and by what the sides move alone, where forces that
+  /// answer nothing grow without end.
+  double seen(double distance) const;
+  double seen_by_motion(double distance) const;
   double missed() const { return jump_.size() > 0 ? jump_.lpNorm<Eigen::Infinity>() : 0.0; }
   double largest_force() const;
   double row_force() const { return row_force_; }  // [N] the largest of a row
@@ -94,6 +98,7 @@ class Tie final : public Transmission {
   double row_force_ = 0.0;
   double unbalanced_ = 0.0;    // [N] largest of the latest sweep
   double speed_ = 0.0;         // [m/s] of the latest sweep
+  double moved_ = 0.0;         // [m] by the sides in a step, of the latest sweep
   double first_speed_ = -1.0;  // and of the first one; below 0: none yet
   ReferenceScales scale_;
 };

@@ -15,6 +15,9 @@ class TieKernel {
   virtual ~TieKernel() = default;
   /// Forces that make up for jumps; both (blocks, size of a block).
   Eigen::VectorXd solve(const Eigen::VectorXd& jump) const;
+  /// What is left of jumps that no force answers, where rows say the same twice or nothing gives
+  /// way: an empty vector where every jump has its force.
+  Eigen::VectorXd unanswered(const Eigen::VectorXd& jump) const;
   /// [m/N] of the first block.
   virtual Eigen::VectorXd diagonal() const = 0;
   virtual Eigen::Index size() const = 0;  // of a block
@@ -24,9 +27,12 @@ class TieKernel {
   virtual bool renew(const TieLayout&, Bodies&) { return false; }
 
  private:
+  /// Whether there may be jumps without an answer.
+  virtual bool redundant() const = 0;
   /// left -= block of a lag times forces.
   virtual void subtract(int lag, const Eigen::Ref<const Eigen::VectorXd>& force,
                         Eigen::VectorXd& left) const = 0;
+  Eigen::VectorXd march(const Eigen::VectorXd& jump, Eigen::VectorXd* rest) const;
   /// Of the first block.
   virtual Eigen::VectorXd invert(const Eigen::VectorXd& jump) const = 0;
 };

@@ -52,6 +52,7 @@ void TieLayout::arrange(const Bodies& bodies) {
                          0,
                          !told.can.kernel,
                          told.quasi_static && !told.linear,
+                         told.can.kernel && !told.quasi_static && !told.linear,
                          {}});
         part = parts.end() - 1;
         if (!part->stands) blocks = std::gcd(blocks, part->steps);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "coordinator/coupling/banded_tie_kernel.hpp"
+#include "coordinator/coupling/tie_contradiction.hpp"
 
 namespace abut {
 
@@ -70,6 +71,15 @@ void TieNet::predict(Eigen::VectorXd& x) const {
     layout_.gather(member, force, x.segment(member.first, layout_.values_of(member)));
 }
 
+/// [m] of a residual in the ties' units, in blocks.
+Eigen::VectorXd TieNet::jumps(const Eigen::VectorXd& r) const {
+  Eigen::VectorXd jump(layout_.blocks * layout_.size);
+  for (const TieLayout::Member& member : layout_.members)
+    layout_.spread(member, unit_of(member) * r.segment(member.first, layout_.values_of(member)),
+                   jump);
+  return jump;
+}
+
 void TieNet::apply_inverse(Eigen::VectorXd& r) const {
   if (!empty() && options_.used && !alternating_) solve(r);
 }
@@ -82,13 +92,18 @@ void TieNet::answer_alone(const Eigen::VectorXd& x, Eigen::VectorXd& g) const {
 }
 
 void TieNet::solve(Eigen::VectorXd& r) const {
-  Eigen::VectorXd jump(layout_.blocks * layout_.size);
-  for (const TieLayout::Member& member : layout_.members)
-    layout_.spread(member, unit_of(member) * r.segment(member.first, layout_.values_of(member)),
-                   jump);
-  const Eigen::VectorXd force = kernel_->solve(jump);
+  const Eigen::VectorXd force = kernel_->solve(jumps(r));
   for (const TieLayout::Member& member : layout_.members)
     layout_.gather(member, force, r.segment(member.first, layout_.values_of(member)));
+}
+
+std::string TieNet::contradiction(const Eigen::VectorXd& r, double tolerance, double time,
+                                  const Bodies& bodies) const {
+  if (empty() || !options_.used || alternating_) return {};
+  const Eigen::VectorXd jump = jumps(r);
+  const Eigen::VectorXd rest = kernel_->unanswered(jump);
+  if (rest.size() == 0) return {};
+  return find_contradiction(layout_, jump, rest, tolerance, time, bodies);
 }
 
 }  // namespace abut

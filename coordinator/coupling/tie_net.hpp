@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -28,6 +29,10 @@ class TieNet {
   /// After a sweep: bodies without inertia that are not linear are asked anew how they give way.
   /// True: what they say is the derivative at this sweep, better than secants.
   bool renew(Bodies& bodies);
+  /// What a residual g - x shows that no forces answer: motions that are given to both sides and
+  /// differ, in words. Empty: the sweep says nothing of the kind, or not yet.
+  std::string contradiction(const Eigen::VectorXd& r, double tolerance, double time,
+                            const Bodies& bodies) const;
   bool empty() const { return layout_.empty(); }
   /// First guesses, where all bodies have told how they would part.
   void predict(Eigen::VectorXd& x) const;
@@ -40,6 +45,7 @@ class TieNet {
  private:
   void find_kernel(Bodies& bodies);
   void solve(Eigen::VectorXd& r) const;
+  Eigen::VectorXd jumps(const Eigen::VectorXd& r) const;
 
   TieKernelOptions options_;
   TieLayout layout_;

@@ -37,6 +37,15 @@ class ImplicitDynamics final : public Integrator {
   double compliance(const Motion& motion, int dof) override;
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
   double kinetic(const Motion& motion) const override;
+  ImplicitDynamics* implicit() override;
+
+  /// A motion beside the present one.
+  struct Beside {
+    Vector u, v;  // [m] from the present coordinates, [m/s] (dofs); empty: where the present one is
+  };
+  /// A step of it under the problem's loads, with the internal force that the tangent of the
+  /// last balance tells: one solve  [M.119]. False: there is no tangent.
+  [[nodiscard]] bool go_on(const Motion& motion, double time, double dt, Beside& beside);
 
  private:
   class Balance;
@@ -44,12 +53,15 @@ class ImplicitDynamics final : public Integrator {
 
   struct Buffers {  // of one step at a time
     Vector q_start, v_start, q, v, a, x;
+    Vector free;
     Vector past, external, external_start;  // [N]
     Vector inertia, inner, outer, sum, moved;
     ModelResponse response, tangent;
     double scale = 0.0;  // [N] of the balance
     NewtonVectors newton;
   };
+  [[nodiscard]] bool hold_tangent(const Motion& motion, double time, double dt);
+
   struct MassBuffers {  // of what is asked for between steps
     Vector force, acceleration, free, rest, answer;
   };

@@ -9,6 +9,7 @@
 
 namespace abut {
 
+class ImplicitDynamics;
 class QuasiStatic;
 
 /// Advances a problem's motion in time. Sees nothing of the body but its Model.
@@ -38,6 +39,8 @@ class Integrator {
     return false;
   }
   virtual QuasiStatic* statics() { return nullptr; }
+  /// Where its tangent tells how it goes on.
+  virtual ImplicitDynamics* implicit() { return nullptr; }
   /// [J] in the form that the scheme conserves where it conserves one.
   virtual double kinetic(const Motion& motion) const = 0;
   double stored(const Motion& motion) const { return motion.stored; }

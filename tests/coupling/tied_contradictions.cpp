@@ -1,0 +1,160 @@
+// Goal: ties that ask for what cannot be are refused by name, whatever gives the motions and
+// however bodies step; ties that say the same twice go on. Oracles: the motions that are given.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/solid_scenes.hpp"
+
+namespace abut {
+namespace {
+
+/// How fast what is given moves [m/s], and its distance at the end of the first window [m].
+constexpr double speed = 0.01, window = 0.1, gone = speed * window;
+
+/// A square of side 1 with ports on its sides. No integrator: a tool on its way.
+std::string square(const std::string& name, double x, const std::string& integrator,
+                   const std::string& more, const std::string& law = "linear_elastic",
+                   const std::string& model = "fe") {
+  const bool tool = integrator.empty();
+  return fmt::format(
+      "  {}:\n    model: {{{}: {{dimension: 2, mesh: {{{}}}{}}}}}\n{}    initial: {{position: "
+      "[{}, 0]}}\n    ports: {{left: {{side: left}}, right: {{side: right}}}}\n{}",
+      name, tool ? "rigid_tool" : model, block_mesh({1.0, 1.0}, {3, 3}),
+      tool ? ", way: [" + more + "]" : "",
+      tool ? ""
+           : fmt::format("    material: {{{}}}\n    integrator: {{{}}}\n", unit_law(law, 0.3),
+                         integrator),
+      number(x), tool ? "" : more);
+}
+
+const std::string moves = "\"0.01*t\", 0", stands = "0, 0";
+
+std::string held(const std::string& sides) { return "    constraints: {" + sides + "}\n"; }
+
+std::unique_ptr<RunResult> run(const std::string& bodies, const std::vector<std::string>& ties,
+                               const std::string& more = "") {
+  std::string text = fmt::format(
+      "meta: {{title: test}}\ntime: {{begin: 0.0, end: 0.5, window: {}}}\nbodies:\n{}"
+      "interfaces:\n",
+      number(window), bodies);
+  for (std::size_t k = 0; k < ties.size(); ++k)
+    text += fmt::format("  tie{}: {{sides: [{}], tied: {{}}}}\n", k, ties[k]);
+  return run_document(Document::from_text("test", text + more));
+}
+
+void expect_refused(const RunResult& result, const std::vector<std::string>& words) {
+  EXPECT_EQ(result.end.status, "failed");
+  EXPECT_EQ(result.end.windows, 0);  // nothing before is known to be right
+  ASSERT_FALSE(result.events.empty());
+  for (const std::string& word : words)
+    EXPECT_NE(result.events.back().text.find(word), std::string::npos)
+        << word << " is not in: " << result.events.back().text;
+}
+
+struct Way {
+  std::string integrator, law, more;
+  bool inert = true;
+};
+
+std::vector<Way> ways() {
+  std::vector<Way> all;
+  for (const char* law : {"linear_elastic", "saint_venant_kirchhoff"})
+    for (const char* integrator :
+         {"newmark: {step: 0.02}", "central_difference: {step: 0.02}", "quasi_static: {step: 0.1}"})
+      all.push_back({integrator, law, "", integrator[0] != 'q'});
+  for (const char* policy : {"halve", "accept"})
+    all.push_back({"newmark: {step: 0.02}", "linear_elastic",
+                   fmt::format("schwarz: {{on_nonconvergence: {}}}\n", policy)});
+  for (const char* integrator : {"newmark: {step: 0.02}", "central_difference: {step: 0.02}"})
+    all.push_back({integrator, "linear_elastic", "schwarz: {ties: {band: waves}}\n"});
+  return all;
+}
+
+/// What moves begins at once, and a joint takes half a step of the difference into its gap.
+std::string apart(const Way& way) {
+  return fmt::format("{:g} m apart", way.inert ? gone - 0.5 * 0.02 * speed : gone);
+}
+
+TEST(TiedContradictions, GivenMotionsThatDifferAreToldByName) {
+  for (const Way& way : ways()) {
+    SCOPED_TRACE(way.integrator + " " + way.law + " " + way.more);
+    const auto body = [&way](const char* name, double x, const std::string& more) {
+      return square(name, x, way.integrator, more, way.law);
+    };
+    {
+      SCOPED_TRACE("both sides are held, and the one moves");
+      const auto result =
+          run(body("a", 0.0, held("wall: {on: left, fixed: true}, end: {on: right, fixed: true}")) +
+                  body("b", 1.0, held("end: {on: left, x: \"0.01*t\", y: 0}")),
+              {"a.right, b.left"}, way.more);
+      expect_refused(*result, {"interfaces.tie0", apart(way), "at (1, ", "bodies a, b"});
+    }
+    {
+      SCOPED_TRACE("they differ in a corner");
+      const auto result = run(
+          body("a", 0.0, held("floor: {on: bottom, fixed: true}, lid: {on: top, y: \"0.01*t\"}")) +
+              body("b", 1.0, held("floor: {on: bottom, fixed: true}, lid: {on: top, y: 0}")),
+          {"a.right, b.left"}, way.more);
+      expect_refused(*result, {"interfaces.tie0", apart(way), "at (1, 1)", "bodies a, b"});
+    }
+    {
+      SCOPED_TRACE("a tool moves what is held");
+      const auto result = run(
+          body("a", 0.0, held("end: {on: right, fixed: true}")) + square("tool", 1.0, "", moves),
+          {"a.right, tool.left"}, way.more);
+      expect_refused(*result, {"interfaces.tie0", "m apart at (1, ", "bodies a, tool"});
+    }
+    {
+      SCOPED_TRACE("two tools on one port part");
+      const auto result =
+          run(body("a", 0.0, "") + square("p", 1.0, "", moves) + square("q", 1.0, "", stands),
+              {"a.right, p.left", "a.right, q.left"}, way.more);
+      expect_refused(*result, {"interfaces.tie0", "interfaces.tie1", "m apart at (1, ", "p", "q"});
+    }
+  }
+  const auto rigid =
+      run(square("a", 0.0, "rigid_motion: {step: 0.02}", "", "linear_elastic", "rigid") +
+              square("p", 1.0, "", moves) + square("q", -1.0, "", stands),
+          {"a.right, p.left", "q.right, a.left"});
+  expect_refused(*rigid, {"interfaces.tie0", "interfaces.tie1", "bodies a, p, q"});
+}
+
+/// Rows that say the same twice: clamps across a joint, motions that agree, tools that pull a body.
+TEST(TiedContradictions, GivenMotionsThatAgreeGoOn) {
+  for (const Way& way : ways()) {
+    SCOPED_TRACE(way.integrator + " " + way.law + " " + way.more);
+    const auto body = [&way](const char* name, double x, const std::string& more) {
+      return square(name, x, way.integrator, more, way.law);
+    };
+    const std::string lifted =
+        held("floor: {on: bottom, fixed: true}, lid: {on: top, y: \"0.01*t\"}");
+    const auto clamped =
+        run(body("a", 0.0, lifted) + body("b", 1.0, lifted), {"a.right, b.left"}, way.more);
+    EXPECT_TRUE(clamped->completed());
+    const std::string slid =
+        held("floor: {on: bottom, x: 0}, end: {on: SIDE, x: 0, y: \"0.01*t\"}");
+    const auto with = [&slid](const std::string& side) {
+      return std::string(slid).replace(slid.find("SIDE"), 4, side);
+    };
+    const auto moved = run(body("a", 0.0, with("right")) + body("b", 1.0, with("left")),
+                           {"a.right, b.left"}, way.more);
+    EXPECT_TRUE(moved->completed());
+    const auto pulled =
+        run(body("a", 0.0, "") + square("p", 1.0, "", moves) + square("q", -1.0, "", stands),
+            {"a.right, p.left", "q.right, a.left"}, way.more);
+    EXPECT_TRUE(pulled->completed());
+    EXPECT_NEAR(pulled->measure("body.a.right.displacement.x"), 0.005, 1.0e-3 * gone);
+    const auto twice =
+        run(body("a", 0.0, "") + square("p", 1.0, "", moves) + square("q", 1.0, "", moves),
+            {"a.right, p.left", "a.right, q.left"}, way.more);
+    EXPECT_TRUE(twice->completed());
+  }
+}
+
+}  // namespace
+}  // namespace abut
