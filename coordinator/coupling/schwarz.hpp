@@ -70,6 +70,7 @@ class Schwarz {
   /// compared.
   double see_images(std::span<const Joint> joints, const Bodies& bodies, FieldResiduals& residual);
   bool projected(std::span<const Joint> joints) const;
+  void foresee(Accelerator& accelerator, std::span<const Joint> joints);
   double step_from(const Eigen::VectorXd& before, std::span<const Joint> joints);
   /// The residual, of every joint relaxed by its first factor.
   Eigen::VectorXd relaxed(Eigen::VectorXd r, std::span<const Joint> joints) const;

@@ -54,6 +54,15 @@ void TieNet::find_kernel(Bodies& bodies) {
                         : make_dense_tie_kernel(layout_, plan.lags, bodies);
 }
 
+bool TieNet::image_of_nothing(Eigen::VectorXd& g) const {
+  if (empty() || alternating_) return false;
+  for (const TieLayout::Member& member : layout_.members) {
+    if (member.carried >= 0 || member.tie->trial().size() == 0) return false;
+    g.segment(member.first, layout_.values_of(member)) = -member.tie->trial() / member.tie->unit();
+  }
+  return true;
+}
+
 bool TieNet::renew(Bodies& bodies) {
   if (empty() || !(options_.used || alternating_)) return false;
   return kernel_->renew(layout_, bodies) && !alternating_;
