@@ -25,7 +25,12 @@ struct Capabilities {
   bool impedance = false;  // accepts BoundaryData::impedance
   bool yielding = false;   // takes obstacles that give way: yields()
   bool friction = false;   // takes laws with friction: ContactLaw::rubs()
+  // Takes how bodies that are tied to it give way: yields() of its own surface.
+  bool neighbours = false;
 };
+
+/// In place of a partner: the port's own surface.
+constexpr int own_surface = -1;
 
 /// A solid inside a body that tables show as if it were a body: monolithic models hold several.
 struct Member {
@@ -113,7 +118,8 @@ class Subdomain {
   /// which restore() does not take back. Bodies that take no obstacles are not told.
   virtual void meet(int port, const PortGeometry& partner, const ContactLaw& law) = 0;
   /// How that partner's surface gives way: its kernel for unit forces on its points, one pattern
-  /// per component. Bodies that take no yielding obstacles are not told.
+  /// per component. Bodies that take no yielding obstacles are not told. `own_surface`: how bodies
+  /// that are tied to this one, at other ports, move the port's own surface [M.121].
   virtual void yields(int port, int partner, const PortKernel& kernel) = 0;
   virtual void save() = 0;  // the one state that restore() returns to
   virtual void restore() = 0;

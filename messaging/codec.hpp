@@ -74,7 +74,7 @@ void decode(Bytes advanced, const Description& body, const Advance& asked, Respo
 void decode(const v1::Failed& from, Failed& to);
 void decode(const v1::Description& from, Description& to);
 void decode(const v1::Meet& from, const Description& body, Meeting& to);
-void decode(const v1::Yields& from, const Partners& met, Yielding& to);
+void decode(const v1::Yields& from, const Description& body, const Partners& met, Yielding& to);
 void decode(const v1::Probe& from, const Description& body, Probing& to);
 void decode(const v1::PortKernel& from, const Description& body, const Probing& asked,
             PortKernel& to);

@@ -263,7 +263,7 @@ void Server::meet(const v1::Meet& request) {
 
 void Server::yields(const v1::Yields& request) {
   Yielding yielding;
-  decode(request, partners_, yielding);
+  decode(request, body_->describe(), partners_, yielding);
   body_->yields(yielding.port, yielding.partner, yielding.kernel);
   reply_.mutable_yielding();
 }

@@ -76,6 +76,7 @@ void Body::yields(int port, int partner, const PortKernel& kernel) {
                    fmt::format("a partner of body '{}'", describe().name),
                    "Let obstacles give way only with kernels of this body's step and support.");
   }
+  if (partner == own_surface) return interior_->ease(port, kernel);
   partners_.at(index(port)).at(index(partner)).kernel = kernel;
 }
 

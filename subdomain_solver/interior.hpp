@@ -80,6 +80,8 @@ class Interior {
 
   /// A partner whose surface gives way: whether the body can take it.
   virtual bool takes(int, const PortKernel&) const { return false; }
+  /// How bodies tied to this one give way under forces on a port that touches.
+  virtual void ease(int, const PortKernel&) {}
   virtual ForceSupport support(std::size_t) const { return ForceSupport::nodal; }
   /// The same of the reactions to obstacles.
   virtual ForceSupport reaction_support(std::size_t port) const { return support(port); }

@@ -97,6 +97,7 @@ void SolidInterior::find_surfaces() {
   }
   for (FieldInfo& field : touch_fields()) description_.fields.push_back(std::move(field));
   description_.can.obstacle = description_.can.yielding = description_.can.friction = true;
+  description_.can.neighbours = joins_;
 }
 
 void SolidInterior::describe(std::string name, const std::vector<PortNodes>& ports) {
@@ -178,9 +179,12 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
   if (std::optional<Failed> failed = meet_port_forces(time)) return failed;
   if (parts_.problem->contact != nullptr) contact_->aim(0, state_.port_force, places_);
   if (!state_.begun) {
+    const bool steady = port_forces_ != nullptr && parts_.scheme.integrator->joins_steadily();
+    if (steady) port_forces_->enter(0);
     parts_.problem->set_rates(time, parts_.scheme.step, state_.motion);
     if (std::optional<Failed> failed = parts_.scheme.integrator->begin(state_.motion, time))
       return failed;
+    if (steady) port_forces_->enter(1);
     state_.begun = true;
     state_.time = time;
   }
@@ -272,6 +276,10 @@ const PortValues& SolidInterior::see(const Window&, double time, bool all) {
 
 void SolidInterior::react(std::size_t port, std::size_t partner, std::vector<double>& force) const {
   contact_->react(port, partner, state_.port_force, force);
+}
+
+void SolidInterior::ease(int port, const PortKernel& kernel) {
+  if (contact_) contact_->ease(index(port), kernel);
 }
 
 bool SolidInterior::takes(int port, const PortKernel& kernel) const {
@@ -439,45 +447,5 @@ void SolidInterior::finish(std::size_t port, PortResponse& reply) const {
 
 /// Of a nonlinear body: far above the rounding of strains, or of places where it is rigid, far
 /// below where they matter.
-double SolidInterior::light_force(std::size_t port) const {
-  const FeModel& model = *parts_.model;
-  if (!parts_.deforms) {
-    constexpr double moved = 1.0e-8;  // of a facet, in a step
-    const double step = description_.step;
-    return moved * description_.ports[port].geometry.spacing * description_.mass / (step * step);
-  }
-  if (parts_.problem->model->is_linear()) return 1.0;
-  constexpr double strain = 1.0e-7;
-  const double area = description_.dim == 1 ? model.options().area
-                                            : std::pow(description_.ports[port].geometry.spacing,
-                                                       static_cast<double>(description_.dim) - 1.0);
-  return strain * model.material().moduli().youngs() * area;
-}
-
-bool SolidInterior::rest(std::size_t) {
-  Motion& motion = state_.motion;
-  const std::size_t coordinates = motion.q.size(), rates = motion.v.size();
-  state_ = State{};
-  motion.q.assign(coordinates, 0.0);
-  motion.v.assign(rates, 0.0);
-  state_.port_force.assign(port_map_->values(), 0.0);
-  if (loaded_) return false;
-  Problem& problem = *parts_.problem;  // others refer to it
-  loaded_ = std::make_unique<Problem>();
-  loaded_->loads.swap(problem.loads);
-  loaded_->supports = problem.supports;
-  problem.loads.push_back(std::move(loaded_->loads.back()));  // the forces on ports
-  loaded_->loads.pop_back();
-  for (Prescribed& support : problem.supports) support.value = [](double) { return 0.0; };
-  return false;
-}
-
-void SolidInterior::wake() {
-  Problem& problem = *parts_.problem;
-  loaded_->loads.push_back(std::move(problem.loads.back()));
-  problem.loads.swap(loaded_->loads);
-  problem.supports = std::move(loaded_->supports);
-  loaded_.reset();
-}
 
 }  // namespace abut

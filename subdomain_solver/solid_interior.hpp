@@ -10,6 +10,7 @@
 #include "subdomain_solver/contact/self_crossings.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/interior.hpp"
+#include "subdomain_solver/linearised_model.hpp"
 #include "subdomain_solver/nodal_map.hpp"
 #include "subdomain_solver/overlap/embedded_surface.hpp"
 #include "subdomain_solver/port_forces.hpp"
@@ -74,6 +75,7 @@ class SolidInterior final : public Interior {
   }
   void finish(std::size_t port, PortResponse& reply) const override;
   bool takes(int port, const PortKernel& kernel) const override;
+  void ease(int port, const PortKernel& kernel) override;
   ForceSupport support(std::size_t port) const override {
     return joined_[port] ? ForceSupport::step : ForceSupport::nodal;
   }
@@ -105,6 +107,7 @@ class SolidInterior final : public Interior {
   void describe(std::string name, const std::vector<PortNodes>& ports);
   Energy energy() const;
   std::size_t nodal_values() const { return index(parts_.model->dofs()); }
+  bool probed_as_linear() const;
   void see_nodes();
   void see_places();
   std::optional<Failed> meet_port_forces(double time);
@@ -130,7 +133,9 @@ class SolidInterior final : public Interior {
   std::vector<double> places_;  // [m] (port values)
   PortValues seen_;
   int substep_ = 0;  // the last one of the window
-  std::unique_ptr<Problem> loaded_;  // while the body is probed: the problem with its loads
+  // While the body is probed: the problem with its loads, and its model for small motions.
+  std::unique_ptr<Problem> loaded_;
+  std::unique_ptr<LinearisedModel> linearised_;
   // Of the nodes (nodes, dim) along the axes of space, as see_nodes() left them.
   std::vector<double> u_, v_;
   Vector momentum_;                   // [kg m/s]

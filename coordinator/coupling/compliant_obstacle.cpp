@@ -7,6 +7,7 @@
 #include "contract/force_means.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/kernel_bytes.hpp"
+#include "coordinator/coupling/tie_net.hpp"
 #include "coordinator/coupling/transmission_parts.hpp"
 
 namespace abut {
@@ -100,6 +101,7 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
   if (answer_.count() >= iterate_.steps.count && answer_.points == zone_.points()) return;
   answer_ = bodies.full_kernel(n.body, n.port, iterate_.steps.count, zone_.points());
   bodies[k.body].yields(k.port, k.partner, answer_);
+  eased_[1].told = {};
 }
 
 /// The flight of the Neumann side: what pressed at the begin goes, as the force of the instant. A
@@ -129,7 +131,7 @@ void CompliantObstacle::see_flight(const Joint& joint, const Bodies& bodies) {
                       {&flight_[iterate_.at(i)], index(iterate_.width)});
   if (kernel_ == nullptr) return;
   take(guess_);
-  take_back(flight_);
+  take_back(taken_, flight_);
 }
 
 void CompliantObstacle::predict(Eigen::Ref<Eigen::VectorXd> x) const {
@@ -160,8 +162,70 @@ void CompliantObstacle::impose(int side, const Eigen::Ref<const Eigen::VectorXd>
   if (kernel_ != nullptr) {  // what pressed at the begin is in d
     given_.f.assign(given_.u.size(), 0.0);
     std::ranges::copy(f_begin_, given_.f.begin());
+    if (eased_[1].port != nullptr) fit_ties();
   }
   bodies.obstacle(here).motion = given_;
+}
+
+/// Forces of ties fit a reaction: the surface stands where that leads it, and neighbours answer
+/// what comes beyond.
+void CompliantObstacle::fit_ties() {
+  Eigen::Map<Eigen::VectorXd> moved(given_.u.data() + iterate_.width, iterate_.size());
+  take_back(-fits_, moved);
+  for (int i = 1; i <= iterate_.steps.count; ++i)
+    Eigen::Map<Eigen::VectorXd>(given_.f.data() + index(i * iterate_.width), iterate_.width) =
+        fits_.col(i);
+}
+
+bool CompliantObstacle::ease(TieNet& net, const Joint& joint, Bodies& bodies) {
+  const Side &k = joint.kinematic_side(), &n = joint.neumann_side();
+  layout_ = &net.layout();
+  eased_[0].port = eased_[1].port = nullptr;
+  if (net.joins(k.body) && bodies.describe(k.body).can.neighbours)
+    eased_[0].port = net.touching(k, {}, largest_kernel_, bodies);
+  if (net.joins(n.body) && kernel_ != nullptr)
+    eased_[1].port = net.touching(n, zone_.points(), largest_kernel_, bodies);
+  if (net.joins(k.body) && eased_[0].port == nullptr) return false;
+  if (net.joins(n.body) && eased_[1].port == nullptr && !zone_.empty()) return false;
+  if (eased_[0].port != nullptr) tell_neighbours(k, eased_[0].port->give(), bodies);
+  if (eased_[1].port == nullptr) return true;
+  fits_.setZero(iterate_.width, iterate_.steps.count + 1);
+  for (int i = 1; i <= iterate_.steps.count; ++i)
+    fits_.col(i) = Eigen::Map<const Eigen::VectorXd>(f_begin_.data(), iterate_.width);
+  PortKernel all = answer_;
+  const std::vector<double>& more = eased_[1].port->give().displacement;
+  for (std::size_t v = 0; v < std::min(more.size(), all.displacement.size()); ++v)
+    all.displacement[v] += more[v];
+  if (eased_[1].told.points == all.points && eased_[1].told.displacement == all.displacement)
+    return true;
+  bodies[k.body].yields(k.port, k.partner, all);
+  eased_[1].told = std::move(all);
+  return true;
+}
+
+void CompliantObstacle::tell_neighbours(const Side& k, const PortKernel& give, Bodies& bodies) {
+  if (eased_[0].told.displacement == give.displacement) return;
+  bodies[k.body].yields(k.port, own_surface, give);
+  eased_[0].told = give;
+}
+
+void CompliantObstacle::withdraw(const Joint& joint, Bodies& bodies) {
+  const Side& k = joint.kinematic_side();
+  Eased &own = eased_[0], &other = eased_[1];
+  own.port = other.port = nullptr;
+  if (own.told.count() > 0) {
+    own.told.displacement.assign(own.told.per_step(), 0.0);
+    own.told.begin = own.told.displacement;
+    bodies[k.body].yields(k.port, own_surface, own.told);
+    own.told = {};
+  }
+  if (other.told.count() > 0) bodies[k.body].yields(k.port, k.partner, answer_);
+  other.told = {};
+}
+
+void CompliantObstacle::follow(const Eigen::VectorXd& change,
+                               Eigen::Ref<Eigen::VectorXd> own) const {
+  if (eased_[1].port != nullptr) eased_[1].port->follow(*layout_, change, iterate_.width, own);
 }
 
 /// d = y - kernel * reaction, of the last replies.
@@ -181,7 +245,8 @@ void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>& x, const 
     take(bodies.reaction(joint.kinematic_side()));
     if (kernel_ != nullptr) {
       moved_ = g.tail(width);
-      take_back(g);
+      fits_ = taken_;
+      take_back(taken_, g);
       moved_ -= g.tail(width);  // by the reaction: bodies at rest move by nothing else
       now = std::max(now, moved_.lpNorm<Eigen::Infinity>() / length);
     }
@@ -214,11 +279,12 @@ void CompliantObstacle::leave_far(const Eigen::Ref<const Eigen::VectorXd>& x,
 }
 
 /// Takes from the Neumann side's motion what the forces taken have moved it by the kernel.
-void CompliantObstacle::take_back(Eigen::Ref<Eigen::VectorXd> motion) const {
+void CompliantObstacle::take_back(const Eigen::MatrixXd& taken,
+                                  Eigen::Ref<Eigen::VectorXd> motion) const {
   const int width = kernel_->width;
   for (int j = 0; j <= iterate_.steps.count; ++j) {
     for (int p = 0; p < width; ++p) {
-      const double force = taken_(static_cast<Eigen::Index>(value(kernel_->points, index(p))), j);
+      const double force = taken(static_cast<Eigen::Index>(value(kernel_->points, index(p))), j);
       if (force == 0.0) continue;
       const std::vector<double>& of = j == 0 ? kernel_->begin : kernel_->displacement;
       for (int i = std::max(1, j); i <= iterate_.steps.count; ++i) {

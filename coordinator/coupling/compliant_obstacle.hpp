@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "coordinator/coupling/contact_zone.hpp"
@@ -39,6 +40,9 @@ class CompliantObstacle final : public Transmission {
   double first_factor() const override { return first_factor_; }
   bool contracts() const override { return true; }
   double stray() const override;
+  bool ease(TieNet& net, const Joint& joint, Bodies& bodies) override;
+  void withdraw(const Joint& joint, Bodies& bodies) override;
+  void follow(const Eigen::VectorXd& change, Eigen::Ref<Eigen::VectorXd> own) const override;
   bool ordered() const override { return true; }
 
  private:
@@ -49,7 +53,9 @@ class CompliantObstacle final : public Transmission {
   bool see_look(const Joint& joint, const Bodies& bodies);
   void keep_begin(const TimeWindow& window, const Joint& joint, const Bodies& bodies);
   void take(const Waveform& force);
-  void take_back(Eigen::Ref<Eigen::VectorXd> motion) const;
+  void take_back(const Eigen::MatrixXd& taken, Eigen::Ref<Eigen::VectorXd> motion) const;
+  void fit_ties();
+  void tell_neighbours(const Side& k, const PortKernel& give, Bodies& bodies);
   void leave_far(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> g) const;
   double reached(const Waveform& trace) const;
   void see_speed(double now);
@@ -69,6 +75,14 @@ class CompliantObstacle final : public Transmission {
   std::vector<double> u_k_;                // [m] of the kinematic port, at the window's begin
   const PortKernel* kernel_ = nullptr;     // null: the obstacle does not give way
   PortKernel answer_;                      // of the zone, as the kinematic body knows it
+  // What bodies tied to either side answer, as the kinematic body was told; null: none are.
+  struct Eased {
+    const TiedPort* port = nullptr;
+    PortKernel told;
+  };
+  std::array<Eased, 2> eased_;  // of the kinematic side, of the other
+  const TieLayout* layout_ = nullptr;
+  Eigen::MatrixXd fits_;  // [N] as taken_: what forces of ties fit, of the sweep before
   bool linear_ = false;                    // of the Neumann side
   bool shared_ = false;                    // the Neumann side has other joints
   bool flies_ = false;

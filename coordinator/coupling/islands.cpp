@@ -1,6 +1,8 @@
 #include "coordinator/coupling/islands.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -118,6 +120,26 @@ std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
     islands.push_back(std::move(island));
   }
   return islands;
+}
+
+bool contacts_apart(const Island& island, std::span<const Joint> joints, const Bodies& bodies) {
+  const auto moves = [&bodies](const Side& side) {
+    return !std::isinf(bodies.describe(side.body).mass);
+  };
+  Sets sets(bodies.count());
+  for (const int j : island.joints) {
+    const std::array<Side, 2>& sides = joints[index(j)].sides;
+    for (const Side& side : sides)
+      if (moves(side) && !bodies.describe(side.body).linear) return false;
+    if (moves(sides[0]) && moves(sides[1])) sets.merge(sides[0].body, sides[1].body);
+  }
+  std::vector<int> contacts(index(bodies.count()), 0);
+  for (const int j : island.joints) {
+    const Joint& joint = joints[index(j)];
+    const Side& side = moves(joint.sides[0]) ? joint.sides[0] : joint.sides[1];
+    if (!joint.tied() && moves(side) && ++contacts[index(sets.root(side.body))] > 1) return false;
+  }
+  return true;
 }
 
 bool Partition::update(std::span<const Joint> joints, int bodies) {

@@ -23,6 +23,10 @@ struct Island {
 /// first. Throws RunError when the roles go round in a circle, which choose_roles rules out.
 std::vector<Island> find_islands(std::span<const Joint> joints, int bodies);
 
+/// Whether no two contacts of an island reach each other through bodies that may move, all of which
+/// are linear.
+bool contacts_apart(const Island& island, std::span<const Joint> joints, const Bodies& bodies);
+
 /// The bodies of a run by their closed joints; found again only when those change.
 class Partition {
  public:

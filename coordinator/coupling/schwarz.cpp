@@ -36,6 +36,10 @@ Eigen::VectorXd Schwarz::inverse_of(const Eigen::VectorXd& r, std::span<const Jo
     out.segment(layout_.first[i], count) = t.apply_inverse(r.segment(layout_.first[i], count));
   }
   ties_->apply_inverse(out);
+  for (std::size_t i = 0; i < layout_.joints.size() && !ties_->empty(); ++i) {
+    const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
+    joints[index(layout_.joints[i])].how->follow(out, out.segment(layout_.first[i], count));
+  }
   return out;
 }
 
@@ -172,28 +176,49 @@ void Schwarz::lay_out(const TimeWindow& window, const Island& island, std::span<
   joints_ = joints;
 }
 
+/// What ties answer to contact is known exactly where each contact has a net of its own, of linear
+/// bodies that step alike: then a plain step is Newton's. Else it is left to secants.
+bool Schwarz::ease(const Island& island, std::span<const Joint> joints, Bodies& bodies) {
+  bool known = contacts_apart(island, joints, bodies);
+  for (std::size_t i = 0; known && i < island.joints.size(); ++i) {
+    const Joint& joint = joints[index(island.joints[i])];
+    known = joint.how->tie() != nullptr || joint.how->ease(*ties_, joint, bodies);
+  }
+  if (!known) withdraw(island, joints, bodies);
+  return known;
+}
+
+void Schwarz::withdraw(const Island& island, std::span<const Joint> joints, Bodies& bodies) {
+  for (const int j : island.joints) joints[index(j)].how->withdraw(joints[index(j)], bodies);
+}
+
+/// Plain steps contract: all joints are contact, or contact and ties. What a kernel of ties lets
+/// give way, contact only holds.
+bool Schwarz::contracts(const Island& island, std::span<const Joint> joints) const {
+  const auto contact = [&joints](int j) { return joints[index(j)].how->contracts(); };
+  const auto small_steps = [&](int j) {
+    return contact(j) || joints[index(j)].how->tie() != nullptr;
+  };
+  return std::ranges::any_of(island.joints, contact) &&
+         std::ranges::all_of(island.joints, small_steps);
+}
+
 std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, const Island& island,
                                                    std::span<const Joint> joints, Bodies& bodies) {
   lay_out(window, island, joints, bodies);
   Accelerator& accelerator = accelerator_of(island);
   ties_->begin(island, joints, layout_.first, bodies);
+  Course course;
+  course.contracts = contracts(island, joints);
+  course.tied = course.contracts && !ties_->empty();
+  course.eased = course.tied && options_.kernels && ease(island, joints, bodies);
   if (std::optional<Failed> failed = fly(island, joints, bodies)) return *failed;
   ties_->predict(x_);
   accelerator.reset(layout_key(window, layout_.first));
   foresee(accelerator, joints);
-
-  const bool contracts = std::ranges::all_of(
-      island.joints, [&joints](int j) { return joints[index(j)].how->contracts(); });
   // Bodies that others hold answer a sweep with little of what they would if they were left alone.
-  const bool shared = contracts && !island.shared.empty();
-  if (shared) accelerator.doubt();
-  const ApplyInverse plain = [this, joints](const Eigen::VectorXd& r) {
-    return relaxed(r, joints);
-  };
-  std::unique_ptr<Accelerator> careful;
-  double share = 1.0;  // of a plain step
-  double mismatch = 0.0;
-  int growths = 0;  // of the mismatch
+  course.shared = course.contracts && !island.shared.empty();
+  if (course.shared) accelerator.doubt();
   SchwarzReport report;
   for (report.iterations = 1;; ++report.iterations) {
     if (report.iterations > 1) {
@@ -202,44 +227,74 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
       }
     }
     if (std::optional<Failed> failed = sweep(island, joints, layout_, x_, bodies)) {
-      // Secants may lead to where a body has no answer; from the last iterate that had one, a part
-      // of the plain step leads to another.
       const bool led = report.iterations > 1 && report.iterations < options_.max_iterations;
-      if (!contracts || !led) return *failed;
-      accelerator.forget();
-      share *= 0.5;
-      careful = std::make_unique<Aitken>(plain, share);
-      x_ = held_ + share * plain(g_ - held_);
+      if (!course.contracts || !led) return *failed;
+      step_back(course, joints, accelerator);
       continue;
     }
     held_ = x_;
-    const double before = std::exchange(mismatch, see_images(joints, bodies, report.residual));
+    const double before =
+        std::exchange(course.mismatch, see_images(joints, bodies, report.residual));
     report.converged = report.residual.largest() <= options_.tolerance;
     report.contradiction = ties_->contradiction(g_ - x_, options_.tolerance, window.end, bodies);
     if (!report.contradiction.empty()) {
       report.converged = false;
       return report;
     }
-    const bool early = 2 * report.iterations <= options_.max_iterations;  // later it is no bad luck
     if (report.iterations >= options_.max_iterations) return report;
-    const bool doubted = shared && early && report.residual.largest() > 0.0;
+    // later it is no bad luck
+    course.early = 2 * report.iterations <= options_.max_iterations;
+    const bool doubted = course.shared && course.early && report.residual.largest() > 0.0;
     if (report.converged && !doubted) return report;
-    if (contracts && early && report.iterations > 1 &&
-        mismatch > (shared ? most_growth : 1.0) * before) {
-      accelerator.forget();
-      if (growths++ > 0 && careful == nullptr) careful = std::make_unique<Aitken>(plain, 0.5);
+    if (course.eased && !course.early) {
+      course.eased = false;
+      withdraw(island, joints, bodies);
     }
-    if (ties_->renew(bodies) || (options_.kernels && projected(joints))) {
-      x_ += inverse_of(g_ - x_, joints);
-      continue;
-    }
-    ties_->answer_alone(x_, g_);
-    Accelerator& next = careful != nullptr ? *careful : accelerator;
-    next.weigh(s_);
-    x_ = next.next(x_, g_);
+    const double most = course.shared ? most_growth : 1.0;
+    course.grows = report.iterations > 1 && course.mismatch > most * before;
+    step(course, joints, bodies, accelerator);
     // So a residual says little of how far the forces are from those that fit: the step does.
     if (report.converged && step_from(held_, joints) <= options_.tolerance) return report;
   }
+}
+
+/// Secants may lead to where a body has no answer; from the last iterate that had one, a part of
+/// the plain step leads to another.
+void Schwarz::step_back(Course& course, std::span<const Joint> joints, Accelerator& accelerator) {
+  const ApplyInverse plain = [this, joints](const Eigen::VectorXd& r) {
+    return inverse_of(r, joints);
+  };
+  accelerator.forget();
+  course.share *= 0.5;
+  if (!course.tied) course.careful = std::make_unique<Aitken>(plain, course.share);
+  x_ = held_ + course.share * plain(g_ - held_);
+}
+
+/// The next iterate, of the last one and its image.
+void Schwarz::step(Course& course, std::span<const Joint> joints, Bodies& bodies,
+                   Accelerator& accelerator) {
+  const bool newton = ties_->renew(bodies) || (options_.kernels && projected(joints));
+  if (newton || course.eased) {
+    x_ += inverse_of(g_ - x_, joints);
+    return;
+  }
+  ties_->answer_alone(x_, g_);
+  if (course.tied && course.best.left(x_, g_, course.mismatch)) {
+    accelerator.forget();
+    x_ = accelerator.next(course.best.iterate(), course.best.image());
+    return;
+  }
+  if (course.contracts && !course.tied && course.early && course.grows) {
+    accelerator.forget();
+    const ApplyInverse plain = [this, joints](const Eigen::VectorXd& r) {
+      return relaxed(r, joints);
+    };
+    if (course.growths++ > 0 && course.careful == nullptr)
+      course.careful = std::make_unique<Aitken>(plain, 0.5);
+  }
+  Accelerator& next = course.careful != nullptr ? *course.careful : accelerator;
+  next.weigh(s_);
+  x_ = next.next(x_, g_);
 }
 
 void Schwarz::keep(std::span<const Island> islands) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "coordinator/coupling/accelerator.hpp"
+#include "coordinator/coupling/best_iterate.hpp"
 #include "coordinator/coupling/bodies.hpp"
 #include "coordinator/coupling/convergence.hpp"
 #include "coordinator/coupling/islands.hpp"
@@ -71,6 +72,24 @@ class Schwarz {
   double see_images(std::span<const Joint> joints, const Bodies& bodies, FieldResiduals& residual);
   bool projected(std::span<const Joint> joints) const;
   void foresee(Accelerator& accelerator, std::span<const Joint> joints);
+  /// How the iteration of a window goes.
+  struct Course {
+    bool contracts = false, shared = false;  // contact; with bodies of several joints
+    bool tied = false;                       // beside ties
+    bool eased = false;                      // whose answer to contact is known
+    bool early = true, grows = false;        // of the last sweep
+    double share = 1.0;                      // of a plain step
+    double mismatch = 0.0;
+    int growths = 0;  // of the mismatch
+    BestIterate best;
+    std::unique_ptr<Accelerator> careful;
+  };
+  bool contracts(const Island& island, std::span<const Joint> joints) const;
+  bool ease(const Island& island, std::span<const Joint> joints, Bodies& bodies);
+  void withdraw(const Island& island, std::span<const Joint> joints, Bodies& bodies);
+  void step_back(Course& course, std::span<const Joint> joints, Accelerator& accelerator);
+  void step(Course& course, std::span<const Joint> joints, Bodies& bodies,
+            Accelerator& accelerator);
   double step_from(const Eigen::VectorXd& before, std::span<const Joint> joints);
   /// The residual, of every joint relaxed by its first factor.
   Eigen::VectorXd relaxed(Eigen::VectorXd r, std::span<const Joint> joints) const;

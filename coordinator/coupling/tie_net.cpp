@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "coordinator/coupling/banded_tie_kernel.hpp"
+#include "coordinator/coupling/kernel_bytes.hpp"
 #include "coordinator/coupling/tie_contradiction.hpp"
 
 namespace abut {
@@ -47,6 +48,7 @@ void TieNet::find_kernel(Bodies& bodies) {
   pattern_ = std::move(pattern);
   blocks_ = layout_.blocks;
   kernel_.reset();  // its memory is wanted
+  touching_.clear();
   TieKernelOptions options = options_;
   options.used = options_.used || alternating_;
   const TieKernelPlan plan = plan_tie_kernel(layout_, options, bodies);
@@ -61,6 +63,37 @@ bool TieNet::image_of_nothing(Eigen::VectorXd& g) const {
     g.segment(member.first, layout_.values_of(member)) = -member.tie->trial() / member.tie->unit();
   }
   return true;
+}
+
+bool TieNet::joins(int body) const {
+  return std::ranges::find(layout_.parts, body, &TieLayout::Part::body) != layout_.parts.end();
+}
+
+const TiedPort* TieNet::touching(const Side& side, const std::vector<std::int32_t>& points,
+                                 double most, Bodies& bodies) {
+  const auto part = std::ranges::find(layout_.parts, side.body, &TieLayout::Part::body);
+  if (empty() || !options_.used || alternating_) return nullptr;
+  if (part == layout_.parts.end() || part->stands) return nullptr;
+  const bool alike =
+      std::ranges::all_of(layout_.parts, [](const TieLayout::Part& p) { return p.steps == 1; }) &&
+      std::ranges::all_of(layout_.members, [](const TieLayout::Member& m) {
+        return m.steps == 1 && m.carried < 0 && m.tie->rows().moves.empty();
+      });
+  const PortGeometry& surface = bodies.port(side).geometry;
+  const double values = points.empty() ? static_cast<double>(surface.points.size())
+                                       : static_cast<double>(points.size()) * surface.dim;
+  if (!alike || kernel_bytes(values, layout_.blocks) > most) return nullptr;
+  auto known = std::ranges::find_if(
+      touching_, [&side](const Touching& t) { return t.body == side.body && t.port == side.port; });
+  if (known == touching_.end()) {
+    touching_.push_back({side.body, side.port, nullptr});
+    known = touching_.end() - 1;
+  }
+  const bool holds = known->answer != nullptr && known->answer->give().points == points &&
+                     known->answer->give().count() >= layout_.blocks;
+  if (!holds)
+    known->answer = std::make_unique<TiedPort>(layout_, *part, *kernel_, side.port, points, bodies);
+  return known->answer.get();
 }
 
 bool TieNet::renew(Bodies& bodies) {

@@ -10,6 +10,7 @@
 #include "coordinator/coupling/islands.hpp"
 #include "coordinator/coupling/tie_kernel.hpp"
 #include "coordinator/coupling/tie_kernel_plan.hpp"
+#include "coordinator/coupling/tied_port.hpp"
 
 namespace abut {
 
@@ -42,6 +43,13 @@ class TieNet {
   /// Where bodies answer as if the others stood still, images are what each of them makes of the
   /// others' motions: alternating Schwarz, in its parallel form.
   void answer_alone(const Eigen::VectorXd& x, Eigen::VectorXd& g) const;
+  /// What the net answers to forces on some points of a port that touches, over all of a window;
+  /// null: its body is not tied, or where bodies of the net step unlike. Good until the next window
+  /// begins. `most`: [B] that it may take.
+  const TiedPort* touching(const Side& side, const std::vector<std::int32_t>& points, double most,
+                           Bodies& bodies);
+  bool joins(int body) const;
+  const TieLayout& layout() const { return layout_; }
   /// Answers the ties' parts of a residual g - x, in the ties' units; leaves the others alone.
   void apply_inverse(Eigen::VectorXd& r) const;
 
@@ -56,6 +64,11 @@ class TieNet {
   int blocks_ = 0;            // the same
   bool alternating_ = false;
   std::unique_ptr<TieKernel> kernel_;
+  struct Touching {
+    int body = 0, port = 0;
+    std::unique_ptr<TiedPort> answer;
+  };
+  std::vector<Touching> touching_;
 };
 
 }  // namespace abut

@@ -16,6 +16,9 @@
 namespace abut {
 
 class Tie;
+class TieNet;
+class TiedPort;
+struct TieLayout;
 
 /// What the partner's response imposes on each side of a closed joint, and what is iterated: values
 /// of its ports' points and components at the substeps of a window, (substeps, width), in SI units.
@@ -63,6 +66,13 @@ class Transmission {
   virtual bool contracts() const { return false; }
   /// True when motion is overwritten on a side: that does work of which nobody knows.
   virtual bool overwrites_motion() const { return false; }
+  /// The ties of bodies on either side have laid out their iterates: what they answer to contact.
+  /// False: that is not known.
+  virtual bool ease(TieNet&, const Joint&, Bodies&) { return false; }
+  /// Their answer is not told any more.
+  virtual void withdraw(const Joint&, Bodies&) {}
+  /// The forces of ties change by their parts of a stacked vector: adds what that does to g - x.
+  virtual void follow(const Eigen::VectorXd&, Eigen::Ref<Eigen::VectorXd>) const {}
   /// Itself where it is one of a net's ties, which are answered together (TieNet).
   virtual Tie* tie() { return nullptr; }
   /// True when the sides must be advanced one after the other, the kinematic one first.

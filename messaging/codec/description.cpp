@@ -8,7 +8,7 @@ namespace abut {
 namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
-static_assert(sizeof(Capabilities) == 8 * sizeof(bool));
+static_assert(sizeof(Capabilities) == 9 * sizeof(bool));
 static_assert(sizeof(Port) == sizeof(std::string) + sizeof(PortGeometry) + sizeof(double));
 static_assert(sizeof(Member) ==
               sizeof(std::string) + sizeof(double) + sizeof(std::vector<std::int32_t>));
@@ -22,6 +22,7 @@ void encode(const Capabilities& from, v1::Capabilities& to) {
   to.set_impedance(from.impedance);
   to.set_yielding(from.yielding);
   to.set_friction(from.friction);
+  to.set_neighbours(from.neighbours);
 }
 
 Capabilities decode(const v1::Capabilities& from) {
@@ -32,7 +33,8 @@ Capabilities decode(const v1::Capabilities& from) {
           .kernel = from.kernel(),
           .impedance = from.impedance(),
           .yielding = from.yielding(),
-          .friction = from.friction()};
+          .friction = from.friction(),
+          .neighbours = from.neighbours()};
 }
 
 void decode_port(const v1::Port& from, const Description& body, const FieldPath& path, Port& to) {

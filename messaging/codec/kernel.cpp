@@ -103,14 +103,17 @@ void encode(const Yielding& from, v1::Yields& to) {
   encode(from.kernel, *to.mutable_kernel());
 }
 
-void decode(const v1::Yields& from, const Partners& met, Yielding& to) {
+void decode(const v1::Yields& from, const Description& body, const Partners& met, Yielding& to) {
   const FieldPath path{nullptr, "yields"};
   to.port = position(from.port(), met.size(), FieldPath{&path, "port"});
   const std::vector<SurfaceSize>& partners = met[index(to.port)];
-  to.partner = position(from.partner(), partners.size(), FieldPath{&path, "partner"});
+  to.partner = from.partner();
+  const bool own = to.partner == own_surface;
+  if (!own) position(to.partner, partners.size(), FieldPath{&path, "partner"});
   const FieldPath kernel{&path, "kernel"};
   if (!from.has_kernel()) kernel.fail("is missing");
-  const SurfaceSize& surface = partners[index(to.partner)];
+  const SurfaceSize surface =
+      own ? size_of(body.ports[index(to.port)].geometry) : partners[index(to.partner)];
   to.kernel.points.assign(from.kernel().points().begin(), from.kernel().points().end());
   check_points(to.kernel.points, surface.points, FieldPath{&kernel, "points"});
   const int width = to.kernel.points.empty()

@@ -53,6 +53,8 @@ class PortContact : public Contact {
   virtual void see_gaps(std::size_t, const SeeGap&) const {}
   /// Whether an obstacle before the port may give way by a kernel.
   virtual bool takes(std::size_t port, const PortKernel& kernel) const = 0;
+  /// How bodies that are tied to this one give way under forces on the port.
+  virtual void ease(std::size_t, const PortKernel&) {}
 };
 
 }  // namespace abut

@@ -28,7 +28,7 @@ SurfaceContact::SurfaceContact(std::vector<Surface> surfaces, const std::string&
     const int dim = surface.geometry->dim;
     for (const std::int32_t node : surface.nodes)
       for (int i = 0; i < dim; ++i) dofs_.push_back(node * dim + i);
-    surfaces_.push_back({std::move(surface), {}, {}, {}, 0.0, 0});
+    surfaces_.push_back({std::move(surface), {}, {}, {}, 0.0, 0, {}});
   }
   std::ranges::sort(dofs_);
   dofs_.erase(std::unique(dofs_.begin(), dofs_.end()), dofs_.end());
@@ -122,6 +122,7 @@ void SurfaceContact::impose(const Window& window) {
     std::ranges::fill(pressed(m), 0.0);
     std::ranges::fill(reacted(m), 0.0);
   }
+  begin_neighbours(window);
 }
 
 bool SurfaceContact::acts() const {
@@ -148,6 +149,8 @@ void SurfaceContact::hold(const std::vector<double>&, std::vector<double>& now) 
 
 void SurfaceContact::settle(std::vector<double>& forces) {
   hold(forces, forces);
+  for (Own& own : surfaces_)
+    if (own.neighbours.act()) own.neighbours.settle(pressing(own));
   for (std::size_t k = 0; k < meetings_.size(); ++k)
     if (meetings_[k].law.rubs() && meetings_[k].obstacle->acts()) settle_friction(k);
 }
@@ -195,6 +198,7 @@ void SurfaceContact::aim(int i, const std::vector<double>&, const std::vector<do
     own.begin = own.surface.geometry->points;
     for (std::size_t v = 0; v < own.begin.size(); ++v)
       own.begin[v] += places[own.surface.first + v];
+    own.neighbours.aim(i);
   }
   for (std::size_t k = 0; k < meetings_.size(); ++k) {
     Meeting& m = meetings_[k];
@@ -360,7 +364,7 @@ bool SurfaceContact::move(const Vector& free, Compliance& give) {
   return true;
 }
 
-const Vector* SurfaceContact::solve(double time, const Vector& free, Compliance& give) {
+const Vector* SurfaceContact::solve_rows(double time, const Vector& free, Compliance& give) {
   missing_.clear();
   if (looks_ == 0 || time != time_) {
     time_ = time;

@@ -7,6 +7,7 @@
 
 #include "subdomain_solver/contact/port_contact.hpp"
 #include "subdomain_solver/contact/surface_obstacle.hpp"
+#include "subdomain_solver/contact/tied_neighbours.hpp"
 #include "subdomain_solver/fe/cell_kernel.hpp"
 #include "subdomain_solver/solve/friction_forces.hpp"
 #include "subdomain_solver/solve/unilateral_forces.hpp"
@@ -38,6 +39,7 @@ class SurfaceContact final : public PortContact {
              std::vector<double>& out) const override;
   const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override;
   bool takes(std::size_t port, const PortKernel& kernel) const override;
+  void ease(std::size_t port, const PortKernel& kernel) override;
   double dissipated(std::size_t port, std::size_t partner) const override;
   double dissipated() const override;
   void see_gaps(std::size_t port, const SeeGap& see) const override;
@@ -54,6 +56,7 @@ class SurfaceContact final : public PortContact {
     std::vector<double> begin;  // [m] (points, dim) where the substep began
     double travel = 0.0;        // [m] from there to the free pose, at most
     std::size_t met = 0;        // partners that have meetings
+    TiedNeighbours neighbours;
   };
   struct Meeting {
     std::unique_ptr<SurfaceObstacle> obstacle;
@@ -69,6 +72,10 @@ class SurfaceContact final : public PortContact {
     double factor;
   };
 
+  class Eased;
+  const Vector* solve_rows(double time, const Vector& free, Compliance& give);
+  void begin_neighbours(const Window& window);
+  std::span<const double> pressing(const Own& own);
   void meet(const Window& window);
   void begin_forces();
   void pose(const Vector& q);
@@ -124,6 +131,8 @@ class SurfaceContact final : public PortContact {
   FrictionBuffers friction_buffers_;
   std::string missing_;
   Vector force_, last_, moved_;  // [N], [N], [m] (coordinates)
+  Vector eased_;                 // [m] (coordinates) free places, as tied neighbours let them be
+  std::vector<double> sum_;      // [N] (values) on a surface
 };
 
 }  // namespace abut

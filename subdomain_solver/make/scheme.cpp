@@ -91,7 +91,8 @@ struct SchemeMaker {
     return {
         std::make_unique<ImplicitDynamics>(
             problem,
-            ImplicitDynamics::Options{weights, mass, newton(), joined && weights.is_trapezoidal()},
+            ImplicitDynamics::Options{weights, mass, newton(), joined && weights.is_trapezoidal(),
+                                      joined && weights.gamma > 0.5},
             linear(Pivots::every)),
         step, std::numeric_limits<double>::infinity(), mass,
         fmt::format("{}, step {:g} s", words, step)};

@@ -25,6 +25,9 @@ class ImplicitDynamics final : public Integrator {
     // Of the trapezoidal rule alone: unknown is the sum of the accelerations at both ends, and none
     // is kept, so that forces may jump from step to step [M.105].
     bool sums = false;
+    // Of weights that damp what is infinitely stiff: accelerations are kept, and do not jump where
+    // forces of joined sides do, which are constant in a step [M.105].
+    bool steady = false;
   };
 
   ImplicitDynamics(const Problem& problem, const Options& options,
@@ -34,6 +37,7 @@ class ImplicitDynamics final : public Integrator {
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
   [[nodiscard]] std::optional<Failed> jump(Motion& motion, double time,
                                            const Vector& change) override;
+  bool joins_steadily() const override { return options_.steady; }
   double compliance(const Motion& motion, int dof) override;
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
   double kinetic(const Motion& motion) const override;

@@ -26,6 +26,8 @@ class Integrator {
   [[nodiscard]] virtual std::optional<Failed> jump(Motion&, double, const Vector&) {
     return std::nullopt;
   }
+  /// Whether accelerations are kept that forces of joined sides have no part in at the begin.
+  virtual bool joins_steadily() const { return false; }
   /// Quasi-static compliance of a coordinate without mass [m/N]; 0: it has mass.
   virtual double compliance(const Motion&, int) { return 0.0; }
   /// [m/s^2] (dofs) at a time of the motion, prescribed coordinates included, as the balance of

@@ -245,11 +245,11 @@ TEST(Shapes, KernelsOfPatternsComeBackAsTheyWereSent) {
     EXPECT_TRUE(bytes_of<v1::PortKernel>(got) == bytes_of<v1::PortKernel>(kernel));
     EXPECT_EQ(got.count(), count);
 
-    if (talk.met[0].empty()) continue;
-    const int wide = talk.met[0][0].width();
-    const Yielding yielding{0, 0, dice.kernel(wide, wide, count)};
+    const bool own = talk.met[0].empty() || seed % 2 == 0;
+    const int wide = own ? size_of(talk.body.ports[0].geometry).width() : talk.met[0][0].width();
+    const Yielding yielding{0, own ? own_surface : 0, dice.kernel(wide, wide, count)};
     Yielding told;
-    decode(parsed<v1::Yields>(bytes_of<v1::Yields>(yielding)), talk.met, told);
+    decode(parsed<v1::Yields>(bytes_of<v1::Yields>(yielding)), talk.body, talk.met, told);
     EXPECT_TRUE(bytes_of<v1::Yields>(told) == bytes_of<v1::Yields>(yielding));
   }
 }
@@ -464,7 +464,7 @@ TEST(Shapes, SurfacesAndKernelsThatDoNotFitAreRefusedByFieldName) {
     encode(Yielding{0, 0, Dice(1).kernel(8, 8, 2)}, wire);
     spoil(wire);
     Yielding got;
-    return refusal([&] { decode(wire, plane.met, got); });
+    return refusal([&] { decode(wire, plane.body, plane.met, got); });
   };
   EXPECT_EQ(yields_refused([](v1::Yields&) {}), "accepted");
   EXPECT_EQ(yields_refused([](v1::Yields& y) { y.set_partner(1); }),

@@ -1,0 +1,257 @@
+// Goal: contact does not know whether a body is whole or of tied parts. Oracle: the undivided body,
+// step by step the same equations where all bodies are linear and implicit.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/solid_scenes.hpp"
+
+namespace abut {
+namespace {
+
+/// A unit block of cells above a base, in parts: cut along x and y, the lowest row of them whole
+/// where it is a layer.
+struct Parts {
+  std::string name;
+  std::vector<int> across, up;  // cells before which it is cut, ends included
+  bool layer = false;
+};
+
+struct Fall {
+  int dim = 2, cells = 6;
+  std::string scheme = "newmark", law = "linear_elastic";
+  std::string base = "elastic";  // or rigid
+  std::string contact = "";
+  double step = 0.1;
+  int steps = 1;
+  double end = 3.0;
+  std::vector<double> velocity = {0.003, -0.01};
+  std::string load = {};
+  double tolerance = 1.0e-9;
+
+  std::string integrator() const {
+    const bool damped = scheme == "generalized_alpha";
+    return fmt::format("{}: {{step: {}{}}}", scheme, number(step),
+                       damped ? ", spectral_radius: 0.0" : "");
+  }
+
+  std::string part(const std::string& called, std::vector<double> from, std::vector<double> lengths,
+                   std::vector<int> n, const std::vector<std::string>& ports) const {
+    if (dim == 3) {
+      from.push_back(0.0);
+      lengths.push_back(1.0);
+      n.push_back(cells / 2);
+    }
+    std::vector<std::string> sides;
+    for (const std::string& side : ports) sides.push_back(fmt::format("{0}: {{side: {0}}}", side));
+    return fmt::format(
+        "  {}:\n    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n    material: {{{}}}\n"
+        "    integrator: {{{}}}\n    initial: {{position: {}, velocity: {}}}\n"
+        "    ports: {{{}}}\n{}",
+        called, dim, block_mesh(lengths, n), unit_law(law, 0.25), integrator(),
+        components(from, dim), components(velocity, dim), fmt::join(sides, ", "), load);
+  }
+
+  std::string below() const {
+    const std::string where = components({-0.5, -1.0001, -0.5}, dim);
+    const auto mesh = [this](int n) {
+      return dim == 2 ? block_mesh({2.0, 1.0}, {n, n}) : block_mesh({2.0, 1.0, 2.0}, {n, n, n});
+    };
+    if (base == "rigid")
+      return fmt::format(
+          "  base:\n    model: {{rigid_tool: {{dimension: {}, mesh: {{{}}}}}}}\n"
+          "    initial: {{position: {}}}\n    ports: {{top: {{side: top}}}}\n",
+          dim, mesh(1), where);
+    return fmt::format(
+        "  base:\n    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n"
+        "    material: {{{}}}\n    integrator: {{{}}}\n"
+        "    initial: {{position: {}}}\n    ports: {{top: {{side: top}}}}\n"
+        "    constraints: {{ground: {{on: bottom, fixed: true}}}}\n",
+        dim, mesh(dim == 2 ? 4 : 2), unit_law("linear_elastic", 0.25), integrator(), where);
+  }
+
+  std::string text(const Parts& parts) const {
+    std::string bodies, ties, touching;
+    const double h = 1.0 / cells;
+    for (std::size_t j = 0; j + 1 < parts.up.size(); ++j) {
+      const bool whole = parts.layer && j == 0;
+      const std::vector<int> across = whole ? std::vector<int>{0, cells} : parts.across;
+      for (std::size_t i = 0; i + 1 < across.size(); ++i) {
+        const int nx = across[i + 1] - across[i], ny = parts.up[j + 1] - parts.up[j];
+        std::vector<std::string> ports;
+        const std::string called = fmt::format("p{}{}", i, j);
+        if (i > 0) ports.push_back("left");
+        if (i + 2 < across.size()) {
+          ports.push_back("right");
+          ties += fmt::format("  x{}{}: {{sides: [{}.right, p{}{}.left], tied: {{}}}}\n", i, j,
+                              called, i + 1, j);
+        }
+        ports.push_back("bottom");
+        if (j > 0)
+          ties += fmt::format("  y{}{}: {{sides: [{}.bottom, p{}{}.top], tied: {{}}}}\n", i, j,
+                              called, parts.layer && j == 1 ? 0 : i, j - 1);
+        if (j + 2 < parts.up.size()) ports.push_back("top");
+        if (j == 0)
+          touching += fmt::format("  touch{}: {{sides: [{}.bottom, base.top], contact: {{{}}}}}\n",
+                                  i, called, contact);
+        bodies += part(called, {across[i] * h, parts.up[j] * h}, {nx * h, ny * h}, {nx, ny}, ports);
+      }
+    }
+    return fmt::format(
+        "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\n"
+        "bodies:\n{}{}interfaces:\n{}{}schwarz: {{tolerance: {}}}\n",
+        number(end), number(steps * step), bodies, below(), ties, touching, number(tolerance));
+  }
+
+  std::unique_ptr<RunResult> run(const Parts& parts) const {
+    return run_document(Document::from_text("test", text(parts)));
+  }
+};
+
+double sum(const RunResult& run, const std::string& measure) {
+  double all = 0.0;
+  for (const auto& [name, value] : run.measures.values)
+    if (name.starts_with("body.p") && name.ends_with("." + measure)) all += value;
+  return all;
+}
+
+const Parts whole{"whole", {0, 6}, {0, 6}};
+
+/// Beside a port that touches: a row of cells away, three, two of them, and with points where three
+/// parts meet.
+std::vector<Parts> layers() {
+  return {{"one row", {0, 6}, {0, 1, 6}},
+          {"three rows", {0, 6}, {0, 3, 6}},
+          {"slices", {0, 6}, {0, 1, 3, 6}},
+          {"three meet", {0, 3, 6}, {0, 1, 6}, true}};
+}
+
+void expect_same(const RunResult& parts, const RunResult& one, double share) {
+  ASSERT_TRUE(one.completed());
+  ASSERT_TRUE(parts.completed()) << parts.events.back().text;
+  const double impulse = one.measure("contact.touch0.impulse");
+  EXPECT_GT(impulse, 0.0);
+  EXPECT_NEAR(parts.measure("contact.touch0.impulse"), impulse, share * impulse);
+  const double momentum = std::abs(one.measure("body.p00.momentum.y"));
+  EXPECT_NEAR(sum(parts, "momentum.x"), one.measure("body.p00.momentum.x"), share * momentum);
+  EXPECT_NEAR(sum(parts, "momentum.y"), one.measure("body.p00.momentum.y"), share * momentum);
+  const double energy =
+      one.measure("body.p00.energy.kinetic") + one.measure("body.p00.energy.stored");
+  for (const char* measure : {"energy.kinetic", "energy.stored"})
+    EXPECT_NEAR(sum(parts, measure), one.measure(fmt::format("body.p00.{}", measure)),
+                share * energy)
+        << measure;
+}
+
+// Newton's method leaves 1e-9 of the forces in each of some 30 steps, sweeps 1e-9 of what moves.
+constexpr double same = 1.0e-7;
+
+TEST(TiedContact, ImplicitPartsTouchAsTheWhole) {
+  for (const int dim : {2, 3}) {
+    for (const char* base : {"elastic", "rigid"}) {
+      for (const auto& [scheme, step, steps] :
+           {std::tuple("newmark", 0.1, 1), std::tuple("newmark", 0.05, 5),
+            std::tuple("generalized_alpha", 0.1, 1), std::tuple("generalized_alpha", 1.0, 1)}) {
+        Fall fall{.dim = dim, .scheme = scheme, .base = base, .step = step, .steps = steps};
+        const auto one = fall.run(whole);
+        for (const Parts& parts : layers()) {
+          SCOPED_TRACE(
+              fmt::format("{}D on {}: {} {} x {}, {}", dim, base, scheme, step, steps, parts.name));
+          const auto divided = fall.run(parts);
+          expect_same(*divided, *one, same);
+          // A sweep finds the force between parts, a second one contact's, a third that both hold.
+          EXPECT_LE(divided->measure("schwarz.iterations_max"), 3.0);
+        }
+      }
+    }
+  }
+}
+
+/// Their steps are cut otherwise where they are tied: not the same to round-off.
+TEST(TiedContact, ExplicitPartsTouchAsTheWhole) {
+  for (const int dim : {2, 3}) {
+    for (const char* base : {"elastic", "rigid"}) {
+      for (const int steps : {1, 5}) {
+        Fall fall{
+            .dim = dim, .scheme = "central_difference", .base = base, .step = 0.05, .steps = steps};
+        const auto one = fall.run(whole);
+        for (const Parts& parts : layers()) {
+          SCOPED_TRACE(fmt::format("{}D on {}: {} steps, {}", dim, base, steps, parts.name));
+          const auto divided = fall.run(parts);
+          expect_same(*divided, *one, 2.0e-2);
+          EXPECT_LE(divided->measure("schwarz.iterations_max"), 3.0);
+        }
+      }
+    }
+  }
+}
+
+/// Pressed and pushed sideways, by steps of some transits of the block: some rows slide, and stop.
+TEST(TiedContact, FrictionIsThatOfTheWhole) {
+  for (const int dim : {2, 3}) {
+    Fall fall{.dim = dim,
+              .scheme = "generalized_alpha",
+              .contact = "friction: 0.3",
+              .step = 2.0,
+              .end = 40.0,
+              .velocity = {0.0, 0.0}};
+    fall.load = fmt::format("    loads: {{push: {{acceleration: [{}]}}}}\n",
+                            dim == 2 ? "\"2e-3*min(t/10, 1)\", \"-0.01*min(t/10, 1)\""
+                                     : "\"2e-3*min(t/10, 1)\", \"-0.01*min(t/10, 1)\", \"0\"");
+    const auto one = fall.run(whole);
+    for (const Parts& parts : layers()) {
+      SCOPED_TRACE(fmt::format("{}D {}", dim, parts.name));
+      const auto divided = fall.run(parts);
+      ASSERT_TRUE(divided->completed()) << divided->events.back().text;
+      for (const char* measure : {"body.base.ground.reaction.x", "body.base.ground.reaction.y"})
+        EXPECT_NEAR(divided->measure(measure), one->measure(measure), 0.01 * same) << measure;
+      const double heat = one->measure("contact.touch0.dissipated");
+      EXPECT_GT(heat, 0.0);
+      EXPECT_NEAR(divided->measure("contact.touch0.dissipated"), heat, same * heat);
+      EXPECT_LE(divided->measure("schwarz.iterations_mean"), 3.0);
+    }
+  }
+}
+
+/// Laws that are not linear, or contacts that reach each other through the net, are left to
+/// secants, which go back where they lead away.
+TEST(TiedContact, SecantsFindWhatIsNotKnown) {
+  for (const char* scheme : {"newmark", "central_difference"}) {
+    Fall fall{
+        .scheme = scheme, .law = "neo_hookean", .base = "rigid", .step = 0.05, .tolerance = 1.0e-6};
+    fall.velocity = {0.01, -0.05};
+    const auto one = fall.run(whole);
+    for (const Parts& parts : layers()) {
+      SCOPED_TRACE(fmt::format("{} {}", scheme, parts.name));
+      const auto divided = fall.run(parts);
+      expect_same(*divided, *one, scheme[0] == 'n' ? 1.0e-4 : 2.0e-2);
+      EXPECT_LE(divided->measure("schwarz.iterations_mean"), 4.0);
+    }
+    Fall two{.scheme = scheme, .base = "rigid", .step = 0.05, .tolerance = 1.0e-6};
+    const auto beside = two.run({"two contacts", {0, 3, 6}, {0, 3, 6}});
+    ASSERT_TRUE(beside->completed()) << beside->events.back().text;
+    EXPECT_LE(beside->measure("schwarz.iterations_mean"), 3.0);
+  }
+}
+
+/// Parts that nothing holds turn far under the least force that strains them, in a long step.
+TEST(TiedContact, LightLoosePartsHaveKernels) {
+  Fall fall{.scheme = "generalized_alpha",
+            .law = "saint_venant_kirchhoff",
+            .base = "rigid",
+            .step = 1.0e3,
+            .end = 3.0e3,
+            .tolerance = 1.0e-6};
+  fall.velocity = {0.0, 1.0e-6};
+  const auto run = fall.run(layers()[3]);
+  ASSERT_TRUE(run->completed()) << run->events.back().text;
+  EXPECT_NEAR(sum(*run, "momentum.y"), 1.0e-6, 1.0e-14);
+}
+
+}  // namespace
+}  // namespace abut
