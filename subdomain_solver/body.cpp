@@ -179,6 +179,7 @@ std::optional<Failed> Body::walk(const Window& window, const Visit& visit) {
 /// What partners press with at the window's end is gone by the end of the next substep. A look that
 /// fails has nothing to tell.
 void Body::look_ahead(const Advance& request, Response& response) {
+  if (!interior_->looks_ahead()) return;
   for (std::size_t p = 0; p < ports_.size(); ++p)
     if (request.boundary[p].obstructed() && ports_[p].width > 1) return;
   const double begin = request.window.end;

@@ -53,6 +53,8 @@ class Interior {
   /// Displacements (substeps, values of all ports) [m] at the ends of the substeps of a window,
   /// told without going there. False: only a walk tells them.
   [[nodiscard]] virtual bool peek(const Window&, std::vector<double>&) { return false; }
+  /// Whether where the body would go without its partners is worth the way.
+  virtual bool looks_ahead() const { return true; }
   /// [N] of the last substep, along Description::loose motions.
   virtual std::span<const double> unbalanced() const { return {}; }
   /// By the present tangent of a body without inertia: [m] by which a force [N] on the ports moves

@@ -64,6 +64,7 @@ class SolidInterior final : public Interior {
   std::optional<Failed> begin(const Window& window) override;
   std::optional<Failed> step(const Window& window, int i) override;
   bool peek(const Window& window, std::vector<double>& u) override;
+  bool looks_ahead() const override;
   std::span<const double> unbalanced() const override;
   bool give(std::span<const double> force, const Eigen::VectorXd& place, std::vector<double>& moved,
             Eigen::VectorXd& left) override;

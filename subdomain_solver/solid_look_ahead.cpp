@@ -1,6 +1,7 @@
 // Where ports would be after a window, told without going there.
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/index.hpp"
 #include "subdomain_solver/solid_interior.hpp"
@@ -8,6 +9,12 @@
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
+
+/// Let go of, material with a history would unload at the port: implicit bodies take the way there by
+/// Newton's method or by a tangent that is not that of loading, and neither saves a call.
+bool SolidInterior::looks_ahead() const {
+  return state_.motion.history.empty() || std::isfinite(description_.stable_step);
+}
 
 bool SolidInterior::peek(const Window& window, std::vector<double>& u) {
   const auto presses = [](const BoundaryData& on) {
