@@ -43,7 +43,6 @@ void QuasiNewton::reset(std::uint64_t key) {
   if (key != key_) earlier_.clear();  // secants of another window length are noise
   key_ = key;
   updates_ = 0;
-  foreseen_ = false;
   current_.clear();
   previous_residual_.resize(0);
 }
@@ -97,12 +96,6 @@ Eigen::VectorXd QuasiNewton::next(const Eigen::VectorXd& iterate, const Eigen::V
   return iterate + (secants.images - secants.residuals) * weights + inverse_(rest);
 }
 
-/// A window that was foreseen says nothing of how far the inverse alone would have come.
-Eigen::VectorXd QuasiNewton::foresee(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) {
-  foreseen_ = true;
-  return next(iterate, image);
-}
-
 void QuasiNewton::forget() {
   current_.clear();
   earlier_.clear();
@@ -110,7 +103,7 @@ void QuasiNewton::forget() {
 }
 
 void QuasiNewton::accept() {
-  needed_ = updates_ > exact_enough_ || foreseen_;
+  needed_ = updates_ > exact_enough_;
   if (reuse_ == 0 || current_.empty()) return;
   earlier_.push_front(std::move(current_));
   current_.clear();

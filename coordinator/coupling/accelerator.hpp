@@ -23,12 +23,6 @@ class Accelerator {
   virtual void reset(std::uint64_t key) = 0;
   /// x_k, G(x_k) -> x_{k+1}
   virtual Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) = 0;
-  /// Whether it knows more of a window than its plain step, so that an image that is known before
-  /// the first sweep is worth a `foresee`, which is `next` of it.
-  virtual bool recalls() const { return false; }
-  virtual Eigen::VectorXd foresee(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) {
-    return next(iterate, image);
-  }
   /// In this window the inverse alone is not enough: what earlier ones have learned counts at once.
   virtual void doubt() {}
   /// What was learned led away from the solution: it holds no longer.
@@ -93,8 +87,6 @@ class QuasiNewton final : public Accelerator {
   QuasiNewton(Inverse inverse, int reuse, double filter, int exact_enough);
   void reset(std::uint64_t key) override;
   Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) override;
-  bool recalls() const override { return needed_ && !earlier_.empty(); }
-  Eigen::VectorXd foresee(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) override;
   void doubt() override { needed_ = true; }
   void forget() override;
   void accept() override;
@@ -113,7 +105,6 @@ class QuasiNewton final : public Accelerator {
   double filter_;
   int exact_enough_;
   bool needed_ = false;  // the last window was not finished by the inverse alone
-  bool foreseen_ = false;
   std::uint64_t key_ = 0;
   int updates_ = 0;
   std::deque<Secant> current_;              // newest first

@@ -143,18 +143,6 @@ double Schwarz::step_from(const Eigen::VectorXd& before, std::span<const Joint> 
   return most;
 }
 
-/// Bodies that nothing but ties joins have told what no force does: a sweep that is known already,
-/// of which secants of earlier windows make more than kernels alone.
-void Schwarz::foresee(Accelerator& accelerator, std::span<const Joint> joints) {
-  const bool ties_alone = std::ranges::all_of(
-      layout_.joints, [&joints](int j) { return joints[index(j)].how->tie() != nullptr; });
-  if (!ties_alone || !accelerator.recalls() || !ties_->image_of_nothing(g_)) return;
-  for (std::size_t i = 0; i < layout_.joints.size(); ++i)
-    joints[index(layout_.joints[i])].how->scales(part(s_, i));
-  accelerator.weigh(s_);
-  x_ = accelerator.foresee(Eigen::VectorXd::Zero(x_.size()), g_);
-}
-
 bool Schwarz::projected(std::span<const Joint> joints) const {
   return std::ranges::any_of(layout_.joints,
                              [&joints](int j) { return joints[index(j)].how->projects(); });
@@ -215,7 +203,6 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   if (std::optional<Failed> failed = fly(island, joints, bodies)) return *failed;
   ties_->predict(x_);
   accelerator.reset(layout_key(window, layout_.first));
-  foresee(accelerator, joints);
   // Bodies that others hold answer a sweep with little of what they would if they were left alone.
   course.shared = course.contracts && !island.shared.empty();
   if (course.shared) accelerator.doubt();

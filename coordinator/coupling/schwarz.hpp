@@ -71,7 +71,6 @@ class Schwarz {
   /// compared.
   double see_images(std::span<const Joint> joints, const Bodies& bodies, FieldResiduals& residual);
   bool projected(std::span<const Joint> joints) const;
-  void foresee(Accelerator& accelerator, std::span<const Joint> joints);
   /// How the iteration of a window goes.
   struct Course {
     bool contracts = false, shared = false;  // contact; with bodies of several joints

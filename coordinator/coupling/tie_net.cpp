@@ -56,15 +56,6 @@ void TieNet::find_kernel(Bodies& bodies) {
                         : make_dense_tie_kernel(layout_, plan.lags, bodies);
 }
 
-bool TieNet::image_of_nothing(Eigen::VectorXd& g) const {
-  if (empty() || alternating_) return false;
-  for (const TieLayout::Member& member : layout_.members) {
-    if (member.carried >= 0 || member.tie->trial().size() == 0) return false;
-    g.segment(member.first, layout_.values_of(member)) = -member.tie->trial() / member.tie->unit();
-  }
-  return true;
-}
-
 bool TieNet::joins(int body) const {
   return std::ranges::find(layout_.parts, body, &TieLayout::Part::body) != layout_.parts.end();
 }

@@ -37,9 +37,6 @@ class TieNet {
   bool empty() const { return layout_.empty(); }
   /// First guesses, where all bodies have told how they would part.
   void predict(Eigen::VectorXd& x) const;
-  /// The ties' parts of the image of no forces at all, where all bodies have told how they would
-  /// part. False: they have not.
-  bool image_of_nothing(Eigen::VectorXd& g) const;
   /// Where bodies answer as if the others stood still, images are what each of them makes of the
   /// others' motions: alternating Schwarz, in its parallel form.
   void answer_alone(const Eigen::VectorXd& x, Eigen::VectorXd& g) const;
