@@ -24,6 +24,10 @@ constexpr double stiffest = 1.0e-18;
 /// count: no symmetric kernel comes near it.
 constexpr double lopsided = 1.0e-6;
 
+/// [rad] about, by which ports turn before kernels follow; and of their entries, so many that
+/// nothing is noticed of the time it takes.
+constexpr double noticed_turn = 5.0e-3, most_turned = 1.0e6;
+
 /// [m/N] (steps) of (width, width): at the end of a step after a force in the first one.
 using Responses = std::vector<Eigen::MatrixXd>;
 
@@ -44,12 +48,14 @@ class DenseTieKernel final : public TieKernel {
   }
   Eigen::VectorXd invert(const Eigen::VectorXd& jump) const override;
   bool renew(const TieLayout& layout, Bodies& bodies) override;
+  void turn(const TieLayout& layout) override;
   void find_blocks(const TieLayout& layout, int lags);
   void find_scale(const TieLayout& layout);
   void damp(const TieLayout& layout);
   bool redundant() const override { return inverse_.size() > 0; }
 
-  std::vector<Responses> responses_;     // by part; kept where bodies bend
+  std::vector<Responses> responses_;     // by part; kept where bodies bend or turn
+  std::vector<Eigen::MatrixXd> turns_;   // (all ends of parts that turn) that blocks are made for
   std::vector<Eigen::MatrixXd> blocks_;  // [m/N] by lag
   // Of the first block: factors, or where rows are redundant the inverse of least size.
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
@@ -109,13 +115,53 @@ void add(const TieLayout& layout, const TieLayout::Part& part, const Responses& 
   }
 }
 
+/// Of a part whose ports have turned, in their order from the first one on.
+Responses turned(const TieLayout& layout, const TieLayout::Part& part, Responses responses,
+                 std::span<const Eigen::MatrixXd> turns) {
+  for (std::size_t e = 0; e < part.ends.size(); ++e) {
+    const TieLayout::End& end = part.ends[e];
+    const Eigen::MatrixXd& turn = turns[e];
+    const Eigen::Index dim = turn.rows();
+    for (Eigen::MatrixXd& answer : responses) {
+      for (Eigen::Index k = 0; k < layout.members[end.member].width; k += dim) {
+        answer.middleRows(end.first + k, dim) =
+            (turn * answer.middleRows(end.first + k, dim)).eval();
+        answer.middleCols(end.first + k, dim) =
+            (answer.middleCols(end.first + k, dim) * turn.transpose()).eval();
+      }
+    }
+  }
+  return responses;
+}
+
 DenseTieKernel::DenseTieKernel(const TieLayout& layout, int lags, Bodies& bodies) {
   for (const TieLayout::Part& part : layout.parts)
     responses_.push_back(part.stands ? Responses()
                                      : responses_of(layout, part, part.steps * lags, bodies));
-  if (std::ranges::any_of(layout.parts, &TieLayout::Part::light)) rounding_ = light;
+  if (std::ranges::any_of(layout.parts, &TieLayout::Part::turns)) rounding_ = light;
   find_blocks(layout, lags);
-  if (std::ranges::none_of(layout.parts, &TieLayout::Part::bends)) responses_.clear();
+  const double entries = static_cast<double>(lags) * static_cast<double>(blocks_[0].size());
+  const bool turns =
+      entries <= most_turned && std::ranges::any_of(layout.parts, &TieLayout::Part::turns);
+  if (!turns && std::ranges::none_of(layout.parts, &TieLayout::Part::bends)) responses_.clear();
+}
+
+/// Undeformed bodies that have turned by an angle would be wrong by as much.
+void DenseTieKernel::turn(const TieLayout& layout) {
+  if (responses_.empty()) return;
+  std::vector<Eigen::MatrixXd> now;
+  for (const TieLayout::Part& part : layout.parts)
+    for (const TieLayout::End& end : part.ends)
+      if (part.turns) now.push_back(layout.members[end.member].tie->turn(end.side));
+  double most = 0.0;
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    if (now[k].size() == 0) return;
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(now[k].rows(), now[k].cols());
+    most = std::max(most, (now[k] - (turns_.empty() ? one : turns_[k])).norm());
+  }
+  if (most <= noticed_turn) return;
+  turns_ = std::move(now);
+  find_blocks(layout, lags());
 }
 
 bool DenseTieKernel::renew(const TieLayout& layout, Bodies& bodies) {
@@ -186,17 +232,21 @@ void DenseTieKernel::damp(const TieLayout& layout) {
 }
 
 void DenseTieKernel::find_blocks(const TieLayout& layout, int lags) {
-  blocks_.clear();
-  for (int lag = 0; lag < lags; ++lag) {
-    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(layout.size, layout.size);
-    for (std::size_t p = 0; p < layout.parts.size(); ++p) {
-      const TieLayout::Part& part = layout.parts[p];
-      if (part.stands) continue;
+  blocks_.assign(index(lags), Eigen::MatrixXd::Zero(layout.size, layout.size));
+  std::span<const Eigen::MatrixXd> turns = turns_;
+  for (std::size_t p = 0; p < layout.parts.size(); ++p) {
+    const TieLayout::Part& part = layout.parts[p];
+    if (part.stands) continue;
+    Responses now;
+    if (part.turns && !turns.empty()) {
+      now = turned(layout, part, responses_[p], turns);
+      turns = turns.subspan(part.ends.size());
+    }
+    const Responses& responses = now.empty() ? responses_[p] : now;
+    for (int lag = 0; lag < lags; ++lag)
       for (const TieLayout::End& of : part.ends)
         for (const TieLayout::End& by : part.ends)
-          add(layout, part, responses_[p], of, by, lag, block);
-    }
-    blocks_.push_back(std::move(block));
+          add(layout, part, responses, of, by, lag, blocks_[index(lag)]);
   }
   damp(layout);
   find_scale(layout);

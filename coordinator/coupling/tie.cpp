@@ -6,6 +6,7 @@
 
 #include "base/assert.hpp"
 #include "coordinator/coupling/contact.hpp"
+#include "coordinator/coupling/port_turn.hpp"
 #include "coordinator/coupling/transmission_parts.hpp"
 
 namespace abut {
@@ -24,6 +25,7 @@ void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
   remember(window);
   straight_ = !looks(joint, bodies);
   for (const int s : {0, 1}) grids_[index(s)] = substeps_of(bodies, joint.sides[index(s)], window);
+  see_turns(joint, bodies);
   iterate_ = {grids_[index(joint.kinematic)], rows_.width()};
   window_ = window;
   first_speed_ = -1.0;
@@ -94,6 +96,17 @@ std::vector<double> Tie::jump(const Joint& joint, const Bodies& bodies) const {
     }
   }
   return out;
+}
+
+void Tie::see_turns(const Joint& joint, const Bodies& bodies) {
+  for (const std::size_t s : {0u, 1u}) {
+    const Side& side = joint.sides[s];
+    const Description& body = bodies.describe(side.body);
+    const Waveform& trace = trace_of(bodies, side);
+    turns_[s].resize(0, 0);
+    if (body.linear || body.quasi_static || trace.size() == 0 || rows_.dim == 1) continue;
+    turns_[s] = turn_of(bodies.port(side).geometry, row(trace, trace.u, trace.size() - 1));
+  }
 }
 
 /// What ended is past where the next window begins at its end, not where it is tried anew.

@@ -39,6 +39,9 @@ class Tie final : public Transmission {
   Eigen::Index first_place(int side) const { return iterate_.size() + (side == 1 ? places(0) : 0); }
 
   const TieRows& rows() const { return rows_; }
+  /// (dim, dim) by which a side of a body in motion that is not linear had turned when the window
+  /// began; else empty.
+  const Eigen::MatrixXd& turn(int side) const { return turns_[index(side)]; }
   /// Substeps of a side in the window.
   const Substeps& grid(int side) const { return grids_[index(side)]; }
   /// [m] (steps of the kinematic side, rows, dim) by which the sides part without forces between
@@ -75,6 +78,7 @@ class Tie final : public Transmission {
   }
   bool looks(const Joint& joint, const Bodies& bodies) const;
   void remember(const TimeWindow& window);
+  void see_turns(const Joint& joint, const Bodies& bodies);
   void go_straight_on(Eigen::Ref<Eigen::VectorXd> x) const;
 
   TieRows rows_;
@@ -89,6 +93,7 @@ class Tie final : public Transmission {
   std::vector<Past> past_;  // two at most, the later one first
   bool straight_ = false;   // guesses go on as the past went
   std::array<Substeps, 2> grids_;
+  std::array<Eigen::MatrixXd, 2> turns_;
   IterateGrid iterate_;  // of the force
   Waveform force_;       // of the last sweep, the first guess of the next window
   TimeWindow window_;

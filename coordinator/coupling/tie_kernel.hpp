@@ -25,6 +25,8 @@ class TieKernel {
   virtual double bytes() const = 0;       // with its factors
   /// Asks bodies that bend (TieLayout::Part) anew. False: there are none.
   virtual bool renew(const TieLayout&, Bodies&) { return false; }
+  /// A window begins: what bodies that turn (TieLayout::Part) answer turns with their ports.
+  virtual void turn(const TieLayout&) {}
 
  private:
   /// Whether there may be jumps without an answer.

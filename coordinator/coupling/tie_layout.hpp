@@ -33,7 +33,9 @@ struct TieLayout {
     Eigen::Index width = 0;  // rows x dim of all its ends
     bool stands = false;     // no force moves it
     bool bends = false;      // without inertia, and not linear: it answers as it is strained
-    bool light = false;      // it answers a light push, whose effects are differences
+    // in motion, and not linear: it answers a light push, whose effects are differences, and what
+    // it answers turns with its ports
+    bool turns = false;
     std::vector<End> ends;
   };
   /// What a body's kernel does in a block: `weight` times that of its step `later` (from 0), from

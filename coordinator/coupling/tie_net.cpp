@@ -32,6 +32,7 @@ void TieNet::begin(const Island& island, std::span<const Joint> joints,
     return member.tie->rows().alternating;
   });
   find_kernel(bodies);
+  kernel_->turn(layout_);
   const Eigen::VectorXd own = kernel_->diagonal();
   for (const TieLayout::Member& member : layout_.members) {
     if (member.carried >= 0) continue;
