@@ -10,10 +10,10 @@
 
 namespace abut {
 
-/// Let go of, material with a history would unload at the port: implicit bodies take the way there by
-/// Newton's method or by a tangent that is not that of loading, and neither saves a call.
+/// Let go of, material with a history would unload at a joined port: implicit bodies take the way
+/// there by Newton's method or by a tangent that is not that of loading, and neither saves a call.
 bool SolidInterior::looks_ahead() const {
-  return state_.motion.history.empty() || std::isfinite(description_.stable_step);
+  return !joins_ || state_.motion.history.empty() || std::isfinite(description_.stable_step);
 }
 
 bool SolidInterior::peek(const Window& window, std::vector<double>& u) {

@@ -146,9 +146,10 @@ DenseTieKernel::DenseTieKernel(const TieLayout& layout, int lags, Bodies& bodies
   if (!turns && std::ranges::none_of(layout.parts, &TieLayout::Part::bends)) responses_.clear();
 }
 
-/// Undeformed bodies that have turned by an angle would be wrong by as much.
+/// Undeformed bodies that have turned by an angle would be wrong by as much. Supports do not turn:
+/// where they hold rows of both sides, kernels stay as they are.
 void DenseTieKernel::turn(const TieLayout& layout) {
-  if (responses_.empty()) return;
+  if (responses_.empty() || redundant()) return;
   std::vector<Eigen::MatrixXd> now;
   for (const TieLayout::Part& part : layout.parts)
     for (const TieLayout::End& end : part.ends)
@@ -160,6 +161,9 @@ void DenseTieKernel::turn(const TieLayout& layout) {
     most = std::max(most, (now[k] - (turns_.empty() ? one : turns_[k])).norm());
   }
   if (most <= noticed_turn) return;
+  std::swap(turns_, now);
+  find_blocks(layout, lags());
+  if (!redundant()) return;
   turns_ = std::move(now);
   find_blocks(layout, lags());
 }

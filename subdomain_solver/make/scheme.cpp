@@ -1,5 +1,6 @@
 #include "subdomain_solver/make/scheme.hpp"
 
+#include "subdomain_solver/make/joined_schemes.hpp"
 #include "subdomain_solver/make/scene_contact.hpp"
 
 #include <algorithm>
@@ -88,14 +89,14 @@ struct SchemeMaker {
 
   SolidInterior::Scheme implicit(const AlphaWeights& weights, double step, MassForm mass,
                              const char* words) const {
-    return {
-        std::make_unique<ImplicitDynamics>(
-            problem,
-            ImplicitDynamics::Options{weights, mass, newton(), joined && weights.is_trapezoidal(),
-                                      joined && weights.gamma > 0.5},
-            linear(Pivots::every)),
-        step, std::numeric_limits<double>::infinity(), mass,
-        fmt::format("{}, step {:g} s", words, step)};
+    return {std::make_unique<ImplicitDynamics>(
+                problem,
+                ImplicitDynamics::Options{
+                    weights, mass, newton(), joined && weights.is_trapezoidal(),
+                    joined && weights.gamma > 0.5 && joined_bodies_step_alike(place.document)},
+                linear(Pivots::every)),
+            step, std::numeric_limits<double>::infinity(), mass,
+            fmt::format("{}, step {:g} s", words, step)};
   }
   NewtonOptions newton() const { return {spec.equations.tolerance, spec.equations.max_iterations}; }
   std::unique_ptr<LinearSolver> linear(Pivots pivots) const {

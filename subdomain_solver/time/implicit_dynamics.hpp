@@ -25,7 +25,8 @@ class ImplicitDynamics final : public Integrator {
     // Of the trapezoidal rule alone: unknown is the sum of the accelerations at both ends, and none
     // is kept, so that forces may jump from step to step [M.105].
     bool sums = false;
-    // Of weights that damp what is infinitely stiff: accelerations are kept, and do not jump where
+    // Of weights that damp what is infinitely stiff, where all joined bodies step alike (pairs of
+    // unlike ones would gain energy): accelerations are kept, and do not jump where
     // forces of joined sides do, which are constant in a step [M.105].
     bool steady = false;
   };
