@@ -195,14 +195,44 @@ TEST(TiedCombinations, CallsStayFewWhereNothingIsLinear) {
     return result->measure("schwarz.iterations_mean");
   };
   const std::string bends = "saint_venant_kirchhoff", linear = "linear_elastic";
-  // The method's goals are 3.5 and 2: undeformed kernels of parts that have turned by 0.1 rad are
-  // wrong by a tenth, which three to four sweeps make 1e-3.
+  // The method's goals are 3.5 and 2; measured are 3.7 to 3.8 and 2.9 to 3.0, by Newmark's rule 4.2
+  // and 3.2: kernels of parts that are sheared by a tenth are wrong by some percent, which each
+  // sweep makes a tenth.
   for (const double ratio : {1.0, 4.0}) {
-    EXPECT_LE(calls(bends, bends, "central_difference", ratio), 4.5);
-    EXPECT_LE(calls(bends, linear, "central_difference", ratio), 3.5);
-    EXPECT_LE(calls(bends, linear, "newmark", ratio), 3.5);
+    EXPECT_LE(calls(bends, bends, "central_difference", ratio), 4.0);
+    EXPECT_LE(calls(bends, linear, "central_difference", ratio), 3.2);
+    EXPECT_LE(calls(bends, linear, "newmark", ratio), 3.4);
   }
-  EXPECT_LE(calls(bends, bends, "newmark", 1.0), 5.0);
+  EXPECT_LE(calls(bends, bends, "newmark", 1.0), 4.5);
+}
+
+/// Halves that spin together through a full turn: kernels turn with them. Undeformed ones take half
+/// as many calls again after a quarter of it.
+TEST(TiedCombinations, CallsDoNotGrowAsBodiesTurn) {
+  for (const char* scheme : {"central_difference: {step: 0.005}", "newmark: {step: 0.01}"}) {
+    const auto calls = [scheme](double end) {
+      const auto half = [scheme](const std::string& name, double at, int cells,
+                                 const std::string& port) {
+        return fmt::format(
+            "  {}:\n    model: {{fe: {{dimension: 2, plane: strain, mesh: {{{}}}}}}}\n    "
+            "material: "
+            "{{neo_hookean: {{youngs_modulus: 100.0, poissons_ratio: 0.25, density: 1.0}}}}\n    "
+            "integrator: {{{}}}\n    initial: {{position: [{}, -0.25], velocity_field: [\"-y\", "
+            "\"x\"]}}\n    ports: {{{}}}\n",
+            name, block_mesh({1.0, 0.5}, {2 * cells, cells}), scheme, number(at), port);
+      };
+      const auto result = run_document(Document::from_text(
+          "test", fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\n"
+                              "bodies:\n",
+                              number(end), scheme[0] == 'c' ? 0.05 : 0.1) +
+                      half("a", -1.0, 4, "right: {side: right}") +
+                      half("b", 0.0, 6, "left: {side: left}") + tie +
+                      "schwarz: {tolerance: 1.0e-4}\n"));
+      EXPECT_TRUE(result->completed());
+      return result->measure("schwarz.iterations_mean");
+    };
+    EXPECT_LE(calls(6.4), 1.1 * calls(0.5)) << scheme;
+  }
 }
 
 /// Bent in space and in the plane, and rings: a divided static body is in the whole one's
