@@ -2,6 +2,7 @@
 // one call of every body per window. Oracles: the energy identity [M.108], balance of momentum,
 // the undivided body, linear fields, and order two in the step.
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <ostream>
@@ -215,21 +216,36 @@ TEST(TiedSurfaces, PlaceOfTheCutMakesNoDifference) {
   }
 }
 
-/// Differences between steps h, h/2, h/4 fall by four.
+/// Differences between steps h, h/2, h/4 fall by four: of displacement, of velocity, and of the
+/// force between the sides. This stands for the middle of a step of the left one and, between
+/// unlike steps, alternates about its means over two of them, which are taken on to the end.
 TEST(TiedSurfaces, AreOfSecondOrder) {
   for (const char* schemes : {"II", "IE", "EI", "EE"}) {
     for (const double ratio : {1.0, 4.0, 7.3}) {
-      SCOPED_TRACE(fmt::format("{} {}", schemes, ratio));
-      std::vector<double> ends;
+      std::array<std::vector<double>, 3> ends;
       for (const double h : {0.02, 0.01, 0.005}) {
         std::vector<Block> blocks = halves(schemes, {2, 3}, h / ratio, 2, h);
         // smooth in the beginning, at rest at the joint: no mode beyond the step
         blocks[0].start = blocks[1].start =
             "velocity_field: [\"0.5*cos(1.5707963267948966*x)\", \"0\"]";
-        ends.push_back(run(1.0, 0.2, blocks, middle)->measure("body.right.displacement.x.mean"));
+        const bool nested = ratio == 7.3;  // ten steps and seventy-three
+        const auto result = run(1.0, nested ? 10.0 * h : h, blocks, middle);
+        ends[0].push_back(result->measure("body.right.displacement.x.mean"));
+        ends[1].push_back(result->measure("body.right.momentum.x"));
+        if (nested) continue;
+        const auto force = [&result, h](std::size_t back) {  // it alone moves the right half
+          const std::size_t at = result->rows.size() - back;
+          return (result->rows[at].momentum[1] - result->rows[at - 1].momentum[1]) / h;
+        };
+        ends[2].push_back(0.75 * (force(1) + force(2)) - 0.25 * (force(3) + force(4)));
       }
-      const double order = std::log2(std::abs((ends[0] - ends[1]) / (ends[1] - ends[2])));
-      EXPECT_NEAR(order, 2.0, 0.1);  // the next term of steps of a fifteenth of a transit
+      for (std::size_t k = 0; k < ends.size(); ++k) {
+        const std::vector<double>& e = ends[k];
+        if (e.empty()) continue;
+        const double order = std::log2(std::abs((e[0] - e[1]) / (e[1] - e[2])));
+        // The next term of steps of a fifteenth of a transit; means reach four of them back.
+        EXPECT_NEAR(order, 2.0, k == 2 ? 0.15 : 0.1) << schemes << " " << ratio << " " << k;
+      }
     }
   }
 }
