@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "base/index.hpp"
@@ -202,6 +203,47 @@ TEST(TieRows, OfSecondOrderSeeNoLinearFieldJump) {
           }
         }
       }
+    }
+  }
+}
+
+/// Whatever the forces of rows, converged or not: those on one side and on the other have the same
+/// resultant and the same moment, of flat faces of any two orders.
+TEST(TieRows, AnyForcesBalance) {
+  std::vector<Kinds> all = kinds();
+  all.push_back({2, 2, 2});
+  for (const int one : {3, 4})
+    for (const int other : {3, 4}) all.push_back({3, one, other});
+  for (const Kinds& k : all) {
+    for (const int side : {0, 1}) {
+      SCOPED_TRACE(fmt::format("{}d {} {} {}", k.dim, k.one, k.other, side));
+      const PortGeometry ports[] = {face(k.dim, 3, k.one, false, uneven),
+                                    face(k.dim, 5, k.other, true, other_uneven)};
+      const TieRows rows = make_tie_rows(ports[0], ports[1], side);
+      ASSERT_GT(rows.count(), 0);
+      std::vector<double> forces(index(rows.width()));
+      for (std::size_t i = 0; i < forces.size(); ++i)
+        forces[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
+      Eigen::Vector3d resultant[2], moment[2];
+      for (const std::size_t s : {0u, 1u}) {
+        std::vector<double> nodal(ports[s].points.size(), 0.0);
+        rows.press(static_cast<int>(s), 1.0, forces, nodal);
+        resultant[s].setZero();
+        moment[s].setZero();
+        for (int node = 0; node < ports[s].count(); ++node) {
+          Eigen::Vector3d x = Eigen::Vector3d::Zero(), f = x;
+          for (int d = 0; d < k.dim; ++d) {
+            x(d) = ports[s].points[index(node * k.dim + d)];
+            f(d) = nodal[index(node * k.dim + d)];
+          }
+          resultant[s] += f;
+          moment[s] += x.cross(f);
+        }
+      }
+      // Sums of some hundred forces of the size of one, whose errors add up as their roots do.
+      const double rounding = 1.0e-13 * std::sqrt(static_cast<double>(forces.size()));
+      EXPECT_LE((resultant[0] - resultant[1]).norm(), rounding);
+      EXPECT_LE((moment[0] - moment[1]).norm(), rounding);
     }
   }
 }
