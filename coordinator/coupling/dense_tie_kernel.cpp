@@ -170,6 +170,9 @@ void DenseTieKernel::turn(const TieLayout& layout) {
 
 bool DenseTieKernel::renew(const TieLayout& layout, Bodies& bodies) {
   if (responses_.empty()) return false;
+  // What turned when the window began is not asked again, and still better than secants: of halves
+  // that spin these need 4.0 calls for its 3.2.
+  if (std::ranges::none_of(layout.parts, &TieLayout::Part::bends)) return true;
   for (std::size_t p = 0; p < layout.parts.size(); ++p) {
     const TieLayout::Part& part = layout.parts[p];
     if (part.bends) responses_[p] = responses_of(layout, part, part.steps * lags(), bodies);

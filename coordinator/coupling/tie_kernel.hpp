@@ -23,7 +23,8 @@ class TieKernel {
   virtual Eigen::Index size() const = 0;  // of a block
   virtual int lags() const = 0;           // blocks
   virtual double bytes() const = 0;       // with its factors
-  /// Asks bodies that bend (TieLayout::Part) anew. False: there are none.
+  /// Asks bodies that bend (TieLayout::Part) anew. True: what it says of this sweep is better than
+  /// secants, of such bodies and of those that turn.
   virtual bool renew(const TieLayout&, Bodies&) { return false; }
   /// A window begins: what bodies that turn (TieLayout::Part) answer turns with their ports.
   virtual void turn(const TieLayout&) {}

@@ -135,6 +135,13 @@ std::string TieNet::contradiction(const Eigen::VectorXd& r, double tolerance, do
                                   const Bodies& bodies) const {
   if (empty() || !options_.used || alternating_) return {};
   const Eigen::VectorXd jump = jumps(r);
+  const bool meet = std::ranges::all_of(layout_.members, [&](const TieLayout::Member& member) {
+    if (member.carried >= 0) return true;
+    Eigen::VectorXd own(layout_.values_of(member));
+    layout_.gather(member, jump, own);
+    return member.tie->seen_by_motion(own.lpNorm<Eigen::Infinity>()) <= tolerance;
+  });
+  if (meet) return {};
   const Eigen::VectorXd rest = kernel_->unanswered(jump);
   if (rest.size() == 0) return {};
   return find_contradiction(layout_, jump, rest, tolerance, time, bodies);
