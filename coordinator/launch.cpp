@@ -15,6 +15,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/printable.hpp"
 #include "coordinator/solver_processes.hpp"
 #include "messaging/codec.hpp"
 #include "messaging/descriptors.hpp"
@@ -113,7 +114,7 @@ struct Launch::Process {
 struct Launch::Member {
   std::string name;
   Process* process = nullptr;  // null: somebody else's
-  bool external = false;  // no abut-solver can be this body
+  bool external = false;       // no abut-solver can be this body
   Milliseconds patience{0};
   int peer = 0;
   std::unique_ptr<Liveness> liveness;
@@ -269,7 +270,8 @@ bool Launch::welcome(Member& member, const v1::Hello& hello) {
     const std::string versions = fmt::format(
         "the solver of body '{}' (build {}) speaks protocol {}, this coordinator (build {}) "
         "speaks protocol {}",
-        member.name, hello.build(), hello.protocol(), build_version(), protocol_version);
+        member.name, printable(hello.build(), 100), hello.protocol(), build_version(),
+        protocol_version);
     refuse(member, hello.session(), versions);
     throw RunError(versions, "", "install the same version at both ends");
   }

@@ -7,6 +7,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/printable.hpp"
 #include "messaging/codec.hpp"
 #include "messaging/codec/wire.hpp"
 
@@ -202,17 +203,17 @@ void Caller::look_around() {
 }
 
 void Caller::refuse_reply(const std::string& why) const {
-  throw RunError(
-      fmt::format("body '{}' gave no sound answer to {}: {}", body_, under_way_text(), why), "",
-      "this is a fault of the solver, not of the scene");
+  throw RunError(fmt::format("body '{}' gave no sound answer to {}: {}", body_, under_way_text(),
+                             printable(why)),
+                 "", "this is a fault of the solver, not of the scene");
 }
 
 void Caller::rethrow(const v1::Fault& fault) const {
-  if (fault.kind() == v1::FAULT_KIND_INPUT) {
-    throw InputError(fault.what(), fault.where(), fault.remedy());
-  }
-  throw RunError(fmt::format("body '{}' failed at {}: {}", body_, under_way_text(), fault.what()),
-                 fault.where(), fault.remedy());
+  const std::string what = printable(fault.what()), where = printable(fault.where()),
+                    remedy = printable(fault.remedy());
+  if (fault.kind() == v1::FAULT_KIND_INPUT) throw InputError(what, where, remedy);
+  throw RunError(fmt::format("body '{}' failed at {}: {}", body_, under_way_text(), what), where,
+                 remedy);
 }
 
 }  // namespace abut

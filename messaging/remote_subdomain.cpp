@@ -2,6 +2,7 @@
 
 #include "base/index.hpp"
 #include "messaging/codec.hpp"
+#include "messaging/soundness.hpp"
 
 namespace abut {
 
@@ -20,6 +21,7 @@ void RemoteSubdomain::finish_configure() {
   if (!reply.has_configured()) caller_.refuse_reply("not a description");
   try {
     decode(reply.configured().description(), description_);
+    require_sound(description_);
   } catch (const CodecError& error) {
     caller_.refuse_reply(error.what());
   }
@@ -68,6 +70,7 @@ Outcome RemoteSubdomain::finish(Response& response) {
   try {
     if (reply.has_advanced()) {
       decode(caller_.advanced(), description_, *asked_, response);
+      require_sound(response, description_, *asked_);
       return Advanced{};
     }
     if (reply.has_failed()) {
@@ -97,6 +100,7 @@ PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, do
   PortKernel result;
   try {
     decode(reply.kernel(), description_, probing, result);
+    require_sound(result, description_, probing);
   } catch (const CodecError& error) {
     caller_.refuse_reply(error.what());
   }

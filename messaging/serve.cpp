@@ -12,6 +12,7 @@
 #include "base/index.hpp"
 #include "base/life_signs.hpp"
 #include "messaging/codec.hpp"
+#include "messaging/soundness.hpp"
 #include "messaging/codec/wire.hpp"
 
 namespace abut {
@@ -256,6 +257,8 @@ void Server::configure(const v1::Configure& wire) {
 void Server::meet(const v1::Meet& request) {
   Meeting meeting;
   decode(request, body_->describe(), meeting);
+  const FieldPath meet{nullptr, "meet"};
+  require_sound(meeting.partner, FieldPath{&meet, "surface"});
   body_->meet(meeting.port, meeting.partner, meeting.law);
   partners_[index(meeting.port)].push_back(size_of(meeting.partner));
   reply_.mutable_met();

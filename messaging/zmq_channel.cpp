@@ -18,6 +18,8 @@ namespace abut {
 namespace {
 
 constexpr std::size_t most_strangers = 64;     // frames kept for a refusal; more are forgotten
+constexpr std::size_t largest_hello = 65'536;  // [B] of which no more than this is read
+constexpr std::size_t most_waiting = 64;       // frames of a peer; it repeats what it needs
 constexpr std::size_t most_disconnects = 256;  // times remembered per peer
 
 /// Everything that libzmq would otherwise choose for us.
@@ -249,7 +251,8 @@ ZmqHub::Peer* ZmqHub::find_sender() {
 
 void ZmqHub::keep_stranger() {
   if (strangers_.size() >= most_strangers) return;
-  const Bytes frame = bytes_of(incoming_);
+  const Bytes whole = bytes_of(incoming_);
+  const Bytes frame = whole.first(std::min(whole.size(), largest_hello));
   strangers_.emplace_back(std::string(static_cast<const char*>(sender_.data()), sender_.size()),
                           std::vector<std::byte>(frame.begin(), frame.end()));
 }
@@ -269,7 +272,7 @@ bool ZmqHub::receive_for(int wanted, Milliseconds wait) {
         peer->current = std::move(incoming_);
         return true;
       }
-      peer->waiting.push_back(std::move(incoming_));
+      if (peer->waiting.size() < most_waiting) peer->waiting.push_back(std::move(incoming_));
       if (wanted < 0) return true;
     }
     wait = std::max(Milliseconds(0),

@@ -38,12 +38,14 @@ void read(Interior& interior, std::span<const std::byte> bytes, Archive::Form fo
   archive.finish();
 }
 
-/// A value that is not finite anywhere in a state reaches one of these sums.
+/// A value that is not finite anywhere in a state reaches one of these sums; states that grow
+/// without bound are ended before their squares leave the range of numbers.
 bool finite(const BodyRecord& r) {
+  constexpr double too_large = 1.0e150;
   double sum = r.energy.total() + r.energy.external_work;
   for (const std::vector<double>* told : {&r.momentum, &r.angular_momentum, &r.columns})
     sum = std::accumulate(told->begin(), told->end(), sum);
-  return std::isfinite(sum);
+  return std::abs(sum) < too_large;
 }
 
 }  // namespace

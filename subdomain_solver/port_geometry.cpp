@@ -20,6 +20,13 @@ void add_parts(int dim, const std::vector<std::int32_t>& places, PortGeometry& g
   geometry.parts.push_back(static_cast<std::int32_t>(parts.size()));
 }
 
+/// Of a node's shape function in the mean of normals that are to look outward. Those of second
+/// order have no area at the corners of a triangle, and a negative one at those of a quadrilateral.
+double share(double shape, std::size_t nodes, int dim) {
+  const bool first_order = dim == 2 ? nodes == 2 : nodes <= 4;
+  return first_order ? shape : 1.0;
+}
+
 void normalise(std::vector<double>& normals, std::size_t dim) {
   for (std::size_t k = 0; k < normals.size(); k += dim) {
     double length = 0.0;
@@ -55,8 +62,9 @@ PortGeometry port_geometry(const FeModel& model, const std::string& name,
       places.push_back(static_cast<std::int32_t>(place));
       for (const SidePoints::Point& point : facet.points) {
         for (std::size_t i = 0; i < dim; ++i)
-          normals[index(place) * dim + i] +=
-              point.area * point.n[a] * point.normal(static_cast<Eigen::Index>(i));
+          normals[index(place) * dim + i] += point.area *
+                                             share(point.n[a], facet.nodes.size(), mesh.dim) *
+                                             point.normal(static_cast<Eigen::Index>(i));
       }
     }
     if (dim > 1) add_parts(mesh.dim, places, geometry);

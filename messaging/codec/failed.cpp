@@ -1,6 +1,7 @@
 #include <array>
 #include <utility>
 
+#include "base/printable.hpp"
 #include "messaging/codec/parts.hpp"
 
 namespace abut {
@@ -35,7 +36,7 @@ void decode(const v1::Failed& from, Failed& to) {
   const FieldPath path{nullptr, "failed"};
   if (!known) FieldPath{&path, "cause"}.fail("has an unknown value");
   to.time = from.time();  // may be anything: it is the report of a failure
-  to.detail = from.detail();
+  to.detail = printable(from.detail());
 }
 
 }  // namespace abut

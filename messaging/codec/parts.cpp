@@ -11,14 +11,26 @@ namespace abut {
 
 namespace {
 
-/// An exponent of all ones, one more added to it, carries into the sign's place. Comparing each
-/// number would keep the loop from running at full speed.
-bool all_finite(const double* values, std::size_t count) {
-  constexpr std::uint64_t exponent = 0x7ff0'0000'0000'0000, one_more = 0x0010'0000'0000'0000;
+/// Products and squares of numbers below this, summed up, stay finite: 2^499, about 1.6e150. What
+/// is larger is no motion and no force of anything.
+constexpr double too_large = 0x1.0p499;
+
+bool sound(double value) { return std::abs(value) < too_large; }  // false of NaN
+
+/// An exponent from that of `too_large` on, `more` added to it, carries into the sign's place.
+/// Comparing each number would keep the loop from running at full speed.
+bool all_sound(const double* values, std::size_t count) {
+  constexpr std::uint64_t exponent = 0x7ff0'0000'0000'0000;
+  constexpr std::uint64_t more =
+      0x8000'0000'0000'0000 - (std::bit_cast<std::uint64_t>(too_large) & exponent);
   std::uint64_t carried = 0;
   for (std::size_t i = 0; i < count; ++i)
-    carried |= (std::bit_cast<std::uint64_t>(values[i]) & exponent) + one_more;
+    carried |= (std::bit_cast<std::uint64_t>(values[i]) & exponent) + more;
   return carried >> 63 == 0;
+}
+
+const char* what_is_wrong(double value) {
+  return std::isfinite(value) ? "is too large" : "is not finite";
 }
 
 }  // namespace
@@ -39,10 +51,11 @@ void check(const std::vector<double>& values, std::size_t expected, bool may_be_
   if (count != expected && !(may_be_empty && count == 0)) {
     path.fail(fmt::format("has {} numbers where {} belong", count, expected));
   }
-  if (all_finite(values.data(), count)) return;
+  if (all_sound(values.data(), count)) return;
   std::size_t first = 0;
-  while (std::isfinite(values[first])) ++first;
-  path.fail(fmt::format("is not finite: entry {} is {}", first, values[first]));
+  while (sound(values[first])) ++first;
+  path.fail(
+      fmt::format("{}: entry {} is {}", what_is_wrong(values[first]), first, values[first]));
 }
 
 void take(const google::protobuf::RepeatedField<double>& from, std::size_t expected,
@@ -75,8 +88,8 @@ void take_names(const google::protobuf::RepeatedPtrField<std::string>& from, con
 
 double number(double value, const FieldPath& path, Allow allow) {
   const bool may_be_infinite = allow == Allow::infinite || allow == Allow::not_negative_or_inf;
-  const bool good = may_be_infinite ? !std::isnan(value) : std::isfinite(value);
-  if (!good) path.fail(fmt::format("is not finite: {}", value));
+  if (!sound(value) && !(may_be_infinite && std::isinf(value)))
+    path.fail(fmt::format("{}: {}", what_is_wrong(value), value));
   const bool any_sign = allow == Allow::finite || allow == Allow::infinite;
   if (!any_sign && value < 0.0) path.fail(fmt::format("is negative: {}", value));
   return value;

@@ -85,8 +85,8 @@ class FakeSubdomain : public Subdomain {
     PortResponse& port = response.ports[0];
     port.trace.clear();
     port.trace.width = 1;
-    port.lower.assign(1, u_);
-    port.upper.assign(1, u_);
+    const double place = description_.ports[0].geometry.points[0];
+    port.lower = port.upper = {place + u_};
     sample(window.begin, port.trace);
     const double step = window.length() / options_.substeps;
     for (int i = 1; i <= options_.substeps; ++i) {
@@ -99,18 +99,18 @@ class FakeSubdomain : public Subdomain {
       }
       v_ += step * (force - options_.stiffness * u_) / options_.mass;
       u_ += step * v_;
-      port.lower[0] = std::min(port.lower[0], u_);
-      port.upper[0] = std::max(port.upper[0], u_);
+      port.lower[0] = std::min(port.lower[0], place + u_);
+      port.upper[0] = std::max(port.upper[0], place + u_);
       sample(time, port.trace);
     }
     const std::size_t records = index(std::max(1, request_->records));
     port.lower.resize(records, port.lower[0]);  // the range of the whole window covers its parts
-    port.upper.resize(records, port.upper[0]);
-    port.speed_bound = std::abs(v_);
+    port.upper.resize(records, port.upper[0]), port.speed_bound = std::abs(v_);
+    port.recoil = Recoil{v_, 1.0 / options_.mass};
     answer(boundary, window, port);
     fill_records(window, response);
     response.steps = options_.substeps;
-    if (!std::isfinite(u_))
+    if (!(std::abs(u_) < 1.0e100))
       return Failed{Failed::Cause::non_finite, window.end, "the mass is lost"};
     return Advanced{};
   }
