@@ -61,6 +61,9 @@ struct PortResponse {
   Waveform ahead;
   // [m] (records, dim) box that the points swept in each record's part of the window: positions
   std::vector<double> lower, upper;
+  // [m/s] (dim) box of the velocities at which all points went from substep to substep over the
+  // whole window; empty: not told, and no point was faster than speed_bound.
+  std::vector<double> slowest, fastest;
   // Bound of the velocity at which a point may come while no partner touches, from the window's end
   // on: [m/s] along the outward normal (one point) or in any direction; infinity: unknown.
   double speed_bound = 0.0;

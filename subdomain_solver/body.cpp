@@ -139,7 +139,7 @@ Outcome Body::finish(Response& response) {
 std::optional<Failed> Body::advance(const Window& window, Response& response) {
   const Substeps& grid = window.grid;
   if (auto failed = patiently([&] { return interior_->begin(window); })) return failed;
-  follow(window, grid.begin, true);
+  follow(window, 0, grid.begin, true);
   interior_->set_off(window);
   begin_sweep();
   RecordClock clock(window.request, grid.count);
@@ -150,9 +150,9 @@ std::optional<Failed> Body::advance(const Window& window, Response& response) {
     const bool due = i == clock.substep();
     if (due) interior_->settle(window, i);
     if (window.request.sampling == Sampling::substeps) {
-      follow(window, grid.time(i), true);
+      follow(window, i, grid.time(i), true);
     } else {
-      follow(window, due ? clock.time() : grid.time(i), due);
+      follow(window, i, due ? clock.time() : grid.time(i), due);
     }
     report_progress();
     for (; i == clock.substep(); clock.next())
@@ -303,15 +303,18 @@ void Body::begin_replies(const Advance& request, Response& response) {
     port.ahead.clear();
     port.lower.clear();
     port.upper.clear();
+    port.slowest.clear();
+    port.fastest.clear();
     port.speed_bound = std::numeric_limits<double>::infinity();
     port.acceleration_bound = port.work = 0.0;
     port.recoil.reset();
   }
 }
 
-void Body::follow(const Window& window, double time, bool shown) {
+void Body::follow(const Window& window, int substep, double time, bool shown) {
   seen_ = &interior_->see(window, time, shown);
   widen_sweep();
+  widen_velocities(substep > 0 ? window.grid.length(substep) : 0.0);
   if (!shown) return;
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     push_trace(ports_[p], time);

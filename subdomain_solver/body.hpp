@@ -45,6 +45,7 @@ class Body final : public Subdomain {
     const PortGeometry* geometry = nullptr;
     std::size_t first = 0, width = 0;  // of its values
     std::vector<double> lower, upper;  // [m] (dim) positions since the last record
+    std::vector<double> before;        // [m] (width) displacements after the substep before
     // Of the window:
     const Want* want = nullptr;
     const std::vector<Obstacle>* obstacles = nullptr;
@@ -61,11 +62,12 @@ class Body final : public Subdomain {
                const Waveform& trace);
   Substeps divide(const Advance& request) const;
   void begin_replies(const Advance& request, Response& response);
-  void follow(const Window& window, double time, bool shown);
+  void follow(const Window& window, int substep, double time, bool shown);
   void push_trace(const Watched& port, double time) const;
   void push_reactions(std::size_t port, double time) const;
   void begin_sweep();
   void widen_sweep();
+  void widen_velocities(double length);
   std::optional<Failed> record(double time, Response& response);
   std::optional<Failed> respond(const Advance& request, const Substeps& grid,
                                 std::span<const int> ports, std::vector<double>& displacement);

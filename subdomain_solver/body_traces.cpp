@@ -102,4 +102,31 @@ void Body::widen_sweep() {
   }
 }
 
+/// Of surfaces: what they meet between two looks at them is judged by these velocities, and the
+/// ways between substeps are straight to all who look. `length`: [s] of the substep; 0: the begin.
+void Body::widen_velocities(double length) {
+  for (Watched& port : ports_) {
+    const std::size_t dim = index(port.geometry->dim);
+    if (dim == 1 || port.width == 0) continue;
+    const double* u = seen_->u.data() + port.first;
+    std::vector<double>& slowest = port.reply->slowest;
+    std::vector<double>& fastest = port.reply->fastest;
+    for (std::size_t i = 0; length > 0.0 && i < dim; ++i) {
+      double least = std::numeric_limits<double>::infinity(), most = -least;
+      for (std::size_t k = i; k < port.width; k += dim) {
+        least = std::min(least, u[k] - port.before[k]);
+        most = std::max(most, u[k] - port.before[k]);
+      }
+      if (slowest.size() <= i) {
+        slowest.push_back(least / length);
+        fastest.push_back(most / length);
+      } else {
+        slowest[i] = std::min(slowest[i], least / length);
+        fastest[i] = std::max(fastest[i], most / length);
+      }
+    }
+    port.before.assign(u, u + port.width);
+  }
+}
+
 }  // namespace abut

@@ -12,6 +12,9 @@ namespace {
 
 /// Of the extent of the smaller side: boxes farther apart than this tell the distance well enough.
 constexpr double far_share = 0.5;
+/// Of the largest coordinate: what places, distances and ways are rounded by altogether is far
+/// less, and what bodies do to each other is of windows that are far longer.
+constexpr double rounding = 1.0e-12;
 
 struct Boxes {
   double apart = 0.0;   // [m]
@@ -61,6 +64,40 @@ Joint::Approach approach(const Joint& joint, const Bodies& bodies) {
   return {std::max(0.0, distance(joint, bodies) - joint.margin), closing_bound(joint, bodies)};
 }
 
+/// [m/s] (dim) The box of velocities that a side told; that of its bound where it told none.
+struct Velocities {
+  std::vector<double> slowest, fastest;
+};
+
+Velocities velocities(const PortResponse& reply, std::size_t dim) {
+  if (!reply.slowest.empty()) return {reply.slowest, reply.fastest};
+  return {std::vector(dim, -reply.speed_bound), std::vector(dim, reply.speed_bound)};
+}
+
+/// [m/s] No two points of the sides came together faster at any time of the last replies.
+double fastest_closing(const Joint& joint, const Bodies& bodies, const Joint::Approach& now) {
+  const PortResponse& a = port_of(bodies, joint.sides[0]);
+  const PortResponse& b = port_of(bodies, joint.sides[1]);
+  const std::size_t dim = index(bodies.port(joint.sides[0]).geometry.dim);
+  const Velocities of_a = velocities(a, dim), of_b = velocities(b, dim);
+  double square = 0.0;
+  for (std::size_t i = 0; i < dim; ++i) {
+    const double most = std::max(of_a.fastest[i] - of_b.slowest[i],
+                                 of_b.fastest[i] - of_a.slowest[i]);
+    square += most * most;
+  }
+  const double told = std::sqrt(square);
+  if (!a.slowest.empty() && !b.slowest.empty()) return told;
+  return std::max({told, joint.approach.speed, now.speed});
+}
+
+double largest_coordinate(const PortResponse& reply) {
+  double most = 0.0;
+  for (const std::vector<double>* corner : {&reply.lower, &reply.upper})
+    for (const double x : *corner) most = std::max(most, std::abs(x));
+  return most;
+}
+
 bool boxes_apart(const Joint& joint, const Bodies& bodies) {
   const PortResponse& a = port_of(bodies, joint.sides[0]);
   const PortResponse& b = port_of(bodies, joint.sides[1]);
@@ -85,7 +122,9 @@ void measure_approach(Joint& joint, const Bodies& bodies) {
 bool kept_apart(const Joint& joint, const Bodies& bodies, double length) {
   if (boxes_apart(joint, bodies)) return true;
   const Joint::Approach now = approach(joint, bodies);
-  return joint.approach.apart + now.apart > length * std::max(joint.approach.speed, now.speed);
+  const double rounded = rounding * std::max(largest_coordinate(port_of(bodies, joint.sides[0])),
+                                             largest_coordinate(port_of(bodies, joint.sides[1])));
+  return joint.approach.apart + now.apart > length * fastest_closing(joint, bodies, now) + rounded;
 }
 
 }  // namespace abut

@@ -12,7 +12,7 @@ namespace {
 // A member added to the contract and forgotten here would silently arrive as zero.
 static_assert(sizeof(Recoil) == 2 * sizeof(double));
 static_assert(sizeof(Reaction) == sizeof(Waveform) + sizeof(double));
-static_assert(sizeof(PortResponse) == 2 * sizeof(Waveform) + 3 * sizeof(std::vector<double>) +
+static_assert(sizeof(PortResponse) == 2 * sizeof(Waveform) + 5 * sizeof(std::vector<double>) +
                                           3 * sizeof(double) + sizeof(std::optional<Recoil>));
 
 using Wire = v1::PortResponse;
@@ -26,6 +26,8 @@ const Want& wanted(const Advance& asked, std::size_t port) {
 }
 
 void encode(const PortResponse& from, const Want& want, WireWriter& to) {
+  to.numbers(Wire::kFastestFieldNumber, from.fastest);
+  to.numbers(Wire::kSlowestFieldNumber, from.slowest);
   if (!from.ahead.empty()) encode(from.ahead, places, Wire::kAheadFieldNumber, to);
   std::size_t reactions = from.reactions.size();
   while (reactions > 0 && from.reactions[reactions - 1].force.empty()) --reactions;
@@ -147,6 +149,8 @@ void clear(PortResponse& port, std::size_t obstacles) {
   if (port.reactions.size() < obstacles) port.reactions.resize(obstacles);
   port.lower.clear();
   port.upper.clear();
+  port.slowest.clear();
+  port.fastest.clear();
   port.speed_bound = port.acceleration_bound = port.work = 0.0;
   port.recoil.reset();
 }
@@ -184,6 +188,12 @@ void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance
       case Wire::kUpperFieldNumber:
         from.numbers(to.upper);
         break;
+      case Wire::kSlowestFieldNumber:
+        from.numbers(to.slowest);
+        break;
+      case Wire::kFastestFieldNumber:
+        from.numbers(to.fastest);
+        break;
       case Wire::kSpeedBoundFieldNumber:
         to.speed_bound = number(from.number(), FieldPath{&path, "speed_bound"}, Allow::infinite);
         break;
@@ -207,6 +217,8 @@ void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance
   require_reactions(asked.boundary[place], path, to.reactions);
   check(to.lower, index(asked.records * port.geometry.dim), true, FieldPath{&path, "lower"});
   check(to.upper, to.lower.size(), false, FieldPath{&path, "upper"});
+  check(to.slowest, index(port.geometry.dim), true, FieldPath{&path, "slowest"});
+  check(to.fastest, to.slowest.size(), false, FieldPath{&path, "fastest"});
 }
 
 }  // namespace

@@ -91,6 +91,8 @@ Response full_response() {
   response.ports[0].trace = wave(1, 0.0);
   response.ports[0].lower = {-1.0};
   response.ports[0].upper = {2.0};
+  response.ports[0].slowest = {-2.5};
+  response.ports[0].fastest = {3.0};
   response.ports[0].speed_bound = 3.5;
   response.ports[0].acceleration_bound = 9.81;
   response.ports[0].recoil = Recoil{6.0, 7.0};
@@ -264,6 +266,8 @@ TEST(Codec, ResponseKeepsEveryField) {
   expect_equal(got.ports[1].trace, sent.ports[1].trace);
   EXPECT_EQ(got.ports[0].lower, sent.ports[0].lower);
   EXPECT_EQ(got.ports[0].upper, sent.ports[0].upper);
+  EXPECT_EQ(got.ports[0].slowest, sent.ports[0].slowest);
+  EXPECT_EQ(got.ports[0].fastest, sent.ports[0].fastest);
   EXPECT_EQ(got.ports[0].speed_bound, 3.5);
   EXPECT_EQ(got.ports[0].acceleration_bound, 9.81);
   ASSERT_TRUE(got.ports[0].recoil.has_value());

@@ -122,6 +122,48 @@ TEST(Nearness, AFlightIsSafeWhereItsEndsLeaveNoTimeToMeet) {
   EXPECT_TRUE(kept_apart(r.joint, r.bodies, 0.6));
 }
 
+/// The velocities at the ends tell nothing of a way out and back in between, and a bound of the
+/// speed would forbid what flies together; the box of velocities that bodies tell does neither.
+TEST(Nearness, VelocitiesBetweenTheEndsOfAFlightCount) {
+  Rings r;
+  const double d = (2.0 + 0.6) / std::sqrt(2.0);
+  r.stand({d, d}, {0.0, 0.0}, {0.0, 0.0});
+  measure_approach(r.joint, r.bodies);  // .6 m apart
+  const auto told = [&r](Eigen::Vector2d of_a, Eigen::Vector2d least, Eigen::Vector2d most) {
+    r.a.reply.ports[0].slowest = r.a.reply.ports[0].fastest = {of_a.x(), of_a.y()};
+    r.b.reply.ports[0].slowest = {least.x(), least.y()};
+    r.b.reply.ports[0].fastest = {most.x(), most.y()};
+    EXPECT_FALSE(r.bodies.advance_all());
+    return kept_apart(r.joint, r.bodies, 1.0);
+  };
+  EXPECT_TRUE(told({0.0, 0.0}, {0.0, -1.19}, {0.0, 1.19}));  // .595 m there, as far back
+  EXPECT_FALSE(told({0.0, 0.0}, {0.0, -1.21}, {0.0, 1.21}));
+  EXPECT_TRUE(told({50.0, 0.0}, {50.0, -1.19}, {50.0, 1.19}));
+  EXPECT_FALSE(told({50.0, 0.0}, {50.0, -1.0}, {51.0, 1.0}));
+}
+
+/// What has gone exactly as far as both ends are apart may have gone through.
+TEST(Nearness, AWayThatIsAllThatTheEndsAreApartIsNotSafe) {
+  Rings r;
+  const auto at = [&r](double along) {
+    r.stand({along, 0.5}, {0.0, 0.0}, {-1.0, 0.0});
+    r.b.reply.ports[0].slowest = r.b.reply.ports[0].fastest = {-1.0, 0.0};
+    r.a.reply.ports[0].slowest = r.a.reply.ports[0].fastest = {0.0, 0.0};
+    for (Scripted* ring : {&r.a, &r.b}) {  // swept boxes that overlap
+      ring->reply.ports[0].lower = {-9.0, -9.0};
+      ring->reply.ports[0].upper = {9.0, 9.0};
+    }
+    EXPECT_FALSE(r.bodies.advance_all());
+  };
+  at(2.5);
+  measure_approach(r.joint, r.bodies);
+  const double before = r.joint.approach.apart;
+  at(-2.5);
+  const double after = before;  // by symmetry
+  EXPECT_FALSE(kept_apart(r.joint, r.bodies, before + after));
+  EXPECT_TRUE(kept_apart(r.joint, r.bodies, (1.0 - 1.0e-9) * (before + after)));
+}
+
 TEST(Nearness, IsThatOfTheBeginWhereAnAttemptWasTakenBack) {
   Rings r;
   r.stand({1.5, 1.5}, {0.0, 0.0}, {0.0, 0.0});
