@@ -146,8 +146,10 @@ bool Controller::fly_free() {
     return false;
   }
   fill_reports(true);
+  const std::int64_t before = clock_.windows();
   clock_.accept_flight(flight, windows);
   narrator_.window({flight, bodies_.responses(), reports_, clock_.windows(), {}});
+  watch_passing(before);
   watch_energy(guard_.look(bodies_.responses()));
   flight_.limit = std::min(flight_.longest, 2 * flight_.limit);
   return true;
@@ -226,8 +228,10 @@ void Controller::accept(const TimeWindow& window) {
   fill_reports(false);
   events_.settle(window, guard_.most());
   const EnergyGuard::Verdict energy = guard_.look(bodies_.responses(), bodies_.struck());
+  const std::int64_t before = clock_.windows();
   clock_.accept(window);
   narrator_.window({window, bodies_.responses(), reports_, clock_.windows(), pairs_});
+  watch_passing(before);
   if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
   halvings_ = 0;
   watch_energy(energy);
@@ -367,6 +371,27 @@ bool Controller::sums_energy() const {
   });
 }
 
+/// After a window or a flight: nothing passes without a word. Bodies are asked where their fields
+/// are written anyway.
+void Controller::watch_passing(std::int64_t windows_before) {
+  passing_.watch(joints_, bodies_);
+  if (!scene_.output.field_output) return;
+  const int every = scene_.output.field_output->every;
+  if (clock_.windows() / every > windows_before / every) look_for_overlaps();
+}
+
+void Controller::look_for_overlaps() {
+  for (const Overlap& overlap : overlaps_.look(bodies_, joints_, clock_.time())) {
+    narrator_.overlap(overlap, joints_);
+    end_.overlaps.push_back(overlap);
+  }
+}
+
+void Controller::look_for_passed() {
+  end_.never_met = passing_.passed(joints_, bodies_);
+  for (const std::string& name : end_.never_met) narrator_.never_met(name, clock_.time());
+}
+
 void Controller::fail(double time, const std::string& text) {
   end_.status = "failed";
   narrator_.failure(time, text);
@@ -398,6 +423,10 @@ RunEnd Controller::finish(double wall_seconds) {
   Archive archive = Archive::writer(bytes, Archive::Form::bare);
   state(archive);
   end_.state_hash = hash_combine(hash, hash_bytes(bytes));
+  if (end_.status != "failed") {
+    look_for_overlaps();
+    look_for_passed();
+  }
   for (int b = 0; b < bodies_.count(); ++b) {
     end_.body_measures.push_back(bodies_[b].measure());
     for (const std::string& note : validity_notes(bodies_.describe(b), end_.body_measures.back()))

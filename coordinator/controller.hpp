@@ -11,6 +11,8 @@
 #include "coordinator/couple.hpp"
 #include "coordinator/energy_guard.hpp"
 #include "coordinator/narrator.hpp"
+#include "coordinator/overlap_search.hpp"
+#include "coordinator/passing_watch.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/scene.hpp"
 #include "coordinator/window_clock.hpp"
@@ -77,6 +79,9 @@ class Controller {
   int records_in(const TimeWindow& window) const;
   void fill_reports(bool flown);
   void watch_energy(EnergyGuard::Verdict verdict);
+  void watch_passing(std::int64_t windows_before);
+  void look_for_overlaps();
+  void look_for_passed();
   std::vector<bool> conserving_bodies() const;
   std::vector<double> unresolved_inertia() const;
   bool sums_energy() const;
@@ -97,6 +102,8 @@ class Controller {
   Roles roles_;
   ContactEvents events_;
   EnergyGuard guard_;
+  OverlapSearch overlaps_;
+  PassingWatch passing_;
   Flight flight_;
   std::int64_t halvings_ = 0;
   Attempt attempt_;

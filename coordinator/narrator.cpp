@@ -1,8 +1,11 @@
 #include "coordinator/narrator.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/index.hpp"
 #include "coordinator/interface_spec.hpp"
@@ -83,6 +86,40 @@ void Narrator::lowered_step(const Joint& joint, double time, double limit) {
                     "give it a smaller step, or its partner a softer contact_layer",
                     joint.name, bodies_.describe(joint.neumann_side().body).name, limit),
         {{"stable_step", limit}}});
+}
+
+void Narrator::overlap(const Overlap& overlap, std::span<const Joint> joints) {
+  const auto [a, b] = overlap.body;
+  const auto joint = std::ranges::find_if(joints, [a, b](const Joint& j) {
+    return std::minmax(j.sides[0].body, j.sides[1].body) == std::pair<const int&, const int&>(a, b);
+  });
+  std::string advice = "no interface joins them: give one, or contact: {everything: {}}";
+  if (joint != joints.end()) {
+    advice = fmt::format(
+        "contact '{}' has {}", joint->name,
+        joint->force_scale > 0.0
+            ? "not kept them apart: give smaller windows and steps, or finer "
+              "meshes where they meet"
+            : "never closed: look whether its ports are the sides that meet, and "
+              "whether their facets look outwards, or whether an edge is too sharp for it");
+  }
+  const std::size_t dim = index(bodies_.describe(a).dim);
+  const std::span<const double> place = std::span(overlap.place).first(dim);
+  tell({RunEvent::Kind::warning,
+        overlap.time,
+        joint == joints.end() ? "" : interface_of(*joint),
+        fmt::format("bodies '{}' and '{}' overlap by {:.3g} m at ({:.6g}) m; {}",
+                    bodies_.describe(a).name, bodies_.describe(b).name, overlap.depth,
+                    fmt::join(place, ", "), advice),
+        {{"depth", overlap.depth}}});
+}
+
+void Narrator::never_met(const std::string& name, double time) {
+  warning(time, name,
+          fmt::format("contact '{}' has never closed, though its sides have gone past each other: "
+                      "look whether its ports are the sides that meet, and whether their facets "
+                      "look outwards",
+                      name));
 }
 
 std::string Narrator::words_of(const EnergyGuard& guard) const {

@@ -31,6 +31,10 @@ class Narrator {
   void inside(const Joint& joint, const InternalContact::Change& change);
   /// The contact spring of a joint lowers its Neumann side's stable step to a limit [s].
   void lowered_step(const Joint& joint, double time, double limit);
+  /// Bodies that are in each other, with the joints that there are.
+  void overlap(const Overlap& overlap, std::span<const Joint> joints);
+  /// An interface whose sides went past each other.
+  void never_met(const std::string& name, double time);
   void energy(const EnergyGuard& guard, double time);
   void warning(double time, const std::string& subject, const std::string& text);
   void failure(double time, const std::string& text);

@@ -7,7 +7,8 @@ namespace abut {
 
 TimeWindow WindowClock::flight(int windows) const {
   const double end = anchor_ + static_cast<double>(since_ + windows) * window_;
-  return {windows_, time_, end > end_ - tolerance * window_ ? end_ : end};
+  const double last = end > end_ - tolerance * window_ ? end_ : end;
+  return {windows_, time_, last, windows, since_, anchor_, window_};
 }
 
 double WindowClock::whole_windows(double time) const {

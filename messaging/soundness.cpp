@@ -89,6 +89,10 @@ void require_box(const PortResponse& reply, const Port& port, const Advance& ask
     if (reply.lower[k] > reply.upper[k])
       FieldPath{&path, "lower"}.fail(
           fmt::format("is above upper at entry {}: {} and {}", k, reply.lower[k], reply.upper[k]));
+  for (std::size_t k = 0; k < reply.slowest.size(); ++k)
+    if (reply.slowest[k] > reply.fastest[k])
+      FieldPath{&path, "slowest"}.fail(fmt::format("is above fastest at entry {}: {} and {}", k,
+                                                   reply.slowest[k], reply.fastest[k]));
   const Waveform& trace = reply.trace;
   if (trace.empty() || trace.u.empty() || count == 0) return;
   const std::size_t width = index(trace.width), last = (trace.size() - 1) * width;

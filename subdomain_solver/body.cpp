@@ -269,9 +269,8 @@ void Body::release_point(const Advance& request, const Waveform* own, std::size_
 /// A body without a step of its own goes from record to record.
 Substeps Body::divide(const Advance& request) const {
   const TimeWindow& window = request.window;
-  const double step = describe().step;
-  return Substeps::divide(window.begin, window.end,
-                          step > 0.0 ? step : window.length() / std::max(1, request.records));
+  const std::int64_t records = std::max<std::int64_t>(1, request.records / window.windows);
+  return Substeps::divide(window, describe().step, static_cast<int>(records));
 }
 
 void Body::begin_replies(const Advance& request, Response& response) {

@@ -19,7 +19,10 @@ void RecordClock::next() {
 
 double RecordClock::time() const {
   if (next_ == records_) return window_.end;
-  return window_.begin + next_ * (window_.length() / records_);
+  const int each = std::max(1, records_ / static_cast<int>(window_.windows));
+  const int k = next_ / each, j = next_ % each;
+  const double from = window_.stop(k);
+  return j == 0 ? from : from + j * ((window_.stop(k + 1) - from) / each);
 }
 
 }  // namespace abut

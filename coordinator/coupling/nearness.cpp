@@ -64,31 +64,32 @@ Joint::Approach approach(const Joint& joint, const Bodies& bodies) {
   return {std::max(0.0, distance(joint, bodies) - joint.margin), closing_bound(joint, bodies)};
 }
 
-/// [m/s] (dim) The box of velocities that a side told; that of its bound where it told none.
-struct Velocities {
-  std::vector<double> slowest, fastest;
-};
+/// [m/s] Of two boxes of velocities, the largest difference.
+double difference(const PortResponse& a, const PortResponse& b) {
+  double square = 0.0;
+  for (std::size_t i = 0; i < a.slowest.size(); ++i) {
+    const double most = std::max(a.fastest[i] - b.slowest[i], b.fastest[i] - a.slowest[i]);
+    square += most * most;
+  }
+  return std::sqrt(square);
+}
 
-Velocities velocities(const PortResponse& reply, std::size_t dim) {
-  if (!reply.slowest.empty()) return {reply.slowest, reply.fastest};
-  return {std::vector(dim, -reply.speed_bound), std::vector(dim, reply.speed_bound)};
+/// [m/s] No point of a side was faster.
+double fastest(const PortResponse& reply) {
+  double square = 0.0;
+  for (std::size_t i = 0; i < reply.slowest.size(); ++i) {
+    const double most = std::max(-reply.slowest[i], reply.fastest[i]);
+    square += most * most;
+  }
+  return reply.slowest.empty() ? reply.speed_bound : std::sqrt(square);
 }
 
 /// [m/s] No two points of the sides came together faster at any time of the last replies.
 double fastest_closing(const Joint& joint, const Bodies& bodies, const Joint::Approach& now) {
   const PortResponse& a = port_of(bodies, joint.sides[0]);
   const PortResponse& b = port_of(bodies, joint.sides[1]);
-  const std::size_t dim = index(bodies.port(joint.sides[0]).geometry.dim);
-  const Velocities of_a = velocities(a, dim), of_b = velocities(b, dim);
-  double square = 0.0;
-  for (std::size_t i = 0; i < dim; ++i) {
-    const double most = std::max(of_a.fastest[i] - of_b.slowest[i],
-                                 of_b.fastest[i] - of_a.slowest[i]);
-    square += most * most;
-  }
-  const double told = std::sqrt(square);
-  if (!a.slowest.empty() && !b.slowest.empty()) return told;
-  return std::max({told, joint.approach.speed, now.speed});
+  if (!a.slowest.empty() && !b.slowest.empty()) return difference(a, b);
+  return std::max({fastest(a) + fastest(b), joint.approach.speed, now.speed});
 }
 
 double largest_coordinate(const PortResponse& reply) {
@@ -98,7 +99,13 @@ double largest_coordinate(const PortResponse& reply) {
   return most;
 }
 
-bool boxes_apart(const Joint& joint, const Bodies& bodies) {
+}  // namespace
+
+void measure_approach(Joint& joint, const Bodies& bodies) {
+  if (!bodies.taken_back()) joint.approach = approach(joint, bodies);
+}
+
+bool swept_apart(const Joint& joint, const Bodies& bodies) {
   const PortResponse& a = port_of(bodies, joint.sides[0]);
   const PortResponse& b = port_of(bodies, joint.sides[1]);
   const std::size_t dim = index(bodies.port(joint.sides[0]).geometry.dim);
@@ -113,14 +120,8 @@ bool boxes_apart(const Joint& joint, const Bodies& bodies) {
   return true;
 }
 
-}  // namespace
-
-void measure_approach(Joint& joint, const Bodies& bodies) {
-  if (!bodies.taken_back()) joint.approach = approach(joint, bodies);
-}
-
 bool kept_apart(const Joint& joint, const Bodies& bodies, double length) {
-  if (boxes_apart(joint, bodies)) return true;
+  if (swept_apart(joint, bodies)) return true;
   const Joint::Approach now = approach(joint, bodies);
   const double rounded = rounding * std::max(largest_coordinate(port_of(bodies, joint.sides[0])),
                                              largest_coordinate(port_of(bodies, joint.sides[1])));

@@ -11,6 +11,9 @@ namespace abut {
 /// back.
 void measure_approach(Joint& joint, const Bodies& bodies);
 
+/// Whether the boxes that the sides swept in the last replies were apart in every record's part.
+bool swept_apart(const Joint& joint, const Bodies& bodies);
+
 /// Whether the sides stayed apart over the last replies, which span `length` [s] from where
 /// joint.approach was measured: their swept boxes did in every record's part, or what they were
 /// apart at both ends is more than they can have come together in between.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -70,6 +71,14 @@ struct RunEvent {
 
 const char* to_string(RunEvent::Kind kind);
 
+/// Two bodies that are in the same place, of which no body can be.
+struct Overlap {
+  int body[2] = {0, 0};                           // index into RunStart::bodies
+  double depth = 0.0;                             // [m]
+  std::array<double, 3> place = {0.0, 0.0, 0.0};  // [m] where it is deepest
+  double time = 0.0;                              // [s] at which it was found
+};
+
 struct RunEnd {
   std::string status;                    // completed | failed | interrupted
   double time = 0.0;                     // [s] how far the run came
@@ -84,6 +93,8 @@ struct RunEnd {
   // by body, in the order of its Description::measures; empty where the run did not come to its end
   std::vector<std::vector<double>> body_measures;
   double overhead_median_seconds = 0.0;  // per exchange: wall minus compute
+  std::vector<Overlap> overlaps;         // that were found, each pair once
+  std::vector<std::string> never_met;    // interfaces that never closed where they should have
 };
 
 /// A customer of a run: log, table, summary, monitor. Never changes what the run computes.

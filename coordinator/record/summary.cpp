@@ -175,6 +175,20 @@ Json estimate_object(const Estimate& estimate) {
           {"not_built", estimate.not_built}};
 }
 
+Json overlaps_array(const RunEnd& end, const RunStart& start) {
+  Json array = Json::array();
+  for (const Overlap& overlap : end.overlaps) {
+    const Description &one = *start.bodies[overlap.body[0]],
+                      &other = *start.bodies[overlap.body[1]];
+    Json entry = {{"bodies", {one.name, other.name}},
+                  {"depth", number(overlap.depth)},
+                  {"time", number(overlap.time)}};
+    for (int i = 0; i < one.dim; ++i) entry["place"].push_back(number(overlap.place[index(i)]));
+    array.push_back(entry);
+  }
+  return array;
+}
+
 }  // namespace
 
 Summary::Summary(std::filesystem::path directory, Heading heading, const MeasureRecorder& recorder,
@@ -209,6 +223,8 @@ std::string Summary::text(const RunEnd& end) const {
   summary["windows"] = end.windows;
   summary["contact_windows"] = end.contact_windows;
   summary["exchanges"] = end.exchanges;
+  summary["overlaps"] = overlaps_array(end, start_);
+  summary["never_closed"] = end.never_met;
   summary["timing"] = timing_object(end, start_);
   if (heading_.program_began) summary["timing"]["startup_s"] = number(startup_seconds_);
   if (heading_.estimate) summary["estimate"] = estimate_object(*heading_.estimate);

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/index.hpp"
@@ -8,15 +10,24 @@ namespace abut {
 namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
-static_assert(sizeof(TimeWindow) == 3 * sizeof(double));
+static_assert(sizeof(TimeWindow) == 7 * sizeof(double));
 static_assert(sizeof(Want) == sizeof(double) + sizeof(std::vector<std::int32_t>));
 static_assert(sizeof(Advance) ==
               sizeof(TimeWindow) + 2 * sizeof(double) + 3 * sizeof(std::vector<double>));
+
+/// Of a run: more than any body could advance through.
+constexpr std::int64_t most_windows = 1'000'000'000'000;
 
 using Wire = v1::Advance;
 
 void encode(const TimeWindow& from, WireWriter& to) {
   const std::size_t before = to.size();
+  if (from.windows > 1) {
+    to.number(v1::TimeWindow::kWholeFieldNumber, from.whole);
+    to.number(v1::TimeWindow::kAnchorFieldNumber, from.anchor);
+    to.integer(v1::TimeWindow::kSinceFieldNumber, from.since);
+    to.integer(v1::TimeWindow::kWindowsFieldNumber, from.windows);
+  }
   to.number(v1::TimeWindow::kEndFieldNumber, from.end);
   to.number(v1::TimeWindow::kBeginFieldNumber, from.begin);
   to.integer(v1::TimeWindow::kIndexFieldNumber, from.index);
@@ -36,11 +47,27 @@ void decode_window(Bytes bytes, const FieldPath& path, TimeWindow& to) {
       case v1::TimeWindow::kEndFieldNumber:
         to.end = number(from.number(), path);
         break;
+      case v1::TimeWindow::kWindowsFieldNumber:
+        to.windows = std::max<std::int64_t>(1, from.integer());
+        break;
+      case v1::TimeWindow::kSinceFieldNumber:
+        to.since = from.integer();
+        break;
+      case v1::TimeWindow::kAnchorFieldNumber:
+        to.anchor = number(from.number(), path);
+        break;
+      case v1::TimeWindow::kWholeFieldNumber:
+        to.whole = number(from.number(), path);
+        break;
       default:
         from.skip();
     }
   }
   if (to.end < to.begin) path.fail("ends before its begin");
+  if (to.windows == 1) return;
+  const bool counted = to.windows <= most_windows && to.since >= 0 && to.since <= most_windows;
+  if (!counted || !(to.whole > 0.0 && to.stop(1) > to.begin && to.stop(to.windows - 1) < to.end))
+    path.fail("does not lie as its windows do");
 }
 
 void encode(const Want& from, WireWriter& to) {

@@ -47,7 +47,7 @@ void expect_equal(const Waveform& a, const Waveform& b) {
 
 Advance full_advance() {
   Advance advance;
-  advance.window = TimeWindow{41, -2.0e-4, 1.0 / 3.0};
+  advance.window = TimeWindow{41, -2.0e-4, 1.0 / 3.0, 3, 5, -0.5, 0.1};
   advance.records = 7;
   advance.sampling = Sampling::records;
   advance.ahead = 0.75;
@@ -138,6 +138,10 @@ TEST(Codec, AdvanceKeepsEveryField) {
   Advance got;
   decode(through_bytes<Advance, v1::Advance>(sent), two_ports(), met, got);
   EXPECT_EQ(got.window.index, 41);
+  EXPECT_EQ(got.window.windows, 3);
+  EXPECT_EQ(got.window.since, 5);
+  EXPECT_EQ(got.window.anchor, -0.5);
+  EXPECT_EQ(got.window.whole, 0.1);
   EXPECT_EQ(got.window.begin, sent.window.begin);
   EXPECT_EQ(got.window.end, sent.window.end);
   EXPECT_EQ(got.records, 7);

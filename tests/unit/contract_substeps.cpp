@@ -49,6 +49,26 @@ TEST(Substeps, OfAWindowOfNoLengthAreNone) {
   EXPECT_EQ(Substeps::divide(1.0, 1.0, 0.0).count, 0);
 }
 
+/// Loads that depend on time act in a flight as they do window by window, to the last bit.
+TEST(Substeps, OfSeveralWindowsInARowAreThoseOfEachAlone) {
+  const double anchor = 0.1, whole = 0.7 / 3.0;
+  const auto stop = [&](std::int64_t k) { return anchor + static_cast<double>(4 + k) * whole; };
+  const TimeWindow row{4, stop(0), stop(5), 5, 4, anchor, whole};
+  for (const double step : {whole / 7.0, whole / 2.5, 3.0 * whole, 0.0}) {
+    const Substeps all = Substeps::divide(row, step, 3);
+    int i = 0;
+    for (std::int64_t k = 0; k < 5; ++k) {
+      const Substeps one = Substeps::divide({4 + k, stop(k), stop(k + 1)}, step, 3);
+      for (int j = 1; j <= one.count; ++j) {
+        ++i;
+        EXPECT_EQ(all.time(i), one.time(j)) << step << ' ' << i;
+        EXPECT_EQ(all.length(i), one.length(j)) << step << ' ' << i;
+      }
+    }
+    EXPECT_EQ(all.count, i) << step;
+  }
+}
+
 TEST(Substeps, MoreThanCanBeNumberedAreRefused) {
   EXPECT_THROW(Substeps::divide(0.0, 1.0, 1e-12), RunError);
 }

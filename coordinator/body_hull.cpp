@@ -1,0 +1,178 @@
+#include "coordinator/body_hull.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "base/index.hpp"
+#include "contract/whole_facets.hpp"
+#include "surface/inside.hpp"
+
+namespace abut {
+
+namespace {
+
+using Facet = std::vector<std::int32_t>;
+
+/// Facets of VTK's cells, corners first, then what lies on the edges in their order; those of
+/// linear cells have the corners alone.
+const std::vector<Facet>& facets_of(std::int32_t type) {
+  static const std::vector<Facet> none;
+  static const std::map<std::int32_t, std::vector<Facet>> all = [] {
+    std::map<std::int32_t, std::vector<Facet>> of;
+    of[22] = {{0, 1, 3}, {1, 2, 4}, {2, 0, 5}};
+    of[23] = {{0, 1, 4}, {1, 2, 5}, {2, 3, 6}, {3, 0, 7}};
+    of[24] = {{0, 1, 3, 4, 8, 7}, {1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}, {0, 2, 1, 6, 5, 4}};
+    of[25] = {{0, 1, 5, 4, 8, 17, 12, 16},  {1, 2, 6, 5, 9, 18, 13, 17},
+              {2, 3, 7, 6, 10, 19, 14, 18}, {3, 0, 4, 7, 11, 16, 15, 19},
+              {0, 3, 2, 1, 11, 10, 9, 8},   {4, 5, 6, 7, 12, 13, 14, 15}};
+    for (const auto& [linear, second] : {std::pair{5, 22}, {9, 23}, {10, 24}, {12, 25}}) {
+      for (Facet facet : of[second]) {
+        facet.resize(facet.size() == 3 ? 2 : facet.size() / 2);
+        of[linear].push_back(facet);
+      }
+    }
+    return of;
+  }();
+  const auto found = all.find(type);
+  return found == all.end() ? none : found->second;
+}
+
+int corners_of(int dim, std::size_t nodes) {
+  if (dim == 2) return 2;
+  return nodes == 3 || nodes == 6 ? 3 : 4;
+}
+
+/// Facets that belong to one cell alone, in the order of cells.
+std::vector<Facet> outside(const Grid& grid, int dim) {
+  std::map<Facet, int> seen;  // by corners, sorted
+  std::vector<std::pair<Facet, Facet>> all;
+  for (std::size_t c = 0; c < grid.cells(); ++c) {
+    const std::int32_t* nodes = grid.connectivity.data() + grid.offsets[c];
+    for (const Facet& local : facets_of(grid.types[c])) {
+      Facet facet;
+      for (const std::int32_t node : local) facet.push_back(nodes[node]);
+      Facet key(facet.begin(), facet.begin() + corners_of(dim, facet.size()));
+      std::ranges::sort(key);
+      ++seen[key];
+      all.emplace_back(std::move(key), std::move(facet));
+    }
+  }
+  std::vector<Facet> out;
+  for (auto& [key, facet] : all)
+    if (seen[key] == 1) out.push_back(std::move(facet));
+  return out;
+}
+
+/// Straight facets between all nodes of these, and the points that they need.
+void add(BodyHull& hull, const std::vector<Facet>& facets, const Grid& grid) {
+  std::map<std::int32_t, std::int32_t> place;
+  const auto number = [&](std::int32_t node) {
+    const auto [at, fresh] = place.emplace(node, static_cast<std::int32_t>(hull.nodes.size()));
+    if (fresh) {
+      hull.nodes.push_back(node);
+      for (int i = 0; i < hull.dim; ++i)
+        hull.reference.push_back(grid.points[3 * index(node) + index(i)]);
+    }
+    return at->second;
+  };
+  for (const Facet& facet : facets) {
+    const bool whole = facet.size() == 2 || (hull.dim == 3 && facet.size() <= 4);
+    Facet every(facet.size());
+    for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<std::int32_t>(i);
+    const auto push = [&](const auto& part) {
+      for (const auto i : part) hull.facets.push_back(number(facet[index(i)]));
+      hull.offsets.push_back(static_cast<std::int32_t>(hull.facets.size()));
+    };
+    if (whole) {
+      push(every);
+    } else {
+      for (const std::vector<int>& part : straight_parts(hull.dim, facet.size())) push(part);
+    }
+  }
+}
+
+/// In 1D: where the body begins and ends; a wall goes on behind its point.
+BodyHull interval_of(const Description& body, const Grid& grid) {
+  BodyHull hull;
+  hull.dim = 1;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t n = 0; n < grid.nodes(); ++n) {
+    hull.nodes.push_back(static_cast<std::int32_t>(n));
+    hull.reference.push_back(grid.points[3 * n]);
+    low = std::min(low, hull.reference.back());
+    high = std::max(high, hull.reference.back());
+  }
+  if (hull.nodes.empty()) return {};
+  hull.size = low < high ? (high - low) / static_cast<double>(grid.cells())
+                         : std::numeric_limits<double>::infinity();
+  if (low == high && !body.ports.empty())
+    hull.endless = body.ports.front().geometry.normals.front() > 0.0 ? -1 : 1;
+  return hull;
+}
+
+BodyHull port_hull(const Description& body) {
+  for (std::size_t p = 0; p < body.ports.size(); ++p) {
+    const PortGeometry& g = body.ports[p].geometry;
+    if (g.dim == 1 || !is_closed(posed(g))) continue;
+    BodyHull hull;
+    hull.dim = g.dim;
+    hull.port = p;
+    hull.reference = g.points;
+    hull.facets = g.facets;
+    hull.offsets = g.offsets;
+    return hull;
+  }
+  return {};
+}
+
+double typical_size(const PosedSurface& surface) {
+  std::vector<double> sizes;
+  for (int f = 0; f < surface.facet_count(); ++f) {
+    const double whole = area(corners(surface, f));
+    sizes.push_back(surface.dim == 2 ? whole : std::sqrt(whole));
+  }
+  if (sizes.empty()) return 0.0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::ranges::nth_element(sizes, middle);
+  return *middle;
+}
+
+}  // namespace
+
+BodyHull hull_of(const Description& body, const Grid& grid) {
+  if (body.dim == 1) return interval_of(body, grid);
+  BodyHull hull;
+  hull.dim = body.dim;
+  hull.offsets = {0};
+  add(hull, outside(grid, body.dim), grid);
+  if (hull.facets.empty()) hull = port_hull(body);
+  if (hull.dim == 0) return hull;
+  pose(hull, {});
+  hull.size = typical_size(hull.surface());
+  return hull;
+}
+
+void pose(BodyHull& hull, std::span<const double> displacement) {
+  const std::size_t dim = index(hull.dim);
+  hull.points = hull.reference;
+  for (std::size_t k = 0; k < hull.points.size() && !displacement.empty(); ++k) {
+    const bool of_grid = !hull.nodes.empty();
+    hull.points[k] += displacement[of_grid ? 3 * index(hull.nodes[k / dim]) + k % dim : k];
+  }
+  hull.tree = {};
+  hull.box = {};
+  for (std::size_t i = 0; i < dim; ++i) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t k = i; k < hull.points.size(); k += dim) {
+      low = std::min(low, hull.points[k]);
+      high = std::max(high, hull.points[k]);
+    }
+    hull.box.low[i] = hull.endless < 0 ? -std::numeric_limits<double>::infinity() : low;
+    hull.box.high[i] = hull.endless > 0 ? std::numeric_limits<double>::infinity() : high;
+  }
+}
+
+}  // namespace abut

@@ -1,0 +1,139 @@
+#include "coordinator/overlap_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/index.hpp"
+#include "surface/closest_point.hpp"
+#include "surface/inside.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Of a facet: what contact leaves, which averages over them, is less by far; round bodies whose
+/// facets stand for them end up to 3 % of one in each other (shipped scenes).
+constexpr double least_share = 0.1;
+/// Unknowns of a body whose fields still fit into one reply.
+constexpr std::int64_t most_unknowns = 1'000'000;
+
+struct Depth {
+  double depth = 0.0;                               // [m]
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  // [m]
+};
+
+bool holds(const Box& box, const Eigen::Vector3d& x, int dim) {
+  for (int i = 0; i < dim; ++i)
+    if (x[i] < box.low[index(i)] || x[i] > box.high[index(i)]) return false;
+  return true;
+}
+
+BoxTree& tree_of(BodyHull& hull) {
+  if (hull.tree.empty()) build(hull.tree, hull.surface(), 0.0);
+  return hull.tree;
+}
+
+/// The point of one body, of its nodes and the middles of its facets, that is deepest in another.
+void look_inside(const BodyHull& one, BodyHull& other, Depth& deepest) {
+  const PosedSurface own = one.surface(), its = other.surface();
+  const auto see = [&](const Eigen::Vector3d& x) {
+    if (!holds(other.box, x, other.dim)) return;
+    BoxTree& tree = tree_of(other);
+    if (!inside(its, tree, x)) return;
+    const double depth = closest_point(its, tree, x)->at.distance;
+    if (depth > deepest.depth) deepest = {depth, x};
+  };
+  for (int n = 0; n < own.node_count(); ++n) see(own.point(n));
+  for (int f = 0; f < own.facet_count(); ++f) see(centre(corners(own, f)));
+}
+
+Depth depth_of(BodyHull& one, BodyHull& other) {
+  Depth deepest;
+  if (one.dim != other.dim || one.dim == 0 || !overlap(one.box, other.box)) return deepest;
+  if (one.dim == 1) {
+    const double low = std::max(one.box.low[0], other.box.low[0]);
+    const double high = std::min(one.box.high[0], other.box.high[0]);
+    return {high - low, {0.5 * (low + high), 0.0, 0.0}};
+  }
+  look_inside(one, other, deepest);
+  look_inside(other, one, deepest);
+  return deepest;
+}
+
+bool joins(const Joint& joint, std::pair<int, int> pair) {
+  return std::minmax(joint.sides[0].body, joint.sides[1].body) ==
+         std::pair<const int&, const int&>(pair.first, pair.second);
+}
+
+}  // namespace
+
+void OverlapSearch::make(Bodies& bodies) {
+  if (std::exchange(made_, true)) return;
+  for (int b = 0; b < bodies.count(); ++b) {
+    const Description& body = bodies.describe(b);
+    const bool asked = !body.fields.empty() && body.dofs <= most_unknowns;
+    hulls_.push_back(hull_of(body, asked ? bodies[b].grid() : Grid{}));
+  }
+}
+
+void OverlapSearch::pose_all(Bodies& bodies) {
+  for (int b = 0; b < bodies.count(); ++b) {
+    BodyHull& hull = hulls_[index(b)];
+    if (hull.dim == 0) continue;
+    if (hull.nodes.empty()) {
+      const Waveform& trace = bodies.response(b).ports[hull.port].trace;
+      const std::size_t width = hull.reference.size();
+      pose(hull, std::span(trace.u).last(width));
+      continue;
+    }
+    const std::vector<FieldInfo>& told = bodies.describe(b).fields;
+    const auto field = std::ranges::find_if(told, [](const FieldInfo& info) {
+      return info.name == "displacement" && info.place == FieldPlace::nodes && info.components == 3;
+    });
+    if (field == told.end()) {
+      hull.dim = 0;
+      continue;
+    }
+    pose(hull, bodies[b].fields().at(index(static_cast<int>(field - told.begin()))));
+  }
+}
+
+/// Whether two bodies may overlap: they are one where they are tied, and what nothing joins may lie
+/// in one place from the start, as variants of one body do.
+bool OverlapSearch::meant(std::pair<int, int> pair, std::span<const Joint> joints) {
+  bool joined = false;
+  for (const Joint& joint : joints) {
+    if (!joins(joint, pair)) continue;
+    if (joint.tied()) return true;
+    joined = true;
+  }
+  if (joined) return false;
+  BodyHull one = hulls_[index(pair.first)], other = hulls_[index(pair.second)];
+  pose(one, {});
+  pose(other, {});
+  return depth_of(one, other).depth > least_share * std::min(one.size, other.size);
+}
+
+std::vector<Overlap> OverlapSearch::look(Bodies& bodies, std::span<const Joint> joints,
+                                         double time) {
+  std::vector<Overlap> found;
+  if (bodies.count() < 2) return found;
+  make(bodies);
+  pose_all(bodies);
+  for (int a = 0; a < bodies.count(); ++a) {
+    for (int b = a + 1; b < bodies.count(); ++b) {
+      BodyHull &one = hulls_[index(a)], &other = hulls_[index(b)];
+      if (told_.contains({a, b})) continue;
+      const Depth deepest = depth_of(one, other);
+      const bool deep = deepest.depth > least_share * std::min(one.size, other.size);
+      if (!deep || meant({a, b}, joints)) continue;
+      told_.insert({a, b});
+      const Eigen::Vector3d& x = deepest.place;
+      found.push_back({{a, b}, deepest.depth, {x[0], x[1], x[2]}, time});
+    }
+  }
+  return found;
+}
+
+}  // namespace abut

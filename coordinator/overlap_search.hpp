@@ -1,0 +1,34 @@
+#pragma once
+
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "coordinator/body_hull.hpp"
+#include "coordinator/coupling/joint.hpp"
+#include "coordinator/record/observer.hpp"
+
+namespace abut {
+
+/// Looks for bodies that are in each other, whatever their ports are and whoever joins them: by
+/// boxes first, then by the points of their outsides. Asks bodies for grids and displacements, in
+/// states that the run has accepted; changes nothing.
+class OverlapSearch {
+ public:
+  /// Pairs that overlap by more than a part of their facets and were not told before. Not told:
+  /// bodies that are tied to each other, those that no interface joins and that overlapped in the
+  /// reference as well, and bodies of more than a million unknowns.
+  std::vector<Overlap> look(Bodies& bodies, std::span<const Joint> joints, double time);
+
+ private:
+  void make(Bodies& bodies);
+  void pose_all(Bodies& bodies);
+  bool meant(std::pair<int, int> pair, std::span<const Joint> joints);
+
+  bool made_ = false;
+  std::vector<BodyHull> hulls_;  // by body
+  std::set<std::pair<int, int>> told_;
+};
+
+}  // namespace abut

@@ -1,0 +1,87 @@
+#include "coordinator/passing_watch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "base/index.hpp"
+#include "coordinator/coupling/nearness.hpp"
+#include "coordinator/coupling/port_pose.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Of the area of a side: as much of it looks one way where the side has a front at all.
+constexpr double least_flat = 0.5;
+
+struct Front {
+  Eigen::Vector3d looks = Eigen::Vector3d::Zero();  // mean of the facets' normals
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();     // [m]
+};
+
+Front front_of(const PosedSurface& surface) {
+  Front front;
+  double whole = 0.0;
+  for (int f = 0; f < surface.facet_count(); ++f) {
+    const Corners c = corners(surface, f);
+    front.looks += area_vector(c);
+    front.at += area(c) * centre(c);
+    whole += area(c);
+  }
+  if (whole > 0.0) front = {front.looks / whole, front.at / whole};
+  return front;
+}
+
+/// Whether what was before a side is behind it now, or the other way round.
+bool changed(const Front& side, const Front& other, const Front& side_now, const Front& other_now) {
+  if (std::min(side.looks.norm(), side_now.looks.norm()) < least_flat) return false;
+  const double before = side.looks.dot(other.at - side.at);
+  const double now = side_now.looks.dot(other_now.at - side_now.at);
+  return (before > 0.0) != (now > 0.0);
+}
+
+bool changed_places(const Joint& joint, const Bodies& bodies) {
+  std::array<Front, 2> before, now;
+  for (const std::size_t s : {0u, 1u}) {
+    before[s] = front_of(posed(bodies.port(joint.sides[s]).geometry));
+    now[s] = front_of(bodies.pose(joint.sides[s]).surface());
+  }
+  return changed(before[0], before[1], now[0], now[1]) ||
+         changed(before[1], before[0], now[1], now[0]);
+}
+
+bool behind(const Joint& joint, const Bodies& bodies) {
+  const double gap = joint.gap(trace_of(bodies, joint.sides[0]).u.back(),
+                               trace_of(bodies, joint.sides[1]).u.back());
+  double spacing = std::numeric_limits<double>::infinity();
+  for (const Side& side : joint.sides) {
+    const double own = bodies.port(side).geometry.spacing;
+    if (own > 0.0) spacing = std::min(spacing, own);
+  }
+  return gap < -spacing;
+}
+
+}  // namespace
+
+void PassingWatch::watch(std::span<const Joint> joints, const Bodies& bodies) {
+  near_.resize(joints.size(), false);
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    if (joints[j].surfaces && !near_[j]) near_[j] = !swept_apart(joints[j], bodies);
+}
+
+std::vector<std::string> PassingWatch::passed(std::span<const Joint> joints,
+                                              const Bodies& bodies) const {
+  std::vector<std::string> names;
+  for (std::size_t j = 0; j < std::min(joints.size(), near_.size()); ++j) {
+    const Joint& joint = joints[j];
+    const bool meets = !joint.tied() && joint.decision != Decision::inside;
+    if (!meets || joint.force_scale > 0.0) continue;
+    const bool past =
+        joint.surfaces ? near_[j] && changed_places(joint, bodies) : behind(joint, bodies);
+    if (past) names.push_back(joint.name);
+  }
+  return names;
+}
+
+}  // namespace abut
