@@ -144,7 +144,6 @@ struct Talk {
       }
       port.lower = dice.values(index(request.records * body.dim));
       port.upper = dice.values(index(request.records * body.dim));
-      if (dice.coin()) port.slowest = port.fastest = dice.values(index(body.dim));
       port.speed_bound = dice.coin() ? infinity : dice.value();
       port.acceleration_bound = dice.value();
       port.work = dice.value();
@@ -429,8 +428,6 @@ TEST(Shapes, RepliesThatDoNotFitAreRefusedByFieldName) {
               p.add_lower(0.0);
             }),
             "advanced.ports[0].upper has 0 numbers where 2 belong");
-  EXPECT_EQ(reply_refused([](v1::PortResponse& p) { p.add_slowest(1.0); }),
-            "advanced.ports[0].slowest has 1 numbers where 2 belong");
 }
 
 TEST(Shapes, SurfacesAndKernelsThatDoNotFitAreRefusedByFieldName) {

@@ -190,6 +190,11 @@ TEST(Soundness, BoxesAndBoundsOfSpeedAreThoseOfTheMotion) {
             "advanced.ports[0].lower is above upper at entry 0: 2 and 0");
   EXPECT_EQ(answered([](Response& r) { r.ports[0].upper = {2, 1, 0.1, 2, 1, 0.15}; }).substr(0, 45),
             "advanced.ports[0].upper leaves out point 0, w");
+  EXPECT_EQ(answered([](Response& r) {
+              r.ports[0].slowest = {0, 1, 0};
+              r.ports[0].fastest = {0, -1, 0};
+            }),
+            "advanced.ports[0].slowest is above fastest at entry 1: 1 and -1");
   EXPECT_EQ(answered([](Response& r) { r.ports[0].speed_bound = -3.0; }),
             "advanced.ports[0].speed_bound is negative: -3");
   EXPECT_EQ(answered([](Response& r) { r.ports[0].speed_bound = 0.0; }),
