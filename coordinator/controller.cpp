@@ -48,7 +48,7 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       clock_(scene.time.begin, scene.time.end, scene.time.window),
       roles_(bodies_, scene.time.window, scene.schwarz.parallel),
       events_(joints_, bodies_, roles_, narrator_, scene.schwarz.tolerance, scene.time.window),
-      guard_(scene.schwarz.energy_guard, conserving_bodies(), sums_energy(), unresolved_inertia()),
+      guard_(scene.schwarz.energy_guard, conserving_bodies(), sums_energy(), stepping()),
       reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {
   end_.status = "completed";
   flight_.longest = flight_.limit = windows_at_once(scene.time.window, descriptions_of(bodies_));
@@ -347,15 +347,14 @@ std::vector<bool> Controller::conserving_bodies() const {
   return conserves;
 }
 
-/// m (2 dt)^2/2: of what a body moves at after two steps under its body force.
-std::vector<double> Controller::unresolved_inertia() const {
-  std::vector<double> inertia;
+std::vector<EnergyGuard::Stepping> Controller::stepping() const {
+  std::vector<EnergyGuard::Stepping> all;
   for (int b = 0; b < bodies_.count(); ++b) {
     const Description& body = bodies_.describe(b);
     const bool moves = std::isfinite(body.mass) && !body.quasi_static;
-    inertia.push_back(moves ? 2.0 * body.mass * body.step * body.step : 0.0);
+    all.push_back(moves ? EnergyGuard::Stepping{body.mass, body.step} : EnergyGuard::Stepping{});
   }
-  return inertia;
+  return all;
 }
 
 /// Whether what all bodies have together may not grow. Rows that close inside a step without

@@ -83,7 +83,7 @@ class Controller {
   void look_for_overlaps();
   void look_for_passed();
   std::vector<bool> conserving_bodies() const;
-  std::vector<double> unresolved_inertia() const;
+  std::vector<EnergyGuard::Stepping> stepping() const;
   bool sums_energy() const;
   void fail(double time, const std::string& text);
   void state(Archive& archive);

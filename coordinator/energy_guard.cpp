@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace abut {
@@ -9,13 +10,16 @@ namespace abut {
 namespace {
 /// Bodies at rest that loads set in motion have hardly any energy at first.
 constexpr int looks_from_rest = 10;
+/// Roundings of a place that may go into the velocity of a body: 16 in the sums of each step, and
+/// those of a million steps add up by chance, to the root of that.
+constexpr double roundings = 16.0e3;
 }  // namespace
 
 EnergyGuard::EnergyGuard(double share, std::vector<bool> conserves, bool together,
-                         std::vector<double> inertia)
+                         std::vector<Stepping> stepping)
     : share_(share),
       conserves_(std::move(conserves)),
-      inertia_(std::move(inertia)),
+      stepping_(std::move(stepping)),
       all_conserve_(std::ranges::all_of(conserves_, [](bool yes) { return yes; })),
       together_(together),
       bodies_(conserves_.size()) {}
@@ -35,12 +39,13 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
     }
     account.change = here - account.first - account.ports - (struck.empty() ? 0.0 : struck[b]);
   }
+  const double rounded = rounding(responses);
   if (!std::exchange(begun_, true)) {
     first_ = own;
-    unjudged_ = motion == 0.0 ? looks_from_rest : 0;
+    unjudged_ = motion <= rounded ? looks_from_rest : 0;
     most_ = unresolved(responses);
   }
-  most_ = std::max(most_, motion);
+  most_ = std::max({most_, motion, rounded});
   if (most_ <= 0.0 || unjudged_-- > 0) return Verdict::fine;
   unjudged_ = 0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -54,13 +59,32 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
   return verdict((own - first_) / most_, share_, all_conserve_);
 }
 
+/// m (2 dt a)^2/2: of what a body moves at after two steps under its body force.
 double EnergyGuard::unresolved(std::span<const Response> responses) const {
   double energy = 0.0;
-  for (std::size_t b = 0; b < inertia_.size(); ++b) {
+  for (std::size_t b = 0; b < stepping_.size(); ++b) {
     double most = 0.0;
     for (const PortResponse& port : responses[b].ports)
       most = std::max(most, port.acceleration_bound);
-    energy += inertia_[b] * most * most;
+    const double speed = 2.0 * stepping_[b].step * most;
+    energy += 0.5 * stepping_[b].mass * speed * speed;
+  }
+  return energy;
+}
+
+/// m v^2/2, of velocities by which the rounding of places may go astray.
+double EnergyGuard::rounding(std::span<const Response> responses) const {
+  double energy = 0.0;
+  for (std::size_t b = 0; b < stepping_.size(); ++b) {
+    if (!(stepping_[b].step > 0.0)) continue;
+    double farthest = 0.0;  // [m]
+    for (const PortResponse& port : responses[b].ports) {
+      for (const double place : port.lower) farthest = std::max(farthest, std::abs(place));
+      for (const double place : port.upper) farthest = std::max(farthest, std::abs(place));
+    }
+    const double speed =
+        roundings * std::numeric_limits<double>::epsilon() * farthest / stepping_[b].step;
+    energy += 0.5 * stepping_[b].mass * speed * speed;
   }
   return energy;
 }

@@ -15,14 +15,20 @@ class EnergyGuard {
  public:
   enum class Verdict { fine, warn, fail };
 
+  /// How a body steps. Of one without inertia: none.
+  struct Stepping {
+    double mass = 0.0;  // [kg]
+    double step = 0.0;  // [s]
+  };
+
   /// `share`: change, as a fraction of the largest kinetic and stored energy so far, that fails.
   /// `conserves`: by body, whether it is watched by itself; all: whether losses are wrong too.
-  /// `together`: whether the sum of all bodies is watched. `inertia` [kg s^2]: by body, of what
-  /// body forces may give in a step; empty: none. Bodies that rest when loads set
-  /// in have no energy that steps resolve: the first ten looks are not judged, and it counts as if
-  /// there had been in motion what steps do not resolve.
+  /// `together`: whether the sum of all bodies is watched. `stepping`: by body; empty: not told.
+  /// Bodies that rest when loads set in have no energy that steps resolve: the first ten looks are
+  /// not judged, and it counts as if there had been in motion what steps do not resolve, and what
+  /// places of bodies are rounded by  [M.21].
   EnergyGuard(double share, std::vector<bool> conserves, bool together = true,
-              std::vector<double> inertia = {});
+              std::vector<Stepping> stepping = {});
 
   /// Looks at the last record of every body, once for every accepted window. Warns once, at half
   /// the share of growth; of losses at the share itself.
@@ -41,17 +47,18 @@ class EnergyGuard {
   };
 
   double unresolved(std::span<const Response> responses) const;
+  double rounding(std::span<const Response> responses) const;
   Verdict verdict(double change, double share, bool losses);
 
   double share_;
   std::vector<bool> conserves_;
-  std::vector<double> inertia_;  // [kg s^2]
+  std::vector<Stepping> stepping_;
   bool all_conserve_, together_;
   bool begun_ = false, warned_ = false;
   int unjudged_ = 0;  // looks that are still not judged
   std::vector<Account> bodies_;
   double first_ = 0.0;  // [J] at the first look
-  double most_ = 0.0;   // [J] largest kinetic and stored energy so far, or what steps resolve
+  double most_ = 0.0;   // [J] largest kinetic and stored energy so far, or what numbers resolve
   double growth_ = 0.0;
   int culprit_ = -1;
 };

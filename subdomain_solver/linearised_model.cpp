@@ -23,7 +23,8 @@ LinearisedModel::LinearisedModel(Model& of) : of_(of) {
 }
 
 double LinearisedModel::roundoff(std::span<const double> q) const {
-  return std::numeric_limits<double>::epsilon() * tangent_.norm() * view(q).norm();
+  return summed_roundings * std::numeric_limits<double>::epsilon() * tangent_.norm() *
+         view(q).lpNorm<Eigen::Infinity>();
 }
 
 bool LinearisedModel::evaluate(std::span<const double> q, std::span<const double> history,

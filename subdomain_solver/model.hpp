@@ -52,6 +52,10 @@ struct LayerResponse {
   SparseMatrix tangent;  // [N/m] dr/dq among them; always of one pattern
 };
 
+/// A nodal force sums up some 200 products, over cells, quadrature points and components: their
+/// roundings, which are independent, add up to the root of that.
+constexpr double summed_roundings = 16.0;
+
 /// Semi-discrete body in its own coordinates q:   M q'' + r(q) = f(t)   [M.40]. Integrators see
 /// nothing else of a body. The fidelity ladder is made of models under the same integrators.
 class Model {
@@ -66,7 +70,8 @@ class Model {
   virtual const Vector& lumped_mass() const = 0;  // [kg] (dofs) of the same total
   /// Threads that steps may use too; null: none.
   virtual WorkerThreads* threads() { return nullptr; }
-  /// [N] size of the round-off in r(q): a balance of forces below it cannot be improved.
+  /// [N] size of the round-off in r(q): a balance of forces below it cannot be improved. It holds
+  /// `summed_roundings` of every number.
   virtual double roundoff(std::span<const double> q) const = 0;
   /// r(q), from the history at the step's begin; the tangent when wanted. False: q is inadmissible
   /// (an inverted element, a material point without an answer), and out undefined.

@@ -173,10 +173,21 @@ bool FeModel::evaluate(std::span<const double> q, std::span<const double> histor
     spring_force(q, out);
     return true;
   }
-  const Eigen::Map<const Vector> u(q.data(), dofs());
+  const Vector& u = strain_displacement(q);
   out.force.noalias() = stiffness * u;
   out.stored = 0.5 * u.dot(out.force);
   return true;
+}
+
+/// Displacements less that of the first node: a translation makes no force, whose rounding would
+/// grow with the way and move the body.
+const Vector& FeModel::strain_displacement(std::span<const double> q) {
+  relative_ = Eigen::Map<const Vector>(q.data(), dofs());
+  if (!frames_.empty() || round()) return relative_;
+  const int dim = mesh_.dim;
+  Eigen::Map<Eigen::MatrixXd> by_node(relative_.data(), dim, dofs() / dim);
+  by_node.colwise() -= Eigen::Map<const Vector>(q.data(), dim);
+  return relative_;
 }
 
 /// Forces of a linear bar cancel exactly in pairs, and a translation makes none: they come from
@@ -221,7 +232,8 @@ double FeModel::roundoff(std::span<const double> q) const {
   const Eigen::Map<const Vector> u(q.data(), dofs());
   const double travel = u.lpNorm<Eigen::Infinity>() * units.gradient_unit;
   const double strain = is_linear() ? travel : std::max(1.0, travel);
-  return epsilon * units.force_unit * strain * std::sqrt(static_cast<double>(dofs()));
+  return summed_roundings * epsilon * units.force_unit * strain *
+         std::sqrt(static_cast<double>(dofs()));
 }
 
 bool FeModel::assemble(std::span<const double> q, std::span<const double> history, Want want,

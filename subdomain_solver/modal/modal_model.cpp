@@ -14,7 +14,8 @@ ModalModel::ModalModel(const Vector& frequencies)
 
 double ModalModel::roundoff(std::span<const double> q) const {
   const Eigen::Map<const Vector> amplitudes(q.data(), static_cast<Eigen::Index>(q.size()));
-  return std::numeric_limits<double>::epsilon() * stiffness_.cwiseProduct(amplitudes).norm();
+  return summed_roundings * std::numeric_limits<double>::epsilon() *
+         stiffness_.cwiseProduct(amplitudes).norm();
 }
 
 bool ModalModel::evaluate(std::span<const double> q, std::span<const double>, Want want,

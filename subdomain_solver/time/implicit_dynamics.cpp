@@ -30,8 +30,7 @@ class ImplicitDynamics::Balance final : public Equations {
       b_.q_start = q + dt * v + (0.5 - w_.beta) * dt * dt * a;
       b_.v_start = v + (1.0 - w_.gamma) * dt * a;
     }
-    for (const Prescribed& p : o_.problem_.supports)
-      b_.a(p.dof) = (p.value(end_) - b_.q_start(p.dof)) / (w_.beta * dt * dt);
+    follow_supports();
     // Factors of another state would leave their rounding in contact's turns.
     if (!o_.problem_.model->is_linear()) o_.factored_dt_ = 0.0;
     see_past(time);
@@ -54,7 +53,27 @@ class ImplicitDynamics::Balance final : public Equations {
     return b_.x;
   }
 
-  [[nodiscard]] bool residual(const Vector& x, Vector& r, double& scale) override {
+  /// Where Newton's method got nowhere: nodes without mass keep no acceleration, so under large
+  /// ones of the others the first guess may strain or invert their cells. As if there were none at
+  /// all, and then where the step began. False: all were tried.
+  [[nodiscard]] bool guess_again() {
+    if (guesses_ == 2) return false;
+    if (++guesses_ == 1) {
+      b_.a.setZero();
+    } else {
+      b_.a = (view(motion_.q) - b_.q_start) / (w_.beta * dt_ * dt_);
+    }
+    follow_supports();
+    o_.free_.pick(b_.a, b_.x);
+    return true;
+  }
+
+  void follow_supports() {
+    for (const Prescribed& p : o_.problem_.supports)
+      b_.a(p.dof) = (p.value(end_) - b_.q_start(p.dof)) / (w_.beta * dt_ * dt_);
+  }
+
+  [[nodiscard]] bool residual(const Vector& x, Vector& r, ResidualUnits& units) override {
     for (int i = 0; i < o_.free_.count(); ++i) b_.a(o_.free_.list()[index(i)]) = x(i);
     b_.q = b_.q_start + w_.beta * dt_ * dt_ * b_.a;
     Model& model = *o_.problem_.model;
@@ -68,9 +87,9 @@ class ImplicitDynamics::Balance final : public Equations {
     b_.outer = (1.0 - w_.alpha_f) * b_.external;
     b_.sum = b_.inertia + b_.inner - b_.outer + b_.past;
     o_.free_.pick(b_.sum, r);
-    scale = std::max({b_.inertia.norm(), b_.inner.norm(), b_.outer.norm(), b_.past.norm(),
-                      model.roundoff(q) / o_.options_.newton.tolerance});
-    b_.scale = scale;
+    units.forces = std::max({b_.inertia.norm(), b_.inner.norm(), b_.outer.norm(), b_.past.norm()});
+    units.roundoff = model.roundoff(q);
+    b_.scale = std::max(units.forces, units.roundoff / o_.options_.newton.tolerance);
     return true;
   }
 
@@ -89,9 +108,8 @@ class ImplicitDynamics::Balance final : public Equations {
     if (!model.evaluate(q, motion_.history, Model::Want::tangent, here)) return false;
     for (const std::unique_ptr<Load>& load : o_.problem_.loads)
       load->add_tangent(end_, q, here.tangent);
-    const SparseMatrix& whole =
-        o_.whole_.of(1.0 - w_.alpha_m, o_.mass_, (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_,
-                     here.tangent);
+    const SparseMatrix& whole = o_.whole_.of(
+        1.0 - w_.alpha_m, o_.mass_, (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_, here.tangent);
     o_.free_.extract(whole, o_.matrix_);
     o_.factored_dt_ = 0.0;
     if (!o_.solver_->factor(o_.matrix_)) return false;
@@ -107,8 +125,11 @@ class ImplicitDynamics::Balance final : public Equations {
     return o_.contact_.press(end_, b_.q, turn, x, change);
   }
 
+  /// Of accelerations: their own rounding, and that of the displacements that they move.
   double smallest_step(const Vector& x) const override {
-    return 4.0 * std::numeric_limits<double>::epsilon() * x.lpNorm<Eigen::Infinity>();
+    const double moved = b_.q.lpNorm<Eigen::Infinity>() / (w_.beta * dt_ * dt_);
+    return 4.0 * std::numeric_limits<double>::epsilon() *
+           std::max(x.lpNorm<Eigen::Infinity>(), moved);
   }
 
   void finish(Motion& motion) {
@@ -161,6 +182,7 @@ class ImplicitDynamics::Balance final : public Equations {
   const AlphaWeights& w_;
   const Motion& motion_;
   double end_, dt_;
+  int guesses_ = 0;  // beside the first
 };
 
 ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& options,
@@ -267,8 +289,11 @@ NewtonReport ImplicitDynamics::solve(Balance& balance, const Motion& motion) {
   Vector& x = balance.first_guess();
   contact_.begin(problem_.contact, motion.force);
   for (int turn = 0;; ++turn) {
-    const NewtonReport report = solve_newton(balance, x, options_.newton, buffers_.newton);
-    iterations_ += report.iterations;
+    NewtonReport report;
+    do {
+      report = solve_newton(balance, x, options_.newton, buffers_.newton);
+      iterations_ += report.iterations;
+    } while (!report.converged() && turn == 0 && balance.guess_again());
     if (!report.converged() || problem_.contact == nullptr) return report;
     double change = 0.0;
     if (!balance.press(x, turn, change)) return {NewtonReport::End::singular};

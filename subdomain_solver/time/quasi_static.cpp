@@ -62,7 +62,7 @@ class QuasiStatic::Balance final : public Equations {
     return true;
   }
 
-  [[nodiscard]] bool residual(const Vector& x, Vector& r, double& scale) override {
+  [[nodiscard]] bool residual(const Vector& x, Vector& r, ResidualUnits& units) override {
     for (int i = 0; i < o_.free_.count(); ++i) b_.q(o_.free_.list()[index(i)]) = x(i);
     Model& model = *o_.problem_.model;
     const std::span<const double> q = span_of(b_.q);
@@ -75,9 +75,9 @@ class QuasiStatic::Balance final : public Equations {
       o_.unbalanced_ = -(o_.loose_.transpose() * r);
       r += o_.loose_ * o_.unbalanced_ / static_cast<double>(x.size());
     }
-    scale = std::max({b_.response.force.norm(), b_.external.norm(),
-                      model.roundoff(q) / o_.options_.newton.tolerance});
-    b_.scale = scale;
+    units.forces = std::max(b_.response.force.norm(), b_.external.norm());
+    units.roundoff = model.roundoff(q);
+    b_.scale = std::max(units.forces, units.roundoff / o_.options_.newton.tolerance);
     return true;
   }
 
@@ -147,8 +147,7 @@ class QuasiStatic::Balance final : public Equations {
   /// the straight way. False: an element is inverted on it.
   [[nodiscard]] bool work_of_step(double& work) {
     b_.moved = b_.q - view(motion_.q);
-    const Part whole{0.0, 1.0, view(motion_.force).dot(b_.moved),
-                     b_.response.force.dot(b_.moved)};
+    const Part whole{0.0, 1.0, view(motion_.force).dot(b_.moved), b_.response.force.dot(b_.moved)};
     work = 0.5 * (whole.at_begin + whole.at_end);
     if (o_.problem_.model->is_linear()) return true;
     work = 0.0;

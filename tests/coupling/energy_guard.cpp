@@ -43,12 +43,28 @@ TEST(EnergyGuard, JudgesFromRestWhenThereIsEnergyToCompareWith) {
 
 /// 2 kg under 10 m/s^2 in steps of 0.1 s: 2 (1 m/s)^2 count as if in motion.
 TEST(EnergyGuard, KnowsWhatStepsDoNotResolve) {
-  EnergyGuard guard(0.01, {false}, true, {2.0 * 2.0 * 0.1 * 0.1});
+  EnergyGuard guard(0.01, {false}, true, {{2.0, 0.1}});
   Response heavy = holding(0.0, 0.0);
   heavy.ports.resize(1);
   heavy.ports[0].acceleration_bound = 10.0;
   EXPECT_EQ(guard.look(std::vector{heavy}), Verdict::fine);
   EXPECT_DOUBLE_EQ(guard.most(), 4.0);
+}
+
+/// 2 kg, 1 m away, steps of 1e-3 s: velocities are rounded by some 16e3 x 2.2e-16 m / 1e-3 s = 3.6e-9
+/// m/s at most, which is 1.3e-17 J.
+TEST(EnergyGuard, KnowsWhatNumbersDoNotResolve) {
+  EnergyGuard guard(0.01, {false}, true, {{2.0, 1.0e-3}});
+  const auto at = [](double energy) {
+    Response noise = holding(energy, 0.0);
+    noise.ports.resize(1);
+    noise.ports[0].lower = {-1.0, 0.0};
+    noise.ports[0].upper = {1.0, 0.5};
+    return std::vector{noise};
+  };
+  EXPECT_EQ(guard.look(at(1.0e-24)), Verdict::fine);
+  for (int k = 0; k < 20; ++k) EXPECT_EQ(guard.look(at(1.0e-20 + k * 1.0e-21)), Verdict::fine) << k;
+  EXPECT_EQ(guard.look(at(1.0e-18)), Verdict::fail) << "a tenth of what is resolved";
 }
 
 TEST(EnergyGuard, SeesAGainBehindWhatBecameHeat) {
