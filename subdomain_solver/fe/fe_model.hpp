@@ -120,13 +120,15 @@ class FeModel final : public Model {
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
   int layer_place(int dof) const;  // among the massless; -1: it is none
   bool is_bare(std::int32_t node, int direction) const;  // it has no mass in it
+  bool takes_mass(std::int32_t node, int direction) const;  // of bare ones: it is free
   void find_heirs(int direction);
   void hand_over(std::span<const std::int32_t> nodes, int direction, Eigen::MatrixXd& nodal) const;
-  template <class Take>
-  void inherit(const Take& take) const;
+  template <class Whole, class Take>
+  void inherit(const Whole& whole, const Take& take) const;
   void inherit(Vector& lumped) const;
   void inherit(SparseMatrix& mass) const;
   const SparseMatrix& linear_stiffness();
+  const Vector& strain_displacement(std::span<const double> q);
   void find_layer_pattern(LayerResponse& out);
   void find_layer_rows(std::span<const double> q, std::span<const double> history);
   template <int dim, int count>
@@ -159,8 +161,9 @@ class FeModel final : public Model {
   using LayerRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   std::vector<int> bare_;                         // dofs without mass, ascending; usually none
   std::vector<int> massless_;                     // of them, those that are not held
+  std::vector<int> held_;                         // dofs, ascending, where there are bare ones
   std::vector<std::pair<int, int>> layer_cells_;  // (block, cell) that touch them
-  // by direction, of cells wholly without mass there: nodes that have it
+  // by direction, of cells without a node that takes mass there: nodes near that do
   std::array<std::map<std::pair<int, int>, std::vector<std::int32_t>>, 3> heirs_;
   // by cell of the layer: places of its coordinates among the massless, -1: none; entries of its
   // matrix, column by column, among the values of the tangent
@@ -173,6 +176,7 @@ class FeModel final : public Model {
   CellKernel kernel_;
   CellResponse local_;
   std::vector<double> u_;
+  Vector relative_;  // (dofs) of linear models
   std::vector<double> after_;  // history that nobody asked for
 };
 

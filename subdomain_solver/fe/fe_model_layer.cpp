@@ -18,6 +18,11 @@ bool FeModel::is_bare(std::int32_t node, int direction) const {
   return std::ranges::binary_search(bare_, node * mesh_.dim + direction);
 }
 
+bool FeModel::takes_mass(std::int32_t node, int direction) const {
+  return !is_bare(node, direction) &&
+         !std::ranges::binary_search(held_, node * mesh_.dim + direction);
+}
+
 int FeModel::layer_place(int dof) const {
   const auto at = std::ranges::lower_bound(massless_, dof);
   return at != massless_.end() && *at == dof ? static_cast<int>(at - massless_.begin()) : -1;
@@ -26,6 +31,7 @@ int FeModel::layer_place(int dof) const {
 void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held) {
   ABUT_ASSERT(bare_.empty() && (!assembly_ || assembly_->mass.size() == 0));
   bare_ = std::move(bare);
+  held_ = held;
   std::ranges::set_difference(bare_, held, std::back_inserter(massless_));
   const auto bare_anywhere = [this](std::int32_t node) {
     const auto first = std::ranges::lower_bound(bare_, node * mesh_.dim);
@@ -42,24 +48,26 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
   lump_mass();
 }
 
-/// Cells wholly in the layer, tetrahedra in corners for instance, have no node that could take
-/// their mass: nodes of their neighbours do, or of these ones' neighbours.
+/// Cells all of whose nodes are in the layer or held, tetrahedra in corners for instance, have no
+/// node that could take their mass: nodes of their neighbours do, or of these ones' neighbours.
 void FeModel::find_heirs(int direction) {
-  std::vector<std::size_t> bare_cells;  // of layer_cells_
+  std::vector<std::size_t> poor_cells;  // of layer_cells_
   for (std::size_t l = 0; l < layer_cells_.size(); ++l) {
     const auto& [block, cell] = layer_cells_[l];
-    if (std::ranges::all_of(nodes_of(mesh_.blocks[index(block)], cell),
-                            [=, this](auto node) { return is_bare(node, direction); }))
-      bare_cells.push_back(l);
+    const std::span<const std::int32_t> nodes = nodes_of(mesh_.blocks[index(block)], cell);
+    const bool bare = std::ranges::any_of(nodes, [=, this](auto n) { return is_bare(n, direction); });
+    const bool takes =
+        std::ranges::any_of(nodes, [=, this](auto n) { return takes_mass(n, direction); });
+    if (bare && !takes) poor_cells.push_back(l);
   }
-  if (bare_cells.empty()) return;
+  if (poor_cells.empty()) return;
   std::vector<std::vector<std::size_t>> around(index(mesh_.node_count()));  // of layer_cells_
   for (std::size_t l = 0; l < layer_cells_.size(); ++l) {
     for (const std::int32_t node :
          nodes_of(mesh_.blocks[index(layer_cells_[l].first)], layer_cells_[l].second))
       around[index(node)].push_back(l);
   }
-  for (const std::size_t first : bare_cells) {
+  for (const std::size_t first : poor_cells) {
     std::vector<std::size_t> reached = {first}, ring = {first};
     std::vector<std::int32_t>& heirs = heirs_[index(direction)][layer_cells_[first]];
     while (heirs.empty() && !ring.empty()) {
@@ -67,7 +75,7 @@ void FeModel::find_heirs(int direction) {
       for (const std::size_t l : ring) {
         for (const std::int32_t node :
              nodes_of(mesh_.blocks[index(layer_cells_[l].first)], layer_cells_[l].second)) {
-          if (!is_bare(node, direction)) heirs.push_back(node);
+          if (takes_mass(node, direction)) heirs.push_back(node);
           for (const std::size_t other : around[index(node)]) {
             if (std::ranges::find(reached, other) != reached.end()) continue;
             reached.push_back(other);
@@ -78,7 +86,8 @@ void FeModel::find_heirs(int direction) {
       ring = std::move(next);
     }
     if (heirs.empty()) {
-      throw InputError(fmt::format("{} has no node near it that could take the mass of its surface",
+      throw InputError(fmt::format("{} has no free node inside the mesh near it, which could take "
+                                   "the mass of the surface that contact needs free of mass",
                                    cell_text(mesh_, index(layer_cells_[first].first),
                                              index(layer_cells_[first].second))),
                        "mesh", "Use a finer mesh, or fewer ports for contact.");
@@ -88,45 +97,50 @@ void FeModel::find_heirs(int direction) {
   }
 }
 
-/// Of one cell's mass in a direction, what belongs to massless nodes goes to its others in equal
-/// parts: the matrix keeps its sum. That of a cell which has no others is left to its heirs.
+/// Of one cell's mass in a direction, what belongs to massless nodes goes to its free others in
+/// equal parts: the matrix keeps its sum. Held nodes take none: it would be lost to the motion.
+/// That of a cell which has no free others is left to its heirs.
 void FeModel::hand_over(std::span<const std::int32_t> nodes, int direction,
                         Eigen::MatrixXd& nodal) const {
   const double total = nodal.sum();
-  std::vector<Eigen::Index> others;
+  std::vector<Eigen::Index> takers;
+  bool bare = false;
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     const Eigen::Index at = static_cast<Eigen::Index>(a);
-    if (!is_bare(nodes[a], direction)) {
-      others.push_back(at);
-      continue;
-    }
+    if (takes_mass(nodes[a], direction)) takers.push_back(at);
+    if (!is_bare(nodes[a], direction)) continue;
+    bare = true;
     nodal.row(at).setZero();
     nodal.col(at).setZero();
   }
-  if (others.size() == nodes.size()) return;
-  const double each = (total - nodal.sum()) / static_cast<double>(others.size());
-  for (const Eigen::Index at : others) nodal(at, at) += each;
+  if (!bare) return;
+  const double each = (total - nodal.sum()) / static_cast<double>(takers.size());
+  for (const Eigen::Index at : takers) nodal(at, at) += each;
 }
 
-/// Calls `take` with every dof of an heir of a cell wholly in the layer and the mass [kg] that it
-/// takes.
-template <class Take>
-void FeModel::inherit(const Take& take) const {
+/// Calls `take` with every dof of an heir of a cell and the mass [kg] that it takes: what is left
+/// of whole(block, cell), the cell's matrix, when it is handed over.
+template <class Whole, class Take>
+void FeModel::inherit(const Whole& whole, const Take& take) const {
   for (int i = 0; i < mesh_.dim; ++i) {
     for (const auto& [cell, heirs] : heirs_[index(i)]) {
-      const double mass = nodal_mass(index(cell.first), cell.second).sum();
-      for (const std::int32_t heir : heirs)
-        take(heir * mesh_.dim + i, mass / static_cast<double>(heirs.size()));
+      Eigen::MatrixXd nodal = whole(cell.first, cell.second);
+      const double total = nodal.sum();
+      hand_over(nodes_of(mesh_.blocks[index(cell.first)], cell.second), i, nodal);
+      const double each = (total - nodal.sum()) / static_cast<double>(heirs.size());
+      for (const std::int32_t heir : heirs) take(heir * mesh_.dim + i, each);
     }
   }
 }
 
 void FeModel::inherit(Vector& lumped) const {
-  inherit([&](int dof, double mass) { lumped(dof) += mass; });
+  inherit([this](int block, int cell) { return Eigen::MatrixXd(cell_mass(block, cell).asDiagonal()); },
+          [&](int dof, double mass) { lumped(dof) += mass; });
 }
 
 void FeModel::inherit(SparseMatrix& mass) const {
-  inherit([&](int dof, double part) { mass.coeffRef(dof, dof) += part; });
+  inherit([this](int block, int cell) { return nodal_mass(index(block), cell); },
+          [&](int dof, double part) { mass.coeffRef(dof, dof) += part; });
 }
 
 /// Zeros where the layer's tangent has entries, and where its cells' matrices go.
