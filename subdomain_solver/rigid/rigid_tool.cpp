@@ -41,14 +41,13 @@ RigidTool::RigidTool(std::string name, std::unique_ptr<FeModel> shape, std::vect
   seen_.u.assign(values, 0.0);
   seen_.v = seen_.a = seen_.f = seen_.u;
   const std::vector<double> zero(way_.size(), 0.0);
-  state_ = {0.0, zero, zero, zero, 0.0, zero};
+  state_ = {0.0, zero, zero, 0.0, zero};
 }
 
 void RigidTool::state(Archive& archive) {
   archive.field("time", state_.time);
   archive.field("place", state_.place);
   archive.field("force", state_.force);
-  archive.field("held", state_.held);
   archive.field("work", state_.work);
   archive.field("velocity", state_.velocity);
 }
@@ -61,34 +60,30 @@ std::optional<Failed> RigidTool::step(const Window& window, int i) {
   return move_to(window, window.grid.time(i));
 }
 
-/// Of forces that are constant in steps: their sum now, and its mean since the last step [N] (dim).
-void RigidTool::see_held(const Window& window, double time, std::vector<double>& now,
-                         std::vector<double>& mean) {
-  now.assign(way_.size(), 0.0);
-  mean = now;
+/// [N] (dim) mean of the partners' forces since the last step.
+void RigidTool::mean_force(const Window& window, double time, std::vector<double>& mean) {
+  mean.assign(way_.size(), 0.0);
   const double length = time - state_.time;
+  if (length <= 0.0) return;
   for (const BoundaryData& boundary : window.request.boundary) {
     for (const Waveform& imposed : boundary.forces) {
-      if (imposed.empty() || imposed.support != ForceSupport::step) continue;
+      if (imposed.empty()) continue;
       imposed_.resize(index(imposed.width));
-      imposed.force_at(time, imposed_);
-      for (std::size_t k = 0; k < imposed_.size(); ++k) now[k % now.size()] += imposed_[k];
-      if (length <= 0.0) continue;
       imposed.impulse(state_.time, time, imposed_);
       for (std::size_t k = 0; k < imposed_.size(); ++k)
-        mean[k % now.size()] += imposed_[k] / length;
+        mean[k % mean.size()] += imposed_[k] / length;
     }
   }
 }
 
-/// Partners' forces do work on the way, in the mean of those at both ends.
+/// Between its steps the tool moves evenly, as its trace tells, so that partners' forces do the
+/// work of their impulse, whatever they do meanwhile.
 std::optional<Failed> RigidTool::move_to(const Window& window, double time) {
   see(window, time, true);  // for the forces
-  std::vector<double> force(way_.size(), 0.0);
+  std::vector<double> force(way_.size(), 0.0), mean;
   for (std::size_t k = 0; pushed_ && k < seen_.f.size(); k += way_.size())
     for (std::size_t i = 0; i < way_.size(); ++i) force[i] += seen_.f[k + i];
-  std::vector<double> held, mean;
-  see_held(window, time, held, mean);
+  mean_force(window, time, mean);
   const double length = time - state_.time;
   for (std::size_t i = 0; i < way_.size(); ++i) {
     const double place = way_[i](time);
@@ -97,12 +92,10 @@ std::optional<Failed> RigidTool::move_to(const Window& window, double time) {
                     "the way of the tool has no value: check its expression"};
     }
     const double moved = place - state_.place[i];
-    const double ends = state_.force[i] - state_.held[i] + (force[i] - held[i]);
-    state_.work -= (0.5 * ends + mean[i]) * moved;
+    state_.work -= mean[i] * moved;
     if (length > 0.0) state_.velocity[i] = moved / length;
     state_.place[i] = place;
     state_.force[i] = force[i];
-    state_.held[i] = held[i];
   }
   state_.time = time;
   return std::nullopt;

@@ -33,15 +33,13 @@ class RigidTool final : public Interior {
   std::vector<FieldValues> fields() override;
 
  private:
-  void see_held(const Window& window, double time, std::vector<double>& now,
-                std::vector<double>& mean);
+  void mean_force(const Window& window, double time, std::vector<double>& mean);
   std::optional<Failed> move_to(const Window& window, double time);
 
   struct State {
     double time = 0.0;             // [s]
     std::vector<double> place;     // [m] (dim) now
     std::vector<double> force;     // [N] (dim) of all partners now
-    std::vector<double> held;      // [N] (dim) those of them that are constant in steps
     double work = 0.0;             // [J] that it has done on them
     std::vector<double> velocity;  // [m/s] (dim) over the last step
   };
