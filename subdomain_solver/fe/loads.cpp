@@ -77,7 +77,7 @@ double SidePoints::area() const {
   return sum;
 }
 
-BodyForce::BodyForce(const FeModel& model, VectorField acceleration, Mass mass)
+BodyForce::BodyForce(const FeModel& model, VectorField acceleration, MassForm mass)
     : model_(model), acceleration_(std::move(acceleration)), mass_(mass) {}
 
 /// The acceleration is interpolated between the nodes: f = M b, exact where b is uniform.
@@ -93,11 +93,9 @@ void BodyForce::add(double time, std::span<const double>, Vector& force) const {
     for (int i = 0; i < dim; ++i) b(node * dim + i) = value(acceleration_[index(i)], at, time);
   }
   model_.to_frames({b.data(), index(b.size())});
-  if (mass_ == Mass::lumped) {
-    force += model_.lumped_mass().cwiseProduct(b);
-  } else {
-    force.noalias() += model_.mass() * b;
-  }
+  const double share = mass_ == MassForm::averaged ? 0.5 : 1.0;  // as mass_matrix() does
+  if (mass_ != MassForm::consistent) force += share * model_.lumped_mass().cwiseProduct(b);
+  if (mass_ != MassForm::lumped) force.noalias() += share * (model_.mass() * b);
 }
 
 Traction::Traction(const FeModel& model, const std::string& side, VectorField traction)

@@ -34,20 +34,19 @@ struct SidePoints {
   double area() const;  // [m^2] reference
 };
 
-/// Force per reference volume: density x acceleration, e.g. gravity [m/s^2]. With lumped mass the
-/// force on a node is that of its own mass: a free body then falls as one, and no other mass is
-/// made.
+/// Force per reference volume: density x acceleration, e.g. gravity [m/s^2]. With the mass matrix of
+/// the scheme a free body falls as one: M q'' = M b.
 class BodyForce final : public Load {
  public:
-  enum class Mass { consistent, lumped };
-  BodyForce(const FeModel& model, VectorField acceleration, Mass mass = Mass::consistent);
+  BodyForce(const FeModel& model, VectorField acceleration,
+            MassForm mass = MassForm::consistent);
   void add(double time, std::span<const double> q, Vector& force) const override;
   bool follows() const override { return false; }
 
  private:
   const FeModel& model_;
   VectorField acceleration_;
-  Mass mass_;
+  MassForm mass_;
   mutable Vector nodal_;  // [m/s^2] (dofs)
 };
 

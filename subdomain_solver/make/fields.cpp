@@ -7,6 +7,7 @@
 
 #include "base/index.hpp"
 #include "subdomain_solver/make/expression.hpp"
+#include "subdomain_solver/make/scheme.hpp"
 
 namespace abut {
 
@@ -26,13 +27,24 @@ std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node) {
   return at;
 }
 
+namespace {
+
+/// Of body forces: that of the scheme, where it moves nodes. Modes and rigid motions take the
+/// resultants of consistent ones, and statics has none of its own.
+MassForm load_mass(const BodySpec& spec) {
+  const bool moves_nodes = std::holds_alternative<FeModelSpec>(spec.model) &&
+                           !std::holds_alternative<QuasiStaticSpec>(*spec.integrator);
+  const bool lumped = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+  return moves_nodes || lumped ? mass_form(*spec.integrator) : MassForm::consistent;
+}
+
+}  // namespace
+
 std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place& place,
                                               const FeModel& model) {
   std::vector<std::unique_ptr<Load>> loads;
   const int dim = model.mesh().dim;
-  const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
-  const BodyForce::Mass mass =
-      explicit_in_time ? BodyForce::Mass::lumped : BodyForce::Mass::consistent;
+  const MassForm mass = load_mass(spec);
   for (const auto& [name, load] : spec.loads) {
     const std::string key = "loads." + name;
     named(place, key + ".on", [&] {
