@@ -22,6 +22,7 @@ struct Motion {
   double stored = 0.0;          // [J]
   double external_work = 0.0;   // [J] done on the body by loads and prescribed motion
   double dissipated = 0.0;      // [J] by the material
+  double step = 0.0;            // [s] that led here, of schemes whose energy knows it
   std::vector<double> control;  // what the integrator keeps from step to step
 
   void state(Archive& archive) {
@@ -33,6 +34,7 @@ struct Motion {
     archive.field("stored", stored);
     archive.field("external_work", external_work);
     archive.field("dissipated", dissipated);
+    archive.field("step", step);
     archive.field("control", control);
   }
 };

@@ -57,7 +57,7 @@ struct SchemeMaker {
     if (drifts) {
       steps = std::make_unique<DriftKickDrift>(problem, step);
     } else {
-      steps = std::make_unique<ExplicitDynamics>(problem);
+      steps = std::make_unique<ExplicitDynamics>(problem, step);
     }
     if (watch && std::isfinite(limit))
       steps = std::make_unique<StableSteps>(std::move(steps), watch(),

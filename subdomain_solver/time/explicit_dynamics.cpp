@@ -8,8 +8,9 @@
 
 namespace abut {
 
-ExplicitDynamics::ExplicitDynamics(const Problem& problem)
+ExplicitDynamics::ExplicitDynamics(const Problem& problem, double step)
     : problem_(problem),
+      nominal_step_(step),
       layer_(problem),
       inverse_mass_(problem.model->lumped_mass().cwiseInverse()) {
   for (const int dof : layer_.dofs()) inverse_mass_(dof) = 0.0;
@@ -53,6 +54,7 @@ std::optional<Failed> ExplicitDynamics::begin(Motion& motion, double time) {
   motion.a.resize(motion.q.size());
   view(motion.a) = -inverse_mass_.cwiseProduct(response_.force);
   if (loads_.size() > 0) view(motion.a) += inverse_mass_.cwiseProduct(loads_);
+  motion.step = nominal_step_;
   return std::nullopt;
 }
 
@@ -147,6 +149,7 @@ std::optional<Failed> ExplicitDynamics::step(Motion& motion, double time, double
   motion.history.swap(response_.history);
   motion.dissipated += response_.dissipation;
   motion.stored = response_.stored;
+  motion.step = dt;
   return std::nullopt;
 }
 
@@ -170,8 +173,10 @@ void ExplicitDynamics::acceleration(const Motion& motion, double time, double st
 }
 
 double ExplicitDynamics::kinetic(const Motion& motion) const {
-  const auto v = view(motion.v);
-  return 0.5 * v.dot(problem_.model->lumped_mass().cwiseProduct(v));
+  const auto v = view(motion.v), a = view(motion.a);
+  const Vector& mass = problem_.model->lumped_mass();
+  const double quarter = 0.25 * motion.step * motion.step;
+  return 0.5 * (v.dot(mass.cwiseProduct(v)) - quarter * a.dot(mass.cwiseProduct(a)));
 }
 
 }  // namespace abut

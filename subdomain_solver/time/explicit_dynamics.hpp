@@ -7,13 +7,14 @@ namespace abut {
 
 /// Central differences on any model with lumped mass, in the form that has positions, velocities
 /// and accelerations at the same times (velocity Verlet) [M.48]. Conserves momentum exactly and,
-/// below the stable step, an energy that differs from 1/2 v M v + stored by terms of second order
-/// in dt. Coordinates without mass lie where their forces balance at the end of every step, and
+/// below the stable step, the energy of [M.4], exactly where the model is linear: its kinetic part
+/// is 1/2 v(-) M v(+) of the velocities half a step before and after. Coordinates without mass lie where their forces balance at the end of every step, and
 /// take contact there [M.85], [M.86]. A step is two passes over the motion around the model's
 /// force, and allocates nothing.
 class ExplicitDynamics final : public Integrator {
  public:
-  explicit ExplicitDynamics(const Problem& problem);
+  /// `step` [s]: nominal; the energy at the begin is that of steps of this length.
+  explicit ExplicitDynamics(const Problem& problem, double step = 0.0);
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
@@ -37,6 +38,7 @@ class ExplicitDynamics final : public Integrator {
   double correct_layer(Motion& motion, double dt) const;
 
   const Problem& problem_;
+  double nominal_step_;
   MasslessLayer layer_;
   Vector inverse_mass_;       // [1/kg] (dofs) zero where the motion is prescribed, or no mass
   std::vector<double> next_;  // (dofs) q at the step's end
