@@ -11,6 +11,7 @@
 #include "base/denormals.hpp"
 #include "base/index.hpp"
 #include "base/life_signs.hpp"
+#include "base/printable.hpp"
 #include "messaging/codec.hpp"
 #include "messaging/soundness.hpp"
 #include "messaging/codec/wire.hpp"
@@ -114,7 +115,9 @@ bool Server::is_mine() const {
 bool Server::handle_greeting() {
   if (request_.has_refuse()) {
     throw CoordinatorLost(
-        fmt::format("the coordinator refuses body '{}': {}", name_, request_.refuse().reason()), "",
+        fmt::format("the coordinator refuses body '{}': {}", name_,
+                    printable(request_.refuse().reason())),
+        "",
         "look at the coordinator's own messages, then start this solver again");
   }
   if (!request_.has_welcome()) return false;

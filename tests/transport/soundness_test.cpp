@@ -232,6 +232,12 @@ TEST(Soundness, TextOfSomebodyElseIsHarmless) {
             "plain, with \xc3\xa4 and\na second line");
   EXPECT_EQ(printable("\x1b[31m\x07\x7f"), "\\x1b[31m\\x07\\x7f");
   EXPECT_EQ(printable("\xc2\x9b"), "\\x9b");
+  EXPECT_EQ(printable("\x9b|\xc3|\xc0\x80|\xed\xa0\x80|\xf4\x90\x80\x80"),
+            "\\x9b|\\xc3|\\xc0\\x80|\\xed\\xa0\\x80|\\xf4\\x90\\x80\\x80");  // no UTF-8
+  EXPECT_EQ(printable("\xe2\x80\xae"
+                      "drab\xe2\x81\xa9"),
+            "\\u202edrab\\u2069");
+  EXPECT_EQ(printable("\xe2\x82\xac \xf0\x9f\x98\x80"), "\xe2\x82\xac \xf0\x9f\x98\x80");
   EXPECT_EQ(printable("123456789", 4), "1234...");
   EXPECT_EQ(printable("123\xc3\xa4", 4), "123...");  // not half a character
 }
