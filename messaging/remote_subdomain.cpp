@@ -104,6 +104,7 @@ PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, do
   } catch (const CodecError& error) {
     caller_.refuse_reply(error.what());
   }
+  result.step = probing.step;
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "coordinator/coupling/kernel_support.hpp"
 #include "coordinator/coupling/port_pose.hpp"
 
 namespace abut {
@@ -215,7 +216,18 @@ PortKernel Bodies::full_kernel(int body, int port, int count,
   std::vector<double> units(values * width, 0.0);
   for (std::size_t k = 0; k < values; ++k)
     units[k * width + (points.empty() ? k : index(points[k / dim]) * dim + k % dim)] = 1.0;
-  return cut(ask(body, port, units, count), points, dim);
+  return for_levels(cut(ask(body, port, units, count), points, dim));
+}
+
+void Bodies::yields(const Side& kinematic, int partner, const Side& of,
+                    const PortKernel& kernel) {
+  try {
+    (*this)[kinematic.body].yields(kinematic.port, partner, kernel);
+  } catch (const RunError& error) {
+    throw RunError(fmt::format("{} (body '{}', told how body '{}' gives way)", error.what_is_wrong,
+                               describe(kinematic.body).name, describe(of.body).name),
+                   error.where, error.remedy);
+  }
 }
 
 std::vector<double> Bodies::impulse_response(const Side& side, const TimeWindow& window) {

@@ -128,7 +128,14 @@ TEST(Soundness, KernelsAreWholeAndGoAlongTheirForces) {
   EXPECT_EQ(given([](PortKernel& k) { k.begin.clear(); }),
             "kernel.begin is missing, which belongs to forces of NODAL support");
   EXPECT_EQ(given([](PortKernel& k) { k.step = 0.2; }),
-            "kernel.step is 0.2 s, where 0.1 s was asked for");
+            "kernel.step is 0.2 s, where 0.1 s was asked for, 1 of it off");
+  EXPECT_EQ(given([](PortKernel& k) { k.step = 0.1 * (1.0 + 1.0e-12); }), "accepted");
+  // Numbers that look alike are told with all that they differ in.
+  EXPECT_EQ(given([](PortKernel& k) { k.step = 0.1000000123; }),
+            "kernel.step is 0.1000000123 s, where 0.1 s was asked for, 1.2e-07 of it off");
+  EXPECT_EQ(given([](PortKernel& k) { k.support = ForceSupport::linear; }),
+            "kernel.support is LINEAR: pulses of a kernel act over a substep (STEP) or over the "
+            "dual cell around its end (NODAL)");
   EXPECT_EQ(
       given([](PortKernel& k) {
         for (double& u : k.displacement) u = -u;
