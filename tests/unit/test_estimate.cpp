@@ -109,7 +109,7 @@ TEST(Estimate, KnowsNothingOfContactWithoutAClosedForm) {
 
 int flight(double window, const Description& body) {
   const Description* bodies[] = {&body};
-  return windows_at_once(window, bodies);
+  return windows_at_once(window, 1, bodies);
 }
 
 Description solid(std::int64_t dofs, double step, double stable_step) {
@@ -134,7 +134,7 @@ TEST(Flight, TakesAsManyWindowsAsAreHalfASecondOfWork) {
   EXPECT_EQ(flight(1.0, solid(0, 0.0, none)), 1000);  // a wall
   const Description one = solid(10'000, 1.0e-6, 2.0e-6);
   const Description* two[] = {&one, &one};
-  EXPECT_EQ(windows_at_once(1.0e-5, two), 50);
+  EXPECT_EQ(windows_at_once(1.0e-5, 1, two), 50);
 }
 
 TEST(Estimate, CountsTheFlightsOfABodyThatNothingTouches) {
