@@ -140,8 +140,8 @@ PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, do
   PortKernel whole;
   for (std::size_t first = 0; first < all; first += at_once) {
     const auto part = patterns.subspan(first * pressed, std::min(at_once, all - first) * pressed);
-    PortKernel answer = probe_part(
-        {port, {part.begin(), part.end()}, step, count, {seen.begin(), seen.end()}});
+    PortKernel answer =
+        probe_part({port, {part.begin(), part.end()}, step, count, {seen.begin(), seen.end()}});
     if (at_once >= all) return answer;
     if (first == 0) whole = room_for(answer, static_cast<int>(all));
     if (!fits(answer, static_cast<int>(first), whole))

@@ -14,8 +14,8 @@
 #include "base/printable.hpp"
 #include "contract/kernel_parts.hpp"
 #include "messaging/codec.hpp"
-#include "messaging/soundness.hpp"
 #include "messaging/codec/wire.hpp"
+#include "messaging/soundness.hpp"
 
 namespace abut {
 
@@ -115,11 +115,10 @@ bool Server::is_mine() const {
 
 bool Server::handle_greeting() {
   if (request_.has_refuse()) {
-    throw CoordinatorLost(
-        fmt::format("the coordinator refuses body '{}': {}", name_,
-                    printable(request_.refuse().reason())),
-        "",
-        "look at the coordinator's own messages, then start this solver again");
+    throw CoordinatorLost(fmt::format("the coordinator refuses body '{}': {}", name_,
+                                      printable(request_.refuse().reason())),
+                          "",
+                          "look at the coordinator's own messages, then start this solver again");
   }
   if (!request_.has_welcome()) return false;
   welcome_ = true;

@@ -17,11 +17,11 @@ namespace abut {
 
 namespace {
 
-constexpr std::size_t most_strangers = 64;     // frames kept for a refusal; more are forgotten
-constexpr std::size_t largest_hello = 65'536;  // [B] of which no more than this is read
-constexpr std::size_t most_waiting = 64;       // frames of a peer; it repeats what it needs
+constexpr std::size_t most_strangers = 64;      // frames kept for a refusal; more are forgotten
+constexpr std::size_t largest_hello = 65'536;   // [B] of which no more than this is read
+constexpr std::size_t most_waiting = 64;        // frames of a peer; it repeats what it needs
 constexpr std::size_t most_waiting_limits = 4;  // what waits, of all peers, in limits of a frame
-constexpr std::size_t most_disconnects = 256;  // times remembered per peer
+constexpr std::size_t most_disconnects = 256;   // times remembered per peer
 
 /// Everything that libzmq would otherwise choose for us.
 void configure(zmq::socket_t& socket, const Limits& limits) {
@@ -271,7 +271,8 @@ void ZmqHub::note_descriptor(Connection& connection) {
   const int descriptor = zmq_msg_get(incoming_.handle(), ZMQ_SRCFD);
   const bool changed = descriptor != connection.descriptor;
   connection.descriptor = descriptor;
-  if (descriptor >= 0 && (changed || guard_->unknown() > 0)) guard_->know(descriptor, connection.number);
+  if (descriptor >= 0 && (changed || guard_->unknown() > 0))
+    guard_->know(descriptor, connection.number);
 }
 
 /// What is too much is as good as lost: who waits for it repeats its request.

@@ -9,9 +9,9 @@ namespace abut {
 ZmqMonitor::ZmqMonitor(zmq::context_t& context, zmq::socket_t& watched)
     : watched_(watched), reports_(context, zmq::socket_type::pair) {
   const std::string address = "inproc://abut-monitor";  // one monitored socket per context
-  if (zmq_socket_monitor(watched.handle(), address.c_str(),
-                         ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
-                             ZMQ_EVENT_DISCONNECTED) != 0) {
+  if (zmq_socket_monitor(
+          watched.handle(), address.c_str(),
+          ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED) != 0) {
     throw zmq::error_t();
   }
   reports_.set(zmq::sockopt::linger, 0);

@@ -236,8 +236,7 @@ PortKernel Bodies::full_kernel(int body, int port, int count,
   return whole;
 }
 
-void Bodies::yields(const Side& kinematic, int partner, const Side& of,
-                    const PortKernel& kernel) {
+void Bodies::yields(const Side& kinematic, int partner, const Side& of, const PortKernel& kernel) {
   try {
     (*this)[kinematic.body].yields(kinematic.port, partner, kernel);
   } catch (const RunError& error) {

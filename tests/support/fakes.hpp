@@ -60,12 +60,8 @@ class FakeSubdomain : public Subdomain {
   PortKernel told;  // by the last yields()
 
   const Description& describe() const override { return description_; }
-
   void meet(int, const PortGeometry&, const ContactLaw&) override { ++counts.meetings; }
-  void yields(int, int, const PortKernel& kernel) override {
-    ++counts.yieldings;
-    told = kernel;
-  }
+  void yields(int, int, const PortKernel& kernel) override { ++counts.yieldings, told = kernel; }
   void save() override {
     ++counts.saves;
     saved_.clear();

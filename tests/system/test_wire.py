@@ -136,7 +136,8 @@ bodies:
     initial: {position: [-0.02, 0.0, 0.0], velocity: [1.0, 0.0, 0.0]}
     ports: {tip: {side: right}}
   wall:
-    model: {rigid_tool: {dimension: 3, mesh: {box: {lengths: [0.1, 0.3, 0.3], elements: [1, 1, 1]}}}}
+    model:
+      rigid_tool: {dimension: 3, mesh: {box: {lengths: [0.1, 0.3, 0.3], elements: [1, 1, 1]}}}
     ports: {face: {side: left}}
 interfaces: {impact: {sides: [left.tip, wall.face], contact: {}}}
 """
