@@ -10,7 +10,6 @@ namespace {
 
 constexpr double enough = 0.5;          // [s] of work in one request
 constexpr double most_windows = 1000;
-constexpr double most_records = 1.0e5;  // of one reply: far below what a request may ask for
 constexpr double most_bytes = 1.0e8;    // of one reply: well below the limit of a frame, 2.7e8
 
 // [s] per degree of freedom and substep, measured on one core and rounded up: a request costs
@@ -39,7 +38,7 @@ int windows_at_once(double window, int records, std::span<const Description* con
     work += substeps * work_of_a_substep(*body);
     bytes = std::max(bytes, reply_bytes(*body, records, records));
   }
-  double windows = std::min(most_windows, most_records / records);
+  double windows = most_windows;
   if (work > 0.0) windows = std::min(windows, enough / work);
   if (bytes > 0.0) windows = std::min(windows, most_bytes / bytes);
   return static_cast<int>(std::max(1.0, std::floor(windows)));
