@@ -6,8 +6,9 @@
 
 namespace abut {
 
-/// Text of somebody else for people: control characters, which terminals obey, as \x1b, and what
-/// is longer than `most_bytes` cut, told by "...". New lines stay.
+/// Text of somebody else for people: characters that terminals obey, or that turn the direction of
+/// text, as \x1b or \u202e, bytes that are no UTF-8 as \xff, and what is longer than `most_bytes`
+/// cut, told by "...". New lines stay.
 std::string printable(std::string_view text, std::size_t most_bytes = 2000);
 
 }  // namespace abut

@@ -51,7 +51,8 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       guard_(scene.schwarz.energy_guard, conserving_bodies(), sums_energy(), stepping()),
       reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {
   end_.status = "completed";
-  flight_.longest = flight_.limit = windows_at_once(scene.time.window, descriptions_of(bodies_));
+  flight_.longest = flight_.limit =
+      windows_at_once(scene.time.window, scene.output.records_per_window, descriptions_of(bodies_));
 }
 
 // ---- the loop -----------------------------------------------------------------------------------

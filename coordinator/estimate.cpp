@@ -167,7 +167,8 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
       start + count * (flights + sweeps * e.contact_windows_high + 2 * per_event * joints);
   e.exchanges_high += e.exchanges_high / 20;  // contact that lasts a little longer, chatter
   if (joints == 0) {  // the begin, and free flight as far as one request goes
-    std::int64_t windows = windows_at_once(scene.time.window, known);
+    std::int64_t windows =
+        windows_at_once(scene.time.window, scene.output.records_per_window, known);
     if (scene.output.field_output)
       windows = std::min<std::int64_t>(windows, scene.output.field_output->every);
     e.exchanges_low = e.exchanges_high = count * (1 + (e.windows + windows - 1) / windows);

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coordinator/reply_bytes.hpp"
+
 namespace abut {
 namespace {
 
 constexpr double enough = 0.5;          // [s] of work in one request
-constexpr double most_windows = 1000;  // bounds the size of one reply
+constexpr double most_windows = 1000;
+constexpr double most_bytes = 1.0e8;    // of one reply: well below the limit of a frame, 2.7e8
 
 // [s] per degree of freedom and substep, measured on one core and rounded up: a request costs
 // 50 us, so that work taken for ten times what it is costs a run less than a per cent.
@@ -27,14 +30,18 @@ double work_of_a_substep(const Description& body) {
 
 }  // namespace
 
-int windows_at_once(double window, std::span<const Description* const> bodies) {
-  double work = 0.0;  // [s] of a window; bodies in one process follow one another
+int windows_at_once(double window, int records, std::span<const Description* const> bodies) {
+  double work = 0.0;   // [s] of a window; bodies in one process follow one another
+  double bytes = 0.0;  // of the largest reply to it
   for (const Description* body : bodies) {
     const double substeps = body->step > 0.0 ? std::ceil(window / body->step - 1.0e-9) : 1.0;
     work += substeps * work_of_a_substep(*body);
+    bytes = std::max(bytes, reply_bytes(*body, records, records));
   }
-  const double windows = work > 0.0 ? std::floor(enough / work) : most_windows;
-  return static_cast<int>(std::clamp(windows, 1.0, most_windows));
+  double windows = most_windows;
+  if (work > 0.0) windows = std::min(windows, enough / work);
+  if (bytes > 0.0) windows = std::min(windows, most_bytes / bytes);
+  return static_cast<int>(std::max(1.0, std::floor(windows)));
 }
 
 }  // namespace abut

@@ -26,6 +26,7 @@
 #include "coordinator/estimate.hpp"
 #include "coordinator/external_body.hpp"
 #include "coordinator/external_verb.hpp"
+#include "coordinator/frame_check.hpp"
 #include "coordinator/interrupt.hpp"
 #include "coordinator/launch.hpp"
 #include "coordinator/launch_local.hpp"
@@ -174,15 +175,31 @@ void validate_joined(const Scene& scene, const Placement& placement, const Docum
   validate_placed(valid, placement, document);
   const auto here = [](const std::optional<Description>& body) { return body.has_value(); };
   if (std::all_of(valid.bodies.begin(), valid.bodies.end(), here)) return;
+  check_frames(scene, placement.descriptions(), {}, Limits{}.frame_bytes, document);
   std::vector<Estimate::Ties> ties = validate_coupling(scene, placement, document);
   validate_expectations(scene, placement.descriptions(), document);
   valid.estimate = estimate(scene, placement.descriptions(), std::nullopt);
   valid.estimate.ties = std::move(ties);
 }
 
-Validated validate_all(const Scene& scene, const Document& document) {
+/// Of the fields that a scene wants, by body; external ones tell it later.
+std::vector<FieldSize> field_sizes(const Scene& scene, const Placement& here) {
+  std::vector<FieldSize> sizes(here.bodies.size());
+  for (std::size_t b = 0; scene.output.field_output && b < sizes.size(); ++b) {
+    if (here.bodies[b] == nullptr || here.bodies[b]->describe().fields.empty()) continue;
+    const Grid grid = here.bodies[b]->grid();
+    sizes[b] = {grid.nodes(), grid.cells()};
+  }
+  return sizes;
+}
+
+/// `processes`: the bodies will not be here.
+Validated validate_all(const Scene& scene, const Document& document, bool processes) {
   const Placement here{nullptr, launch_local(scene, document)};
   validate_bodies(scene, here.descriptions(), document);
+  if (processes)
+    check_frames(scene, here.descriptions(), field_sizes(scene, here), Limits{}.frame_bytes,
+                 document);
   std::vector<Estimate::Ties> ties;
   if (here.whole()) {
     ties = validate_coupling(scene, here, document);
@@ -260,7 +277,7 @@ int run_verb(const RunCommand& command) {
   const Document document = Document::load(command.scene, command.overrides);
   const Scene scene = read_all_keys(document);
   if (!command.local) check_processes(scene, document);
-  Validated valid = validate_all(scene, document);
+  Validated valid = validate_all(scene, document, !command.local);
   // Held until the last file is written.
   RunDirectory held(
       command.out.empty() ? default_run_directory(command.scene) : fs::path(command.out),
@@ -305,7 +322,7 @@ int check_verb(const CheckCommand& command) {
   const Document document = Document::load(command.scene, command.overrides);
   const Scene scene = read_all_keys(document);
   check_processes(scene, document);
-  const Validated valid = validate_all(scene, document);
+  const Validated valid = validate_all(scene, document, true);
   fmt::print("{}: valid\n{}", command.scene, to_text(valid.estimate, command.verbose));
   return 0;
 }

@@ -54,6 +54,7 @@ class Caller {
   /// Replies of other sessions that came so far.
   int foreign() const { return foreign_; }
   const std::string& body() const { return body_; }
+  std::size_t frame_limit() const { return context_.limits.frame_bytes; }  // [B]
   /// Throws: the reply to the request under way is no answer to it.
   [[noreturn]] void refuse_reply(const std::string& why) const;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 
 #include "abut/v1/subdomain.pb.h"
@@ -42,6 +43,8 @@ struct Yielding {
   int port = 0;
   int partner = 0;
   PortKernel kernel;
+  std::optional<int> first = {};  // pattern of a part; absent: the kernel is whole
+  int patterns = 0;               // of the whole; told by decode()
 };
 /// Subdomain::probe as a value.
 struct Probing {

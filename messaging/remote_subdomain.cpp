@@ -1,10 +1,32 @@
 #include "messaging/remote_subdomain.hpp"
 
+#include <algorithm>
+
+#include "base/assert.hpp"
 #include "base/index.hpp"
-#include "messaging/codec.hpp"
+#include "contract/kernel_parts.hpp"
 #include "messaging/soundness.hpp"
 
 namespace abut {
+
+namespace {
+
+/// [B] of a kernel's part: larger ones are no faster, and their copies take memory.
+constexpr std::size_t usual_part = std::size_t{32} << 20;
+/// [B] of a message with a kernel beside its patterns.
+constexpr std::size_t beside_patterns = 1024;
+
+/// Patterns of a part, of `each` bytes; at least one, which whoever makes the frame refuses where
+/// it is too large.
+int patterns_at_once(std::size_t patterns, std::size_t each, std::size_t beside,
+                     std::size_t limit) {
+  beside += beside_patterns;
+  const std::size_t room = std::min(usual_part, limit > beside ? limit - beside : 0);
+  return static_cast<int>(std::clamp<std::size_t>(room / std::max<std::size_t>(each, 1), 1,
+                                                  std::max<std::size_t>(patterns, 1)));
+}
+
+}  // namespace
 
 void RemoteSubdomain::start_configure(const Specification& specification) {
   v1::Configure& configure = *caller_.request().mutable_configure();
@@ -40,7 +62,18 @@ void RemoteSubdomain::meet(int port, const PortGeometry& partner, const ContactL
 }
 
 void RemoteSubdomain::yields(int port, int partner, const PortKernel& kernel) {
-  encode(Yielding{port, partner, kernel}, *caller_.request().mutable_yields());
+  const int at_once =
+      patterns_at_once(index(kernel.patterns), bytes_of_pattern(kernel),
+                       sizeof(std::int32_t) * kernel.points.size(), caller_.frame_limit());
+  if (at_once >= kernel.patterns) return yield_part({port, partner, kernel});
+  for (int first = 0; first < kernel.patterns; first += at_once) {
+    const int count = std::min(at_once, kernel.patterns - first);
+    yield_part({port, partner, part_of(kernel, first, count), first});
+  }
+}
+
+void RemoteSubdomain::yield_part(const Yielding& yielding) {
+  encode(yielding, *caller_.request().mutable_yields());
   carry_flags();
   if (!caller_.call("yields").has_yielding()) caller_.refuse_reply("not a yielding");
 }
@@ -91,8 +124,34 @@ PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, do
 
 PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, double step,
                                   int count, std::span<const int> seen) {
-  const Probing probing{
-      port, {patterns.begin(), patterns.end()}, step, count, {seen.begin(), seen.end()}};
+  const auto width_of = [this](int p) {
+    return description_.ports[index(p)].geometry.points.size();
+  };
+  const std::size_t pressed = width_of(port), all = patterns.size() / pressed;
+  std::size_t width = seen.empty() ? pressed : 0;
+  for (const int p : seen) width += width_of(p);
+  // Displacements, and those of the port itself by forces at the begin and at once.
+  const std::size_t each = sizeof(double) * width * (index(count) * (seen.empty() ? 2 : 1) + 1);
+  const std::size_t motions = index(loose_motions(description_));
+  const std::size_t at_once =
+      index(patterns_at_once(all, std::max(each, sizeof(double) * pressed),
+                             sizeof(double) * motions * (width + motions), caller_.frame_limit()));
+  ABUT_ASSERT(all > 0 && patterns.size() == all * pressed);
+  PortKernel whole;
+  for (std::size_t first = 0; first < all; first += at_once) {
+    const auto part = patterns.subspan(first * pressed, std::min(at_once, all - first) * pressed);
+    PortKernel answer =
+        probe_part({port, {part.begin(), part.end()}, step, count, {seen.begin(), seen.end()}});
+    if (at_once >= all) return answer;
+    if (first == 0) whole = room_for(answer, static_cast<int>(all));
+    if (!fits(answer, static_cast<int>(first), whole))
+      caller_.refuse_reply("kernel has other arrays than that of the patterns before");
+    put(answer, static_cast<int>(first), whole);
+  }
+  return whole;
+}
+
+PortKernel RemoteSubdomain::probe_part(const Probing& probing) {
   encode(probing, *caller_.request().mutable_probe());
   carry_flags();
   const v1::Reply& reply = caller_.call("probe");
@@ -104,6 +163,7 @@ PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, do
   } catch (const CodecError& error) {
     caller_.refuse_reply(error.what());
   }
+  result.step = probing.step;
   return result;
 }
 

@@ -9,6 +9,7 @@
 
 #include "contract/subdomain.hpp"
 #include "messaging/caller.hpp"
+#include "messaging/codec.hpp"
 
 namespace abut {
 
@@ -46,6 +47,8 @@ class RemoteSubdomain : public Subdomain {
 
  private:
   void carry_flags();
+  PortKernel probe_part(const Probing& probing);
+  void yield_part(const Yielding& yielding);
 
   Caller& caller_;
   Description description_;

@@ -11,9 +11,11 @@
 #include "base/denormals.hpp"
 #include "base/index.hpp"
 #include "base/life_signs.hpp"
+#include "base/printable.hpp"
+#include "contract/kernel_parts.hpp"
 #include "messaging/codec.hpp"
-#include "messaging/soundness.hpp"
 #include "messaging/codec/wire.hpp"
+#include "messaging/soundness.hpp"
 
 namespace abut {
 
@@ -113,9 +115,10 @@ bool Server::is_mine() const {
 
 bool Server::handle_greeting() {
   if (request_.has_refuse()) {
-    throw CoordinatorLost(
-        fmt::format("the coordinator refuses body '{}': {}", name_, request_.refuse().reason()), "",
-        "look at the coordinator's own messages, then start this solver again");
+    throw CoordinatorLost(fmt::format("the coordinator refuses body '{}': {}", name_,
+                                      printable(request_.refuse().reason())),
+                          "",
+                          "look at the coordinator's own messages, then start this solver again");
   }
   if (!request_.has_welcome()) return false;
   welcome_ = true;
@@ -267,8 +270,28 @@ void Server::meet(const v1::Meet& request) {
 void Server::yields(const v1::Yields& request) {
   Yielding yielding;
   decode(request, body_->describe(), partners_, yielding);
-  body_->yields(yielding.port, yielding.partner, yielding.kernel);
+  if (!yielding.first) {
+    body_->yields(yielding.port, yielding.partner, yielding.kernel);
+  } else if (gather(yielding)) {
+    body_->yields(yielding_->port, yielding_->partner, yielding_->kernel);
+    yielding_.reset();
+  }
   reply_.mutable_yielding();
+}
+
+/// Whether the kernel is whole with this part.
+bool Server::gather(Yielding& part) {
+  const int first = *part.first, end = first + part.kernel.patterns;
+  if (first == 0) {
+    yielding_ = Yielding{part.port, part.partner, room_for(part.kernel, part.patterns), 0};
+  } else if (!yielding_ || yielding_->first != first || yielding_->port != part.port ||
+             yielding_->partner != part.partner || !fits(part.kernel, first, yielding_->kernel)) {
+    yielding_.reset();
+    throw CodecError("yields.first does not follow the parts before");
+  }
+  put(part.kernel, first, yielding_->kernel);
+  yielding_->first = end;
+  return end == part.patterns;
 }
 
 void Server::probe(const v1::Probe& request) {

@@ -211,9 +211,15 @@ void require_sound(const Response& reply, const Description& body, const Advance
 
 void require_sound(const PortKernel& kernel, const Description& body, const Probing& asked) {
   const FieldPath path{nullptr, "kernel"};
-  if (kernel.step != asked.step)
-    FieldPath{&path, "step"}.fail(
-        fmt::format("is {} s, where {} s was asked for", kernel.step, asked.step));
+  constexpr double rounding = 1.0e-9;  // as that of steps in a window
+  if (!(std::abs(kernel.step - asked.step) <= rounding * asked.step))
+    FieldPath{&path, "step"}.fail(fmt::format("is {} s, where {} s was asked for, {:.2g} of it off",
+                                              kernel.step, asked.step,
+                                              std::abs(kernel.step / asked.step - 1.0)));
+  if (kernel.support == ForceSupport::linear)
+    FieldPath{&path, "support"}.fail(
+        "is LINEAR: pulses of a kernel act over a substep (STEP) or over the dual cell around its "
+        "end (NODAL)");
   if (!asked.seen.empty()) return;
   if (kernel.support == ForceSupport::nodal && kernel.begin.empty())
     FieldPath{&path, "begin"}.fail("is missing, which belongs to forces of NODAL support");

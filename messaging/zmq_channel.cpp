@@ -17,10 +17,11 @@ namespace abut {
 
 namespace {
 
-constexpr std::size_t most_strangers = 64;     // frames kept for a refusal; more are forgotten
-constexpr std::size_t largest_hello = 65'536;  // [B] of which no more than this is read
-constexpr std::size_t most_waiting = 64;       // frames of a peer; it repeats what it needs
-constexpr std::size_t most_disconnects = 256;  // times remembered per peer
+constexpr std::size_t most_strangers = 64;      // frames kept for a refusal; more are forgotten
+constexpr std::size_t largest_hello = 65'536;   // [B] of which no more than this is read
+constexpr std::size_t most_waiting = 64;        // frames of a peer; it repeats what it needs
+constexpr std::size_t most_waiting_limits = 4;  // what waits, of all peers, in limits of a frame
+constexpr std::size_t most_disconnects = 256;   // times remembered per peer
 
 /// Everything that libzmq would otherwise choose for us.
 void configure(zmq::socket_t& socket, const Limits& limits) {
@@ -37,11 +38,11 @@ void configure(zmq::socket_t& socket, const Limits& limits) {
   socket.set(zmq::sockopt::ipv6, 0);
 }
 
-/// Of a connection that so many bodies share; heeded by connections that begin later.
+/// Of a connection that so many bodies share; heeded by connections that begin later. One request
+/// is under way per body, with a sign of progress now and then, which whoever waits reads at once.
 void set_queues(zmq::socket_t& socket, std::size_t bodies) {
-  const int frames = static_cast<int>(64 * bodies);  // one request is under way per body
-  socket.set(zmq::sockopt::sndhwm, frames);
-  socket.set(zmq::sockopt::rcvhwm, frames);
+  socket.set(zmq::sockopt::sndhwm, static_cast<int>(64 * bodies));
+  socket.set(zmq::sockopt::rcvhwm, static_cast<int>(16 * bodies));
 }
 
 void set_receive_timeout(zmq::socket_t& socket, Milliseconds wait, int& current) {
@@ -126,6 +127,7 @@ Bytes bytes_of(const zmq::message_t& message) {
 struct ZmqHub::Connection {
   std::string routing_id;
   bool shared = false;
+  int number = 0;
   std::map<std::string, Peer*, std::less<>> peers;
   int descriptor = -1;  // once a frame has come through it
   std::optional<TimePoint> gone;
@@ -159,6 +161,7 @@ struct ZmqHub::Peer : Channel {
     if (!waiting.empty()) {
       current = std::move(waiting.front());
       waiting.pop_front();
+      hub.waiting_bytes_ -= current.size();
       return bytes_of(current);
     }
     if (!hub.receive_for(index, wait)) return std::nullopt;
@@ -173,12 +176,15 @@ struct ZmqHub::Peer : Channel {
   std::deque<zmq::message_t> waiting;
 };
 
-ZmqHub::ZmqHub(const Limits& limits) : context_(1), socket_(context_, zmq::socket_type::router) {
+ZmqHub::ZmqHub(const Limits& limits)
+    : context_(1),
+      socket_(context_, zmq::socket_type::router),
+      most_waiting_bytes_(most_waiting_limits * limits.frame_bytes) {
   configure(socket_, limits);
   socket_.set(zmq::sockopt::router_mandatory, true);  // an unknown peer is an error, not silence
   socket_.set(zmq::sockopt::router_handover, true);   // a reconnecting solver takes its name back
   socket_.set(zmq::sockopt::backlog, 128);
-  monitor_ = std::make_unique<ZmqMonitor>(context_, socket_);
+  guard_ = std::make_unique<ConnectionGuard>(context_, socket_, largest_hello);
 }
 
 ZmqHub::~ZmqHub() = default;
@@ -209,6 +215,7 @@ int ZmqHub::add_peer(const std::string& name) {
 int ZmqHub::add_peer(const std::string& name, const std::string& process) {
   const int index = static_cast<int>(peers_.size());
   Connection& connection = connections_[process];
+  if (connection.peers.empty()) connection.number = index;
   connection.routing_id = process;
   connection.shared = true;
   peers_.push_back(std::make_unique<Peer>(*this, connection, index, name));
@@ -257,6 +264,25 @@ void ZmqHub::keep_stranger() {
                           std::vector<std::byte>(frame.begin(), frame.end()));
 }
 
+/// Over which connection the frame came. While there are unknown ones, a descriptor may be that of
+/// another connection than the last time.
+void ZmqHub::note_descriptor(Connection& connection) {
+  if (incoming_.size() == 0) return;
+  const int descriptor = zmq_msg_get(incoming_.handle(), ZMQ_SRCFD);
+  const bool changed = descriptor != connection.descriptor;
+  connection.descriptor = descriptor;
+  if (descriptor >= 0 && (changed || guard_->unknown() > 0))
+    guard_->know(descriptor, connection.number);
+}
+
+/// What is too much is as good as lost: who waits for it repeats its request.
+void ZmqHub::keep_waiting(Peer& peer) {
+  if (peer.waiting.size() >= most_waiting) return;
+  if (waiting_bytes_ + incoming_.size() > most_waiting_bytes_) return;
+  waiting_bytes_ += incoming_.size();
+  peer.waiting.push_back(std::move(incoming_));
+}
+
 bool ZmqHub::receive_for(int wanted, Milliseconds wait) {
   const TimePoint until = std::chrono::steady_clock::now() + wait;
   while (receive_message(wait)) {
@@ -264,15 +290,14 @@ bool ZmqHub::receive_for(int wanted, Milliseconds wait) {
       keep_stranger();
     } else {
       Connection& connection = peer->connection;
-      if (connection.descriptor < 0 && incoming_.size() > 0)
-        connection.descriptor = zmq_msg_get(incoming_.handle(), ZMQ_SRCFD);
+      note_descriptor(connection);
       connection.gone.reset();
       if (connection.shared) connection.last_frame = std::chrono::steady_clock::now();
       if (peer->index == wanted) {
         peer->current = std::move(incoming_);
         return true;
       }
-      if (peer->waiting.size() < most_waiting) peer->waiting.push_back(std::move(incoming_));
+      keep_waiting(*peer);
       if (wanted < 0) return true;
     }
     wait = std::max(Milliseconds(0),
@@ -293,12 +318,11 @@ std::optional<std::pair<std::string, std::vector<std::byte>>> ZmqHub::take_stran
 }
 
 void ZmqHub::read_monitor() {
-  while (const std::optional<ZmqMonitor::Event> event = monitor_->next()) {
-    if (event->connected) continue;  // who it is, the first frame tells
+  while (const std::optional<int> ended = guard_->next_ended()) {
     for (auto& [id, connection] : connections_) {
       // A connection that ended before its first frame belongs to one who was trying to come back.
       const bool nameless = connection.descriptor < 0 && !connection.disconnects.empty();
-      if (connection.descriptor != event->descriptor && !nameless) continue;
+      if (connection.descriptor != *ended && !nameless) continue;
       connection.descriptor = -1;
       connection.gone = std::chrono::steady_clock::now();
       if (connection.disconnects.size() < most_disconnects)
@@ -374,7 +398,7 @@ std::string_view ZmqDealer::addressee() const { return text_of(addressee_); }
 
 void ZmqDealer::read_monitor() {
   while (const std::optional<ZmqMonitor::Event> event = monitor_->next()) {
-    connected_ = event->connected;
+    connected_ = event->kind != ZmqMonitor::Kind::ended;
     if (connected_) {
       gone_since_.reset();
     } else if (!gone_since_) {  // attempts to reconnect that fail do not begin the wait anew

@@ -14,6 +14,7 @@
 #include <zmq.hpp>
 
 #include "messaging/channel.hpp"
+#include "messaging/connection_guard.hpp"
 #include "messaging/protocol.hpp"
 #include "messaging/zmq_monitor.hpp"
 
@@ -63,14 +64,17 @@ class ZmqHub {
   bool receive_message(Milliseconds wait);
   Peer* find_sender();
   void keep_stranger();
+  void keep_waiting(Peer& peer);
+  void note_descriptor(Connection& connection);
   void read_monitor();
 
   zmq::context_t context_;
   zmq::socket_t socket_;
-  std::unique_ptr<ZmqMonitor> monitor_;
+  std::unique_ptr<ConnectionGuard> guard_;
   int receive_timeout_ = -1;  // [ms] as set on the socket
   std::map<std::string, Connection, std::less<>> connections_;  // by routing id
   std::vector<std::unique_ptr<Peer>> peers_;
+  std::size_t waiting_bytes_ = 0, most_waiting_bytes_;  // of all peers
   std::deque<std::pair<std::string, std::vector<std::byte>>> strangers_;
   zmq::message_t sender_, addressee_, incoming_;
 };

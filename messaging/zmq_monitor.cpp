@@ -9,8 +9,9 @@ namespace abut {
 ZmqMonitor::ZmqMonitor(zmq::context_t& context, zmq::socket_t& watched)
     : watched_(watched), reports_(context, zmq::socket_type::pair) {
   const std::string address = "inproc://abut-monitor";  // one monitored socket per context
-  if (zmq_socket_monitor(watched.handle(), address.c_str(),
-                         ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED) != 0) {
+  if (zmq_socket_monitor(
+          watched.handle(), address.c_str(),
+          ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED) != 0) {
     throw zmq::error_t();
   }
   reports_.set(zmq::sockopt::linger, 0);
@@ -29,8 +30,9 @@ std::optional<ZmqMonitor::Event> ZmqMonitor::next() {
     std::memcpy(&value, static_cast<const char*>(message_.data()) + sizeof event, sizeof value);
     zmq::message_t address;
     if (message_.more()) (void)reports_.recv(address, zmq::recv_flags::dontwait);
-    if (event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED) return Event{true, value};
-    if (event == ZMQ_EVENT_DISCONNECTED) return Event{false, value};
+    if (event == ZMQ_EVENT_ACCEPTED) return Event{Kind::accepted, value};
+    if (event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED) return Event{Kind::connected, value};
+    if (event == ZMQ_EVENT_DISCONNECTED) return Event{Kind::ended, value};
   }
   return std::nullopt;
 }

@@ -9,9 +9,14 @@ namespace abut {
 /// Reads libzmq's own reports on the connections of a socket, without ever waiting.
 class ZmqMonitor {
  public:
+  enum class Kind {
+    accepted,   // somebody has connected to a socket that listens
+    connected,  // the handshake succeeded
+    ended
+  };
   struct Event {
-    bool connected = false;  // the handshake succeeded; else the connection ended
-    int descriptor = -1;     // of the connection
+    Kind kind = Kind::ended;
+    int descriptor = -1;  // of the connection
   };
 
   ZmqMonitor(zmq::context_t& context, zmq::socket_t& watched);
@@ -20,6 +25,8 @@ class ZmqMonitor {
   ZmqMonitor& operator=(const ZmqMonitor&) = delete;
 
   std::optional<Event> next();
+  /// To poll: readable when there may be something to read; whoever polls reads until there is not.
+  int descriptor() const { return reports_.get(zmq::sockopt::fd); }
 
  private:
   zmq::socket_t& watched_;

@@ -71,10 +71,8 @@ void Body::meet(int port, const PortGeometry& partner, const ContactLaw& law) {
 }
 
 void Body::yields(int port, int partner, const PortKernel& kernel) {
-  if (!interior_->takes(port, kernel)) {
-    throw RunError(fmt::format("gives way by a kernel that this body cannot take: steps of {:g} s, "
-                               "where its own are {:g} s, or another support of forces",
-                               kernel.step, describe().step),
+  if (const std::string misfit = interior_->misfit(port, kernel); !misfit.empty()) {
+    throw RunError("gives way by a kernel that this body cannot take: " + misfit,
                    fmt::format("a partner of body '{}'", describe().name),
                    "Let obstacles give way only with kernels of this body's step and support.");
   }

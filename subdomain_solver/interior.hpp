@@ -80,8 +80,8 @@ class Interior {
   /// Completes a port's reply at the window's end: bounds, work, recoil.
   virtual void finish(std::size_t, PortResponse&) const {}
 
-  /// A partner whose surface gives way: whether the body can take it.
-  virtual bool takes(int, const PortKernel&) const { return false; }
+  /// A partner whose surface gives way: why the body cannot take its kernel; empty: it can.
+  virtual std::string misfit(int, const PortKernel&) const { return "it takes none"; }
   /// How bodies tied to this one give way under forces on a port that touches.
   virtual void ease(int, const PortKernel&) {}
   virtual ForceSupport support(std::size_t) const { return ForceSupport::nodal; }

@@ -282,8 +282,8 @@ void SolidInterior::ease(int port, const PortKernel& kernel) {
   if (contact_) contact_->ease(index(port), kernel);
 }
 
-bool SolidInterior::takes(int port, const PortKernel& kernel) const {
-  return contact_ && contact_->takes(index(port), kernel);
+std::string SolidInterior::misfit(int port, const PortKernel& kernel) const {
+  return contact_ ? contact_->misfit(index(port), kernel) : Interior::misfit(port, kernel);
 }
 
 double SolidInterior::compliance(std::size_t port) const {

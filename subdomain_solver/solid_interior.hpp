@@ -75,7 +75,7 @@ class SolidInterior final : public Interior {
     return contact_ ? contact_->reacting(port, partner) : nullptr;
   }
   void finish(std::size_t port, PortResponse& reply) const override;
-  bool takes(int port, const PortKernel& kernel) const override;
+  std::string misfit(int port, const PortKernel& kernel) const override;
   void ease(int port, const PortKernel& kernel) override;
   ForceSupport support(std::size_t port) const override {
     return joined_[port] ? ForceSupport::step : ForceSupport::nodal;

@@ -12,6 +12,8 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "contract/kernel_parts.hpp"
+#include "coordinator/coupling/kernel_support.hpp"
 #include "coordinator/coupling/port_pose.hpp"
 
 namespace abut {
@@ -19,6 +21,8 @@ namespace abut {
 namespace {
 /// Samples kept for the median of the overhead per exchange; later ones add nothing to it.
 constexpr std::size_t overhead_samples = 1u << 20;
+/// [B] of a kernel that is asked for at once, about: it is wider than what is kept of it.
+constexpr double probe_bytes = 3.2e7;
 /// Means over a port's points of the responses of a kernel of one pattern, along the normals.
 PortKernel along(const PortKernel& all, const PortGeometry& surface) {
   const std::vector<double>& normals = surface.normals;
@@ -212,10 +216,34 @@ PortKernel Bodies::full_kernel(int body, int port, int count,
   const PortGeometry& surface = describe(body).ports[index(port)].geometry;
   const std::size_t width = surface.points.size(), dim = index(surface.dim);
   const std::size_t values = points.empty() ? width : points.size() * dim;
-  std::vector<double> units(values * width, 0.0);
-  for (std::size_t k = 0; k < values; ++k)
-    units[k * width + (points.empty() ? k : index(points[k / dim]) * dim + k % dim)] = 1.0;
-  return cut(ask(body, port, units, count), points, dim);
+  const double each = 2.0 * sizeof(double) * count * static_cast<double>(width);
+  const std::size_t at_once =
+      std::clamp<std::size_t>(static_cast<std::size_t>(probe_bytes / each), 1, values);
+  PortKernel whole;
+  std::vector<double> units;
+  for (std::size_t first = 0; first < values; first += at_once) {
+    const std::size_t some = std::min(at_once, values - first);
+    units.assign(some * width, 0.0);
+    for (std::size_t k = 0; k < some; ++k) {
+      const std::size_t v = first + k;
+      units[k * width + (points.empty() ? v : index(points[v / dim]) * dim + v % dim)] = 1.0;
+    }
+    PortKernel part = for_levels(cut(ask(body, port, units, count), points, dim));
+    if (some == values) return part;
+    if (first == 0) whole = room_for(part, static_cast<int>(values));
+    put(part, static_cast<int>(first), whole);
+  }
+  return whole;
+}
+
+void Bodies::yields(const Side& kinematic, int partner, const Side& of, const PortKernel& kernel) {
+  try {
+    (*this)[kinematic.body].yields(kinematic.port, partner, kernel);
+  } catch (const RunError& error) {
+    throw RunError(fmt::format("{} (body '{}', told how body '{}' gives way)", error.what_is_wrong,
+                               describe(kinematic.body).name, describe(of.body).name),
+                   error.where, error.remedy);
+  }
 }
 
 std::vector<double> Bodies::impulse_response(const Side& side, const TimeWindow& window) {

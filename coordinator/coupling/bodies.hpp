@@ -74,9 +74,13 @@ class Bodies {
   /// along them: one pattern of one value.
   const PortKernel& kernel(int body, int port, int count);
 
-  /// Response of every value of a port's points to a unit force on every one. `points`: ascending;
-  /// empty: all.
+  /// Response of every value of a port's points to a unit force on every one, at levels. `points`:
+  /// ascending; empty: all.
   PortKernel full_kernel(int body, int port, int count, const std::vector<std::int32_t>& points);
+
+  /// Tells the kinematic side how its partner's surface gives way, or for `own_surface` how its own
+  /// one does; `of` is whose kernel it is.
+  void yields(const Side& kinematic, int partner, const Side& of, const PortKernel& kernel);
 
   /// Responses of some ports, one after the other, to patterns of force on one of them.
   PortKernel probe(int body, int port, std::span<const double> patterns, int count,

@@ -100,7 +100,7 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
   kernel_ = &answer_;
   if (answer_.count() >= iterate_.steps.count && answer_.points == zone_.points()) return;
   answer_ = bodies.full_kernel(n.body, n.port, iterate_.steps.count, zone_.points());
-  bodies[k.body].yields(k.port, k.partner, answer_);
+  bodies.yields(k, k.partner, n, answer_);
   eased_[1].told = {};
 }
 
@@ -198,14 +198,14 @@ bool CompliantObstacle::ease(TieNet& net, const Joint& joint, Bodies& bodies) {
     all.displacement[v] += more[v];
   if (eased_[1].told.points == all.points && eased_[1].told.displacement == all.displacement)
     return true;
-  bodies[k.body].yields(k.port, k.partner, all);
+  bodies.yields(k, k.partner, n, all);
   eased_[1].told = std::move(all);
   return true;
 }
 
 void CompliantObstacle::tell_neighbours(const Side& k, const PortKernel& give, Bodies& bodies) {
   if (eased_[0].told.displacement == give.displacement) return;
-  bodies[k.body].yields(k.port, own_surface, give);
+  bodies.yields(k, own_surface, k, give);
   eased_[0].told = give;
 }
 
@@ -216,10 +216,11 @@ void CompliantObstacle::withdraw(const Joint& joint, Bodies& bodies) {
   if (own.told.count() > 0) {
     own.told.displacement.assign(own.told.per_step(), 0.0);
     own.told.begin = own.told.displacement;
-    bodies[k.body].yields(k.port, own_surface, own.told);
+    bodies.yields(k, own_surface, k, own.told);
     own.told = {};
   }
-  if (other.told.count() > 0) bodies[k.body].yields(k.port, k.partner, answer_);
+  if (other.told.count() > 0)
+    bodies.yields(k, k.partner, joint.neumann_side(), answer_);
   other.told = {};
 }
 

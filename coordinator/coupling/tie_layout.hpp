@@ -62,6 +62,9 @@ struct TieLayout {
   const Side& side(const End& end) const {
     return members[end.member].joint->sides[index(end.side)];
   }
+  const Side& other_side(const End& end) const {
+    return members[end.member].joint->sides[index(1 - end.side)];
+  }
   Eigen::Index values_of(const Member& member) const {
     return Eigen::Index{member.width} * member.total;
   }

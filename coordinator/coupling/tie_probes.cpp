@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "coordinator/coupling/kernel_support.hpp"
+
 namespace abut {
 
 namespace {
@@ -76,6 +78,7 @@ void press(const TieLayout& layout, const TieLayout::Part& part, const TieLayout
       rows.press(by.side, 1.0, unit, std::span(forces).subspan(index(k) * width, width));
     }
     const PortKernel kernel = bodies.probe(part.body, pressed, forces, steps, seen);
+    require_for_substeps(kernel, layout.side(by), layout.other_side(by), bodies);
     read(layout, part, from, kernel.patterns, kernel.displacement, seen, take, bodies);
     if (from == 0 && !kernel.left.empty()) read(layout, part, kernel, seen, loose, bodies);
   }

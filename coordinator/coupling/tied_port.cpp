@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "coordinator/coupling/kernel_support.hpp"
+
 namespace abut {
 
 TiedPort::TiedPort(const TieLayout& layout, const TieLayout::Part& part, const TieKernel& kernel,
@@ -32,7 +34,7 @@ void TiedPort::probe(const TieLayout& layout, const TieLayout::Part& part, int p
     to.member = end.member;
     to.sign = end.side == layout.members[end.member].joint->kinematic ? 1.0 : -1.0;
     const int seen[] = {tied};
-    const PortKernel out = bodies.probe(part.body, port, units, steps_, seen);
+    const PortKernel out = for_levels(bodies.probe(part.body, port, units, steps_, seen));
     moved.resize(index(rows.width()));
     for (int l = 0; l < steps_; ++l) {
       Eigen::MatrixXd& at = to.rows.emplace_back(rows.width(), count);
@@ -52,6 +54,7 @@ void TiedPort::probe(const TieLayout& layout, const TieLayout::Part& part, int p
     }
     const int touching[] = {port};
     const PortKernel in = bodies.probe(part.body, tied, forces, steps_, touching);
+    require_for_substeps(in, layout.side(end), layout.other_side(end), bodies);
     give_.step = in.step;
     for (int l = 0; l < steps_; ++l) {
       Eigen::MatrixXd& at = to.port.emplace_back(count, rows.width());

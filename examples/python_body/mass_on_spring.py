@@ -31,7 +31,8 @@ class Mass:
             pb.Surface(dim=1, points=[self.position], normals=[-1.0]))
 
     def probe(self, ask, to):
-        """What a force over the first substep does, from rest."""
+        """What a force over the first substep does, from rest: `count` substeps of the request's
+        length. STEP says that the force is constant in it, as advance() takes forces."""
         to.step, to.support = ask.step, pb.FORCE_SUPPORT_STEP
         to.width, to.patterns = 1, len(ask.patterns)
         scale = ask.step / (self.mass * self.omega)

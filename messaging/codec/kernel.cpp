@@ -101,6 +101,11 @@ void encode(const Yielding& from, v1::Yields& to) {
   to.set_port(from.port);
   to.set_partner(from.partner);
   encode(from.kernel, *to.mutable_kernel());
+  if (from.first) {
+    to.set_first(*from.first);
+  } else {
+    to.clear_first();
+  }
 }
 
 void decode(const v1::Yields& from, const Description& body, const Partners& met, Yielding& to) {
@@ -119,7 +124,12 @@ void decode(const v1::Yields& from, const Description& body, const Partners& met
   const int width = to.kernel.points.empty()
                         ? surface.width()
                         : static_cast<int>(to.kernel.points.size()) * surface.dim;
-  decode(from.kernel(), width, width, kernel, to.kernel);
+  to.patterns = width;
+  to.first.reset();
+  if (from.has_first()) to.first = position(from.first(), index(width), FieldPath{&path, "first"});
+  const int most = width - to.first.value_or(0), some = from.kernel().patterns();
+  const int patterns = to.first && some > 0 && some < most ? some : most;
+  decode(from.kernel(), patterns, width, kernel, to.kernel);
 }
 
 }  // namespace abut

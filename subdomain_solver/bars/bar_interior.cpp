@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "contract/kernel_misfit.hpp"
 #include "subdomain_solver/bars/bar_fields.hpp"
 #include "subdomain_solver/bars/compressed_bar.hpp"
 
@@ -125,9 +126,9 @@ double BarInterior::compliance(std::size_t port) const {
   return scheme_.integrator->static_compliance(ends_[port]);
 }
 
-bool BarInterior::takes(int port, const PortKernel& kernel) const {
-  return description_.can.yielding && kernel.step == scheme_.step &&
-         kernel.support == support(index(port)) && kernel.per_step() == 1;
+std::string BarInterior::misfit(int port, const PortKernel& kernel) const {
+  if (!description_.can.yielding) return Interior::misfit(port, kernel);
+  return misfit_of(kernel, scheme_.step, support(index(port)), 1);
 }
 
 double BarInterior::effort() const { return bar_->data().elements / usual_work; }

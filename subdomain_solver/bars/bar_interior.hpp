@@ -48,7 +48,7 @@ class BarInterior final : public Interior {
   void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;
   std::optional<Failed> record(BodyRecord& record) override;
   void finish(std::size_t port, PortResponse& reply) const override;
-  bool takes(int port, const PortKernel& kernel) const override;
+  std::string misfit(int port, const PortKernel& kernel) const override;
   ForceSupport support(std::size_t port) const override;
   double compliance(std::size_t port) const override;
   bool rest(std::size_t port) override;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/index.hpp"
+#include "contract/kernel_misfit.hpp"
 
 namespace abut {
 
@@ -62,9 +63,9 @@ void PointContact::react(std::size_t port, std::size_t, const std::vector<double
   out.push_back(-forces[port]);
 }
 
-bool PointContact::takes(std::size_t port, const PortKernel& kernel) const {
-  return has(port) && kernel.support == ForceSupport::nodal && kernel.per_step() == 1 &&
-         kernel.step == step_;
+std::string PointContact::misfit(std::size_t port, const PortKernel& kernel) const {
+  if (!has(port)) return "this port takes no obstacles";
+  return misfit_of(kernel, step_, ForceSupport::nodal, 1);
 }
 
 void PointContact::settle(std::vector<double>& forces) {

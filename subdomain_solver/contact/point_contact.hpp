@@ -31,7 +31,7 @@ class PointContact final : public PortContact {
   void settle(std::vector<double>& forces) override;
   void react(std::size_t port, std::size_t partner, const std::vector<double>& forces,
              std::vector<double>& out) const override;
-  bool takes(std::size_t port, const PortKernel& kernel) const override;
+  std::string misfit(std::size_t port, const PortKernel& kernel) const override;
 
   const std::vector<int>& coordinates() const override { return dofs_; }
   const Vector* solve(double time, const Vector& free, Compliance& give) override;

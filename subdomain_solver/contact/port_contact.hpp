@@ -51,8 +51,8 @@ class PortContact : public Contact {
   /// whether friction holds them.
   using SeeGap = std::function<void(std::size_t point, double gap, bool sticks)>;
   virtual void see_gaps(std::size_t, const SeeGap&) const {}
-  /// Whether an obstacle before the port may give way by a kernel.
-  virtual bool takes(std::size_t port, const PortKernel& kernel) const = 0;
+  /// Why an obstacle before the port cannot give way by a kernel; empty: it can.
+  virtual std::string misfit(std::size_t port, const PortKernel& kernel) const = 0;
   /// How bodies that are tied to this one give way under forces on the port.
   virtual void ease(std::size_t, const PortKernel&) {}
 };

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "contract/kernel_misfit.hpp"
 #include "surface/tangents.hpp"
 
 namespace abut {
@@ -172,8 +173,9 @@ const std::vector<std::int32_t>* SurfaceContact::reacting(std::size_t port,
   return nullptr;
 }
 
-bool SurfaceContact::takes(std::size_t port, const PortKernel& kernel) const {
-  return has(port) && kernel.support == ForceSupport::nodal;
+std::string SurfaceContact::misfit(std::size_t port, const PortKernel& kernel) const {
+  if (!has(port)) return "this port takes no obstacles";
+  return misfit_of(kernel, 0.0, ForceSupport::nodal, 0);
 }
 
 void SurfaceContact::see_gaps(std::size_t port, const SeeGap& see) const {

@@ -38,7 +38,7 @@ class SurfaceContact final : public PortContact {
   void react(std::size_t port, std::size_t partner, const std::vector<double>& forces,
              std::vector<double>& out) const override;
   const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override;
-  bool takes(std::size_t port, const PortKernel& kernel) const override;
+  std::string misfit(std::size_t port, const PortKernel& kernel) const override;
   void ease(std::size_t port, const PortKernel& kernel) override;
   double dissipated(std::size_t port, std::size_t partner) const override;
   double dissipated() const override;

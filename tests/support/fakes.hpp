@@ -57,11 +57,11 @@ class FakeSubdomain : public Subdomain {
   std::function<void(Grid&)> spoil_grid;  // a test may make the grid or the fields unsound here
   std::function<void(std::vector<FieldValues>&)> spoil_fields;
   Counts counts;
+  PortKernel told;  // by the last yields()
 
   const Description& describe() const override { return description_; }
-
   void meet(int, const PortGeometry&, const ContactLaw&) override { ++counts.meetings; }
-  void yields(int, int, const PortKernel&) override { ++counts.yieldings; }
+  void yields(int, int, const PortKernel& kernel) override { ++counts.yieldings, told = kernel; }
   void save() override {
     ++counts.saves;
     saved_.clear();

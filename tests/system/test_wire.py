@@ -125,5 +125,38 @@ class BadWires(SystemTest):
                           arguments=["--set", "network.request_deadline=1"], seconds=20.0)
 
 
+LARGE_REPLY = """
+meta: {title: A window whose reply no frame holds}
+time: {begin: 0.0, end: 5.0e-3, window: 5.0e-4}
+bodies:
+  left:
+    model: {fe: {dimension: 3, mesh: {box: {lengths: [0.01, 0.3, 0.3], elements: [1, 30, 30]}}}}
+    material: {linear_elastic: {youngs_modulus: 1.0e9, poissons_ratio: 0.0, density: 1000.0}}
+    integrator: {central_difference: {step: 1.0e-7}}
+    initial: {position: [-0.02, 0.0, 0.0], velocity: [1.0, 0.0, 0.0]}
+    ports: {tip: {side: right}}
+  wall:
+    model:
+      rigid_tool: {dimension: 3, mesh: {box: {lengths: [0.1, 0.3, 0.3], elements: [1, 1, 1]}}}
+    ports: {face: {side: left}}
+interfaces: {impact: {sides: [left.tip, wall.face], contact: {}}}
+"""
+
+
+class Frames(SystemTest):
+    def test_check_knows_what_no_frame_holds(self):
+        scene = self.folder / "scene.yaml"
+        scene.write_text(LARGE_REPLY, encoding="utf-8")
+        words = (":3: time.window: the reply to a window of 5001 times of body 'left' takes 330 "
+                 "MiB, more than a frame between processes holds, 256 MiB. Give shorter windows")
+        for command in (("check", scene), ("run", scene, "--out", self.out)):
+            result = self.abut(*command)
+            self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+            self.assertIn(words, result.stderr)
+        self.assertFalse(self.out.exists())
+        shorter = self.abut("check", scene, "--set", "time.window=2.5e-4")
+        self.assertIn("valid", self.succeed(shorter).stdout)
+
+
 if __name__ == "__main__":
     main()

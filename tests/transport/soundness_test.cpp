@@ -15,101 +15,10 @@
 #include "base/index.hpp"
 #include "base/printable.hpp"
 #include "messaging/soundness.hpp"
-#include "tests/transport/wire_bytes.hpp"
+#include "tests/transport/stranger.hpp"
 
-namespace abut {
+namespace abut::stranger {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// Two squares side by side in the plane z = 0, the body below.
-PortGeometry two_squares() {
-  PortGeometry surface;
-  surface.dim = 3;
-  surface.points = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0, 0, 2, 1, 0};
-  for (int p = 0; p < 6; ++p) surface.normals.insert(surface.normals.end(), {0, 0, 1});
-  surface.facets = {0, 1, 2, 3, 1, 4, 5, 2};
-  surface.offsets = {0, 4, 8};
-  surface.spacing = 1.0;
-  return surface;
-}
-
-Description body() {
-  Description body;
-  body.name = "stranger";
-  body.model = "a block, by hand";
-  body.dim = 3;
-  body.mass = 2.0;
-  body.step = 0.1;
-  body.stable_step = infinity;
-  body.ports = {{"top", two_squares()}};
-  body.can.force = body.can.kernel = true;
-  body.columns = {"temperature [K]"};
-  return body;
-}
-
-Advance asked() {
-  Advance advance;
-  advance.window = {3, 1.0, 1.2};
-  advance.records = 2;
-  advance.boundary.resize(1);
-  return advance;
-}
-
-/// Rises at 1 m/s from where it is described.
-Response reply() {
-  Response reply;
-  PortResponse& port = reply.ports.emplace_back();
-  port.trace.width = 18;
-  port.trace.time = {1.0, 1.1, 1.2};
-  for (int t = 0; t < 3; ++t)
-    for (int k = 0; k < 18; ++k) {
-      port.trace.u.push_back(k % 3 == 2 ? 0.1 * t : 0.0);
-      port.trace.v.push_back(k % 3 == 2 ? 1.0 : 0.0);
-      port.trace.a.push_back(0.0);
-      port.trace.f.push_back(0.0);
-    }
-  port.lower = {0, 0, 0, 0, 0, 0.1};
-  port.upper = {2, 1, 0.1, 2, 1, 0.2};
-  port.speed_bound = 1.0;
-  for (const double time : {1.1, 1.2})
-    reply.records.push_back({time, Energy{1.0, 0.0, 0.0, 0.0}, {0, 0, 2}, {}, {}, {293.0}});
-  reply.steps = 2;
-  return reply;
-}
-
-Probing probing() { return {0, std::vector<double>(18, 1.0), 0.1, 2, {}}; }
-
-PortKernel kernel() {
-  PortKernel kernel;
-  kernel.step = 0.1;
-  kernel.width = 18;
-  kernel.displacement.assign(36, 0.01);
-  kernel.begin.assign(36, 0.005);
-  return kernel;
-}
-
-template <class Judge>
-std::string refusal(const Judge& judge) {
-  try {
-    judge();
-  } catch (const CodecError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-std::string told(const std::function<void(Description&)>& spoil) {
-  Description spoilt = body();
-  spoil(spoilt);
-  return refusal([&] { require_sound(spoilt); });
-}
-
-std::string answered(const std::function<void(Response&)>& spoil, const Advance& to = asked()) {
-  Response spoilt = reply();
-  spoil(spoilt);
-  return refusal([&] { require_sound(spoilt, body(), to); });
-}
 
 TEST(Soundness, OfWhatIsSoundNothingIsRefused) {
   EXPECT_EQ(told([](Description&) {}), "accepted");
@@ -219,7 +128,14 @@ TEST(Soundness, KernelsAreWholeAndGoAlongTheirForces) {
   EXPECT_EQ(given([](PortKernel& k) { k.begin.clear(); }),
             "kernel.begin is missing, which belongs to forces of NODAL support");
   EXPECT_EQ(given([](PortKernel& k) { k.step = 0.2; }),
-            "kernel.step is 0.2 s, where 0.1 s was asked for");
+            "kernel.step is 0.2 s, where 0.1 s was asked for, 1 of it off");
+  EXPECT_EQ(given([](PortKernel& k) { k.step = 0.1 * (1.0 + 1.0e-12); }), "accepted");
+  // Numbers that look alike are told with all that they differ in.
+  EXPECT_EQ(given([](PortKernel& k) { k.step = 0.1000000123; }),
+            "kernel.step is 0.1000000123 s, where 0.1 s was asked for, 1.2e-07 of it off");
+  EXPECT_EQ(given([](PortKernel& k) { k.support = ForceSupport::linear; }),
+            "kernel.support is LINEAR: pulses of a kernel act over a substep (STEP) or over the "
+            "dual cell around its end (NODAL)");
   EXPECT_EQ(
       given([](PortKernel& k) {
         for (double& u : k.displacement) u = -u;
@@ -232,6 +148,12 @@ TEST(Soundness, TextOfSomebodyElseIsHarmless) {
             "plain, with \xc3\xa4 and\na second line");
   EXPECT_EQ(printable("\x1b[31m\x07\x7f"), "\\x1b[31m\\x07\\x7f");
   EXPECT_EQ(printable("\xc2\x9b"), "\\x9b");
+  EXPECT_EQ(printable("\x9b|\xc3|\xc0\x80|\xed\xa0\x80|\xf4\x90\x80\x80"),
+            "\\x9b|\\xc3|\\xc0\\x80|\\xed\\xa0\\x80|\\xf4\\x90\\x80\\x80");  // no UTF-8
+  EXPECT_EQ(printable("\xe2\x80\xae"
+                      "drab\xe2\x81\xa9"),
+            "\\u202edrab\\u2069");
+  EXPECT_EQ(printable("\xe2\x82\xac \xf0\x9f\x98\x80"), "\xe2\x82\xac \xf0\x9f\x98\x80");
   EXPECT_EQ(printable("123456789", 4), "1234...");
   EXPECT_EQ(printable("123\xc3\xa4", 4), "123...");  // not half a character
 }
@@ -407,4 +329,4 @@ TEST(Soundness, ADescriptionOrKernelChangedAtRandomIsRefusedOrSound) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::stranger

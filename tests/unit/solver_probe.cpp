@@ -4,6 +4,7 @@
 // hashes.
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "base/index.hpp"
+#include "contract/kernel_parts.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -100,6 +102,25 @@ TEST_P(Probe, Superposes) {
     for (std::size_t k = 0; k < width; ++k)
       sum += pattern[k] * units.displacement[(i / width * width + k) * width + i % width];
     EXPECT_NEAR(whole.displacement[i], sum, roundoff(10000, largest_size(whole.displacement)));
+  }
+}
+
+// Kernels that no message holds are asked for in parts: each pattern is pressed for itself.
+TEST_P(Probe, InPartsIsTheWholeToTheLastBit) {
+  const std::unique_ptr<Subdomain> body = GetParam().build(true);
+  const std::size_t width = body->describe().ports[0].geometry.points.size();
+  const std::vector<double> units = unit_patterns(width);
+  const PortKernel whole = body->probe(0, units, substep, count);
+  for (const std::size_t at_once : {std::size_t{1}, (width + 1) / 2}) {
+    PortKernel made = room_for(whole, whole.patterns);
+    for (std::size_t first = 0; first < width; first += at_once) {
+      const std::size_t some = std::min(at_once, width - first);
+      put(body->probe(0, std::span(units).subspan(first * width, some * width), substep, count),
+          static_cast<int>(first), made);
+    }
+    EXPECT_EQ(made.displacement, whole.displacement);
+    EXPECT_EQ(made.begin, whole.begin);
+    EXPECT_EQ(made.compliance, whole.compliance);
   }
 }
 

@@ -109,7 +109,7 @@ TEST(Estimate, KnowsNothingOfContactWithoutAClosedForm) {
 
 int flight(double window, const Description& body) {
   const Description* bodies[] = {&body};
-  return windows_at_once(window, bodies);
+  return windows_at_once(window, 1, bodies);
 }
 
 Description solid(std::int64_t dofs, double step, double stable_step) {
@@ -134,7 +134,13 @@ TEST(Flight, TakesAsManyWindowsAsAreHalfASecondOfWork) {
   EXPECT_EQ(flight(1.0, solid(0, 0.0, none)), 1000);  // a wall
   const Description one = solid(10'000, 1.0e-6, 2.0e-6);
   const Description* two[] = {&one, &one};
-  EXPECT_EQ(windows_at_once(1.0e-5, two), 50);
+  EXPECT_EQ(windows_at_once(1.0e-5, 1, two), 50);
+  // No more than a reply holds: u, v and f of 20,000 points in space are 1.4 MB a record.
+  Description wall = solid(0, 0.0, none);
+  wall.ports.emplace_back().geometry.points.resize(60'000);
+  EXPECT_EQ(flight(1.0e-5, wall), 69);
+  const Description* walls[] = {&wall};
+  EXPECT_EQ(windows_at_once(1.0e-5, 7, walls), 9);
 }
 
 TEST(Estimate, CountsTheFlightsOfABodyThatNothingTouches) {
