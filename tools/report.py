@@ -12,8 +12,8 @@ import html
 import sys
 from pathlib import Path
 
-from abut_tools.page import (CHART_LIBRARY, canvas_of, filled, fitting_page, script_json, section,
-                             table_of, write_whole)
+from abut_tools.page import (CHART_LIBRARY, canvas_of, filled, fitting_page, named, script_json,
+                             section, table_of, write_whole)
 from abut_tools.run_files import (SUMMARY, cut_short, is_there, read_events, read_json,
                                   read_table)
 from abut_tools.tables import (COLOURS, Figure, Table, ToolError, colour_of, less, plus,
@@ -315,8 +315,8 @@ def make_page(folder: Path, library_path: Path) -> str:
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="abut report", description="Makes a page of a run.")
-    parser.add_argument("directory", type=Path, metavar="DIR", help="the run's folder")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="default: DIR/report.html")
+    parser.add_argument("directory", type=named, metavar="DIR", help="the run's folder")
+    parser.add_argument("--out", type=named, metavar="FILE", help="default: DIR/report.html")
     parser.add_argument("--chart-library", type=Path, metavar="FILE", default=CHART_LIBRARY,
                         help="Chart.js 3 (default: that of Debian's package libjs-chart.js)")
     options = parser.parse_args()
