@@ -254,15 +254,6 @@ std::string text_of(const Estimate::Ties& ties) {
 
 }  // namespace
 
-/// As measured over the shipped scenes at tolerances of 1e-4 to 1e-6.
-Estimate::Ties::Calls Estimate::Ties::calls() const {
-  if (!used) return {3, std::nullopt};
-  if (narrow) return {2, std::nullopt};
-  if (floats) return {1, linear ? 2 : 4};
-  if (touched) return {1, linear ? 3 : 5};
-  return {1, linear ? (banded ? 3 : 1) : (banded ? 4 : 3)};
-}
-
 std::string to_text(const Estimate& e, bool verbose) {
   std::string text = text_of(e.bodies);
   const auto range = [](std::int64_t low, std::int64_t high) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <string_view>
+#include <variant>
 
 #include "base/yaml_document.hpp"
 
@@ -69,6 +70,9 @@ class Translator {
   Meaning of_body(const Expectation& expectation, const std::vector<std::string>& steps) const {
     std::vector<std::size_t> parts(division_.names.size());
     for (std::size_t p = 0; p < parts.size(); ++p) parts[p] = p;
+    if (std::ranges::count(steps, "reaction") > 0 && !is_static())
+      return of_none("it is of the end of a step, and forces between parts are of whole steps");
+    if (steps[2] == "rotation") return of_none("at records it looks at some cells alone");
     const std::string set = steps.size() > 3 ? division_.whole.set_called(steps[2]) : "";
     if (!set.empty()) {
       if (const std::optional<std::size_t> part = division_.where.alone_in(set))
@@ -84,6 +88,11 @@ class Translator {
       return of_none("which of the parts has it is not known");
     return of_none(last == "mean" ? "it is the mean over the parts"
                                   : "it is the sum or the mean over several parts");
+  }
+
+  bool is_static() const {
+    const auto& scheme = division_.whole.spec.integrator;
+    return scheme && std::holds_alternative<QuasiStaticSpec>(*scheme);
   }
 
   const Division& division_;
