@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include <fmt/format.h>
+#include <sys/vfs.h>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
@@ -14,9 +15,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr long pipes = 0x50495045;  // the file system of pipes without names (linux/magic.h)
+
 [[noreturn]] void refuse_size(const std::string& path, std::size_t most,
                               const std::string& remedy) {
   throw InputError(fmt::format("is larger than {} MB", most / 1'000'000), path, remedy);
+}
+
+/// A pipe without a name, as /dev/stdin may be: it was handed over open, and ends with its writer.
+/// One with a name waits for a writer as soon as it is opened, for ever where there is none.
+bool is_open_pipe(const std::string& path) {
+  struct statfs system {};
+  return statfs(path.c_str(), &system) == 0 && system.f_type == pipes;
 }
 
 }  // namespace
@@ -34,8 +44,7 @@ void check_input_file(const std::string& path, std::size_t most, const std::stri
 }
 
 std::string read_input_file(const std::string& path, std::size_t most, const std::string& remedy) {
-  std::error_code error;
-  if (!fs::is_fifo(fs::status(path, error))) check_input_file(path, most, remedy);
+  if (!is_open_pipe(path)) check_input_file(path, most, remedy);
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError("cannot be opened", path, remedy);
   std::string bytes;

@@ -11,6 +11,7 @@
 #include "base/input_file.hpp"
 #include "base/yaml_copies.hpp"
 #include "base/yaml_like.hpp"
+#include "base/yaml_stars.hpp"
 #include "base/yaml_text.hpp"
 #include "base/yaml_tree.hpp"
 
@@ -46,9 +47,11 @@ YAML::Node without(const YAML::Node& map, const std::string& key) {
 
 /// A map with one more entry, or with the entry replaced. Copies, because a YAML alias shares its
 /// map with the anchor and only one of the two is meant.
-YAML::Node with_value(const YAML::Node& node, const std::vector<std::string>& steps, std::size_t at,
+YAML::Node with_value(const YAML::Node& old, const std::vector<std::string>& steps, std::size_t at,
                       const YAML::Node& value, const std::string& where) {
   if (at == steps.size()) return value;
+  const bool chosen = old.IsScalar() && old.Scalar() == steps[at];
+  const YAML::Node node = chosen ? choice_as_map(old) : old;
   const std::optional<std::size_t> index = list_index(steps[at]);
   const std::optional<Found> found = child(node, steps[at]);
   if (index ? !found : !node.IsMap())
@@ -67,18 +70,47 @@ bool is_at_or_below(const std::string& path, const std::string& ancestor) {
   return b.size() <= a.size() && std::equal(b.begin(), b.end(), a.begin());
 }
 
-/// Puts what the command line says in its place; whether it stays there: null takes a key out.
-bool put(const std::string& override_text, YAML::Node& root) {
+/// The value of what the command line says.
+YAML::Node override_value(const std::string& override_text) {
   const std::string where = "--set " + override_text;
-  const std::vector<std::string> steps = split_path(override_path(override_text));
-  if (override_text.find('=') == std::string::npos || steps.empty())
+  if (override_text.find('=') == std::string::npos ||
+      split_path(override_path(override_text)).empty())
     throw InputError("is not of the form key.path=value", where,
                      "Write for example --set time.window=1e-6.");
-  const YAML::Node value =
-      parse_yaml(override_text.substr(override_text.find('=') + 1), where,
-                 override_path(override_text), "Give the value as in a scene file.");
-  root.reset(with_value(root, steps, 0, value, where));
+  return parse_yaml(override_text.substr(override_text.find('=') + 1), where,
+                    override_path(override_text), "Give the value as in a scene file.");
+}
+
+/// Puts what the command line says in its place; whether it stays there: null takes a key out.
+bool put(const std::string& override_text, YAML::Node& root) {
+  const YAML::Node value = override_value(override_text);
+  const std::vector<std::string> steps = split_path(override_path(override_text));
+  root.reset(with_value(root, steps, 0, value, "--set " + override_text));
   return !value.IsNull();
+}
+
+/// The overrides with every `*` written out, each in the text that those before it have left.
+std::vector<std::string> without_stars(const YAML::Node& text,
+                                       const std::vector<std::string>& overrides) {
+  const auto has_star = [](const std::string& override_text) {
+    return override_path(override_text).find('*') != std::string::npos;
+  };
+  if (std::none_of(overrides.begin(), overrides.end(), has_star)) return overrides;
+  std::vector<std::string> all;
+  YAML::Node root(text);
+  for (const std::string& override_text : overrides) {
+    const std::string path = override_path(override_text),
+                      value = override_text.substr(path.size());
+    const bool takes_out = has_star(override_text) && override_value(override_text).IsNull();
+    for (const std::string& own : paths_meant(root, path, takes_out, "--set " + override_text)) {
+      all.push_back(own + value);
+      try {
+        put(all.back(), root);
+      } catch (const InputError&) {  // of a body that is written out later, or told then
+      }
+    }
+  }
+  return all;
 }
 
 /// The body whose copy an override is of, before copies are written out; empty: none.
@@ -150,6 +182,7 @@ Document::Document(std::string name, std::string text, std::vector<std::string> 
 /// copies of. What has no place there, or takes out what was not there, is of a body that is
 /// written out.
 void Document::write_out(const YAML::Node& text) {
+  overrides_ = without_stars(text, overrides_);
   std::vector<std::string> later;
   YAML::Node root(text);
   for (std::size_t i = 0; i < overrides_.size(); ++i) {
@@ -201,6 +234,15 @@ void Document::write_out_copies() {
 const YAML::Node& Document::root() const { return tree_->root(); }
 
 bool Document::has(std::string_view path) const { return tree_->find(path).has_value(); }
+
+bool Document::says(std::string_view path) const {
+  if (has(path)) return true;
+  const std::vector<std::string> steps = split_path(path);
+  std::string parent;
+  for (std::size_t k = 0; k + 1 < steps.size(); ++k) parent = join_path(parent, steps[k]);
+  const std::optional<YAML::Node> node = tree_->find(parent);
+  return node && !node->IsMap();
+}
 
 std::vector<std::string> Document::keys(std::string_view path) const {
   const std::optional<YAML::Node> node = tree_->find(path);

@@ -15,8 +15,9 @@ class Copies;
 class YamlTree;
 
 /// One parsed YAML file with the values that the command line puts in place (`key.path=value`, the
-/// value in YAML; null takes the key out). Text, name and overrides are kept as given, so that
-/// another process can build the same document from them. Key paths read
+/// value in YAML; null takes the key out; `*` stands for every key at its place). Text, name and
+/// overrides, a `*` written out, are kept, so that another process can build the same document from
+/// them. Key paths read
 /// `bodies.left.initial.velocity` and `meta.expect[0].measure`. Bodies that are `like` another one
 /// and copies of bodies are written out: what a document has at a path, they have. All that is
 /// wrong with the file's form throws InputError: syntax, duplicate keys, several documents.
@@ -37,6 +38,9 @@ class Document {
   std::vector<std::string> overrides_elsewhere() const;
 
   bool has(std::string_view path) const;
+  /// The same, or in the place of the map that has the key stands a short form of it, as the name
+  /// alone of a choice.
+  bool says(std::string_view path) const;
   /// Keys of the map at a path, in the file's order; empty when there is no map.
   std::vector<std::string> keys(std::string_view path) const;
   /// Those whose map has a list under `key` with this word in it: interfaces with a side. One look

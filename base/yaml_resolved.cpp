@@ -223,6 +223,25 @@ void ResolvedYaml::copy(std::string_view path, const Document& document) {
   at->text = flow(from);
 }
 
+namespace {
+
+void keep_below(Node& node, const std::string& path,
+                const std::function<bool(const std::string&)>& wanted) {
+  if (node.kind != Node::Kind::map) return;
+  const auto own = [&path](const std::string& name) { return join_path(path, name); };
+  std::erase_if(node.children, [&](const auto& entry) { return !wanted(own(entry.first)); });
+  for (const auto& [name, child] : node.children) keep_below(*child, own(name), wanted);
+}
+
+}  // namespace
+
+void ResolvedYaml::keep(std::string_view path,
+                        const std::function<bool(const std::string&)>& wanted) {
+  Node* at = root_.get();
+  for (const std::string& step : split_path(path)) at = &at->child(step);
+  keep_below(*at, std::string(path), wanted);
+}
+
 std::string ResolvedYaml::text() const {
   std::string out;
   print(*root_, 0, false, out);

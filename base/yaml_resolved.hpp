@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -33,6 +34,9 @@ class ResolvedYaml {
   }
   /// What a document has at a path, whatever it is: keys that belong to another program.
   void copy(std::string_view path, const Document& document);
+  /// Leaves out, below a path, what is not wanted; `wanted` is asked of every key path, from the
+  /// outside in.
+  void keep(std::string_view path, const std::function<bool(const std::string&)>& wanted);
   std::string text() const;
 
   struct Node;

@@ -72,7 +72,7 @@ class Census final : public YAML::EventHandler {
     if (tag.empty() || tag == "?" || tag == "!") return;
     throw InputError(fmt::format("has the tag {}, which means nothing here", tag),
                      at_line(name_, mark),
-                     "Take the tag out; values are in SI units, which the reference names.");
+                     "Take the tag out; units are not written: the reference names them.");
   }
   [[noreturn]] void refuse_documents() const {
     throw InputError("holds a second document", at_line(name_, second_),

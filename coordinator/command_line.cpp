@@ -13,6 +13,13 @@ constexpr int most_parts = 64;  // as many as processes of a run
 
 constexpr std::array<std::string_view, 4> own_verbs{"run", "check", "split", "reference"};
 
+/// An empty path is most often a variable of a script that was never set.
+const CLI::Validator named_folder(
+    [](const std::string& text) {
+      return text.empty() ? std::string("is empty: name a folder, or leave it out") : "";
+    },
+    "", "named_folder");
+
 void add_scene(CLI::App& verb, std::string& scene, std::vector<std::string>& overrides) {
   verb.add_option("scene", scene, "scene file")->required()->type_name("SCENE");
   verb.add_option("--set", overrides,
@@ -30,7 +37,8 @@ CLI::App& add_split(CLI::App& app, SplitCommand& split) {
   verb.add_option("--body", split.body, "body to divide; default the only one that can be")
       ->type_name("NAME");
   verb.add_option("--out", split.out, "folder of the new scene; default <scene name>_split_N")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(named_folder);
   verb.add_flag("--force", split.force, "replace the files that DIR holds");
   return verb;
 }
@@ -52,7 +60,8 @@ Command parse_command_line(int argc, const char* const* argv) {
   CLI::App& run_verb = *app.add_subcommand("run", "run a scene and evaluate its expectations");
   add_scene(run_verb, run.scene, run.overrides);
   run_verb.add_option("--out", run.out, "run directory; default runs/<scene name>")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(named_folder);
   run_verb.add_flag("--local", run.local, "all bodies in this process");
   run_verb.add_flag("--quiet", run.quiet, "print errors and failed expectations only");
   run_verb.add_flag("--force", run.force, "replace the run that DIR holds");

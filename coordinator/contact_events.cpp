@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "coordinator/coupling/closing_speed.hpp"
 #include "coordinator/coupling/nearness.hpp"
 #include "coordinator/coupling/tie.hpp"
 #include "coordinator/coupling/transmission.hpp"
@@ -234,7 +235,7 @@ void ContactEvents::settle_surfaces(Joint& joint) {
     const bool presses = resultant(force, i, dim) > force_floor * joint.force_scale;
     if (presses && !joint.pressing()) {
       joint.press();
-      narrator_.closed(joint, force.time[i], joint.touch_speed);
+      narrator_.closed(joint, force.time[i], closing_speed_before(joint, bodies_, i));
     } else if (!presses && joint.pressing()) {
       joint.release();
       narrator_.opened(joint, force.time[i - 1]);

@@ -12,6 +12,7 @@
 #include "base/count.hpp"
 #include "base/denormals.hpp"
 #include "base/index.hpp"
+#include "base/without_remedy.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/horizon.hpp"
 #include "coordinator/coupling/tie.hpp"
@@ -71,7 +72,7 @@ RunEnd Controller::run() {
     }
     if (interrupted_ != nullptr && interrupted_->load()) end_.status = "interrupted";
     return finish(wall());  // asks the bodies for their states: they may be lost there as well
-  } catch (const RunError& error) {
+  } catch (const std::exception& error) {  // RunError, an InputError of a body, lack of memory
     const bool interrupted = interrupted_ != nullptr && interrupted_->load();
     give_up(error, interrupted, wall());
     if (!interrupted) throw;
@@ -328,11 +329,11 @@ void Controller::watch_energy(EnergyGuard::Verdict verdict) {
       joints_, [](const Joint& joint) { return joint.decision == Decision::inside; });
   if (verdict == EnergyGuard::Verdict::fine || inside) return;
   if (verdict == EnergyGuard::Verdict::warn) {
-    narrator_.energy(guard_, clock_.time());
+    narrator_.energy(guard_, joints_, clock_.time());
   } else if (end_.status == "completed") {
-    fail(clock_.time(),
-         narrator_.words_of(guard_) + fmt::format("; the bound of {:g} % is schwarz.energy_guard",
-                                                  100.0 * scene_.schwarz.energy_guard));
+    fail(clock_.time(), narrator_.words_of(guard_, joints_) +
+                            fmt::format("; the bound of {:g} % is schwarz.energy_guard",
+                                        100.0 * scene_.schwarz.energy_guard));
   }
 }
 
@@ -394,6 +395,7 @@ void Controller::look_for_passed() {
 
 void Controller::fail(double time, const std::string& text) {
   end_.status = "failed";
+  end_.reason = text;
   narrator_.failure(time, text);
 }
 
@@ -437,9 +439,12 @@ RunEnd Controller::finish(double wall_seconds) {
 }
 
 /// The bodies are in the middle of a solve, or gone: there is no state to hash.
-void Controller::give_up(const RunError& error, bool interrupted, double wall_seconds) {
+void Controller::give_up(const std::exception& error, bool interrupted, double wall_seconds) {
   end_.status = interrupted ? "interrupted" : "failed";  // a wait that the user ends is no failure
-  if (!interrupted) narrator_.thrown(clock_.time(), error);
+  if (!interrupted) {
+    end_.reason = without_remedy(error);
+    narrator_.thrown(clock_.time(), end_.reason);
+  }
   end_.compute_seconds = bodies_.compute_seconds();
   end_.wall_seconds = wall_seconds;
   end_.exchanges = bodies_.exchanges();

@@ -35,8 +35,8 @@ class Controller {
   Controller(const Scene& scene, std::vector<Subdomain*> bodies, std::vector<Observer*> observers,
              const std::atomic<bool>* interrupted = nullptr);
 
-  /// Walks to the end and tells the observers. RunError of a lost peer passes through after they
-  /// were told.
+  /// Walks to the end and tells the observers. An error passes through after they were told: a lost
+  /// peer, what a body cannot take, lack of memory.
   RunEnd run();
 
  private:
@@ -88,7 +88,7 @@ class Controller {
   void fail(double time, const std::string& text);
   void state(Archive& archive);
   RunEnd finish(double wall_seconds);
-  void give_up(const RunError& error, bool interrupted, double wall_seconds);
+  void give_up(const std::exception& error, bool interrupted, double wall_seconds);
 
   const Scene& scene_;
   Bodies bodies_;

@@ -255,17 +255,24 @@ int report(const Scene& scene, const ClosedForm* form, const Measures& measures,
   return pass ? 0 : exit_expectation;
 }
 
-/// An error of the world says where the run's files are as well.
+/// The same error, which says where the run's files are as well.
+template <class Error>
+Error with_place_of_files(const Error& error, const fs::path& directory) {
+  std::string remedy = error.remedy;
+  if (remedy.ends_with('.')) remedy.pop_back();
+  return Error(error.what_is_wrong, error.where,
+               fmt::format("{}. The run up to there is in {}", remedy, directory.string()));
+}
+
 RunEnd conduct(const Scene& scene, const Placement& placement,
                const std::vector<Observer*>& observers, const std::atomic<bool>& interrupted,
                const fs::path& directory) {
   try {
     return Controller(scene, placement.pointers(), observers, &interrupted).run();
   } catch (const RunError& error) {
-    std::string remedy = error.remedy;
-    if (remedy.ends_with('.')) remedy.pop_back();
-    throw RunError(error.what_is_wrong, error.where,
-                   fmt::format("{}. The run up to there is in {}", remedy, directory.string()));
+    throw with_place_of_files(error, directory);
+  } catch (const InputError& error) {  // of a body: what it was given does not go together
+    throw with_place_of_files(error, directory);
   }
 }
 
@@ -359,8 +366,8 @@ int split_verb(const SplitCommand& command) {
   const fs::path written = directory / fs::path(command.scene).filename();
   write_split(split, directory, written, command.force);
   for (const std::string& part : split.parts) fmt::print("{}\n", part);
-  for (const std::string& measure : split.left_out)
-    fmt::print("left out: what is expected of {}, which no part alone has\n", measure);
+  for (const auto& [measure, why] : split.left_out)
+    fmt::print("left out: what is expected of {}: {}\n", measure, why);
   fmt::print("written: {}\n", written.string());
   return check_verb({written.string(), {}, false});
 }
@@ -372,8 +379,9 @@ int reference_verb() {
   reference.heading("A body");
   document_body_keys(reference);
   fmt::print(
-      "# Keys of a scene file\n\nPrinted by `abut reference`. Units are SI. A choice is "
-      "written `{{name: {{its keys}}}}`, or as the\nname alone when all its keys have "
+      "# Keys of a scene file\n\nPrinted by `abut reference`. Units are named in SI; any other "
+      "consistent set (mm, ms, kg, kN, GPa)\ndoes as well: no constant is built in. A choice is "
+      "written `{{name: {{its keys}}}}`, or as the name alone when all its\nkeys have "
       "defaults.\n\n{}",
       reference.markdown());
   return 0;
@@ -413,7 +421,7 @@ int delivered(int code) {
 
 int main(int argc, char** argv) {
   const abut::FlushedDenormals flushed;  // also of threads that bodies start
-  std::signal(SIGXFSZ, SIG_IGN);  // a file at the limit of its size is an error of writing
+  std::signal(SIGXFSZ, SIG_IGN);         // a file at the limit of its size is an error of writing
   try {
     return abut::delivered(std::visit(abut::Verbs{}, abut::parse_command_line(argc, argv)));
   } catch (const abut::InputErrorList& errors) {

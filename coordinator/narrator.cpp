@@ -9,6 +9,7 @@
 
 #include "base/index.hpp"
 #include "coordinator/interface_spec.hpp"
+#include "surface/sharp_nodes.hpp"
 
 namespace abut {
 
@@ -45,7 +46,7 @@ void Narrator::end_after_error(const RunEnd& end) {
   for (Observer* observer : observers_) {
     try {
       observer->on_end(end);
-    } catch (const RunError&) {  // a full disk again: the first error is the one to tell
+    } catch (const std::exception&) {  // a full disk again: the first error is the one to tell
     }
   }
 }
@@ -122,23 +123,51 @@ void Narrator::never_met(const std::string& name, double time) {
                       name));
 }
 
-std::string Narrator::words_of(const EnergyGuard& guard) const {
+namespace {
+
+/// [rad] Facets that meet at more are those of an edge, at less those of a round surface.
+constexpr double edge_angle = 0.7, flat_angle = 1.0e-6;
+
+/// Facets of a mesh that stand for something round: they move by corners, METHOD [M.103].
+bool stands_for_round(const PortGeometry& geometry) {
+  if (geometry.dim == 1) return false;
+  const PosedSurface surface = posed(geometry);
+  return sharp_edges(surface, flat_angle).size() > sharp_edges(surface, edge_angle).size();
+}
+
+}  // namespace
+
+/// What is not so already and can help: nothing of surfaces to bars, nothing round to flat ones.
+std::string Narrator::remedies(std::span<const Joint> joints) const {
+  bool round = false, kicks = false, published = false;
+  for (const Joint& joint : joints) {
+    if (joint.tied() || !(joint.closed() || joint.force_scale > 0.0)) continue;
+    published = published || joint.decision == Decision::window_begin;
+    for (const Side& side : joint.sides) {
+      if (joint.surfaces)
+        round = round || stands_for_round(bodies_.port(side).geometry);
+      else
+        kicks = kicks || trace_of(bodies_, side).support == ForceSupport::step;
+    }
+  }
+  return fmt::format("give smaller steps{}{}{}", round ? ", a finer mesh of round surfaces" : "",
+                     kicks ? ", or contact_layer: massless" : "",
+                     published ? ", or transmission: unilateral with contact_layer: massless" : "");
+}
+
+std::string Narrator::words_of(const EnergyGuard& guard, std::span<const Joint> joints) const {
   const double growth = guard.growth();
   const std::string whose =
       guard.culprit() < 0 ? ""
                           : fmt::format(" of body '{}'", bodies_.describe(guard.culprit()).name);
-  bool surfaces = false;  // those that are round move by facets, METHOD [M.103]
-  for (int b = 0; b < bodies_.count(); ++b) surfaces = surfaces || bodies_.describe(b).dim > 1;
-  return fmt::format(
-      "energy{} has {} by {:.2g} % of the most there was in motion, and {}; give smaller steps{}{}",
-      whose, growth < 0.0 ? "fallen" : "grown", 100.0 * std::abs(growth),
-      growth < 0.0 ? "nothing in this scene takes any" : "contact makes none",
-      surfaces ? ", a finer mesh of round surfaces" : "",
-      growth < 0.0 ? "" : ", or contact_layer: massless");
+  return fmt::format("energy{} has {} by {:.2g} % of the most there was in motion, and {}; {}",
+                     whose, growth < 0.0 ? "fallen" : "grown", 100.0 * std::abs(growth),
+                     growth < 0.0 ? "nothing in this scene takes any" : "contact makes none",
+                     remedies(joints));
 }
 
-void Narrator::energy(const EnergyGuard& guard, double time) {
-  tell({RunEvent::Kind::warning, time, "", words_of(guard), {{"growth", guard.growth()}}});
+void Narrator::energy(const EnergyGuard& guard, std::span<const Joint> joints, double time) {
+  tell({RunEvent::Kind::warning, time, "", words_of(guard, joints), {{"growth", guard.growth()}}});
 }
 
 void Narrator::warning(double time, const std::string& subject, const std::string& text) {
@@ -149,8 +178,7 @@ void Narrator::failure(double time, const std::string& text) {
   tell({RunEvent::Kind::failure, time, blamed(text), text, {}});
 }
 
-void Narrator::thrown(double time, const RunError& error) {
-  const std::string text = (error.where.empty() ? "" : error.where + ": ") + error.what_is_wrong;
+void Narrator::thrown(double time, const std::string& text) {
   tell({RunEvent::Kind::failure, time, blamed(text), text, {}, true});
 }
 

@@ -35,15 +35,16 @@ class Narrator {
   void overlap(const Overlap& overlap, std::span<const Joint> joints);
   /// An interface whose sides went past each other.
   void never_met(const std::string& name, double time);
-  void energy(const EnergyGuard& guard, double time);
+  void energy(const EnergyGuard& guard, std::span<const Joint> joints, double time);
   void warning(double time, const std::string& subject, const std::string& text);
   void failure(double time, const std::string& text);
   /// An error that ends the program, which says it on the terminal as well.
-  void thrown(double time, const RunError& error);
+  void thrown(double time, const std::string& text);
 
-  std::string words_of(const EnergyGuard& guard) const;
+  std::string words_of(const EnergyGuard& guard, std::span<const Joint> joints) const;
 
  private:
+  std::string remedies(std::span<const Joint> joints) const;
   void tell(const RunEvent& event);
   std::string blamed(const std::string& text) const;  // the body that a text names, or empty
 

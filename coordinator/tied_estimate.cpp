@@ -53,6 +53,17 @@ Estimate::Ties ties_of(const TieLayout& layout, const TieKernelOptions& options,
   return ties;
 }
 
+/// Whether contact is on one of the bodies.
+bool is_touched(const TieLayout& layout, std::span<const Joint> joints) {
+  const auto touches = [&layout](const Side& side) {
+    return std::ranges::any_of(
+        layout.parts, [&side](const TieLayout::Part& part) { return part.body == side.body; });
+  };
+  return std::ranges::any_of(joints, [&touches](const Joint& joint) {
+    return !joint.tied() && std::ranges::any_of(joint.sides, touches);
+  });
+}
+
 }  // namespace
 
 std::vector<Estimate::Ties> estimate_ties(const Scene& scene, std::vector<Joint>& joints,
@@ -66,6 +77,7 @@ std::vector<Estimate::Ties> estimate_ties(const Scene& scene, std::vector<Joint>
     if (!ties) continue;
     const TieLayout layout = layout_of(island, joints, bodies, scene.time.window);
     all.push_back(ties_of(layout, tie_kernel_options(scene.schwarz), bodies));
+    all.back().touched = is_touched(layout, joints);
   }
   return all;
 }

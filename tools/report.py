@@ -9,15 +9,15 @@ chart library, page cannot be written).
 
 import argparse
 import html
-import json
 import sys
 from pathlib import Path
 
-from abut_tools.page import (CHART_LIBRARY, canvas_of, filled, fitting_page, script_json, section,
-                             table_of, write_whole)
+from abut_tools.page import (CHART_LIBRARY, canvas_of, filled, fitting_page, named, script_json,
+                             section, table_of, write_whole)
+from abut_tools.run_files import (SUMMARY, cut_short, is_there, read_events, read_json,
+                                  read_table)
 from abut_tools.tables import (COLOURS, Figure, Table, ToolError, colour_of, less, plus,
-                               read_json, read_table, scaled_unit, shown, since_begin, sum_of,
-                               with_jumps)
+                               scaled_unit, shown, since_begin, sum_of, with_jumps)
 
 TEMPLATE = Path(__file__).resolve().with_suffix(".html")
 CURVE_POINTS = 2000     # more than a screen has columns
@@ -30,25 +30,28 @@ class Run:
     """What a folder holds. A run that was killed has no summary."""
 
     def __init__(self, folder: Path):
-        summary, history = folder / "summary.json", folder / "history.csv"
-        if not summary.is_file() and not history.is_file():
+        paths = {name: folder / name
+                 for name in ("summary.json", "history.csv", "closed_form.csv", "events.jsonl")}
+        there = {name for name, path in paths.items() if is_there(path)}
+        if not there & {"summary.json", "history.csv"}:
             raise ToolError(
                 f"{folder} holds no run: neither summary.json nor history.csv is there. "
                 f"Make one with: abut run SCENE --out {folder}", 2)
-        unfinished = {"status": "unfinished", "title": folder.name,
-                      "notes": ["there is no summary.json: the run was ended from outside"]}
-        self.summary = read_json(summary) if summary.is_file() else unfinished
-        self.history = read_table(history) if history.is_file() else Table(["time"], [])
-        exact = folder / "closed_form.csv"
-        self.exact = read_table(exact) if exact.is_file() else None
-        self.events = []
-        events = folder / "events.jsonl"
-        if events.is_file():
-            for line in events.read_text(encoding="utf-8").splitlines():
-                try:
-                    self.events.append(json.loads(line))
-                except ValueError:
-                    break  # the line that a killed run cut short
+        name = folder.resolve().name.encode("utf-8", "replace").decode()
+        self.summary = {"status": "unfinished", "title": name,
+                        "notes": ["there is no summary.json: the run was ended from outside"]}
+        if "summary.json" in there:
+            self.summary = read_json(paths["summary.json"], SUMMARY)
+        self.history, self.exact, self.events = Table(["time"], []), None, []
+        if "history.csv" in there:
+            self.history = read_table(paths["history.csv"])
+            words = cut_short(self.history, self.summary)
+            if words:
+                self.summary["notes"] = [*self.summary.get("notes", []), words]
+        if "closed_form.csv" in there:
+            self.exact = read_table(paths["closed_form.csv"])
+        if "events.jsonl" in there:
+            self.events = read_events(paths["events.jsonl"])
 
     def bodies(self) -> list[str]:
         return [match[1] for match in self.history.matching(r"(.+)\.kinetic")]
@@ -68,7 +71,7 @@ def exact_force_label(run: Run, port: str) -> str:
     interfaces = run.summary.get("interfaces", {})
     described = [name for name in interfaces if f"{name}.gap" in run.exact]
     for name in described:
-        if interfaces[name]["sides"][0] == port:
+        if interfaces[name].get("sides", [])[:1] == [port]:
             return "exact" if len(described) == 1 else f"{name}, exact"
     return ""
 
@@ -80,7 +83,7 @@ def port_figures(run: Run) -> list[Figure]:
     velocity = Figure("velocity", "Velocity of the contact points", "velocity", "m/s")
     force = Figure("force", "Contact force", "force, compression positive", "N")
     form = run.summary.get("closed_form", {})
-    jumps = [form[key] for key in ("begin", "end") if key in form]
+    jumps = [form[key] for key in ("begin", "end") if form.get(key) is not None]
     for table, word in ((run.history, ""), (run.exact, ", exact")):
         if table is None:
             continue
@@ -181,9 +184,9 @@ def expectations_table(run: Run) -> str:
     return table_of(["measure", "expected", "got", "", "because"], rows, kinds) if rows else ""
 
 
-def clean(value: float | None, scale: float) -> float | None:
+def clean(value: float | None, scale: float | None) -> float | None:
     """Round-off around zero is shown as zero."""
-    return 0.0 if value is not None and abs(value) < 1e-12 * scale else value
+    return 0.0 if value is not None and scale and abs(value) < 1e-12 * scale else value
 
 
 def closed_form_table(run: Run) -> str:
@@ -197,23 +200,25 @@ def closed_form_table(run: Run) -> str:
         if lasts is None:  # no contact, or none that ends
             continue
         of = f"{interface}: " if len(contacts) > 1 else ""
-        last = (("mean contact force", "N", exact["force"], f"{contact}.force_mean", exact["force"])
-                if "interface" in form else
-                (f"{of}impulse", "N s", exact["impulse"], f"{contact}.impulse", exact["impulse"]))
+        word, unit, key, name = (("mean contact force", "N", "force", "force_mean")
+                                 if "interface" in form else
+                                 (f"{of}impulse", "N s", "impulse", "impulse"))
+        last = (word, unit, exact.get(key), f"{contact}.{name}", exact.get(key))
         compared += [
-            (f"{of}begin of contact", "s", exact["begin"], f"{contact}.begin", lasts),
-            (f"{of}end of contact", "s", exact["end"], f"{contact}.end", lasts),
+            (f"{of}begin of contact", "s", exact.get("begin"), f"{contact}.begin", lasts),
+            (f"{of}end of contact", "s", exact.get("end"), f"{contact}.end", lasts),
             (f"{of}duration of contact", "s", lasts, f"{contact}.duration", lasts), last]
     for body, exact in form.get("bodies", {}).items():
         if not exact["wall"]:
-            scale = form["closing_speed"]
             compared.append((f"mean velocity of {body} at the end", "m/s",
-                             exact["mean_velocity_end"], f"mean_velocity.{body}.end", scale))
+                             exact.get("mean_velocity_end"), f"mean_velocity.{body}.end",
+                             form.get("closing_speed")))
     rows = []
     for quantity, unit, exact, name, scale in compared:
         got = measures.get(name)
         exact, got = (clean(value, scale) for value in (exact, got))
-        error = "" if got is None else f"{100.0 * (got - exact) / scale:.3g} %"
+        error = ("" if got is None or exact is None or not scale
+                 else f"{100.0 * (got - exact) / scale:.3g} %")
         rows.append([f"{quantity} [{unit}]", shown(exact), shown(got), error])
     note = ("<p class='note'>Errors are relative: times to the exact duration of contact, "
             "velocities to the closing speed.</p>")
@@ -310,11 +315,12 @@ def make_page(folder: Path, library_path: Path) -> str:
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="abut report", description="Makes a page of a run.")
-    parser.add_argument("directory", type=Path, metavar="DIR", help="the run's folder")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="default: DIR/report.html")
+    parser.add_argument("directory", type=named, metavar="DIR", help="the run's folder")
+    parser.add_argument("--out", type=named, metavar="FILE", help="default: DIR/report.html")
     parser.add_argument("--chart-library", type=Path, metavar="FILE", default=CHART_LIBRARY,
                         help="Chart.js 3 (default: that of Debian's package libjs-chart.js)")
     options = parser.parse_args()
+    sys.stdout.reconfigure(errors="backslashreplace")  # names of files may be no text
     out = options.out or options.directory / "report.html"
     try:
         page = make_page(options.directory, options.chart_library)

@@ -21,7 +21,7 @@ except ImportError:
           file=sys.stderr)
     sys.exit(3)
 
-from abut_tools.page import CHART_LIBRARY, fitting_page, write_whole
+from abut_tools.page import CHART_LIBRARY, fitting_page, named, write_whole
 from abut_tools.scene_keys import nearest
 from abut_tools.study_file import Study, read_study
 from abut_tools.study_output import facts_of, target_scene, write_results
@@ -38,7 +38,7 @@ def options_of() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="abut study", description="Runs a scene with many settings; cost against error.")
     parser.add_argument("study", type=Path, metavar="FILE", help="study file (docs/STUDIES.md)")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="default: runs/<study name>")
+    parser.add_argument("--out", type=named, metavar="DIR", help="default: runs/<study name>")
     parser.add_argument("--serial", action="store_true",
                         help="one run after another, timed, with the study's repeats")
     parser.add_argument("--target", action="append", default=[], metavar="NAME=VALUE",

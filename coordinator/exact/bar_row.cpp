@@ -322,43 +322,47 @@ std::vector<BarRow::Piece> BarRow::pieces(const Bar& bar, double time) const {
   return pieces;
 }
 
-double BarRow::momentum(int bar, double time) const {
+BarRow::State BarRow::state(int bar, double time) const {
   const Bar& b = at(bar);
-  if (b.data.wall) return 0.0;
-  double sum = 0.0;
-  for (const Piece& p : pieces(b, time)) sum += p.length * (p.rightward + p.leftward);
-  return b.data.density * b.data.area * sum;
+  if (b.data.wall) return {};
+  double momentum = 0.0, kinetic = 0.0, stored = 0.0;
+  for (const Piece& p : pieces(b, time)) {
+    const double sum = p.rightward + p.leftward, difference = p.rightward - p.leftward;
+    momentum += p.length * sum;
+    kinetic += p.length * sum * sum;
+    stored += p.length * difference * difference;
+  }
+  const double line = b.data.density * b.data.area;  // [kg/m]
+  return {line * momentum, 0.5 * line * kinetic, 0.5 * line * stored};
 }
 
-double BarRow::mean_velocity(int bar, double time) const { return momentum(bar, time) / mass(bar); }
-
-double BarRow::kinetic(int bar, double time) const {
-  const Bar& b = at(bar);
-  if (b.data.wall) return 0.0;
-  double sum = 0.0;
-  for (const Piece& p : pieces(b, time))
-    sum += p.length * (p.rightward + p.leftward) * (p.rightward + p.leftward);
-  return 0.5 * b.data.density * b.data.area * sum;
+double BarRow::mean_velocity(int bar, double time) const {
+  return state(bar, time).momentum / mass(bar);
 }
 
-double BarRow::stored(int bar, double time) const {
-  const Bar& b = at(bar);
-  if (b.data.wall) return 0.0;
-  double sum = 0.0;
-  for (const Piece& p : pieces(b, time))
-    sum += p.length * (p.rightward - p.leftward) * (p.rightward - p.leftward);
-  return 0.5 * b.data.density * b.data.area * sum;
-}
-
-double BarRow::total(int bar, double time) const { return kinetic(bar, time) + stored(bar, time); }
-
-/// Energy enters and leaves through interfaces only, at the constant power F v of a stretch.
+/// Energy enters and leaves through interfaces only, at the constant power F v of a stretch: it is
+/// summed from change to change. A bar may hold as many waves as there are stretches, and to count
+/// them at each would take the square of their number.
 double BarRow::total_peak(int bar) const {
-  double peak = std::max(total(bar, begin_), total(bar, end_));
+  std::vector<std::pair<double, double>> changes;  // [s] and by how much the power changes there
   for (const RowContact& contact : contacts_) {
-    if (contact.ends[0].bar != bar && contact.ends[1].bar != bar) continue;
-    for (const RowContact::Stretch& s : contact.stretches)
-      peak = std::max({peak, total(bar, s.begin), total(bar, s.end)});
+    for (const BarEnd& e : contact.ends) {
+      if (e.bar != bar) continue;
+      for (const RowContact::Stretch& s : contact.stretches) {
+        const double power = -e.normal() * s.force * s.velocity;
+        changes.emplace_back(s.begin, power);
+        changes.emplace_back(s.end, -power);
+      }
+    }
+  }
+  std::sort(changes.begin(), changes.end());
+  double energy = total(bar, begin_), peak = std::max(energy, total(bar, end_));
+  double power = 0.0, last = begin_;
+  for (const auto& [time, change] : changes) {
+    energy += power * (time - last);
+    peak = std::max(peak, energy);
+    power += change;
+    last = time;
   }
   return peak;
 }

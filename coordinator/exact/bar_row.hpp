@@ -82,14 +82,20 @@ class BarRow {
   double gap(int interface, double time) const;  // [m] >= 0
 
   // By bar. A wall is at rest and holds nothing.
-  double mass(int bar) const;                        // [kg]
-  double impedance(int bar) const;                   // [kg/s] Z = rho c A
-  double momentum(int bar, double time) const;       // [kg m/s]
+  double mass(int bar) const;       // [kg]
+  double impedance(int bar) const;  // [kg/s] Z = rho c A
+  struct State {
+    double momentum = 0.0;               // [kg m/s]
+    double kinetic = 0.0, stored = 0.0;  // [J]
+    double total() const { return kinetic + stored; }
+  };
+  State state(int bar, double time) const;           // all at once: it walks the waves in the bar
   double mean_velocity(int bar, double time) const;  // [m/s] momentum / mass
-  double kinetic(int bar, double time) const;        // [J]
-  double stored(int bar, double time) const;         // [J]
-  double total(int bar, double time) const;          // [J]
-  double total_peak(int bar) const;                  // [J] largest from begin to end
+  double momentum(int bar, double time) const { return state(bar, time).momentum; }  // [kg m/s]
+  double kinetic(int bar, double time) const { return state(bar, time).kinetic; }    // [J]
+  double stored(int bar, double time) const { return state(bar, time).stored; }      // [J]
+  double total(int bar, double time) const { return state(bar, time).total(); }      // [J]
+  double total_peak(int bar) const;  // [J] largest from begin to end
 
   // By end.
   double displacement(const BarEnd& end, double time) const;  // [m] since the begin

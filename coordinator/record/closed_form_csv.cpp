@@ -62,11 +62,12 @@ void ClosedFormCsv::write_row(double time) {
       number(row.force(end, time));
     }
     for (const int bar : body.bars) {
-      number(row.kinetic(bar, time));
-      number(row.stored(bar, time));
-      number(row.total(bar, time));
-      number(row.momentum(bar, time));
-      number(row.mean_velocity(bar, time));
+      const BarRow::State state = row.state(bar, time);
+      number(state.kinetic);
+      number(state.stored);
+      number(state.total());
+      number(state.momentum);
+      number(state.momentum / row.mass(bar));
     }
   }
   for (const int interface : interfaces_) {

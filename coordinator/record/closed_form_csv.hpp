@@ -22,6 +22,7 @@ class ClosedFormCsv {
   void write_row(double time);
   void flush() { file_.flush(); }
   void close() { file_.close(); }
+  void check_in_place() const { file_.check_in_place(); }
 
  private:
   std::string header(const RunStart& start);

@@ -1,5 +1,6 @@
 #include "coordinator/record/contact_errors.hpp"
 #include "base/index.hpp"
+#include "coordinator/record/pushes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +8,18 @@
 #include <fmt/format.h>
 
 namespace abut {
+
+namespace {
+
+/// Contacts of the exact solution, by the same rule.
+int count_of(const RowContact& contact, double together) {
+  Pushes pushes(together);
+  for (const RowContact::Stretch& s : contact.stretches)
+    pushes.add(s.begin, s.end, s.force, s.force);
+  return pushes.count();
+}
+
+}  // namespace
 
 ContactErrors::ContactErrors(const BarRow& row, const RowContact& exact) : exact_(exact) {
   if (!exact.ever()) return;
@@ -79,7 +92,7 @@ void ContactErrors::write(const std::string& interface, const SeenContact& seen,
   put("force_rms_error", force_.end(), force_.rms(peak));
   put("force_rms_error_tail", force_tail_.end(), force_tail_.rms(peak));
   put("velocity_rms_error", velocity_.end(), velocity_.rms_of_covered());
-  put("count_error", exact_.end(), seen.count - exact_.count());
+  put("count_error", exact_.end(), seen.count - count_of(exact_, seen.together));
   put("impulse_error", exact_.end(), seen.impulse / exact_.impulse() - 1.0);
 }
 

@@ -13,8 +13,9 @@ namespace abut {
 struct SeenContact {
   double begin = 0.0, end = 0.0;  // [s] of the first contact, of the last one
   int count = 0;
-  bool open = true;      // at the end of the run
-  double impulse = 0.0;  // [N s]
+  bool open = true;       // at the end of the run
+  double impulse = 0.0;   // [N s]
+  double together = 0.0;  // [s] that its contacts were counted with
 };
 
 /// Errors of one interface against the exact solution: docs/OUTPUT.md says what each one means.

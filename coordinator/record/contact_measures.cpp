@@ -33,6 +33,7 @@ ContactMeasures::ContactMeasures(const RunStart& start, int interface,
       info_(start.interfaces[interface]),
       readers_{PortReader(port_of(start, info_, 0)), PortReader(port_of(start, info_, 1))},
       times_(together(start, info_)),
+      pushes_(together(start, info_)),
       velocity_(together(start, info_)),
       gap_min_(std::numeric_limits<double>::infinity()),
       errors_(std::move(errors)),
@@ -118,6 +119,7 @@ void ContactMeasures::read_force(const Waveform& trace, const PortReader& reader
     const double now = reader.compression(trace, i);
     if (!nodal) before = now;
     impulse_ += 0.5 * (before + now) * (to - from);
+    pushes_.add(from, to, before, now);
     peak_ = std::max(peak_, now);
     if (filter_) filter_->add(from, to, before, now);
     if (ripple_) ripple_->add(from, to, before, now);
@@ -147,7 +149,8 @@ void ContactMeasures::write(double run_end, Measures& out) {
     out.none(name("gap_min"), "a gap is known between single points in one dimension only");
   }
   if (!errors_) return;
-  const SeenContact seen{times_.begin(), times_.end(), times_.count(), times_.is_open(), impulse_};
+  const SeenContact seen{times_.begin(),   times_.end(), count(),
+                         times_.is_open(), impulse_,     together(start_, info_)};
   errors_->write(info_.name, seen, run_end, out);
 }
 
@@ -183,9 +186,15 @@ void ContactMeasures::write_force(double closed, Measures& out) {
   }
 }
 
+/// Ties do not touch, bodies that meet inside tell events alone, and what no event tells of grazed.
+int ContactMeasures::count() const {
+  const bool told = times_.count() > 0 && pushes_.any() && !info_.tied;
+  return told ? pushes_.count() : times_.count();
+}
+
 void ContactMeasures::write_times(Measures& out) const {
   const std::string never = "the interface never closed";
-  out.set(name("count"), times_.count());
+  out.set(name("count"), count());
   out.set(name("closings"), times_.closings());
   if (times_.count() > 0) {
     out.set(name("begin"), times_.begin());

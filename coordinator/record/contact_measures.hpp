@@ -13,6 +13,7 @@
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/port_reader.hpp"
+#include "coordinator/record/pushes.hpp"
 
 namespace abut {
 
@@ -38,6 +39,7 @@ class ContactMeasures {
   void read_rest(const Waveform& trace);
   void write_force(double closed, Measures& out);
   void write_times(Measures& out) const;
+  int count() const;
   std::string name(const char* what) const;
 
   const RunStart& start_;
@@ -50,11 +52,12 @@ class ContactMeasures {
   std::array<PortReader, 2> readers_;
 
   ContactTimes times_;
+  Pushes pushes_;
   ClosedVelocity velocity_;
-  double impulse_ = 0.0;  // [N s]
-  double peak_ = 0.0;     // [N]
+  double impulse_ = 0.0;     // [N s]
+  double peak_ = 0.0;        // [N]
   double dissipated_ = 0.0;  // [J]
-  double gap_min_;        // [m]
+  double gap_min_;           // [m]
   std::optional<ContactErrors> errors_;
   std::unique_ptr<ForceFilter> filter_;
   std::optional<ForceRipple> ripple_;

@@ -172,6 +172,8 @@ void CsvHistory::write_body(const RecordedBody& body, const BodyRecord& record) 
 }
 
 void CsvHistory::on_end(const RunEnd&) {
+  if (history_) history_->check_in_place();
+  if (exact_) exact_->check_in_place();
   if (history_) history_->close();
   if (exact_) exact_->close();
 }

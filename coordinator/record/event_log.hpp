@@ -13,6 +13,7 @@ class EventLog : public Observer {
   explicit EventLog(const std::filesystem::path& directory);
 
   void on_event(const RunEvent& event) override;
+  void on_end(const RunEnd&) override { file_.check_in_place(); }
 
  private:
   TextFile file_;

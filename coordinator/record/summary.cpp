@@ -160,7 +160,9 @@ Json estimate_object(const Estimate& estimate) {
   for (const Estimate::Ties& net : estimate.ties) {
     Json rows = Json::object();
     for (const Estimate::Ties::Joint& joint : net.joints) rows[joint.interface] = joint.rows;
+    const auto [low, high] = net.calls();
     ties.push_back({{"rows", rows},
+                    {"calls", {low, high ? Json(*high) : Json(nullptr)}},
                     {"banded", net.banded},
                     {"memory_mib", number(net.memory_mib)},
                     {"probes", net.probes}});
@@ -210,6 +212,7 @@ std::string Summary::text(const RunEnd& end) const {
   if (!recorder_.non_finite().empty()) notes.push_back(recorder_.non_finite());
   Json summary;
   summary["status"] = status_;
+  if (!end.reason.empty()) summary["reason"] = end.reason;
   summary["title"] = heading_.title;
   summary["time"] = {{"begin", start_.begin}, {"end", start_.end}, {"reached", number(end.time)}};
   summary["measures"] = measures_object(recorder_.measures(), notes);

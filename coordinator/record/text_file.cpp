@@ -1,6 +1,7 @@
 #include "coordinator/record/text_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -51,6 +52,17 @@ void TextFile::append_ended(std::string_view text, std::string_view ending) {
 void TextFile::close() {
   if (!file_) return;
   if (std::fclose(file_.release()) != 0) fail("written");
+}
+
+void TextFile::check_in_place() const {
+  if (!file_) return;
+  struct stat held {
+  }, named{};
+  const bool same = fstat(fileno(file_.get()), &held) == 0 && stat(path_.c_str(), &named) == 0 &&
+                    held.st_dev == named.st_dev && held.st_ino == named.st_ino;
+  if (!same)
+    throw RunError("was removed or replaced while the run wrote it", path_.string(),
+                   "Run again, and leave the run's folder alone until the run has ended.");
 }
 
 void TextFile::fail(const char* doing) const {

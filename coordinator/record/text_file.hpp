@@ -19,6 +19,8 @@ class TextFile {
   /// The text and an ending are in the file now; what comes next takes the ending's place.
   void append_ended(std::string_view text, std::string_view ending);
   void close();
+  /// Throws RunError where the file does not stand under its name any more: removed, or replaced.
+  void check_in_place() const;
 
  private:
   struct Closer {

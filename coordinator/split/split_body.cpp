@@ -33,9 +33,6 @@ Refusal refusal_of(const BodySpec& spec) {
   if (fe->dimension == 1)
     return {"model.fe.dimension", "is 1: a bar is divided by hand",
             "Write shorter bars, and tie the ends that meet."};
-  if (spec.integrator && std::holds_alternative<QuasiStaticSpec>(*spec.integrator))
-    return {"integrator", "quasi_static has no inertia, without which bodies are not tied",
-            "Integrate the body in time."};
   if (spec.initial.adjust)
     return {"initial.adjust", "moves nodes of the whole body, which its parts could not agree on",
             "Leave it out, and let the mesh meet what it touches."};
@@ -53,8 +50,7 @@ std::string only_body(const Document& document, const Scene& scene) {
   if (names.size() == 1) return names.front();
   if (names.empty())
     throw InputError("has no body that can be divided", document.where("bodies"),
-                     "Give one model: {fe: ...} in two or three dimensions and an integrator in "
-                     "time.");
+                     "Give one model: {fe: ...} in two or three dimensions.");
   throw InputError(fmt::format("has {} bodies that can be divided", names.size()),
                    document.where("bodies"),
                    fmt::format("Name one by --body: {}.", fmt::join(names, ", ")));

@@ -13,6 +13,8 @@
 #include "base/yaml_resolved.hpp"
 #include "coordinator/split/partition.hpp"
 #include "coordinator/split/split_body.hpp"
+#include "coordinator/split/split_expectations.hpp"
+#include "coordinator/split/split_keys.hpp"
 #include "coordinator/split/split_names.hpp"
 #include "subdomain_solver/fe/gmsh_text.hpp"
 #include "subdomain_solver/make/read_body.hpp"
@@ -48,7 +50,7 @@ class Splitter {
     shorten_windows();
     divide_interfaces();
     divide_bodies();
-    divide_expectations();
+    divide_what_is_expected();
     SplitScene out;
     out.scene = text();
     for (std::size_t p = 0; p < parts_.size(); ++p) {
@@ -80,6 +82,7 @@ class Splitter {
     const double steps = std::round(scene_.time.window / step);
     if (steps < 2.0) return;
     scene_.time.window = step;
+    shorter_windows_ = true;
     if (scene_.output.field_output)
       scene_.output.field_output->every *= static_cast<int>(std::min(steps, 1.0e3));
   }
@@ -165,35 +168,12 @@ class Splitter {
     }
   }
 
-  void divide_expectations() {
-    const auto before = std::exchange(scene_.meta.expect, {});
-    for (const Expectation& expectation : before) {
-      const std::string measure = measure_after(expectation.measure);
-      if (measure.empty()) {
-        left_out_.push_back(expectation.measure);
-        continue;
-      }
-      scene_.meta.expect.push_back(expectation);
-      scene_.meta.expect.back().measure = measure;
-    }
+  void divide_what_is_expected() {
+    const Division division{whole_, names_, where_, divided_interfaces_, shorter_windows_};
+    SplitExpectations expectations = divide_expectations(scene_.meta.expect, division);
+    scene_.meta.expect = std::move(expectations.kept);
+    left_out_ = std::move(expectations.left_out);
     scene_.meta.title += fmt::format(" ({} in {} parts)", whole_.name, names_.size());
-  }
-
-  /// The measure of the parts that is the one of the whole; empty: there is none.
-  std::string measure_after(const std::string& measure) const {
-    const std::vector<std::string> steps = split_path(measure);
-    const bool counted = steps[0] == "schwarz" || steps[0] == "exchanges";  // of another net
-    if (counted || steps.size() < 2) return counted ? "" : measure;
-    if (steps[0] == "contact")
-      return std::ranges::count(divided_interfaces_, steps[1]) > 0 ? "" : measure;
-    if (steps[1] != whole_.name) return measure;
-    const bool of_set = steps.size() > 3 && (steps[0] == "body" || steps[0] == "position");
-    const std::string set = of_set ? whole_.set_called(steps[2]) : "";
-    const std::optional<std::size_t> part = set.empty() ? std::nullopt : where_.alone_in(set);
-    if (!part) return "";
-    std::string now = steps[0] + "." + names_[*part];
-    for (std::size_t k = 2; k < steps.size(); ++k) now = join_path(now, steps[k]);
-    return now;
   }
 
   std::string text() const {
@@ -215,7 +195,9 @@ class Splitter {
         resolved.add(path, spec);
       }
     }
-    return fmt::format("# abut split {} --bodies {} --body {}: every value of the divided scene.\n",
+    const SplitKeys keys(document_, whole_, names_);
+    resolved.keep("", [&keys](const std::string& path) { return keys.wants(path); });
+    return fmt::format("# Made by: abut split {} --bodies {} --body {}\n",
                        fs::path(document_.name()).filename().string(), names_.size(), whole_.name) +
            resolved.text();
   }
@@ -228,7 +210,8 @@ class Splitter {
   std::vector<MeshPart> parts_;
   SplitNames where_;
   std::vector<std::string> divided_interfaces_;  // that are several now
-  std::vector<std::string> left_out_;
+  bool shorter_windows_ = false;
+  std::vector<std::pair<std::string, std::string>> left_out_;
 };
 
 }  // namespace

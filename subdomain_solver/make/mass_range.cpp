@@ -12,7 +12,9 @@ void check_mass(double lightest, double heaviest, const BodySpec& spec, const Pl
   throw InputError(
       fmt::format("gives a node the mass of {:g} kg, which is not between {:g} and {:g}",
                   lightest >= least ? heaviest : lightest, least, most),
-      place.where("material." + law + ".density"), "Give density and lengths in SI units.");
+      place.where("material." + law + ".density"),
+      "Give density and lengths in one consistent set of units, in which they are of ordinary "
+      "size.");
 }
 
 }  // namespace abut

@@ -50,7 +50,8 @@ struct SchemeMaker {
     const double step = s.step / parts;
     if (!(step > 0.0)) {
       throw InputError("has a stable limit of 0 s: stiffness over mass is beyond all numbers",
-                       place.where(key), "Give the material's constants in SI units.");
+                       place.where(key),
+                       "Give the material's constants in one consistent set of units.");
     }
     const bool drifts = joined && problem.model->massless().empty();
     std::unique_ptr<Integrator> steps;
@@ -88,7 +89,7 @@ struct SchemeMaker {
   SolidInterior::Scheme operator()(const BackwardEulerSpec&) const { return {}; }  // refused before
 
   SolidInterior::Scheme implicit(const AlphaWeights& weights, double step, MassForm mass,
-                             const char* words) const {
+                                 const char* words) const {
     return {std::make_unique<ImplicitDynamics>(
                 problem,
                 ImplicitDynamics::Options{
@@ -109,7 +110,7 @@ struct SchemeMaker {
 }  // namespace
 
 std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Place& place,
-                                             const Mesh& mesh) {
+                                                 const Mesh& mesh) {
   std::vector<SolidInterior::PortNodes> ports;
   for (const auto& [name, port] : spec.ports) {
     named(place, "ports." + name + ".side", [&] { return mesh.nodes_of(port.side); });

@@ -46,6 +46,18 @@ void round_keys(Fields& f, double& radius, int& core, int& layers) {
   f.required("layers", layers, "", "number of layers of elements around it", at_least(1));
 }
 
+/// Products and ratios of these and of what follows from them (squares of wave speeds) are numbers
+/// then, whatever the mesh is.
+constexpr double least = 1e-100, most = 1e100;
+
+void check_range(Fields& f, std::string_view key, const std::optional<double>& value) {
+  const double size = std::abs(value.value_or(0.0));
+  f.check(
+      size == 0.0 || (size >= least && size <= most), key,
+      fmt::format("is {:g}, beyond the range from {:g} to {:g}", value.value_or(0.0), least, most),
+      "Give all numbers in units in which they are of ordinary size.");
+}
+
 }  // namespace
 
 void RectangleSpec::fields(Fields& f) {
@@ -92,6 +104,11 @@ void ElasticSpec::fields(Fields& f) {
   f.optional("lame_modulus", lame_modulus, "Pa", "first Lame constant");
   f.optional("shear_modulus", shear_modulus, "Pa", "shear modulus", positive);
   f.required("density", density, "kg/m^3", "reference density", positive);
+  check_range(f, "youngs_modulus", youngs_modulus);
+  check_range(f, "bulk_modulus", bulk_modulus);
+  check_range(f, "lame_modulus", lame_modulus);
+  check_range(f, "shear_modulus", shear_modulus);
+  check_range(f, "density", density);
 }
 
 void MooneyRivlinSpec::fields(Fields& f) {
@@ -101,12 +118,19 @@ void MooneyRivlinSpec::fields(Fields& f) {
   f.required("density", density, "kg/m^3", "reference density", positive);
   f.check(c10 + c01 > 0.0, "c10", fmt::format("and c01 have the sum {:g}", c10 + c01),
           "Give a positive sum: it is half the shear modulus.");
+  check_range(f, "c10", c10);
+  check_range(f, "c01", c01);
+  check_range(f, "c10", c10 + c01);
+  check_range(f, "bulk_modulus", bulk_modulus);
+  check_range(f, "density", density);
 }
 
 void SaturationSpec::fields(Fields& f) {
   f.required("stress", stress, "Pa", "stress to which hardening tends", positive);
   f.required("rate", rate, "", "rate; hardening takes place over a plastic strain of 1/rate",
              positive);
+  check_range(f, "stress", stress);
+  check_range(f, "rate", rate);
 }
 
 void J2PlasticitySpec::fields(Fields& f) {
@@ -115,6 +139,8 @@ void J2PlasticitySpec::fields(Fields& f) {
   f.optional("hardening", hardening, "Pa", "slope of the yield stress over plastic strain",
              non_negative);
   f.optional_section("saturation", saturation, "part of the hardening that saturates");
+  check_range(f, "yield_stress", yield_stress);
+  check_range(f, "hardening", hardening);
   f.check(!saturation || saturation->stress >= yield_stress, "yield_stress",
           "is above saturation.stress", "Give a saturation stress of at least the yield stress.");
 }

@@ -9,6 +9,9 @@ IsotropicMaterial::IsotropicMaterial(const Moduli& moduli, double density)
   require_positive(moduli.bulk, "bulk_modulus", "Pa");
   require_positive(moduli.shear, "shear_modulus", "Pa");
   require_positive(density, "density", "kg/m^3");
+  // [m^2/s^2] of waves, the largest that follows
+  require_positive(has_derived(moduli) ? moduli.p_wave() / density : HUGE_VAL,
+                   "square of the wave speed, which the moduli and the density give,", "m^2/s^2");
 }
 
 bool is_finite(const PointResponse& answer, Need want) {

@@ -56,6 +56,12 @@ Moduli of_two(const ElasticConstants& c) {
 
 }  // namespace
 
+bool has_derived(const Moduli& m) {
+  const bool product = m.youngs() > 0.0 && std::isfinite(m.youngs());  // of two moduli
+  return product && std::isfinite(m.p_wave()) && std::isfinite(m.lame()) &&
+         std::isfinite(m.poissons_ratio());
+}
+
 Moduli moduli_of(const ElasticConstants& c) {
   int count = 0;
   std::string given;
@@ -76,7 +82,7 @@ Moduli moduli_of(const ElasticConstants& c) {
                      "Give exactly two of youngs_modulus, poissons_ratio, bulk_modulus, "
                      "lame_modulus, shear_modulus");
   const Moduli m = of_two(c);
-  const bool admissible = m.bulk > 0.0 && m.shear > 0.0 && std::isfinite(m.bulk + m.shear);
+  const bool admissible = m.bulk > 0.0 && m.shear > 0.0 && has_derived(m);
   if (!admissible)
     throw InputError(fmt::format("{} give a bulk modulus of {:.6g} Pa and a shear modulus of "
                                  "{:.6g} Pa; both must be positive and finite",

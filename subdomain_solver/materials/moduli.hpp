@@ -26,6 +26,10 @@ struct ElasticConstants {
 /// unless exactly two are given and the bulk and shear modulus that follow are positive and finite.
 Moduli moduli_of(const ElasticConstants& constants);
 
+/// Whether what follows from the moduli (P-wave modulus, E, lambda) is finite: numbers at the end
+/// of their range do not give it.
+bool has_derived(const Moduli& moduli);
+
 /// Throws InputError, with `where` = `name`, unless the value is positive and finite.
 void require_positive(double value, const char* name, const char* unit);
 

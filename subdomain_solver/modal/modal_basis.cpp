@@ -134,6 +134,13 @@ void diagonalise(const SparseMatrix& stiffness, const SparseMatrix& mass, const 
   fix_signs(out.shapes);
 }
 
+/// Before all are computed as well: what the mesh has is known from its coordinates.
+void refuse_more_modes(const WantedModes& wanted, int all, const std::string& where) {
+  if (wanted.count == std::numeric_limits<int>::max() || wanted.count <= all) return;
+  throw InputError(fmt::format("{} modes are wanted, but the mesh has {}", wanted.count, all),
+                   where, fmt::format("Give at most {}, or a finer mesh.", all));
+}
+
 }  // namespace
 
 ModalBasis reduce(FeModel& model, const std::vector<int>& supports, const std::vector<int>& ports,
@@ -157,14 +164,12 @@ ModalBasis reduce(FeModel& model, const std::vector<int>& supports, const std::v
   const Columns rigid = orthonormal(vanishing_on(supports, rigid_motions(model)), mass, 0.0);
   const SparseMatrix inner_mass = part(inside, mass, inside);
   const Columns loose = inside.transpose() * vanishing_on(boundary, rigid);
-  const FixedPorts fixed(part(inside, rest.tangent, inside), inner_mass,
-                         orthonormal(loose, inner_mass, 0.0), where);
+  const Columns free = orthonormal(loose, inner_mass, 0.0);
+  refuse_more_modes(wanted, static_cast<int>(inner_mass.rows() - free.cols()), where);
+  const FixedPorts fixed(part(inside, rest.tangent, inside), inner_mass, free, where);
   const Modes modes = fixed.modes(wanted);
   const int found = static_cast<int>(modes.eigenvalues.size());
-  if (wanted.count < std::numeric_limits<int>::max() && found < wanted.count) {
-    throw InputError(fmt::format("{} modes are wanted, but the mesh has {}", wanted.count, found),
-                     where, fmt::format("Give at most {}, or a finer mesh.", found));
-  }
+  refuse_more_modes(wanted, found, where);
   // As many port shapes as rigid motions move the ports follow from these and the others.
   const Columns port_rigid = port.transpose() * rigid;
   const std::vector<int> implied = determining_rows(port_rigid, rigid.cols() - loose.cols());

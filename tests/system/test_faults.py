@@ -399,6 +399,31 @@ class Directories(FaultTest):
         self.assert_whole(self.out)
         self.succeed(self.abut("run", self.scene, "--local", "--force", "--out", self.out))
 
+    def test_a_file_that_is_removed_or_replaced_meanwhile_is_told(self):
+        for name in ("history.csv", "events.jsonl"):
+            for replaced in (False, True):
+                with self.subTest(name=name, replaced=replaced):
+                    run = self.run_in_background(*BUSY, "--local", "--force")
+                    self.wait_for_windows()
+                    (self.out / name).unlink()
+                    if replaced:
+                        (self.out / name).write_text("mine", encoding="utf-8")
+                    result = self.end(run)
+                    self.assertEqual(result.returncode, 3, result.stderr)
+                    told = f"{name}: was removed or replaced while the run wrote it"
+                    self.assertIn(told, result.stderr)
+                    self.assertEqual(self.summary()["status"], "failed")
+                    self.assertIn(told, self.summary()["reason"])
+                    shutil.rmtree(self.out)
+
+    def test_an_empty_folder_name_is_refused(self):
+        for verb in (["run", self.scene], ["split", self.scene, "--bodies", 2],
+                     ["report", self.folder], ["study", self.scene]):
+            with self.subTest(verb=verb[0]):
+                result = self.abut(*verb, "--out", "")
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn("is empty: name a ", result.stderr)
+
     def test_a_killed_run_blocks_nobody(self):
         run = self.run_in_background(*BUSY)
         self.wait_for_windows()

@@ -5,6 +5,7 @@ Oracle: exit codes of the README, a limit of memory set by the system, and the w
 usage: test_hostile_input.py ABUT ROOT
 """
 
+import os
 import resource
 import subprocess
 import sys
@@ -75,6 +76,22 @@ class HostileInput(SystemTest):
                                           f"bodies.part.model.fe.mesh={{gmsh: {{file: {mesh}}}}}"),
                              "bodies.part.model.fe.mesh.gmsh.file")
 
+    def test_named_pipes_are_refused_unread(self):
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)  # nobody writes: to open it is to wait for ever
+        self.refused(self.limited(500, "check", pipe), "is a device or a pipe")
+        scene = self.scene(SOLID)
+        for key, value in (("model.fe.mesh", f"{{gmsh: {{file: {pipe}}}}}"),
+                           ("copies", f"{{table: {{file: {pipe}}}}}")):
+            self.refused(self.limited(500, "check", scene, "--set", f"bodies.part.{key}={value}"),
+                         f"bodies.part.{key}")
+
+    def test_more_modes_than_there_are_are_refused_before_any_is_computed(self):
+        scene = self.scene(SOLID.replace("fe: {", "modal: {modes: 1000000000, ").replace(
+            "[2, 2, 2]", "[10, 10, 10]"))  # 3993 coordinates: all modes take minutes
+        self.refused(self.limited(2000, "check", scene),
+                     "1000000000 modes are wanted, but the mesh has 3993")
+
     def test_a_pipe_is_a_scene(self):
         result = subprocess.run(["/bin/sh", "-c", 'cat "$1" | "$0" check /dev/stdin', ABUT,
                                  self.scene(SOLID)], capture_output=True, text=True, check=False)
@@ -114,6 +131,10 @@ class HostileInput(SystemTest):
                   f"rigid: {{dimension: 3, {BOX}}}": ("rigid_motion",)}
         values = ["density=5e-324", "density=1e-306", "density=1e308", "youngs_modulus=1e308",
                   "youngs_modulus=5e-324", "poissons_ratio=0.49999999999999994"]
+        law = "bodies.part.material={linear_elastic: {density: 1000.0, poissons_ratio: "
+        values += [f"{law}0.3, {key}: {value}}}}}" for value in ("1e308", "1e-320")
+                   for key in ("shear_modulus", "bulk_modulus", "lame_modulus")]
+        values += [f"{law}-0.99999999999999, shear_modulus: 1e100}}}}"]
         for model, integrators in models.items():
             for integrator in integrators:
                 for value in values:

@@ -64,8 +64,8 @@ class PythonTest(SystemTest):
         return self.start(ABUT, "run", scene, "--out", self.out,
                           "--set", f"network.endpoint={self.endpoint}", *arguments)
 
-    def body(self) -> subprocess.Popen:
-        return self.start(sys.executable, PROGRAM, "--connect", self.endpoint, "--body", "mass")
+    def body(self, program=PROGRAM) -> subprocess.Popen:
+        return self.start(sys.executable, program, "--connect", self.endpoint, "--body", "mass")
 
     def scene_with(self, old: str, new: str):
         text = SCENE.read_text(encoding="utf-8")
@@ -235,6 +235,25 @@ class Faults(PythonTest):
         self.assertIn(result.returncode, (2, 3), result.stdout + result.stderr)
         self.assertIn("ZeroDivisionError", result.stderr)
         self.end(body)
+
+    def test_a_fault_of_its_input_during_a_run_leaves_a_whole_run(self):
+        for path in FOLDER.glob("*.py"):
+            text = path.read_text(encoding="utf-8")
+            text = text.replace("pb.FAULT_KIND_INPUT if body is None else pb.FAULT_KIND_RUN",
+                                "pb.FAULT_KIND_INPUT")
+            text = text.replace("        begin, length = ask.window.begin, ",
+                                "        if ask.window.begin > 4.0e-4:\n"
+                                "            raise ValueError('stiffness is not for such ways')\n"
+                                "        begin, length = ask.window.begin, ")
+            (self.folder / path.name).write_text(text, encoding="utf-8")
+        run, body = self.run_scene(), self.body(self.folder / PROGRAM.name)
+        self.assert_error(run, 2, 20.0, "stiffness is not for such ways",
+                          f"The run up to there is in {self.out}")
+        self.end(body)
+        self.assert_whole(self.out)
+        self.assertEqual(self.summary()["status"], "failed")
+        self.assertIn("stiffness is not for such ways", self.summary()["reason"])
+        self.assertIn("stiffness is not for such ways", self.events()[-1]["text"])
 
     def test_it_leaves_when_its_coordinator_is_killed(self):
         run, body = self.run_scene(*LONG), self.body()

@@ -16,6 +16,7 @@ meta:
   expect:
     - {measure: body.plate.corner.displacement.x, equals: 0.0, absolute: 1.0, because: any}
     - {measure: body.plate.displacement.x.max, at_most: 1.0, because: any}
+    - {measure: body.plate.momentum.x, at_most: 1.0, because: any}
 time: {begin: 0.0, end: 2.0, window: 0.1}
 bodies:
   plate:
@@ -42,7 +43,8 @@ class Split(SystemTest):
     def test_the_divided_scene_runs_in_processes_and_moves_as_the_whole(self):
         said = self.succeed(self.split()).stdout
         self.assertIn("plate_2: ", said)
-        self.assertIn("left out: what is expected of body.plate.displacement.x.max", said)
+        self.assertIn("left out: what is expected of body.plate.momentum.x: it is the sum or the "
+                      "mean over several parts", said)
         self.assertIn("plate_split_3/plate.yaml: valid", said)
         self.succeed(self.abut("run", "plate.yaml", "--out", "whole", "--local"))
         self.succeed(self.abut("run", "plate_split_3/plate.yaml", "--out", "parts"))
@@ -70,11 +72,28 @@ class Split(SystemTest):
     def test_what_the_command_line_sets_is_in_the_files(self):
         self.succeed(self.split("--out", "a", "--set", "time.end=0.3"))
         self.assertIn(b"end: 0.3", self.files("a")["plate.yaml"])
-        refused = self.split("--out", "b", "--set", "bodies.plate.integrator={quasi_static: "
-                             "{step: 0.05}}", "--set", "bodies.plate.initial=null",
-                             "--body", "plate")
+        refused = self.split("--out", "b", "--set", "bodies.plate.model={rigid: {dimension: 2, "
+                             "mesh: {disk: {radius: 1.0, core: 2, layers: 1}}}}", "--set",
+                             "bodies.plate.integrator={rigid_motion: {step: 0.05}}", "--set",
+                             "bodies.plate.points=null", "--set", "bodies.plate.initial=null",
+                             "--set", "bodies.plate.ports=null", "--body", "plate")
         self.assertEqual(refused.returncode, 2)
+        self.assertIn("has no cells to deal out", refused.stderr)
         self.assertFalse((self.folder / "b").exists())
+
+    def test_bodies_without_inertia_are_divided(self):
+        still = ["--set", "bodies.plate.integrator={quasi_static: {step: 0.5}}", "--set",
+                 "bodies.plate.initial=null", "--set", "time.window=0.5", "--set",
+                 "bodies.plate.constraints={foot: {on: left, fixed: true}}", "--set",
+                 'bodies.plate.loads={pull: {on: right, traction: ["1.0e-3*t", "0"]}}']
+        self.succeed(self.split("--out", "a", *still))
+        self.succeed(self.abut("run", "a/plate.yaml", "--local", "--out", "parts"))
+        self.succeed(self.abut("run", "plate.yaml", "--local", "--out", "whole", *still))
+        found = [self.summary(self.folder / name)["measures"] for name in ("parts", "whole")]
+        corner = [value for name, value in found[0].items()
+                  if name.endswith(".corner.displacement.x")]
+        self.assertAlmostEqual(corner[0], found[1]["body.plate.corner.displacement.x"],
+                               delta=1e-9)  # of 2e-3, tolerance of the iteration 1e-6
 
 
 if __name__ == "__main__":

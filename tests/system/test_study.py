@@ -9,6 +9,7 @@ usage: test_study.py ABUT ROOT            files, resuming, targets, messages
 import csv
 import json
 import math
+import os
 import re
 import shutil
 import signal
@@ -117,10 +118,11 @@ class Studies(SystemTest):
                 "iterations_mean", "memory_mib"})
             self.assertIsNone(row["cost"]["wall_s_median"], "several at once are not timed")
             self.assertGreater(row["cost"]["compute_s"], 0.0)
-            self.assertEqual(row["settings"]["bodies.left.integrator.central_difference.step"],
-                             row["knobs"]["step"])
-            self.assertEqual(row["settings"]["bodies.right.model.fe.mesh.bar.elements"],
-                             row["knobs"]["elements"])
+            self.assertEqual(row["settings"],
+                             {"bodies.*.integrator.*.step": row["knobs"]["step"],
+                              "bodies.*.model.*.mesh.bar.elements": row["knobs"]["elements"]})
+            used = (self.out / row["folder"] / "scene.resolved.yaml").read_text(encoding="utf-8")
+            self.assertEqual(used.count(f"elements: {row['knobs']['elements']}\n"), 2)
         # A process with a YAML reader and a socket library is not smaller, nor ten elements larger;
         # a run of a few milliseconds may end before anybody looks.
         seen = [row["cost"]["memory_mib"] for row in rows if row["cost"]["memory_mib"] is not None]
@@ -286,7 +288,7 @@ errors:
         self.assertEqual((same["errors"]["off"], same["errors"]["later"]), (0.0, 0.0))
         others = [row["errors"]["off"] for row in rows if row is not same]
         self.assertTrue(all(0.0 < error < 0.1 for error in others), others)
-        self.assertIn("Reference run: scene.yaml with bodies.left",
+        self.assertIn("Reference run: scene.yaml with bodies.*.integrator.*.step",
                       (self.out / "index.html").read_text(encoding="utf-8"))
 
     def test_variants_and_sweeps_multiply(self):
@@ -342,7 +344,11 @@ errors: {speed: {measure: mean_velocity.bar_1.end}}
                  ["knobs.step", "stepp' is not a key", "central_difference.step"]),
                 (knob, "set: [bodies.lft.integrator.central_difference.step]",
                  ["no body 'lft'", "left, right"]),
-                (knob, "set: [bodies.*.integratr.*.step]", ["matches no key of the scene"]),
+                (knob, "set: [bodies.*.integratr.*.step]",
+                 ["knobs.step", "is not a key", "bodies.*.integrator"]),
+                (knob, "set: [bodies.*.integrator.newmark.step]",
+                 ["knobs.step", "matches no key of the scene", "has no newmark",
+                  "Keys there are central_difference"]),
                 ("values: [5", "vales: [5", ["knobs.step.vales", "Did you mean values?"]),
                 ("scale: log", "scale: lag", ["'lag' is none of linear, log"]),
                 ("impact.release_error, abs", "impact.relase_error, abs",
@@ -358,7 +364,21 @@ errors: {speed: {measure: mean_velocity.bar_1.end}}
                 ("value: release,", "value: __import__('os'),", ["is something else"]),
                 ("value: release,", "runs: nobody, value: release,", ["no run is labelled"]),
                 ("repeats: 3", "repeats: 3\nrepeats: 4", ["study.yaml:", "stands twice"]),
-                ("knobs:", "knobs: [", ["study.yaml:"])]:
+                ("knobs:", "knobs: [", ["study.yaml:"]),
+                # What would take all memory, or never end, is counted first.
+                ("points: 3", "points: 1000000000",
+                 ["knobs.elements.range.points: is 1e+09. Give a whole number from 2 to 10000"]),
+                ("to: 20, points: 3, scale: log", "to: 90000, points: 9000",
+                 ["knobs: make 27000 runs", "at most 20000"]),
+                ("from: 5", "from: 1.0e+999", ["knobs.elements.range.from: must be a number"]),
+                ("repeats: 3", "repeats: 1.0e+9", ["repeats: is 1e+09", "from 1 to 1000"]),
+                ("release: 100 * release", "release: 9**9**9**9 * release",
+                 ["figures[2].table.release: '9 ** 9 ** 9 ** 9' has no value"]),
+                ("value: release,", f"value: {'-' * 1500}1,", ["is nested too deep"]),
+                ("repeats: 3", "repeats: 3\nx0: &x0 [1, 1]\n" + "".join(
+                    f"x{k}: &x{k} [{', '.join(9 * [f'*x{k - 1}'])}]\n" for k in range(1, 12)),
+                 ["study.yaml:", "holds more than 1000000 values"]),
+                ("repeats: 3", "repeats: 3\nx: &x [*x]", ["study.yaml:", "holds itself"])]:
             with self.subTest(new=new):
                 self.assertIn(old, STUDY)
                 ended = self.study(text=STUDY.replace(old, new, 1))
@@ -366,6 +386,10 @@ errors: {speed: {measure: mean_velocity.bar_1.end}}
                 for word in [*words, "study.yaml"]:
                     self.assertIn(word, ended.stderr)
                 self.assertFalse(self.stamps(), "nothing has run")
+        pipe = self.folder / "pipe.yaml"
+        os.mkfifo(pipe)
+        ended = self.abut("study", pipe, "--out", self.out)
+        self.assertEqual((ended.returncode, "is no regular file" in ended.stderr), (2, True))
         ended = self.study("--target", "relese=1")
         self.assertEqual((ended.returncode, "Did you mean release?" in ended.stderr), (2, True))
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -109,6 +110,34 @@ TEST(Moduli, OneConstantOrThreeAreRefusedByName) {
   const std::string text = refusal([&given] { (void)moduli_of(given); });
   EXPECT_NE(text.find("shear_modulus = 0.4"), std::string::npos);
   EXPECT_NE(text.find("exactly two"), std::string::npos);
+}
+
+/// Whatever is not refused has all that is derived from it, as finite numbers.
+TEST(Materials, NumbersAtTheEndOfTheirRangeAreRefusedOrHaveAllThatIsDerived) {
+  const std::vector<double> values = {5e-324, 1e-310, 1e-160, 1e-100, 1.0, 1e100, 1e160, 1e308};
+  int made = 0, refused = 0;
+  for (std::size_t i = 0; i < std::size(constants); ++i) {
+    for (std::size_t k = 0; k < std::size(constants); ++k) {
+      for (const double a : values) {
+        for (const double b : values) {
+          if (i == k) continue;
+          ElasticConstants given;
+          given.*constants[i] = a;
+          given.*constants[k] = b;
+          const std::string said = refusal([&] {
+            const LinearElastic law(moduli_of(given), a);
+            const Moduli m = law.moduli();
+            for (const double derived : {m.p_wave(), m.youngs(), m.lame(), m.poissons_ratio(),
+                                         std::sqrt(m.p_wave() / law.density())})
+              EXPECT_TRUE(std::isfinite(derived)) << i << " " << k << " " << a << " " << b;
+          });
+          ++(said.empty() ? made : refused);
+        }
+      }
+    }
+  }
+  EXPECT_GT(made, 20);
+  EXPECT_GT(refused, 100);
 }
 
 TEST(Materials, InadmissibleParametersAreRefusedByName) {

@@ -147,12 +147,14 @@ INSTANTIATE_TEST_SUITE_P(Record, Windows, testing::Values(ForceSupport::nodal, F
 
 TEST_P(Windows, MakeNoDifferenceToTheMeasuresOfContact) {
   for (const int kinematic : {0, 1}) {
-    // Nothing is the same contact; the last touch is; the short release too.
-    for (const double transit : {0.0, 0.0025, 0.005}) {
+    // Nothing is the same contact; the last touch is; the short release too, to whole substeps.
+    for (const double transit : {0.0, 0.0025, 0.01}) {
       const History history{GetParam(), kinematic, transit};
       const std::vector<Contact> expected = joined(5.0 * transit);
       double closed = 0.0;
       for (const Contact& c : expected) closed += c.end - c.begin;
+      const auto notable = std::ranges::count_if(
+          expected, [](const Contact& c) { return c.height > 0.01; });  // of the impulse, about
       const std::map<std::string, double> first = measures(history, {});
       for (const int in_window : {1, 3, 10, substeps}) {
         for (const Told told : {Told::before, Told::after}) {
@@ -161,7 +163,7 @@ TEST_P(Windows, MakeNoDifferenceToTheMeasuresOfContact) {
             const auto value = [&m](const std::string& what) {
               return m.at("contact.impact." + what);
             };
-            EXPECT_EQ(value("count"), expected.size());
+            EXPECT_EQ(value("count"), notable);
             EXPECT_EQ(value("closings"), contacts.size());
             EXPECT_EQ(value("begin"), contacts.front().begin);
             EXPECT_EQ(value("end"), contacts.back().end);

@@ -1,4 +1,8 @@
-"""Arithmetic over named numbers: `abs(contact.impact.release_error) * 100`, nothing else."""
+"""Arithmetic over named numbers: `abs(contact.impact.release_error) * 100`, nothing else.
+
+All numbers are floating point ones: whole numbers of any length would let a dozen letters (9**9**9)
+take all memory. What has no value whatever the measures are is refused where it is read.
+"""
 
 import ast
 import math
@@ -10,6 +14,11 @@ FUNCTIONS = {"abs": abs, "max": max, "min": min, "sqrt": math.sqrt, "log10": mat
 OPERATIONS = {ast.Add: lambda a, b: a + b, ast.Sub: lambda a, b: a - b,
               ast.Mult: lambda a, b: a * b, ast.Div: lambda a, b: a / b,
               ast.Pow: lambda a, b: a ** b}
+MOST_LETTERS = 2000
+
+
+def short(text: str) -> str:
+    return text if len(text) <= 80 else text[:77] + "..."
 
 
 def dotted(node: ast.AST) -> str | None:
@@ -26,12 +35,28 @@ class Expression:
 
     def __init__(self, text: str, where: str):
         self.text, self.where, self.names = text, where, []
+        if len(text) > MOST_LETTERS:
+            raise ToolError(f"{where}: has {len(text)} letters. Write at most {MOST_LETTERS}.", 2)
         try:
             self.tree = ast.parse(text, mode="eval").body
-        except SyntaxError as error:
-            raise ToolError(f"{where}: '{text}' is no arithmetic expression ({error.msg}).",
+            self._look(self.tree)
+            self._refuse_what_has_no_value()
+        except (SyntaxError, ValueError) as error:
+            what = getattr(error, "msg", None) or str(error)
+            raise ToolError(f"{where}: '{short(text)}' is no arithmetic expression ({what}).",
                             2) from error
-        self._look(self.tree)
+        except (RecursionError, MemoryError) as error:
+            raise ToolError(f"{where}: is nested too deep. Write it with fewer brackets and signs.",
+                            2) from error
+
+    def _refuse_what_has_no_value(self) -> None:
+        for node in ast.walk(self.tree):
+            constant = isinstance(node, (ast.BinOp, ast.Call, ast.Constant)) and not any(
+                dotted(inner) in self.names for inner in ast.walk(node))
+            if constant and self._real(node, lambda name: None) is None:
+                raise ToolError(
+                    f"{self.where}: '{short(ast.unparse(node))}' has no value: it is no number, or "
+                    "one beyond 1.8e308. Write numbers that are.", 2)
 
     def _look(self, node: ast.AST) -> None:
         """Nothing but numbers, names, operations and the few functions above."""
@@ -49,13 +74,17 @@ class Expression:
                 self._look(argument)
         elif not (isinstance(node, ast.Constant) and isinstance(node.value, (int, float))):
             raise ToolError(
-                f"{self.where}: '{self.text}' may hold numbers, names of measures, + - * / ** "
-                f"and {', '.join(FUNCTIONS)}; '{ast.unparse(node)}' is something else.", 2)
+                f"{self.where}: '{short(self.text)}' may hold numbers, names of measures, "
+                f"+ - * / ** and {', '.join(FUNCTIONS)}; '{short(ast.unparse(node))}' is "
+                "something else.", 2)
 
     def value(self, number_of: Callable[[str], float | None]) -> float | None:
+        return self._real(self.tree, number_of)
+
+    def _real(self, node: ast.AST, number_of: Callable[[str], float | None]) -> float | None:
         try:
-            found = self._value(self.tree, number_of)
-        except (ArithmeticError, ValueError):
+            found = self._value(node, number_of)
+        except (ArithmeticError, ValueError, TypeError):  # TypeError: roots of negative numbers
             return None
         real = isinstance(found, (int, float)) and math.isfinite(found)
         return float(found) if real else None
@@ -66,9 +95,9 @@ class Expression:
             found = number_of(name)
             if found is None:
                 raise ValueError(name)
-            return found
+            return float(found)
         if isinstance(node, ast.Constant):
-            return node.value
+            return float(node.value)
         if isinstance(node, ast.UnaryOp):
             inner = self._value(node.operand, number_of)
             return -inner if isinstance(node.op, ast.USub) else inner

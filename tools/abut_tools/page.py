@@ -1,5 +1,6 @@
 """Self-contained pages: Debian's packaged Chart.js, our style and script, figures and tables."""
 
+import argparse
 import html
 import json
 import os
@@ -12,6 +13,13 @@ from abut_tools.tables import Figure, ToolError
 CHART_LIBRARY = Path("/usr/share/javascript/chart.js/chart.min.js")
 PAGE_LIMIT = 1_500_000  # bytes: opens at once on a phone
 HERE = Path(__file__).resolve().parent
+
+
+def named(text: str) -> Path:
+    """An empty path is most often a variable of a script that was never set."""
+    if not text:
+        raise argparse.ArgumentTypeError("is empty: name a path, or leave it out")
+    return Path(text)
 
 
 def table_of(headings: list[str], rows: list[list[str]], classes: list[str] | None = None) -> str:

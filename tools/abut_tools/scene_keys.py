@@ -1,12 +1,12 @@
-"""Keys of scenes: which there are (as `abut reference` prints them), and what a `*` stands for."""
+"""Keys of scenes: which there are, as `abut reference` prints them."""
 
-import copy
 import difflib
 import re
 import subprocess
 from pathlib import Path
 
 from abut_tools.tables import ToolError
+from abut_tools.yaml_text import flow_text
 
 
 def nearest(word: str, known: list[str]) -> str:
@@ -22,9 +22,11 @@ def has_body(bodies: dict, name: str) -> bool:
 
 
 class KeyList:
-    """What the program calls a key; <name> stands for the scene's own names."""
+    """What the program calls a key; <name> stands for the scene's own names. What a `*` in a key
+    stands for the program alone knows: it is asked."""
 
     def __init__(self, abut: Path):
+        self.abut = abut
         try:
             text = subprocess.run([abut, "reference"], capture_output=True, text=True, check=True,
                                   timeout=30).stdout
@@ -33,14 +35,15 @@ class KeyList:
                             3) from error
         self.keys = re.findall(r"^\| `([^`]+)` \|", text, re.MULTILINE)
 
-    def refuse_unknown(self, key: str, scene: dict, where: str) -> None:
-        parts, bodies = key.split("."), scene.get("bodies") or {}
+    def refuse_unknown(self, key: str, bodies: dict, where: str) -> None:
+        parts = key.split(".")
         for known in self.keys:
             pattern = known.split(".")
             if len(pattern) == len(parts) and all(
-                    p == k or p.startswith("<") or re.sub(r"\[\w+\]$", "", p) ==
+                    p == k or k == "*" or p.startswith("<") or re.sub(r"\[\w+\]$", "", p) ==
                     re.sub(r"\[\d+\]$", "", k) for p, k in zip(pattern, parts)):
-                if parts[0] == "bodies" and len(parts) > 1 and not has_body(bodies, parts[1]):
+                if (parts[0] == "bodies" and len(parts) > 1 and parts[1] != "*"
+                        and not has_body(bodies, parts[1])):
                     raise ToolError(f"{where}: the scene has no body '{parts[1]}' (key '{key}'); "
                                     f"its bodies are {', '.join(bodies)}.", 2)
                 return
@@ -49,37 +52,17 @@ class KeyList:
         raise ToolError(f"{where}: '{key}' is not a key of a scene.{nearest(key, own)} "
                         "abut reference prints them all.", 2)
 
-
-def put(scene: dict, key: str, value: object) -> None:
-    *folders, last = key.split(".")
-    for folder in folders:
-        inner = scene.get(folder)
-        if not isinstance(inner, dict):  # absent, or a choice that is written as its name alone
-            inner = scene[folder] = {inner: {}} if isinstance(inner, str) else {}
-        scene = inner
-    if value is None:  # takes the key out, as --set key=null does
-        scene.pop(last, None)
-    else:
-        scene[last] = copy.deepcopy(value)
-
-
-def expanded(scene: dict, key: str, where: str) -> list[str]:
-    """The keys of this scene that a key with `*` means; a key without one means itself."""
-    if "*" not in key.split("."):
-        return [key]
-    found = [("", scene)]
-    parts = key.split(".")
-    for k, part in enumerate(parts):
-        inner = []
-        for path, value in found:
-            if isinstance(value, str):  # a choice that is written as its name alone
-                value = {value: {}}
-            if not isinstance(value, dict):
-                continue
-            last = k == len(parts) - 1
-            names = list(value) if part == "*" else [part] if part in value or last else []
-            inner += [(f"{path}.{name}".lstrip("."), value.get(name)) for name in names]
-        found = inner
-    if not found:
-        raise ToolError(f"{where}: '{key}' matches no key of the scene.", 2)
-    return [path for path, _ in found]
+    def refuse_idle_stars(self, scene: Path, settings: dict, places: dict) -> None:
+        """Keys with `*` that mean no key of the scene; `places`: where each of the keys stands."""
+        command = [str(self.abut), "check", str(scene)]
+        for key, value in settings.items():
+            command += ["--set", f"{key}={flow_text(value)}"]
+        try:
+            said = subprocess.run(command, capture_output=True, text=True, check=False,
+                                  timeout=60).stderr
+        except subprocess.TimeoutExpired:  # in the bodies: keys are looked up before
+            return
+        found = re.search(r"^error: --set ([^=]+)=.*?: (matches no key.*)$", said, re.MULTILINE)
+        if found:
+            place = places.get(found[1], "")
+            raise ToolError(f"{place}: '{found[1]}' {found[2]}".removeprefix(": "), 2)

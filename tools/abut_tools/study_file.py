@@ -1,14 +1,15 @@
 """A study file: what to vary, what to measure, what to show. Every key is known or refused."""
 
-import copy
 import itertools
+import math
+from collections import Counter
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
 
 from abut_tools import study_knobs
 from abut_tools.expressions import Expression
-from abut_tools.scene_keys import KeyList, expanded, nearest, put
+from abut_tools.scene_keys import KeyList, nearest
 from abut_tools.tables import ToolError
 from abut_tools.yaml_text import read_yaml
 
@@ -16,6 +17,8 @@ QUANTITIES = ("position", "velocity", "force", "mean_velocity", "kinetic", "stor
               "kinetic_error", "stored_error", "total_error")
 COSTS = ("wall_s_median", "wall_s_min", "wall_s_max", "compute_s", "exchanges",
          "iterations_mean", "memory_mib")
+LARGEST = 1e300  # numbers with room for sums and ratios
+MOST_RUNS, MOST_REPEATS = 20_000, 1000
 KEYS = {
     "": ("title", "about", "base", "set", "knobs", "variants", "sweeps", "errors", "reference",
          "repeats", "placement", "time_limit", "figures", "claims", "quick"),
@@ -78,6 +81,7 @@ class Reader:
 
     def __init__(self, path: Path, keys: KeyList):
         self.path, self.keys, self.scenes = path, keys, {}
+        self.known, self.asked = {}, set()
 
     def refuse(self, key: str, what: str):
         raise ToolError(f"{self.path}: {key}: {what}" if key else f"{self.path}: {what}", 2)
@@ -102,10 +106,18 @@ class Reader:
         return value
 
     def a_number(self, value: object, key: str, least: float = float("-inf")) -> float:
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not value >= least:
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not (
+                least <= value and abs(value) < LARGEST):
             bound = f" of at least {least:g}" if least > float("-inf") else ""
             self.refuse(key, f"must be a number{bound}.")
         return value
+
+    def a_count(self, value: object, key: str, least: int, most: int) -> int:
+        """Bounded before anything is made of it."""
+        count = self.a_number(value, key, least)
+        if count != int(count) or count > most:
+            self.refuse(key, f"is {count:g}. Give a whole number from {least} to {most}.")
+        return int(count)
 
     def choice(self, value: object, key: str, known: tuple) -> str:
         if value not in known:
@@ -113,25 +125,39 @@ class Reader:
                         f"{nearest(str(value), list(known))}")
         return value
 
-    def scene(self, name: str, key: str) -> tuple[Path, dict]:
+    def scene(self, name: str, key: str) -> Path:
         path = (self.path.parent / self.a_text(name, key)).resolve()
         if path not in self.scenes:
             if not path.is_file():
                 self.refuse(key, f"there is no scene {name} beside the study "
                             f"(paths are relative to {self.path.parent}).")
             self.scenes[path] = read_yaml(path)
-        return path, self.scenes[path]
+        return path
 
     # ---- settings ------------------------------------------------------------
 
-    def apply(self, scene: dict, settings: dict, found: dict, where: str) -> None:
-        """Puts settings into the scene and notes them; `*` is expanded in the scene as it is."""
+    def apply(self, scene: Path, settings: dict, found: dict, where: str) -> None:
+        """Notes settings in their order: what a `*` stands for, the program finds in the scene as
+        it is by then."""
         for key, value in found.items():
-            for full in expanded(scene, str(key), f"{self.path}: {where}"):
-                self.keys.refuse_unknown(full, scene, f"{self.path}: {where}")
-                put(scene, full, value)
-                settings.pop(full, None)  # the last word counts, and is said last
-                settings[full] = value
+            key = str(key)
+            if (scene, key) not in self.known:
+                added = {name.split(".")[1]: {} for name in settings if name.count(".") == 1
+                         and name.startswith("bodies.")}
+                bodies = self.scenes[scene].get("bodies")
+                self.keys.refuse_unknown(key, {**(bodies if isinstance(bodies, dict) else {}),
+                                               **added}, f"{self.path}: {where}")
+                self.known[scene, key] = f"{self.path}: {where}"
+            settings.pop(key, None)  # the last word counts, and is said last
+            settings[key] = value
+
+    def look_for_stars(self, scene: Path, settings: dict) -> None:
+        """Once for all points that differ in values alone."""
+        if (scene, *settings) in self.asked or not any("*" in key.split(".") for key in settings):
+            return
+        self.asked.add((scene, *settings))
+        places = {key: self.known[scene, key] for key in settings}
+        self.keys.refuse_idle_stars(scene, settings, places)
 
     def points_of(self, spec: dict, sweep: dict, key: str, quick: dict | None) -> list[Point]:
         knobs = study_knobs.read(self, sweep.get("knobs", {}), f"{key}knobs")
@@ -139,13 +165,18 @@ class Reader:
             for knob in knobs:
                 knob.values = knob.values[:quick.get("keep", 2)]
         points = []
-        repeats = int(self.a_number(sweep.get("repeats", spec.get("repeats", 1)),
-                                    f"{key}repeats" if "repeats" in sweep else "repeats", 1))
-        for variant, where in self.variants_of(spec, sweep, key):
-            path, plain = self.scene(variant.get("scene", spec.get("base")),
-                                     where + "scene" if "scene" in variant else "base")
+        repeats = self.a_count(sweep.get("repeats", spec.get("repeats", 1)),
+                               f"{key}repeats" if "repeats" in sweep else "repeats", 1,
+                               MOST_REPEATS)
+        variants = self.variants_of(spec, sweep, key)
+        runs = math.prod(len(knob.values) for knob in knobs) * len(variants)
+        if runs > MOST_RUNS:
+            self.refuse(f"{key}knobs", f"make {runs} runs: all combinations of their values. A "
+                        f"study has at most {MOST_RUNS}; give fewer values, or several sweeps.")
+        for variant, where in variants:
+            path = self.scene(variant.get("scene", spec.get("base")),
+                              where + "scene" if "scene" in variant else "base")
             for values in itertools.product(*(range(len(knob.values)) for knob in knobs)):
-                scene = copy.deepcopy(plain)
                 chosen = {knob.name: knob.values[i] for knob, i in zip(knobs, values)}
                 settings = {}
                 steps = [(spec.get("set", {}), "set"), (variant.get("set", {}), where + "set"),
@@ -154,7 +185,8 @@ class Reader:
                           for knob, i in zip(knobs, values)]
                 steps += [((quick or {}).get("set", {}), "quick.set")]
                 for found, place in steps:
-                    self.apply(scene, settings, self.a_map(found, place), place)
+                    self.apply(path, settings, self.a_map(found, place), place)
+                self.look_for_stars(path, settings)
                 words = [variant["label"]] if variant.get("label") else []
                 words += [f"{name} {study_knobs.shown(value)}" for name, value in chosen.items()]
                 points.append(Point(", ".join(words) or "base", sweep.get("title", ""),
@@ -172,8 +204,8 @@ class Reader:
                 self.refuse(where + "scene", "is needed, because the study has no base.")
             found.append((variant, where))
         labels = [variant["label"] for variant, _ in found]
-        for label in labels:
-            if labels.count(label) > 1:
+        for label, count in Counter(labels).items():
+            if count > 1:
                 self.refuse("variants", f"two are labelled '{label}'.")
         if "variants" in sweep and sweep is not spec:
             wanted = self.a_list(sweep["variants"], f"{key}variants")
@@ -288,10 +320,10 @@ def refuse_idle_patterns(reader: Reader, study: Study) -> None:
                 if not any(fnmatchcase(label, pattern) for label in labels):
                     reader.refuse(f"{key}.{word}", f"no run is labelled '{pattern}'."
                                   f"{nearest(pattern, labels)} The first is '{labels[0]}'.")
-    twice = {point.label for point in study.points
-             if [(p.sweep, p.label) for p in study.points].count((point.sweep, point.label)) > 1}
-    if twice:
-        reader.refuse("knobs", f"two runs are labelled '{twice.pop()}': a value stands twice.")
+    counts = Counter((point.sweep, point.label) for point in study.points)
+    for (_, label), count in counts.items():
+        if count > 1:
+            reader.refuse("knobs", f"two runs are labelled '{label}': a value stands twice.")
 
 
 def read_study(path: Path, abut: Path, is_quick: bool) -> Study:
@@ -311,17 +343,19 @@ def read_study(path: Path, abut: Path, is_quick: bool) -> Study:
         else:
             sweep = {"knobs": spec.get("knobs", {})}
         points += reader.points_of(spec, sweep, key, quick)
+        if len(points) > MOST_RUNS:
+            reader.refuse("sweeps", f"make more than {MOST_RUNS} runs. Write several studies.")
         knobs += [name for name in sweep.get("knobs", {}) if name not in knobs]
     if quick is not None and "runs" in quick:
         points = reader.kept(points, quick["runs"])
     reference = None
     if "reference" in spec:
         found = reader.a_map(spec["reference"], "reference", "reference")
-        scene_path, _ = reader.scene(found.get("scene", spec.get("base")), "reference.scene")
-        scene, settings = read_yaml(scene_path), {}
+        scene, settings = reader.scene(found.get("scene", spec.get("base")), "reference.scene"), {}
         for step, place in ((spec.get("set", {}), "set"), (found.get("set", {}), "reference.set")):
             reader.apply(scene, settings, reader.a_map(step, place), place)
-        reference = Point("reference", "", "", scene_path, {}, settings, "reference")
+        reader.look_for_stars(scene, settings)
+        reference = Point("reference", "", "", scene, {}, settings, "reference")
     errors = reader.errors(reader.a_map(spec.get("errors", {}), "errors"), reference is not None)
     study = Study(
         path, title, str(spec.get("about", "")), points, errors, knobs,

@@ -1,9 +1,11 @@
 """Knobs of a study: a list or a range of values, and the scene keys that take them."""
 
+import math
 from dataclasses import dataclass
 
 from abut_tools.scene_keys import nearest
 
+MOST_VALUES = 10_000  # of one knob
 KNOB = ("values", "range", "set")
 RANGE = ("from", "to", "points", "scale")
 
@@ -29,13 +31,15 @@ def spread(reader, found: dict, key: str) -> list:
                           f"Allowed here: {', '.join(RANGE)}.")
     low = reader.a_number(found.get("from"), f"{key}.from")
     high = reader.a_number(found.get("to"), f"{key}.to")
-    points = int(reader.a_number(found.get("points"), f"{key}.points", 2))
+    points = reader.a_count(found.get("points"), f"{key}.points", 2, MOST_VALUES)
     scale = reader.choice(found.get("scale", "linear"), f"{key}.scale", ("linear", "log"))
     if scale == "log" and min(low, high) <= 0:
         reader.refuse(key, "a log scale needs from and to above 0.")
     parts = [k / (points - 1) for k in range(points)]
     values = [low * (high / low) ** part if scale == "log" else low + (high - low) * part
               for part in parts]
+    if not all(math.isfinite(value) for value in values):
+        reader.refuse(key, "has ends so far apart that there are no numbers between them.")
     if all(isinstance(end, int) for end in (low, high)):  # counts stay counts
         return list(dict.fromkeys(round(value) for value in values))
     return [float(f"{value:.12g}") for value in values]
@@ -55,8 +59,8 @@ def read(reader, found: dict, key: str) -> list[Knob]:
             reader.refuse(place, "needs either values or range.")
         values = (reader.a_list(spec["values"], f"{place}.values") if "values" in spec
                   else spread(reader, spec["range"], f"{place}.range"))
-        if not values:
-            reader.refuse(place, "has no value.")
+        if not 0 < len(values) <= MOST_VALUES:
+            reader.refuse(place, f"has {len(values)} values. Give 1 to {MOST_VALUES}.")
         keys = spec.get("set", [name])
         keys = {keys: None} if isinstance(keys, str) else keys
         if isinstance(keys, list):

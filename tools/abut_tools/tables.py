@@ -1,10 +1,7 @@
-"""What readers of finished runs share: tables, JSON, numbers for people, short curves."""
+"""What readers of finished runs share: tables, numbers for people, short curves."""
 
-import csv
-import json
 import math
 import re
-from pathlib import Path
 
 # Told apart by all eyes.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d1f", "#5b5b5b")
@@ -23,45 +20,22 @@ class ToolError(Exception):
 class Table:
     """Columns of numbers by name; an empty cell is None."""
 
-    def __init__(self, names: list[str], rows: list[list[float | None]]):
+    def __init__(self, names: list[str], rows: list[list[float | None]], where: str = ""):
         self.columns = {name: [row[i] for row in rows] for i, name in enumerate(names)}
+        self.where = where
 
     def __contains__(self, name: str) -> bool:
         return name in self.columns
 
     def __getitem__(self, name: str) -> list[float | None]:
+        if name not in self.columns:
+            raise ToolError(f"{self.where}: has no column {name}. Run the scene again, or take the "
+                            "file from a copy of the run.", 2)
         return self.columns[name]
 
     def matching(self, pattern: str) -> list[re.Match]:
         found = (re.fullmatch(pattern, name) for name in self.columns)
         return [match for match in found if match]
-
-
-def read_table(path: Path) -> Table:
-    """Units leave the header: all are SI. A last row that a killed run cut short is left out."""
-    with path.open(newline="", encoding="utf-8") as file:
-        lines = list(csv.reader(file))
-    if not lines:
-        raise ToolError(f"{path} is empty: run the scene again.", 2)
-    names = [re.sub(r" \[.*\]$", "", name) for name in lines[0]]
-    rows = []
-    for number, line in enumerate(lines[1:], start=2):
-        try:
-            if len(line) != len(names):
-                raise ValueError(f"{len(line)} cells, the header has {len(names)}")
-            rows.append([float(cell) if cell else None for cell in line])
-        except ValueError as error:
-            if number == len(lines):
-                break
-            raise ToolError(f"{path}:{number}: {error}: run the scene again.", 2) from error
-    return Table(names, rows)
-
-
-def read_json(path: Path) -> dict:
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise ToolError(f"{path} is not JSON ({error}): run the scene again.", 2) from error
 
 
 class Figure:
@@ -73,7 +47,9 @@ class Figure:
         self.curves = []
 
     def add(self, label, colour, times, values, exact=False):
-        pairs = [(t, v) for t, v in zip(times, values) if t is not None and v is not None]
+        # Differences of the largest numbers are none.
+        pairs = [(t, v) for t, v in zip(times, values)
+                 if t is not None and v is not None and math.isfinite(v)]
         if pairs:
             self.curves.append({"label": label, "colour": colour, "exact": exact,
                                 "x": [t for t, _ in pairs], "y": [v for _, v in pairs]})
@@ -99,7 +75,7 @@ def scaled_unit(largest: float, unit: str) -> tuple[float, str]:
     if unit not in PREFIXED_UNITS or largest == 0.0 or not math.isfinite(largest):
         return 1.0, unit
     # A little more than the value: a thousand that rounding left short is one of the next prefix.
-    exponent = 3 * math.floor(math.log10(largest * 1.000001) / 3)
+    exponent = 3 * math.floor((math.log10(largest) + 4e-7) / 3)
     exponent = min(12, max(-12, exponent))
     return 10.0 ** -exponent, PREFIXES[exponent] + unit
 
@@ -154,7 +130,8 @@ def sum_of(columns: list[list]) -> list:
 
 
 def colour_of(names: list[str], name: str) -> str:
-    return COLOURS[names.index(name) % len(COLOURS)]
+    place = names.index(name) if name in names else len(names)
+    return COLOURS[place % len(COLOURS)]
 
 
 def shown(value) -> str:

@@ -7,6 +7,8 @@ import yaml
 
 from abut_tools.tables import ToolError
 
+MOST_BYTES, MOST_VALUES = 16_000_000, 1_000_000  # as the program reads of a scene
+
 
 class Loader(yaml.SafeLoader):
     """PyYAML reads YAML 1.1, where 1e-7 is a word and `off` is false, and keeps the last of two
@@ -28,6 +30,8 @@ Loader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(true|false
 def map_of(loader: Loader, node: yaml.MappingNode) -> dict:
     seen = {}
     for key, _ in node.value:
+        if not isinstance(key, yaml.ScalarNode):
+            raise yaml.MarkedYAMLError(problem="a key is no word", problem_mark=key.start_mark)
         if key.value in seen:
             raise yaml.MarkedYAMLError(
                 problem=f"key '{key.value}' stands twice, first in line {seen[key.value]}",
@@ -39,12 +43,45 @@ def map_of(loader: Loader, node: yaml.MappingNode) -> dict:
 Loader.add_constructor("tag:yaml.org,2002:map", map_of)
 
 
+def count_of(node: yaml.Node, counted: dict) -> int:
+    """Values below a node with all aliases written out, as they will be; those that hold themselves
+    have no end."""
+    if id(node) in counted:
+        if counted[id(node)] is None:
+            raise yaml.MarkedYAMLError(problem="holds itself", problem_mark=node.start_mark)
+        return counted[id(node)]
+    counted[id(node)] = None
+    below = [each for entry in node.value for each in (
+        entry if isinstance(entry, tuple) else (entry,))] if not isinstance(
+            node, yaml.ScalarNode) else []
+    counted[id(node)] = 1 + sum(count_of(each, counted) for each in below)
+    return counted[id(node)]
+
+
+def tree_of(text: str) -> object:
+    loader = Loader(text)
+    try:
+        node = loader.get_single_node()
+        if node is not None and count_of(node, {}) > MOST_VALUES:
+            raise yaml.MarkedYAMLError(problem=f"holds more than {MOST_VALUES} values",
+                                       problem_mark=node.start_mark)
+        return None if node is None else loader.construct_document(node)
+    finally:
+        loader.dispose()
+
+
 def read_yaml(path: Path) -> dict:
     try:
-        found = yaml.load(path.read_text(encoding="utf-8"), Loader=Loader)
+        if path.exists() and not path.is_file():
+            raise ToolError(f"{path}: is no regular file. Give the path of a file.", 2)
+        if path.stat().st_size > MOST_BYTES:
+            raise ToolError(f"{path}: is larger than {MOST_BYTES // 1_000_000} MB.", 2)
+        found = tree_of(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise ToolError(f"{path}: {error.strerror}.", 2) from error
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
+    except RecursionError as error:
+        raise ToolError(f"{path}: is nested too deep.", 2) from error
+    except (yaml.YAMLError, UnicodeDecodeError, ValueError) as error:
         mark = getattr(error, "problem_mark", None)
         line = f":{mark.line + 1}" if mark else ""
         what = getattr(error, "problem", None) or str(error)
