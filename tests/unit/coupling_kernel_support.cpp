@@ -7,7 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.hpp"
 #include "contract/force_means.hpp"
+#include "tests/support/scripted.hpp"
 
 namespace abut {
 namespace {
@@ -80,6 +82,30 @@ TEST(KernelSupport, OfLevelsStaysAsItIs) {
   const PortKernel same = for_levels(kernel);
   EXPECT_EQ(same.displacement, kernel.displacement);
   EXPECT_EQ(same.begin, kernel.begin);
+}
+
+class Refusing final : public Scripted {
+ public:
+  using Scripted::Scripted;
+  void yields(int, int, const PortKernel&) override {
+    throw RunError("gives way by a kernel that this body cannot take", "here", "Do.");
+  }
+};
+
+TEST(KernelSupport, OfWhatIsRefusedBothBodiesAreNamed) {
+  Refusing finder(0.0, 1.0, 0.1);
+  Scripted other(1.0, -1.0, 0.1);
+  finder.description_.name = "finder";
+  other.description_.name = "other";
+  Bodies bodies({&finder, &other}, 1.0);
+  try {
+    bodies.yields({0, 0}, 0, {1, 0}, PortKernel{});
+    FAIL() << "no error";
+  } catch (const RunError& error) {
+    EXPECT_EQ(error.what_is_wrong,
+              "gives way by a kernel that this body cannot take (body 'finder', told how body "
+              "'other' gives way)");
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
@@ -125,8 +126,27 @@ TEST(YieldingObstacle, OfOtherStepsIsRefused) {
   const Meeting m = meetings().front();
   const std::unique_ptr<Subdomain> here = build_side(m, "right"), there = build_side(m, "left");
   here->meet(0, there->describe().ports[0].geometry, {});
-  const PortKernel kernel = there->probe(0, std::vector<double>{1.0}, 0.5 * case_step, 3);
-  EXPECT_THROW(here->yields(0, 0, kernel), RunError);
+  PortKernel kernel = there->probe(0, std::vector<double>{1.0}, 0.5 * case_step, 3);
+  const auto refusal = [&]() -> std::string {
+    try {
+      here->yields(0, 0, kernel);
+    } catch (const RunError& error) {
+      return error.what_is_wrong;
+    }
+    return "taken";
+  };
+  EXPECT_TRUE(refusal().ends_with(fmt::format(
+      "its steps are {} s, where {} s belong, 0.5 of it off", 0.5 * case_step, case_step)))
+      << refusal();
+  kernel.step = case_step * (1.0 + 1.0e-8);  // looks the same in six digits
+  EXPECT_TRUE(refusal().ends_with(", 1e-08 of it off")) << refusal();
+  kernel.step = case_step * (1.0 + 1.0e-12);  // rounding
+  EXPECT_EQ(refusal(), "taken");
+  kernel.support = ForceSupport::linear;
+  EXPECT_TRUE(
+      refusal().starts_with("gives way by a kernel that this body cannot take: its forces "
+                            "are linear between times, where those "))
+      << refusal();
 }
 
 TEST(Partners, OfABarAreObstaclesOneAtATime) {
