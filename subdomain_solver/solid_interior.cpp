@@ -242,7 +242,7 @@ void SolidInterior::see_nodes() {
   v_.resize(nodal_values());
   parts_.map->displacement(state_.motion.q, u_);
   parts_.map->velocity(state_.motion.q, state_.motion.v, v_);
-  momentum_.noalias() = mass_ * view(v_);
+  see_momentum();
   parts_.model->to_space(u_);
   parts_.model->to_space(v_);
   parts_.model->to_space({momentum_.data(), nodal_values()});
