@@ -114,6 +114,8 @@ class SolidInterior final : public Interior {
   const Vector& forces_now();
   void see_places();
   std::optional<Failed> meet_port_forces(double time);
+  std::optional<Failed> meet_end();
+  std::optional<Failed> take_port_forces(double time);
   void find_contacts();
   void find_surfaces();
   void follow_ports(double time);
