@@ -104,6 +104,7 @@ void Controller::start() {
   if (std::optional<Failed> failed = bodies_.advance_all())
     return fail(failed->time, failed->detail);
   events_.start();
+  for (const Joint& joint : joints_) narrator_.found(joint, clock_.time());
   watch_energy(guard_.look(bodies_.responses()));
   fill_reports(true);
   narrator_.window({instant, bodies_.responses(), reports_, 0, {}});

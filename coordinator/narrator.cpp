@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "base/index.hpp"
+#include "coordinator/coupling/roles.hpp"
 #include "coordinator/interface_spec.hpp"
 #include "surface/sharp_nodes.hpp"
 
@@ -77,6 +78,22 @@ void Narrator::inside(const Joint& joint, const InternalContact::Change& change)
         fmt::format("contact closes at {:.6g} m/s inside body {}", change.speed,
                     bodies_.describe(joint.sides[0].body).name),
         {{"closing_speed", change.speed}}});
+}
+
+void Narrator::found(const Joint& joint, double time) {
+  if (!joint.surfaces || joint.tied()) return;
+  if (shorter_steps(joint, bodies_).value_or(joint.kinematic) == joint.kinematic) return;
+  const Description& finder = bodies_.describe(joint.kinematic_side().body);
+  const Description& other = bodies_.describe(joint.neumann_side().body);
+  tell({RunEvent::Kind::warning,
+        time,
+        joint.name,
+        fmt::format("'{}' finds the contact '{}' in steps {:.4g} times as long as those of '{}': "
+                    "where it begins and ends is known to these, which may make or take a part of "
+                    "the energy; give the finder steps as short, or let the other side find it "
+                    "(transmission.unilateral.kinematic)",
+                    finder.name, joint.name, finder.step / other.step, other.name),
+        {{"ratio", finder.step / other.step}}});
 }
 
 void Narrator::lowered_step(const Joint& joint, double time, double limit) {

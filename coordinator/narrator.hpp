@@ -29,6 +29,8 @@ class Narrator {
   void closed(const Joint& joint, double time, double speed);
   void opened(const Joint& joint, double time);
   void inside(const Joint& joint, const InternalContact::Change& change);
+  /// Warns where the side that finds a contact of surfaces has the longer steps.
+  void found(const Joint& joint, double time);
   /// The contact spring of a joint lowers its Neumann side's stable step to a limit [s].
   void lowered_step(const Joint& joint, double time, double limit);
   /// Bodies that are in each other, with the joints that there are.

@@ -374,6 +374,8 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
   kernel.displacement.assign(index(count) * kernel.per_step(), 0.0);
   const bool nodal = begin && kernel.support == ForceSupport::nodal;
   if (nodal) kernel.begin = kernel.displacement;
+  // Surfaces without mass, and with inertia behind them; of a point it is asked for.
+  const bool leans = width > 1 && describe().can.obstacle && !describe().quasi_static;
   Advance request;
   request.window = {0, grid.begin, grid.end};
   request.boundary.resize(ports_.size());
@@ -396,6 +398,8 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
         force.f[at * width + i] = light * patterns[k * width + i];
       interior_->rest(p);
       failed = respond(request, grid, seen, moved);
+      for (std::size_t i = 0; at == 0 && leans && i < at_begin_.size(); ++i)
+        kernel.compliance.push_back(at_begin_[i] / light);
       for (std::size_t i = 0; i < moved.size(); ++i)
         to[i / values * kernel.per_step() + k * values + i % values] =
             (moved[i] - alone[i]) / light;
@@ -452,13 +456,14 @@ std::optional<Failed> Body::respond(const Advance& request, const Substeps& grid
                                     std::span<const int> ports, std::vector<double>& displacement) {
   const Window window{request, grid, partners_};
   displacement.clear();
+  at_begin_.clear();
   return walk(window, [&](int i) {
-    if (i == 0) return;
-    const std::vector<double>& u = interior_->see(window, grid.time(i), false).u;
+    std::vector<double>& to = i == 0 ? at_begin_ : displacement;
+    const double time = i == 0 ? grid.begin : grid.time(i);
+    const std::vector<double>& u = interior_->see(window, time, false).u;
     for (const int port : ports) {
       const auto from = u.begin() + static_cast<std::ptrdiff_t>(ports_[index(port)].first);
-      displacement.insert(displacement.end(), from,
-                          from + static_cast<std::ptrdiff_t>(ports_[index(port)].width));
+      to.insert(to.end(), from, from + static_cast<std::ptrdiff_t>(ports_[index(port)].width));
     }
   });
 }

@@ -86,6 +86,7 @@ class Body final : public Subdomain {
   Advance ahead_;                  // what is looked at after a window
   std::vector<double> pressing_;   // [N] (values) of a port, when it begins
   std::vector<std::byte> looked_;  // the state from which
+  std::vector<double> at_begin_;   // [m] of the ports that respond() was asked for, at the begin
   std::vector<double> peeked_;     // [m] (steps, values of all ports) told without going there
   double step_effort_ = 0.0;  // of a substep
   double effort_ = 0.0;       // since the last sign of life

@@ -20,6 +20,7 @@ void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substep
   grid_ = grid;
   forces_.clear();
   swings_.clear();
+  ends_.clear();
   for (std::size_t p = 0; p < std::min(boundary.size(), map_.ports()); ++p) {
     bool first = true;
     for (const Waveform& force : boundary[p].forces) {
@@ -67,17 +68,28 @@ void PortForces::add_sampled(const Waveform& imposed, std::size_t port, bool fir
       for (double& f : mean_) f /= until - from;
     }
     add(imposed, mean_.data(), first, row);
-    if (keeps_swings_) add_swing(imposed, now, index(i) * map_.values() + map_.first(port));
+    const std::size_t place = map_.first(port);
+    if (keeps_swings_) {
+      add_swing(imposed, now, index(i) * map_.values() + place, swings_, forces_.size());
+    } else if (i == grid_.count && imposed.support == ForceSupport::linear) {
+      add_swing(imposed, now, place, ends_, map_.values());
+    }
   }
 }
 
 /// What lies at the port alone follows the instant (Waveform at its own times), the body the mean.
-void PortForces::add_swing(const Waveform& imposed, double now, std::size_t row) {
-  swings_.resize(forces_.size(), 0.0);
+void PortForces::add_swing(const Waveform& imposed, double now, std::size_t row,
+                           std::vector<double>& to, std::size_t size) {
+  to.resize(size, 0.0);
   instant_.resize(mean_.size());
   imposed.force_at(now, instant_);
   for (std::size_t k = 0; k < mean_.size(); ++k) instant_[k] -= mean_[k];
-  add(imposed, instant_.data(), false, swings_.data() + row);
+  add(imposed, instant_.data(), false, to.data() + row);
+}
+
+bool PortForces::add_end(std::vector<double>& force) const {
+  for (std::size_t k = 0; k < ends_.size(); ++k) force[k] += ends_[k];
+  return !ends_.empty();
 }
 
 /// The values of the points that a waveform lists to those of all points of its port. The first

@@ -37,6 +37,9 @@ class PortForces final : public Load {
     return swings_.empty() ? 0.0 : swings_[index(i) * map_.values() + value];
   }
 
+  /// Adds [N] (values) what forces of surfaces whose levels are others are at the window's end,
+  /// beyond their mean before it. False: there is nothing to add.
+  bool add_end(std::vector<double>& force) const;
   /// [N] (values) at a time; zeros where nothing is imposed.
   void at(double time, std::vector<double>& out) const;
   void add(double time, std::span<const double> q, Vector& force) const override;
@@ -45,7 +48,8 @@ class PortForces final : public Load {
   void add_sampled(const Waveform& imposed, std::size_t port, bool first);
   bool joined(std::size_t port) const { return std::ranges::find(joined_, port) != joined_.end(); }
   void add_constant(const Waveform& imposed, std::size_t port, bool first);
-  void add_swing(const Waveform& imposed, double now, std::size_t row);
+  void add_swing(const Waveform& imposed, double now, std::size_t row, std::vector<double>& to,
+                 std::size_t size);
   void add(const Waveform& imposed, const double* values, bool first, double* row) const;
 
   const PortMap& map_;
@@ -53,6 +57,7 @@ class PortForces final : public Load {
   std::vector<double> forces_;  // [N] (substeps + 1, values); empty: none imposed
   bool keeps_swings_ = false;
   std::vector<double> swings_;  // [N] the same; empty: means are the instants' values
+  std::vector<double> ends_;    // [N] (values) at the window's end; empty: the same
   std::vector<double> mean_;    // [N] of a waveform over a dual cell
   std::vector<double> instant_;
   mutable std::vector<double> now_;

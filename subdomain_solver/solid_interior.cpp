@@ -214,7 +214,7 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i) {
   if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);
   if (port_map_) follow_ports(state_.time);
-  return std::nullopt;
+  return i == window.grid.count ? meet_end() : std::nullopt;
 }
 
 std::span<const double> SolidInterior::unbalanced() const {
@@ -242,7 +242,7 @@ void SolidInterior::see_nodes() {
   v_.resize(nodal_values());
   parts_.map->displacement(state_.motion.q, u_);
   parts_.map->velocity(state_.motion.q, state_.motion.v, v_);
-  momentum_.noalias() = mass_ * view(v_);
+  see_momentum();
   parts_.model->to_space(u_);
   parts_.model->to_space(v_);
   parts_.model->to_space({momentum_.data(), nodal_values()});
@@ -297,6 +297,19 @@ std::optional<Failed> SolidInterior::meet_port_forces(double time) {
   if (port_forces_ == nullptr) return std::nullopt;
   port_forces_->at(time, now_);
   if (contact_) contact_->hold(state_.port_force, now_);
+  return take_port_forces(time);
+}
+
+/// Means over dual cells press on a surface whose partner has other levels. When the window ends it
+/// stands where the force of the instant holds it  [M.92].
+std::optional<Failed> SolidInterior::meet_end() {
+  now_ = state_.port_force;
+  if (port_forces_ == nullptr || !port_forces_->add_end(now_)) return std::nullopt;
+  return take_port_forces(state_.time);
+}
+
+/// Those of now_, instead of those of the state.
+std::optional<Failed> SolidInterior::take_port_forces(double time) {
   if (state_.begun && now_ != state_.port_force) {
     before_ = now_;
     for (std::size_t k = 0; k < now_.size(); ++k) before_[k] -= state_.port_force[k];

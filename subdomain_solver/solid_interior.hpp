@@ -110,8 +110,12 @@ class SolidInterior final : public Interior {
   std::size_t nodal_values() const { return index(parts_.model->dofs()); }
   bool probed_as_linear() const;
   void see_nodes();
+  void see_momentum();
+  const Vector& forces_now();
   void see_places();
   std::optional<Failed> meet_port_forces(double time);
+  std::optional<Failed> meet_end();
+  std::optional<Failed> take_port_forces(double time);
   void find_contacts();
   void find_surfaces();
   void follow_ports(double time);
@@ -139,7 +143,8 @@ class SolidInterior final : public Interior {
   std::unique_ptr<LinearisedModel> linearised_;
   // Of the nodes (nodes, dim) along the axes of space, as see_nodes() left them.
   std::vector<double> u_, v_;
-  Vector momentum_;                   // [kg m/s]
+  std::vector<double> lag_;           // [m/s] of velocities behind the impulses
+  Vector momentum_, behind_;          // [kg m/s]; and of the coordinates, what they are behind
   std::vector<double> before_, now_;  // [m], [N] (port values)
   Vector change_;                     // [N] (coordinates)
   std::vector<double> peeked_;        // [m] (coordinates)

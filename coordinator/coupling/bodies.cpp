@@ -33,8 +33,9 @@ PortKernel along(const PortKernel& all, const PortGeometry& surface) {
       out[k / normals.size()] += normals[k % normals.size()] * values[k] / count;
     return out;
   };
-  return {all.step,        all.support, 1, 1, mean(all.compliance), mean(all.displacement),
-          mean(all.begin), {}};
+  return {all.step, all.support, 1, 1,
+          surface.count() == 1 ? mean(all.compliance) : std::vector<double>(),
+          mean(all.displacement), mean(all.begin), {}, {}, {}};
 }
 
 /// The responses of some points alone, to patterns of as many.

@@ -100,6 +100,7 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
   kernel_ = &answer_;
   if (answer_.count() >= iterate_.steps.count && answer_.points == zone_.points()) return;
   answer_ = bodies.full_kernel(n.body, n.port, iterate_.steps.count, zone_.points());
+  if (levels_of(kinematic_grid_) == levels_of(iterate_.steps)) answer_.compliance.clear();
   bodies.yields(k, k.partner, n, answer_);
   eased_[1].told = {};
 }
@@ -248,6 +249,7 @@ void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>& x, const 
       moved_ = g.tail(width);
       fits_ = taken_;
       take_back(taken_, g);
+      take_back_end(g);
       moved_ -= g.tail(width);  // by the reaction: bodies at rest move by nothing else
       now = std::max(now, moved_.lpNorm<Eigen::Infinity>() / length);
     }
@@ -296,6 +298,19 @@ void CompliantObstacle::take_back(const Eigen::MatrixXd& taken,
           moved[value(kernel_->points, index(q))] -= force * response[q];
       }
     }
+  }
+}
+
+/// When the window ends the Neumann side stands under the force of the instant, not its mean.
+void CompliantObstacle::take_back_end(Eigen::Ref<Eigen::VectorXd> motion) const {
+  const std::vector<double>& compliance = kernel_->compliance;
+  const int width = compliance.empty() ? 0 : kernel_->width;
+  double* moved = &motion[iterate_.at(iterate_.steps.count)];
+  for (int p = 0; p < width; ++p) {
+    const auto at = static_cast<Eigen::Index>(value(kernel_->points, index(p)));
+    const double more = pressed_(at, pressed_.cols() - 1) - taken_(at, iterate_.steps.count);
+    for (int q = 0; more != 0.0 && q < width; ++q)
+      moved[value(kernel_->points, index(q))] -= more * compliance[index(p * width + q)];
   }
 }
 

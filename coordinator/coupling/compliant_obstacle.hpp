@@ -54,6 +54,7 @@ class CompliantObstacle final : public Transmission {
   void keep_begin(const TimeWindow& window, const Joint& joint, const Bodies& bodies);
   void take(const Waveform& force);
   void take_back(const Eigen::MatrixXd& taken, Eigen::Ref<Eigen::VectorXd> motion) const;
+  void take_back_end(Eigen::Ref<Eigen::VectorXd> motion) const;
   void fit_ties();
   void tell_neighbours(const Side& k, const PortKernel& give, Bodies& bodies);
   void leave_far(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> g) const;

@@ -65,20 +65,27 @@ int Roles::wish(const Joint& joint) {
   return step[1] < step[0] ? 1 : 0;
 }
 
+std::optional<int> shorter_steps(const Joint& joint, const Bodies& bodies) {
+  const Description &a = bodies.describe(joint.sides[0].body),
+                    &b = bodies.describe(joint.sides[1].body);
+  const bool moves = std::isfinite(a.mass) && std::isfinite(b.mass);
+  if (!moves || a.step <= 0.0 || b.step <= 0.0 || a.step == b.step) return std::nullopt;
+  return a.step < b.step ? 0 : 1;
+}
+
 int contact_finder(const Joint& joint, const Bodies& bodies) {
   if (joint.role_fixed) return joint.kinematic;
   if (const std::optional<int> only = only_side(joint, bodies)) return *only;
   if (joint.adjusted >= 0) return joint.adjusted;
   bool yields[2];
-  double spacing[2], step[2];
+  double spacing[2];
   for (std::size_t s : {0u, 1u}) {
     const Description& body = bodies.describe(joint.sides[s].body);
     yields[s] = (body.can.kernel && body.linear) || std::isinf(body.mass);
-    step[s] = body.step;
     spacing[s] = bodies.port(joint.sides[s]).geometry.spacing;
   }
+  if (const std::optional<int> shorter = shorter_steps(joint, bodies)) return *shorter;
   if (yields[0] != yields[1]) return yields[0] ? 1 : 0;
-  if (step[0] != step[1]) return step[0] > step[1] ? 0 : 1;
   return spacing[0] <= spacing[1] ? 0 : 1;
 }
 

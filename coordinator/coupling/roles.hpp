@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,10 +53,14 @@ class Roles {
   BodyOrder order_;
 };
 
+/// The side of shorter steps; none: they are equal, or one side stands or goes where it is told.
+std::optional<int> shorter_steps(const Joint& joint, const Bodies& bodies);
+
 /// Of two surfaces, the side that finds their contact: the scene's, or the only one that can, or
-/// the one that was adjusted, since its rows touch then. A body whose port kernel is exact is
-/// pressed, the other finds; of two such the one of longer steps does, or of the finer mesh.
-/// Circles of bodies may turn it.
+/// the one that was adjusted, since its rows touch then. That of shorter steps does, for where
+/// contact begins and ends is known to the steps of the finder. Of equal ones a body whose port
+/// kernel is exact is pressed, the other finds; of two such that of the finer mesh does. Circles of
+/// bodies may turn it.
 int contact_finder(const Joint& joint, const Bodies& bodies);
 
 /// Index of the side whose substeps carry the force in the parallel form: the one with the longer

@@ -123,6 +123,7 @@ void SurfaceContact::impose(const Window& window) {
     std::ranges::fill(pressed(m), 0.0);
     std::ranges::fill(reacted(m), 0.0);
   }
+  if (sticks_harder()) slides_.begin(window.request.window, window.grid.count, sizes_.slid);
   begin_neighbours(window);
 }
 
@@ -154,6 +155,7 @@ void SurfaceContact::settle(std::vector<double>& forces) {
     if (own.neighbours.act()) own.neighbours.settle(pressing(own));
   for (std::size_t k = 0; k < meetings_.size(); ++k)
     if (meetings_[k].law.rubs() && meetings_[k].obstacle->acts()) settle_friction(k);
+  if (sticks_harder()) slides_.see(substep_, slid_);
 }
 
 void SurfaceContact::react(std::size_t port, std::size_t partner, const std::vector<double>&,
@@ -195,6 +197,7 @@ void SurfaceContact::see_gaps(std::size_t port, const SeeGap& see) const {
 
 void SurfaceContact::aim(int i, const std::vector<double>&, const std::vector<double>& places) {
   looks_ = 0;
+  substep_ = i;
   missing_.clear();
   for (Own& own : surfaces_) {
     own.begin = own.surface.geometry->points;

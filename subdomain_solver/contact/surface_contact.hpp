@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subdomain_solver/contact/port_contact.hpp"
+#include "subdomain_solver/contact/slid_points.hpp"
 #include "subdomain_solver/contact/surface_obstacle.hpp"
 #include "subdomain_solver/contact/tied_neighbours.hpp"
 #include "subdomain_solver/fe/cell_kernel.hpp"
@@ -87,7 +88,7 @@ class SurfaceContact final : public PortContact {
   [[nodiscard]] bool find_forces();
   void tell_missing();
   void guess_forces();
-  bool let_slide();
+  bool sticks_harder() const;
   void settle_friction(std::size_t meeting);
   void forget_shears(const Meeting& m);
   void spread();
@@ -112,6 +113,8 @@ class SurfaceContact final : public PortContact {
   // [N] (meetings that rub, values of the port) along the surface, on the body: state
   std::vector<double> shears_;
   std::vector<double> shears_before_;
+  SlidPoints slides_;  // of the window, where what sticks has a coefficient of its own
+  int substep_ = 0;
   std::vector<double> anchors_;     // [m] (meetings that rub, values of the partner): state
   std::vector<double> anchored_;    // (meetings) 1: anchors are those of now: state
   std::vector<double> dissipated_;  // [J] (meetings) by friction: state

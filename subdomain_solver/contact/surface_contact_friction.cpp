@@ -95,20 +95,10 @@ void SurfaceContact::find_slips(const Meeting& m) {
   }
 }
 
-/// Rows that stuck and slide now rub with the coefficient of what slides. True: there are such.
-bool SurfaceContact::let_slide() {
-  bool any = false;
-  for (const Meeting& m : meetings_) {
-    if (m.law.static_friction == m.law.kinetic_friction) continue;
-    for (int r = 0; r < m.rows; ++r) {
-      FrictionRow& row = rows_[index(m.first_row + r)];
-      if (row.friction == m.law.kinetic_friction) continue;
-      if (row_state(row, row_force_) != RowState::slips) continue;
-      row.friction = m.law.kinetic_friction;
-      any = true;
-    }
-  }
-  return any;
+bool SurfaceContact::sticks_harder() const {
+  return std::ranges::any_of(meetings_, [](const Meeting& m) {
+    return m.law.static_friction != m.law.kinetic_friction;
+  });
 }
 
 /// What pressed on the rows' nodes last: in the state, or in the look before.
@@ -132,10 +122,7 @@ bool SurfaceContact::find_forces() {
   if (!rubs_) return unilateral_forces(compliance_, gaps_, row_force_, buffers_);
   if (row_force_.size() != gaps_.size()) guess_forces();
   soften_held(rows_, compliance_);
-  do {
-    if (!friction_forces(compliance_, gaps_, rows_, row_force_, friction_buffers_)) return false;
-  } while (let_slide());
-  return true;
+  return friction_forces(compliance_, gaps_, rows_, row_force_, friction_buffers_);
 }
 
 /// Where the forces that were found last are farthest from what contact asks for, and how far.

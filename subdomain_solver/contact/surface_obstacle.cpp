@@ -56,7 +56,9 @@ void SurfaceObstacle::impose(const BoundaryData& data, const Partner& met, const
                    fmt::format("body '{}'", body_),
                    "Give its motion at its own substeps, with the kernel of as many.");
   }
-  parts_ = force_means(motion_->time, levels_of(grid));
+  const std::vector<double> levels = levels_of(grid);
+  parts_ = force_means(motion_->time, levels);
+  leans_ = !kernel.compliance.empty() && motion_->time != levels;
   taken_.assign(motion_->size() * zone_.size(), 0.0);
   if (motion_->f.empty()) return;
   for (std::size_t l = 0; l < motion_->size(); ++l)
@@ -140,9 +142,29 @@ void SurfaceObstacle::aim(int i, std::span<const double> reaction, bool turned) 
   const double share = std::clamp((time - before) / (end - before), 0.0, 1.0);
   recall(next, share);
   find_give(next, share);
-  if (share == 1.0) return;
-  recall(next - 1, 1.0 - share);
-  find_give(next - 1, 1.0 - share);
+  if (share < 1.0) {
+    recall(next - 1, 1.0 - share);
+    find_give(next - 1, 1.0 - share);
+  }
+  if (!leans_) return;
+  lean(next, share);
+  if (share < 1.0) lean(next - 1, 1.0 - share);
+  for (std::size_t k = 0; k < give_.size(); ++k) give_[k] += met_->kernel.compliance[k];
+}
+
+/// Takes from a level's share what its mean force leans on the surface alone, for the force of the
+/// instant does so in its place  [M.92].
+void SurfaceObstacle::lean(int level, double share) {
+  const std::size_t z = zone_.size(), from = index(level) * z;
+  const std::vector<double>& compliance = met_->kernel.compliance;
+  for (std::size_t f = 0; f < z; ++f) {
+    double force = motion_->f.empty() ? 0.0 : motion_->f[index(level) * width() + zone_[f]];
+    if (level > 0) force += taken_[from + f];  // else what pressed at the begin
+    for (std::size_t v = 0; v < z; ++v) {
+      memory_[v] -= share * force * compliance[f * z + v];
+      if (level > 0) give_[f * z + v] -= share * later_[index(level)] * compliance[f * z + v];
+    }
+  }
 }
 
 /// Adds a share of what earlier reactions have moved the surface at a level.

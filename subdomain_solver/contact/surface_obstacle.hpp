@@ -79,6 +79,7 @@ class SurfaceObstacle {
   void join_points(const PosedSurface& own, const PosedSurface& other);
   void recall(int level, double share);
   void find_give(int level, double share);
+  void lean(int level, double share);
   const double* response(int level, int after, std::size_t force) const;
 
   std::size_t port_, partner_;
@@ -97,6 +98,7 @@ class SurfaceObstacle {
   bool chosen_ = false, held_ = false;  // in this substep; it pressed in the one before
   const Waveform* motion_ = nullptr;
   Substeps grid_;
+  bool leans_ = false;  // its levels are not the substeps, and a part of it follows every instant
   // While it yields, of the window: its own levels (l), the substeps' levels (s).
   std::vector<double> parts_;   // (l, s) of the reactions that its levels take
   std::vector<double> later_;   // (l) of this substep's reaction, held to the window's end

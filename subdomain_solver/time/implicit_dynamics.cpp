@@ -254,6 +254,21 @@ void ImplicitDynamics::acceleration(const Motion& motion, double time, double st
   ABUT_ASSERT(solved);  // as at the begin
 }
 
+bool ImplicitDynamics::lags() const {
+  return !options_.weights.is_newmark() || options_.weights.gamma != 0.5;
+}
+
+/// Of the sum of all rows of a step: coordinates without mass are in balance at both ends.
+void ImplicitDynamics::find_lag(const Motion& motion, double step, const Vector& external,
+                                Vector& out) const {
+  const AlphaWeights& w = options_.weights;
+  times_mass(view(motion.a), of_mass_.rest);
+  const double inertia = step * (1.0 - w.alpha_m - w.gamma), forces = step * (0.5 - w.alpha_f);
+  out.setZero(external.size());
+  for (const int i : inertial_.list())
+    out(i) = inertia * of_mass_.rest(i) - forces * (external(i) - motion.force[index(i)]);
+}
+
 /// Accelerations from the balance at the begin: M a = f - r on the free coordinates. Those of
 /// prescribed ones are the motion's own; none are given: zero.
 std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {

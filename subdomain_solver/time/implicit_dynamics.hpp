@@ -41,6 +41,9 @@ class ImplicitDynamics final : public Integrator {
   bool joins_steadily() const override { return options_.steady; }
   double compliance(const Motion& motion, int dof) override;
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
+  bool lags() const override;
+  void find_lag(const Motion& motion, double step, const Vector& external,
+                Vector& out) const override;
   double kinetic(const Motion& motion) const override;
   ImplicitDynamics* implicit() override;
 

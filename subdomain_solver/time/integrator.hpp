@@ -33,6 +33,12 @@ class Integrator {
   /// [m/s^2] (dofs) at a time of the motion, prescribed coordinates included, as the balance of
   /// forces at this time has them; step [s]: of the scheme.
   virtual void acceleration(const Motion& motion, double time, double step, Vector& out) const = 0;
+  /// Whether M v is behind the impulses of the forces so far.
+  virtual bool lags() const { return false; }
+  /// [kg m/s] (dofs) by how much, of a scheme that does, where `external` [N] (dofs) acts now; step
+  /// [s]: of the scheme. With it momentum changes by the impulses to round-off [M.24].
+  virtual void find_lag(const Motion&, double /*step*/, const Vector& /*external*/,
+                        Vector& /*out*/) const {}
   /// Whether the body answers a force in time: statics do not.
   virtual bool has_inertia() const { return true; }
   /// Coordinates [m] (dofs) a step on, told without taking it. False: only a step tells them.

@@ -188,7 +188,10 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const double scale = find_rest(loads, contact != nullptr && iteration > 0);
     if (!rest_.allFinite()) return not_finite(time);
-    if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, problem_.model->roundoff(q)))
+    // What is left is momentum that the partner gave and the body behind did not get. Steps end at
+    // rounding by themselves, so that the margin of the roundings is not for here.
+    const double roundoff = problem_.model->roundoff(q) / summed_roundings;
+    if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, roundoff))
       return std::nullopt;
     const double left = rest_.norm();
     const bool anew = iteration == 0 || !lasts() || left > slow * before;

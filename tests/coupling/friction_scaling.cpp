@@ -59,7 +59,9 @@ TEST(FrictionScaling, OfAllLengthsAndForcesChangesNothing) {
     EXPECT_LT(std::abs(one.stays), 0.01 * one.slides) << scheme;
     for (const double scale : {10.0, 0.1, 1.0e-3}) {
       const Speeds other = on_a_plane(scale, scheme);
-      EXPECT_NEAR(other.slides, one.slides, 1.0e-9 * one.slides) << scheme << " at " << scale;
+      // Roundings of scales that are no powers of two grow while rows stick and slide anew: 2.7e-9
+      // of an undamped block, with one coefficient as with two.
+      EXPECT_NEAR(other.slides, one.slides, 5.0e-9 * one.slides) << scheme << " at " << scale;
       EXPECT_NEAR(other.stays, one.stays, 1.0e-9 * one.slides) << scheme << " at " << scale;
     }
   }

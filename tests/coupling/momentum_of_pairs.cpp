@@ -1,0 +1,123 @@
+// Goal: momentum is exact for every pair of schemes, joined or in contact, whatever their steps
+// [M.24]. Oracle: forces are equal and opposite, and each body takes its whole impulse.
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/solid_scenes.hpp"
+
+namespace abut {
+namespace {
+
+constexpr double speed = 0.01;  // of that of sound
+/// Of all momenta: 500 steps of 80 nodes, forces of sum and difference of as many roundings, and
+/// places that are 10 times as far as waves strain.
+constexpr double rounding = 1.0e-12;
+
+struct Steps {
+  double one, other, window;  // [s]
+};
+
+std::vector<std::string> schemes(double step) {
+  std::vector<std::string> all;
+  for (const char* scheme : {"central_difference: {{step: {0}}}", "newmark: {{step: {0}}}",
+                             "hht_alpha: {{step: {0}}}", "hht_alpha: {{step: {0}, alpha: -0.3}}",
+                             "generalized_alpha: {{step: {0}, spectral_radius: 0.0}}",
+                             "generalized_alpha: {{step: {0}, spectral_radius: 0.5}}",
+                             "generalized_alpha: {{step: {0}, spectral_radius: 0.9}}"})
+    all.push_back(fmt::format(fmt::runtime(scheme), number(step)));
+  return all;
+}
+
+/// A bar in one dimension, or one of 6 cells along and `across` over it.
+std::string body(const std::string& name, int dim, int across, const std::string& scheme,
+                 const std::string& start, const std::string& ports) {
+  const std::string mesh = dim == 1   ? "bar: {length: 1.0, elements: 6, area: 0.25}"
+                           : dim == 2 ? block_mesh({1.0, 0.25}, {6, across})
+                                      : block_mesh({1.0, 0.25, 0.25}, {6, across, across});
+  return fmt::format(
+      "  {}:\n    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n"
+      "    material: {{linear_elastic: {{youngs_modulus: 1.0, {}density: 1.0}}}}\n"
+      "    integrator: {{{}}}\n    initial: {{{}}}\n    ports: {{{}}}\n",
+      name, dim, mesh, dim == 1 ? "" : "poissons_ratio: 0.3, ", scheme, start, ports);
+}
+
+std::unique_ptr<RunResult> run(int dim, bool tied, const Steps& steps, const std::string& one,
+                               const std::string& other) {
+  const std::string tie = tied && dim == 1 ? ", tied: true" : "";
+  const double windows = std::round(3.0 / steps.window);
+  std::string text = fmt::format(
+      "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n",
+      number(windows * steps.window), number(steps.window));
+  const auto start = [dim](double place, double v) {
+    return fmt::format("position: {}, velocity: {}", components({place}, dim),
+                       components({v}, dim));
+  };
+  text += body("a", dim, 2, one, start(-1.0, speed), "face: {side: right" + tie + "}");
+  text += body("b", dim, 3, other, start(tied ? 0.0 : 0.002, 0.0), "face: {side: left" + tie + "}");
+  text += fmt::format("interfaces: {{i: {{sides: [a.face, b.face], {}: {{}}}}}}\n",
+                      tied ? "tied" : "contact");
+  // How unlike steps and a plastic start treat energy has tests of its own.
+  return run_document(Document::from_text("test", text + "schwarz: {energy_guard: 10.0}\n"));
+}
+
+struct Kind {
+  int dim;
+  bool tied;
+};
+
+class MomentumOfPairs : public testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(
+    Joints, MomentumOfPairs,
+    testing::Values(Kind{1, true}, Kind{1, false}, Kind{2, true}, Kind{2, false}, Kind{3, true},
+                    Kind{3, false}),
+    [](const auto& c) {
+      return fmt::format("{}d_{}", c.param.dim, c.param.tied ? "tied" : "contact");
+    });
+
+TEST_P(MomentumOfPairs, IsExactForAllSchemesAndSteps) {
+  const auto& [dim, tied] = GetParam();
+  for (const Steps& steps :
+       {Steps{0.0125, 0.0125, 0.025}, {0.0125, 0.05, 0.05}, {0.015, 0.035, 0.105}}) {
+    for (const std::string& one : schemes(steps.one)) {
+      for (const std::string& other : schemes(steps.other)) {
+        if (steps.one == steps.other && one > other) continue;  // seen from the other side
+        SCOPED_TRACE(one + " and " + other);
+        const auto result = run(dim, tied, steps, one, other);
+        ASSERT_TRUE(result->completed());
+        EXPECT_GT(result->velocity(1), 0.1 * speed) << "nothing has passed";
+        EXPECT_LE(result->measure("momentum.total"), rounding);
+      }
+    }
+  }
+}
+
+/// A body that is tied on one side and hit on the other.
+TEST(MomentumOfPairs, IsExactWhereAJointAndAContactMeet) {
+  const Steps steps{0.0125, 0.025, 0.05};
+  for (const std::string& one : schemes(steps.one)) {
+    for (const std::string& other : schemes(steps.other)) {
+      SCOPED_TRACE(one + " and " + other);
+      std::string text =
+          "meta: {title: test}\ntime: {begin: 0.0, end: 3.0, window: 0.05}\nbodies:\n";
+      text += body("a", 2, 2, one, "position: [0.0, 0.0]", "face: {side: right}");
+      text += body("b", 2, 2, other, "position: [1.0, 0.0]",
+                   "face: {side: left}, end: {side: right}");
+      text += body("c", 2, 3, one, "position: [2.001, 0.0], velocity: [-0.01, 0.0]",
+                   "face: {side: left}");
+      text +=
+          "interfaces:\n  joint: {sides: [a.face, b.face], tied: {}}\n"
+          "  hit: {sides: [b.end, c.face], contact: {}}\nschwarz: {energy_guard: 10.0}\n";
+      const auto result = run_document(Document::from_text("test", text));
+      ASSERT_TRUE(result->completed());
+      EXPECT_LE(result->measure("momentum.total"), rounding);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace abut
