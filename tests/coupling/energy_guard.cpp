@@ -166,8 +166,6 @@ TEST(EnergyGuard, NamesTheRemedyOfWhatGains) {
   bars.bars[1].integrator = explicit_scheme(5.0e-7);
   bars.window = 1.0e-5;
   EXPECT_EQ(words(run(bars)), "; give smaller steps");
-  for (BarText& bar : bars.bars) bar.layer = "kick: {}";
-  EXPECT_EQ(words(run(bars)), "; give smaller steps, or contact_layer: massless");
   const auto square = [](const char* name, double x, double v, const char* side) {
     return SolidText{.name = name,
                      .mesh = "rectangle: {lengths: [0.5, 0.5], elements: [4, 4]}",
