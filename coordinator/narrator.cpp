@@ -143,7 +143,7 @@ void Narrator::never_met(const std::string& name, double time) {
 namespace {
 
 /// [rad] Facets that meet at more are those of an edge, at less those of a round surface.
-constexpr double edge_angle = 0.7, flat_angle = 1.0e-6;
+constexpr double edge_angle = 0.9, flat_angle = 1.0e-6;
 
 /// Facets of a mesh that stand for something round: they move by corners, METHOD [M.103].
 bool stands_for_round(const PortGeometry& geometry) {

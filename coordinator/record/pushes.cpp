@@ -30,7 +30,7 @@ std::vector<Pushes::Push> Pushes::contacts(double negligible) const {
     const double apart = all.empty() ? 0.0 : push.begin - all.back().end;
     const double missing = apart * std::min(force, push.force());
     force = push.force();
-    if (!all.empty() && (apart < together_ || missing < negligible)) {
+    if (!all.empty() && (apart < together_ || (apart < 2.0 * together_ && missing < negligible))) {
       all.back().end = push.end;
       all.back().impulse += push.impulse;
     } else {

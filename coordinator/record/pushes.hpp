@@ -7,8 +7,8 @@ namespace abut {
 /// Contacts as the force tells them: it goes from nothing to something and back. Judged on
 /// impulses, which both sides have alike: whose substeps tell the force, and what was tried to find
 /// it, makes no difference. Two pushes are one contact where the force is missing for less than
-/// `together`, or for so short a time that what is missing is less than a hundredth of the largest
-/// impulse; a contact of less than that is a touch of what vibrates.
+/// `together`, or for less than twice that and by less than a hundredth of the largest impulse; a
+/// contact of less than that impulse is a touch of what vibrates.
 class Pushes {
  public:
   /// `together` [s]; 0: every end may count.

@@ -69,9 +69,11 @@ TEST(ClosingSpeeds, AreAlongTheNormal) {
               return event.kind == RunEvent::Kind::contact_closed;
             });
             ASSERT_NE(closed, run->events.end());
-            // Bodies come as they started, to rounding; a corner is found by facets that differ
-            // from the plane only where friction is told by them.
-            EXPECT_NEAR(closed->values.at("closing_speed"), 0.1, 1.0e-6);
+            // Bodies come as they started, to rounding. Facets that were pressed for a substep lean
+            // by 0.1 m/s x 1e-4 s over their length of 0.05 m, and what slides along them closes.
+            const double lean = 0.1 * 1.0e-4 / 0.05;
+            EXPECT_NEAR(closed->values.at("closing_speed"), 0.1, lean * sliding + 1.0e-6);
+            if (sliding > 0.0) continue;
             EXPECT_NE(closed->text.find("closes at 0.1 m/s"), std::string::npos) << closed->text;
           }
         }

@@ -349,6 +349,14 @@ TEST(SplitBodies, WhatCannotBeDividedIsRefusedByName) {
   };
   expect(said("", "", "disk"), "has no body disk. Choose one of plate.");
   expect(said("initial: {", "initial: {adjust: true, "), "moves nodes of the whole body");
+  std::string still = text;
+  const std::size_t start = still.find(", velocity_field");
+  still.erase(start, still.find('}', start) - start);
+  still.replace(still.find("newmark"), 7, "quasi_static");
+  still += "contact: {everything: {}}\n";
+  const Document touching = written(folder.path(), still);
+  expect(refusal([&] { split(touching, 2, folder.path() / "out"); }),
+         "bodies.plate.ports.corner: may touch another body");
   expect(said("  plate:",
               "  plate_1:\n    model: {rigid_tool: {dimension: 2, mesh: {disk: "
               "{radius: 1.0, core: 2, layers: 1}}}}\n    ports: {a: {side: mantle}}\n"

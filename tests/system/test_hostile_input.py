@@ -88,9 +88,9 @@ class HostileInput(SystemTest):
 
     def test_more_modes_than_there_are_are_refused_before_any_is_computed(self):
         scene = self.scene(SOLID.replace("fe: {", "modal: {modes: 1000000000, ").replace(
-            "[2, 2, 2]", "[10, 10, 10]"))  # 3993 coordinates: all modes take minutes
+            "[2, 2, 2]", "[10, 10, 10]"))  # 3993 less 6 motions: all take minutes
         self.refused(self.limited(2000, "check", scene),
-                     "1000000000 modes are wanted, but the mesh has 3993")
+                     "1000000000 modes are wanted, but the mesh has 3987")
 
     def test_a_pipe_is_a_scene(self):
         result = subprocess.run(["/bin/sh", "-c", 'cat "$1" | "$0" check /dev/stdin', ABUT,
