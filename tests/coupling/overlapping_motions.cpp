@@ -79,6 +79,32 @@ TEST(OverlappingStatics, AreTheWhole) {
   }
 }
 
+/// In space too: facets warp where contraction is held or sections twist, and nodes on nodes tell
+/// all of it.
+TEST(OverlappingStatics, AreTheWholeInSpace) {
+  for (const char* law : {"linear_elastic", "neo_hookean"}) {
+    for (const char* traction : {"1.0e-2*t, 0.0, 0.0", "0.0, 1.0e-4*t, 0.0",
+                                 "0.0, \"-1.0e-3*t*(z - 0.5)\", \"1.0e-3*t*(y - 0.5)\""}) {
+      for (const int across : {1, 2}) {
+        OverlappingPair pair = in_equilibrium(traction);
+        pair.dim = 3;
+        pair.across = {across, across};
+        pair.overlap = 2.0 / across;
+        pair.poissons_ratio = 0.3;
+        pair.law = law;
+        pair.length = 4.0;
+        const auto whole = pair.run_whole(1.0, 0.5);
+        for (const std::string& tied : {std::string("overlap: {}"), motions}) {
+          pair.tied = tied;
+          // What the tolerance of the sweeps and Newton's method leave.
+          expect_same(*pair.run(1.0, 0.5), *whole, 1.0e-7,
+                      fmt::format("{} {} {} {}", law, traction, across, tied));
+        }
+      }
+    }
+  }
+}
+
 /// Unlike meshes: with forces the pair bends as either mesh would alone, within what meshes differ
 /// by. Motions alone lose some of the moment at the sides: a percent, measured 0.2 and 1.5.
 TEST(OverlappingStatics, OfUnlikeMeshesBendAsEither) {
