@@ -29,6 +29,7 @@ void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
   iterate_ = {grids_[index(joint.kinematic)], rows_.width()};
   window_ = window;
   first_speed_ = -1.0;
+  way_.begin();
   scale_.step = std::min(grids_[0].step, grids_[1].step);
   trial_.resize(0);
   std::array<const Waveform*, 2> looks;
@@ -67,6 +68,28 @@ void Tie::part(const Joint& joint, const std::array<const Waveform*, 2>& motions
   Eigen::VectorXd begin(width);
   part_at(iterate_.steps.begin, joint, motions, begin);
   out.segment(iterate_.at(1), width) -= begin;
+}
+
+/// A body follows where the other one was, so that sides may nearly meet far from where they will:
+/// how each row's own side moved, and by how much it is to move now.
+void Tie::see_way(const Joint& joint, const std::array<const Waveform*, 2>& motions) {
+  Eigen::VectorXd own(iterate_.size()), step(jump_);
+  std::vector<double> u, seen(index(iterate_.width));
+  for (int i = 1; i <= iterate_.steps.count; ++i) {
+    for (const int s : {0, 1}) {
+      const Waveform& motion = *motions[index(s)];
+      u.resize(index(motion.width));
+      motion.interpolate(motion.u, iterate_.steps.time(i), u);
+      apply(rows_.of[index(s)], rows_.dim, u, seen);
+      for (int k = 0; k < iterate_.width; ++k) {
+        if (!rows_.acts(k / rows_.dim, s)) continue;
+        own[iterate_.at(i) + k] = seen[index(k)];
+        if (s == joint.kinematic) step[iterate_.at(i) + k] *= -1.0;
+      }
+    }
+  }
+  if (step.lpNorm<Eigen::Infinity>() <= scale_.roundoff) step.setZero();
+  way_.see(own, step);
 }
 
 /// What forces leave open of dashpots, as if it were motion.
@@ -217,6 +240,7 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   scale_.velocity = std::max(joint.closing_speed, std::min(first_speed_, speed_));
   moved_ = scale_.velocity * scale_.step;
   row_force_ = x.head(iterate_.size()).lpNorm<Eigen::Infinity>();
+  if (rows_.alternating) see_way(joint, motions);
   // Or what the force moves in a step: bodies at rest have no other measure.
   const double force = joint.force_scale > 0.0 ? joint.force_scale : row_force_;
   scale_.velocity = std::max(scale_.velocity, force * compliance_ / scale_.step);
@@ -246,7 +270,9 @@ double Tie::largest_force() const {
 FieldResiduals Tie::measure(const Eigen::Ref<const Eigen::VectorXd>&,
                             const Eigen::Ref<const Eigen::VectorXd>&) const {
   FieldResiduals r;
-  r.displacement = seen(jump_.lpNorm<Eigen::Infinity>());
+  const bool open = open_.size() == jump_.size();
+  r.displacement = seen(open ? (jump_ - open_).lpNorm<Eigen::Infinity>() : missed());
+  if (rows_.alternating) r.displacement = std::max(r.displacement, seen_by_motion(way_.left()));
   r.force = seen(unbalanced_ * compliance_);
   return r;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "coordinator/coupling/remaining_way.hpp"
 #include "coordinator/coupling/tie_rows.hpp"
 #include "coordinator/coupling/transmission.hpp"
 
@@ -72,6 +73,7 @@ class Tie final : public Transmission {
   void part_at(double time, const Joint& joint, const std::array<const Waveform*, 2>& motions,
                Eigen::Ref<Eigen::VectorXd> out) const;
   void damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump) const;
+  void see_way(const Joint& joint, const std::array<const Waveform*, 2>& motions);
 
   Eigen::Index places(int side) const {
     return Eigen::Index{loose_[index(side)]} * grids_[index(side)].count;
@@ -97,7 +99,8 @@ class Tie final : public Transmission {
   IterateGrid iterate_;  // of the force
   Waveform force_;       // of the last sweep, the first guess of the next window
   TimeWindow window_;
-  Eigen::VectorXd trial_, jump_;
+  Eigen::VectorXd trial_, jump_, open_;
+  RemainingWay way_;  // [m] of an alternating answer: how each row's own side moves
   double compliance_ = 1.0;
   double unit_ = 1.0;  // [1/N] of a window's first sweep: secants compare sweeps
   double row_force_ = 0.0;
