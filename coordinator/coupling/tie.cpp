@@ -219,6 +219,7 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   std::array<const Waveform*, 2> motions;
   for (const std::size_t s : {0u, 1u}) {
     motions[s] = &trace_of(bodies, joint.sides[s]);
+  open_.resize(0);
     speed_ = std::max(speed_, largest(motions[s]->v));
     travelled = std::max(travelled, largest(motions[s]->u));
     spacing = std::max(spacing, bodies.port(joint.sides[s]).geometry.spacing);

@@ -61,6 +61,9 @@ class Tie final : public Transmission {
   double speed() const { return speed_; }
   /// A distance [m] as the tolerance sees it; and by what the sides move alone, where forces that
   /// answer nothing grow without end.
+  /// Of the latest sweep: this part [m] of its jumps, which no force answers, stays, and is not
+  /// measured.
+  void leave_open(const Eigen::VectorXd& rest) { open_ = rest; }
   double seen(double distance) const;
   double seen_by_motion(double distance) const;
   double missed() const { return jump_.size() > 0 ? jump_.lpNorm<Eigen::Infinity>() : 0.0; }

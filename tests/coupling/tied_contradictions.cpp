@@ -1,6 +1,7 @@
 // Goal: ties that ask for what cannot be are refused by name, whatever gives the motions and
 // however bodies step; ties that say the same twice go on. Oracles: the motions that are given.
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -153,6 +154,42 @@ TEST(TiedContradictions, GivenMotionsThatAgreeGoOn) {
         run(body("a", 0.0, "") + square("p", 1.0, "", moves) + square("q", 1.0, "", moves),
             {"a.right, p.left", "a.right, q.left"}, way.more);
     EXPECT_TRUE(twice->completed());
+/// Two blocks side by side, both moved along an edge of the joint by what the scene writes.
+std::string moved_along(const std::array<int, 2>& cells, const std::string& way,
+                        const std::string& other, const std::string& integrator) {
+  std::string text;
+  for (const std::size_t k : {0u, 1u})
+    text += fmt::format(
+        "  {}:\n    model: {{fe: {{dimension: 3, mesh: {{{}}}}}}}\n    material: {{{}}}\n"
+        "    integrator: {{{}}}\n    initial: {{position: [{}, 0, 0]}}\n"
+        "    constraints: {{base: {{on: bottom, x: 0, z: 0, y: \"{}\"}}}}\n"
+        "    ports: {{{}}}\n",
+        k == 0 ? "a" : "b", block_mesh({0.5, 0.5, 1.0}, {2, 2, cells[k]}),
+        unit_law("linear_elastic", 0.3), integrator, k == 0 ? "0" : "0.5", k == 0 ? way : other,
+        k == 0 ? "right: {side: right}" : "left: {side: left}");
+  return text;
+}
+
+/// One motion that bends between the nodes of unlike meshes is no contradiction; a straight one
+/// that differs is, however little, and so is one that differs by more than meshes leave.
+TEST(TiedContradictions, MeshesThatFollowOneCurveGoOn) {
+  const std::string curve = "0.01*t*sin(3*z)", more = "0.01*t*sin(3*z) + 0.001*t";
+  for (const char* integrator :
+       {"quasi_static: {step: 0.1}", "newmark: {step: 0.02}", "central_difference: {step: 0.01}"}) {
+    for (const std::array<int, 2>& cells :
+         {std::array{3, 4}, {4, 3}, {6, 8}, {12, 16}, {24, 16}, {7, 11}}) {
+      SCOPED_TRACE(fmt::format("{} {}:{}", integrator, cells[0], cells[1]));
+      const std::vector<std::string> tie = {"a.right, b.left"};
+      EXPECT_TRUE(run(moved_along(cells, curve, curve, integrator), tie)->completed());
+      expect_refused(*run(moved_along(cells, "0.0001*t*z", "0.0001*t", integrator), tie),
+                     {"interfaces.tie0", "bodies a, b"});
+      if (cells[0] < 6) continue;  // these leave as much
+      expect_refused(*run(moved_along(cells, curve, more, integrator), tie),
+                     {"interfaces.tie0", "bodies a, b"});
+    }
+  }
+}
+
   }
 }
 
