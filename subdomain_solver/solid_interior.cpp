@@ -67,7 +67,9 @@ void SolidInterior::find_contacts() {
   if (points.empty()) return;
   contact_ = std::make_unique<PointContact>(points, description_.step, description_.name);
   port_forces_->keep_swings();
-  description_.can.obstacle = points.size() == ports_.size();
+  // Joined ports meet none.
+  const std::size_t joined = index(std::ranges::count(joined_, char{1}));
+  description_.can.obstacle = points.size() + joined == ports_.size();
   description_.can.yielding = description_.can.obstacle;
 }
 
