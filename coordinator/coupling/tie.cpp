@@ -106,17 +106,10 @@ void Tie::damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump
 
 std::vector<double> Tie::jump(const Joint& joint, const Bodies& bodies) const {
   std::vector<double> out(index(rows_.width()), 0.0), seen(out.size());
-  const double step = bodies.describe(joint.kinematic_side().body).step;
-  bool inert = true;  // what has no inertia follows at once
-  for (const Side& side : joint.sides) inert = inert && !bodies.describe(side.body).quasi_static;
-  const double half = inert ? 0.5 * (step > 0.0 ? step : bodies.window()) : 0.0;
   for (const std::size_t s : {0u, 1u}) {
     const Waveform& trace = trace_of(bodies, joint.sides[s]);
-    for (const auto& [field, factor] : {std::pair(&trace.u, 1.0), std::pair(&trace.v, half)}) {
-      apply(rows_.of[s], rows_.dim, row(trace, *field, trace.size() - 1), seen);
-      for (std::size_t k = 0; k < out.size(); ++k)
-        out[k] += s == 0 ? factor * seen[k] : -factor * seen[k];
-    }
+    apply(rows_.of[s], rows_.dim, row(trace, trace.u, trace.size() - 1), seen);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] += s == 0 ? seen[k] : -seen[k];
   }
   return out;
 }
@@ -219,7 +212,6 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   std::array<const Waveform*, 2> motions;
   for (const std::size_t s : {0u, 1u}) {
     motions[s] = &trace_of(bodies, joint.sides[s]);
-  open_.resize(0);
     speed_ = std::max(speed_, largest(motions[s]->v));
     travelled = std::max(travelled, largest(motions[s]->u));
     spacing = std::max(spacing, bodies.port(joint.sides[s]).geometry.spacing);
@@ -227,6 +219,7 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   const bool first = first_speed_ < 0.0;
   if (first) first_speed_ = speed_;
   part(joint, motions, jump_);
+  open_.resize(0);
   damp(x, jump_);
   g.head(iterate_.size()) = x.head(iterate_.size()) - jump_ / compliance_;
   unbalanced_ = 0.0;
@@ -241,13 +234,13 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   scale_.velocity = std::max(joint.closing_speed, std::min(first_speed_, speed_));
   moved_ = scale_.velocity * scale_.step;
   row_force_ = x.head(iterate_.size()).lpNorm<Eigen::Infinity>();
-  if (rows_.alternating) see_way(joint, motions);
   // Or what the force moves in a step: bodies at rest have no other measure.
   const double force = joint.force_scale > 0.0 ? joint.force_scale : row_force_;
   scale_.velocity = std::max(scale_.velocity, force * compliance_ / scale_.step);
   // Laws of finite strain know strains to the round-off of 1: ends that no wave has reached yet
   // answer a force with noise.
   scale_.roundoff = roundoff_of(travelled, spacing);
+  if (rows_.alternating) see_way(joint, motions);
   if (!first) return;
   const double unit = scale_.velocity * scale_.step / compliance_;
   unit_ = unit > 0.0 ? 1.0 / unit : 1.0;
