@@ -50,12 +50,23 @@ void ContactEvents::start() {
   for (Joint& joint : joints_) {
     if (!joint.tied()) continue;
     joint.press();
-    if (const Tie* tie = joint.how->tie()) {
-      joint.jump = tie->jump(joint, bodies_);
-      continue;
-    }
-    if (has_shared_node(joint, bodies_))  // which has one velocity
-      joint.impulse = closing_impulse(joint, bodies_);
+    if (joint.how->tie() == nullptr && has_shared_node(joint, bodies_)) open(joint);
+  }
+}
+
+/// A shared node has one velocity. Where it is kicked, it has that half a step before the begin
+/// too: both ends know nothing of each other's force there, and their energies do not hold it
+/// [M.123].
+void ContactEvents::open(Joint& joint) {
+  const double closing = closing_impulse(joint, bodies_), kick = opening_kick(joint, bodies_);
+  for (const Side& side : joint.sides) bodies_.strike_energy(side, closing, kick);
+  joint.impulse = closing + kick;
+}
+
+void ContactEvents::join() {
+  for (Joint& joint : joints_) {
+    const Tie* tie = joint.how == nullptr ? nullptr : joint.how->tie();
+    if (tie != nullptr) joint.jump = tie->jump(joint, bodies_);
   }
 }
 

@@ -28,6 +28,8 @@ class ContactEvents {
 
   /// Before the first window: settles the roles that are not open, and closes tied joints.
   void start();
+  /// After it, when velocities of tied surfaces are one: from where these go on.
+  void join();
   /// Before a window: the published criteria of joints that decide there.
   void begin(const TimeWindow& window);
 
@@ -59,6 +61,7 @@ class ContactEvents {
   void state(Archive& archive);
 
  private:
+  void open(Joint& joint);
   void engage(Joint& joint, double speed, double time);
   void approach(Joint& joint, const TimeWindow& window);
   void settle_surfaces(Joint& joint);

@@ -17,6 +17,7 @@
 #include "coordinator/coupling/horizon.hpp"
 #include "coordinator/coupling/tie.hpp"
 #include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/velocity_start.hpp"
 #include "coordinator/flight_work.hpp"
 #include "coordinator/record/validity_notes.hpp"
 
@@ -98,6 +99,7 @@ void Controller::start() {
                       "material: energy.total and momentum.total count it twice there");
   }
   bodies_.want({.a = accelerations, .points = {}});
+  want_opening_accelerations(true);
   const TimeWindow instant{0, clock_.time(), clock_.time()};
   bodies_.save_all();
   prepare(instant, 1, Sampling::substeps);
@@ -105,9 +107,34 @@ void Controller::start() {
     return fail(failed->time, failed->detail);
   events_.start();
   for (const Joint& joint : joints_) narrator_.found(joint, clock_.time());
-  watch_energy(guard_.look(bodies_.responses()));
+  watch_energy(guard_.look(bodies_.responses(), bodies_.struck()));
   fill_reports(true);
   narrator_.window({instant, bodies_.responses(), reports_, 0, {}});
+  want_opening_accelerations(accelerations);
+  unite_start();
+}
+
+/// Of ends of bars that share a node.
+void Controller::want_opening_accelerations(bool wanted) {
+  for (const Joint& joint : joints_) {
+    if (!joint.tied() || joint.how->tie() != nullptr) continue;
+    for (const Side& side : joint.sides)
+      bodies_.request(side.body).want[index(side.port)].a = wanted;
+  }
+}
+
+/// Records have told of the start as the scene gives it.
+void Controller::unite_start() {
+  std::vector<UnlikeStart> unlike;
+  if (std::optional<Failed> failed = unite_velocities(joints_, clock_.time(), bodies_, unlike))
+    return fail(failed->time, failed->detail);
+  for (const UnlikeStart& start : unlike)
+    narrator_.warning(clock_.time(), start.joint->name,
+                      fmt::format("velocities of its sides differ by {:.3g} m/s at the start, and "
+                                  "body '{}' takes no impulses that would make them one: the sides "
+                                  "go on swinging against each other; give both the same",
+                                  start.speed, start.body));
+  events_.join();
 }
 
 /// Pairs that may meet within the next windows are watched one by one from now on.

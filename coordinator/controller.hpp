@@ -64,6 +64,8 @@ class Controller {
   };
 
   void start();
+  void want_opening_accelerations(bool wanted);
+  void unite_start();
   bool running() const;
   void join_near();
   void join(std::span<const PortPair> pairs);

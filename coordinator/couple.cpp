@@ -17,6 +17,7 @@
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/tie.hpp"
 #include "coordinator/coupling/transmission.hpp"
+#include "coordinator/shared_nodes.hpp"
 #include "coordinator/surface_start.hpp"
 #include "coordinator/tied_surfaces.hpp"
 
@@ -52,16 +53,6 @@ void require(bool able, const Description& body, const std::string& where, const
   if (!able) {
     throw InputError(fmt::format("body '{}' ({}) {}", body.name, body.model, what), where, remedy);
   }
-}
-
-/// Whether ends of bars share a node and step apart: joined as surfaces are, by a force that is
-/// constant in steps.
-bool steps_apart(const std::array<Side, 2>& sides, const Bodies& bodies) {
-  const Description& a = bodies.describe(sides[0].body);
-  const Description& b = bodies.describe(sides[1].body);
-  const bool shared = bodies.port(sides[0]).tied && bodies.port(sides[1]).tied;
-  const bool alike = a.step == b.step && std::isinf(a.stable_step) == std::isinf(b.stable_step);
-  return shared && !alike && !std::isinf(a.mass) && !std::isinf(b.mass);
 }
 
 /// A node whose mass both sides share has one motion only where both step alike: at other steps
@@ -139,8 +130,7 @@ void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
             "joins '{}' ({}) and '{}' ({}), of which neither can follow the other's surface "
             "yet",
             one.name, one.model, other.name, other.model),
-        where,
-        "Make one side a bar of model fe whose ports are not tied.");
+        where, "Make one side a bar of model fe whose ports are not tied.");
   }
   joint.role_fixed = how.kinematic != "auto";
   if (joint.role_fixed) {
@@ -312,13 +302,21 @@ InterfaceSpec spec_of(const Scene& scene, const PortPair& pair, const Bodies& bo
 
 std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
   std::vector<Joint> joints;
+  std::vector<std::array<Side, 2>> pairs, tied;
   for (const auto& [name, spec] : scene.interfaces) {
     const std::string where = "interfaces." + name + ".sides";
-    const std::array<Side, 2> sides = {find_side(spec.sides[0], bodies, where),
-                                       find_side(spec.sides[1], bodies, where)};
+    pairs.push_back(
+        {find_side(spec.sides[0], bodies, where), find_side(spec.sides[1], bodies, where)});
+    if (spec.tied) tied.push_back(pairs.back());
+  }
+  const std::vector<bool> apart = step_apart(tied, bodies);
+  std::size_t ties = 0;
+  for (const auto& [name, spec] : scene.interfaces) {
+    const std::array<Side, 2>& sides = pairs[joints.size()];
     const bool surfaces = bodies.port(sides[0]).geometry.dim > 1 && spec.contact;
     const int number = static_cast<int>(joints.size());
-    if (spec.tied && (bodies.port(sides[0]).geometry.dim > 1 || steps_apart(sides, bodies))) {
+    const bool by_force = spec.tied && apart[ties++];
+    if (spec.tied && (bodies.port(sides[0]).geometry.dim > 1 || by_force)) {
       joints.push_back(make_tied_joint(spec, sides, bodies));
       joints.back().interface = number;
       continue;

@@ -33,11 +33,12 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
     own += here;
     motion += energy.kinetic + energy.stored;
     Account& account = bodies_[b];
-    if (!begun_) account.first = here;
+    const double ahead = struck.empty() ? 0.0 : struck[b];
+    if (!begun_) account.first = here - ahead;
     if (begun_) {
       for (const PortResponse& port : responses[b].ports) account.ports += port.work;
     }
-    account.change = here - account.first - account.ports - (struck.empty() ? 0.0 : struck[b]);
+    account.change = here - account.first - account.ports - ahead;
   }
   const double rounded = rounding(responses);
   if (!std::exchange(begun_, true)) {

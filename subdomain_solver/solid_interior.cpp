@@ -45,6 +45,7 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
     for (std::size_t p = 0; p < ports_.size(); ++p)
       if (joined_[p]) port_forces_->join(p);
     if (joins_) description_.can.kernel = true;
+    description_.can.impulse = joins_ && !description_.quasi_static;
     places_.assign(port_map_->values(), 0.0);
     before_ = now_ = seen_.u = state_.port_force = places_;
     change_.setZero(parts_.problem->model->dofs());
@@ -67,7 +68,9 @@ void SolidInterior::find_contacts() {
   if (points.empty()) return;
   contact_ = std::make_unique<PointContact>(points, description_.step, description_.name);
   port_forces_->keep_swings();
-  description_.can.obstacle = points.size() == ports_.size();
+  // Joined ports meet none.
+  const std::size_t joined = index(std::ranges::count(joined_, char{1}));
+  description_.can.obstacle = points.size() + joined == ports_.size();
   description_.can.yielding = description_.can.obstacle;
 }
 
@@ -190,6 +193,23 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
   }
   if (port_map_) port_map_->displacement(state_.motion.q, places_);
   return std::nullopt;
+}
+
+/// Impulses on joined ports make velocities one at the start  [M.122].
+void SolidInterior::set_off(const Window& window) {
+  if (!description_.can.impulse) return;
+  const std::vector<BoundaryData>& boundary = window.request.boundary;
+  if (std::ranges::all_of(boundary, [](const BoundaryData& b) { return b.impulse.empty(); }))
+    return;
+  before_.assign(port_map_->values(), 0.0);
+  for (std::size_t p = 0; p < boundary.size(); ++p)
+    std::ranges::copy(boundary[p].impulse,
+                      before_.begin() + static_cast<std::ptrdiff_t>(port_map_->first(p)));
+  change_.setZero(parts_.problem->model->dofs());
+  port_map_->lift(state_.motion.q, before_, change_);
+  parts_.scheme.integrator->strike(state_.motion, change_);
+  for (const Prescribed& p : parts_.problem->supports)  // they withstand it, and go on as told
+    state_.motion.external_work -= change_(p.dof) * state_.motion.v[index(p.dof)];
 }
 
 void SolidInterior::restored() {
@@ -400,8 +420,7 @@ std::vector<double> SolidInterior::measure() {
   std::vector<double> sums;
   reactions(sums);
   for (const std::vector<double>& more :
-       {reaction_measures(description_.dim, sums),
-        parts_.scheme.integrator->measure(state_.motion),
+       {reaction_measures(description_.dim, sums), parts_.scheme.integrator->measure(state_.motion),
         validity_measures(*parts_.model, parts_.deforms, u_, state_.motion.stored, state_.turned)})
     out.insert(out.end(), more.begin(), more.end());
   if (contact_) touch_measures(touched_, *contact_, state_.port_force, places_, out);
@@ -428,8 +447,7 @@ std::vector<FieldValues> SolidInterior::fields() {
 
 FieldValues SolidInterior::nodal_reactions() {
   Vector forces = Vector::Zero(static_cast<Eigen::Index>(nodal_values()));
-  if (state_.begun)
-    parts_.reactions->forces(state_.motion, state_.time, forces_on_ports(), forces);
+  if (state_.begun) parts_.reactions->forces(state_.motion, state_.time, forces_on_ports(), forces);
   parts_.model->to_space({forces.data(), nodal_values()});
   return in_space(span_of(forces), description_.dim);
 }

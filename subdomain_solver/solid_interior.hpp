@@ -62,6 +62,7 @@ class SolidInterior final : public Interior {
   std::size_t coordinates() const override { return state_.motion.q.size(); }
   void restored() override;
   std::optional<Failed> begin(const Window& window) override;
+  void set_off(const Window& window) override;
   std::optional<Failed> step(const Window& window, int i) override;
   bool peek(const Window& window, std::vector<double>& u) override;
   bool looks_ahead() const override;

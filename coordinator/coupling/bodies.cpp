@@ -183,6 +183,15 @@ void Bodies::strike_record(const Side& side, double impulse) {
   if (reply.recoil->mobility > 0.0) record.momentum[0] -= impulse * port(side).geometry.normals[0];
 }
 
+void Bodies::strike_energy(const Side& side, double earlier, double impulse) {
+  Response& response = responses_[index(side.body)];
+  const std::optional<Recoil>& recoil = response.ports[index(side.port)].recoil;
+  if (!recoil) return;
+  const double velocity = recoil->velocity - (earlier + 0.5 * impulse) * recoil->mobility;
+  response.records.back().energy.kinetic -= impulse * velocity;
+  struck_[index(side.body)] -= impulse * velocity;
+}
+
 PortKernel& Bodies::cached(Kernels& kernels, int body, int port) {
   auto same = [body, port](const CachedKernel& k) { return k.body == body && k.port == port; };
   const auto found = std::ranges::find_if(kernels, same);

@@ -67,6 +67,8 @@ class Bodies {
   /// An impulse [N s] into a port at the end of the last window, with which the next one begins:
   /// its body's last record tells of the state after it.
   void strike_record(const Side& side, double impulse);
+  /// The same of the energy alone, of an impulse that comes after another one, which is not told.
+  void strike_energy(const Side& side, double earlier, double impulse);
   /// [J] by body, of such impulses: in the last records, and in the ports' work of the next window.
   std::span<const double> struck() const { return struck_; }
 
@@ -90,9 +92,9 @@ class Bodies {
   /// its normal at the begin of a window, of a linear body. Precondition: all stand as saved.
   std::vector<double> impulse_response(const Side& side, const TimeWindow& window);
 
-  double shortest_step() const;  // [s] of all bodies, at most a window
+  double shortest_step() const;              // [s] of all bodies, at most a window
   double window() const { return window_; }  // [s] a whole one
-  double longest_step() const;   // [s] of those that have one; a window where none has
+  double longest_step() const;               // [s] of those that have one; a window where none has
   std::int64_t exchanges() const { return exchanges_; }
   const std::vector<double>& compute_seconds() const { return compute_seconds_; }
   double overhead_median() const;  // [s] per exchange: wall minus compute

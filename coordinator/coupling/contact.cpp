@@ -18,13 +18,12 @@ double displacement_at(const Waveform& trace, double time) {
 
 double gap_at(const Joint& joint, const Bodies& bodies, double time) {
   return joint.gap(displacement_at(trace_of(bodies, joint.sides[0]), time),
-                       displacement_at(trace_of(bodies, joint.sides[1]), time));
+                   displacement_at(trace_of(bodies, joint.sides[1]), time));
 }
 
 }  // namespace
 
-std::optional<Touch> first_overlap(const Joint& joint, const Bodies& bodies,
-                                   double negligible) {
+std::optional<Touch> first_overlap(const Joint& joint, const Bodies& bodies, double negligible) {
   const Waveform& t0 = trace_of(bodies, joint.sides[0]);
   const Waveform& t1 = trace_of(bodies, joint.sides[1]);
   const Waveform& finer = t0.size() >= t1.size() ? t0 : t1;
@@ -159,8 +158,7 @@ double peak_force(const Joint& joint, const Bodies& bodies) {
     for (std::size_t i = 0; i < force.size(); ++i) peak = std::max(peak, resultant(force, i, dim));
     return peak;
   }
-  for (double f : trace_of(bodies, joint.kinematic_side()).f)
-    peak = std::max(peak, std::abs(f));
+  for (double f : trace_of(bodies, joint.kinematic_side()).f) peak = std::max(peak, std::abs(f));
   return peak;
 }
 
@@ -183,6 +181,18 @@ std::optional<Recoil> joint_recoil(const Joint& joint, const Bodies& bodies) {
 double closing_impulse(const Joint& joint, const Bodies& bodies) {
   const std::optional<Recoil> recoil = joint_recoil(joint, bodies);
   return recoil ? recoil->velocity / recoil->mobility : 0.0;
+}
+
+double opening_kick(const Joint& joint, const Bodies& bodies) {
+  const std::optional<Recoil> recoil = joint_recoil(joint, bodies);
+  double step = 0.0, closing = 0.0;
+  for (const int s : {0, 1}) {
+    const Side& side = joint.sides[index(s)];
+    const Waveform& trace = trace_of(bodies, side);
+    if (trace.support == ForceSupport::step) step = bodies.describe(side.body).step;
+    if (!trace.a.empty()) closing += joint.normal_of(s) * trace.a.back();
+  }
+  return recoil ? -0.5 * step * closing / recoil->mobility : 0.0;
 }
 
 double release_impulse(const Joint& joint, const Bodies& bodies) {

@@ -18,8 +18,7 @@ struct Touch {
 
 /// Where an open interface overlaps by more than `negligible` [m] for the first time. Looks at
 /// every substep of both bodies after the window's begin, with motion linear between substeps.
-std::optional<Touch> first_overlap(const Joint& joint, const Bodies& bodies,
-                                   double negligible);
+std::optional<Touch> first_overlap(const Joint& joint, const Bodies& bodies, double negligible);
 
 /// One level of time of an interface in contact.
 struct ContactLevel {
@@ -84,6 +83,9 @@ double contact_work(const Joint& joint, const Bodies& bodies);
 /// massive contact nodes alone, exact in momentum; negative where they part. 0 when a side takes no
 /// impulses.
 double closing_impulse(const Joint& joint, const Bodies& bodies);
+/// [N s] By kicks a step's force acts at its begin as a whole: half the first one belongs to the
+/// step that would lie before the begin. Of what the bodies told of the begin, with accelerations.
+double opening_kick(const Joint& joint, const Bodies& bodies);
 
 /// Impulse [N s] that gives back, when massive contact nodes part that took kicks, what contact has
 /// taken from the bodies [M.13]. 0 when a side takes no impulses.

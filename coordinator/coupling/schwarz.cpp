@@ -131,6 +131,16 @@ double Schwarz::see_images(std::span<const Joint> joints, const Bodies& bodies,
   return mismatch;
 }
 
+/// Of the last images.
+FieldResiduals Schwarz::residual_of(std::span<const Joint> joints) {
+  FieldResiduals residual;
+  for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
+    const Transmission& how = *joints[index(layout_.joints[i])].how;
+    residual.include(how.measure(part(x_, i), part(g_, i)), how.stray());
+  }
+  return residual;
+}
+
 /// The iterate's last step, measured as its residual is.
 double Schwarz::step_from(const Eigen::VectorXd& before, std::span<const Joint> joints) {
   double most = 0.0;
@@ -223,7 +233,13 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
     const double before =
         std::exchange(course.mismatch, see_images(joints, bodies, report.residual));
     report.converged = report.residual.largest() <= options_.tolerance;
-    report.contradiction = ties_->contradiction(g_ - x_, options_.tolerance, window.end, bodies);
+    bool stays_open = false;
+    report.contradiction =
+        ties_->contradiction(g_ - x_, options_.tolerance, window.end, bodies, stays_open);
+    if (stays_open) {
+      report.residual = residual_of(joints);
+      report.converged = report.residual.largest() <= options_.tolerance;
+    }
     if (!report.contradiction.empty()) {
       report.converged = false;
       return report;

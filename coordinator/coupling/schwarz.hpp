@@ -22,8 +22,8 @@ namespace abut {
 
 struct SchwarzReport {
   bool converged = false;
-  int iterations = 0;       // sweeps: every body of the island advanced once in each
-  FieldResiduals residual;  // of the last sweep
+  int iterations = 0;         // sweeps: every body of the island advanced once in each
+  FieldResiduals residual;    // of the last sweep
   std::string contradiction;  // of ties, in words for people: no sweep makes it converge
 };
 
@@ -70,6 +70,7 @@ class Schwarz {
   /// residual, and the largest mismatch by units that only grow in a window, so that sweeps can be
   /// compared.
   double see_images(std::span<const Joint> joints, const Bodies& bodies, FieldResiduals& residual);
+  FieldResiduals residual_of(std::span<const Joint> joints);
   bool projected(std::span<const Joint> joints) const;
   /// How the iteration of a window goes.
   struct Course {

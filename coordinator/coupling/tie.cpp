@@ -29,6 +29,7 @@ void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
   iterate_ = {grids_[index(joint.kinematic)], rows_.width()};
   window_ = window;
   first_speed_ = -1.0;
+  way_.begin();
   scale_.step = std::min(grids_[0].step, grids_[1].step);
   trial_.resize(0);
   std::array<const Waveform*, 2> looks;
@@ -69,6 +70,28 @@ void Tie::part(const Joint& joint, const std::array<const Waveform*, 2>& motions
   out.segment(iterate_.at(1), width) -= begin;
 }
 
+/// A body follows where the other one was, so that sides may nearly meet far from where they will:
+/// how each row's own side moved, and by how much it is to move now.
+void Tie::see_way(const Joint& joint, const std::array<const Waveform*, 2>& motions) {
+  Eigen::VectorXd own(iterate_.size()), step(jump_);
+  std::vector<double> u, seen(index(iterate_.width));
+  for (int i = 1; i <= iterate_.steps.count; ++i) {
+    for (const int s : {0, 1}) {
+      const Waveform& motion = *motions[index(s)];
+      u.resize(index(motion.width));
+      motion.interpolate(motion.u, iterate_.steps.time(i), u);
+      apply(rows_.of[index(s)], rows_.dim, u, seen);
+      for (int k = 0; k < iterate_.width; ++k) {
+        if (!rows_.acts(k / rows_.dim, s)) continue;
+        own[iterate_.at(i) + k] = seen[index(k)];
+        if (s == joint.kinematic) step[iterate_.at(i) + k] *= -1.0;
+      }
+    }
+  }
+  if (step.lpNorm<Eigen::Infinity>() <= scale_.roundoff) step.setZero();
+  way_.see(own, step);
+}
+
 /// What forces leave open of dashpots, as if it were motion.
 void Tie::damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump) const {
   if (rows_.dashpots.empty()) return;
@@ -83,17 +106,10 @@ void Tie::damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump
 
 std::vector<double> Tie::jump(const Joint& joint, const Bodies& bodies) const {
   std::vector<double> out(index(rows_.width()), 0.0), seen(out.size());
-  const double step = bodies.describe(joint.kinematic_side().body).step;
-  bool inert = true;  // what has no inertia follows at once
-  for (const Side& side : joint.sides) inert = inert && !bodies.describe(side.body).quasi_static;
-  const double half = inert ? 0.5 * (step > 0.0 ? step : bodies.window()) : 0.0;
   for (const std::size_t s : {0u, 1u}) {
     const Waveform& trace = trace_of(bodies, joint.sides[s]);
-    for (const auto& [field, factor] : {std::pair(&trace.u, 1.0), std::pair(&trace.v, half)}) {
-      apply(rows_.of[s], rows_.dim, row(trace, *field, trace.size() - 1), seen);
-      for (std::size_t k = 0; k < out.size(); ++k)
-        out[k] += s == 0 ? factor * seen[k] : -factor * seen[k];
-    }
+    apply(rows_.of[s], rows_.dim, row(trace, trace.u, trace.size() - 1), seen);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] += s == 0 ? seen[k] : -seen[k];
   }
   return out;
 }
@@ -203,6 +219,7 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   const bool first = first_speed_ < 0.0;
   if (first) first_speed_ = speed_;
   part(joint, motions, jump_);
+  open_.resize(0);
   damp(x, jump_);
   g.head(iterate_.size()) = x.head(iterate_.size()) - jump_ / compliance_;
   unbalanced_ = 0.0;
@@ -223,6 +240,7 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   // Laws of finite strain know strains to the round-off of 1: ends that no wave has reached yet
   // answer a force with noise.
   scale_.roundoff = roundoff_of(travelled, spacing);
+  if (rows_.alternating) see_way(joint, motions);
   if (!first) return;
   const double unit = scale_.velocity * scale_.step / compliance_;
   unit_ = unit > 0.0 ? 1.0 / unit : 1.0;
@@ -246,7 +264,9 @@ double Tie::largest_force() const {
 FieldResiduals Tie::measure(const Eigen::Ref<const Eigen::VectorXd>&,
                             const Eigen::Ref<const Eigen::VectorXd>&) const {
   FieldResiduals r;
-  r.displacement = seen(jump_.lpNorm<Eigen::Infinity>());
+  const bool open = open_.size() == jump_.size();
+  r.displacement = seen(open ? (jump_ - open_).lpNorm<Eigen::Infinity>() : missed());
+  if (rows_.alternating) r.displacement = std::max(r.displacement, seen_by_motion(way_.left()));
   r.force = seen(unbalanced_ * compliance_);
   return r;
 }

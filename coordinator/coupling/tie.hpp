@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "coordinator/coupling/remaining_way.hpp"
 #include "coordinator/coupling/tie_rows.hpp"
 #include "coordinator/coupling/transmission.hpp"
 
@@ -51,9 +52,7 @@ class Tie final : public Transmission {
   void set_unit(double compliance) { compliance_ = compliance; }
   double unit() const { return compliance_; }
 
-  /// [m] (rows, dim) by which displacements of the sides are to differ for good, from where they
-  /// stand: as they do, and where their velocities differ, as they will when the force of one step
-  /// of the kinematic side has made these one.
+  /// [m] (rows, dim) by which displacements of the sides are to differ for good: as they stand.
   std::vector<double> jump(const Joint& joint, const Bodies& bodies) const;
   /// Of the latest sweep: [m/s] how fast anything on the sides moved, [m] by how much they missed
   /// each other at most, [N] the largest resultant of the forces between them.
@@ -62,6 +61,9 @@ class Tie final : public Transmission {
   /// answer nothing grow without end.
   double seen(double distance) const;
   double seen_by_motion(double distance) const;
+  /// Of the latest sweep: this part [m] of its jumps, which no force answers, stays, and is not
+  /// measured.
+  void leave_open(const Eigen::VectorXd& rest) { open_ = rest; }
   double missed() const { return jump_.size() > 0 ? jump_.lpNorm<Eigen::Infinity>() : 0.0; }
   double largest_force() const;
   double row_force() const { return row_force_; }  // [N] the largest of a row
@@ -71,6 +73,7 @@ class Tie final : public Transmission {
             Eigen::VectorXd& out) const;
   void part_at(double time, const Joint& joint, const std::array<const Waveform*, 2>& motions,
                Eigen::Ref<Eigen::VectorXd> out) const;
+  void see_way(const Joint& joint, const std::array<const Waveform*, 2>& motions);
   void damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump) const;
 
   Eigen::Index places(int side) const {
@@ -97,7 +100,8 @@ class Tie final : public Transmission {
   IterateGrid iterate_;  // of the force
   Waveform force_;       // of the last sweep, the first guess of the next window
   TimeWindow window_;
-  Eigen::VectorXd trial_, jump_;
+  Eigen::VectorXd trial_, jump_, open_;
+  RemainingWay way_;  // [m] of an alternating answer: how each row's own side moves
   double compliance_ = 1.0;
   double unit_ = 1.0;  // [1/N] of a window's first sweep: secants compare sweeps
   double row_force_ = 0.0;

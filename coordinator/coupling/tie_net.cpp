@@ -132,7 +132,8 @@ void TieNet::solve(Eigen::VectorXd& r) const {
 }
 
 std::string TieNet::contradiction(const Eigen::VectorXd& r, double tolerance, double time,
-                                  const Bodies& bodies) const {
+                                  const Bodies& bodies, bool& stays_open) const {
+  stays_open = false;
   if (empty() || !options_.used || alternating_) return {};
   const Eigen::VectorXd jump = jumps(r);
   const bool meet = std::ranges::all_of(layout_.members, [&](const TieLayout::Member& member) {
@@ -144,7 +145,15 @@ std::string TieNet::contradiction(const Eigen::VectorXd& r, double tolerance, do
   if (meet) return {};
   const Eigen::VectorXd rest = kernel_->unanswered(jump);
   if (rest.size() == 0) return {};
-  return find_contradiction(layout_, jump, rest, tolerance, time, bodies);
+  const Unanswered judged = judge_unanswered(layout_, jump, rest, tolerance, time, bodies);
+  stays_open = judged.meshes;
+  for (const TieLayout::Member& member : layout_.members) {
+    if (!stays_open || member.carried >= 0) continue;
+    Eigen::VectorXd own(layout_.values_of(member));
+    layout_.gather(member, rest, own);
+    member.tie->leave_open(-own);  // residuals are what jumps ask for
+  }
+  return judged.contradiction;
 }
 
 }  // namespace abut

@@ -31,9 +31,10 @@ class TieNet {
   /// True: what they say is the derivative at this sweep, better than secants.
   bool renew(Bodies& bodies);
   /// What a residual g - x shows that no forces answer: motions that are given to both sides and
-  /// differ, in words. Empty: the sweep says nothing of the kind, or not yet.
+  /// differ, in words. Empty: the sweep says nothing of the kind, or not yet. What is no more than
+  /// meshes leave of such motions stays open: ties then measure without it.
   std::string contradiction(const Eigen::VectorXd& r, double tolerance, double time,
-                            const Bodies& bodies) const;
+                            const Bodies& bodies, bool& stays_open) const;
   bool empty() const { return layout_.empty(); }
   /// First guesses, where all bodies have told how they would part.
   void predict(Eigen::VectorXd& x) const;

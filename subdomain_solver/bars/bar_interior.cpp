@@ -34,6 +34,9 @@ BarInterior::BarInterior(std::string name, std::unique_ptr<Bar> bar, Scheme sche
   std::fill(state_.v.begin(), state_.v.end(), bar_->data().velocity);
   set_fields(extras);
   describe(std::move(name), ends);
+  for (const End& e : ends)  // held from the begin, which its energy knows
+    if (e.tied && bar_->data().layer[index(e.end)] == ContactLayer::kick)
+      state_.end[index(e.end)].closed = true;
 }
 
 void BarInterior::set_fields(const Extras& extras) {

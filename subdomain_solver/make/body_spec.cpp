@@ -287,7 +287,7 @@ std::string BodySpec::why_general() const {
   if (!is_linear_bar() || std::get<BarMeshSpec>(std::get<FeModelSpec>(model).mesh).grading != 1.0)
     return "";
   if (!constraints.empty()) return "constraints";
-  if (steps_apart) return "a joint of unlike steps";
+  if (steps_apart) return "a row of bars with a joint of unlike steps";
   return has_port_inside() ? "a port inside the bar" : "";
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "base/fields.hpp"
 #include "base/index.hpp"
@@ -75,6 +76,25 @@ bool shares(const Document& scene, const std::string& body, const std::string& p
   return scene.has(path) && read<SharedSpec>(scene, path).tied;
 }
 
+/// Bodies that share the node of a body's port.
+std::vector<std::string> sharers(const Document& scene, const std::string& body,
+                                 const std::string& port) {
+  std::vector<std::string> out;
+  if (!shares(scene, body, port) || !stepping_of(scene, body).known) return out;
+  for (const std::string& name : scene.keys_with("interfaces", "sides", body + "." + port)) {
+    const std::string path = "interfaces." + name;
+    if (!scene.has(path + ".tied")) continue;
+    for (const std::string& side : read<SidesSpec>(scene, path).sides) {
+      const std::size_t dot = side.find('.');
+      if (side == body + "." + port || dot == std::string::npos) continue;
+      const std::string other = side.substr(0, dot);
+      if (stepping_of(scene, other).known && shares(scene, other, side.substr(dot + 1)))
+        out.push_back(other);
+    }
+  }
+  return out;
+}
+
 std::string kinematic_of(const Document& scene, const std::string& interface) {
   const std::string path = interface + ".transmission.unilateral";
   KinematicSpec spec;
@@ -135,18 +155,18 @@ bool joins(const Document& scene, const std::string& body, const std::string& po
 }
 
 bool steps_apart(const Document& scene, const std::string& body, const std::string& port) {
-  if (!shares(scene, body, port)) return false;
-  const Stepping own = stepping_of(scene, body);
-  for (const std::string& name : scene.keys_with("interfaces", "sides", body + "." + port)) {
-    const std::string path = "interfaces." + name;
-    if (!scene.has(path + ".tied")) continue;
-    for (const std::string& side : read<SidesSpec>(scene, path).sides) {
-      const std::size_t dot = side.find('.');
-      if (side == body + "." + port || dot == std::string::npos) continue;
-      const std::string other = side.substr(0, dot);
-      const Stepping theirs = stepping_of(scene, other);
-      if (own.known && theirs.known && own != theirs && shares(scene, other, side.substr(dot + 1)))
-        return true;
+  if (sharers(scene, body, port).empty()) return false;
+  // Along the row: a node of a body that joins another one by a force is joined so too.
+  std::vector<std::string> row = {body};
+  std::set<std::string> known = {body};
+  while (!row.empty()) {
+    const std::string here = row.back();
+    row.pop_back();
+    for (const std::string& end : scene.keys("bodies." + here + ".ports")) {
+      for (const std::string& other : sharers(scene, here, end)) {
+        if (stepping_of(scene, here) != stepping_of(scene, other)) return true;
+        if (known.insert(other).second) row.push_back(other);
+      }
     }
   }
   return false;

@@ -38,8 +38,8 @@ std::optional<SceneOverlap> overlap_of(const Document& scene, const std::string&
 /// Whether a port is tied to another one.
 bool joins(const Document& scene, const std::string& body, const std::string& port);
 
-/// Whether the node that a port shares with another one, tied: true both, is of a body that does
-/// not step as its own: of another step, or explicit where it is implicit.
+/// Whether a port shares its node with another one, tied: true both, and somewhere along the row of
+/// bodies that do two step apart: of other steps, or one explicit and one implicit.
 bool steps_apart(const Document& scene, const std::string& body, const std::string& port);
 
 /// Whether a port of a body in two or three dimensions may touch anything: one that is tied does so

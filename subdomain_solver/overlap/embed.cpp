@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -23,7 +24,8 @@ constexpr double nothing = 1.0e-9;
 constexpr double same = 1.0e-7;
 /// Of shape functions, which are up to 1.
 constexpr double rounding = 1.0e-12;
-/// Of three linear factors of a shape function, and one to weigh it.
+/// Of three linear factors of a shape function, and one to weigh it; in either direction of a
+/// quadrilateral, one more.
 constexpr int degree = 4;
 
 /// A row over nodes of a mesh, ascending.
@@ -59,21 +61,37 @@ void append(const Row& row, const Eigen::Vector3d& at, int dim, EmbeddedSurface&
   to.rows.end_row();
 }
 
-/// What the corners of a part of a facet are to move by, so that their linear interpolant has the
-/// means of the cell's motion against linear functions: (corners, nodes of the cell).
-Eigen::MatrixXd means(const Mesh& mesh, CellPlace cell, const Simplex& part) {
-  const int corners = part.count;
-  const Element& linear = element_named(corners == 2 ? "bar2" : "tri3");
+/// A part of a facet: a segment, a triangle, or a quadrilateral that lies in one cell as a whole.
+using Corners = std::span<const Eigen::Vector3d>;
+
+/// Of a part at a point of its rule, per weight: that of segments and triangles is the same
+/// everywhere.
+double stretch(const Tabulation& t, int point, Corners corners) {
+  if (corners.size() < 4) return 1.0;
+  Eigen::Matrix<double, 3, 2> along = Eigen::Matrix<double, 3, 2>::Zero();
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t d = 0; d < 2; ++d)
+      along.col(static_cast<Eigen::Index>(d)) += t.dn[(index(point) * 4 + i) * 2 + d] * corners[i];
+  return along.col(0).cross(along.col(1)).norm();
+}
+
+/// What the corners of a part of a facet are to move by, so that their interpolant, linear or
+/// bilinear, has the means of the cell's motion against such functions: (corners, nodes of the
+/// cell). A quadrilateral that is a facet of the cell moves as its nodes do, warp included.
+Eigen::MatrixXd means(const Mesh& mesh, CellPlace cell, Corners corners) {
+  const auto count = static_cast<Eigen::Index>(corners.size());
+  const Element& linear = element_named(count == 2 ? "bar2" : count == 3 ? "tri3" : "quad4");
   const Tabulation t = tabulate(linear, quadrature(linear.shape, degree));
-  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(corners, corners), sums;
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(count, count), sums;
   for (int p = 0; p < t.points; ++p) {
-    const Eigen::Map<const Eigen::VectorXd> n(t.n.data() + index(p * corners), corners);
+    const Eigen::Map<const Eigen::VectorXd> n(t.n.data() + index(p) * corners.size(), count);
     Eigen::Vector3d at = Eigen::Vector3d::Zero();
-    for (int i = 0; i < corners; ++i) at += n(i) * part.x[index(i)];
+    for (Eigen::Index i = 0; i < count; ++i) at += n(i) * corners[index(i)];
     const Eigen::VectorXd shapes = shapes_at(mesh, cell, at);
-    if (p == 0) sums.setZero(corners, shapes.size());
-    mass += t.weight[index(p)] * n * n.transpose();
-    sums += t.weight[index(p)] * n * shapes.transpose();
+    if (p == 0) sums.setZero(count, shapes.size());
+    const double weight = t.weight[index(p)] * stretch(t, p, corners);
+    mass += weight * n * n.transpose();
+    sums += weight * n * shapes.transpose();
   }
   return mass.partialPivLu().solve(sums);
 }
@@ -85,11 +103,11 @@ class Embedder {
     out_.rows.clear();
   }
 
-  void add(const Simplex& part, CellPlace cell) {
+  void add(Corners part, CellPlace cell) {
     const Eigen::MatrixXd values = means(cells_.mesh(), cell, part);
-    for (int i = part.count - 1; i >= 0; --i)  // seen from inside this body
+    for (Eigen::Index i = values.rows() - 1; i >= 0; --i)  // seen from inside this body
       out_.facets.push_back(
-          point(part.x[index(i)], row_of(cells_.mesh(), cell, values.row(i).transpose())));
+          point(part[index(i)], row_of(cells_.mesh(), cell, values.row(i).transpose())));
     out_.offsets.push_back(static_cast<std::int32_t>(out_.facets.size()));
   }
 
@@ -170,34 +188,91 @@ std::vector<HeldNode> held_nodes(const Mesh& mesh, const MeshSimplices& cells) {
   return held;
 }
 
+namespace {
+
+/// The corners of the quadrilateral that a triangle and the next one are; nothing: of another kind.
+std::optional<std::array<Eigen::Vector3d, 4>> quadrilateral(const BoundarySimplices& boundary,
+                                                            int f) {
+  const bool next =
+      f + 1 < boundary.count() && boundary.facet[index(f)] == boundary.facet[index(f) + 1];
+  const bool first = f == 0 || boundary.facet[index(f)] != boundary.facet[index(f) - 1];
+  if (!next || !first || boundary.mesh.dim != 3) return std::nullopt;
+  const Simplex one = boundary.simplex(f), two = boundary.simplex(f + 1);  // a fan
+  return std::array{one.x[0], one.x[1], one.x[2], two.x[2]};
+}
+
+/// The cell that holds all corners of a quadrilateral and its middle, among those that may meet its
+/// triangles.
+std::optional<CellPlace> cell_around(const std::array<Eigen::Vector3d, 4>& corners,
+                                     std::span<const FacetPair> pairs, const MeshSimplices& cells,
+                                     double near) {
+  const auto held = [&](const Eigen::Vector3d& at, CellPlace cell) {
+    return std::ranges::any_of(pairs, [&](const FacetPair& pair) {
+      return cells.cell(pair.n) == cell && holds(cells.simplex(pair.n), at, near);
+    });
+  };
+  const Eigen::Vector3d middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+  std::vector<CellPlace> tried;
+  for (const FacetPair& pair : pairs) {
+    const CellPlace cell = cells.cell(pair.n);
+    if (std::ranges::find(tried, cell) != tried.end()) continue;
+    tried.push_back(cell);
+    const bool all = held(middle, cell) && std::ranges::all_of(corners, [&](const auto& corner) {
+                       return held(corner, cell);
+                     });
+    if (all) return cell;
+  }
+  return std::nullopt;
+}
+
+/// Parts of a facet's simplex, each in a cell; what is in none is added to what is left.
+void divide_among(const Simplex& whole, std::span<const FacetPair> pairs,
+                  const MeshSimplices& cells, Embedder& embedder, std::vector<Simplex>& left) {
+  const double near = nothing * cells.spacing(), least = nothing * measure(whole);
+  std::vector<Simplex> next, inside, outside;
+  left.assign(1, whole);
+  for (const FacetPair& pair : pairs) {
+    const std::vector<HalfSpace> sides = sides_of(cells.simplex(pair.n));
+    next.clear();
+    for (const Simplex& part : left) {
+      outside.clear();
+      divide(part, sides, near, inside, &outside);
+      if (inside.empty()) outside.assign(1, part);  // undivided
+      next.insert(next.end(), outside.begin(), outside.end());
+      for (const Simplex& found : inside)
+        if (measure(found) > least)
+          embedder.add(std::span(found.x).first(index(found.count)), cells.cell(pair.n));
+    }
+    left.swap(next);
+  }
+  std::erase_if(left, [least](const Simplex& part) { return measure(part) <= least; });
+}
+
+}  // namespace
+
 EmbeddedSurface embed(const BoundarySimplices& boundary, const MeshSimplices& cells,
                       const BoundarySimplices& skin, StickingOut& sticking) {
   EmbeddedSurface out;
   Embedder embedder(cells, out);
-  const double near = nothing * cells.spacing();
   std::vector<FacetPair> pairs;
   overlapping_pairs(boundary.tree, cells.tree(), pairs);
-  std::vector<Simplex> left, next, inside, outside;
-  std::size_t p = 0;
+  std::vector<Simplex> left;
+  const auto of = [&pairs](int f, int count) {
+    const auto from = std::ranges::lower_bound(pairs, f, {}, &FacetPair::k);
+    const auto to = std::ranges::lower_bound(pairs, f + count, {}, &FacetPair::k);
+    return std::span<const FacetPair>(from, to);
+  };
   for (int f = 0; f < boundary.count(); ++f) {
-    const Simplex whole = boundary.simplex(f);
-    const double least = nothing * measure(whole);
-    left.assign(1, whole);
-    for (; p < pairs.size() && pairs[p].k == f; ++p) {
-      const std::vector<HalfSpace> sides = sides_of(cells.simplex(pairs[p].n));
-      next.clear();
-      for (const Simplex& part : left) {
-        outside.clear();
-        divide(part, sides, near, inside, &outside);
-        if (inside.empty()) outside.assign(1, part);  // undivided
-        next.insert(next.end(), outside.begin(), outside.end());
-        for (const Simplex& found : inside)
-          if (measure(found) > least) embedder.add(found, cells.cell(pairs[p].n));
+    if (const auto corners = quadrilateral(boundary, f)) {
+      const auto cell = cell_around(*corners, of(f, 2), cells, nothing * cells.spacing());
+      if (cell) {
+        embedder.add(*corners, *cell);
+        ++f;
+        continue;
       }
-      left.swap(next);
     }
+    divide_among(boundary.simplex(f), of(f, 1), cells, embedder, left);
     for (const Simplex& part : left) {
-      if (measure(part) <= least) continue;
       for (int i = 0; i < part.count; ++i) {
         const double apart = distance(skin, part.x[index(i)]);
         if (apart > sticking.distance) sticking = {apart, part.x[index(i)]};

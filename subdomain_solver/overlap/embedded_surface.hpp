@@ -10,6 +10,7 @@ namespace abut {
 
 /// The boundary of another body, where it lies inside this one, in parts of facets, each in one
 /// cell: their corners move so that between them is, in the mean, what the cell does there [M.113].
+/// Quadrilaterals that lie in one cell as a whole are one part.
 /// Points without facets come last, and are compared one by one with those of the other body.
 struct EmbeddedSurface {
   std::vector<double> points;                 // [m] (n, dim)

@@ -15,6 +15,9 @@ class RigidMotion final : public Integrator {
   RigidMotion(const Problem& problem, const RigidModel& body) : problem_(problem), body_(body) {}
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
+  void strike(Motion& motion, const Vector& impulse) override {
+    view(motion.v) += impulse.cwiseQuotient(body_.lumped_mass());
+  }
   void acceleration(const Motion& motion, double, double, Vector& out) const override {
     out = view(motion.a);
   }

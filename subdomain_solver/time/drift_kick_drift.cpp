@@ -51,6 +51,10 @@ std::optional<Failed> DriftKickDrift::begin(Motion& motion, double time) {
   return std::nullopt;
 }
 
+void DriftKickDrift::strike(Motion& motion, const Vector& impulse) {
+  view(motion.v) += inverse_mass_.cwiseProduct(impulse);
+}
+
 bool DriftKickDrift::find_middle(const Motion& motion, double time, double dt) {
   middle_.resize(motion.q.size());
   view(middle_) = view(motion.q) + 0.5 * dt * view(motion.v);

@@ -23,6 +23,7 @@ class DriftKickDrift final : public Integrator {
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
+  void strike(Motion& motion, const Vector& impulse) override;
   [[nodiscard]] bool peek(const Motion& motion, double time, double dt,
                           std::vector<double>& q) override;
   /// Means of the last step, as the balance in its middle has them.

@@ -161,6 +161,10 @@ std::optional<Failed> ExplicitDynamics::jump(Motion& motion, double time, const 
   return std::nullopt;
 }
 
+void ExplicitDynamics::strike(Motion& motion, const Vector& impulse) {
+  view(motion.v) += inverse_mass_.cwiseProduct(impulse);
+}
+
 double ExplicitDynamics::compliance(const Motion& motion, int dof) {
   return layer_.compliance(motion.q, motion.history, dof);
 }

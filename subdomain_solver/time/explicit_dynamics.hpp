@@ -20,6 +20,7 @@ class ExplicitDynamics final : public Integrator {
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
   [[nodiscard]] std::optional<Failed> jump(Motion& motion, double time,
                                            const Vector& change) override;
+  void strike(Motion& motion, const Vector& impulse) override;
   double compliance(const Motion& motion, int dof) override;
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
   double kinetic(const Motion& motion) const override;

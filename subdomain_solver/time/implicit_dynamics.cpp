@@ -234,6 +234,14 @@ std::optional<Failed> ImplicitDynamics::jump(Motion& motion, double time, const 
   return std::nullopt;
 }
 
+void ImplicitDynamics::strike(Motion& motion, const Vector& impulse) {
+  Vector& change = of_mass_.acceleration;
+  change.setZero(impulse.size());
+  const bool solved = solve_mass(impulse, change);
+  ABUT_ASSERT(solved);  // as at the begin
+  view(motion.v) += change;
+}
+
 double ImplicitDynamics::compliance(const Motion& motion, int dof) {
   return layer_.compliance(motion.q, motion.history, dof);
 }

@@ -38,6 +38,7 @@ class ImplicitDynamics final : public Integrator {
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
   [[nodiscard]] std::optional<Failed> jump(Motion& motion, double time,
                                            const Vector& change) override;
+  void strike(Motion& motion, const Vector& impulse) override;
   bool joins_steadily() const override { return options_.steady; }
   double compliance(const Motion& motion, int dof) override;
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override;

@@ -26,6 +26,9 @@ class Integrator {
   [[nodiscard]] virtual std::optional<Failed> jump(Motion&, double, const Vector&) {
     return std::nullopt;
   }
+  /// An impulse [N s] (dofs) changes the velocities of free coordinates that have mass, and nothing
+  /// else. What has no inertia takes none.
+  virtual void strike(Motion&, const Vector& /*impulse*/) {}
   /// Whether accelerations are kept that forces of joined sides have no part in at the begin.
   virtual bool joins_steadily() const { return false; }
   /// Quasi-static compliance of a coordinate without mass [m/N]; 0: it has mass.

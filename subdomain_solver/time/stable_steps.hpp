@@ -28,6 +28,7 @@ class StableSteps final : public Integrator {
                                            const Vector& change) override {
     return steps_->jump(motion, time, change);
   }
+  void strike(Motion& motion, const Vector& impulse) override { steps_->strike(motion, impulse); }
   double compliance(const Motion& motion, int dof) override {
     return steps_->compliance(motion, dof);
   }
