@@ -55,7 +55,8 @@ void FeModel::find_heirs(int direction) {
   for (std::size_t l = 0; l < layer_cells_.size(); ++l) {
     const auto& [block, cell] = layer_cells_[l];
     const std::span<const std::int32_t> nodes = nodes_of(mesh_.blocks[index(block)], cell);
-    const bool bare = std::ranges::any_of(nodes, [=, this](auto n) { return is_bare(n, direction); });
+    const bool bare =
+        std::ranges::any_of(nodes, [=, this](auto n) { return is_bare(n, direction); });
     const bool takes =
         std::ranges::any_of(nodes, [=, this](auto n) { return takes_mass(n, direction); });
     if (bare && !takes) poor_cells.push_back(l);
@@ -134,8 +135,9 @@ void FeModel::inherit(const Whole& whole, const Take& take) const {
 }
 
 void FeModel::inherit(Vector& lumped) const {
-  inherit([this](int block, int cell) { return Eigen::MatrixXd(cell_mass(block, cell).asDiagonal()); },
-          [&](int dof, double mass) { lumped(dof) += mass; });
+  inherit(
+      [this](int block, int cell) { return Eigen::MatrixXd(cell_mass(block, cell).asDiagonal()); },
+      [&](int dof, double mass) { lumped(dof) += mass; });
 }
 
 void FeModel::inherit(SparseMatrix& mass) const {

@@ -34,12 +34,11 @@ struct SidePoints {
   double area() const;  // [m^2] reference
 };
 
-/// Force per reference volume: density x acceleration, e.g. gravity [m/s^2]. With the mass matrix of
-/// the scheme a free body falls as one: M q'' = M b.
+/// Force per reference volume: density x acceleration, e.g. gravity [m/s^2]. With the mass matrix
+/// of the scheme a free body falls as one: M q'' = M b.
 class BodyForce final : public Load {
  public:
-  BodyForce(const FeModel& model, VectorField acceleration,
-            MassForm mass = MassForm::consistent);
+  BodyForce(const FeModel& model, VectorField acceleration, MassForm mass = MassForm::consistent);
   void add(double time, std::span<const double> q, Vector& force) const override;
   bool follows() const override { return false; }
 
@@ -86,9 +85,9 @@ class Pressure final : public Load {
   SidePoints side_;
   ScalarField pressure_;
   bool follows_;
-  mutable std::vector<double> u_;             // [m] (dofs) in the axes of space
-  mutable Vector nodal_;                      // [N] (dofs)
-  mutable Eigen::Matrix3Xd present_;          // [m] (3, nodes of a facet)
+  mutable std::vector<double> u_;               // [m] (dofs) in the axes of space
+  mutable Vector nodal_;                        // [N] (dofs)
+  mutable Eigen::Matrix3Xd present_;            // [m] (3, nodes of a facet)
   mutable Eigen::MatrixXd local_, transposed_;  // [N/m] of a facet
 };
 

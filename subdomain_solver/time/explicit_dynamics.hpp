@@ -8,9 +8,9 @@ namespace abut {
 /// Central differences on any model with lumped mass, in the form that has positions, velocities
 /// and accelerations at the same times (velocity Verlet) [M.48]. Conserves momentum exactly and,
 /// below the stable step, the energy of [M.4], exactly where the model is linear: its kinetic part
-/// is 1/2 v(-) M v(+) of the velocities half a step before and after. Coordinates without mass lie where their forces balance at the end of every step, and
-/// take contact there [M.85], [M.86]. A step is two passes over the motion around the model's
-/// force, and allocates nothing.
+/// is 1/2 v(-) M v(+) of the velocities half a step before and after. Coordinates without mass lie
+/// where their forces balance at the end of every step, and take contact there [M.85], [M.86]. A
+/// step is two passes over the motion around the model's force, and allocates nothing.
 class ExplicitDynamics final : public Integrator {
  public:
   /// `step` [s]: nominal; the energy at the begin is that of steps of this length.

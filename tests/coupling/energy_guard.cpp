@@ -51,8 +51,8 @@ TEST(EnergyGuard, KnowsWhatStepsDoNotResolve) {
   EXPECT_DOUBLE_EQ(guard.most(), 4.0);
 }
 
-/// 2 kg, 1 m away, steps of 1e-3 s: velocities are rounded by some 16e3 x 2.2e-16 m / 1e-3 s = 3.6e-9
-/// m/s at most, which is 1.3e-17 J.
+/// 2 kg, 1 m away, steps of 1e-3 s: velocities are rounded by some 16e3 x 2.2e-16 m / 1e-3 s
+/// = 3.6e-9 m/s at most, which is 1.3e-17 J.
 TEST(EnergyGuard, KnowsWhatNumbersDoNotResolve) {
   EnergyGuard guard(0.01, {false}, true, {{2.0, 1.0e-3}});
   const auto at = [](double energy) {

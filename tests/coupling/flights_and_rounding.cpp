@@ -21,9 +21,9 @@ constexpr int steps = 60;
 
 struct Flight {
   std::string element, law, scheme;
-  double youngs = 1.0;    // [Pa]
-  double size = 1.0;      // [m] of the body
-  double crossings = 1.0;  // of a cell, by waves in a step
+  double youngs = 1.0;                           // [Pa]
+  double size = 1.0;                             // [m] of the body
+  double crossings = 1.0;                        // of a cell, by waves in a step
   double away = 0.0, flown = 0.0, fallen = 0.0;  // sizes; from the origin, and in the whole flight
   double density() const { return 1000.0; }
   double poisson() const { return 0.3; }
@@ -38,9 +38,9 @@ struct Flight {
 };
 
 std::ostream& operator<<(std::ostream& out, const Flight& f) {
-  return out << fmt::format("{} {} {} E {:g} size {:g} crossings {:g} away {:g} flown {:g} fallen {:g}",
-                            f.element, f.law, f.scheme, f.youngs, f.size, f.crossings, f.away,
-                            f.flown, f.fallen);
+  return out << fmt::format(
+             "{} {} {} E {:g} size {:g} crossings {:g} away {:g} flown {:g} fallen {:g}", f.element,
+             f.law, f.scheme, f.youngs, f.size, f.crossings, f.away, f.flown, f.fallen);
 }
 
 std::string text(const Flight& f) {
@@ -74,8 +74,7 @@ std::string text(const Flight& f) {
       "interfaces: {{never: {{sides: [it.skin, far.top], contact: {{}}}}}}\n",
       number(f.time()), number(5 * dt), space ? 3 : 2, mesh, law, f.scheme, number(dt),
       number(-f.weight()), back, number(f.away * f.size), number(0.1 * f.away * f.size), back,
-      number(f.speed()), back,
-      space ? 3 : 2,
+      number(f.speed()), back, space ? 3 : 2,
       space ? "{box: {lengths: [1.0, 1.0, 1.0], elements: [1, 1, 1]}}"
             : "{rectangle: {lengths: [1.0, 1.0], elements: [1, 1]}}",
       number(-1.0e7 * f.size), back);
@@ -84,8 +83,9 @@ std::string text(const Flight& f) {
 std::vector<Flight> flights() {
   std::mt19937_64 engine(11);
   const auto pick = [&engine](const auto& list) { return list[engine() % list.size()]; };
-  const std::vector<std::string> laws = {"linear_elastic", "saint_venant_kirchhoff", "neo_hookean",
-                                         "hencky",         "mooney_rivlin",          "j2_plasticity"};
+  const std::vector<std::string> laws = {"linear_elastic", "saint_venant_kirchhoff",
+                                         "neo_hookean",    "hencky",
+                                         "mooney_rivlin",  "j2_plasticity"};
   const std::vector<std::string> schemes = {"newmark", "hht_alpha", "generalized_alpha",
                                             "central_difference"};
   const std::vector<double> moduli = {1.0e3, 1.0e6, 2.1e11}, sizes = {1.0e-3, 1.0, 30.0},

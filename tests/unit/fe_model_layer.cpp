@@ -53,8 +53,7 @@ double moving(const FeModel& model, const std::vector<int>& held) {
   double sum = 0.0;
   const SparseMatrix& mass = model.mass();
   const auto free = [&](auto dof) {
-    return dof % model.mesh().dim == 0 &&
-           !std::ranges::binary_search(held, static_cast<int>(dof));
+    return dof % model.mesh().dim == 0 && !std::ranges::binary_search(held, static_cast<int>(dof));
   };
   for (Eigen::Index c = 0; c < mass.outerSize(); ++c)
     for (SparseMatrix::InnerIterator at(mass, c); at; ++at)
