@@ -18,7 +18,7 @@ NOT_COMPLETED = {
 # What was exceeded, then what to do about it.
 REMEDY = re.compile(
     r"(above the stable limit|must be positive|gives a node the mass|not converged after|"
-    r"compressed to nothing).*([Gg]ive (a|the|density) |raise )", re.DOTALL)
+    r"compressed to nothing|beyond the range).*([Gg]ive (a|the|density|all) |raise )", re.DOTALL)
 
 
 class Extremes(SystemTest):
