@@ -148,12 +148,11 @@ TEST(OverlappingStatics, AlternatingSchwarzConvergesByItsOverlap) {
           "tolerance: 1.0e-8, max_iterations: 1000, accelerator: {{{}: {{}}}}", accelerator);
       const auto run = pair.run(1.0, 1.0);
       ASSERT_TRUE(run->completed()) << overlap << accelerator;
-      // Of plain iterations that leave 8 % of the error, a tolerance is 12 of it.
-      EXPECT_NEAR(extreme(*run, "x", "max"), x, 1.0e-6 * x);
+      EXPECT_NEAR(extreme(*run, "x", "max"), x, 2.0e-8 * x);  // as below
       const double count = run->measure("schwarz.iterations_max");
       if (accelerator[0] == 'n') plain.push_back(count);
       if (accelerator[1] == 'n') {
-        EXPECT_LE(count, 12.0) << overlap;
+        EXPECT_LE(count, 13.0) << overlap;  // 12 until the last change is as small
       }
     }
   }
