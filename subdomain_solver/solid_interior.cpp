@@ -262,10 +262,11 @@ void SolidInterior::see_nodes() {
   v_.resize(nodal_values());
   parts_.map->displacement(state_.motion.q, u_);
   parts_.map->velocity(state_.motion.q, state_.motion.v, v_);
-  see_momentum();
+  momentum_.noalias() = mass_ * view(v_);
   parts_.model->to_space(u_);
   parts_.model->to_space(v_);
   parts_.model->to_space({momentum_.data(), nodal_values()});
+  add_lag();
 }
 
 /// Partners see a port without mass where the force of the instant holds it; the body is moved by

@@ -111,7 +111,7 @@ class SolidInterior final : public Interior {
   std::size_t nodal_values() const { return index(parts_.model->dofs()); }
   bool probed_as_linear() const;
   void see_nodes();
-  void see_momentum();
+  void add_lag();
   const Vector& forces_now();
   void see_places();
   std::optional<Failed> meet_port_forces(double time);
@@ -145,7 +145,8 @@ class SolidInterior final : public Interior {
   // Of the nodes (nodes, dim) along the axes of space, as see_nodes() left them.
   std::vector<double> u_, v_;
   std::vector<double> lag_;           // [m/s] of velocities behind the impulses
-  Vector momentum_, behind_;          // [kg m/s]; and of the coordinates, what they are behind
+  Vector momentum_;                   // [kg m/s]
+  Vector behind_, nodes_behind_;      // [kg m/s] behind the impulses: of coordinates, of the nodes
   std::vector<double> before_, now_;  // [m], [N] (port values)
   Vector change_;                     // [N] (coordinates)
   std::vector<double> peeked_;        // [m] (coordinates)

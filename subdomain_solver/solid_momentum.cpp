@@ -3,26 +3,45 @@
 #include "subdomain_solver/solid_interior.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "base/index.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
 
-/// Of the nodes, in their frames  [M.24].
-void SolidInterior::see_momentum() {
-  momentum_.noalias() = mass_ * view(v_);
+namespace {
+
+/// Along axes of space in which constraints hold a node: these take a part of the impulses.
+std::array<bool, 3> held_axes(const FeModel& model, const std::vector<HeldCoordinates>& all) {
+  std::array<bool, 3> held{};
+  const int dim = model.mesh().dim;
+  for (const HeldCoordinates& constraint : all)
+    for (const int dof : constraint.dofs)
+      for (int i = 0; i < dim; ++i)
+        held[index(i)] = held[index(i)] || model.frame(dof / dim) != nullptr || dof % dim == i;
+  return held;
+}
+
+}  // namespace
+
+/// To the momenta of the nodes, along the axes of space  [M.24].
+void SolidInterior::add_lag() {
   const Integrator& integrator = *parts_.scheme.integrator;
   if (!state_.begun || !integrator.lags()) return;
   const Motion& motion = state_.motion;
   integrator.find_lag(motion, parts_.scheme.step, forces_now(), behind_);
-  if (!parts_.reduced) {
-    momentum_ += behind_;
-    return;
+  Vector& nodes = parts_.reduced ? nodes_behind_ : behind_;
+  if (parts_.reduced) {
+    lag_.resize(nodal_values());
+    parts_.map->velocity(motion.q, span_of(behind_), lag_);  // modes have a mass of one
+    nodes.noalias() = mass_ * view(lag_);
   }
-  lag_.resize(nodal_values());
-  parts_.map->velocity(motion.q, span_of(behind_), lag_);  // modes have a mass of one
-  momentum_.noalias() += mass_ * view(lag_);
+  parts_.model->to_space({nodes.data(), nodal_values()});
+  const std::array<bool, 3> held = held_axes(*parts_.model, parts_.constraints);
+  const Eigen::Index dim = description_.dim;
+  for (Eigen::Index k = 0; k < nodes.size(); ++k)
+    if (!held[index(k % dim)]) momentum_(k) += nodes(k);
 }
 
 /// [N] (coordinates) of loads, and of what acts on ports but for forces that accelerations do not
