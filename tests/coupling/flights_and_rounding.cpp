@@ -128,5 +128,97 @@ TEST(Flights, NeverFailByTheirRounding) {
   }
 }
 
+/// The load is that of the scheme's own mass: of second-order elements, whose lumped and consistent
+/// masses have other sums, too. As heavy as it is stiff, the body would be strained by its own
+/// size.
+TEST(FreeFall, StrainsNothingWhateverTheMass) {
+  for (const std::string& element : solid_elements()) {
+    for (const char* scheme :
+         {"newmark: {mass: lumped, step", "newmark: {mass: averaged, step",
+          "newmark: {mass: consistent, step", "hht_alpha: {step", "central_difference: {step"}) {
+      SCOPED_TRACE(element + " " + scheme);
+      const bool space = element_named(element).dim == 3;
+      const std::string back = space ? ", 0.0" : "";
+      const std::string mesh =
+          space ? "box: {lengths: [1.0, 0.9, 1.0], elements: [3, 3, 3], element: " + element + "}"
+                : "rectangle: {lengths: [1.0, 0.9], elements: [3, 3], element: " + element + "}";
+      const auto end = run_document(Document::from_text(
+          "test",
+          fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: 1.0, window: 0.1}}\n"
+                      "bodies: {{it: {{model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}, material: "
+                      "{{linear_elastic: {{youngs_modulus: 1.0, poissons_ratio: 0.3, density: "
+                      "1.0}}}}, integrator: {{{}: 0.02}}}}, body_force: [0.0, -1.0{}]}}}}\n",
+                      space ? 3 : 2, mesh, scheme, back)));
+      ASSERT_TRUE(end->completed());
+      // Strains of 1e-10: what solving leaves of forces of the body's stiffness.
+      EXPECT_LT(std::abs(end->measure("body.it.energy.stored")), 1.0e-20);
+    }
+  }
+}
+
+/// Bars that are tied and fly: nothing but the rounding of their places acts in the joint.
+TEST(Flights, OfTiedBodiesNeverFailByTheirRounding) {
+  for (const char* schemes : {"newmark newmark", "newmark central_difference",
+                              "hht_alpha generalized_alpha", "central_difference newmark"}) {
+    const std::string both = schemes;
+    const std::string first = both.substr(0, both.find(' ')),
+                      second = both.substr(first.size() + 1);
+    for (const double ratio : {1.0, 2.0, 10.0}) {
+      for (const double speed : {0.0, 1.0e-3, 1.0, 1.0e3}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", both, ratio, speed));
+        const std::string law = "material: {linear_elastic: {youngs_modulus: 1.0, density: 1.0}}";
+        const auto bar = [&](const char* name, const std::string& scheme, double step, double place,
+                             const char* side) {
+          return fmt::format(
+              "  {}: {{model: {{fe: {{dimension: 1, mesh: {{bar: {{length: 0.5, elements: 50, "
+              "area: 1.0}}}}}}}}, {}, integrator: {{{}: {{step: {}}}}}, initial: {{position: [{}], "
+              "velocity: [{}]}}, ports: {{joint: {{side: {}, tied: true}}}}}}\n",
+              name, law, scheme, number(step), number(place), number(speed), side);
+        };
+        const auto end = run_document(Document::from_text(
+            "test", "meta: {title: test}\ntime: {begin: 0.0, end: 4.0, window: 0.01}\nbodies:\n" +
+                        bar("a", first, 0.005 / ratio, 0.0, "right") +
+                        bar("b", second, 0.005, 0.5, "left") +
+                        "interfaces: {j: {sides: [a.joint, b.joint], tied: {}}}\n"));
+        EXPECT_EQ(end->end.status, "completed");
+        for (const std::size_t b : {0, 1})
+          EXPECT_NEAR(end->velocity(b), speed, 1.0e-9 * std::max(speed, 1.0e-3));
+      }
+    }
+  }
+}
+
+/// What a tool does on a body is the energy of the body, to round-off: explicit and linear. It is
+/// hit within its step, which is the whole window, and hardly moves otherwise than its way tells.
+TEST(ToolWork, IsTheEnergyOfWhatItPressesInAnyWindows) {
+  for (const double window : {1.0e-5, 2.0e-6}) {
+    for (const char* way : {"-1.0 * t", "-1000 * t^2", "-4.0e-4 * sin(4000 * t)"}) {
+      SCOPED_TRACE(fmt::format("{} {}", window, way));
+      const auto end = run_document(Document::from_text(
+          "test",
+          fmt::format(
+              "meta: {{title: test}}\ntime: {{begin: 0.0, end: 1.0e-3, window: {}}}\n"
+              "bodies:\n  block: {{model: {{fe: {{dimension: 2, mesh: {{rectangle: {{lengths: "
+              "[0.1, "
+              "0.1], elements: [8, 8]}}}}}}}}, material: {{linear_elastic: {{youngs_modulus: "
+              "2.1e11, poissons_ratio: 0.3, density: 7800.0}}}}, integrator: {{central_difference: "
+              "{{step: 5.0e-7}}}}, constraints: {{base: {{on: bottom, fixed: true}}}}, ports: "
+              "{{top: {{side: top}}}}}}\n"
+              "  press: {{model: {{rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [0.2, "
+              "0.02], elements: [1, 1]}}}}, way: [\"0\", \"{}\"]}}}}, initial: {{position: "
+              "[-0.05, 0.1003]}}, ports: {{face: {{side: bottom}}}}}}\n"
+              "interfaces: {{pressed: {{sides: [block.top, press.face], contact: {{}}}}}}\n",
+              number(window), way)));
+      EXPECT_EQ(end->end.status, "completed");
+      EXPECT_GT(end->measure("contact.pressed.closings"), 0.0);
+      // Sums of some thousand steps of forces and ways; where the tool does not arrive on the end of
+      // a step, half of the first force over the part of that step's way that was gone before.
+      const bool on_time = std::string(way) == "-1.0 * t";
+      EXPECT_LT(std::abs(end->measure("energy.total.relative_drift_end")),
+                on_time ? 1.0e-10 : 1.0e-4);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace abut
