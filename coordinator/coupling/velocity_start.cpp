@@ -170,6 +170,10 @@ class Mobility {
     const double length = square / sp.squaredNorm();
     y += length * p;
     r -= length * sp;
+    if (r.isZero(0.0)) {  // a single row is answered to the last bit, and nothing has no size
+      x = y;
+      return std::nullopt;
+    }
     if (std::optional<Failed> failed = mobility.apply(r, sr)) return failed;
     sr = sr.cwiseProduct(free);
     since = sr.norm() < best ? 0 : since + 1;

@@ -1,5 +1,5 @@
 // Goal: steps that are not alike make no energy in contact, and which side finds it is of no weight
-// that does not fall with the steps [M.123]. Oracles: energy of elastic bars, the two roles against
+// that does not fall with the steps [M.127]. Oracles: energy of elastic bars, the two roles against
 // each other.
 
 #include <array>
