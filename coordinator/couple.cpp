@@ -348,6 +348,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     }
   }
   check_supports(joints, bodies);
+  check_still_contact(joints, scene.everything() != nullptr, bodies);
   share_out_loose_motions(joints, bodies);
   const auto has_rows = [](const Joint& joint) { return joint.how && joint.how->tie() != nullptr; };
   if (scene.schwarz.ties && std::ranges::none_of(joints, has_rows)) {

@@ -95,8 +95,7 @@ void check_robin(const InterfaceSpec& spec, const RobinTransmission& robin,
 
 }  // namespace
 
-Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides,
-                      const Bodies& bodies) {
+Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, const Bodies& bodies) {
   const std::string where = "interfaces." + spec.name;
   const auto* robin = std::get_if<RobinTransmission>(&spec.transmission);
   if (robin != nullptr) {
@@ -149,6 +148,37 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides,
   joint.jump.assign(static_cast<std::size_t>(rows.width()), 0.0);
   joint.how = std::make_unique<Tie>(std::move(rows));
   return joint;
+}
+
+void check_still_contact(std::span<const Joint> joints, bool everything, const Bodies& bodies) {
+  const auto ties = [joints](int body, int port) {  // -1: any port
+    return std::ranges::any_of(joints, [body, port](const Joint& joint) {
+      return joint.how != nullptr && joint.how->tie() != nullptr &&
+             std::ranges::any_of(joint.sides, [body, port](const Side& side) {
+               return side.body == body && (port < 0 || side.port == port);
+             });
+    });
+  };
+  const auto refuse = [&bodies](int body, const std::string& where) {
+    throw InputError(
+        fmt::format("lets body '{}' touch, which has no inertia and is tied: contact and ties of "
+                    "such bodies together are not iterated to what is right",
+                    bodies.describe(body).name),
+        where,
+        "Integrate the body in time (newmark), or make it one mesh with what it is tied to.");
+  };
+  for (const Joint& joint : joints) {
+    if (!joint.surfaces) continue;
+    for (const Side& side : joint.sides)
+      if (bodies.describe(side.body).quasi_static && ties(side.body, -1))
+        refuse(side.body, "interfaces." + joint.name);
+  }
+  for (int b = 0; everything && b < bodies.count(); ++b) {
+    const Description& body = bodies.describe(b);
+    if (!body.quasi_static || !ties(b, -1)) continue;
+    for (int p = 0; p < static_cast<int>(body.ports.size()); ++p)
+      if (!ties(b, p)) refuse(b, "contact.everything");
+  }
 }
 
 }  // namespace abut

@@ -7,23 +7,10 @@
 namespace abut {
 
 BarLoads::BarLoads(const Bar& bar, bool lumped) : own_(bar.row_mass()) {
-  const std::size_t n = index(bar.nodes());
   for (int node = 0; node < bar.nodes(); ++node) place_.push_back(bar.place_of(node));
   if (lumped) return;
-  beside_.assign(n - 1, 0.0);
-  own_.assign(n, 0.0);
-  const double sixth = bar.element_mass() / 6.0;
-  for (std::size_t e = 0; e + 1 < n; ++e) {
-    const bool left = e == 0 && bar.data().layer[0] == ContactLayer::massless;
-    const bool right = e + 2 == n && bar.data().layer[1] == ContactLayer::massless;
-    if (left || right) {
-      own_[left ? 1 : n - 2] += bar.element_mass();
-      continue;
-    }
-    own_[e] += 2.0 * sixth;
-    own_[e + 1] += 2.0 * sixth;
-    beside_[e] = sixth;
-  }
+  own_ = bar.mass();
+  beside_ = bar.mass_beside();
 }
 
 void BarLoads::push(int end, OfTime force) {

@@ -14,8 +14,8 @@ class BarLoads {
   using OfTime = std::function<double(double)>;                  // of t [s]
   using OfPlaceAndTime = std::function<double(double, double)>;  // of reference x [m] and t [s]
 
-  /// Forces per mass act by the row sums of the mass where `lumped`, and else by the consistent
-  /// mass, as on solids [M.40]. The mass of a contact element is that of its inner node either way.
+  /// Forces per mass act by the row sums of the mass where `lumped`, and else by the scheme's
+  /// mass matrix, as on solids. The mass of a contact element is that of its inner node either way.
   BarLoads(const Bar& bar, bool lumped);
 
   void push(int end, OfTime force);              // [N] along x

@@ -41,8 +41,8 @@ struct NewtonVectors {
 
 /// Newton's method with a line search that halves: a step is shortened while it leads to an
 /// inadmissible x or to a larger residual. x holds the first guess, and the answer when converged.
-/// A first guess is corrected once unless its residual is round-off: within the tolerance alone it
-/// would take its error from step to step. Where corrections no longer make a residual smaller that
+/// A first guess within the tolerance is corrected once all the same unless its residual is
+/// round-off. Where corrections no longer make a residual smaller that
 /// is near its roundoff, x is as good as its numbers.
 NewtonReport solve_newton(Equations& equations, Vector& x, const NewtonOptions& options,
                           NewtonVectors& vectors);

@@ -211,8 +211,8 @@ TEST(ToolWork, IsTheEnergyOfWhatItPressesInAnyWindows) {
               number(window), way)));
       EXPECT_EQ(end->end.status, "completed");
       EXPECT_GT(end->measure("contact.pressed.closings"), 0.0);
-      // Sums of some thousand steps of forces and ways; where the tool does not arrive on the end of
-      // a step, half of the first force over the part of that step's way that was gone before.
+      // Sums of some thousand steps of forces and ways; where the tool does not arrive on the end
+      // of a step, half of the first force over the part of that step's way that was gone before.
       const bool on_time = std::string(way) == "-1.0 * t";
       EXPECT_LT(std::abs(end->measure("energy.total.relative_drift_end")),
                 on_time ? 1.0e-10 : 1.0e-4);

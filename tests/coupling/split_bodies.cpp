@@ -146,11 +146,14 @@ TEST(SplitBodies, DampedOnesToo) {
                  hht ? "step: 0.2, alpha: -0.2}" : "step: 0.2, spectral_radius: 0.5}");
     const auto whole = run_document(written(folder.path(), text));
     const auto parts = run_split(folder, text, 3);
-    for (const char* measure : {"energy.kinetic", "energy.stored", "momentum.x"})
+    // Momenta have other parts of what the scheme holds back: it is told where no node is held
+    // [M.24], of the whole not, of some of its parts yes.
+    for (const char* measure : {"energy.kinetic", "energy.stored"})
       EXPECT_NEAR(sum(*parts, measure, 3), whole->measure(fmt::format("body.plate.{}", measure)),
                   same_motion)
           << measure;
-    EXPECT_NEAR(corner(*parts, "displacement.y"), corner(*whole, "displacement.y"), same_motion);
+    for (const char* measure : {"displacement.x", "displacement.y", "velocity.y"})
+      EXPECT_NEAR(corner(*parts, measure), corner(*whole, measure), same_motion) << measure;
   }
 }
 

@@ -236,7 +236,8 @@ TEST(LayeredBars, OfOneElementHaveOneLayer) {
     make("tip: {side: right}, root: {side: left}");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("no node near it that could take"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("no free node inside the mesh near it"),
+              std::string::npos);
   }
 }
 

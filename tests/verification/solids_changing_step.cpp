@@ -62,6 +62,13 @@ struct Pressed {
                        std::make_unique<HighestFrequency>(solid.model), {step, limit, clamp});
   }
 
+  /// Of the velocities as they are: what central differences conserve instead stays the same, in a
+  /// linear body, where they blow up.
+  double kinetic() const {
+    const Eigen::Map<const Vector> v(solid.motion.v.data(), solid.model.dofs());
+    return 0.5 * v.dot(solid.model.lumped_mass().cwiseProduct(v));
+  }
+
   /// Supports work against the internal force, not against the inertia of their own nodes.
   double kinetic_of_supports() const {
     double sum = 0.0;
@@ -84,7 +91,7 @@ struct Pressed {
     const int count = static_cast<int>((there_and_back ? 160.0 : 70.0) / step);
     for (int k = 0; k < count && !end.failed; ++k) {
       end.failed = steps.step(motion, k * step, step);
-      const double energy = steps.kinetic(motion) + motion.stored;
+      const double energy = kinetic() + motion.stored;
       end.energy = std::max(end.energy, energy);
       end.worst =
           std::max(end.worst, std::abs(energy - kinetic_of_supports() - motion.external_work));

@@ -58,7 +58,8 @@ const std::vector<std::string> laws = {
     "j2_plasticity: {youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0, yield_stress: 0.012, "
     "hardening: 0.01}"};
 
-/// Energy that is had or has become heat, less what was done on the body; and the largest energy.
+/// Energy that is had or has become heat, less that of the begin and what was done on the body
+/// since; and the largest energy.
 struct Balance {
   double work = 0.0, error = 0.0, largest = 0.0;
 };
@@ -66,6 +67,7 @@ struct Balance {
 Balance balance(const Driven& part, double end, int windows) {
   const std::unique_ptr<Subdomain> body = part.build();
   Balance out;
+  double first = 0.0;
   Response response;
   for (int k = 0; k <= windows; ++k) {  // the first: of no length
     const double begin = end * std::max(0, k - 1) / windows;
@@ -75,7 +77,8 @@ Balance balance(const Driven& part, double end, int windows) {
     const Energy& energy = response.records.back().energy;
     const double held = energy.total() + energy.dissipated;
     out.work = energy.external_work;
-    out.error = std::max(out.error, std::abs(held - energy.external_work));
+    if (k == 0) first = held;
+    out.error = std::max(out.error, std::abs(held - first - energy.external_work));
     out.largest = std::max(out.largest, held);
   }
   return out;
