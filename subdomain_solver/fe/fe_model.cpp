@@ -179,14 +179,18 @@ bool FeModel::evaluate(std::span<const double> q, std::span<const double> histor
   return true;
 }
 
-/// Displacements less that of the first node: a translation makes no force, whose rounding would
-/// grow with the way and move the body.
+/// Displacements less that of the first node, where the body has gone far: a translation makes no
+/// force, whose rounding would grow with the way and move the body.
 const Vector& FeModel::strain_displacement(std::span<const double> q) {
   relative_ = Eigen::Map<const Vector>(q.data(), dofs());
   if (!frames_.empty() || round()) return relative_;
   const int dim = mesh_.dim;
   Eigen::Map<Eigen::MatrixXd> by_node(relative_.data(), dim, dofs() / dim);
-  by_node.colwise() -= Eigen::Map<const Vector>(q.data(), dim);
+  const Eigen::Map<const Vector> first(q.data(), dim);
+  by_node.colwise() -= first;
+  constexpr double far = 16.0;
+  if (first.lpNorm<Eigen::Infinity>() < far * relative_.lpNorm<Eigen::Infinity>())
+    relative_ = Eigen::Map<const Vector>(q.data(), dofs());
   return relative_;
 }
 
