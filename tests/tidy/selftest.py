@@ -5,6 +5,7 @@ import unittest
 from pathlib import Path
 from typing import Callable
 
+import definitions
 import docs
 import glossary
 import headers
@@ -105,6 +106,30 @@ class Words(unittest.TestCase):
         self.assertEqual(len(findings(words.check, base__a_dot_cpp=bad)), 3)
         good = "tcp://127.0.0.1:5555\nruns/work/x\n/tmp/x\n"
         self.assertEqual(findings(words.check, base__a_dot_cpp=good), [])
+
+
+class Definitions(unittest.TestCase):
+    def check(self, expected: list[str], **files: str) -> None:
+        found = findings(definitions.check, **files)
+        self.assertEqual([f"{finding.path}:{finding.line}" for finding in found], expected)
+
+    def test_one_name_in_one_namespace_is_defined_once(self) -> None:
+        one = "namespace abut {\nstruct P {\n  int x;\n};\n}\n"
+        for other in ("class P final : public B {};", "enum class P : char { a };",
+                      "template <class T>\nstruct P {};", "struct alignas(64) P {};"):
+            text = "namespace abut {\nstruct Q;\n" + other + "\n}\n"
+            line = 3 + other.count("\n")
+            self.check([f"b.hpp:{line}"], a_dot_hpp=one, b_dot_hpp=text)
+        nested = "namespace abut::n {\nstruct P {};\n}\n"
+        also = "namespace abut {\nnamespace n {\nstruct P {};\n}\n}\n"
+        self.check(["c.cpp:3"], a_dot_hpp=one, b_dot_hpp=nested, c_dot_cpp=also)
+
+    def test_files_own_types_and_members_and_declarations_may_share_a_name(self) -> None:
+        one = "namespace abut {\nstruct P {\n  int x;\n};\n}\n"
+        for other in ("namespace {\nstruct P {};\n}", "struct Q { struct P {}; };", "struct P;",
+                      "void f() { struct P {}; }", "// struct P {}", "struct P f() { return {}; }"):
+            self.check([], a_dot_hpp=one, b_dot_cpp="namespace abut {\n" + other + "\n}\n")
+        self.check([], a_dot_hpp=one, tests__b_dot_cpp=one)
 
 
 class HeadersPackagesAndDocs(unittest.TestCase):
