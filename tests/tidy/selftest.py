@@ -7,6 +7,7 @@ from typing import Callable
 
 import definitions
 import docs
+import equations
 import glossary
 import headers
 import layers
@@ -130,6 +131,28 @@ class Definitions(unittest.TestCase):
                       "void f() { struct P {}; }", "// struct P {}", "struct P f() { return {}; }"):
             self.check([], a_dot_hpp=one, b_dot_cpp="namespace abut {\n" + other + "\n}\n")
         self.check([], a_dot_hpp=one, tests__b_dot_cpp=one)
+
+
+class Equations(unittest.TestCase):
+    METHOD = "    a = b,                    [M.1]\n| law | a = b | [M.2] |\n    c = d   [M.3]\n"
+
+    def check(self, expected: list[str], method: str, **files: str) -> None:
+        found = findings(equations.check, docs__METHOD_dot_md=method, **files)
+        self.assertEqual([f"{finding.path}:{finding.line}" for finding in found], expected)
+
+    def test_what_is_cited_is_defined(self) -> None:
+        self.check([], self.METHOD, a_dot_hpp="// [M.1] and [M.2, M.3], [M.1 to M.3].\n")
+        for wrong in ("[M.4]", "[M.1, M.4]", "[M.2 to M.4]", "[M.1-3]"):
+            for name in ("a_dot_hpp", "a_dot_yaml", "a_dot_md", "a_dot_py"):
+                self.check([name.replace("_dot_", ".") + ":2"], self.METHOD,
+                           **{name: f"\nas {wrong} says\n"})
+
+    def test_number_is_given_once(self) -> None:
+        self.check(["docs/METHOD.md:4"], self.METHOD + "    e = f     [M.2]\n")
+
+    def test_formula_or_row_that_ends_with_a_citation_defines_nothing(self) -> None:
+        self.check([], self.METHOD + "    e = f under [M.1]\n| f | as [M.2] |\n")
+        self.check(["docs/METHOD.md:4"], self.METHOD + "    e = f under [M.4]\n")
 
 
 class HeadersPackagesAndDocs(unittest.TestCase):
