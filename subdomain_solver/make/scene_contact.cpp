@@ -145,7 +145,7 @@ bool joins(const Document& scene, const std::string& body, const std::string& po
   });
 }
 
-bool steps_apart(const Document& scene, const std::string& body, const std::string& port) {
+bool row_steps_apart(const Document& scene, const std::string& body, const std::string& port) {
   if (sharers(scene, body, port).empty()) return false;
   // Along the row: a node of a body that joins another one by a force is joined so too.
   std::vector<std::string> row = {body};
