@@ -102,6 +102,11 @@ class Words(unittest.TestCase):
     def test_glossary_itself_may_name_them(self) -> None:
         self.assertEqual(findings(glossary.check, docs__GLOSSARY_dot_md="not master/slave"), [])
 
+    def test_glossary_defines_a_term_once(self) -> None:
+        text = "| term | meaning |\n|---|---|\n| row | of bars |\n| row of | x |\n| row | y |\n"
+        found = findings(glossary.check, docs__GLOSSARY_dot_md=text)
+        self.assertEqual([finding.line for finding in found], [5])
+
     def test_unfinished_business_and_machine_paths(self) -> None:
         bad = "// TODO later\nopen(\"/home/ann/x\")\nhttp://127.0.0.1:80/\n"
         self.assertEqual(len(findings(words.check, base__a_dot_cpp=bad)), 3)
