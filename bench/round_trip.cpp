@@ -72,6 +72,7 @@ Waveform wave_of_surface(int points, std::vector<double> Waveform::*field) {
 /// one point it answers forces by motion, of several the motion of an obstacle by the reaction.
 class InstantBody : public Subdomain {
  public:
+  using Subdomain::probe;
   explicit InstantBody(int points) : points_(points) {
     description_.dim = points > 1 ? 3 : 1;
     description_.ports.resize(1);

@@ -26,7 +26,7 @@ struct ContactLaw {
 /// The surface gives way where its port kernel was given (Subdomain::yields):
 ///   y = motion.u + kernel * (reaction - motion.f)
 /// with motion.f the force on the partner under which motion.u was found, both of its last reply
-/// (eq. 9 of the compliant obstacle, docs/METHOD.md).
+/// [M.91].
 struct Obstacle {
   Waveform motion;  // the partner's displacement u, and f where its surface gives way
 

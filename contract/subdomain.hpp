@@ -18,8 +18,8 @@ namespace abut {
 /// What a body can do; checked against the scene before the first window.
 struct Capabilities {
   bool motion = false;     // accepts BoundaryData::motion
-  bool force = false;      // accepts BoundaryData::force
-  bool obstacle = false;   // accepts BoundaryData::obstacle: may be the kinematic side
+  bool force = false;      // accepts BoundaryData::forces
+  bool obstacle = false;   // accepts BoundaryData::obstacles: may be the kinematic side
   bool impulse = false;    // accepts BoundaryData::impulse
   bool kernel = false;     // answers probe()
   bool impedance = false;  // accepts BoundaryData::impedance

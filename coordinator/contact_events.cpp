@@ -26,9 +26,9 @@ constexpr double notable_share = 1.0e-6;
 // The same: what is owed for it to be paid after an event. Between events only what is notable is
 // paid: to pay what the iteration leaves open would disturb more than it mends.
 constexpr double payable_share = 1.0e-13;
-// Ways that surfaces can come in a window: those nearer than this may meet, those farther than that
-// are free again.
-constexpr double near_windows = 1.5, far_windows = 4.0;
+// Ways that surfaces can come in a window: those nearer than this may meet in it and are iterated,
+// those farther than that are free again.
+constexpr double near_ways = 1.5, far_ways = 4.0;
 
 bool has_shared_node(const Joint& joint, const Bodies& bodies) {
   return std::ranges::all_of(joint.sides, [&bodies](const Side& side) {
@@ -78,8 +78,8 @@ void ContactEvents::approach(Joint& joint, const TimeWindow& window) {
   const auto [apart, bound] = joint.approach;
   const double way = bound * window.length();
   joint.touch_speed = bound;
-  if (!joint.closed() && apart <= near_windows * way) return engage(joint, bound, window.begin);
-  if (joint.closed() && apart > far_windows * way) joint.disengage();
+  if (!joint.closed() && apart <= near_ways * way) return engage(joint, bound, window.begin);
+  if (joint.closed() && apart > far_ways * way) joint.disengage();
 }
 
 void ContactEvents::begin(const TimeWindow& window) {

@@ -28,7 +28,7 @@ namespace {
 constexpr int most_halvings = 20;
 /// Pairs of a scene where everything may touch everything are joined when they may meet within so
 /// many: contact begins to look at its joints within the next one or two.
-constexpr double near_windows = 4.0;
+constexpr double watched_windows = 4.0;
 
 std::vector<const Description*> descriptions_of(const Bodies& bodies) {
   std::vector<const Description*> descriptions;
@@ -140,7 +140,7 @@ void Controller::unite_start() {
 /// Pairs that may meet within the next windows are watched one by one from now on.
 void Controller::join_near() {
   if (broad_phase_.empty()) return;
-  join(broad_phase_.near(bodies_, near_windows * scene_.time.window));
+  join(broad_phase_.near(bodies_, watched_windows * scene_.time.window));
 }
 
 void Controller::join(std::span<const PortPair> pairs) {

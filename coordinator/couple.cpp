@@ -25,9 +25,6 @@ namespace abut {
 
 namespace {
 
-/// Of the coarser mesh: sides this near to each other coincide.
-constexpr double coincidence = 1.0e-6;
-
 Side find_side(const std::string& text, const Bodies& bodies, const std::string& where) {
   const std::size_t dot = text.find('.');
   for (int b = 0; b < bodies.count() && dot != std::string::npos; ++b) {

@@ -67,7 +67,7 @@ void TiedSpec::fields(Fields& f) {
                      "other body, and moves as that one does there");
 }
 
-void SceneContact::fields(Fields& f) {
+void SceneContactSpec::fields(Fields& f) {
   f.section("everything", everything,
             "law of contact between all surfaces (ports) of different bodies, but for pairs that "
             "have an interface; measures name it contact.everything");

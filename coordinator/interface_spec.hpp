@@ -23,7 +23,7 @@ struct ContactSpec {
   void fields(Fields& f);
 };
 /// Contact between any two surfaces of a scene.
-struct SceneContact {
+struct SceneContactSpec {
   ContactSpec everything;
   void fields(Fields& f);
 };

@@ -130,7 +130,7 @@ struct Scene {
   TimeSpec time;
   std::vector<std::pair<std::string, BodyEntry>> bodies;
   std::vector<std::pair<std::string, InterfaceSpec>> interfaces;
-  std::optional<SceneContact> contact;
+  std::optional<SceneContactSpec> contact;
   SchwarzSpec schwarz;
   OutputSpec output;
   NetworkSpec network;

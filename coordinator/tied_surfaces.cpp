@@ -8,13 +8,11 @@
 
 #include "base/error.hpp"
 #include "coordinator/coupling/tie.hpp"
+#include "surface/unlike_meshes.hpp"
 
 namespace abut {
 
 namespace {
-
-/// Of the coarser facets: curved faces of unlike meshes are this far apart, and no more.
-constexpr double usual_gap = 0.25;
 
 void check_side(const Description& body, const PortGeometry& face, const std::string& side,
                 const std::string& where) {
@@ -124,7 +122,7 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, cons
                      : make_tie_rows(*faces[0], *faces[1], side_of_rows(sides, bodies));
   if (robin != nullptr) rows = make_dashpot_rows(*faces[0], *faces[1], robin->number);
   rows.alternating = spec.tied->overlap && spec.tied->overlap->alternating;
-  const double most = usual_gap * std::max(faces[0]->spacing, faces[1]->spacing);
+  const double most = unlike_meshes_gap * std::max(faces[0]->spacing, faces[1]->spacing);
   if (rows.count() == 0) {
     throw InputError(fmt::format("joins {} and {}, which do not face each other anywhere",
                                  spec.sides[0], spec.sides[1]),

@@ -52,7 +52,7 @@ struct Probing {
   std::vector<double> patterns;  // [N] (patterns, points x dim)
   double step = 0.0;             // [s]
   int count = 0;
-  std::vector<int> seen;  // ports; empty: the pressed one, with all that a kernel has
+  std::vector<int> seen = {};  // ports; empty: the pressed one, with all that a kernel has
 };
 
 // Contract to wire. The target may hold an earlier message: every field is overwritten, memory is

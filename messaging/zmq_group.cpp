@@ -10,11 +10,13 @@ struct ZmqGroup::Member : Channel {
   bool send(Bytes frame, std::shared_ptr<const void> owner) override {
     return dealer.send_of(name, frame, std::move(owner));
   }
-  std::optional<Bytes> receive(Milliseconds) override { return std::exchange(frame, std::nullopt); }
+  std::optional<Bytes> receive(Milliseconds) override {
+    return std::exchange(received, std::nullopt);
+  }
 
   ZmqDealer& dealer;
   std::string name;
-  std::optional<Bytes> frame;  // in the dealer's memory
+  std::optional<Bytes> received;  // in the dealer's memory
 };
 
 ZmqGroup::ZmqGroup(ZmqDealer& dealer, const std::vector<std::string>& bodies) : dealer_(dealer) {
@@ -33,7 +35,7 @@ std::optional<std::size_t> ZmqGroup::wait(Milliseconds time) {
   if (!frame) return std::nullopt;
   const auto found = numbers_.find(dealer_.addressee());
   if (found == numbers_.end()) return std::nullopt;  // of nobody here
-  members_[found->second]->frame = frame;
+  members_[found->second]->received = frame;
   return found->second;
 }
 

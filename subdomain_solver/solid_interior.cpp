@@ -322,7 +322,7 @@ std::optional<Failed> SolidInterior::meet_port_forces(double time) {
 }
 
 /// Means over dual cells press on a surface whose partner has other levels. When the window ends it
-/// stands where the force of the instant holds it  [M.92].
+/// stands where the force of the instant holds it  [M.127].
 std::optional<Failed> SolidInterior::meet_end() {
   now_ = state_.port_force;
   if (port_forces_ == nullptr || !port_forces_->add_end(now_)) return std::nullopt;
@@ -476,8 +476,5 @@ void SolidInterior::finish(std::size_t port, PortResponse& reply) const {
   reply.speed_bound = std::sqrt(most);
   reply.acceleration_bound = parts_.body_acceleration;
 }
-
-/// Of a nonlinear body: far above the rounding of strains, or of places where it is rigid, far
-/// below where they matter.
 
 }  // namespace abut

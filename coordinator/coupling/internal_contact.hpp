@@ -19,7 +19,7 @@ struct InternalContact {
   std::vector<Change> changes;
 };
 
-/// Reads the latest traces of both sides, which hold every substep, and keeps joint.touching.
+/// Reads the latest traces of both sides, which hold every substep, and keeps joint.contact.
 InternalContact watch_internal_contact(Joint& joint, const Bodies& bodies);
 
 }  // namespace abut

@@ -44,7 +44,6 @@ namespace {
 
 /// Surfaces of several points are joined point by point: their places must be the same.
 void match_points(Joint& joint, const PortGeometry& a, const PortGeometry& b) {
-  constexpr double coincidence = 1.0e-6;  // of the coarser mesh
   const double most = coincidence * std::max(a.spacing, b.spacing);
   bool same = a.dim == b.dim && a.points.size() == b.points.size();
   for (std::size_t k = 0; same && k < a.points.size(); ++k)

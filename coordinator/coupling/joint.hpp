@@ -110,6 +110,8 @@ class Joint {
 constexpr double place_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 /// Of the coarser mesh: an overlap at the start below it is none.
 constexpr double place_tolerance = 1.0e-9;
+/// The same: places this near to each other coincide.
+constexpr double coincidence = 1.0e-6;
 
 /// Two ports that are to be joined. Throws InputError when they do not face each other or overlap
 /// at the start; surfaces of several points when the points of one are not those of the other.

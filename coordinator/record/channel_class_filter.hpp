@@ -8,7 +8,7 @@
 namespace abut {
 
 /// Largest value of a force behind the filter of a channel frequency class: two poles of
-/// Butterworth, run forward and then backward, so that nothing is delayed [M.64].
+/// Butterworth, run forward and then backward, so that nothing is delayed [M.80].
 /// The norm filters samples at equal distances. Here these are the means of the force over every
 /// 1/(1000 class) s, which substeps of any length make; at the cut-off that is a 481th of a period.
 /// The backward run forgets: it starts anew every 6000 samples, 3000 later.

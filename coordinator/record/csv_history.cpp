@@ -129,7 +129,7 @@ void CsvHistory::write_row(const WindowReport& report, std::size_t record) {
     for (; next < ports_.size() && ports_[next].body == static_cast<int>(b); ++next) {
       PortColumn& column = ports_[next];
       const Waveform& trace = response.ports[column.port].trace;
-      column.values = trace.empty() ? PortValues{} : column.reader.at(trace, time);
+      column.values = trace.empty() ? PortMeans{} : column.reader.at(trace, time);
       const int dim = column.reader.port().geometry.dim;
       for (int axis = 0; axis < dim; ++axis) number(column.values.u[axis]);
       for (int axis = 0; axis < dim; ++axis) number(column.values.v[axis]);

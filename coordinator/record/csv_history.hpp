@@ -34,7 +34,7 @@ class CsvHistory : public Observer {
   struct PortColumn {
     int body, port;
     PortReader reader;
-    PortValues values;  // at the record being written
+    PortMeans values;  // at the record being written
   };
   struct InterfaceColumn {
     InterfaceInfo info;

@@ -55,7 +55,7 @@ struct WindowReport {
   std::span<const Response> responses;          // by body
   std::span<const InterfaceReport> interfaces;  // by interface
   std::int64_t windows = 0;                     // accepted so far, these included
-  std::span<const PairReport> pairs;            // of interfaces of many
+  std::span<const PairReport> pairs = {};       // of interfaces of many
 };
 
 /// Something that happened at a time.
@@ -65,7 +65,7 @@ struct RunEvent {
   double time = 0.0;                     // [s]; for contact: located inside a window
   std::string subject;                   // interface or body name
   std::string text;                      // one sentence for people
-  std::map<std::string, double> values;  // e.g. velocity_jump, window
+  std::map<std::string, double> values;  // e.g. closing_speed, growth
   bool thrown = false;                   // the error that ends the program says it on the terminal
 };
 

@@ -15,11 +15,11 @@ std::array<double, 3> PortReader::gathered(double scale) const {
   return sum;
 }
 
-PortValues PortReader::at(const Waveform& trace, double time) {
+PortMeans PortReader::at(const Waveform& trace, double time) {
   const double when = std::clamp(time, trace.time.front(), trace.time.back());
   const double share = 1.0 / std::max(1, port_->geometry.count());
   values_.resize(index(trace.width));
-  PortValues out;
+  PortMeans out;
   if (!trace.u.empty()) {
     trace.interpolate(trace.u, when, values_);
     out.u = gathered(share);

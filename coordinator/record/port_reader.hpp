@@ -13,7 +13,7 @@ namespace abut {
 
 /// A port at one time as a person plots it: mean motion and total force, by axis. Absent fields are
 /// zero.
-struct PortValues {
+struct PortMeans {
   std::array<double, 3> u{};  // [m]
   std::array<double, 3> v{};  // [m/s]
   std::array<double, 3> f{};  // [N] on this body
@@ -25,7 +25,7 @@ class PortReader {
   explicit PortReader(const Port& port) : port_(&port) {}
 
   /// At a time, which is clipped to the waveform's. Precondition: the waveform is not empty.
-  PortValues at(const Waveform& trace, double time);
+  PortMeans at(const Waveform& trace, double time);
   /// Force along the inward normal at stored time i [N]: positive in compression.
   double compression(const Waveform& trace, std::size_t i) const;
   /// Mean along x of a field of the waveform at stored time i; 0 when the field is absent.

@@ -13,6 +13,7 @@
 #include "subdomain_solver/make/constraints.hpp"
 #include "subdomain_solver/make/mesh.hpp"
 #include "subdomain_solver/make/read_body.hpp"
+#include "subdomain_solver/make/scene_contact.hpp"
 
 namespace abut {
 
@@ -71,24 +72,13 @@ std::string chosen(const Document& document, const Scene& scene, const std::stri
                    fmt::format("Choose one of {}.", fmt::join(names, ", ")));
 }
 
-/// Whether anything may touch a port: where everything does, tied ones do not.
-bool touches(const Scene& scene, const std::string& side) {
-  bool touched = scene.contact.has_value();
-  for (const auto& [name, interface] : scene.interfaces) {
-    if (std::ranges::find(interface.sides, side) == interface.sides.end()) continue;
-    if (interface.contact) return true;
-    touched = false;
-  }
-  return touched;
-}
-
 /// Bodies without inertia that touch and are tied at once: what the iteration accepts can be far
 /// off (a sleeve in a tube: by 40 % of the pressure).
-void refuse_still_contact(const Document& document, const Scene& scene, const std::string& name,
+void refuse_still_contact(const Document& document, const std::string& name,
                           const BodySpec& spec) {
   if (!spec.integrator || !std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return;
   for (const auto& [port, side] : spec.ports) {
-    if (!touches(scene, name + "." + port)) continue;
+    if (!touches(document, name, port)) continue;
     throw InputError(
         "may touch another body, and bodies without inertia are not divided then: "
         "contact and ties together are not iterated to what is right",
@@ -117,7 +107,7 @@ WholeBody whole_body(const Document& document, const Scene& scene, const std::st
   const Refusal refusal = refusal_of(whole.spec);
   if (!refusal.why.empty())
     throw InputError(refusal.why, document.where(path + "." + refusal.key), refusal.remedy);
-  refuse_still_contact(document, scene, whole.name, whole.spec);
+  refuse_still_contact(document, whole.name, whole.spec);
   whole.spec.place_files(document.name().substr(0, document.name().rfind('/') + 1));
   const Place place{document, path};
   whole.mesh = make_mesh(std::get<FeModelSpec>(whole.spec.model), whole.spec.initial.position,
@@ -126,10 +116,10 @@ WholeBody whole_body(const Document& document, const Scene& scene, const std::st
   return whole;
 }
 
-std::vector<std::int32_t> touched_nodes(const Scene& scene, const WholeBody& whole) {
+std::vector<std::int32_t> touched_nodes(const Document& document, const WholeBody& whole) {
   std::vector<std::int32_t> nodes;
   for (const auto& [name, port] : whole.spec.ports) {
-    if (!touches(scene, whole.name + "." + name) || !whole.mesh.sides.contains(port.side)) continue;
+    if (!touches(document, whole.name, name) || !whole.mesh.sides.contains(port.side)) continue;
     const std::vector<std::int32_t> more = whole.mesh.nodes_of(port.side);
     nodes.insert(nodes.end(), more.begin(), more.end());
   }

@@ -66,8 +66,9 @@ class Splitter {
   std::vector<MeshPart> divided() const {
     const std::string where = document_.where("bodies." + whole_.name + ".model.fe.mesh");
     const CellGraph graph = cell_graph(whole_.mesh);
-    const std::vector<int> part = partition(
-        graph, kept_together(whole_.mesh, touched_nodes(scene_, whole_)), options_.bodies, where);
+    const std::vector<std::int32_t> touched = touched_nodes(document_, whole_);
+    const std::vector<int> part =
+        partition(graph, kept_together(whole_.mesh, touched), options_.bodies, where);
     std::vector<MeshPart> parts = divide(whole_.mesh, graph, part, names_, where);
     hold_single_nodes(document_, whole_, parts);
     return parts;

@@ -263,7 +263,7 @@ void SurfaceContact::add_components(Meeting& m) {
       tangents(rows.dim, normal, std::span(directions_).subspan(at + dim));
     }
     const bool slid = m.law.rubs() && slid_[m.slid + index(rows.nodes[index(r)])] != 0.0;
-    rows_.push_back({static_cast<Eigen::Index>(at / dim), m.parts,
+    rows_.push_back({static_cast<Eigen::Index>(at / dim), m.parts,  // [M.126]
                      slid ? m.law.kinetic_friction : m.law.static_friction});
     for (int p = 0; p < m.parts; ++p)
       find_terms(surfaces_[m.own], rows, r, directions_.data() + at + index(p) * dim);

@@ -153,7 +153,7 @@ void SurfaceObstacle::aim(int i, std::span<const double> reaction, bool turned) 
 }
 
 /// Takes from a level's share what its mean force leans on the surface alone, for the force of the
-/// instant does so in its place  [M.92].
+/// instant does so in its place  [M.127].
 void SurfaceObstacle::lean(int level, double share) {
   const std::size_t z = zone_.size(), from = index(level) * z;
   const std::vector<double>& compliance = met_->kernel.compliance;

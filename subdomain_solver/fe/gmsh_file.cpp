@@ -119,7 +119,7 @@ class Builder {
       const std::vector<std::string> groups = groups_of(block);
       const std::string name = groups.empty() ? "" : groups.front();
       const auto [entry, is_new] = place.try_emplace({name, block.type}, mesh_.blocks.size());
-      if (is_new) mesh_.blocks.push_back({block.type, {}, name});
+      if (is_new) mesh_.blocks.push_back({block.type, {}, name, {}});
       std::vector<std::int32_t>& cells = mesh_.blocks[entry->second].nodes;
       for (std::int32_t node : block.nodes) cells.push_back(number_[index(node)]);
     }

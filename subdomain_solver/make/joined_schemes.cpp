@@ -1,24 +1,16 @@
 #include "subdomain_solver/make/joined_schemes.hpp"
 
-#include <array>
 #include <set>
 #include <string>
 
 #include "base/yaml_fields.hpp"
 #include "base/yaml_resolved.hpp"
 #include "subdomain_solver/make/body_spec.hpp"
+#include "subdomain_solver/make/interface_sides.hpp"
 
 namespace abut {
 
 namespace {
-
-struct Sides {
-  std::array<std::string, 2> sides;
-  void fields(Fields& f) {
-    f.required("sides", sides, "", "two ports that meet, as body.port");
-    f.ignore_rest();
-  }
-};
 
 struct Scheme {
   std::optional<BodySpec::Integrator> integrator;
@@ -36,7 +28,7 @@ bool joined_bodies_step_alike(const Document& scene) {
   for (const std::string& name : scene.keys("interfaces")) {
     const std::string path = "interfaces." + name;
     if (!scene.has(path + ".tied")) continue;
-    for (const std::string& side : read<Sides>(scene, path).sides) {
+    for (const std::string& side : read<InterfaceSides>(scene, path).sides) {
       const std::string body = "bodies." + side.substr(0, side.find('.'));
       if (scene.has(body)) ways.insert(to_yaml(read<Scheme>(scene, body)));
     }

@@ -17,13 +17,11 @@
 #include "subdomain_solver/overlap/cell_shares.hpp"
 #include "subdomain_solver/overlap/conforming.hpp"
 #include "subdomain_solver/overlap/embed.hpp"
+#include "surface/unlike_meshes.hpp"
 
 namespace abut {
 
 namespace {
-
-/// Of a cell: boundaries of unlike meshes are this far apart where they are one, and no more.
-constexpr double usual_gap = 0.25;
 
 /// Of a body, what is to be the same in both.
 struct Scheme {
@@ -143,7 +141,7 @@ EmbeddedSurface Overlap::find(const BodySpec& spec) const {
   StickingOut out;
   EmbeddedSurface inside =
       embed(BoundarySimplices(other_.mesh, other_.mesh.side(other_.side)), own_, skin_, out);
-  if (out.distance > usual_gap * own_.spacing()) {
+  if (out.distance > unlike_meshes_gap * own_.spacing()) {
     refuse(fmt::format("side {} is not inside body '{}': it is {:.3g} m away from it at {}",
                        its_side(), place_.name(), out.distance, at(out.at)),
            "Move a body with initial.position, or give the port a side that lies wholly inside the "
@@ -236,7 +234,7 @@ void Overlap::check_other_sides() const {
     const auto outside = [&](const HalfSpace& half) { return half.distance(middle) > 0.0; };
     if (std::ranges::any_of(cell, outside)) continue;
     const double depth = distance(skin_, middle);
-    if (depth <= usual_gap * own_.spacing()) continue;
+    if (depth <= unlike_meshes_gap * own_.spacing()) continue;
     refuse(fmt::format("body '{}' ends inside body '{}' at {}, {:.3g} m deep, but not with side {}",
                        scene_.body, place_.name(), at(middle), depth, its_side()),
            "Give the port the whole boundary that lies inside the other body.");

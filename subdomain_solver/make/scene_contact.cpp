@@ -1,27 +1,18 @@
 #include "subdomain_solver/make/scene_contact.hpp"
 
 #include <algorithm>
-#include <array>
 #include <set>
 
 #include "base/fields.hpp"
 #include "base/index.hpp"
 #include "base/yaml_fields.hpp"
+#include "subdomain_solver/make/interface_sides.hpp"
 
 namespace abut {
 
 namespace {
 
-/// Of an interface what tells who meets; the rest is the coordinator's.
-struct SidesSpec {
-  std::array<std::string, 2> sides;
-  void fields(Fields& f) {
-    f.required("sides", sides, "", "two ports that meet, as body.port");
-    f.ignore_rest();
-  }
-};
-
-/// Of its transmission, which the coordinator reads whole.
+/// Of an interface's transmission, which the coordinator reads whole.
 struct KinematicSpec {
   std::string kinematic;
   void fields(Fields& f) {
@@ -84,7 +75,7 @@ std::vector<std::string> sharers(const Document& scene, const std::string& body,
   for (const std::string& name : scene.keys_with("interfaces", "sides", body + "." + port)) {
     const std::string path = "interfaces." + name;
     if (!scene.has(path + ".tied")) continue;
-    for (const std::string& side : read<SidesSpec>(scene, path).sides) {
+    for (const std::string& side : read<InterfaceSides>(scene, path).sides) {
       const std::size_t dot = side.find('.');
       if (side == body + "." + port || dot == std::string::npos) continue;
       const std::string other = side.substr(0, dot);
@@ -111,7 +102,7 @@ std::vector<SceneContact> contacts_of(const Document& scene, const std::string& 
   for (const std::string& name : scene.keys_with("interfaces", "sides", body + "." + port)) {
     const std::string path = "interfaces." + name;
     if (!scene.has(path + ".contact")) continue;
-    const SidesSpec interface = read<SidesSpec>(scene, path);
+    const InterfaceSides interface = read<InterfaceSides>(scene, path);
     for (const std::size_t s : {0u, 1u}) {
       if (interface.sides[s] != body + "." + port) continue;
       const std::string& other = interface.sides[1 - s];
@@ -131,7 +122,7 @@ std::optional<SceneOverlap> overlap_of(const Document& scene, const std::string&
   for (const std::string& name : scene.keys_with("interfaces", "sides", side)) {
     const std::string path = "interfaces." + name;
     if (!scene.has(path + ".tied.overlap")) continue;
-    const SidesSpec interface = read<SidesSpec>(scene, path);
+    const InterfaceSides interface = read<InterfaceSides>(scene, path);
     const std::string& other = interface.sides[interface.sides[0] == side ? 1 : 0];
     const std::size_t dot = other.find('.');
     if (dot == std::string::npos) continue;
@@ -154,7 +145,7 @@ bool joins(const Document& scene, const std::string& body, const std::string& po
   });
 }
 
-bool steps_apart(const Document& scene, const std::string& body, const std::string& port) {
+bool row_steps_apart(const Document& scene, const std::string& body, const std::string& port) {
   if (sharers(scene, body, port).empty()) return false;
   // Along the row: a node of a body that joins another one by a force is joined so too.
   std::vector<std::string> row = {body};

@@ -40,7 +40,7 @@ bool joins(const Document& scene, const std::string& body, const std::string& po
 
 /// Whether a port shares its node with another one, tied: true both, and somewhere along the row of
 /// bodies that do two step apart: of other steps, or one explicit and one implicit.
-bool steps_apart(const Document& scene, const std::string& body, const std::string& port);
+bool row_steps_apart(const Document& scene, const std::string& body, const std::string& port);
 
 /// Whether a port of a body in two or three dimensions may touch anything: one that is tied does so
 /// only where an interface says it.

@@ -117,7 +117,7 @@ std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Pla
     const int end = mesh.dim == 1 ? spec.end_of(port.side) : -1;  // by a point's name too
     const bool touched = mesh.dim == 1 ? !port.tied : touches(place.document, place.name(), name);
     const bool joined = mesh.dim > 1 ? joins(place.document, place.name(), name)
-                                     : steps_apart(place.document, place.name(), name);
+                                     : row_steps_apart(place.document, place.name(), name);
     if (joined && touched) {
       throw InputError("is tied to one surface and touches another", place.where("ports." + name),
                        "Give the part that is tied a side and a port of its own.");

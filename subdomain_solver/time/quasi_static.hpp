@@ -22,7 +22,7 @@ class QuasiStatic final : public Integrator {
     int most_halvings = 8;  // the smallest part is step / 2^n
     // (dofs, k) rigid motions that its supports leave it, 0 there; columns of length sqrt(n) at
     // right angles, n: free coordinates
-    Eigen::MatrixXd loose;
+    Eigen::MatrixXd loose = {};
     bool joined = false;  // the first equilibrium is that of the first step, with its partners
   };
 

@@ -22,6 +22,7 @@ constexpr double step = 1.0e-6;  // [s] of the block
 /// A rigid block in the plane that turns nowhere. A force is constant in each of its substeps.
 class Stranger final : public Subdomain {
  public:
+  using Subdomain::probe;
   Stranger(double own_step, ForceSupport support, bool tells) : tells_(support) {
     description_.name = "stranger";
     description_.model = "rigid, of another program";

@@ -51,12 +51,12 @@ SolidText column(const Rings& rings, const std::string& name, int across, double
 std::vector<Rings> all() {
   const std::string j2 = unit_law("j2_plasticity", 0.0, ", yield_stress: 0.005, hardening: 0.1");
   std::vector<Rings> out;
-  for (const std::string& formulation : {"full", "one_point", "mean_dilatation"})
+  for (const std::string formulation : {"full", "one_point", "mean_dilatation"})
     for (const std::string& law :
          {unit_law("linear_elastic", 0.0), unit_law("neo_hookean", 0.0), j2})
-      for (const std::string& scheme : {"central_difference", "newmark", "generalized_alpha"})
-        for (const std::string& directions : {"all", "normal"})
-          for (const std::string& plane : {"axisymmetric", "strain", "space"}) {
+      for (const std::string scheme : {"central_difference", "newmark", "generalized_alpha"})
+        for (const std::string directions : {"all", "normal"})
+          for (const std::string plane : {"axisymmetric", "strain", "space"}) {
             if (formulation == "one_point" && scheme != "central_difference") continue;
             const bool flat = plane != "axisymmetric";
             if (flat && directions == "all") continue;  // surface_combinations has them

@@ -14,6 +14,7 @@ namespace abut {
 /// and what each point must do is known from the bar alone.
 class Bundle : public Subdomain {
  public:
+  using Subdomain::probe;
   /// Bars with one port each, at the same place.
   explicit Bundle(std::vector<std::unique_ptr<Subdomain>> bars)
       : bars_(std::move(bars)), requests_(bars_.size()), responses_(bars_.size()) {

@@ -7,7 +7,6 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/archive.hpp"
@@ -20,6 +19,7 @@ namespace abut {
 /// force on its one port. Deterministic; rewinds exactly; counts what is asked of it.
 class FakeSubdomain : public Subdomain {
  public:
+  using Subdomain::probe;
   struct Options {
     std::string name = "fake";
     double mass = 2.0;        // [kg]

@@ -13,6 +13,7 @@ namespace abut {
 /// A body whose reply is written down beforehand.
 class Scripted : public Subdomain {
  public:
+  using Subdomain::probe;
   Scripted(double place, double normal, double step, int ports = 1) {
     description_.step = step;
     description_.mass = 1.0;

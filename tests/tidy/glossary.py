@@ -1,4 +1,5 @@
-"""Goal: one word per thing. Fails on words that docs/GLOSSARY.md replaces by another.
+"""Goal: one word per thing. Fails on words that docs/GLOSSARY.md replaces by another, and where it
+defines a term twice.
 
 Only words that have no other meaning in this project are listed, so that a finding is never noise.
 """
@@ -25,7 +26,8 @@ INSTEAD = {
     "under relaxation": "relaxation",
     "input deck": "scene",
 }
-EXEMPT = ("docs/GLOSSARY.md", "tests/tidy/", "LICENSE")
+GLOSSARY = "docs/GLOSSARY.md"
+EXEMPT = (GLOSSARY, "tests/tidy/", "LICENSE")
 WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 
 
@@ -34,8 +36,20 @@ def words_of(line: str) -> str:
     return " " + " ".join(word.lower() for word in WORDS.findall(line)) + " "
 
 
+def defined_twice(root: Path) -> list[Finding]:
+    found, terms = [], set()
+    for number, line in enumerate(read_lines(root, GLOSSARY), start=1):
+        term = line.split(" | ")[0] if line.startswith("| ") else None
+        if term in terms:
+            found.append(Finding(GLOSSARY, number, f"'{term[2:]}' is defined above",
+                                 "give one of the two a name of its own"))
+        elif term:
+            terms.add(term)
+    return found
+
+
 def check(root: Path) -> list[Finding]:
-    found = []
+    found = defined_twice(root) if (root / GLOSSARY).is_file() else []
     for name in project_files(root):
         if name.startswith(EXEMPT) or not name.endswith(CODE + (".md", ".yaml")):
             continue

@@ -5,7 +5,9 @@ import unittest
 from pathlib import Path
 from typing import Callable
 
+import definitions
 import docs
+import equations
 import glossary
 import headers
 import layers
@@ -100,11 +102,62 @@ class Words(unittest.TestCase):
     def test_glossary_itself_may_name_them(self) -> None:
         self.assertEqual(findings(glossary.check, docs__GLOSSARY_dot_md="not master/slave"), [])
 
+    def test_glossary_defines_a_term_once(self) -> None:
+        text = "| term | meaning |\n|---|---|\n| row | of bars |\n| row of | x |\n| row | y |\n"
+        found = findings(glossary.check, docs__GLOSSARY_dot_md=text)
+        self.assertEqual([finding.line for finding in found], [5])
+
     def test_unfinished_business_and_machine_paths(self) -> None:
         bad = "// TODO later\nopen(\"/home/ann/x\")\nhttp://127.0.0.1:80/\n"
         self.assertEqual(len(findings(words.check, base__a_dot_cpp=bad)), 3)
         good = "tcp://127.0.0.1:5555\nruns/work/x\n/tmp/x\n"
         self.assertEqual(findings(words.check, base__a_dot_cpp=good), [])
+
+
+class Definitions(unittest.TestCase):
+    def check(self, expected: list[str], **files: str) -> None:
+        found = findings(definitions.check, **files)
+        self.assertEqual([f"{finding.path}:{finding.line}" for finding in found], expected)
+
+    def test_one_name_in_one_namespace_is_defined_once(self) -> None:
+        one = "namespace abut {\nstruct P {\n  int x;\n};\n}\n"
+        for other in ("class P final : public B {};", "enum class P : char { a };",
+                      "template <class T>\nstruct P {};", "struct alignas(64) P {};"):
+            text = "namespace abut {\nstruct Q;\n" + other + "\n}\n"
+            line = 3 + other.count("\n")
+            self.check([f"b.hpp:{line}"], a_dot_hpp=one, b_dot_hpp=text)
+        nested = "namespace abut::n {\nstruct P {};\n}\n"
+        also = "namespace abut {\nnamespace n {\nstruct P {};\n}\n}\n"
+        self.check(["c.cpp:3"], a_dot_hpp=one, b_dot_hpp=nested, c_dot_cpp=also)
+
+    def test_files_own_types_and_members_and_declarations_may_share_a_name(self) -> None:
+        one = "namespace abut {\nstruct P {\n  int x;\n};\n}\n"
+        for other in ("namespace {\nstruct P {};\n}", "struct Q { struct P {}; };", "struct P;",
+                      "void f() { struct P {}; }", "// struct P {}", "struct P f() { return {}; }"):
+            self.check([], a_dot_hpp=one, b_dot_cpp="namespace abut {\n" + other + "\n}\n")
+        self.check([], a_dot_hpp=one, tests__b_dot_cpp=one)
+
+
+class Equations(unittest.TestCase):
+    METHOD = "    a = b,                    [M.1]\n| law | a = b | [M.2] |\n    c = d   [M.3]\n"
+
+    def check(self, expected: list[str], method: str, **files: str) -> None:
+        found = findings(equations.check, docs__METHOD_dot_md=method, **files)
+        self.assertEqual([f"{finding.path}:{finding.line}" for finding in found], expected)
+
+    def test_what_is_cited_is_defined(self) -> None:
+        self.check([], self.METHOD, a_dot_hpp="// [M.1] and [M.2, M.3], [M.1 to M.3].\n")
+        for wrong in ("[M.4]", "[M.1, M.4]", "[M.2 to M.4]", "[M.1-3]"):
+            for name in ("a_dot_hpp", "a_dot_yaml", "a_dot_md", "a_dot_py"):
+                self.check([name.replace("_dot_", ".") + ":2"], self.METHOD,
+                           **{name: f"\nas {wrong} says\n"})
+
+    def test_number_is_given_once(self) -> None:
+        self.check(["docs/METHOD.md:4"], self.METHOD + "    e = f     [M.2]\n")
+
+    def test_formula_or_row_that_ends_with_a_citation_defines_nothing(self) -> None:
+        self.check([], self.METHOD + "    e = f under [M.1]\n| f | as [M.2] |\n")
+        self.check(["docs/METHOD.md:4"], self.METHOD + "    e = f under [M.4]\n")
 
 
 class HeadersPackagesAndDocs(unittest.TestCase):

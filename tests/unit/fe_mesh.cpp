@@ -22,7 +22,7 @@ Mesh two_squares() {
   Mesh mesh;
   mesh.dim = 2;
   mesh.points = {0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1};
-  mesh.blocks.push_back({&element_named("quad4"), {0, 1, 4, 3, 1, 2, 5, 4}, ""});
+  mesh.blocks.push_back({&element_named("quad4"), {0, 1, 4, 3, 1, 2, 5, 4}, "", {}});
   mesh.sides["below"] = {{0, 0, 0}, {0, 1, 0}};
   mesh.node_sets["origin"] = {0};
   return mesh;
@@ -88,7 +88,7 @@ TEST(CheckMesh, SeesAFlatCellThroughTheRoundingOfFarCoordinates) {
   // a tetrahedron in a skew plane: its Jacobian is rounding, of either sign
   Mesh mesh;
   mesh.dim = 3;
-  mesh.blocks.push_back({&element_named("tet4"), {0, 1, 2, 3}, ""});
+  mesh.blocks.push_back({&element_named("tet4"), {0, 1, 2, 3}, "", {}});
   for (double size : {1e-3, 1.0, 1e6}) {
     for (int k = 0; k < 20; ++k) {
       mesh.points.clear();

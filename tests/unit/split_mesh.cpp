@@ -213,13 +213,14 @@ TEST(DividedMesh, RefusesWhatWouldComeApart) {
   Mesh ring;
   ring.dim = 2;
   ring.points = {0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1, 0, 2, 1, 2, 3, 1, 3, 0};
-  ring.blocks = {{&element_named("quad4"), {0, 1, 4, 3, 3, 4, 7, 6, 1, 2, 5, 4, 2, 9, 8, 5}, ""}};
+  ring.blocks = {
+      {&element_named("quad4"), {0, 1, 4, 3, 3, 4, 7, 6, 1, 2, 5, 4, 2, 9, 8, 5}, "", {}}};
   const CellGraph graph = cell_graph(ring);
   const std::vector<std::string> names = {"a", "b"};
   EXPECT_EQ(divide(ring, graph, {0, 0, 1, 1}, names, "mesh").size(), 2u);
   Mesh bow = ring;  // two squares at a corner, held together by nothing else
   bow.points = {0, 0, 1, 0, 1, 1, 0, 1, 2, 1, 2, 2, 1, 2};
-  bow.blocks = {{&element_named("quad4"), {0, 1, 2, 3, 2, 4, 5, 6}, ""}};
+  bow.blocks = {{&element_named("quad4"), {0, 1, 2, 3, 2, 4, 5, 6}, "", {}}};
   EXPECT_NE(refusal([&] {
               divide(bow, cell_graph(bow), {0, 1}, names, "mesh");
             }).find("would come apart at (1, 1) m"),
