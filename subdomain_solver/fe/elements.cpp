@@ -76,12 +76,15 @@ std::vector<Entry> entries() {
   // the classes of the cells; it goes around the base, then up (tet10 01 12 20 03 13 23; hex20
   // around the lower face, the upper one, and the edges between them). Exodus': SAND92-2137, 4.8.
   const std::vector<int> tet10 = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
+  Lists quad9 = on(quadrilateral_edges);
+  quad9.push_back({0, 1, 2, 3});
   return {
       {"point1", point, n.point1, 15, 1},
       {"bar2", line, n.bar2, 1, 3, "point1"},
       {"bar3", line, n.bar3, 8, 21, "point1", on(line_edges)},
       {"quad4", quadrilateral, n.quad4, 3, 9, "bar2"},
       {"quad8", quadrilateral, n.quad8, 16, 23, "bar3", on(quadrilateral_edges)},
+      {"quad9", quadrilateral, n.quad9, 10, 28, "bar3", quad9},
       {"tri3", triangle, n.tri3, 2, 5, "bar2"},
       {"tri6", triangle, n.tri6, 9, 22, "bar3", on(triangle_edges)},
       {"hex8", hexahedron, n.hex8, 5, 12, "quad4"},

@@ -26,9 +26,9 @@ const Element* element_of(int gmsh) {
 
 /// What to do about elements that we do not have.
 std::string other_element(int type) {
-  const bool complete = type == 10 || type == 12;  // quad9, hex27
+  const bool complete = type == 12;  // hex27
   const bool wedge = type == 6 || type == 7 || type == 13 || type == 14 || type == 18 || type == 19;
-  if (complete) return "Set Mesh.SecondOrderIncomplete = 1 in Gmsh: quad8 and hex20 are supported.";
+  if (complete) return "Set Mesh.SecondOrderIncomplete = 1 in Gmsh: hex20 is supported.";
   if (wedge) return "Prisms and pyramids are not supported: mesh with tetrahedra or hexahedra.";
   return "Use elements of order 1 or 2: bars, triangles, quadrilaterals, tetrahedra, hexahedra.";
 }
