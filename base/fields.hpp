@@ -39,10 +39,10 @@ class Fields {
   }
 
   /// A word out of a list. T is a string, or a bool or enum whose value is the index into the list.
-  template <class T>
-  void word(std::string_view key, T& value, std::initializer_list<std::string_view> words,
+  template <class T, class Words = std::initializer_list<std::string_view>>
+  void word(std::string_view key, T& value, const Words& words,
             std::string_view help, Presence presence = Presence::optional) {
-    const std::span<const std::string_view> list(words.begin(), words.size());
+    const std::span<const std::string_view> list(std::data(words), std::size(words));
     if constexpr (std::is_same_v<T, std::string>) {
       word_leaf({key, "", help, presence}, value, list);
     } else {

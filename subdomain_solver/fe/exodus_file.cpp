@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,17 +20,6 @@
 namespace abut {
 namespace {
 
-// Nodes of Exodus in our order, where they differ (Exodus II manual, SAND92-2137, section 4.8).
-constexpr std::array<int, 10> tet10_nodes = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
-constexpr std::array<int, 20> hex20_nodes = {0,  1, 2,  3,  4,  5,  6,  7,  8,  11,
-                                             12, 9, 13, 10, 14, 15, 16, 19, 17, 18};
-
-std::span<const int> node_order(const Element& element) {
-  if (element.name == "tet10") return tet10_nodes;
-  if (element.name == "hex20") return hex20_nodes;
-  return {};
-}
-
 /// What Exodus calls shapes: names that begin with this, in any case and with any number behind.
 constexpr std::array<std::pair<const char*, Shape>, 7> shape_names = {
     {{"HEX", Shape::hexahedron},
@@ -40,6 +29,13 @@ constexpr std::array<std::pair<const char*, Shape>, 7> shape_names = {
      {"BAR", Shape::line},
      {"TRUSS", Shape::line},
      {"EDGE", Shape::line}}};
+
+std::string solid_names() {
+  std::vector<std::string_view> names;
+  for (const Element& element : all_elements())
+    if (element.dim > 0) names.push_back(element.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
 
 const Element* element_of(const std::string& type, std::size_t nodes) {
   std::string upper = type;
@@ -114,14 +110,13 @@ class Reader {
       if (element == nullptr)
         file_.refuse(
             fmt::format("has elements {} of {} nodes in block '{}'", type, width, names[b]),
-            "Use bars, triangles, quadrilaterals (4 or 8 nodes), tetrahedra, hexahedra (8 "
-            "or 20 nodes).");
+            "Use bars, triangles, quadrilaterals, tetrahedra, hexahedra: " + solid_names() + ".");
       if (element->dim != mesh_.dim)
         file_.refuse(fmt::format("has elements {} of {} dimensions in block '{}', in a space of {}",
                                  type, element->dim, names[b], mesh_.dim),
                      "Leave out shells and bars; write plane parts with two dimensions.");
       const std::vector<std::int64_t> numbers = file_.integers(variable, cells * width);
-      const std::span<const int> order = node_order(*element);
+      const std::vector<int>& order = element->exodus_nodes;
       CellBlock block = {element, {}, names[b]};
       block.nodes.resize(numbers.size());
       for (std::size_t i = 0; i < numbers.size(); ++i) {

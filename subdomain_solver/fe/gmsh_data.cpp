@@ -17,16 +17,18 @@ namespace {
 const char* const as_version =
     "Export as version 4.1 (in Gmsh: `gmsh -format msh41`, or Mesh.MshFileVersion = 4.1).";
 
-/// Gmsh's numbers of our elements.
-const std::map<int, std::string_view> element_types = {
-    {1, "bar2"}, {2, "tri3"},   {3, "quad4"},   {4, "tet4"},   {5, "hex8"},  {8, "bar3"},
-    {9, "tri6"}, {11, "tet10"}, {15, "point1"}, {16, "quad8"}, {17, "hex20"}};
+/// Nothing: we do not have it.
+const Element* element_of(int gmsh) {
+  for (const Element& element : all_elements())
+    if (element.gmsh == gmsh) return &element;
+  return nullptr;
+}
 
 /// What to do about elements that we do not have.
 std::string other_element(int type) {
-  const bool complete = type == 10 || type == 12;  // quad9, hex27
+  const bool complete = type == 12;  // hex27
   const bool wedge = type == 6 || type == 7 || type == 13 || type == 14 || type == 18 || type == 19;
-  if (complete) return "Set Mesh.SecondOrderIncomplete = 1 in Gmsh: quad8 and hex20 are supported.";
+  if (complete) return "Set Mesh.SecondOrderIncomplete = 1 in Gmsh: hex20 is supported.";
   if (wedge) return "Prisms and pyramids are not supported: mesh with tetrahedra or hexahedra.";
   return "Use elements of order 1 or 2: bars, triangles, quadrilaterals, tetrahedra, hexahedra.";
 }
@@ -169,10 +171,9 @@ class Parser {
       const int dim = dimension();
       block.entity = {dim, file_.integer()};
       const int type = file_.integer();
-      const auto found = element_types.find(type);
-      if (found == element_types.end())
+      block.type = element_of(type);
+      if (block.type == nullptr)
         file_.refuse(fmt::format("has elements of Gmsh's type {}", type), other_element(type));
-      block.type = &element_named(found->second);
       if (block.type->dim != dim)
         file_.refuse(fmt::format("has {} on an entity of {} dimensions", block.type->name, dim),
                      "Export the file again.");

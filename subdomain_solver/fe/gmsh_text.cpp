@@ -3,27 +3,15 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "base/assert.hpp"
 #include "base/index.hpp"
 
 namespace abut {
 namespace {
-
-/// Gmsh's number of one of our elements.
-int gmsh_type(std::string_view element) {
-  static const std::map<std::string_view, int> types = {
-      {"point1", 15}, {"bar2", 1}, {"bar3", 8},   {"tri3", 2}, {"tri6", 9},  {"quad4", 3},
-      {"quad8", 16},  {"tet4", 4}, {"tet10", 11}, {"hex8", 5}, {"hex20", 17}};
-  const auto found = types.find(element);
-  ABUT_ASSERT(found != types.end());
-  return found->second;
-}
 
 /// Elements of one type on one entity, which is in some of the named groups of its dimension.
 struct Entity {
@@ -83,7 +71,7 @@ class Writer {
   /// In one dimension points are the sides, and a node inside is told apart by having two cells.
   void add_node_sets() {
     for (const auto& [name, nodes] : mesh_.node_sets)
-      entities_.push_back({0, {group(0, name)}, &element_named("point1"), nodes});
+      entities_.push_back({0, {group(0, name)}, &linear_element(Shape::point), nodes});
   }
 
   void write_entities() {
@@ -119,7 +107,7 @@ class Writer {
     std::size_t tag = 0;
     for (std::size_t e = 0; e < entities_.size(); ++e) {
       const Entity& entity = entities_[e];
-      format("{} {} {} {}\n", entity.dim, e + 1, gmsh_type(entity.type->name), entity.count());
+      format("{} {} {} {}\n", entity.dim, e + 1, entity.type->gmsh, entity.count());
       for (std::size_t k = 0; k < entity.nodes.size(); ++k) {
         const bool first = k % index(entity.type->nodes) == 0;
         if (first) format("{}{}", k == 0 ? "" : "\n", ++tag);

@@ -6,7 +6,8 @@
 namespace abut {
 
 bool has_hourglasses(const Element& element) {
-  return element.name == "hex8" || element.name == "quad4";
+  return element.order == 1 &&
+         (element.shape == Shape::hexahedron || element.shape == Shape::quadrilateral);
 }
 
 Eigen::MatrixXd hourglass_stiffness(const Element& element, const Eigen::MatrixXd& x,

@@ -7,39 +7,27 @@
 #include "base/assert.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/fe/facet_index.hpp"
-#include "subdomain_solver/fe/shape_functions.hpp"
 
 namespace abut {
 namespace {
 
-LatticePoint halfway(const LatticePoint& a, const LatticePoint& b) {
-  LatticePoint middle;
-  for (std::size_t d = 0; d < middle.at.size(); ++d) middle.at[d] = (a.at[d] + b.at[d]) / 2;
-  return middle;
+/// The middle of some of the corners, which has a place in the lattice.
+LatticePoint middle(std::span<const LatticePoint> corners, const std::vector<int>& which) {
+  const int count = static_cast<int>(which.size());
+  LatticePoint sum;
+  for (const int corner : which)
+    for (std::size_t d = 0; d < sum.at.size(); ++d) sum.at[d] += corners[index(corner)].at[d];
+  for (int& number : sum.at) {
+    ABUT_ASSERT(number % count == 0);
+    number /= count;
+  }
+  return sum;
 }
 
 std::uint64_t packed(const LatticePoint& point) {
   std::uint64_t key = 0;
   for (int number : point.at) key = (key << 16) | static_cast<std::uint64_t>(number);
   return key;
-}
-
-std::span<const Edge> edges_of(Shape shape) {
-  switch (shape) {
-    case Shape::line:
-      return line_edges;
-    case Shape::triangle:
-      return triangle_edges;
-    case Shape::quadrilateral:
-      return quadrilateral_edges;
-    case Shape::tetrahedron:
-      return tetrahedron_edges;
-    case Shape::hexahedron:
-      return hexahedron_edges;
-    case Shape::point:
-      break;
-  }
-  return {};
 }
 
 }  // namespace
@@ -75,17 +63,15 @@ std::int32_t LatticeMesh::node(const LatticePoint& point) {
 void LatticeMesh::add_element(std::span<const LatticePoint> corners) {
   std::vector<std::int32_t>& nodes = mesh_.blocks.front().nodes;
   for (const LatticePoint& corner : corners) nodes.push_back(node(corner));
-  if (element_.order == 1) return;
-  for (const Edge& edge : edges_of(element_.shape)) {
-    nodes.push_back(node(halfway(corners[index(edge[0])], corners[index(edge[1])])));
-  }
+  for (const std::vector<int>& between : element_.between)
+    nodes.push_back(node(middle(corners, between)));
 }
 
 void LatticeMesh::add_cell(std::span<const LatticePoint> corners) {
   if (element_.shape == Shape::triangle) {
-    split(element_named("quad4"), corners);
+    split(linear_element(Shape::quadrilateral), corners);
   } else if (element_.shape == Shape::tetrahedron) {
-    split(element_named("hex8"), corners);
+    split(linear_element(Shape::hexahedron), corners);
   } else {
     add_element(corners);
   }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <numbers>
 #include <span>
 #include <string_view>
@@ -24,8 +23,8 @@ using Point = std::array<double, 3>;
 
 // Refusals -------------------------------------------------------------------------------------
 
-const Element& choose(const std::string& name, std::initializer_list<std::string_view> fitting,
-                      const std::string& where) {
+const Element& choose(const std::string& name, int dim, const std::string& where) {
+  const std::vector<std::string_view> fitting = generated_elements(dim);
   if (std::find(fitting.begin(), fitting.end(), name) != fitting.end()) return element_named(name);
   throw InputError("must be an element that fits, but is '" + name + "'", where + ".element",
                    fmt::format("Choose one of {}.", fmt::join(fitting, ", ")));
@@ -242,25 +241,25 @@ void require_round(double radius, int core, int layers, double along, double dim
 Mesh generate(const BarMesh& data, const std::string& where) {
   const Lengths<1> lengths = {
       {data.origin}, Origin::corner, {data.length}, {data.elements}, {data.grading}};
-  return box(lengths, element_named("bar2"), where);
+  return box(lengths, linear_element(Shape::line), where);
 }
 
 Mesh generate(const RectangleMesh& data, const std::string& where) {
-  const Element& element = choose(data.element, {"tri3", "tri6", "quad4", "quad8"}, where);
+  const Element& element = choose(data.element, 2, where);
   const Lengths<2> lengths = {data.origin, data.origin_at, data.lengths, data.elements,
                               data.grading};
   return box(lengths, element, where);
 }
 
 Mesh generate(const BoxMesh& data, const std::string& where) {
-  const Element& element = choose(data.element, {"tet4", "tet10", "hex8", "hex20"}, where);
+  const Element& element = choose(data.element, 3, where);
   const Lengths<3> lengths = {data.origin, data.origin_at, data.lengths, data.elements,
                               data.grading};
   return box(lengths, element, where);
 }
 
 Mesh generate(const DiskMesh& data, const std::string& where) {
-  const Element& element = choose(data.element, {"tri3", "tri6", "quad4", "quad8"}, where);
+  const Element& element = choose(data.element, 2, where);
   require_finite(data.centre, where + ".centre");
   require_round(data.radius, data.core, data.layers, 1.0, 2.0, where);
   LatticeMesh mesh(element, [&data](const LatticePoint& place) {
@@ -275,7 +274,7 @@ Mesh generate(const DiskMesh& data, const std::string& where) {
 }
 
 Mesh generate(const CylinderMesh& data, const std::string& where) {
-  const Element& element = choose(data.element, {"tet4", "tet10", "hex8", "hex20"}, where);
+  const Element& element = choose(data.element, 3, where);
   require_finite(data.origin, where + ".origin");
   require_positive(data.length, where + ".length");
   require_grading(data.grading, where + ".grading");
@@ -299,7 +298,7 @@ Mesh generate(const CylinderMesh& data, const std::string& where) {
 }
 
 Mesh generate(const SphereMesh& data, const std::string& where) {
-  const Element& element = choose(data.element, {"tet4", "tet10", "hex8", "hex20"}, where);
+  const Element& element = choose(data.element, 3, where);
   require_finite(data.centre, where + ".centre");
   require_round(data.radius, data.core, data.layers, 1.0, 3.0, where);
   LatticeMesh mesh(element, [&data](const LatticePoint& place) {

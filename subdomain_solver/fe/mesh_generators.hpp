@@ -32,7 +32,7 @@ struct RectangleMesh {
   std::array<double, 2> lengths = {0.0, 0.0};  // [m]
   std::array<int, 2> elements = {0, 0};
   std::array<double, 2> grading = {1.0, 1.0};
-  std::string element = "quad4";  // or quad8, tri3, tri6 (two triangles per quadrilateral)
+  std::string element = "quad4";  // or another plane one; two triangles per quadrilateral
 };
 
 /// Sides left (x-), right (x+), bottom (y-), top (y+), back (z-), front (z+), boundary; node sets
@@ -43,7 +43,7 @@ struct BoxMesh {
   std::array<double, 3> lengths = {0.0, 0.0, 0.0};  // [m]
   std::array<int, 3> elements = {0, 0, 0};
   std::array<double, 3> grading = {1.0, 1.0, 1.0};
-  std::string element = "hex8";  // or hex20, tet4, tet10 (six tetrahedra per hexahedron)
+  std::string element = "hex8";  // or another one; six tetrahedra per hexahedron
 };
 
 // Round parts are O-grids: a core of `core` elements in every direction, and `layers` layers of
@@ -55,7 +55,7 @@ struct DiskMesh {
   std::array<double, 2> centre = {0.0, 0.0};  // [m]
   double radius = 0.0;                        // [m]
   int core = 0, layers = 0;
-  std::string element = "quad4";  // or quad8, tri3, tri6
+  std::string element = "quad4";  // or another plane one
 };
 
 /// Solid, along z. Sides mantle, bottom (z-), top (z+), boundary; node set axis where nodes lie
@@ -68,7 +68,7 @@ struct CylinderMesh {
   int core = 0, layers = 0;
   int elements = 0;  // along the axis
   double grading = 1.0;
-  std::string element = "hex8";  // or hex20, tet4, tet10
+  std::string element = "hex8";  // or another one
 };
 
 /// Solid. Sides surface and boundary, which are the same; node set centre where a node lies there.
@@ -76,7 +76,7 @@ struct SphereMesh {
   std::array<double, 3> centre = {0.0, 0.0, 0.0};  // [m]
   double radius = 0.0;                             // [m]
   int core = 0, layers = 0;
-  std::string element = "hex8";  // or hex20, tet4, tet10
+  std::string element = "hex8";  // or another one
 };
 
 /// The mesh of a part. Throws InputError when a length is not positive and finite, a number of

@@ -107,6 +107,22 @@ void serendipity(std::span<const double> xi, Values n, Values dn) {
   }
 }
 
+/// Products of the quadratic polynomials of a line, which are 1 at one of -1, 0, 1 and 0 at the
+/// others.
+void quadratic_square(std::span<const double> xi, Values n, Values dn) {
+  constexpr int at[9][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1},
+                            {0, -1},  {1, 0},  {0, 1}, {-1, 0}, {0, 0}};
+  for (std::size_t a = 0; a < 9; ++a) {
+    std::array<double, 2> factor{}, derivative{};
+    for (std::size_t d = 0; d < 2; ++d) {
+      const double s = at[a][d];
+      factor[d] = s == 0.0 ? 1.0 - xi[d] * xi[d] : 0.5 * xi[d] * (xi[d] + s);
+      derivative[d] = s == 0.0 ? -2.0 * xi[d] : xi[d] + 0.5 * s;
+    }
+    product<2>(factor, derivative, 1.0, n[a], &dn[a * 2]);
+  }
+}
+
 }  // namespace
 
 const ShapeFunctions& shape_functions() {
@@ -118,6 +134,7 @@ const ShapeFunctions& shape_functions() {
       .tri6 = quadratic_simplex<2, triangle_edges>,
       .quad4 = linear_cube<2>,
       .quad8 = serendipity<2, quadrilateral_edges>,
+      .quad9 = quadratic_square,
       .tet4 = linear_simplex<3>,
       .tet10 = quadratic_simplex<3, tetrahedron_edges>,
       .hex8 = linear_cube<3>,

@@ -52,7 +52,7 @@ constexpr auto simplex_corners() {
 using Evaluate = void (*)(std::span<const double> xi, std::span<double> n, std::span<double> dn);
 
 struct ShapeFunctions {
-  Evaluate point1, bar2, bar3, tri3, tri6, quad4, quad8, tet4, tet10, hex8, hex20;
+  Evaluate point1, bar2, bar3, tri3, tri6, quad4, quad8, quad9, tet4, tet10, hex8, hex20;
 };
 /// Those of all elements (textbook forms, e.g. Hughes, The Finite Element Method, chapter 3).
 const ShapeFunctions& shape_functions();

@@ -5,12 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "subdomain_solver/fe/element.hpp"
+
 namespace abut {
 
 namespace {
 
-void element_key(Fields& f, std::string& element, std::initializer_list<std::string_view> words) {
-  f.word("element", element, words, "element of the mesh");
+void element_key(Fields& f, std::string& element, int dim) {
+  f.word("element", element, generated_elements(dim), "element of the mesh");
 }
 
 void origin_key(Fields& f, bool& centred) {
@@ -62,18 +64,18 @@ void check_range(Fields& f, std::string_view key, const std::optional<double>& v
 
 void RectangleSpec::fields(Fields& f) {
   lattice_keys(f, 2, lengths, elements, grading);
-  element_key(f, element, {"quad4", "quad8", "tri3", "tri6"});
+  element_key(f, element, 2);
   origin_key(f, centred);
 }
 
 void DiskSpec::fields(Fields& f) {
   round_keys(f, radius, core, layers);
-  element_key(f, element, {"quad4", "quad8", "tri3", "tri6"});
+  element_key(f, element, 2);
 }
 
 void BoxSpec::fields(Fields& f) {
   lattice_keys(f, 3, lengths, elements, grading);
-  element_key(f, element, {"hex8", "hex20", "tet4", "tet10"});
+  element_key(f, element, 3);
   origin_key(f, centred);
 }
 
@@ -82,14 +84,14 @@ void CylinderSpec::fields(Fields& f) {
   f.required("length", length, "m", "length along the axis, which is z", positive);
   f.required("elements", elements, "", "number of elements along the axis", at_least(1));
   f.optional("grading", grading, "", "length of the last element over the first", positive);
-  element_key(f, element, {"hex8", "hex20", "tet4", "tet10"});
+  element_key(f, element, 3);
   origin_key(f, centred);
   f.idle(elements == 1, "grading", "one element has no other to be compared with");
 }
 
 void SphereSpec::fields(Fields& f) {
   round_keys(f, radius, core, layers);
-  element_key(f, element, {"hex8", "hex20", "tet4", "tet10"});
+  element_key(f, element, 3);
 }
 
 void MeshFileSpec::fields(Fields& f) {

@@ -80,7 +80,9 @@ double stretch(const Tabulation& t, int point, Corners corners) {
 /// cell). A quadrilateral that is a facet of the cell moves as its nodes do, warp included.
 Eigen::MatrixXd means(const Mesh& mesh, CellPlace cell, Corners corners) {
   const auto count = static_cast<Eigen::Index>(corners.size());
-  const Element& linear = element_named(count == 2 ? "bar2" : count == 3 ? "tri3" : "quad4");
+  const Element& linear = linear_element(count == 2   ? Shape::line
+                                         : count == 3 ? Shape::triangle
+                                                      : Shape::quadrilateral);
   const Tabulation t = tabulate(linear, quadrature(linear.shape, degree));
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(count, count), sums;
   for (int p = 0; p < t.points; ++p) {

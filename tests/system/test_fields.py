@@ -175,7 +175,7 @@ class InVtk(SystemTest):
     def test_vtk_sees_straight_edges_and_the_whole_volume_of_every_element(self):
         flat = "{{rectangle: {{lengths: [1.0, 2.0], elements: [2, 2], element: {}}}}}"
         solid = "{{box: {{lengths: [1.0, 2.0, 3.0], elements: [2, 2, 2], element: {}}}}}"
-        elements = [(2, flat, name) for name in ("tri3", "tri6", "quad4", "quad8")]
+        elements = [(2, flat, name) for name in ("tri3", "tri6", "quad4", "quad8", "quad9")]
         elements += [(3, solid, name) for name in ("tet4", "tet10", "hex8", "hex20")]
         for dimension, mesh, name in elements:
             with self.subTest(element=name):

@@ -7,6 +7,7 @@ from typing import Callable
 
 import definitions
 import docs
+import elements
 import equations
 import glossary
 import headers
@@ -112,6 +113,15 @@ class Words(unittest.TestCase):
         self.assertEqual(len(findings(words.check, base__a_dot_cpp=bad)), 3)
         good = "tcp://127.0.0.1:5555\nruns/work/x\n/tmp/x\n"
         self.assertEqual(findings(words.check, base__a_dot_cpp=good), [])
+
+    def test_element_named_outside_of_the_table(self) -> None:
+        table = "".join(f'{{"bar{number}", line}},\n' for number in range(11))
+        lines = '// a "bar3"\nstd::string element = "bar3";\nif (name == "bar3") f();\n'
+        found = findings(elements.check, subdomain_solver__fe__elements_dot_cpp=table,
+                         subdomain_solver__fe__a_dot_cpp=lines)
+        self.assertEqual([finding.line for finding in found], [3])
+        found = findings(elements.check, subdomain_solver__fe__elements_dot_cpp="none\n")
+        self.assertEqual(len(found), 1)
 
 
 class Definitions(unittest.TestCase):

@@ -16,9 +16,11 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/fe/gmsh_file.hpp"
+#include "subdomain_solver/fe/gmsh_text.hpp"
 #include "subdomain_solver/fe/shape_functions.hpp"
 #include "tests/support/mesh_measures.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -234,6 +236,34 @@ TEST(GmshFile, ACellListedTwiceIsRefusedWithBothNumbers) {
   text.replace(text.find("4 5 1 5"), 7, "4 6 1 6");
   expect_words(refusal_of(text),
                {"part.msh", "a cell twice", "cell 2 (tri3", "cell 3 (tri3", "Remove one"});
+}
+
+TEST(GmshFile, OfEveryElementIsReadAsTheMeshThatWasWritten) {
+  for (const std::string& element : fe_elements()) {
+    SCOPED_TRACE(element);
+    const Mesh mesh = unit_mesh(element, 2);
+    const Mesh read = gmsh_mesh(gmsh_text(mesh), "part.msh");
+    ASSERT_EQ(read.blocks.size(), 1u);
+    EXPECT_EQ(read.blocks[0].element, mesh.blocks[0].element);
+    EXPECT_EQ(read.blocks[0].nodes, mesh.blocks[0].nodes);
+    EXPECT_EQ(read.points, mesh.points);  // the shortest digits that give the number back
+    EXPECT_EQ(read.side("right").size(), mesh.side("right").size());
+  }
+}
+
+TEST(GmshFile, HasQuad9AsGmshNumbersIt) {
+  // type 10: corners, edges from the first corner on, the middle (Gmsh's manual, node ordering)
+  const Mesh mesh = gmsh_mesh(
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 1 0\n1 0 0 0 1 1 0 0 0\n"
+      "$EndEntities\n$Nodes\n1 9 1 9\n2 1 0 9\n1\n2\n3\n4\n5\n6\n7\n8\n9\n"
+      "0 0 0\n2 0 0\n2 2 0\n0 2 0\n1 0 0\n2 1 0\n1 2 0\n0 1 0\n1 1 0\n$EndNodes\n"
+      "$Elements\n1 1 1 1\n2 1 10 1\n1 1 2 3 4 5 6 7 8 9\n$EndElements\n",
+      "square.msh");
+  check_mesh(mesh, "square.msh");
+  ASSERT_EQ(mesh.blocks[0].element->name, "quad9");
+  const Element& element = *mesh.blocks[0].element;
+  for (std::size_t k = 0; k < element.corners.size(); ++k)
+    EXPECT_EQ(mesh.points[k], element.corners[k] + 1.0);
 }
 
 TEST(GmshFile, OtherVersionsPartitionsAndElementsAreRefusedWithARemedy) {

@@ -194,7 +194,8 @@ TEST_P(SolidParts, CoarseSpheresAreSound) {
 }
 
 std::string name_of(const testing::TestParamInfo<const char*>& item) { return item.param; }
-INSTANTIATE_TEST_SUITE_P(Elements, PlaneParts, testing::Values("tri3", "tri6", "quad4", "quad8"),
+INSTANTIATE_TEST_SUITE_P(Elements, PlaneParts,
+                         testing::Values("tri3", "tri6", "quad4", "quad8", "quad9"),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(Elements, SolidParts, testing::Values("tet4", "tet10", "hex8", "hex20"),
                          name_of);

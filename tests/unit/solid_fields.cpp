@@ -22,7 +22,7 @@
 namespace abut {
 namespace {
 
-using Edges = std::vector<std::array<int, 2>>;
+using Edges = std::vector<std::vector<int>>;
 
 /// Corners between which VTK puts the nodes that follow the corners (the figures of VTK's user
 /// guide, and vtkQuadraticTetra.h, vtkQuadraticHexahedron.h).
@@ -30,6 +30,7 @@ const std::map<int, Edges>& vtk_edges() {
   static const std::map<int, Edges> edges = {{21, {{0, 1}}},
                                              {22, {{0, 1}, {1, 2}, {2, 0}}},
                                              {23, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}},
+                                             {28, {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 1, 2, 3}}},
                                              {24, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}},
                                              {25,
                                               {{0, 1},
@@ -50,7 +51,8 @@ const std::map<int, Edges>& vtk_edges() {
 /// Corners of linear cells and of quadratic ones, by VTK's number of the type.
 int vtk_corners(int type) {
   static const std::map<int, int> corners = {{1, 1},  {3, 2},  {5, 3},  {9, 4},  {10, 4}, {12, 8},
-                                             {21, 2}, {22, 3}, {23, 4}, {24, 4}, {25, 8}};
+                                             {21, 2}, {22, 3}, {23, 4}, {24, 4}, {25, 8},
+                                             {28, 4}};
   return corners.at(type);
 }
 
@@ -77,10 +79,13 @@ TEST(VtkCells, HoldEveryNodeOnceWithCornersFirstAndEveryOtherNodeBetweenItsCorne
       return element.corners[index(ours * element.dim + axis)];
     };
     for (std::size_t e = 0; e < edges.size(); ++e) {
-      for (int axis = 0; axis < element.dim; ++axis)
+      for (int axis = 0; axis < element.dim; ++axis) {
+        double sum = 0.0;
+        for (const int corner : edges[e]) sum += at(corner, axis);
         EXPECT_EQ(at(corners + static_cast<int>(e), axis),
-                  0.5 * (at(edges[e][0], axis) + at(edges[e][1], axis)))
+                  sum / static_cast<double>(edges[e].size()))
             << "edge " << e;
+      }
     }
   }
 }
