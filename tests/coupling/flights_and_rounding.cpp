@@ -2,6 +2,7 @@
 // free fall and rest of bodies of any law, element, scheme and size, far from where they began.
 // Oracles: uniform motion and free fall; a run that ends as completed without a word of energy.
 
+#include <algorithm>
 #include <cmath>
 #include <ostream>
 #include <random>
@@ -92,7 +93,9 @@ std::vector<Flight> flights() {
                             far = {0.0, 1.0, 1.0e3}, crossings = {0.5, 3.0, 50.0},
                             falls = {0.0, 1.0, 30.0};  // 5 % of a cell per square of a step
   std::vector<Flight> all;
-  for (const std::string& element : solid_elements()) {
+  std::vector<std::string> elements = solid_elements();  // what came later draws last
+  std::ranges::stable_partition(elements, [](const std::string& name) { return name != "quad9"; });
+  for (const std::string& element : elements) {
     for (const std::string& scheme : schemes) {
       const bool dear = element_named(element).dim == 3 && element_named(element).order > 1;
       for (int k = 0; k < 6; k += dear ? 4 : 1) {
@@ -102,6 +105,9 @@ std::vector<Flight> flights() {
         f.away = pick(far);
         f.flown = pick(far);
         f.fallen = pick(falls);
+        // Surfaces without mass lag by the acceleration of a step: beyond yield that is a matter of
+        // their own solve, which may find no answer, and not of rounding.
+        if (f.law == "j2_plasticity") f.fallen = std::min(f.fallen, 1.0);
         all.push_back(f);
       }
     }
