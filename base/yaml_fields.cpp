@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/assert.hpp"
-#include "base/index.hpp"
 #include "base/input_errors.hpp"
 #include "base/yaml_tree.hpp"
 #include "base/yaml_values.hpp"
@@ -247,7 +246,7 @@ void Reader::descend(std::string_view name, std::string_view shorthand) {
   const std::string path = join_path(parent.path, name);
   YAML::Node node;
   if (parent.node.IsSequence())
-    node.reset(parent.node[index(std::stoul(std::string(name.substr(1))))]);
+    node.reset(parent.node[std::stoul(std::string(name.substr(1)))]);
   else
     node.reset(parent.node[std::string(name)]);
   if (!shorthand.empty() && node.IsScalar()) {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "base/input_errors.hpp"
 #include "base/yaml_document.hpp"
 #include "base/yaml_text.hpp"

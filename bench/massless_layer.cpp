@@ -66,7 +66,7 @@ struct Body {
   }
   void settle() {
     q = motion.q;
-    for (const int dof : layer->dofs()) q[index(dof)] -= dt * motion.v[index(dof)];
+    for (const int dof : layer->dofs()) q[dof] -= dt * motion.v[dof];
     if (layer->settle(time, q, motion.history, {}, nullptr)) std::abort();
   }
 

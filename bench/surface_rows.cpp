@@ -34,7 +34,7 @@ double median(int repeats, const std::function<void()>& work) {
     samples.push_back(static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC / count);
   }
   std::nth_element(samples.begin(), samples.begin() + repeats / 2, samples.end());
-  return samples[index(repeats / 2)];
+  return samples[repeats / 2];
 }
 
 struct Kind {

@@ -72,7 +72,7 @@ double Substeps::time_in_row(int i) const {
 bool Substeps::matches(const std::vector<double>& times) const {
   if (times.size() != index(count) + 1) return false;
   for (int i = 0; i <= count; ++i) {
-    if (times[index(i)] != time(i)) return false;
+    if (times[i] != time(i)) return false;
   }
   return true;
 }

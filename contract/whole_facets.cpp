@@ -30,7 +30,7 @@ std::vector<std::int32_t> joined(const PortGeometry& surface, std::size_t first,
   std::vector<std::int32_t> all(nodes);
   for (std::size_t k = 0; k < parts.size(); ++k)
     for (std::size_t i = 0; i < parts[k].size(); ++i)
-      all[index(parts[k][i])] = node_of(surface, first + k, i);
+      all[parts[k][i]] = node_of(surface, first + k, i);
   return all;
 }
 
@@ -44,7 +44,7 @@ bool is_shown(const PortGeometry& surface, std::size_t first, const Parts& parts
               const std::vector<std::int32_t>& nodes) {
   for (std::size_t k = 0; k < parts.size(); ++k)
     for (std::size_t i = 0; i < parts[k].size(); ++i)
-      if (node_of(surface, first + k, i) != nodes[index(parts[k][i])]) return false;
+      if (node_of(surface, first + k, i) != nodes[parts[k][i]]) return false;
   return true;
 }
 

@@ -83,7 +83,7 @@ void add(BodyHull& hull, const std::vector<Facet>& facets, const Grid& grid) {
     Facet every(facet.size());
     for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<std::int32_t>(i);
     const auto push = [&](const auto& part) {
-      for (const auto i : part) hull.facets.push_back(number(facet[index(i)]));
+      for (const auto i : part) hull.facets.push_back(number(facet[i]));
       hull.offsets.push_back(static_cast<std::int32_t>(hull.facets.size()));
     };
     if (whole) {

@@ -306,7 +306,7 @@ void ContactEvents::watch_inside(std::span<InterfaceReport> reports) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     if (joints_[j].decision != Decision::inside) continue;
     const InternalContact seen = watch_internal_contact(joints_[j], bodies_);
-    reports[index(joints_[j].interface)].closed = seen.pressed;
+    reports[joints_[j].interface].closed = seen.pressed;
     for (const InternalContact::Change& change : seen.changes) narrator_.inside(joints_[j], change);
   }
 }

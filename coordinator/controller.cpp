@@ -119,7 +119,7 @@ void Controller::want_opening_accelerations(bool wanted) {
   for (const Joint& joint : joints_) {
     if (!joint.tied() || joint.how->tie() != nullptr) continue;
     for (const Side& side : joint.sides)
-      bodies_.request(side.body).want[index(side.port)].a = wanted;
+      bodies_.request(side.body).want[side.port].a = wanted;
   }
 }
 
@@ -306,7 +306,7 @@ void Controller::prepare(const TimeWindow& window, int records, Sampling samplin
   for (const Joint& joint : joints_) {
     if (joint.impulse == 0.0) continue;
     for (int s : {0, 1})
-      bodies_.boundary(joint.sides[index(s)]).impulse = {-joint.normal_of(s) * joint.impulse};
+      bodies_.boundary(joint.sides[s]).impulse = {-joint.normal_of(s) * joint.impulse};
   }
 }
 
@@ -321,7 +321,7 @@ void Controller::fill_reports(bool flown) {
   pairs_.clear();
   for (const Joint& joint : joints_) {
     const bool silent = joint.deciding() && peak_force(joint, bodies_) == 0.0;
-    InterfaceReport& report = reports_[index(joint.interface)];
+    InterfaceReport& report = reports_[joint.interface];
     report.closed = report.closed || (joint.closed() && !silent);
     report.kinematic = joint.kinematic;
     if (const Tie* tie = joint.how != nullptr ? joint.how->tie() : nullptr) {
@@ -333,8 +333,8 @@ void Controller::fill_reports(bool flown) {
   events_.watch_inside(reports_);
   for (std::size_t k = 0; k < attempt_.reports.size(); ++k) {
     for (const int j : partition_.islands()[k].joints) {
-      const Joint& joint = joints_[index(j)];
-      InterfaceReport& report = reports_[index(joint.interface)];
+      const Joint& joint = joints_[j];
+      InterfaceReport& report = reports_[joint.interface];
       report.iterations = std::max(report.iterations, attempt_.reports[k].iterations);
       report.residual = std::max(report.residual, attempt_.reports[k].residual.largest());
       if (index(joint.interface) < scene_.interfaces.size()) continue;
@@ -372,7 +372,7 @@ std::vector<bool> Controller::conserving_bodies() const {
   for (int b = 0; b < bodies_.count(); ++b) conserves.push_back(bodies_.describe(b).conserves);
   for (const Joint& joint : joints_) {
     if (joint.how != nullptr && !joint.how->overwrites_motion() && !damps(joint)) continue;
-    for (const Side& side : joint.sides) conserves[index(side.body)] = false;
+    for (const Side& side : joint.sides) conserves[side.body] = false;
   }
   return conserves;
 }

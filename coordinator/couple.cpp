@@ -39,7 +39,7 @@ Side find_side(const std::string& text, const Bodies& bodies, const std::string&
 
 int index_of(const InterfaceSpec& spec, const std::string& side, const std::string& where) {
   for (int s : {0, 1}) {
-    if (spec.sides[index(s)] == side) return s;
+    if (spec.sides[s] == side) return s;
   }
   throw InputError(fmt::format("'{}' is not a side of this interface", side), where,
                    fmt::format("Give {} or {}.", spec.sides[0], spec.sides[1]));
@@ -149,7 +149,7 @@ void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
 /// Forces on rings are of all around; only what does not move of itself has no thickness.
 void refuse_flat_beside_round(const Joint& joint, const Bodies& bodies, const std::string& where) {
   for (const int s : {0, 1}) {
-    const Side &round = joint.sides[index(s)], &flat = joint.sides[index(1 - s)];
+    const Side &round = joint.sides[s], &flat = joint.sides[1 - s];
     if (!bodies.port(round).geometry.round || bodies.port(flat).geometry.round) continue;
     const Description& other = bodies.describe(flat.body);
     require(std::isinf(other.mass), other, where,
@@ -190,17 +190,17 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
   }
   const int finder = contact_finder(joint, bodies);
   joint.points = spec.contact->points;
-  if (joint.points && scene.bodies[index(joint.sides[index(finder)].body)].second.external) {
+  if (joint.points && scene.bodies[joint.sides[index(finder)].body].second.external) {
     throw InputError(
         fmt::format("is point_to_surface, but {} finds the contact, and has rows of its "
                     "own program",
-                    spec.sides[index(finder)]),
+                    spec.sides[finder]),
         where + ".contact.rows", "Leave rows out.");
   }
   joint.kinetic_friction = spec.contact->friction;
   joint.static_friction = spec.contact->static_friction.value_or(spec.contact->friction);
   if (joint.static_friction > 0.0) {
-    const Description& body = bodies.describe(joint.sides[index(finder)].body);
+    const Description& body = bodies.describe(joint.sides[finder].body);
     require(body.can.friction, body, where + ".contact.friction",
             "finds the contact and takes no friction",
             "Leave friction out, or let the other side find contact by "
@@ -214,7 +214,7 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
 void check_start(const InterfaceSpec& spec, const std::string& where, const Joint& joint,
                  const Bodies& bodies) {
   const auto side = [&](int s) {
-    return NamedSurface{spec.sides[index(s)], bodies.port(joint.sides[index(s)]).geometry};
+    return NamedSurface{spec.sides[s], bodies.port(joint.sides[s]).geometry};
   };
   const int finder = contact_finder(joint, bodies);
   if (joint.points) {
@@ -230,7 +230,7 @@ void set_published(const InterfaceSpec& spec, const DirichletNeumannTransmission
   joint.kinematic = index_of(spec, how.dirichlet, where + ".dirichlet");
   for (int s : {0, 1}) {
     if (s != joint.kinematic && !how.swap_every_window) continue;
-    const Description& body = bodies.describe(joint.sides[index(s)].body);
+    const Description& body = bodies.describe(joint.sides[s].body);
     require(body.can.motion, body, where, "does not take prescribed motion",
             "Give the body contact_layer: {massive: {}}.");
   }
@@ -282,7 +282,7 @@ namespace {
 
 void see_adjusted(const Scene& scene, Joint& joint) {
   for (const int s : {0, 1})
-    if (scene.bodies[index(joint.sides[index(s)].body)].second.adjusts) joint.adjusted = s;
+    if (scene.bodies[joint.sides[index(s)].body].second.adjusts) joint.adjusted = s;
 }
 
 /// A pair of a scene where everything may touch everything, as if the scene wrote it.

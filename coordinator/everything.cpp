@@ -22,7 +22,7 @@ std::vector<double> places(const PortGeometry& surface, std::size_t facet) {
   std::vector<std::vector<double>> nodes;
   for (std::int32_t k = surface.offsets[facet]; k < surface.offsets[facet + 1]; ++k) {
     const auto at =
-        surface.points.begin() + static_cast<std::ptrdiff_t>(index(surface.facets[index(k)]) * dim);
+        surface.points.begin() + static_cast<std::ptrdiff_t>(index(surface.facets[k]) * dim);
     nodes.emplace_back(at, at + static_cast<std::ptrdiff_t>(dim));
   }
   std::ranges::sort(nodes);

@@ -51,7 +51,7 @@ class Narrator {
   std::string blamed(const std::string& text) const;  // the body that a text names, or empty
 
   const std::string& interface_of(const Joint& joint) const {
-    return interfaces_[index(joint.interface)];
+    return interfaces_[joint.interface];
   }
 
   const Bodies& bodies_;

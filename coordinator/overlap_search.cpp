@@ -25,7 +25,7 @@ struct Depth {
 
 bool holds(const Box& box, const Eigen::Vector3d& x, int dim) {
   for (int i = 0; i < dim; ++i)
-    if (x[i] < box.low[index(i)] || x[i] > box.high[index(i)]) return false;
+    if (x[i] < box.low[i] || x[i] > box.high[i]) return false;
   return true;
 }
 
@@ -79,7 +79,7 @@ void OverlapSearch::make(Bodies& bodies) {
 
 void OverlapSearch::pose_all(Bodies& bodies) {
   for (int b = 0; b < bodies.count(); ++b) {
-    BodyHull& hull = hulls_[index(b)];
+    BodyHull& hull = hulls_[b];
     if (hull.dim == 0) continue;
     if (hull.nodes.empty()) {
       const Waveform& trace = bodies.response(b).ports[hull.port].trace;
@@ -109,7 +109,7 @@ bool OverlapSearch::meant(std::pair<int, int> pair, std::span<const Joint> joint
     joined = true;
   }
   if (joined) return false;
-  BodyHull one = hulls_[index(pair.first)], other = hulls_[index(pair.second)];
+  BodyHull one = hulls_[pair.first], other = hulls_[pair.second];
   pose(one, {});
   pose(other, {});
   return depth_of(one, other).depth > least_share * std::min(one.size, other.size);
@@ -123,7 +123,7 @@ std::vector<Overlap> OverlapSearch::look(Bodies& bodies, std::span<const Joint> 
   pose_all(bodies);
   for (int a = 0; a < bodies.count(); ++a) {
     for (int b = a + 1; b < bodies.count(); ++b) {
-      BodyHull &one = hulls_[index(a)], &other = hulls_[index(b)];
+      BodyHull &one = hulls_[a], &other = hulls_[b];
       if (told_.contains({a, b})) continue;
       const Depth deepest = depth_of(one, other);
       const bool deep = deepest.depth > least_share * std::min(one.size, other.size);

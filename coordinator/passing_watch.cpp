@@ -4,7 +4,6 @@
 #include <array>
 #include <limits>
 
-#include "base/index.hpp"
 #include "coordinator/coupling/nearness.hpp"
 #include "coordinator/coupling/port_pose.hpp"
 

@@ -11,7 +11,7 @@ std::vector<bool> step_apart(const std::vector<std::array<Side, 2>>& pairs, cons
   std::vector<int> row(index(bodies.count()));  // of a body: the first one known of its row
   std::iota(row.begin(), row.end(), 0);
   const auto first_of = [&row](int body) {
-    while (row[index(body)] != body) body = row[index(body)];
+    while (row[body] != body) body = row[body];
     return body;
   };
   const auto share = [&bodies](const std::array<Side, 2>& sides) {
@@ -20,17 +20,17 @@ std::vector<bool> step_apart(const std::vector<std::array<Side, 2>>& pairs, cons
     return true;
   };
   for (const std::array<Side, 2>& sides : pairs)
-    if (share(sides)) row[index(first_of(sides[0].body))] = first_of(sides[1].body);
+    if (share(sides)) row[first_of(sides[0].body)] = first_of(sides[1].body);
   std::vector<bool> apart(row.size(), false);  // by the first body of a row
   for (const std::array<Side, 2>& sides : pairs) {
     const Description& a = bodies.describe(sides[0].body);
     const Description& b = bodies.describe(sides[1].body);
     const bool alike = a.step == b.step && std::isinf(a.stable_step) == std::isinf(b.stable_step);
-    if (share(sides) && !alike) apart[index(first_of(sides[0].body))] = true;
+    if (share(sides) && !alike) apart[first_of(sides[0].body)] = true;
   }
   std::vector<bool> out;
   for (const std::array<Side, 2>& sides : pairs)
-    out.push_back(share(sides) && apart[index(first_of(sides[0].body))]);
+    out.push_back(share(sides) && apart[first_of(sides[0].body)]);
   return out;
 }
 

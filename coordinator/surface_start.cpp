@@ -62,12 +62,12 @@ void check_nodes(const NamedSurface& one, const NamedSurface& other, double allo
   const SurfaceRows rows = node_rows(k, n);
   const int row = deepest(rows, tolerance * facet_size(k, n) + allowed);
   if (row < 0) return;
-  const std::size_t dim = index(rows.dim), node = index(rows.nodes[index(row)]);
+  const std::size_t dim = index(rows.dim), node = index(rows.nodes[row]);
   const std::span<const double> at = k.surface.points.subspan(node * dim, dim);
   throw InputError(
       fmt::format("its sides overlap by {:.3g} m at the start: a node of {} at ({:.6g}) "
                   "m lies behind {}",
-                  -rows.gaps[index(row)], one.name, fmt::join(at, ", "), other.name),
+                  -rows.gaps[row], one.name, fmt::join(at, ", "), other.name),
       where,
       "Move a body with initial.position until they are apart, or give one of them initial: "
       "{adjust: true}.");
@@ -99,7 +99,7 @@ void check_averages(const NamedSurface& one, const NamedSurface& other, const st
   const SurfaceRows rows = average_rows(k, n);
   const int row = deepest(rows, tolerance * facet_size(k, n));
   if (row < 0) return;
-  const double overlap = -rows.gaps[index(row)];
+  const double overlap = -rows.gaps[row];
   throw InputError(fmt::format("its sides are too near at the start: over the width of a facet {} "
                                "overlaps {} by {:.3g} m",
                                one.name, other.name, overlap),

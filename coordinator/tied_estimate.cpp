@@ -15,7 +15,7 @@ TieLayout layout_of(const Island& island, std::span<const Joint> joints, const B
                     double window) {
   TieLayout layout;
   for (const int j : island.joints) {
-    const Joint& joint = joints[index(j)];
+    const Joint& joint = joints[j];
     std::array<int, 2> counts;
     for (const std::size_t s : {0u, 1u})
       counts[s] = substeps_of(bodies, joint.sides[s], {0, 0.0, window}).count;
@@ -73,7 +73,7 @@ std::vector<Estimate::Ties> estimate_ties(const Scene& scene, std::vector<Joint>
   std::vector<Estimate::Ties> all;
   for (const Island& island : find_islands(joints, bodies.count())) {
     const bool ties = std::ranges::any_of(
-        island.joints, [&joints](int j) { return joints[index(j)].how->tie() != nullptr; });
+        island.joints, [&joints](int j) { return joints[j].how->tie() != nullptr; });
     if (!ties) continue;
     const TieLayout layout = layout_of(island, joints, bodies, scene.time.window);
     all.push_back(ties_of(layout, tie_kernel_options(scene.schwarz), bodies));

@@ -125,7 +125,7 @@ PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, do
 PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, double step,
                                   int count, std::span<const int> seen) {
   const auto width_of = [this](int p) {
-    return description_.ports[index(p)].geometry.points.size();
+    return description_.ports[p].geometry.points.size();
   };
   const std::size_t pressed = width_of(port), all = patterns.size() / pressed;
   std::size_t width = seen.empty() ? pressed : 0;

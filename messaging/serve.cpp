@@ -263,7 +263,7 @@ void Server::meet(const v1::Meet& request) {
   const FieldPath meet{nullptr, "meet"};
   require_sound(meeting.partner, FieldPath{&meet, "surface"});
   body_->meet(meeting.port, meeting.partner, meeting.law);
-  partners_[index(meeting.port)].push_back(size_of(meeting.partner));
+  partners_[meeting.port].push_back(size_of(meeting.partner));
   reply_.mutable_met();
 }
 

@@ -209,7 +209,7 @@ void require_sound(const Response& reply, const Description& body, const Advance
   }
   for (int r = 0; r < asked.records; ++r) {
     const double time = asked.window.begin + asked.window.length() * (r + 1) / asked.records;
-    require_record(reply.records[index(r)], body, time, asked.window,
+    require_record(reply.records[r], body, time, asked.window,
                    FieldPath{&path, "records", r});
   }
 }

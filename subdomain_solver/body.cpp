@@ -416,13 +416,13 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
 /// What has no inertia answers at once, and forgets.
 PortKernel Body::probe_statics(int port, std::span<const double> patterns, double step, int count,
                                std::span<const int> seen) {
-  const Watched& pressed = ports_[index(port)];
+  const Watched& pressed = ports_[port];
   PortKernel kernel;
   kernel.step = step;
   kernel.support = interior_->support(index(port));
   kernel.patterns = static_cast<int>(patterns.size() / pressed.width);
   kernel.width = 0;
-  for (const int s : seen) kernel.width += static_cast<int>(ports_[index(s)].width);
+  for (const int s : seen) kernel.width += static_cast<int>(ports_[s].width);
   std::vector<double> force(ports_.back().first + ports_.back().width, 0.0), moved;
   Eigen::VectorXd place = Eigen::VectorXd::Zero(loose_motions(describe())), left;
   const auto see = [&](std::vector<double>& to) {
@@ -431,8 +431,8 @@ PortKernel Body::probe_statics(int port, std::span<const double> patterns, doubl
                      fmt::format("body '{}'", describe().name), "Give the body more supports.");
     }
     for (const int s : seen) {
-      const auto from = moved.begin() + static_cast<std::ptrdiff_t>(ports_[index(s)].first);
-      to.insert(to.end(), from, from + static_cast<std::ptrdiff_t>(ports_[index(s)].width));
+      const auto from = moved.begin() + static_cast<std::ptrdiff_t>(ports_[s].first);
+      to.insert(to.end(), from, from + static_cast<std::ptrdiff_t>(ports_[s].width));
     }
   };
   for (std::size_t k = 0; k < index(kernel.patterns); ++k) {
@@ -462,8 +462,8 @@ std::optional<Failed> Body::respond(const Advance& request, const Substeps& grid
     const double time = i == 0 ? grid.begin : grid.time(i);
     const std::vector<double>& u = interior_->see(window, time, false).u;
     for (const int port : ports) {
-      const auto from = u.begin() + static_cast<std::ptrdiff_t>(ports_[index(port)].first);
-      to.insert(to.end(), from, from + static_cast<std::ptrdiff_t>(ports_[index(port)].width));
+      const auto from = u.begin() + static_cast<std::ptrdiff_t>(ports_[port].first);
+      to.insert(to.end(), from, from + static_cast<std::ptrdiff_t>(ports_[port].width));
     }
   });
 }

@@ -1,5 +1,4 @@
 #include "subdomain_solver/nodal_map.hpp"
-#include "base/index.hpp"
 
 #include <algorithm>
 
@@ -30,13 +29,13 @@ class SomeValues final : public NodalMap {
   void lift(std::span<const double> q, std::span<const double> nodal,
             Vector& force) const override {
     std::fill(all_.begin(), all_.end(), 0.0);
-    for (std::size_t k = 0; k < values_.size(); ++k) all_[index(values_[k])] += nodal[k];
+    for (std::size_t k = 0; k < values_.size(); ++k) all_[values_[k]] += nodal[k];
     whole_.lift(q, all_, force);
   }
 
  private:
   void pick(std::span<double> out) const {
-    for (std::size_t k = 0; k < values_.size(); ++k) out[k] = all_[index(values_[k])];
+    for (std::size_t k = 0; k < values_.size(); ++k) out[k] = all_[values_[k]];
   }
 
   const NodalMap& whole_;
@@ -50,7 +49,7 @@ class SomeCoordinates final : public NodalMap {
   explicit SomeCoordinates(std::vector<int> list) : list_(std::move(list)) {}
 
   void displacement(std::span<const double> q, std::span<double> u) const override {
-    for (std::size_t k = 0; k < list_.size(); ++k) u[k] = q[index(list_[k])];
+    for (std::size_t k = 0; k < list_.size(); ++k) u[k] = q[list_[k]];
   }
   void velocity(std::span<const double>, std::span<const double> v,
                 std::span<double> out) const override {

@@ -68,7 +68,7 @@ NodalStress nodal_stress(FeModel& model, std::span<const double> q,
   int block = -1;
   NodalStress out;
   const bool admissible = model.visit(q, history, [&](const FeModel::PointState& point) {
-    const CellBlock& all = mesh.blocks[index(point.block)];
+    const CellBlock& all = mesh.blocks[point.block];
     if (point.block != block) {
       block = point.block;
       const Tabulation& rule = model.rule(block);
@@ -80,13 +80,13 @@ NodalStress nodal_stress(FeModel& model, std::span<const double> q,
     here.col(point.point) = Eigen::Map<const Vector>(entries_of(stress).data(), 6);
     if (point.point + 1 < here.cols()) return;
     for (int a = 0; a < all.element->nodes; ++a) {
-      const std::int32_t node = all.nodes[index(point.cell * all.element->nodes + a)];
+      const std::int32_t node = all.nodes[point.cell * all.element->nodes + a];
       StressEntries said{};
       Eigen::Map<Vector> entries(said.data(), 6);
       entries = here * to_nodes.row(a).transpose();
       out.most_of_cells = std::max(out.most_of_cells, von_mises(stress_of(said)));
       sum.col(node) += entries;
-      ++cells[index(node)];
+      ++cells[node];
     }
   });
   const double nothing = std::numeric_limits<double>::quiet_NaN();

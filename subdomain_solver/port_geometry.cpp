@@ -14,7 +14,7 @@ namespace {
 void add_parts(int dim, const std::vector<std::int32_t>& places, PortGeometry& geometry) {
   const std::vector<std::vector<int>>& parts = straight_parts(dim, places.size());
   for (const std::vector<int>& part : parts) {
-    for (const int local : part) geometry.facets.push_back(places[index(local)]);
+    for (const int local : part) geometry.facets.push_back(places[local]);
     geometry.offsets.push_back(static_cast<std::int32_t>(geometry.facets.size()));
   }
   geometry.parts.push_back(static_cast<std::int32_t>(parts.size()));
@@ -75,9 +75,9 @@ PortGeometry port_geometry(const FeModel& model, const std::string& name,
     geometry.parts.clear();
   if (dim == 1) {
     const Facet& end = mesh.side(name).front();
-    const CellBlock& cells = mesh.blocks[index(end.block)];
+    const CellBlock& cells = mesh.blocks[end.block];
     const std::int32_t* cell = cells.nodes.data() + end.cell * cells.element->nodes;
-    geometry.spacing = mesh.points[index(cell[1])] - mesh.points[index(cell[0])];
+    geometry.spacing = mesh.points[cell[1]] - mesh.points[cell[0]];
     return geometry;
   }
   const double facets = static_cast<double>(std::max<std::size_t>(1, side.facets.size()));

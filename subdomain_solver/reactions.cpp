@@ -32,7 +32,7 @@ NodalReactions::NodalReactions(const FeModel& model, const Problem& problem,
       constraints_(std::move(constraints)) {
   const int supports = static_cast<int>(problem.supports.size());
   SparseMatrix columns(mass.cols(), supports);  // those of the symmetric matrix that are held
-  for (int k = 0; k < supports; ++k) columns.col(k) = mass.col(problem.supports[index(k)].dof);
+  for (int k = 0; k < supports; ++k) columns.col(k) = mass.col(problem.supports[k].dof);
   mass_ = columns.transpose();
 }
 
@@ -47,7 +47,7 @@ void NodalReactions::forces(const Motion& motion, double time, const Vector& on_
   out.setZero(on_ports.size());
   int k = 0;
   for (const Prescribed& p : problem_.supports)
-    out(p.dof) = inertia_(k++) + motion.force[index(p.dof)] - external_(p.dof);
+    out(p.dof) = inertia_(k++) + motion.force[p.dof] - external_(p.dof);
 }
 
 void NodalReactions::sums(const Motion& motion, double time, const Vector& on_ports,
@@ -66,7 +66,7 @@ std::vector<std::string> reaction_columns(int dim,
   std::vector<std::string> names;
   for (const HeldCoordinates& constraint : constraints) {
     for (int i = 0; i < dim; ++i) {
-      const std::string ending = dim == 1 ? "" : fmt::format("_{}", axes[index(i)]);
+      const std::string ending = dim == 1 ? "" : fmt::format("_{}", axes[i]);
       names.push_back(fmt::format("{}.reaction{} [N]", constraint.name, ending));
     }
   }
@@ -79,9 +79,9 @@ std::vector<std::string> reaction_measure_names(int dim,
   if (constraints.empty()) return names;
   for (const HeldCoordinates& constraint : constraints) {
     for (int i = 0; i < dim; ++i)
-      names.push_back(fmt::format("{}.reaction.{}", constraint.name, axes[index(i)]));
+      names.push_back(fmt::format("{}.reaction.{}", constraint.name, axes[i]));
   }
-  for (int i = 0; i < dim; ++i) names.push_back(fmt::format("reaction.{}", axes[index(i)]));
+  for (int i = 0; i < dim; ++i) names.push_back(fmt::format("reaction.{}", axes[i]));
   return names;
 }
 

@@ -56,7 +56,7 @@ std::vector<FieldValues> cell_values(FeModel& model, const SolidFieldState& stat
   CellSums sums(cells, cell_fields(material));
   const bool admissible =
       model.visit(state.q, state.history, [&](const FeModel::PointState& point) {
-        const std::size_t cell = first[index(point.block)] + index(point.cell);
+        const std::size_t cell = first[point.block] + index(point.cell);
         const Matrix3 s = cauchy_stress(material, point.stress, point.deformation);
         const StressEntries entries = entries_of(s);
         const double mises = von_mises(s);

@@ -209,7 +209,7 @@ void SolidInterior::set_off(const Window& window) {
   port_map_->lift(state_.motion.q, before_, change_);
   parts_.scheme.integrator->strike(state_.motion, change_);
   for (const Prescribed& p : parts_.problem->supports)  // they withstand it, and go on as told
-    state_.motion.external_work -= change_(p.dof) * state_.motion.v[index(p.dof)];
+    state_.motion.external_work -= change_(p.dof) * state_.motion.v[p.dof];
 }
 
 void SolidInterior::restored() {

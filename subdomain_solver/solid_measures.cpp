@@ -85,11 +85,11 @@ void add_stress_at(const NamedNodes& port, int dim, const std::vector<StressEntr
   const double each = 1.0 / static_cast<double>(port.nodes.size());
   for (std::size_t k = 0; k < stress_count(dim); ++k) {
     double sum = 0.0;
-    for (std::int32_t node : port.nodes) sum += nodes[index(node)][k];
+    for (std::int32_t node : port.nodes) sum += nodes[node][k];
     out.push_back(sum * each);
   }
   double mises = 0.0;
-  for (std::int32_t node : port.nodes) mises += von_mises(stress_of(nodes[index(node)]));
+  for (std::int32_t node : port.nodes) mises += von_mises(stress_of(nodes[node]));
   out.push_back(mises * each);
 }
 
@@ -118,7 +118,7 @@ std::vector<std::string> solid_measure_names(int dim, bool deforms,
   for (const char* field : {"displacement", "velocity"}) {
     for (int i = 0; i < dim; ++i) {
       for (const char* what : {"min", "max", "mean"})
-        names.push_back(fmt::format("{}.{}.{}", field, axes[index(i)], what));
+        names.push_back(fmt::format("{}.{}.{}", field, axes[i], what));
     }
   }
   const std::size_t entries = deforms ? stress_count(dim) : 0;
@@ -132,13 +132,13 @@ std::vector<std::string> solid_measure_names(int dim, bool deforms,
   if (deforms) names.insert(names.end(), {"nodal_von_mises.max", "nodal_von_mises.max_of_cells"});
   names.insert(names.end(),
                {"energy.kinetic", "energy.stored", "energy.dissipated", "energy.external_work"});
-  for (int i = 0; i < dim; ++i) names.push_back(fmt::format("momentum.{}", axes[index(i)]));
+  for (int i = 0; i < dim; ++i) names.push_back(fmt::format("momentum.{}", axes[i]));
   for (int i = first_spin(dim); i < 3; ++i)
-    names.push_back(fmt::format("angular_momentum.{}", axes[index(i)]));
+    names.push_back(fmt::format("angular_momentum.{}", axes[i]));
   for (const NamedNodes& port : ports) {
     for (const char* field : {"displacement", "velocity"}) {
       for (int i = 0; i < dim; ++i)
-        names.push_back(fmt::format("{}.{}.{}", port.name, field, axes[index(i)]));
+        names.push_back(fmt::format("{}.{}.{}", port.name, field, axes[i]));
     }
     for (std::size_t k = 0; k < entries; ++k)
       names.push_back(fmt::format("{}.stress.{}", port.name, stress_names[k]));
@@ -182,7 +182,7 @@ std::vector<double> solid_measures(FeModel& model, const SolidState& state,
     for (const std::vector<double>* field : {&std::as_const(u), &v}) {
       for (int i = 0; i < dim; ++i) {
         double total = 0.0;
-        for (std::int32_t node : port.nodes) total += (*field)[index(node * dim + i)];
+        for (std::int32_t node : port.nodes) total += (*field)[node * dim + i];
         out.push_back(total / static_cast<double>(port.nodes.size()));
       }
     }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 
-#include "base/index.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -19,7 +18,7 @@ std::array<bool, 3> held_axes(const FeModel& model, const std::vector<HeldCoordi
   for (const HeldCoordinates& constraint : all)
     for (const int dof : constraint.dofs)
       for (int i = 0; i < dim; ++i)
-        held[index(i)] = held[index(i)] || model.frame(dof / dim) != nullptr || dof % dim == i;
+        held[i] = held[i] || model.frame(dof / dim) != nullptr || dof % dim == i;
   return held;
 }
 
@@ -41,7 +40,7 @@ void SolidInterior::add_lag() {
   const std::array<bool, 3> held = held_axes(*parts_.model, parts_.constraints);
   const Eigen::Index dim = description_.dim;
   for (Eigen::Index k = 0; k < nodes.size(); ++k)
-    if (!held[index(k % dim)]) momentum_(k) += nodes(k);
+    if (!held[k % dim]) momentum_(k) += nodes(k);
 }
 
 /// [N] (coordinates) of loads, and of what acts on ports but for forces that accelerations do not

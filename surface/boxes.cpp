@@ -48,7 +48,7 @@ void refit_by(BoxTree& tree, const LeafBox& leaf_box) {
   for (std::size_t i = tree.boxes.size(); i-- > 0;) {
     const std::int32_t second = tree.second[i];
     tree.boxes[i] =
-        second < 0 ? leaf_box(-1 - second) : united(tree.boxes[i + 1], tree.boxes[index(second)]);
+        second < 0 ? leaf_box(-1 - second) : united(tree.boxes[i + 1], tree.boxes[second]);
   }
 }
 

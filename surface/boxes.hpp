@@ -33,8 +33,8 @@ struct BoxTree {
   std::vector<std::int32_t> second;  // (2 m - 1) the second child; of a leaf -1 - its facet
 
   bool empty() const { return boxes.empty(); }
-  bool is_leaf(int node) const { return second[index(node)] < 0; }
-  int facet(int leaf) const { return -1 - second[index(leaf)]; }
+  bool is_leaf(int node) const { return second[node] < 0; }
+  int facet(int leaf) const { return -1 - second[leaf]; }
 };
 
 /// Structure and boxes of a tree: facets halved across the longest side of their centres' box.

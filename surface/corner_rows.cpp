@@ -24,8 +24,8 @@ constexpr double alone = 0.999;
 
 void copy(const SparseRows& from, std::size_t row, SparseRows& to) {
   for (std::int32_t e = from.offsets[row]; e < from.offsets[row + 1]; ++e) {
-    to.columns.push_back(from.columns[index(e)]);
-    to.values.push_back(from.values[index(e)]);
+    to.columns.push_back(from.columns[e]);
+    to.values.push_back(from.values[e]);
   }
   to.end_row();
 }
@@ -133,8 +133,8 @@ bool MeetingCorners::add(const Row& row) {
 bool MeetingCorners::has_row(const SparseRows& of, std::size_t r, Kind kind) const {
   for (std::int32_t e = of.offsets[r]; e < of.offsets[r + 1]; ++e)
     for (const Row& row : rows_)
-      if (of.values[index(e)] >= alone && row.kind == kind &&
-          (kind == Kind::n_plane ? row.k : row.n).nodes[0] == of.columns[index(e)])
+      if (of.values[e] >= alone && row.kind == kind &&
+          (kind == Kind::n_plane ? row.k : row.n).nodes[0] == of.columns[e])
         return true;
   return false;
 }
@@ -166,7 +166,7 @@ void MeetingCorners::join(SurfaceRows& rows) {
   }
   for (const Row& row : rows_) {
     const auto most = std::max_element(row.k.shares.begin(), row.k.shares.begin() + row.k.count);
-    others_.nodes.push_back(row.k.nodes[index(most - row.k.shares.begin())]);
+    others_.nodes.push_back(row.k.nodes[most - row.k.shares.begin()]);
     others_.weights.push_back(0.0);
     others_.gaps.push_back(gap(row));
     const double* normal = row.normal.data();

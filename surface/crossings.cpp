@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/index.hpp"
 
 namespace abut {
 
@@ -59,8 +58,8 @@ bool goes_through(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
 bool pierces(const Corners& one, const Corners& other) {
   const bool two = other.count == 4;
   for (int e = 0; e < one.count; ++e) {
-    const Eigen::Vector3d& from = one.x[index(e)];
-    const Eigen::Vector3d& to = one.x[index((e + 1) % one.count)];
+    const Eigen::Vector3d& from = one.x[e];
+    const Eigen::Vector3d& to = one.x[(e + 1) % one.count];
     if (goes_through(from, to, {other.x[2], other.x[0], other.x[1]}, two)) return true;
     if (two && goes_through(from, to, {other.x[0], other.x[2], other.x[3]}, true)) return true;
   }

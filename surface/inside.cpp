@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/assert.hpp"
-#include "base/index.hpp"
 
 namespace abut {
 
@@ -24,7 +23,7 @@ std::array<Eigen::Vector3d, 2> directions(int dim) {
 bool meets(const Box& box, const Eigen::Vector3d& x, const Eigen::Vector3d& ray, int dim) {
   double from = 0.0, to = std::numeric_limits<double>::infinity();
   for (int i = 0; i < dim; ++i) {  // no component of a ray is zero
-    const double a = (box.low[index(i)] - x[i]) / ray[i], b = (box.high[index(i)] - x[i]) / ray[i];
+    const double a = (box.low[i] - x[i]) / ray[i], b = (box.high[i] - x[i]) / ray[i];
     from = std::max(from, std::min(a, b));
     to = std::min(to, std::max(a, b));
   }
@@ -52,7 +51,7 @@ bool meets_triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Ei
 }
 
 int crossings(Corners facet, const Eigen::Vector3d& x, const Eigen::Vector3d& ray) {
-  for (int i = 0; i < facet.count; ++i) facet.x[index(i)] -= x;
+  for (int i = 0; i < facet.count; ++i) facet.x[i] -= x;
   const auto& [a, b, c, d] = facet.x;
   if (facet.count == 2) return meets_segment(a, b, ray) ? 1 : 0;
   const int first = meets_triangle(a, b, c, ray) ? 1 : 0;
@@ -64,17 +63,17 @@ int crossings(const PosedSurface& surface, const BoxTree& tree, const Eigen::Vec
   constexpr int capacity = 64;  // a tree of less than 2^31 facets has at most 31 levels
   std::array<int, capacity> stack;
   int count = 0, found = 0;
-  if (!tree.empty()) stack[index(count++)] = 0;
+  if (!tree.empty()) stack[count++] = 0;
   while (count > 0) {
-    const int at = stack[index(--count)];
-    if (!meets(tree.boxes[index(at)], x, ray, surface.dim)) continue;
+    const int at = stack[--count];
+    if (!meets(tree.boxes[at], x, ray, surface.dim)) continue;
     if (tree.is_leaf(at)) {
       found += crossings(corners(surface, tree.facet(at)), x, ray);
       continue;
     }
     ABUT_ASSERT(count + 2 <= capacity);
-    stack[index(count++)] = tree.second[index(at)];
-    stack[index(count++)] = at + 1;
+    stack[count++] = tree.second[at];
+    stack[count++] = at + 1;
   }
   return found;
 }

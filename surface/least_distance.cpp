@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "base/assert.hpp"
-#include "base/index.hpp"
 
 namespace abut {
 namespace {
@@ -55,11 +54,11 @@ double least_distance(const PosedSurface& a, const BoxTree& tree_a, const PosedS
   std::array<Pair, capacity> stack;
   int count = 0;
   const auto pair = [&](std::int32_t i, std::int32_t j) {
-    return Pair{i, j, boxes_apart(tree_a.boxes[index(i)], tree_b.boxes[index(j)])};
+    return Pair{i, j, boxes_apart(tree_a.boxes[i], tree_b.boxes[j])};
   };
   stack[count++] = pair(0, 0);
   while (count > 0 && least > 0.0) {
-    const Pair at = stack[index(--count)];
+    const Pair at = stack[--count];
     if (at.apart >= least) continue;
     const bool leaf_a = tree_a.is_leaf(at.a), leaf_b = tree_b.is_leaf(at.b);
     if (leaf_a && leaf_b) {
@@ -68,15 +67,15 @@ double least_distance(const PosedSurface& a, const BoxTree& tree_a, const PosedS
       least = std::min(least, std::max(at.apart, facets));
       continue;
     }
-    const bool split_a = leaf_b || (!leaf_a && extent(tree_a.boxes[index(at.a)]) >=
-                                                   extent(tree_b.boxes[index(at.b)]));
+    const bool split_a = leaf_b || (!leaf_a && extent(tree_a.boxes[at.a]) >=
+                                                   extent(tree_b.boxes[at.b]));
     Pair near = split_a ? pair(at.a + 1, at.b) : pair(at.a, at.b + 1);
     Pair far =
-        split_a ? pair(tree_a.second[index(at.a)], at.b) : pair(at.a, tree_b.second[index(at.b)]);
+        split_a ? pair(tree_a.second[at.a], at.b) : pair(at.a, tree_b.second[at.b]);
     if (far.apart < near.apart) std::swap(near, far);
     ABUT_ASSERT(count + 2 <= capacity);
-    stack[index(count++)] = far;
-    stack[index(count++)] = near;
+    stack[count++] = far;
+    stack[count++] = near;
   }
   return least;
 }

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "base/index.hpp"
 #include "surface/clip.hpp"
 #include "surface/plane_facet.hpp"
 

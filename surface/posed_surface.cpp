@@ -23,7 +23,7 @@ void nodal_normals(const PosedSurface& surface, std::vector<double>& normals) {
   for (int f = 0; f < surface.facet_count(); ++f) {
     const Eigen::Vector3d a = area_vector(corners(surface, f));
     for (std::int32_t node : surface.nodes(f))
-      for (int d = 0; d < dim; ++d) normals[index(dim * node + d)] += a[d];
+      for (int d = 0; d < dim; ++d) normals[dim * node + d] += a[d];
   }
   for (int node = 0; node < surface.node_count(); ++node) {
     Eigen::Map<Eigen::VectorXd> n(normals.data() + dim * node, dim);
@@ -39,12 +39,12 @@ void tributary_weights(const PosedSurface& surface, std::vector<double>& weights
     const std::span<const std::int32_t> nodes = surface.nodes(f);
     if (surface.round) {
       const double r0 = c.x[0].x(), r1 = c.x[1].x(), ring = std::numbers::pi / 3.0 * area(c);
-      weights[index(nodes[0])] += ring * (2.0 * r0 + r1);
-      weights[index(nodes[1])] += ring * (r0 + 2.0 * r1);
+      weights[nodes[0]] += ring * (2.0 * r0 + r1);
+      weights[nodes[1]] += ring * (r0 + 2.0 * r1);
       continue;
     }
     if (c.count < 4) {
-      for (std::int32_t node : nodes) weights[index(node)] += area(c) / c.count;
+      for (std::int32_t node : nodes) weights[node] += area(c) / c.count;
       continue;
     }
     // x = c0 + ca a + cb b + cab a b; its Jacobian along the mean normal is j0 + ja a + jb b, and
@@ -57,7 +57,7 @@ void tributary_weights(const PosedSurface& surface, std::vector<double>& weights
     const double j0 = ca.cross(cb).dot(n);
     const double ja = ca.cross(cab).dot(n) / 3.0, jb = cab.cross(cb).dot(n) / 3.0;
     const double parts[4] = {j0 - ja - jb, j0 + ja - jb, j0 + ja + jb, j0 - ja + jb};
-    for (int i = 0; i < 4; ++i) weights[index(nodes[i])] += parts[i];
+    for (int i = 0; i < 4; ++i) weights[nodes[i]] += parts[i];
   }
 }
 

@@ -16,9 +16,9 @@ void SparseRows::clear() {
 
 void append(const SparseRows& more, SparseRows& rows) {
   for (int r = 0; r < more.count(); ++r) {
-    for (std::int32_t e = more.offsets[index(r)]; e < more.offsets[index(r) + 1]; ++e) {
-      rows.columns.push_back(more.columns[index(e)]);
-      rows.values.push_back(more.values[index(e)]);
+    for (std::int32_t e = more.offsets[r]; e < more.offsets[index(r) + 1]; ++e) {
+      rows.columns.push_back(more.columns[e]);
+      rows.values.push_back(more.values[e]);
     }
     rows.end_row();
   }

@@ -33,23 +33,23 @@ Wedges::Wedges(const PosedSurface& surface) {
   std::vector<std::vector<std::int32_t>> edges_at(index(surface.node_count())), facets_at(edges_at);
   for (std::size_t e = 0; e < edges.size(); ++e)
     for (const std::int32_t a : edges[e].ends)
-      edges_at[index(a)].push_back(static_cast<std::int32_t>(e));
+      edges_at[a].push_back(static_cast<std::int32_t>(e));
   for (int f = 0; f < surface.facet_count(); ++f)
-    for (const std::int32_t a : surface.nodes(f)) facets_at[index(a)].push_back(f);
+    for (const std::int32_t a : surface.nodes(f)) facets_at[a].push_back(f);
   for (const SharpEdge& edge : edges) {
     Wedge wedge{edge, {edge.facets.begin(), edge.facets.end()}, {}, {edge.ends}, {-1, -1}};
     for (std::size_t end = 0; end < 2; ++end) {
       const std::int32_t a = edge.ends[end], from = edge.ends[1 - end];
-      if (surface.dim == 3 && edges_at[index(a)].size() == 2)
-        for (const std::int32_t e : edges_at[index(a)]) {
-          const std::int32_t to = other_end(edges[index(e)], a);
+      if (surface.dim == 3 && edges_at[a].size() == 2)
+        for (const std::int32_t e : edges_at[a]) {
+          const std::int32_t to = other_end(edges[e], a);
           if (to != from && is_straight(surface, from, a, to)) wedge.beyond[end] = to;
         }
-      if (surface.dim == 2 || edges_at[index(a)].size() < 3) continue;
-      const std::vector<std::int32_t>& more = facets_at[index(a)];
+      if (surface.dim == 2 || edges_at[a].size() < 3) continue;
+      const std::vector<std::int32_t>& more = facets_at[a];
       wedge.planes.insert(wedge.planes.end(), more.begin(), more.end());
-      for (const std::int32_t e : edges_at[index(a)])
-        if (edges[index(e)].ends != edge.ends) wedge.edges.push_back(edges[index(e)].ends);
+      for (const std::int32_t e : edges_at[a])
+        if (edges[e].ends != edge.ends) wedge.edges.push_back(edges[e].ends);
     }
     sort_unique(wedge.planes);
     for (const std::int32_t f : wedge.planes)
@@ -60,13 +60,13 @@ Wedges::Wedges(const PosedSurface& surface) {
   for (int f = 0; f < surface.facet_count(); ++f) {
     std::vector<std::int32_t> touched;
     for (const std::int32_t a : surface.nodes(f))
-      touched.insert(touched.end(), edges_at[index(a)].begin(), edges_at[index(a)].end());
+      touched.insert(touched.end(), edges_at[a].begin(), edges_at[a].end());
     at_.add(std::move(touched));
   }
   for (int f = 0; f < surface.facet_count(); ++f) {
     std::vector<std::int32_t> near;
     for (const std::int32_t a : surface.nodes(f))
-      for (const std::int32_t g : facets_at[index(a)])
+      for (const std::int32_t g : facets_at[a])
         near.insert(near.end(), at(g).begin(), at(g).end());
     around_.add(std::move(near));
   }

@@ -25,7 +25,7 @@ class Wedges {
   Wedges() = default;
   explicit Wedges(const PosedSurface& surface);
   bool any() const { return !all_.empty(); }
-  const Wedge& operator[](std::int32_t wedge) const { return all_[index(wedge)]; }
+  const Wedge& operator[](std::int32_t wedge) const { return all_[wedge]; }
   /// Those that a facet touches with a node, and those that its neighbours touch, ascending.
   std::span<const std::int32_t> at(int facet) const { return at_.of(facet); }
   std::span<const std::int32_t> around(int facet) const { return around_.of(facet); }
@@ -35,7 +35,7 @@ class Wedges {
     std::vector<std::int32_t> numbers, offsets = {0};
 
     std::span<const std::int32_t> of(int facet) const {
-      const std::size_t begin = index(offsets[index(facet)]);
+      const std::size_t begin = index(offsets[facet]);
       return std::span(numbers).subspan(begin, index(offsets[index(facet) + 1]) - begin);
     }
     void add(std::vector<std::int32_t> list);

@@ -39,16 +39,16 @@ struct Part {
   int corners = 0;
 
   Part(const AuxiliaryPlane& plane, const WholeSurface& surface, int facet)
-      : whole(plane, surface.straight, surface.facet(surface.of[index(facet)])) {
-    const std::span<const std::int32_t> all = surface.facet(surface.of[index(facet)]);
+      : whole(plane, surface.straight, surface.facet(surface.of[facet])) {
+    const std::span<const std::int32_t> all = surface.facet(surface.of[facet]);
     for (const std::int32_t node : surface.straight.nodes(facet)) {
       const auto at = std::ranges::find(all, node) - all.begin();
-      places[index(corners++)] = whole.kind.place(static_cast<int>(at));
+      places[corners++] = whole.kind.place(static_cast<int>(at));
     }
   }
   Eigen::Vector2d find(const OverlapPoint& point, const Shape4& shape) const {
     Eigen::Vector2d guess = Eigen::Vector2d::Zero();
-    for (int i = 0; i < corners; ++i) guess += shape[i] * places[index(i)];
+    for (int i = 0; i < corners; ++i) guess += shape[i] * places[i];
     return whole.find(point.z, guess);
   }
 };
@@ -72,7 +72,7 @@ Integrals integrals_of(const std::vector<OverlapPoint>& points, const Part& k, c
 void scatter(const Integrals& part, std::span<const std::int32_t> k,
              std::span<const std::int32_t> n, int corners, std::vector<Sum>& sums) {
   for (int i = 0; i < corners; ++i) {
-    Sum& sum = sums[index(k[index(i)])];
+    Sum& sum = sums[k[index(i)]];
     sum.weight += part.weight[i];
     for (std::size_t a = 0; a < k.size(); ++a)
       sum.k[k[a]] += part.k(i, static_cast<Eigen::Index>(a));
@@ -89,7 +89,7 @@ void merge(const WholeSurface& k, const std::vector<char>& covered, double share
   const PosedSurface surface = corners.surface(k.straight);
   MortarPieces pieces;
   for (int f = 0; f < k.count(); ++f)
-    if (covered[index(f)]) pieces.facets.emplace_back().facet = f;
+    if (covered[f]) pieces.facets.emplace_back().facet = f;
   std::vector<double> weight, full;
   for (const Sum& sum : sums) weight.push_back(sum.weight);
   tributary_weights(surface, full);
@@ -99,7 +99,7 @@ void merge(const WholeSurface& k, const std::vector<char>& covered, double share
   merged_rows(surface, pieces, weight, full, gap, share, 1.0, buffers, root);
   for (std::size_t j = 0; j < sums.size(); ++j) {
     if (root[j] < 0 || index(root[j]) == j) continue;
-    sums[index(root[j])].add(sums[j]);
+    sums[root[j]].add(sums[j]);
     sums[j] = {};
   }
 }
@@ -114,8 +114,8 @@ void flush(const std::map<std::int32_t, double>& sum, double weight, SparseRows&
 
 Eigen::Vector3d mean(const SparseRows& rows, int row, const PosedSurface& surface) {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
-  for (std::int32_t e = rows.offsets[index(row)]; e < rows.offsets[index(row) + 1]; ++e)
-    x += rows.values[index(e)] * surface.point(rows.columns[index(e)]);
+  for (std::int32_t e = rows.offsets[row]; e < rows.offsets[index(row) + 1]; ++e)
+    x += rows.values[e] * surface.point(rows.columns[e]);
   return x;
 }
 
@@ -149,8 +149,8 @@ void whole_rows(const WholeSurface& k, const WholeSurface& n, std::span<const Fa
       overlap_points(ground, partner, options.reach, points);
       if (points.empty()) continue;
       const Integrals part = integrals_of(points, own_part, Part(ground.plane, n, pairs[end].n));
-      covered[index(k.of[index(own)])] = 1;
-      scatter(part, k.facet(k.of[index(own)]), n.facet(n.of[index(pairs[end].n)]),
+      covered[k.of[index(own)]] = 1;
+      scatter(part, k.facet(k.of[own]), n.facet(n.of[pairs[end].n]),
               own_part.whole.kind.corners, sums);
     }
   }

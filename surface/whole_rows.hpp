@@ -19,7 +19,7 @@ struct WholeSurface {
 
   int count() const { return offsets.empty() ? 0 : static_cast<int>(offsets.size()) - 1; }
   std::span<const std::int32_t> facet(int whole) const {
-    const std::size_t begin = index(offsets[index(whole)]);
+    const std::size_t begin = index(offsets[whole]);
     return nodes.subspan(begin, index(offsets[index(whole) + 1]) - begin);
   }
 };

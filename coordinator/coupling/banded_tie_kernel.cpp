@@ -56,21 +56,21 @@ BandedResponses responses_of(const TieLayout& layout, const TieLayout::Part& par
     const TieLayout::End& by = part.ends[e];
     const int first = static_cast<int>(by.first) / dim, count = layout.rows(by).count();
     std::vector<std::vector<int>> pressed(index(own.band.colours[e]));  // rows by colour
-    for (int r = 0; r < count; ++r) pressed[index(own.band.colour[index(first + r)])].push_back(r);
+    for (int r = 0; r < count; ++r) pressed[own.band.colour[index(first + r)]].push_back(r);
     const auto fill = [&](int pattern, std::span<double> forces) {
-      for (const int r : pressed[index(pattern / dim)])
-        forces[index(r * dim + pattern % dim)] = 1.0;
+      for (const int r : pressed[pattern / dim])
+        forces[r * dim + pattern % dim] = 1.0;
     };
     const auto take = [&](int pattern, int later, const TieLayout::End& of,
                           std::span<const double> moved) {
       const int begin = static_cast<int>(of.first) / dim, end = begin + layout.rows(of).count();
-      for (const int r : pressed[index(pattern / dim)]) {
-        for (std::size_t p = own.band.offsets[index(first + r)];
+      for (const int r : pressed[pattern / dim]) {
+        for (std::size_t p = own.band.offsets[first + r];
              p < own.band.offsets[index(first + r) + 1]; ++p) {
           const auto [row, from] = own.band.reached[p];
           if (row < begin || row >= end || later < from) continue;
           double* to = &own.values[own.at[p] + index((later - from) * dim * dim + pattern % dim)];
-          for (int d = 0; d < dim; ++d) to[d * dim] = moved[index((row - begin) * dim + d)];
+          for (int d = 0; d < dim; ++d) to[d * dim] = moved[(row - begin) * dim + d];
         }
       }
     };
@@ -120,7 +120,7 @@ class BandedTieKernel final : public TieKernel {
  private:
   void subtract(int lag, const Eigen::Ref<const Eigen::VectorXd>& force,
                 Eigen::VectorXd& left) const override {
-    left -= blocks_[index(lag)] * force;
+    left -= blocks_[lag] * force;
   }
   Eigen::VectorXd invert(const Eigen::VectorXd& jump) const override;
   /// It is not known: the iteration finds an answer where there is one.

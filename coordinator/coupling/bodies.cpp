@@ -93,27 +93,27 @@ Bodies::~Bodies() = default;
 Waveform& Bodies::force(const Side& side) {
   std::vector<Waveform>& forces = boundary(side).forces;
   if (forces.size() <= index(side.partner)) forces.resize(index(side.partner) + 1);
-  return forces[index(side.partner)];
+  return forces[side.partner];
 }
 
 Obstacle& Bodies::obstacle(const Side& side) {
   std::vector<Obstacle>& obstacles = boundary(side).obstacles;
   if (obstacles.size() <= index(side.partner)) obstacles.resize(index(side.partner) + 1);
-  return obstacles[index(side.partner)];
+  return obstacles[side.partner];
 }
 
 const Waveform& Bodies::reaction(const Side& side) const {
-  return response(side.body).ports[index(side.port)].reactions.at(index(side.partner)).force;
+  return response(side.body).ports[side.port].reactions.at(index(side.partner)).force;
 }
 
 const PortPose& Bodies::pose(const Side& side) const {
-  PortPose& pose = *poses_[index(side.body)][index(side.port)];
-  pose.see(port(side).geometry, response(side.body).ports[index(side.port)].trace);
+  PortPose& pose = *poses_[side.body][side.port];
+  pose.see(port(side).geometry, response(side.body).ports[side.port].trace);
   return pose;
 }
 
 void Bodies::meet(Side& side, const PortGeometry& partner, const ContactLaw& law) {
-  side.partner = partners_[index(side.body)][index(side.port)]++;
+  side.partner = partners_[side.body][side.port]++;
   if (describe(side.body).can.obstacle) (*this)[side.body].meet(side.port, partner, law);
 }
 
@@ -149,16 +149,16 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
   std::optional<Failed> failed;
   double slowest = 0.0;
   for (int b : bodies) {
-    Response& response = responses_[index(b)];
+    Response& response = responses_[b];
     Outcome outcome = finish((*this)[b], response);
-    for (const auto& pose : poses_[index(b)]) pose->forget();
+    for (const auto& pose : poses_[b]) pose->forget();
     ++exchanges_;
     if (Failed* failure = std::get_if<Failed>(&outcome); failure != nullptr) {
       failure->detail = "body '" + describe(b).name + "': " + failure->detail;
       if (!failed) failed = std::move(*failure);
       continue;
     }
-    compute_seconds_[index(b)] += response.compute_seconds;
+    compute_seconds_[b] += response.compute_seconds;
     slowest = std::max(slowest, response.compute_seconds);
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - began;
@@ -171,25 +171,25 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
 std::optional<Failed> Bodies::advance_all() { return advance(everybody_); }
 
 void Bodies::strike_record(const Side& side, double impulse) {
-  Response& response = responses_[index(side.body)];
-  PortResponse& reply = response.ports[index(side.port)];
+  Response& response = responses_[side.body];
+  PortResponse& reply = response.ports[side.port];
   if (impulse == 0.0 || !reply.recoil) return;
   BodyRecord& record = response.records.back();
   const double before = reply.recoil->velocity;
   reply.recoil->velocity -= impulse * reply.recoil->mobility;
   const double work = -impulse * 0.5 * (before + reply.recoil->velocity);
   record.energy.kinetic += work;
-  struck_[index(side.body)] += work;
+  struck_[side.body] += work;
   if (reply.recoil->mobility > 0.0) record.momentum[0] -= impulse * port(side).geometry.normals[0];
 }
 
 void Bodies::strike_energy(const Side& side, double earlier, double impulse) {
-  Response& response = responses_[index(side.body)];
-  const std::optional<Recoil>& recoil = response.ports[index(side.port)].recoil;
+  Response& response = responses_[side.body];
+  const std::optional<Recoil>& recoil = response.ports[side.port].recoil;
   if (!recoil) return;
   const double velocity = recoil->velocity - (earlier + 0.5 * impulse) * recoil->mobility;
   response.records.back().energy.kinetic -= impulse * velocity;
-  struck_[index(side.body)] -= impulse * velocity;
+  struck_[side.body] -= impulse * velocity;
 }
 
 PortKernel& Bodies::cached(Kernels& kernels, int body, int port) {
@@ -216,14 +216,14 @@ PortKernel Bodies::probe(int body, int port, std::span<const double> patterns, i
 const PortKernel& Bodies::kernel(int body, int port, int count) {
   PortKernel& kernel = cached(kernels_, body, port);
   if (kernel.count() >= count) return kernel;
-  const PortGeometry& surface = describe(body).ports[index(port)].geometry;
+  const PortGeometry& surface = describe(body).ports[port].geometry;
   kernel = along(ask(body, port, surface.normals, count), surface);
   return kernel;
 }
 
 PortKernel Bodies::full_kernel(int body, int port, int count,
                                const std::vector<std::int32_t>& points) {
-  const PortGeometry& surface = describe(body).ports[index(port)].geometry;
+  const PortGeometry& surface = describe(body).ports[port].geometry;
   const std::size_t width = surface.points.size(), dim = index(surface.dim);
   const std::size_t values = points.empty() ? width : points.size() * dim;
   const double each = 2.0 * sizeof(double) * count * static_cast<double>(width);
@@ -265,14 +265,14 @@ std::vector<double> Bodies::impulse_response(const Side& side, const TimeWindow&
   alone.window = window;
   for (std::size_t struck : {0u, 1u}) {
     alone.boundary.assign(body.ports.size(), {});
-    if (struck == 1) alone.boundary[index(side.port)].impulse = {-normal * impulse};
+    if (struck == 1) alone.boundary[side.port].impulse = {-normal * impulse};
     ++exchanges_;
     const Outcome outcome = (*this)[side.body].advance(alone, responses[struck]);
     (*this)[side.body].restore();
     if (!std::holds_alternative<Advanced>(outcome)) return {};
   }
-  const std::vector<double>& before = responses[0].ports[index(side.port)].trace.u;
-  const std::vector<double>& after = responses[1].ports[index(side.port)].trace.u;
+  const std::vector<double>& before = responses[0].ports[side.port].trace.u;
+  const std::vector<double>& after = responses[1].ports[side.port].trace.u;
   std::vector<double> moved;
   for (std::size_t i = 1; i < std::min(before.size(), after.size()); ++i)
     moved.push_back(normal * (after[i] - before[i]) / impulse);

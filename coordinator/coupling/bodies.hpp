@@ -30,16 +30,16 @@ class Bodies {
   ~Bodies();
 
   int count() const { return static_cast<int>(subdomains_.size()); }
-  Subdomain& operator[](int body) { return *subdomains_[index(body)]; }
-  const Description& describe(int body) const { return subdomains_[index(body)]->describe(); }
-  const Port& port(const Side& side) const { return describe(side.body).ports[index(side.port)]; }
-  Advance& request(int body) { return requests_[index(body)]; }
-  const Advance& request(int body) const { return requests_[index(body)]; }
-  const Response& response(int body) const { return responses_[index(body)]; }
+  Subdomain& operator[](int body) { return *subdomains_[body]; }
+  const Description& describe(int body) const { return subdomains_[body]->describe(); }
+  const Port& port(const Side& side) const { return describe(side.body).ports[side.port]; }
+  Advance& request(int body) { return requests_[body]; }
+  const Advance& request(int body) const { return requests_[body]; }
+  const Response& response(int body) const { return responses_[body]; }
   std::span<const Response> responses() const { return responses_; }
 
   /// What the next request imposes on one end of a joint.
-  BoundaryData& boundary(const Side& side) { return request(side.body).boundary[index(side.port)]; }
+  BoundaryData& boundary(const Side& side) { return request(side.body).boundary[side.port]; }
   Waveform& force(const Side& side);
   Obstacle& obstacle(const Side& side);
   /// What the latest response of one end does to the other.

@@ -23,7 +23,7 @@ std::vector<int> ranks(int bodies) {
   std::vector<int> order(index(bodies)), rank(index(bodies));
   std::iota(order.begin(), order.end(), 0);
   std::ranges::sort(order, {}, reversed);
-  for (std::size_t k = 0; k < order.size(); ++k) rank[index(order[k])] = static_cast<int>(k);
+  for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = static_cast<int>(k);
   return rank;
 }
 
@@ -62,7 +62,7 @@ std::vector<int> sorted_along(const std::vector<Box>& boxes, std::size_t& axis) 
   }
   std::vector<int> order(boxes.size());
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&boxes, axis](int k) { return boxes[index(k)].low[axis]; });
+  std::ranges::stable_sort(order, {}, [&boxes, axis](int k) { return boxes[k].low[axis]; });
   return order;
 }
 
@@ -85,9 +85,9 @@ BroadPhase::BroadPhase(const Bodies& bodies, std::span<const Joint> joined) {
     for (std::size_t p = 0; p < body.ports.size(); ++p) {
       const PortGeometry& surface = body.ports[p].geometry;
       const bool touches = surface.dim > 1 && !surface.facets.empty() && !tied(b, p);
-      place_[index(b)].push_back(touches ? static_cast<int>(ports_.size()) : -1);
+      place_[b].push_back(touches ? static_cast<int>(ports_.size()) : -1);
       if (!touches) continue;
-      ports_.push_back({{b, static_cast<int>(p)}, std::isinf(body.mass), rank[index(b)]});
+      ports_.push_back({{b, static_cast<int>(p)}, std::isinf(body.mass), rank[b]});
       sides.push_back(ports_.back().side);
     }
   }
@@ -97,8 +97,8 @@ BroadPhase::BroadPhase(const Bodies& bodies, std::span<const Joint> joined) {
 }
 
 void BroadPhase::join(const PortPair& pair) {
-  const int a = place_[index(pair[0].body)][index(pair[0].port)];
-  const int b = place_[index(pair[1].body)][index(pair[1].port)];
+  const int a = place_[pair[0].body][pair[0].port];
+  const int b = place_[pair[1].body][pair[1].port];
   joined_.insert(std::minmax(a, b));
 }
 
@@ -107,12 +107,12 @@ std::vector<PortPair> BroadPhase::overlapping() const {
   const std::vector<int> order = sorted_along(boxes_, axis);
   std::vector<std::pair<int, int>> found;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const Box& box = boxes_[index(order[i])];
-    const Surface& one = ports_[index(order[i])];
+    const Box& box = boxes_[order[i]];
+    const Surface& one = ports_[order[i]];
     for (std::size_t k = i + 1; k < order.size(); ++k) {
-      const Box& other = boxes_[index(order[k])];
+      const Box& other = boxes_[order[k]];
       if (other.low[axis] > box.high[axis]) break;
-      const Surface& two = ports_[index(order[k])];
+      const Surface& two = ports_[order[k]];
       if (one.side.body == two.side.body || (one.stands && two.stands)) continue;
       if (overlap(box, other)) found.push_back(std::minmax(order[i], order[k]));
     }
@@ -121,7 +121,7 @@ std::vector<PortPair> BroadPhase::overlapping() const {
   std::vector<PortPair> pairs;
   for (const auto& [a, b] : found) {
     if (joined_.contains({a, b})) continue;
-    const Surface &one = ports_[index(a)], &two = ports_[index(b)];
+    const Surface &one = ports_[a], &two = ports_[b];
     pairs.push_back(one.rank < two.rank ? PortPair{one.side, two.side}
                                         : PortPair{two.side, one.side});
   }

@@ -68,7 +68,7 @@ class Seen {
       double weight = 0.0;
       bool known = true;
       for (const std::int32_t node : surface.nodes(f)) {
-        weight += load_[index(node)];
+        weight += load_[node];
         known = known && lists(index(node));
       }
       if (!known || weight == 0.0) continue;

@@ -114,7 +114,7 @@ void CompliantObstacle::release(const Joint& joint, Bodies& bodies) {
   guess_.support = ForceSupport::linear;
   guess_.time = levels_of(iterate_.steps);
   for (int i = 0; i <= iterate_.steps.count; ++i) {
-    const double ahead = guess_.time[index(std::min(i, most_rising))] - guess_.time[0];
+    const double ahead = guess_.time[std::min(i, most_rising)] - guess_.time[0];
     for (std::size_t c = 0; c < f_begin_.size(); ++c) {
       const double on = f_begin_[c] + ahead * f_rate_[c];
       const bool turned = on * f_begin_[c] < 0.0 || f_begin_[c] == 0.0;
@@ -149,7 +149,7 @@ void CompliantObstacle::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 
 void CompliantObstacle::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
                                const Joint& joint, Bodies& bodies) {
-  const Side& here = joint.sides[index(side)];
+  const Side& here = joint.sides[side];
   if (side != joint.kinematic) {
     bodies.force(here) = bodies.reaction(joint.kinematic_side());
     bodies.request(here.body).ahead = looks_;
@@ -310,7 +310,7 @@ void CompliantObstacle::take_back_end(Eigen::Ref<Eigen::VectorXd> motion) const 
     const auto at = static_cast<Eigen::Index>(value(kernel_->points, index(p)));
     const double more = pressed_(at, pressed_.cols() - 1) - taken_(at, iterate_.steps.count);
     for (int q = 0; more != 0.0 && q < width; ++q)
-      moved[value(kernel_->points, index(q))] -= more * compliance[index(p * width + q)];
+      moved[value(kernel_->points, index(q))] -= more * compliance[p * width + q];
   }
 }
 

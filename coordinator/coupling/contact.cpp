@@ -187,7 +187,7 @@ double opening_kick(const Joint& joint, const Bodies& bodies) {
   const std::optional<Recoil> recoil = joint_recoil(joint, bodies);
   double step = 0.0, closing = 0.0;
   for (const int s : {0, 1}) {
-    const Side& side = joint.sides[index(s)];
+    const Side& side = joint.sides[s];
     const Waveform& trace = trace_of(bodies, side);
     if (trace.support == ForceSupport::step) step = bodies.describe(side.body).step;
     if (!trace.a.empty()) closing += joint.normal_of(s) * trace.a.back();

@@ -41,12 +41,12 @@ SurfaceRows own_rows(const PortGeometry& own, const PortGeometry& other) {
 /// quotients with forces tractions.
 void take_in(const SurfaceRows& to, const SparseRows& seen, double sign, const SurfaceRows& from,
              std::int32_t first, int row, SparseRows& incoming) {
-  for (auto e = seen.offsets[index(row)]; e < seen.offsets[index(row) + 1]; ++e) {
-    const auto at = std::ranges::lower_bound(from.nodes, seen.columns[index(e)]);
-    if (at == from.nodes.end() || *at != seen.columns[index(e)]) continue;
+  for (auto e = seen.offsets[row]; e < seen.offsets[index(row) + 1]; ++e) {
+    const auto at = std::ranges::lower_bound(from.nodes, seen.columns[e]);
+    if (at == from.nodes.end() || *at != seen.columns[e]) continue;
     const std::size_t k = index(at - from.nodes.begin());
     incoming.columns.push_back(first + static_cast<std::int32_t>(k));
-    incoming.values.push_back(sign * seen.values[index(e)] * to.weights[index(row)] /
+    incoming.values.push_back(sign * seen.values[e] * to.weights[row] /
                               from.weights[k]);
   }
 }
@@ -65,8 +65,8 @@ TieRows make_dashpot_rows(const PortGeometry& one, const PortGeometry& other, do
     const double all = std::accumulate(own.weights.begin(), own.weights.end(), 0.0);
     for (int r = 0; r < own.count(); ++r) {
       rows.moves.push_back(static_cast<std::int8_t>(s));
-      rows.area.push_back(own.weights[index(r)]);
-      rows.dashpots.push_back(impedance * own.weights[index(r)] / all);
+      rows.area.push_back(own.weights[r]);
+      rows.dashpots.push_back(impedance * own.weights[r] / all);
       take_in(own, own.k, 1.0, own, first[s], r, rows.incoming);
       take_in(own, own.n, -1.0, its, first[1 - s], r, rows.incoming);
       rows.incoming.end_row();

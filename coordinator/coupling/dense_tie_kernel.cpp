@@ -44,7 +44,7 @@ class DenseTieKernel final : public TieKernel {
  private:
   void subtract(int lag, const Eigen::Ref<const Eigen::VectorXd>& force,
                 Eigen::VectorXd& left) const override {
-    left -= blocks_[index(lag)] * force;
+    left -= blocks_[lag] * force;
   }
   Eigen::VectorXd invert(const Eigen::VectorXd& jump) const override;
   bool renew(const TieLayout& layout, Bodies& bodies) override;
@@ -88,11 +88,11 @@ Responses responses_of(const TieLayout& layout, const TieLayout::Part& part, int
   };
   for (const TieLayout::End& by : part.ends) {
     if (layout.carries(by)) continue;
-    const auto unit = [](int k, std::span<double> forces) { forces[index(k)] = 1.0; };
+    const auto unit = [](int k, std::span<double> forces) { forces[k] = 1.0; };
     const auto take = [&](int k, int later, const TieLayout::End& of,
                           std::span<const double> moved) {
       const auto count = static_cast<Eigen::Index>(moved.size());
-      responses[index(later)].col(by.first + k).segment(of.first, count) =
+      responses[later].col(by.first + k).segment(of.first, count) =
           Eigen::Map<const Eigen::VectorXd>(moved.data(), count);
     };
     press(layout, part, by, layout.members[by.member].width, steps, unit, take, bodies, carried);
@@ -111,7 +111,7 @@ void add(const TieLayout& layout, const TieLayout::Part& part, const Responses& 
     block.block(row.inner + Eigen::Index{share.of} * row.width,
                 column.inner + Eigen::Index{share.by} * column.width, row.width, column.width) +=
         share.weight *
-        responses[index(share.later)].block(of.first, by.first, row.width, column.width);
+        responses[share.later].block(of.first, by.first, row.width, column.width);
   }
 }
 
@@ -188,24 +188,24 @@ void DenseTieKernel::find_scale(const TieLayout& layout) {
   for (const TieLayout::Member& member : layout.members)
     for (Eigen::Index i = 0; member.carried >= 0 && i < Eigen::Index{member.width} * member.steps;
          ++i)
-      carries[index(member.inner + i)] = true;
+      carries[member.inner + i] = true;
   const Eigen::ArrayXd each = diagonal().array().abs();
   Eigen::ArrayXd own = each;
   for (Eigen::Index k = 0; k < layout.size; ++k)
-    if (!carries[index(k)] && each[k] > 0.0)
+    if (!carries[k] && each[k] > 0.0)
       own = own.max(lopsided * blocks_[0].col(k).array().square() / each[k]);
   double most = 0.0;
   for (Eigen::Index i = 0; i < layout.size; ++i)
-    if (!carries[index(i)]) most = std::max(most, own[i]);
+    if (!carries[i]) most = std::max(most, own[i]);
   scale_.setOnes(layout.size);
   if (most == 0.0) return;
   for (Eigen::Index i = 0; i < layout.size; ++i)
-    if (!carries[index(i)]) scale_[i] = 1.0 / std::sqrt(own[i] > stiffest * most ? own[i] : most);
+    if (!carries[i]) scale_[i] = 1.0 / std::sqrt(own[i] > stiffest * most ? own[i] : most);
   for (Eigen::Index i = 0; i < layout.size; ++i) {
-    if (!carries[index(i)]) continue;
+    if (!carries[i]) continue;
     double moved = 0.0;
     for (Eigen::Index k = 0; k < layout.size; ++k)
-      if (!carries[index(k)]) moved = std::max(moved, std::abs(scale_[k] * blocks_[0](k, i)));
+      if (!carries[k]) moved = std::max(moved, std::abs(scale_[k] * blocks_[0](k, i)));
     if (moved > 0.0) scale_[i] = 1.0 / moved;
   }
 }
@@ -220,20 +220,20 @@ void DenseTieKernel::damp(const TieLayout& layout) {
     };
     for (int lag = lags() - 1; lag >= 0; --lag) {
       for (int step = member.steps - 1; step >= 0; --step) {
-        if (step > 0) of(blocks_[index(lag)], step) -= of(blocks_[index(lag)], step - 1);
+        if (step > 0) of(blocks_[lag], step) -= of(blocks_[lag], step - 1);
         if (step == 0 && lag > 0)
-          of(blocks_[index(lag)], 0) -= of(blocks_[index(lag - 1)], member.steps - 1);
+          of(blocks_[lag], 0) -= of(blocks_[lag - 1], member.steps - 1);
       }
     }
     const double length = member.tie->grid(member.joint->kinematic).step;
     for (int k = 0; k < member.width * member.steps; ++k) {
       const int row = k % member.width / rows.dim;
-      const double worth = length / rows.dashpots[index(row)];
+      const double worth = length / rows.dashpots[row];
       const Eigen::Index at = member.inner + k, first = at - row * rows.dim - k % rows.dim;
-      for (auto e = rows.incoming.offsets[index(row)]; e < rows.incoming.offsets[index(row) + 1];
+      for (auto e = rows.incoming.offsets[row]; e < rows.incoming.offsets[index(row) + 1];
            ++e)
-        blocks_[0](at, first + rows.incoming.columns[index(e)] * rows.dim + k % rows.dim) +=
-            worth * rows.incoming.values[index(e)];
+        blocks_[0](at, first + rows.incoming.columns[e] * rows.dim + k % rows.dim) +=
+            worth * rows.incoming.values[e];
     }
   }
 }
@@ -253,7 +253,7 @@ void DenseTieKernel::find_blocks(const TieLayout& layout, int lags) {
     for (int lag = 0; lag < lags; ++lag)
       for (const TieLayout::End& of : part.ends)
         for (const TieLayout::End& by : part.ends)
-          add(layout, part, responses, of, by, lag, blocks_[index(lag)]);
+          add(layout, part, responses, of, by, lag, blocks_[lag]);
   }
   damp(layout);
   find_scale(layout);

@@ -39,7 +39,7 @@ void DirichletNeumann::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 
 void DirichletNeumann::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
                               const Joint& joint, Bodies& bodies) {
-  const Side& here = joint.sides[index(side)];
+  const Side& here = joint.sides[side];
   if (side != joint.kinematic) {
     const Waveform& from = trace_of(bodies, joint.kinematic_side());
     Waveform& force = bodies.force(here);

@@ -20,16 +20,16 @@ class Sets {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
   int root(int body) {
-    while (parent_[index(body)] != body) {
-      parent_[index(body)] = parent_[index(parent_[index(body)])];
-      body = parent_[index(body)];
+    while (parent_[body] != body) {
+      parent_[body] = parent_[parent_[index(body)]];
+      body = parent_[body];
     }
     return body;
   }
   void merge(int a, int b) {
     a = root(a);
     b = root(b);
-    parent_[index(std::max(a, b))] = std::min(a, b);
+    parent_[std::max(a, b)] = std::min(a, b);
   }
 
  private:
@@ -44,20 +44,20 @@ std::vector<std::vector<int>> levels_of(const std::vector<int>& members,
                                         std::vector<int>& waits_for) {
   std::vector<std::vector<int>> levels(1);
   for (const int j : island) {
-    const Joint& joint = joints[index(j)];
-    if (joint.how->ordered()) ++waits_for[index(joint.neumann_side().body)];
+    const Joint& joint = joints[j];
+    if (joint.how->ordered()) ++waits_for[joint.neumann_side().body];
   }
   for (const int body : members)
-    if (waits_for[index(body)] == 0) levels[0].push_back(body);
+    if (waits_for[body] == 0) levels[0].push_back(body);
   std::size_t placed = levels[0].size();
   while (placed < members.size()) {
     std::vector<int> next;
     for (const int j : island) {
-      const Joint& joint = joints[index(j)];
+      const Joint& joint = joints[j];
       if (!joint.how->ordered()) continue;
       if (!std::ranges::binary_search(levels.back(), joint.kinematic_side().body)) continue;
       const int body = joint.neumann_side().body;
-      if (--waits_for[index(body)] == 0) next.push_back(body);
+      if (--waits_for[body] == 0) next.push_back(body);
     }
     if (next.empty()) {
       throw RunError("the kinematic sides of closed interfaces go round in a circle", "interfaces",
@@ -74,12 +74,12 @@ std::vector<std::vector<int>> levels_of(const std::vector<int>& members,
 std::vector<std::vector<Island::End>> ends_of(const Island& island, std::span<const Joint> joints,
                                               std::vector<int>& level_of) {
   for (std::size_t l = 0; l < island.levels.size(); ++l)
-    for (const int body : island.levels[l]) level_of[index(body)] = static_cast<int>(l);
+    for (const int body : island.levels[l]) level_of[body] = static_cast<int>(l);
   std::vector<std::vector<Island::End>> ends(island.levels.size());
   for (std::size_t i = 0; i < island.joints.size(); ++i)
     for (const int side : {0, 1}) {
-      const int body = joints[index(island.joints[i])].sides[index(side)].body;
-      ends[index(level_of[index(body)])].push_back({i, side});
+      const int body = joints[island.joints[i]].sides[side].body;
+      ends[level_of[index(body)]].push_back({i, side});
     }
   return ends;
 }
@@ -88,7 +88,7 @@ std::vector<std::vector<Island::End>> ends_of(const Island& island, std::span<co
 std::vector<int> shared_of(const Island& island, std::span<const Joint> joints) {
   std::vector<int> ends, shared;
   for (const int j : island.joints)
-    for (const Side& side : joints[index(j)].sides) ends.push_back(side.body);
+    for (const Side& side : joints[j].sides) ends.push_back(side.body);
   std::ranges::sort(ends);
   for (std::size_t k = 1; k < ends.size(); ++k)
     if (ends[k] == ends[k - 1] && (shared.empty() || shared.back() != ends[k]))
@@ -105,16 +105,16 @@ std::vector<Island> find_islands(std::span<const Joint> joints, int bodies) {
   std::vector<Island> of_root(index(bodies));
   for (std::size_t j = 0; j < joints.size(); ++j) {
     if (!joints[j].closed()) continue;
-    of_root[index(sets.root(joints[j].sides[0].body))].joints.push_back(static_cast<int>(j));
+    of_root[sets.root(joints[j].sides[0].body)].joints.push_back(static_cast<int>(j));
   }
   std::vector<std::vector<int>> members(index(bodies));
-  for (int b = 0; b < bodies; ++b) members[index(sets.root(b))].push_back(b);
+  for (int b = 0; b < bodies; ++b) members[sets.root(b)].push_back(b);
   std::vector<int> waits_for(index(bodies), 0), level_of(index(bodies), 0);
   std::vector<Island> islands;
   for (int r = 0; r < bodies; ++r) {
-    Island& island = of_root[index(r)];
+    Island& island = of_root[r];
     if (island.joints.empty()) continue;
-    island.levels = levels_of(members[index(r)], joints, island.joints, waits_for);
+    island.levels = levels_of(members[r], joints, island.joints, waits_for);
     island.ends = ends_of(island, joints, level_of);
     island.shared = shared_of(island, joints);
     islands.push_back(std::move(island));
@@ -128,16 +128,16 @@ bool contacts_apart(const Island& island, std::span<const Joint> joints, const B
   };
   Sets sets(bodies.count());
   for (const int j : island.joints) {
-    const std::array<Side, 2>& sides = joints[index(j)].sides;
+    const std::array<Side, 2>& sides = joints[j].sides;
     for (const Side& side : sides)
       if (moves(side) && !bodies.describe(side.body).linear) return false;
     if (moves(sides[0]) && moves(sides[1])) sets.merge(sides[0].body, sides[1].body);
   }
   std::vector<int> contacts(index(bodies.count()), 0);
   for (const int j : island.joints) {
-    const Joint& joint = joints[index(j)];
+    const Joint& joint = joints[j];
     const Side& side = moves(joint.sides[0]) ? joint.sides[0] : joint.sides[1];
-    if (!joint.tied() && moves(side) && ++contacts[index(sets.root(side.body))] > 1) return false;
+    if (!joint.tied() && moves(side) && ++contacts[sets.root(side.body)] > 1) return false;
   }
   return true;
 }
@@ -155,10 +155,10 @@ bool Partition::update(std::span<const Joint> joints, int bodies) {
   std::vector<bool> taken(index(bodies), false);
   for (const Island& island : islands_)
     for (const std::vector<int>& level : island.levels)
-      for (const int body : level) taken[index(body)] = true;
+      for (const int body : level) taken[body] = true;
   free_.clear();
   for (int b = 0; b < bodies; ++b)
-    if (!taken[index(b)]) free_.push_back(b);
+    if (!taken[b]) free_.push_back(b);
   return true;
 }
 

@@ -97,9 +97,9 @@ class Joint {
   /// Whether its contact is in the iteration and every substep decides for itself.
   bool deciding() const { return unilateral() && closed(); }
 
-  const Side& kinematic_side() const { return sides[index(kinematic)]; }
-  const Side& neumann_side() const { return sides[index(1 - kinematic)]; }
-  double normal_of(int side) const { return normal[index(side)]; }
+  const Side& kinematic_side() const { return sides[kinematic]; }
+  const Side& neumann_side() const { return sides[1 - kinematic]; }
+  double normal_of(int side) const { return normal[side]; }
   /// Reference position of the partner minus that of this side [m].
   double offset(int side) const { return reference_gap * normal_of(side); }
   /// Gap [m] for displacements of side 0 and side 1; negative when overlapping.
@@ -131,7 +131,7 @@ inline std::size_t index_at_begin(const Waveform& trace, double begin) {
 
 /// Reply of a side in the latest responses, and its trace.
 inline const PortResponse& port_of(const Bodies& bodies, const Side& side) {
-  return bodies.response(side.body).ports[index(side.port)];
+  return bodies.response(side.body).ports[side.port];
 }
 inline const Waveform& trace_of(const Bodies& bodies, const Side& side) {
   return port_of(bodies, side).trace;

@@ -54,7 +54,7 @@ Eigen::MatrixXd parted(const Joint& joint, const std::map<int, Eigen::Index>& co
 
 std::vector<double> loose_motion(const Description& body, int motion, const PortGeometry& port) {
   const int dim = port.dim, each = dim == 2 ? 3 : 6;
-  const double* by = &body.loose[index(motion * each)];
+  const double* by = &body.loose[motion * each];
   std::vector<double> out(port.points.size());
   for (std::size_t at = 0; at < out.size(); at += index(dim)) {
     const double* x = &port.points[at];
@@ -103,7 +103,7 @@ void share_out_loose_motions(std::span<const Joint> joints, const Bodies& bodies
   for (const Joint& joint : joints) {
     if (joint.how == nullptr || joint.how->tie() == nullptr) continue;
     for (const int s : {0, 1}) {
-      const int body = joint.sides[index(s)].body;
+      const int body = joint.sides[s].body;
       const int count = loose_motions(bodies.describe(body));
       if (count > 0 && carried.insert(body).second) joint.how->tie()->carry(s, count);
     }

@@ -81,7 +81,7 @@ void ParallelForce::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
   for (int i = 1; i <= iterate_.steps.count; ++i) guess_.time.push_back(iterate_.steps.time(i));
   guess_.f = force_begin_;
   guess_.f.insert(guess_.f.end(), x.begin(), x.end());
-  Waveform& force = bodies.force(joint.sides[index(side)]);
+  Waveform& force = bodies.force(joint.sides[side]);
   force = guess_;
   for (double& f : force.f) f *= -joint.normal_of(side);
   if (looks_) Trial::ask(window_, joint, bodies);

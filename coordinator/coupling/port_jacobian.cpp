@@ -31,11 +31,11 @@ Eigen::MatrixXd overlap_average(const std::vector<double>& to, const std::vector
   Eigen::MatrixXd average = Eigen::MatrixXd::Zero(rows, cols);
   std::ptrdiff_t first = 0;
   for (std::ptrdiff_t i = 0; i < rows; ++i) {
-    const double low = to[index(i)];
+    const double low = to[i];
     const double high = to[index(i) + 1];
     while (first + 1 < cols && from[index(first) + 1] <= low) ++first;
-    for (std::ptrdiff_t j = first; j < cols && from[index(j)] < high; ++j) {
-      const double overlap = std::min(high, from[index(j) + 1]) - std::max(low, from[index(j)]);
+    for (std::ptrdiff_t j = first; j < cols && from[j] < high; ++j) {
+      const double overlap = std::min(high, from[index(j) + 1]) - std::max(low, from[j]);
       if (overlap > 0.0) average(i, j) = overlap / (high - low);
     }
   }
@@ -62,7 +62,7 @@ Eigen::MatrixXd toeplitz(const std::vector<double>& c, int n) {
   ABUT_ASSERT(static_cast<int>(c.size()) >= n);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
   for (int i = 0; i < n; ++i) {
-    for (int j = 0; j <= i; ++j) matrix(i, j) = c[index(i - j)];
+    for (int j = 0; j <= i; ++j) matrix(i, j) = c[i - j];
   }
   return matrix;
 }

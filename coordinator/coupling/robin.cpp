@@ -36,7 +36,7 @@ std::array<int, 2> Robin::iterated() const { return {kinematic_, 1 - kinematic_}
 int Robin::values() const {
   int count = 0;
   for (int k = 0; k < parts(); ++k)
-    count += static_cast<int>(partner(iterated()[index(k)]).grid.size());
+    count += static_cast<int>(partner(iterated()[k]).grid.size());
   return count;
 }
 
@@ -86,8 +86,8 @@ void Robin::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) 
 void Robin::predict(Eigen::Ref<Eigen::VectorXd> x) const {
   Eigen::Index at = 0;
   for (int k = 0; k < parts(); ++k) {
-    const int side = iterated()[index(k)];
-    const Begin& here = sides_[index(side)];
+    const int side = iterated()[k];
+    const Begin& here = sides_[side];
     const Begin& other = partner(side);
     const Substeps& steps = other.grid.steps;
     const bool known = here.incoming_begin == steps.begin &&
@@ -97,7 +97,7 @@ void Robin::predict(Eigen::Ref<Eigen::VectorXd> x) const {
       const bool first = i < other.grid.width;
       const double close = first ? overlap_[c] / (steps.time(1) - steps.time(0)) : 0.0;
       x[at++] =
-          known ? here.incoming[index(i)] : other.force[c] + here.impedance * (other.v[c] + close);
+          known ? here.incoming[i] : other.force[c] + here.impedance * (other.v[c] + close);
     }
   }
 }
@@ -105,8 +105,8 @@ void Robin::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 void Robin::outgoing(int side, const Joint& joint, const Bodies& bodies,
                      Eigen::Ref<Eigen::VectorXd> q) const {
   const double n = joint.normal_of(1 - side);
-  const double z = sides_[index(side)].impedance;
-  const Waveform& trace = trace_of(bodies, joint.sides[index(1 - side)]);
+  const double z = sides_[side].impedance;
+  const Waveform& trace = trace_of(bodies, joint.sides[1 - side]);
   const std::size_t width = overlap_.size();
   for (std::size_t i = 1; i < trace.size(); ++i) {
     const double length = trace.time[i] - trace.time[i - 1];
@@ -121,7 +121,7 @@ void Robin::outgoing(int side, const Joint& joint, const Bodies& bodies,
 
 void Robin::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                    Bodies& bodies) {
-  Begin& here = sides_[index(side)];
+  Begin& here = sides_[side];
   const Begin& other = partner(side);
   const Eigen::Index size = other.grid.size();
   Eigen::VectorXd q(size);
@@ -135,7 +135,7 @@ void Robin::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const J
   const Substeps& steps = other.grid.steps;
   here.incoming.assign(q.begin(), q.end());
   here.incoming_begin = steps.begin;
-  const Side& port = joint.sides[index(side)];
+  const Side& port = joint.sides[side];
   const double inward = -joint.normal_of(side);
   Waveform& force = bodies.force(port);
   force.clear();
@@ -165,12 +165,12 @@ FieldResiduals Robin::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
   FieldResiduals r;
   Eigen::Index at = 0;
   for (int k = 0; k < parts(); ++k) {
-    const IterateGrid& grid = partner(iterated()[index(k)]).grid;
+    const IterateGrid& grid = partner(iterated()[k]).grid;
     std::vector<double> overlap(overlap_.size(), 0.0);
     for (Eigen::Index i = 0; i < grid.size(); ++i, ++at) {
       const double difference = g[at] - x[at];
       const int substep = static_cast<int>(i / grid.width) + 1;
-      double& left = overlap[index(i % grid.width)];
+      double& left = overlap[i % grid.width];
       left +=
           difference / impedance_sum_ * (grid.steps.time(substep) - grid.steps.time(substep - 1));
       r.displacement =

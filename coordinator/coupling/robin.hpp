@@ -47,7 +47,7 @@ class Robin final : public Transmission {
   /// Sides whose incoming force is iterated, in the order of the iterate.
   std::array<int, 2> iterated() const;
   int parts() const { return parallel_ ? 2 : 1; }
-  const Begin& partner(int side) const { return sides_[index(1 - side)]; }
+  const Begin& partner(int side) const { return sides_[1 - side]; }
   void find_impedances(const Joint& joint, Bodies& bodies);
   /// q for a side out of its partner's latest response.
   void outgoing(int side, const Joint& joint, const Bodies& bodies,

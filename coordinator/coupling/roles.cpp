@@ -29,7 +29,7 @@ double moved_over(const Side& side, Bodies& bodies, double window) {
 /// The side that alone takes obstacles; none: both do.
 std::optional<int> only_side(const Joint& joint, const Bodies& bodies) {
   for (int s : {0, 1}) {
-    if (!bodies.describe(joint.sides[index(s)].body).can.obstacle) return 1 - s;
+    if (!bodies.describe(joint.sides[s].body).can.obstacle) return 1 - s;
   }
   return std::nullopt;
 }
@@ -43,9 +43,9 @@ bool BodyOrder::comes_before(int before, int after) const {
     const int body = waiting.back();
     waiting.pop_back();
     if (body == after) return true;
-    if (seen[index(body)]) continue;
-    seen[index(body)] = true;
-    waiting.insert(waiting.end(), after_[index(body)].begin(), after_[index(body)].end());
+    if (seen[body]) continue;
+    seen[body] = true;
+    waiting.insert(waiting.end(), after_[body].begin(), after_[body].end());
   }
   return false;
 }
@@ -135,7 +135,7 @@ bool Roles::choose(Joint& joint) {
     joint.kinematic = coarser_side(joint, bodies_);
   } else if (const std::optional<int> only = only_side(joint, bodies_)) {
     // settled at the start; the whole window's kernel will be needed, so that one probe is enough
-    moved_over(joint.sides[index(*only)], bodies_, window_);
+    moved_over(joint.sides[*only], bodies_, window_);
   } else {
     settle(joint, wish(joint), true);
   }

@@ -13,7 +13,7 @@ namespace abut {
 class BodyOrder {
  public:
   explicit BodyOrder(int bodies) : after_(index(bodies)) {}
-  void add(int before, int after) { after_[index(before)].push_back(after); }
+  void add(int before, int after) { after_[before].push_back(after); }
   bool comes_before(int before, int after) const;  // a body comes before itself
 
  private:

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/archive.hpp"
-#include "base/index.hpp"
 
 namespace abut {
 
@@ -32,13 +31,13 @@ Eigen::VectorXd Schwarz::inverse_of(const Eigen::VectorXd& r, std::span<const Jo
   Eigen::VectorXd out = r;
   for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
     const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
-    const Transmission& t = *joints[index(layout_.joints[i])].how;
+    const Transmission& t = *joints[layout_.joints[i]].how;
     out.segment(layout_.first[i], count) = t.apply_inverse(r.segment(layout_.first[i], count));
   }
   ties_->apply_inverse(out);
   for (std::size_t i = 0; i < layout_.joints.size() && !ties_->empty(); ++i) {
     const Eigen::Index count = layout_.first[i + 1] - layout_.first[i];
-    joints[index(layout_.joints[i])].how->follow(out, out.segment(layout_.first[i], count));
+    joints[layout_.joints[i]].how->follow(out, out.segment(layout_.first[i], count));
   }
   return out;
 }
@@ -46,7 +45,7 @@ Eigen::VectorXd Schwarz::inverse_of(const Eigen::VectorXd& r, std::span<const Jo
 Eigen::VectorXd Schwarz::relaxed(Eigen::VectorXd r, std::span<const Joint> joints) const {
   for (std::size_t i = 0; i < layout_.joints.size(); ++i)
     r.segment(layout_.first[i], layout_.first[i + 1] - layout_.first[i]) *=
-        joints[index(layout_.joints[i])].how->first_factor();
+        joints[layout_.joints[i]].how->first_factor();
   return r;
 }
 
@@ -65,7 +64,7 @@ std::optional<Failed> Schwarz::sweep(const Island& island, std::span<const Joint
                                      Bodies& bodies) const {
   for (std::size_t level = 0; level < island.levels.size(); ++level) {
     for (const auto& [i, side] : island.ends[level]) {
-      const Joint& joint = joints[index(layout.joints[i])];
+      const Joint& joint = joints[layout.joints[i]];
       const Eigen::Index count = layout.first[i + 1] - layout.first[i];
       joint.how->impose(side, x.segment(layout.first[i], count), joint, bodies);
     }
@@ -80,12 +79,12 @@ std::optional<Failed> Schwarz::sweep(const Island& island, std::span<const Joint
 std::optional<Failed> Schwarz::fly(const Island& island, std::span<const Joint> joints,
                                    Bodies& bodies) {
   for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
-    const Joint& joint = joints[index(layout_.joints[i])];
+    const Joint& joint = joints[layout_.joints[i]];
     if (!joint.how->flies()) joint.how->predict(part(x_, i));
   }
   for (auto ends = island.ends.rbegin(); ends != island.ends.rend(); ++ends) {
     const auto joint_at = [&](const Island::End& end) -> const Joint& {
-      return joints[index(layout_.joints[end.joint])];
+      return joints[layout_.joints[end.joint]];
     };
     const auto flies = [&joint_at](const Island::End& end) {
       return joint_at(end).how->flies() && end.side != joint_at(end).kinematic;
@@ -121,7 +120,7 @@ double Schwarz::see_images(std::span<const Joint> joints, const Bodies& bodies,
   double mismatch = 0.0;
   residual = {};
   for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
-    const Joint& joint = joints[index(layout_.joints[i])];
+    const Joint& joint = joints[layout_.joints[i]];
     joint.how->image(part(x_, i), joint, bodies, part(g_, i));
     const FieldResiduals own = joint.how->measure(part(x_, i), part(g_, i));
     mismatch = std::max(mismatch, own.largest());
@@ -135,7 +134,7 @@ double Schwarz::see_images(std::span<const Joint> joints, const Bodies& bodies,
 FieldResiduals Schwarz::residual_of(std::span<const Joint> joints) {
   FieldResiduals residual;
   for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
-    const Transmission& how = *joints[index(layout_.joints[i])].how;
+    const Transmission& how = *joints[layout_.joints[i]].how;
     residual.include(how.measure(part(x_, i), part(g_, i)), how.stray());
   }
   return residual;
@@ -146,7 +145,7 @@ double Schwarz::step_from(const Eigen::VectorXd& before, std::span<const Joint> 
   double most = 0.0;
   for (std::size_t i = 0; i < layout_.joints.size(); ++i) {
     const Eigen::Index first = layout_.first[i], count = layout_.first[i + 1] - first;
-    const Transmission& how = *joints[index(layout_.joints[i])].how;
+    const Transmission& how = *joints[layout_.joints[i]].how;
     most = std::max(most,
                     how.measure(before.segment(first, count), x_.segment(first, count)).largest());
   }
@@ -155,7 +154,7 @@ double Schwarz::step_from(const Eigen::VectorXd& before, std::span<const Joint> 
 
 bool Schwarz::projected(std::span<const Joint> joints) const {
   return std::ranges::any_of(layout_.joints,
-                             [&joints](int j) { return joints[index(j)].how->projects(); });
+                             [&joints](int j) { return joints[j].how->projects(); });
 }
 
 /// The joints of an island begin a window.
@@ -164,7 +163,7 @@ void Schwarz::lay_out(const TimeWindow& window, const Island& island, std::span<
   layout_.joints = island.joints;
   layout_.first.assign(1, 0);
   for (int j : island.joints) {
-    const Joint& joint = joints[index(j)];
+    const Joint& joint = joints[j];
     joint.how->share(std::ranges::binary_search(island.shared, joint.neumann_side().body));
     joint.how->begin(window, joint, bodies);
     layout_.first.push_back(layout_.first.back() + joint.how->values());
@@ -179,7 +178,7 @@ void Schwarz::lay_out(const TimeWindow& window, const Island& island, std::span<
 bool Schwarz::ease(const Island& island, std::span<const Joint> joints, Bodies& bodies) {
   bool known = contacts_apart(island, joints, bodies);
   for (std::size_t i = 0; known && i < island.joints.size(); ++i) {
-    const Joint& joint = joints[index(island.joints[i])];
+    const Joint& joint = joints[island.joints[i]];
     known = joint.how->tie() != nullptr || joint.how->ease(*ties_, joint, bodies);
   }
   if (!known) withdraw(island, joints, bodies);
@@ -187,15 +186,15 @@ bool Schwarz::ease(const Island& island, std::span<const Joint> joints, Bodies& 
 }
 
 void Schwarz::withdraw(const Island& island, std::span<const Joint> joints, Bodies& bodies) {
-  for (const int j : island.joints) joints[index(j)].how->withdraw(joints[index(j)], bodies);
+  for (const int j : island.joints) joints[j].how->withdraw(joints[j], bodies);
 }
 
 /// Plain steps contract: all joints are contact, or contact and ties. What a kernel of ties lets
 /// give way, contact only holds.
 bool Schwarz::contracts(const Island& island, std::span<const Joint> joints) const {
-  const auto contact = [&joints](int j) { return joints[index(j)].how->contracts(); };
+  const auto contact = [&joints](int j) { return joints[j].how->contracts(); };
   const auto small_steps = [&](int j) {
-    return contact(j) || joints[index(j)].how->tie() != nullptr;
+    return contact(j) || joints[j].how->tie() != nullptr;
   };
   return std::ranges::any_of(island.joints, contact) &&
          std::ranges::all_of(island.joints, small_steps);

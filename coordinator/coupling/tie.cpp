@@ -24,9 +24,9 @@ bool damps(const Joint& joint) {
 void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
   remember(window);
   straight_ = !looks(joint, bodies);
-  for (const int s : {0, 1}) grids_[index(s)] = substeps_of(bodies, joint.sides[index(s)], window);
+  for (const int s : {0, 1}) grids_[s] = substeps_of(bodies, joint.sides[s], window);
   see_turns(joint, bodies);
-  iterate_ = {grids_[index(joint.kinematic)], rows_.width()};
+  iterate_ = {grids_[joint.kinematic], rows_.width()};
   window_ = window;
   first_speed_ = -1.0;
   way_.begin();
@@ -77,13 +77,13 @@ void Tie::see_way(const Joint& joint, const std::array<const Waveform*, 2>& moti
   std::vector<double> u, seen(index(iterate_.width));
   for (int i = 1; i <= iterate_.steps.count; ++i) {
     for (const int s : {0, 1}) {
-      const Waveform& motion = *motions[index(s)];
+      const Waveform& motion = *motions[s];
       u.resize(index(motion.width));
       motion.interpolate(motion.u, iterate_.steps.time(i), u);
-      apply(rows_.of[index(s)], rows_.dim, u, seen);
+      apply(rows_.of[s], rows_.dim, u, seen);
       for (int k = 0; k < iterate_.width; ++k) {
         if (!rows_.acts(k / rows_.dim, s)) continue;
-        own[iterate_.at(i) + k] = seen[index(k)];
+        own[iterate_.at(i) + k] = seen[k];
         if (s == joint.kinematic) step[iterate_.at(i) + k] *= -1.0;
       }
     }
@@ -100,7 +100,7 @@ void Tie::damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump
     const Eigen::Index at = iterate_.at(i);
     apply(rows_.incoming, rows_.dim, std::span(x.data() + at, open.size()), open);
     for (int k = 0; k < iterate_.width; ++k)
-      jump[at + k] += iterate_.steps.step / rows_.dashpots[index(k / rows_.dim)] * open[index(k)];
+      jump[at + k] += iterate_.steps.step / rows_.dashpots[k / rows_.dim] * open[k];
   }
 }
 
@@ -174,7 +174,7 @@ void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joi
   force_.f.insert(force_.f.end(), x.begin(), x.begin() + iterate_.size());
   last_.time = window_.end;
   last_.force.assign(x.begin() + iterate_.size() - iterate_.width, x.begin() + iterate_.size());
-  const Side& end = joint.sides[index(side)];
+  const Side& end = joint.sides[side];
   Waveform& on_body = bodies.force(end);
   const std::size_t width = bodies.port(end).geometry.points.size();
   on_body.clear();
@@ -190,10 +190,10 @@ void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joi
   Advance& request = bodies.request(end.body);
   if (looks(joint, bodies))
     request.ahead = bodies.window() > 0.0 ? bodies.window() : window_.length();
-  if (loose_[index(side)] == 0) return;
+  if (loose_[side] == 0) return;
   const double* places_here = x.data() + first_place(side);
   request.carry.assign(places_here, places_here + places(side));
-  last_.place[index(side)].assign(request.carry.end() - loose_[index(side)], request.carry.end());
+  last_.place[side].assign(request.carry.end() - loose_[side], request.carry.end());
 }
 
 /// Without inertia, a body lets go of at once would be far away, where it is not linear; and where
@@ -224,8 +224,8 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   g.head(iterate_.size()) = x.head(iterate_.size()) - jump_ / compliance_;
   unbalanced_ = 0.0;
   for (const int s : {0, 1}) {
-    if (loose_[index(s)] == 0) continue;
-    const std::vector<double>& left = bodies.response(joint.sides[index(s)].body).unbalanced;
+    if (loose_[s] == 0) continue;
+    const std::vector<double>& left = bodies.response(joint.sides[s].body).unbalanced;
     ABUT_ASSERT(static_cast<Eigen::Index>(left.size()) == places(s));
     const Eigen::Map<const Eigen::VectorXd> sum(left.data(), places(s));
     g.segment(first_place(s), places(s)) = x.segment(first_place(s), places(s)) - compliance_ * sum;

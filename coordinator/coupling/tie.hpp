@@ -34,17 +34,17 @@ class Tie final : public Transmission {
   /// From now on, where these many loose motions of a side's body are is part of the iterate, which
   /// is (forces, places of side 0, places of side 1): what is left over of the forces along them
   /// is to be nothing  [M.112].
-  void carry(int side, int motions) { loose_[index(side)] = motions; }
-  int carried(int side) const { return loose_[index(side)]; }
+  void carry(int side, int motions) { loose_[side] = motions; }
+  int carried(int side) const { return loose_[side]; }
   /// Where the places of a side begin in the iterate.
   Eigen::Index first_place(int side) const { return iterate_.size() + (side == 1 ? places(0) : 0); }
 
   const TieRows& rows() const { return rows_; }
   /// (dim, dim) by which a side of a body in motion that is not linear had turned when the window
   /// began; else empty.
-  const Eigen::MatrixXd& turn(int side) const { return turns_[index(side)]; }
+  const Eigen::MatrixXd& turn(int side) const { return turns_[side]; }
   /// Substeps of a side in the window.
-  const Substeps& grid(int side) const { return grids_[index(side)]; }
+  const Substeps& grid(int side) const { return grids_[side]; }
   /// [m] (steps of the kinematic side, rows, dim) by which the sides part without forces between
   /// them, as they told after the window before; empty: they did not tell.
   const Eigen::VectorXd& trial() const { return trial_; }
@@ -77,7 +77,7 @@ class Tie final : public Transmission {
   void damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump) const;
 
   Eigen::Index places(int side) const {
-    return Eigen::Index{loose_[index(side)]} * grids_[index(side)].count;
+    return Eigen::Index{loose_[side]} * grids_[side].count;
   }
   bool looks(const Joint& joint, const Bodies& bodies) const;
   void remember(const TimeWindow& window);

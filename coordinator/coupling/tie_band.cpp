@@ -27,7 +27,7 @@ Places places_of(const TieLayout& layout, const TieLayout::Part& part, const Bod
   Places places;
   for (const TieLayout::End& end : part.ends) {
     const TieRows& rows = layout.rows(end);
-    const SparseRows& own = rows.of[index(end.side)];
+    const SparseRows& own = rows.of[end.side];
     const PortGeometry& face = bodies.port(layout.side(end)).geometry;
     const std::size_t dim = index(rows.dim);
     std::vector<double> middle(index(rows.width()));
@@ -35,10 +35,10 @@ Places places_of(const TieLayout& layout, const TieLayout::Part& part, const Bod
     for (int r = 0; r < rows.count(); ++r) {
       std::array<double, 3>& place = places.rows.emplace_back();
       std::copy_n(&middle[index(r) * dim], dim, place.begin());
-      for (auto e = own.offsets[index(r)]; e < own.offsets[index(r) + 1]; ++e) {
+      for (auto e = own.offsets[r]; e < own.offsets[index(r) + 1]; ++e) {
         double square = 0.0;
         for (std::size_t d = 0; d < dim; ++d)
-          square += std::pow(face.points[index(own.columns[index(e)]) * dim + d] - place[d], 2);
+          square += std::pow(face.points[index(own.columns[e]) * dim + d] - place[d], 2);
         places.own = std::max(places.own, std::sqrt(square));
       }
     }
@@ -86,16 +86,16 @@ void find_reached(const Places& places, const std::vector<double>& reach, TieBan
     if (high[d] - low[d] > high[along] - low[along]) along = d;
   std::vector<std::int32_t> order(at.size());
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&](std::int32_t r) { return at[index(r)][along]; });
+  std::ranges::stable_sort(order, {}, [&](std::int32_t r) { return at[r][along]; });
   const double slack = rounding * places.spacing, most = reach.back() + slack;
   band.offsets.assign(1, 0);
   for (const std::array<double, 3>& place : at) {
     const auto from = std::ranges::lower_bound(order, place[along] - most, {},
-                                               [&](std::int32_t r) { return at[index(r)][along]; });
-    for (auto r = from; r != order.end() && at[index(*r)][along] <= place[along] + most; ++r) {
+                                               [&](std::int32_t r) { return at[r][along]; });
+    for (auto r = from; r != order.end() && at[*r][along] <= place[along] + most; ++r) {
       double square = 0.0;
       for (std::size_t d = 0; d < 3; ++d)
-        square += (at[index(*r)][d] - place[d]) * (at[index(*r)][d] - place[d]);
+        square += (at[*r][d] - place[d]) * (at[*r][d] - place[d]);
       if (square > most * most) continue;
       const double far = std::sqrt(square) - slack;
       const auto first = std::ranges::lower_bound(reach, far);
@@ -115,7 +115,7 @@ using Colours = std::vector<std::uint64_t>;
 int free_colour(const TieBand& band, std::size_t row, std::vector<Colours>& answers) {
   Colours taken(1, 0);
   for (const TieBand::Reached& r : band.of(row)) {
-    const Colours& known = answers[index(r.row)];
+    const Colours& known = answers[r.row];
     if (taken.size() < known.size()) taken.resize(known.size(), 0);
     for (std::size_t w = 0; w < known.size(); ++w) taken[w] |= known[w];
   }
@@ -123,7 +123,7 @@ int free_colour(const TieBand& band, std::size_t row, std::vector<Colours>& answ
   while (word < taken.size() && taken[word] == ~std::uint64_t{0}) ++word;
   const std::size_t bit = word < taken.size() ? index(std::countr_one(taken[word])) : 0;
   for (const TieBand::Reached& r : band.of(row)) {
-    Colours& known = answers[index(r.row)];
+    Colours& known = answers[r.row];
     if (known.size() <= word) known.resize(word + 1, 0);
     known[word] |= std::uint64_t{1} << bit;
   }

@@ -41,9 +41,9 @@ Pairs count_pairs(const TieLayout& layout, const TieLayout::Part& part, const Ti
     end_of.insert(end_of.end(), index(layout.rows(part.ends[e]).count()), e);
   for (std::size_t row = 0; row < end_of.size(); ++row) {
     for (const TieBand::Reached& r : band.of(row)) {
-      std::vector<double>& count = pairs[{end_of[index(r.row)], end_of[row]}];
+      std::vector<double>& count = pairs[{end_of[r.row], end_of[row]}];
       count.resize(index(steps), 0.0);
-      count[index(r.from)] += 1.0;
+      count[r.from] += 1.0;
     }
   }
   return pairs;
@@ -61,7 +61,7 @@ double entries_of(const TieLayout& layout, const TieLayout::Part& part, const Pa
       later = std::max(later, share.later);
     }
     for (const auto& [place, later] : latest)
-      for (int from = 0; from <= later; ++from) entries += count[index(from)];
+      for (int from = 0; from <= later; ++from) entries += count[from];
   }
   return entries;
 }

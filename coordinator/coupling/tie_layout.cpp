@@ -40,15 +40,15 @@ void TieLayout::arrange(const Bodies& bodies) {
     Member& member = members[m];
     const bool carries = member.carried >= 0;
     member.width = carries ? member.tie->carried(member.carried) : member.tie->rows().width();
-    member.total = member.counts[index(carries ? member.carried : member.joint->kinematic)];
+    member.total = member.counts[carries ? member.carried : member.joint->kinematic];
     for (const int s : {0, 1}) {
       if (carries && member.carried != s) continue;
-      const int body = member.joint->sides[index(s)].body;
+      const int body = member.joint->sides[s].body;
       auto part = std::ranges::find(parts, body, &Part::body);
       if (part == parts.end()) {
         const Description& told = bodies.describe(body);
         parts.push_back({body,
-                         member.counts[index(s)],
+                         member.counts[s],
                          0,
                          !told.can.kernel,
                          told.quasi_static && !told.linear,

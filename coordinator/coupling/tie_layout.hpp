@@ -60,10 +60,10 @@ struct TieLayout {
   std::vector<int> pattern() const;
   const TieRows& rows(const End& end) const { return members[end.member].tie->rows(); }
   const Side& side(const End& end) const {
-    return members[end.member].joint->sides[index(end.side)];
+    return members[end.member].joint->sides[end.side];
   }
   const Side& other_side(const End& end) const {
-    return members[end.member].joint->sides[index(1 - end.side)];
+    return members[end.member].joint->sides[1 - end.side];
   }
   Eigen::Index values_of(const Member& member) const {
     return Eigen::Index{member.width} * member.total;

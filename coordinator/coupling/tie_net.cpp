@@ -22,7 +22,7 @@ void TieNet::begin(const Island& island, std::span<const Joint> joints,
                    std::span<const Eigen::Index> first, Bodies& bodies) {
   layout_.members.clear();
   for (std::size_t i = 0; i < island.joints.size(); ++i) {
-    const Joint& joint = joints[index(island.joints[i])];
+    const Joint& joint = joints[island.joints[i]];
     const Tie* tie = joint.how->tie();
     if (tie != nullptr) layout_.add(joint, {tie->grid(0).count, tie->grid(1).count}, first[i]);
   }

@@ -38,7 +38,7 @@ void read(const TieLayout& layout, const TieLayout::Part& part, int from, int pa
         if (layout.carries(end) || layout.side(end).port != port) continue;
         const TieRows& rows = layout.rows(end);
         moved.resize(index(rows.width()));
-        apply(rows.of[index(end.side)], rows.dim, std::span(values, width), moved);
+        apply(rows.of[end.side], rows.dim, std::span(values, width), moved);
         for (std::size_t i = 0; rows.alternating && i < moved.size(); ++i)
           if (!rows.acts(static_cast<int>(i) / rows.dim, end.side)) moved[i] = 0.0;
         take(from + k % patterns, k / patterns, end, moved);

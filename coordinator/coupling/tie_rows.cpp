@@ -173,11 +173,11 @@ TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int si
 
 void TieRows::press(int side, double factor, std::span<const double> forces,
                     std::span<double> out) const {
-  if (moves.empty()) return add_transposed(of[index(side)], dim, factor, forces, out);
+  if (moves.empty()) return add_transposed(of[side], dim, factor, forces, out);
   std::vector<double> own(forces.begin(), forces.end());
   for (int k = 0; k < width(); ++k)
-    if (!acts(k / dim, side)) own[index(k)] = 0.0;
-  add_transposed(of[index(side)], dim, factor, own, out);
+    if (!acts(k / dim, side)) own[k] = 0.0;
+  add_transposed(of[side], dim, factor, own, out);
 }
 
 TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other, bool motions) {

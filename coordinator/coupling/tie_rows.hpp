@@ -28,7 +28,7 @@ struct TieRows {
   bool alternating = false;  // of these: a body's rows are answered as if the other one stood still
   int count() const { return of[0].count(); }
   int width() const { return count() * dim; }
-  bool acts(int row, int side) const { return moves.empty() || moves[index(row)] == side; }
+  bool acts(int row, int side) const { return moves.empty() || moves[row] == side; }
   /// out += factor x forces [N] (rows, dim) of those rows that act on a side, at its nodes.
   void press(int side, double factor, std::span<const double> forces, std::span<double> out) const;
 };

@@ -28,7 +28,7 @@ void TiedPort::probe(const TieLayout& layout, const TieLayout::Part& part, int p
   std::vector<double> moved;
   for (const TieLayout::End& end : part.ends) {
     const TieRows& rows = layout.rows(end);
-    const SparseRows& side = rows.of[index(end.side)];
+    const SparseRows& side = rows.of[end.side];
     const int tied = layout.side(end).port;
     End& to = ends_.emplace_back();
     to.member = end.member;
@@ -48,7 +48,7 @@ void TiedPort::probe(const TieLayout& layout, const TieLayout::Part& part, int p
     std::vector<double> forces(index(rows.width()) * tied_width, 0.0);
     for (int k = 0; k < rows.width(); ++k) {
       std::vector<double> unit(index(rows.width()), 0.0);
-      unit[index(k)] = 1.0;
+      unit[k] = 1.0;
       add_transposed(side, rows.dim, 1.0, unit,
                      std::span(forces).subspan(index(k) * tied_width, tied_width));
     }
@@ -60,7 +60,7 @@ void TiedPort::probe(const TieLayout& layout, const TieLayout::Part& part, int p
       Eigen::MatrixXd& at = to.port.emplace_back(count, rows.width());
       for (int k = 0; k < rows.width(); ++k)
         for (Eigen::Index v = 0; v < count; ++v)
-          at(v, k) = in.displacement[(index(l * rows.width() + k)) * width + values_[index(v)]];
+          at(v, k) = in.displacement[(index(l * rows.width() + k)) * width + values_[v]];
     }
   }
 }
@@ -79,7 +79,7 @@ void TiedPort::find_give(const TieLayout& layout, const TieKernel& kernel) {
       const TieLayout::Member& member = layout.members[end.member];
       for (int l = 0; l < steps_; ++l)
         jump.segment(l * layout.size + member.inner, member.width) +=
-            end.sign * end.rows[index(l)].col(k);
+            end.sign * end.rows[l].col(k);
     }
     if (jump.isZero(0.0)) continue;
     const Eigen::VectorXd force = -kernel.solve(jump);
@@ -89,7 +89,7 @@ void TiedPort::find_give(const TieLayout& layout, const TieKernel& kernel) {
       for (const End& end : ends_) {
         const TieLayout::Member& member = layout.members[end.member];
         for (int a = 0; a <= l; ++a)
-          moved += end.sign * end.port[index(l - a)] *
+          moved += end.sign * end.port[l - a] *
                    force.segment(a * layout.size + member.inner, member.width);
       }
     }
@@ -103,7 +103,7 @@ void TiedPort::follow(const TieLayout& layout, const Eigen::VectorXd& change, in
     for (int l = 0; l < std::min(steps_, layout.blocks); ++l) {  // windows may be cut short
       for (int a = 0; a <= l; ++a) {
         const Eigen::VectorXd moved =
-            end.sign * end.port[index(l - a)] *
+            end.sign * end.port[l - a] *
             change.segment(member.first + Eigen::Index{a} * member.width, member.width);
         for (std::size_t v = 0; v < values_.size(); ++v)
           motion[Eigen::Index{l} * width + static_cast<Eigen::Index>(values_[v])] +=

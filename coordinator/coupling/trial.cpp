@@ -23,8 +23,8 @@ bool Trial::see(const TimeWindow& window, const std::array<Substeps, 2>& grids, 
   for (std::size_t s : {0u, 1u}) looks[s] = look_of(bodies, joint.sides[s], grids[s]);
   if (looks[0] == nullptr || looks[1] == nullptr) return false;
   for (int s : {0, 1}) {
-    Waveform& motion = motions_[index(s)];
-    motion = *looks[index(s)];
+    Waveform& motion = motions_[s];
+    motion = *looks[s];
     if (joint.impulse == 0.0) continue;
     const std::vector<double>& moved = answer(s, window, joint, bodies);
     if (moved.size() + 1 != motion.size()) return false;
@@ -43,7 +43,7 @@ const std::vector<double>& Trial::answer(int side, const TimeWindow& window, con
   const auto known = std::ranges::find_if(answers_, same);
   if (known != answers_.end()) return known->moved;
   if (answers_.size() >= kept_answers) answers_.pop_front();
-  answers_.push_back({length, side, bodies.impulse_response(joint.sides[index(side)], window)});
+  answers_.push_back({length, side, bodies.impulse_response(joint.sides[side], window)});
   return answers_.back().moved;
 }
 

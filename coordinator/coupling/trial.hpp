@@ -22,7 +22,7 @@ class Trial {
   bool see(const TimeWindow& window, const std::array<Substeps, 2>& grids, const Joint& joint,
            Bodies& bodies);
   /// u [m] (substeps + 1) of a side.
-  const Waveform& motion(int side) const { return motions_[index(side)]; }
+  const Waveform& motion(int side) const { return motions_[side]; }
 
  private:
   struct Struck {

@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 
-#include "base/index.hpp"
 
 namespace abut {
 
@@ -24,7 +23,7 @@ double shortest_edge(const PosedSurface& surface) {
   for (int f = 0; f < surface.facet_count(); ++f) {
     const Corners c = corners(surface, f);
     for (int a = 0; a < c.count; ++a)
-      least = std::min(least, (c.x[index(a)] - c.x[index((a + 1) % c.count)]).norm());
+      least = std::min(least, (c.x[a] - c.x[(a + 1) % c.count]).norm());
   }
   return least;
 }
@@ -88,7 +87,7 @@ bool facets_meet(const PosedSurface& one, const PosedSurface& other,
   for (int f = 0; f < other.facet_count(); ++f)
     facets.insert(facet_of(other, f, [](std::int32_t node) { return node; }));
   for (int f = 0; f < one.facet_count(); ++f) {
-    const auto twin = [&twins](std::int32_t node) { return twins[index(node)]; };
+    const auto twin = [&twins](std::int32_t node) { return twins[node]; };
     if (!facets.contains(facet_of(one, f, twin))) return false;
   }
   return true;

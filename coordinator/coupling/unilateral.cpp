@@ -62,8 +62,8 @@ void Unilateral::see_trial(const TimeWindow& window, const Joint& joint, Bodies&
   predicted_.resize(0);
   if (!unilateral_ || inverse_ == nullptr) return;
   std::array<Substeps, 2> grids;
-  grids[index(joint.kinematic)] = kinematic_grid_;
-  grids[index(1 - joint.kinematic)] = iterate_.steps;
+  grids[joint.kinematic] = kinematic_grid_;
+  grids[1 - joint.kinematic] = iterate_.steps;
   if (!trial_.see(window, grids, joint, bodies)) return;
   const Waveform& n = trial_.motion(1 - joint.kinematic);
   force_.setZero(kinematic_grid_.count);
@@ -102,7 +102,7 @@ void Unilateral::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 
 void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                         Bodies& bodies) {
-  const Side& here = joint.sides[index(side)];
+  const Side& here = joint.sides[side];
   if (looks_) Trial::ask(window_, joint, bodies);
   if (side != joint.kinematic) {
     bodies.force(here) = bodies.reaction(joint.kinematic_side());
@@ -162,7 +162,7 @@ void Unilateral::see_overlap(const Joint& joint, const Waveform& k, const Wavefo
   overlap_.resize(kinematic_grid_.count);
   for (int i = 1; i <= kinematic_grid_.count; ++i) {
     double u[2];
-    u[joint.kinematic] = k.u[index(i)];
+    u[joint.kinematic] = k.u[i];
     n.interpolate(n.u, kinematic_grid_.time(i), {&u[1 - joint.kinematic], 1});
     overlap_[i - 1] = -joint.gap(u[0], u[1]);
   }

@@ -71,7 +71,7 @@ class Rows {
       const std::span<const double> own(p.data() + first, index(rows.width()));
       first += rows.width();
       for (const int s : {0, 1}) {
-        const Side& side = joint->sides[index(s)];
+        const Side& side = joint->sides[s];
         if (!bodies_.describe(side.body).can.impulse) continue;
         std::vector<double>& impulse = bodies_.boundary(side).impulse;
         impulse.resize(bodies_.port(side).geometry.points.size(), 0.0);

@@ -84,7 +84,7 @@ class BarRow::Events {
     bool pressed = false;
   };
 
-  End& end(const BarEnd& e) { return ends_[index(2 * e.bar + e.side)]; }
+  End& end(const BarEnd& e) { return ends_[2 * e.bar + e.side]; }
   double free_velocity(const BarEnd& e);  // [m/s] of an end without force
   double next_event(double time) const;
   void arrive(double time);
@@ -152,7 +152,7 @@ void BarRow::Events::leave(const BarEnd& e, double time, double velocity) {
   if (bar.data.wall) return;
   const std::size_t side = index(e.side);
   const double value = velocity - end(e).incoming;
-  double& scale = scale_[index(e.bar)];
+  double& scale = scale_[e.bar];
   scale = std::max(scale, std::abs(value));
   if (velocity != bar.velocity[side].last()) bar.velocity[side].jump(time, velocity);
   // Jumps of round-off size would multiply at every reflection.
@@ -214,7 +214,7 @@ void BarRow::Events::run() {
     for (int b = 0; b < row_.bars(); ++b) {
       for (const int side : {0, 1}) {
         if (end({b, side}).joined) continue;
-        const bool fixed = row_.at(b).data.fixed[index(side)];
+        const bool fixed = row_.at(b).data.fixed[side];
         leave({b, side}, time, fixed ? 0.0 : free_velocity({b, side}));
       }
     }
@@ -271,7 +271,7 @@ void BarRow::add_interface(const std::array<BarEnd, 2>& ends) {
   double gap = 0.0, scale = 0.0;
   for (const BarEnd& e : ends) {
     const RowBar& data = bar(e.bar);
-    if (!data.wall && data.fixed[index(e.side)])
+    if (!data.wall && data.fixed[e.side])
       refuse(fmt::format("the end of {} that meets another body is fixed", data.name));
     gap -= e.normal() * (data.position + (e.side == 1 && !data.wall ? data.length : 0.0));
     scale = std::max({scale, std::abs(data.position), data.length});
@@ -368,11 +368,11 @@ double BarRow::total_peak(int bar) const {
 }
 
 double BarRow::displacement(const BarEnd& end, double time) const {
-  return at(end.bar).velocity[index(end.side)].integral(time);
+  return at(end.bar).velocity[end.side].integral(time);
 }
 
 double BarRow::velocity(const BarEnd& end, double time) const {
-  return at(end.bar).velocity[index(end.side)].at(time);
+  return at(end.bar).velocity[end.side].at(time);
 }
 
 double BarRow::force(const BarEnd& end, double time) const {
@@ -384,7 +384,7 @@ double BarRow::force(const BarEnd& end, double time) const {
 }
 
 double BarRow::gap(int interface, double time) const {
-  const RowContact& contact = contacts_[index(interface)];
+  const RowContact& contact = contacts_[interface];
   if (contact.closed(time)) return 0.0;
   double gap = contact.initial_gap;
   for (const BarEnd& e : contact.ends) gap -= e.normal() * displacement(e, time);

@@ -76,7 +76,7 @@ class BarRow {
   double begin() const { return begin_; }
   double end() const { return end_; }
   int bars() const { return static_cast<int>(bars_.size()); }
-  const RowBar& bar(int b) const { return bars_[index(b)].data; }
+  const RowBar& bar(int b) const { return bars_[b].data; }
   const std::vector<RowContact>& contacts() const { return contacts_; }  // as `interfaces`
   double velocity_spread() const;  // [m/s] largest difference of the bodies' velocities at begin
   double gap(int interface, double time) const;  // [m] >= 0
@@ -122,8 +122,8 @@ class BarRow {
   static Bar make_bar(RowBar data, double begin);
   void add_interface(const std::array<BarEnd, 2>& ends);
   std::vector<Piece> pieces(const Bar& bar, double time) const;
-  Bar& at(int bar) { return bars_[index(bar)]; }
-  const Bar& at(int bar) const { return bars_[index(bar)]; }
+  Bar& at(int bar) { return bars_[bar]; }
+  const Bar& at(int bar) const { return bars_[bar]; }
 
   double begin_ = 0.0, end_ = 0.0;  // [s]
   std::vector<Bar> bars_;

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 
 namespace abut {
 namespace {
@@ -50,7 +49,7 @@ BarRow bar_impact(const std::array<RowBar, 2>& bodies, const std::array<BarEnd, 
                   double begin, double end) {
   double closing = 0.0, echo = std::numeric_limits<double>::infinity();
   for (const BarEnd& e : ends) {
-    const RowBar& body = bodies[index(e.bar)];
+    const RowBar& body = bodies[e.bar];
     if (body.wall) continue;
     if (body.fixed[0] || body.fixed[1]) refuse(fmt::format("{} has a fixed end", body.name));
     closing += e.normal() * body.velocity;

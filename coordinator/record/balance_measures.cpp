@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "base/index.hpp"
 #include "coordinator/record/port_reader.hpp"
 
 namespace abut {
@@ -91,7 +90,7 @@ void BalanceMeasures::follow_exchange(const WindowReport& report) {
 
 void BalanceMeasures::exchange(const int (&body)[2], const int (&port)[2]) {
   for (const int side : {0, 1})
-    bodies_[index(recorded_body_of(start_.bodies, body[side], port[side]))].exchanged = true;
+    bodies_[recorded_body_of(start_.bodies, body[side], port[side])].exchanged = true;
 }
 
 /// Of whole bodies: what acts between the members of one belongs to none of them.
@@ -153,7 +152,7 @@ void BalanceMeasures::write_angular(Measures& out) const {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     for (int axis = first_rotation_axis(out.scope.dim); axis < 3; ++axis)
       out.set(fmt::format("angular_momentum.{}.end{}", recorded_[b].name, axis_ending(3, axis)),
-              bodies_[b].angular[index(axis)]);
+              bodies_[b].angular[axis]);
     scale += bodies_[b].angular_max;
   }
   if (out.scope.dim == 1) return;

@@ -19,10 +19,10 @@ std::string ClosedFormCsv::header(const RunStart& start) {
   std::string text = "time [s]";
   const std::vector<RecordedBody> recorded = recorded_bodies(start.bodies);
   for (int b = 0; b < static_cast<int>(start.bodies.size()); ++b) {
-    const Description& body = *start.bodies[index(b)];
+    const Description& body = *start.bodies[b];
     Body columns;
     for (int p = 0; p < static_cast<int>(body.ports.size()); ++p) {
-      const Port& port = body.ports[index(p)];
+      const Port& port = body.ports[p];
       const std::size_t on = index(recorded_body_of(start.bodies, b, p));
       const int bar = form_.bar_index(recorded[on].name);
       if (bar < 0) continue;
@@ -72,7 +72,7 @@ void ClosedFormCsv::write_row(double time) {
   }
   for (const int interface : interfaces_) {
     number(row.gap(interface, time));
-    const RowContact& contact = row.contacts()[index(interface)];
+    const RowContact& contact = row.contacts()[interface];
     fmt::format_to(std::back_inserter(row_), ",{:d}", contact.closed(time));
   }
   row_.push_back('\n');

@@ -1,5 +1,4 @@
 #include "coordinator/record/closed_form_table.hpp"
-#include "base/index.hpp"
 
 #include <fmt/format.h>
 
@@ -45,7 +44,7 @@ std::string closed_form_table(const ClosedForm& form, double end, const Measures
   }
   for (int b = 0; b < form.row.bars(); ++b) {
     if (form.row.bar(b).wall) continue;
-    const std::string& body = form.bodies[index(b)];
+    const std::string& body = form.bodies[b];
     rows.push_back({"mean velocity of " + body + " at the end [m/s]",
                     "mean_velocity." + body + ".end", form.row.mean_velocity(b, end),
                     form.row.velocity_spread()});

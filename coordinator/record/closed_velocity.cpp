@@ -1,5 +1,4 @@
 #include "coordinator/record/closed_velocity.hpp"
-#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,13 +27,13 @@ void ClosedVelocity::on_window(const std::array<PortReader, 2>& readers,
 }
 
 void ClosedVelocity::read(int kinematic, ContactErrors* errors) {
-  const std::size_t count = pending_.sides[index(kinematic)].time.size();
+  const std::size_t count = pending_.sides[kinematic].time.size();
   for (std::size_t i = 1; i < count; ++i) add(kinematic, i, errors);
 }
 
 /// The substep that ends at time i, in the parts that events make of it.
 void ClosedVelocity::add(int side, std::size_t i, ContactErrors* errors) {
-  const Window::Side& s = pending_.sides[index(side)];
+  const Window::Side& s = pending_.sides[side];
   const double begin = s.time[i - 1], end = s.time[i];
   const double slope = (s.velocity[i] - s.velocity[i - 1]) / (end - begin);
   double from = begin;

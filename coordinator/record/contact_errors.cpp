@@ -1,5 +1,4 @@
 #include "coordinator/record/contact_errors.hpp"
-#include "base/index.hpp"
 #include "coordinator/record/pushes.hpp"
 
 #include <algorithm>
@@ -46,7 +45,7 @@ void ContactErrors::add_force(double from, double to, double force_from, double 
 }
 
 void ContactErrors::add_velocity(int side, double from, double to, double v_from, double v_to) {
-  const double jump = velocity_jump_[index(side)];
+  const double jump = velocity_jump_[side];
   if (jump > 0.0) velocity_.add(from, to, v_from, v_to, jump);
 }
 

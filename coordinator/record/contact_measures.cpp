@@ -92,7 +92,7 @@ const Waveform* ContactMeasures::force_of(const WindowReport& report, std::size_
 void ContactMeasures::read_friction(const WindowReport& report, std::size_t kinematic) {
   if (readers_[kinematic].port().geometry.dim == 1) return;
   const PortResponse& reply = report.responses[info_.body[kinematic]].ports[info_.port[kinematic]];
-  dissipated_ = reply.reactions[index(info_.partner[kinematic])].dissipated;
+  dissipated_ = reply.reactions[info_.partner[kinematic]].dissipated;
 }
 
 void ContactMeasures::read_gap(const WindowReport& report,

@@ -168,7 +168,7 @@ void CsvHistory::write_body(const RecordedBody& body, const BodyRecord& record) 
   if (body.member >= 0) return;
   const int rotations = 3 - first_rotation_axis(body.dim);
   const std::vector<double>& angular = record.angular_momentum;
-  for (int i = 0; i < rotations; ++i) number(angular.empty() ? nothing : angular[index(i)]);
+  for (int i = 0; i < rotations; ++i) number(angular.empty() ? nothing : angular[i]);
 }
 
 void CsvHistory::on_end(const RunEnd&) {

@@ -13,7 +13,7 @@ ManyContacts::ManyContacts(const RunStart& start, int interface)
     : start_(start), index_(interface) {}
 
 void ManyContacts::on_event(const RunEvent& event) {
-  if (event.subject != start_.interfaces[index(index_)].name) return;
+  if (event.subject != start_.interfaces[index_].name) return;
   if (event.kind == RunEvent::Kind::contact_closed) {
     begin_ = closings_ == 0 ? event.time : std::min(begin_, event.time);
     ++closings_;
@@ -28,12 +28,12 @@ void ManyContacts::on_window(const WindowReport& report) {
   for (const PairReport& pair : report.pairs) {
     if (pair.interface != index_) continue;
     const std::size_t k = index(pair.kinematic);
-    const PortResponse& reply = report.responses[index(pair.body[k])].ports[index(pair.port[k])];
+    const PortResponse& reply = report.responses[pair.body[k]].ports[pair.port[k]];
     const std::size_t partner = index(pair.partner[k]);
     if (partner >= reply.reactions.size() || reply.reactions[partner].force.empty()) continue;
     const Reaction& reaction = reply.reactions[partner];
     read_force(reaction.force,
-               PortReader(start_.bodies[index(pair.body[k])]->ports[index(pair.port[k])]));
+               PortReader(start_.bodies[pair.body[k]]->ports[pair.port[k]]));
     dissipated_[{pair.body[0], pair.port[0], pair.body[1], pair.port[1]}] = reaction.dissipated;
   }
 }
@@ -52,7 +52,7 @@ void ManyContacts::read_force(const Waveform& force, const PortReader& reader) {
 
 void ManyContacts::write(Measures& out) const {
   const auto name = [this](const char* what) {
-    return fmt::format("contact.{}.{}", start_.interfaces[index(index_)].name, what);
+    return fmt::format("contact.{}.{}", start_.interfaces[index_].name, what);
   };
   double dissipated = 0.0;
   for (const auto& [pair, heat] : dissipated_) dissipated += heat;

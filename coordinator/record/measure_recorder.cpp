@@ -28,7 +28,7 @@ void MeasureRecorder::on_start(const RunStart& start) {
     }
     const int exact = form_ != nullptr ? form_->interface_index(info.name) : -1;
     std::optional<ContactErrors> errors;
-    if (exact >= 0) errors.emplace(form_->row, form_->row.contacts()[index(exact)]);
+    if (exact >= 0) errors.emplace(form_->row, form_->row.contacts()[exact]);
     contacts_.emplace_back(start_, static_cast<int>(i), std::move(errors),
                            filter_ ? make_force_filter(*filter_) : nullptr, steady_after_);
     for (const int side : {0, 1}) {

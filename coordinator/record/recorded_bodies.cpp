@@ -1,16 +1,15 @@
 #include "coordinator/record/recorded_bodies.hpp"
-#include "base/index.hpp"
 
 #include <algorithm>
 
 namespace abut {
 
 const Energy& RecordedBody::energy(const BodyRecord& record) const {
-  return member < 0 ? record.energy : record.members[index(member)].energy;
+  return member < 0 ? record.energy : record.members[member].energy;
 }
 
 const std::vector<double>& RecordedBody::momentum(const BodyRecord& record) const {
-  return member < 0 ? record.momentum : record.members[index(member)].momentum;
+  return member < 0 ? record.momentum : record.members[member].momentum;
 }
 
 std::vector<RecordedBody> recorded_bodies(const std::vector<const Description*>& bodies) {
@@ -30,8 +29,8 @@ std::vector<RecordedBody> recorded_bodies(const std::vector<const Description*>&
 int recorded_body_of(const std::vector<const Description*>& bodies, int body, int port) {
   int before = 0;
   for (int b = 0; b < body; ++b)
-    before += std::max(1, static_cast<int>(bodies[index(b)]->members.size()));
-  const std::vector<Member>& members = bodies[index(body)]->members;
+    before += std::max(1, static_cast<int>(bodies[b]->members.size()));
+  const std::vector<Member>& members = bodies[body]->members;
   for (std::size_t m = 0; m < members.size(); ++m) {
     const std::vector<std::int32_t>& ports = members[m].ports;
     if (std::find(ports.begin(), ports.end(), port) != ports.end())

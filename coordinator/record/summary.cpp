@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "coordinator/record/expectations.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 #include "coordinator/record/text_file.hpp"
@@ -71,7 +70,7 @@ Json closed_form_object(const ClosedForm& form) {
   for (std::size_t i = 0; !single && i < form.interfaces.size(); ++i)
     object["interfaces"][form.interfaces[i]] = contact_object(row.contacts()[i]);
   for (int b = 0; b < row.bars(); ++b) {
-    Json& body = object["bodies"][form.bodies[index(b)]];
+    Json& body = object["bodies"][form.bodies[b]];
     body["wall"] = row.bar(b).wall;
     body["mean_velocity_end"] = number(row.mean_velocity(b, row.end()));
     body["total_begin"] = number(row.total(b, row.begin()));
@@ -110,7 +109,7 @@ Json ports_object(const RunStart& start) {
       const int on = recorded_body_of(start.bodies, static_cast<int>(b), static_cast<int>(p));
       object[body.name + "." + body.ports[p].name] = {{"position", number(geometry.points[0])},
                                                       {"normal", number(geometry.normals[0])},
-                                                      {"body", recorded[index(on)].name}};
+                                                      {"body", recorded[on].name}};
     }
   }
   return object;
@@ -185,7 +184,7 @@ Json overlaps_array(const RunEnd& end, const RunStart& start) {
     Json entry = {{"bodies", {one.name, other.name}},
                   {"depth", number(overlap.depth)},
                   {"time", number(overlap.time)}};
-    for (int i = 0; i < one.dim; ++i) entry["place"].push_back(number(overlap.place[index(i)]));
+    for (int i = 0; i < one.dim; ++i) entry["place"].push_back(number(overlap.place[i]));
     array.push_back(entry);
   }
   return array;

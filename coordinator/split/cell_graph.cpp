@@ -31,7 +31,7 @@ std::vector<Place> places_of(const Mesh& mesh) {
                     cell,
                     {static_cast<std::int32_t>(b), own, static_cast<std::int32_t>(f)}};
         for (std::size_t a = 0; a < corners; ++a)
-          place.corners[a] = nodes[index(element.facets[f][a])];
+          place.corners[a] = nodes[element.facets[f][a]];
         std::ranges::sort(place.corners);
         places.push_back(place);
       }
@@ -84,7 +84,7 @@ std::vector<int> pieces_of(const CellGraph& graph, const std::vector<int>& part)
       const std::size_t cell = reached.back();
       reached.pop_back();
       for (std::int32_t k = graph.begin[cell]; k < graph.begin[cell + 1]; ++k) {
-        const std::size_t other = index(graph.next[index(k)]);
+        const std::size_t other = index(graph.next[k]);
         if (piece[other] >= 0 || part[other] != part[cell]) continue;
         piece[other] = count;
         reached.push_back(other);

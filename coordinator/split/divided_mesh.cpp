@@ -46,7 +46,7 @@ class Divider {
 
  private:
   std::size_t cell_of(const Facet& facet) const {
-    return index(first_[index(facet.block)] + facet.cell);
+    return index(first_[facet.block] + facet.cell);
   }
 
   /// Nodes are those of the whole at first.
@@ -61,7 +61,7 @@ class Divider {
           block_[p][b] = static_cast<std::int32_t>(blocks.size());
           blocks.push_back({block.element, {}, block.name});
         }
-        CellBlock& to = blocks[index(block_[p][b])];
+        CellBlock& to = blocks[block_[p][b]];
         cell_[cell] = to.count();
         const std::span<const std::int32_t> nodes = nodes_of(block, own);
         to.nodes.insert(to.nodes.end(), nodes.begin(), nodes.end());
@@ -86,7 +86,7 @@ class Divider {
 
   void add_facet(const std::string& side, const Facet& facet) {
     const std::size_t cell = cell_of(facet), p = index(part_[cell]);
-    parts_[p].mesh.sides[side].push_back({block_[p][index(facet.block)], cell_[cell], facet.local});
+    parts_[p].mesh.sides[side].push_back({block_[p][facet.block], cell_[cell], facet.local});
   }
 
   void add_node_sets(MeshPart& part) const {
@@ -102,16 +102,16 @@ class Divider {
   void add_cuts() {
     for (std::size_t c = 0; c < part_.size(); ++c) {
       for (std::int32_t k = graph_.begin[c]; k < graph_.begin[c + 1]; ++k) {
-        const int other = part_[index(graph_.next[index(k)])];
+        const int other = part_[graph_.next[index(k)]];
         if (other == part_[c]) continue;
-        MeshPart& part = parts_[index(part_[c])];
-        const auto [entry, fresh] = part.towards.emplace(other, "to_" + names_[index(other)]);
+        MeshPart& part = parts_[part_[c]];
+        const auto [entry, fresh] = part.towards.emplace(other, "to_" + names_[other]);
         const std::string& side = entry->second;
         if (fresh && (mesh_.sides.contains(side) || mesh_.node_sets.contains(side))) {
           throw InputError(fmt::format("has the name '{}' already", side), where_,
                            "Give the body or that group another name.");
         }
-        add_facet(side, graph_.facets[index(k)]);
+        add_facet(side, graph_.facets[k]);
       }
     }
   }
@@ -121,20 +121,20 @@ class Divider {
     std::vector<std::vector<int>> meeting(index(mesh_.node_count()));  // parts of a node
     std::vector<std::vector<std::pair<int, int>>> joined(meeting.size());
     for (std::size_t p = 0; p < parts_.size(); ++p) {
-      for (std::int32_t node : parts_[p].nodes) meeting[index(node)].push_back(static_cast<int>(p));
+      for (std::int32_t node : parts_[p].nodes) meeting[node].push_back(static_cast<int>(p));
       for (const auto& [other, side] : parts_[p].towards)
         for (std::int32_t node : parts_[p].mesh.nodes_of(side))
-          joined[index(parts_[p].nodes[index(node)])].emplace_back(static_cast<int>(p), other);
+          joined[parts_[p].nodes[index(node)]].emplace_back(static_cast<int>(p), other);
     }
     std::vector<int> root(parts_.size());
     for (std::size_t node = 0; node < meeting.size(); ++node) {
       if (meeting[node].size() < 2) continue;
       std::iota(root.begin(), root.end(), 0);
       const auto root_of = [&root](int p) {
-        while (root[index(p)] != p) p = root[index(p)];
+        while (root[p] != p) p = root[p];
         return p;
       };
-      for (const auto& [p, other] : joined[node]) root[index(root_of(p))] = root_of(other);
+      for (const auto& [p, other] : joined[node]) root[root_of(p)] = root_of(other);
       for (int p : meeting[node])
         if (root_of(p) != root_of(meeting[node].front())) refuse_meeting(node);
     }

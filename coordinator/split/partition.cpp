@@ -27,10 +27,10 @@ Clusters clusters_of(const CellGraph& cells, const std::vector<int>& together) {
   out.cells.assign(index(count), 0);
   std::vector<std::vector<std::int32_t>> next(index(count));
   for (std::size_t c = 0; c < together.size(); ++c) {
-    ++out.cells[index(together[c])];
+    ++out.cells[together[c]];
     for (std::int32_t k = cells.begin[c]; k < cells.begin[c + 1]; ++k) {
-      const int other = together[index(cells.next[index(k)])];
-      if (other != together[c]) next[index(together[c])].push_back(other);
+      const int other = together[cells.next[index(k)]];
+      if (other != together[c]) next[together[c]].push_back(other);
     }
   }
   out.graph.begin.push_back(0);
@@ -83,21 +83,21 @@ void join_splinters(const CellGraph& graph, int parts, std::vector<int>& part) {
     std::vector<int> size(index(pieces), 0), owner(index(pieces), 0);
     std::vector<int> largest(index(parts), -1);
     for (std::size_t c = 0; c < piece.size(); ++c) {
-      ++size[index(piece[c])];
-      owner[index(piece[c])] = part[c];
+      ++size[piece[c]];
+      owner[piece[c]] = part[c];
     }
     for (int p = 0; p < pieces; ++p) {
-      int& most = largest[index(owner[index(p)])];
-      if (most < 0 || size[index(p)] > size[index(most)]) most = p;
+      int& most = largest[owner[index(p)]];
+      if (most < 0 || size[p] > size[most]) most = p;
     }
     const auto splinter =
-        std::ranges::find_if(piece, [&](int p) { return largest[index(owner[index(p)])] != p; });
+        std::ranges::find_if(piece, [&](int p) { return largest[owner[index(p)]] != p; });
     if (splinter == piece.end()) return;
     std::vector<int> shared(index(parts), 0);
     for (std::size_t c = 0; c < piece.size(); ++c) {
       for (std::int32_t k = graph.begin[c]; piece[c] == *splinter && k < graph.begin[c + 1]; ++k) {
-        const int other = part[index(graph.next[index(k)])];
-        if (other != part[c]) ++shared[index(other)];
+        const int other = part[graph.next[index(k)]];
+        if (other != part[c]) ++shared[other];
       }
     }
     const int to = static_cast<int>(std::ranges::max_element(shared) - shared.begin());
@@ -112,7 +112,7 @@ int renumber(int parts, std::vector<int>& part) {
   std::vector<int> number(index(parts), -1);
   int count = 0;
   for (int& p : part) {
-    int& of = number[index(p)];
+    int& of = number[p];
     if (of < 0) of = count++;
     p = of;
   }
@@ -125,28 +125,28 @@ std::vector<int> kept_together(const Mesh& mesh, const std::vector<std::int32_t>
   std::vector<int> root(index(mesh.cell_count()));
   std::iota(root.begin(), root.end(), 0);
   const auto root_of = [&root](int cell) {
-    while (root[index(cell)] != cell) cell = root[index(cell)] = root[index(root[index(cell)])];
+    while (root[cell] != cell) cell = root[cell] = root[root[index(cell)]];
     return cell;
   };
   std::vector<int> first(index(mesh.node_count()), -1);  // cell of a node that keeps its cells
   std::vector<bool> keeps(first.size(), false);
-  for (std::int32_t node : nodes) keeps[index(node)] = true;
+  for (std::int32_t node : nodes) keeps[node] = true;
   int cell = 0;
   for (const CellBlock& block : mesh.blocks) {
     for (int own = 0; own < block.count(); ++own, ++cell) {
       for (std::int32_t node : nodes_of(block, own)) {
-        if (!keeps[index(node)]) continue;
-        int& at = first[index(node)];
+        if (!keeps[node]) continue;
+        int& at = first[node];
         if (at < 0) at = cell;
         const auto [low, high] = std::minmax({root_of(at), root_of(cell)});
-        root[index(high)] = low;
+        root[high] = low;
       }
     }
   }
   std::vector<int> number(root.size(), -1), together;
   int count = 0;
   for (int c = 0; c < cell; ++c) {
-    int& of = number[index(root_of(c))];
+    int& of = number[root_of(c)];
     if (of < 0) of = count++;
     together.push_back(of);
   }
@@ -174,7 +174,7 @@ std::vector<int> partition(const CellGraph& graph, const std::vector<int>& toget
     std::vector<int> of_cluster = metis_parts(clusters, parts, way);
     join_splinters(clusters.graph, parts, of_cluster);
     std::vector<int> part;
-    for (int cluster : together) part.push_back(of_cluster[index(cluster)]);
+    for (int cluster : together) part.push_back(of_cluster[cluster]);
     if (renumber(parts, part) == parts) return part;
   }
   throw InputError(fmt::format("of {} cells does not fall into {} connected bodies that leave "

@@ -61,7 +61,7 @@ void decode_members(const v1::Description& from, const FieldPath& path, std::vec
   to.resize(index(from.members_size()));
   for (int i = 0; i < from.members_size(); ++i) {
     const FieldPath member{&path, "members", i};
-    Member& ours = to[index(i)];
+    Member& ours = to[i];
     ours.name = from.members(i).name();
     ours.mass =
         number(from.members(i).mass(), FieldPath{&member, "mass"}, Allow::not_negative_or_inf);
@@ -126,7 +126,7 @@ void decode(const v1::Description& from, Description& to) {
   if (from.ports_size() > most_ports) FieldPath{&path, "ports"}.fail("has too many entries");
   to.ports.resize(index(from.ports_size()));
   for (int i = 0; i < from.ports_size(); ++i) {
-    decode_port(from.ports(i), to, FieldPath{&path, "ports", i}, to.ports[index(i)]);
+    decode_port(from.ports(i), to, FieldPath{&path, "ports", i}, to.ports[i]);
   }
   if (!from.has_can()) FieldPath{&path, "can"}.fail("is missing");
   to.can = decode(from.can());

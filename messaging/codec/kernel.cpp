@@ -53,7 +53,7 @@ void decode(const v1::Probe& from, const Description& body, Probing& to) {
     path.fail(fmt::format("of {} steps of {} s is out of range", to.count, to.step));
   }
   const FieldPath patterns{&path, "patterns"};
-  const std::size_t width = index(size_of(body.ports[index(to.port)].geometry).width());
+  const std::size_t width = index(size_of(body.ports[to.port].geometry).width());
   take(from.patterns(), patterns, to.patterns);
   if (to.patterns.empty() || width == 0 || to.patterns.size() % width != 0) {
     patterns.fail(fmt::format("has {} numbers, no whole number of patterns of {}",
@@ -84,7 +84,7 @@ void decode(const v1::PortKernel& from, const Description& body, const Probing& 
   if (from.points_size() > 0) FieldPath{&path, "points"}.fail("was not asked for");
   to.points.clear();
   const auto width_of = [&body](int port) {
-    return size_of(body.ports[index(port)].geometry).width();
+    return size_of(body.ports[port].geometry).width();
   };
   int width = asked.seen.empty() ? width_of(asked.port) : 0;
   for (const int port : asked.seen) width += width_of(port);
@@ -111,14 +111,14 @@ void encode(const Yielding& from, v1::Yields& to) {
 void decode(const v1::Yields& from, const Description& body, const Partners& met, Yielding& to) {
   const FieldPath path{nullptr, "yields"};
   to.port = position(from.port(), met.size(), FieldPath{&path, "port"});
-  const std::vector<SurfaceSize>& partners = met[index(to.port)];
+  const std::vector<SurfaceSize>& partners = met[to.port];
   to.partner = from.partner();
   const bool own = to.partner == own_surface;
   if (!own) position(to.partner, partners.size(), FieldPath{&path, "partner"});
   const FieldPath kernel{&path, "kernel"};
   if (!from.has_kernel()) kernel.fail("is missing");
   const SurfaceSize surface =
-      own ? size_of(body.ports[index(to.port)].geometry) : partners[index(to.partner)];
+      own ? size_of(body.ports[to.port].geometry) : partners[to.partner];
   to.kernel.points.assign(from.kernel().points().begin(), from.kernel().points().end());
   check_points(to.kernel.points, surface.points, FieldPath{&kernel, "points"});
   const int width = to.kernel.points.empty()

@@ -86,7 +86,7 @@ void decode(const v1::Meet& from, const Description& body, Meeting& to) {
   const FieldPath surface{&path, "surface"};
   if (!from.has_surface()) surface.fail("is missing");
   decode(from.surface(), surface, to.partner);
-  const int dim = body.ports[index(to.port)].geometry.dim;
+  const int dim = body.ports[to.port].geometry.dim;
   if (to.partner.dim != dim) {
     FieldPath{&surface, "dim"}.fail(
         fmt::format("is {}, but the port's is {}", to.partner.dim, dim));

@@ -16,7 +16,7 @@ Bar::Bar(const BarProperties& data)
       element_mass_(data.density * data.area * (data.length / data.elements)) {
   stiffness_.assign(index(data_.elements), element_stiffness_);
   for (int end : {0, 1}) {
-    if (data_.layer[index(end)] == ContactLayer::massless) {
+    if (data_.layer[end] == ContactLayer::massless) {
       stiffness_[end == 0 ? 0 : stiffness_.size() - 1] *= data_.stiffness_factor;
     }
   }

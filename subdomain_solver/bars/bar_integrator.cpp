@@ -32,7 +32,7 @@ void BarIntegrator::strike(BarState& state, int end, double impulse) const {
   } else {
     for (std::size_t i = 0; i < unit.size(); ++i) state.v[i] += impulse * unit[i];
   }
-  state.end[index(end)].work += impulse * 0.5 * (before + state.v[at]);
+  state.end[end].work += impulse * 0.5 * (before + state.v[at]);
 }
 
 Recoil BarIntegrator::recoil(const BarState& state, int end) const {

@@ -98,12 +98,12 @@ class BarIntegrator {
   virtual double stored(const BarState& state) const = 0;
 
  protected:
-  bool is(int end, ContactLayer layer) const { return bar_.data().layer[index(end)] == layer; }
+  bool is(int end, ContactLayer layer) const { return bar_.data().layer[end] == layer; }
   /// The published stabilisation: a massive contact node enters the next step without acceleration.
   void drop_acceleration(BarState& state, int end) const {
-    const bool closed = state.end[index(end)].closed;
+    const bool closed = state.end[end].closed;
     if (bar_.data().stabilised && closed && is(end, ContactLayer::massive))
-      state.a[index(bar_.node_of(end))] = 0.0;
+      state.a[bar_.node_of(end)] = 0.0;
   }
   /// Node that an impulse on an end hits.
   std::size_t struck(int end) const;

@@ -35,16 +35,16 @@ BarInterior::BarInterior(std::string name, std::unique_ptr<Bar> bar, Scheme sche
   set_fields(extras);
   describe(std::move(name), ends);
   for (const End& e : ends)  // held from the begin, which its energy knows
-    if (e.tied && bar_->data().layer[index(e.end)] == ContactLayer::kick)
-      state_.end[index(e.end)].closed = true;
+    if (e.tied && bar_->data().layer[e.end] == ContactLayer::kick)
+      state_.end[e.end].closed = true;
 }
 
 void BarInterior::set_fields(const Extras& extras) {
   for (std::size_t i = 0; i < extras.velocity.size(); ++i) state_.v[i] += extras.velocity[i];
   for (std::size_t i = 0; i < extras.displacement.size(); ++i) state_.u[i] = extras.displacement[i];
   for (int end : {0, 1}) {
-    if (!bar_->data().fixed[index(end)]) continue;
-    state_.u[index(bar_->node_of(end))] = state_.v[index(bar_->node_of(end))] = 0.0;
+    if (!bar_->data().fixed[end]) continue;
+    state_.u[bar_->node_of(end)] = state_.v[bar_->node_of(end)] = 0.0;
   }
   lifted_ = bar_->momentum(state_.u);
   const bool damped = bar_->data().bulk_viscosity > 0.0 && !extras.velocity.empty();
@@ -61,7 +61,7 @@ void BarInterior::start(const Window& window) {
   bool pressed = false;
   for (std::size_t p = 0; p < ends_.size(); ++p) {
     if (!imposed_[p].obstacle.acts()) continue;
-    set_obstacle(0, p, actions_[index(ends_[p])]);
+    set_obstacle(0, p, actions_[ends_[p]]);
     pressed = true;
   }
   if (!pressed) return;
@@ -96,7 +96,7 @@ void BarInterior::describe(std::string name, const std::vector<End>& ends) {
   can.force = true;
   can.kernel = can.obstacle = can.yielding = can.impedance = can.impulse = !ends.empty();
   for (const End& e : ends) {
-    if (data.layer[index(e.end)] == ContactLayer::massive) {
+    if (data.layer[e.end] == ContactLayer::massive) {
       can.motion = true;
       can.kernel = can.obstacle = can.yielding = can.impedance = false;
     }
@@ -121,7 +121,7 @@ std::size_t BarInterior::coordinates() const {
 }
 
 ForceSupport BarInterior::support(std::size_t port) const {
-  const bool kick = bar_->data().layer[index(ends_[port])] == ContactLayer::kick;
+  const bool kick = bar_->data().layer[ends_[port]] == ContactLayer::kick;
   return kick ? ForceSupport::step : ForceSupport::nodal;
 }
 
@@ -206,7 +206,7 @@ BarInterior::EndPlaces BarInterior::end_places() const {
   EndPlaces places{};
   for (int end : ends_) {
     const std::size_t e = index(end);
-    places[e] = {Bar::outward(end) * state_.u[index(bar_->node_of(end))], state_.end[e].dynamic};
+    places[e] = {Bar::outward(end) * state_.u[bar_->node_of(end)], state_.end[e].dynamic};
   }
   return places;
 }
@@ -268,7 +268,7 @@ void BarInterior::set_actions(const Window& window, int i) {
   const double time = i == 0 ? grid.begin : grid.time(i);
   for (std::size_t p = 0; p < ends_.size(); ++p) {
     const BoundaryData& data = window.request.boundary[p];
-    EndAction& action = actions_[index(ends_[p])];
+    EndAction& action = actions_[ends_[p]];
     action.held = description_.ports[p].tied || probed_ == static_cast<int>(p);
     if (imposed_[p].obstacle.acts()) {
       set_obstacle(i, p, action);
@@ -291,7 +291,7 @@ void BarInterior::set_actions(const Window& window, int i) {
 void BarInterior::set_obstacle(int i, std::size_t port, EndAction& action) {
   const int end = ends_[port];
   const PointObstacle::Surface surface =
-      imposed_[port].obstacle.at(i, Bar::outward(end) * state_.end[index(end)].force);
+      imposed_[port].obstacle.at(i, Bar::outward(end) * state_.end[end].force);
   action.kind = EndAction::Kind::obstacle;
   action.yield = 0.0;
   action.target = surface.target;
@@ -320,13 +320,13 @@ void BarInterior::add_force(const Waveform& imposed, bool same_grid, const Subst
   };
   double force = 0.0;
   if (same_grid) {  // the common case, and exact: no averaging at all
-    force = inward * imposed.f[index(i)];
+    force = inward * imposed.f[i];
     return add(force, force);
   }
   const double now = i == 0 ? grid.begin : grid.time(i);
   imposed.force_at(now, {&force, 1});
   force *= inward;
-  const ContactLayer layer = bar_->data().layer[index(end)];
+  const ContactLayer layer = bar_->data().layer[end];
   if (layer == ContactLayer::massive) return add(force, force);  // as published: of the end
   const double before = i == 0 ? grid.begin : i == 1 ? grid.begin : grid.time(i - 1);
   const double after = i == grid.count ? grid.end : grid.time(i + 1);
@@ -341,7 +341,7 @@ void BarInterior::add_force(const Waveform& imposed, bool same_grid, const Subst
 }
 
 double BarInterior::force_on_body(int end, const BoundaryData& data) const {
-  const ContactLayer layer = bar_->data().layer[index(end)];
+  const ContactLayer layer = bar_->data().layer[end];
   if (layer == ContactLayer::massive) {
     // As published: what is handed over is the internal force of the contact node, without its
     // inertia. A complete reaction holds both.
@@ -350,10 +350,10 @@ double BarInterior::force_on_body(int end, const BoundaryData& data) const {
     double internal = scheme_.integrator->internal_force(state_, end);
     if (loaded()) internal -= scheme_.integrator->loads().now[node];  // goes on to the partner
     if (!bar_->data().complete_reaction) return internal;
-    if (data.motion.empty()) return -Bar::outward(end) * state_.end[index(end)].force;
+    if (data.motion.empty()) return -Bar::outward(end) * state_.end[end].force;
     return internal + bar_->row_mass()[node] * (state_.a[node] - bar_->data().body_force);
   }
-  return -Bar::outward(end) * state_.end[index(end)].force;
+  return -Bar::outward(end) * state_.end[end].force;
 }
 
 const PortValues& BarInterior::see(const Window& window, double time, bool all) {
@@ -368,7 +368,7 @@ const PortValues& BarInterior::see(const Window& window, double time, bool all) 
     seen_.f[p] = force_on_body(end, window.request.boundary[p]);
     // Kicks make the nodal velocity jump within a substep; the mean over it is the contact point's
     // velocity.
-    const bool kicked = support(p) == ForceSupport::step && state_.end[index(end)].closed;
+    const bool kicked = support(p) == ForceSupport::step && state_.end[end].closed;
     if (kicked && time > window.grid.begin)
       seen_.v[p] = (u - shown_[p].u) / (time - shown_[p].time);
     shown_[p] = {time, u};
@@ -377,7 +377,7 @@ const PortValues& BarInterior::see(const Window& window, double time, bool all) 
 }
 
 void BarInterior::react(std::size_t port, std::size_t, std::vector<double>& force) const {
-  force.push_back(Bar::outward(ends_[port]) * state_.end[index(ends_[port])].force);
+  force.push_back(Bar::outward(ends_[port]) * state_.end[ends_[port]].force);
 }
 
 std::optional<Failed> BarInterior::record(BodyRecord& r) {
@@ -398,10 +398,10 @@ double BarInterior::external_work() const {
 
 void BarInterior::finish(std::size_t port, PortResponse& reply) const {
   const int end = ends_[port];
-  reply.work = state_.end[index(end)].work;
+  reply.work = state_.end[end].work;
   reply.recoil = scheme_.integrator->recoil(state_, end);
   // nobody knows what loads will do: no bound
-  if (state_.end[index(end)].force == 0.0 && !loaded()) approach(end, reply);
+  if (state_.end[end].force == 0.0 && !loaded()) approach(end, reply);
 }
 
 void BarInterior::approach(int end, PortResponse& reply) const {
@@ -442,7 +442,7 @@ bool BarInterior::rest(std::size_t port) {
   begun_ = true;
   load_work_ = 0.0;
   probed_ = static_cast<int>(port);
-  state_.end[index(ends_[port])].closed = true;
+  state_.end[ends_[port]].closed = true;
   return bar_->data().body_force != 0.0;
 }
 

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "base/index.hpp"
 
 namespace abut {
 

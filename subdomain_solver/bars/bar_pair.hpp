@@ -23,7 +23,7 @@ class BarPair {
  public:
   BarPair(const BarProperties& left, const BarProperties& right, ElementLengths lengths);
 
-  const Bar& bar(int member) const { return bars_[index(member)]; }
+  const Bar& bar(int member) const { return bars_[member]; }
   std::size_t nodes() const { return mass_.size(); }
   std::size_t first(int member) const { return member == 0 ? 0 : split_; }
   std::size_t last(int member) const { return member == 0 ? split_ - 1 : nodes() - 1; }

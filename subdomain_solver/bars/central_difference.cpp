@@ -26,15 +26,15 @@ CentralDifference::CentralDifference(const Bar& bar, double step, int terms)
   }
   for (int end : {0, 1}) {
     if (!is(end, ContactLayer::massless)) continue;
-    End& e = ends_[index(end)];
+    End& e = ends_[end];
     e.spring = end == 0 ? bar_.stiffness().front() : bar_.stiffness().back();
     BarState unit;
     unit.u.assign(n, 0.0);
-    unit.u[index(bar_.node_of(end))] = 1.0;
+    unit.u[bar_.node_of(end)] = 1.0;
     unit.end[0].closed = unit.end[1].closed = true;
     const double* response = smooth(unit, unit.u, asked_[0]);
     e.response.assign(response, response + n);
-    e.compliance = 1.0 / (e.spring * (1.0 - e.response[index(bar_.inner_of(end))]));
+    e.compliance = 1.0 / (e.spring * (1.0 - e.response[bar_.inner_of(end)]));
     if (end == 1) std::reverse(e.response.begin(), e.response.end());
     e.response.resize(std::min(n, index(terms_)));
   }
@@ -51,7 +51,7 @@ double* CentralDifference::smooth(const BarState& state, const std::vector<doubl
   std::array<std::size_t, 2> held;
   std::size_t holds = 0;
   for (int end : {0, 1}) {
-    if (is(end, ContactLayer::kick) && state.end[index(end)].closed)
+    if (is(end, ContactLayer::kick) && state.end[end].closed)
       held[holds++] = index(bar_.node_of(end));
   }
   if (ratio_.empty()) std::copy(u.begin(), u.end(), a);
@@ -76,7 +76,7 @@ void CentralDifference::kick_end_nodes(BarState& state, const double* s, double 
   for (int end : {0, 1}) {
     if (!is(end, ContactLayer::massive)) continue;
     const std::size_t node = index(bar_.node_of(end));
-    const double force = state.end[index(end)].dynamic;
+    const double force = state.end[end].dynamic;
     state.v[node] -= kick * bar_.inverse_mass()[node] * Bar::outward(end) * force;
   }
 }
@@ -149,10 +149,10 @@ void CentralDifference::acceleration(BarState& state, const std::vector<double>&
   for (std::size_t i = 0; i < load.size(); ++i) state.a[i] += inverse[i] * load[i];
   for (int end : {0, 1}) {
     const std::size_t node = index(bar_.node_of(end));
-    const EndState& e = state.end[index(end)];
+    const EndState& e = state.end[end];
     if (is(end, ContactLayer::massive))
       state.a[node] -= inverse[node] * Bar::outward(end) * e.dynamic;
-    if (is(end, ContactLayer::massless)) state.a[node] = state.a[index(bar_.inner_of(end))];
+    if (is(end, ContactLayer::massless)) state.a[node] = state.a[bar_.inner_of(end)];
   }
 }
 
@@ -161,14 +161,14 @@ double CentralDifference::reaction_of(const BarState& state, int end) const {
   const double* s = smoothed(state);
   const std::size_t node = index(bar_.node_of(end));
   const std::size_t inner = index(bar_.inner_of(end));
-  const double internal = ends_[index(end)].spring * Bar::outward(end) * (s[inner] - s[node]);
+  const double internal = ends_[end].spring * Bar::outward(end) * (s[inner] - s[node]);
   return loads_.now.empty() ? internal : internal + Bar::outward(end) * loads_.now[node];
 }
 
 void CentralDifference::place_massless(BarState& state, int end, const EndAction& action,
                                        double dt) {
-  const End& line = ends_[index(end)];
-  EndState& e = state.end[index(end)];
+  const End& line = ends_[end];
+  EndState& e = state.end[end];
   const double n = Bar::outward(end);
   const std::size_t node = index(bar_.node_of(end));
   const double before = n * state.u[node];
@@ -197,7 +197,7 @@ void CentralDifference::resolve_massless(BarState& state, const EndActions& acti
   for (int end : {0, 1}) {
     if (!is(end, ContactLayer::massless)) continue;
     any = true;
-    const EndAction& action = actions[index(end)];
+    const EndAction& action = actions[end];
     const std::size_t node = index(bar_.node_of(end));
     const std::size_t inner = index(bar_.inner_of(end));
     const double before = state.u[node];
@@ -212,13 +212,13 @@ void CentralDifference::resolve_massless(BarState& state, const EndActions& acti
   if (!simple()) smoothed_ = smooth(state, state.u, present_);
   if (!any) return;
   for (int end : {0, 1}) {
-    const EndAction& action = actions[index(end)];
+    const EndAction& action = actions[end];
     if (is(end, ContactLayer::massless)) place_massless(state, end, action, dt);
   }
 }
 
 void CentralDifference::resolve_kick(BarState& state, int end, const EndAction& action, double dt) {
-  EndState& e = state.end[index(end)];
+  EndState& e = state.end[end];
   const std::size_t node = index(bar_.node_of(end));
   const double n = Bar::outward(end);
   const double inverse = bar_.inverse_mass()[node];
@@ -230,7 +230,7 @@ void CentralDifference::resolve_kick(BarState& state, int end, const EndAction& 
   e.dynamic = e.force;
   state.v[node] -= n * dt * inverse * e.force;
   state.u[node] -= n * dt * dt * inverse * e.force;
-  const double before = ends_[index(end)].velocity_before;
+  const double before = ends_[end].velocity_before;
   e.work -= dt * e.force * 0.5 * (before + n * state.v[node]);
   const bool held = action.held || e.force != 0.0;
   if (held == e.closed) return;
@@ -242,7 +242,7 @@ void CentralDifference::resolve_kick(BarState& state, int end, const EndAction& 
 /// then smooths otherwise. With u before the substep and K d the change of the force after it,
 /// 1/2 u K d.
 double CentralDifference::work_of_switch(BarState& state, int end, double dt) const {
-  EndState& e = state.end[index(end)];
+  EndState& e = state.end[end];
   const double* was = smooth(state, state.u, asked_[0]);
   e.closed = !e.closed;
   const double* is = smooth(state, state.u, asked_[1]);
@@ -265,10 +265,10 @@ void CentralDifference::open(BarState& state, double dt, const EndActions& openi
   // its force is zero. A force that sets in moves the port at once.
   bool refresh = false;
   for (int end : {0, 1}) {
-    const EndAction& action = opening[index(end)];
+    const EndAction& action = opening[end];
     if (!is(end, ContactLayer::massless) || action.kind == EndAction::Kind::obstacle) continue;
     const double force = action.kind == EndAction::Kind::force ? action.dynamic : 0.0;
-    refresh = refresh || force != state.end[index(end)].dynamic;
+    refresh = refresh || force != state.end[end].dynamic;
   }
   update_closed(state, opening);
   if (refresh) {
@@ -284,7 +284,7 @@ void CentralDifference::open(BarState& state, double dt, const EndActions& openi
   }
   for (int end : {0, 1}) {
     const std::size_t node = index(bar_.node_of(end));
-    ends_[index(end)].velocity_before =
+    ends_[end].velocity_before =
         Bar::outward(end) * (state.v[node] - 0.5 * dt * state.a[node]);
   }
   kick_nodes_with(state, 0.5 * dt);
@@ -313,13 +313,13 @@ void CentralDifference::substep(BarState& state, double dt, const EndActions& ac
     for (int end : {0, 1}) {
       if (!is(end, ContactLayer::kick)) continue;
       const std::size_t node = index(bar_.node_of(end));
-      ends_[index(end)].velocity_before = Bar::outward(end) * state.v[node];
+      ends_[end].velocity_before = Bar::outward(end) * state.v[node];
     }
     kick_drift(state, 0.5 * (previous_dt_ + dt), dt);
   }
   previous_dt_ = dt;
   for (int end : {0, 1}) {
-    const EndAction& action = actions[index(end)];
+    const EndAction& action = actions[end];
     if (is(end, ContactLayer::kick)) resolve_kick(state, end, action, dt);
     if (is(end, ContactLayer::massive)) resolve_massive(state, end, action);
   }
@@ -328,11 +328,11 @@ void CentralDifference::substep(BarState& state, double dt, const EndActions& ac
 }
 
 void CentralDifference::resolve_massive(BarState& state, int end, const EndAction& action) {
-  EndState& e = state.end[index(end)];
+  EndState& e = state.end[end];
   if (action.kind == EndAction::Kind::force) e.force = e.dynamic = action.force;
   if (action.kind != EndAction::Kind::motion) return;
-  state.u[index(bar_.node_of(end))] = action.u;
-  prescribed_[index(end)] = action;
+  state.u[bar_.node_of(end)] = action.u;
+  prescribed_[end] = action;
 }
 
 void CentralDifference::close(BarState& state, double dt) { close_under(state, dt, loads_.now); }
@@ -342,24 +342,24 @@ void CentralDifference::close_under(BarState& state, double dt, const std::vecto
   kick_nodes_with(state, 0.5 * dt);
   for (int end : {0, 1}) {
     const std::size_t node = index(bar_.node_of(end));
-    const EndAction& action = prescribed_[index(end)];
+    const EndAction& action = prescribed_[end];
     if (action.kind == EndAction::Kind::motion) {
       state.v[node] = action.v;
       state.a[node] = action.a;
-    } else if (is(end, ContactLayer::massless) && !state.end[index(end)].closed) {
-      state.v[node] = state.v[index(bar_.inner_of(end))];
+    } else if (is(end, ContactLayer::massless) && !state.end[end].closed) {
+      state.v[node] = state.v[bar_.inner_of(end)];
     }
     drop_acceleration(state, end);
   }
 }
 
 double CentralDifference::port_displacement(const BarState& state, int end) const {
-  const EndState& e = state.end[index(end)];
-  const double u = state.u[index(bar_.node_of(end))];
+  const EndState& e = state.end[end];
+  const double u = state.u[bar_.node_of(end)];
   return u - Bar::outward(end) * static_compliance(end) * (e.force - e.dynamic);
 }
 
-double CentralDifference::static_compliance(int end) const { return ends_[index(end)].compliance; }
+double CentralDifference::static_compliance(int end) const { return ends_[end].compliance; }
 
 double CentralDifference::kinetic(const BarState& state) const {
   const std::vector<double>& mass = bar_.row_mass();

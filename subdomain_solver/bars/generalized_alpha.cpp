@@ -20,16 +20,16 @@ GeneralizedAlpha::GeneralizedAlpha(const Bar& bar, const AlphaWeights& weights)
   for (int end : {0, 1}) {
     const bool shared = is(end, ContactLayer::shared);
     if (!shared && !is(end, ContactLayer::massless)) continue;
-    std::vector<double>& column = mass_column_[index(end)];
+    std::vector<double>& column = mass_column_[end];
     column.assign(diagonal.size(), 0.0);
     // a massless end passes its force on
-    column[index(shared ? bar_.node_of(end) : bar_.inner_of(end))] = 1.0;
+    column[shared ? bar_.node_of(end) : bar_.inner_of(end)] = 1.0;
     mass_matrix_.solve(column);
   }
 }
 
 bool GeneralizedAlpha::held(int end, const EndActions& actions) const {
-  return bar_.data().fixed[index(end)] || actions[index(end)].kind == EndAction::Kind::motion;
+  return bar_.data().fixed[end] || actions[end].kind == EndAction::Kind::motion;
 }
 
 void GeneralizedAlpha::factor(double dt, const EndActions& actions) {
@@ -50,15 +50,15 @@ void GeneralizedAlpha::factor(double dt, const EndActions& actions) {
   }
   for (std::size_t i = 0; i < n; ++i) diagonal[i] += m * bar_.mass()[i];
   for (int end : {0, 1}) {  // a held end is known: its row becomes the identity
-    if (!now[index(end)]) continue;
-    diagonal[index(bar_.node_of(end))] = 1.0;
+    if (!now[end]) continue;
+    diagonal[bar_.node_of(end)] = 1.0;
     beside[end == 0 ? 0 : n - 2] = 0.0;
   }
   matrix_.factor(diagonal, beside);
   for (int end : {0, 1}) {
-    std::vector<double>& column = column_[index(end)];
+    std::vector<double>& column = column_[end];
     column.assign(n, 0.0);
-    column[index(bar_.node_of(end))] = k;
+    column[bar_.node_of(end)] = k;
     matrix_.solve(column);
   }
 }
@@ -85,7 +85,7 @@ void GeneralizedAlpha::initial_acceleration(BarState& state) const {
     // a closed massless end is in balance with its force: nothing is left over there
     if (is(end, ContactLayer::massless)) state.a[node] = 0.0;
     if (is(end, ContactLayer::shared))
-      state.a[node] -= Bar::outward(end) * state.end[index(end)].dynamic;
+      state.a[node] -= Bar::outward(end) * state.end[end].dynamic;
   }
   for (std::size_t i = 0; i < state.a.size(); ++i) {
     if (bar_.inverse_mass()[i] == 0.0) state.a[i] = 0.0;
@@ -97,11 +97,11 @@ void GeneralizedAlpha::begin(BarState& state, const EndActions& actions) {
   for (int end : {0, 1}) {
     if (!is(end, ContactLayer::massless)) continue;
     const std::size_t node = index(bar_.node_of(end));
-    const EndAction& action = actions[index(end)];
+    const EndAction& action = actions[end];
     const double n = Bar::outward(end), compliance = static_compliance(end);
-    double free_position = n * state.u[index(bar_.inner_of(end))];
+    double free_position = n * state.u[bar_.inner_of(end)];
     if (!loads_.now.empty()) free_position += n * compliance * loads_.now[node];
-    EndState& e = state.end[index(end)];
+    EndState& e = state.end[end];
     const bool pressed = action.kind == EndAction::Kind::obstacle;
     e.force = e.dynamic = pressed ? end_reaction(free_position, compliance, action) : 0.0;
     state.u[node] = n * (free_position - compliance * e.dynamic);
@@ -166,7 +166,7 @@ void GeneralizedAlpha::right_hand_side(const BarState& state, double dt,
     if (!held(end, actions)) continue;
     const std::size_t node = index(bar_.node_of(end));
     const std::size_t inner = index(bar_.inner_of(end));
-    const EndAction& action = actions[index(end)];
+    const EndAction& action = actions[end];
     const double move = action.kind == EndAction::Kind::motion ? action.u - state.u[node] : 0.0;
     const std::size_t element = end == 0 ? 0 : n - 2;
     rhs_[inner] -=
@@ -212,12 +212,12 @@ void GeneralizedAlpha::apply_reactions(const EndActions& actions, BarState& stat
 double GeneralizedAlpha::momentum_lag(const BarState& state) const {
   // Nodes that are held take part of the forces; massive contact nodes weigh theirs otherwise.
   for (int end : {0, 1}) {
-    const bool fixed = bar_.data().fixed[index(end)];
+    const bool fixed = bar_.data().fixed[end];
     if (fixed || is(end, ContactLayer::massive)) return 0.0;
   }
   double unbalanced = bar_.momentum(state.a) - bar_.data().body_force * bar_.data().mass_total();
   for (const double load : loads_.now) unbalanced -= load;
-  for (int end : {0, 1}) unbalanced += Bar::outward(end) * state.end[index(end)].dynamic;
+  for (int end : {0, 1}) unbalanced += Bar::outward(end) * state.end[end].dynamic;
   return (0.5 - w_.alpha_f) * factored_dt_ * unbalanced;
 }
 
@@ -239,7 +239,7 @@ void GeneralizedAlpha::advance_rates(BarState& state, double dt, const EndAction
   for (int end : {0, 1}) {
     if (!held(end, actions)) continue;
     const std::size_t node = index(bar_.node_of(end));
-    const EndAction& action = actions[index(end)];
+    const EndAction& action = actions[end];
     const bool moving = action.kind == EndAction::Kind::motion;
     state.v[node] = moving ? action.v : 0.0;
     state.a[node] = moving ? action.a : 0.0;
@@ -258,15 +258,15 @@ void GeneralizedAlpha::substep(BarState& state, double dt, const EndActions& act
 
 void GeneralizedAlpha::close(BarState& state, double) {
   for (int end : {0, 1}) {  // output only: an open massless end moves with its inner node
-    if (!is(end, ContactLayer::massless) || state.end[index(end)].closed) continue;
+    if (!is(end, ContactLayer::massless) || state.end[end].closed) continue;
     const std::size_t node = index(bar_.node_of(end));
-    state.v[node] = state.v[index(bar_.inner_of(end))];
+    state.v[node] = state.v[bar_.inner_of(end)];
   }
 }
 
 double GeneralizedAlpha::port_displacement(const BarState& state, int end) const {
-  const EndState& e = state.end[index(end)];
-  const double u = state.u[index(bar_.node_of(end))];
+  const EndState& e = state.end[end];
+  const double u = state.u[bar_.node_of(end)];
   return u - Bar::outward(end) * static_compliance(end) * (e.force - e.dynamic);
 }
 

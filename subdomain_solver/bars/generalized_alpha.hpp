@@ -26,7 +26,7 @@ class GeneralizedAlpha final : public BarIntegrator {
   double momentum_lag(const BarState& state) const override;
 
  protected:
-  const std::vector<double>& blow(int end) const override { return mass_column_[index(end)]; }
+  const std::vector<double>& blow(int end) const override { return mass_column_[end]; }
 
  private:
   void factor(double dt, const EndActions& actions);

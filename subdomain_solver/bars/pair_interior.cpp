@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "base/index.hpp"
 #include "subdomain_solver/bars/bar_fields.hpp"
 #include "subdomain_solver/bars/compressed_bar.hpp"
 
@@ -45,7 +44,7 @@ PairInterior::PairInterior(std::string name, const Parameters& parameters)
 void PairInterior::describe_members(const Parameters& parameters) {
   constexpr const char* names[] = {"left", "right"};
   for (int m : {0, 1}) {
-    const BarProperties& bar = parameters.bars[index(m)];
+    const BarProperties& bar = parameters.bars[m];
     description_.members.push_back({names[m], bar.mass_total(), {m}});
     description_.mass += bar.mass_total();
     Port port;
@@ -106,7 +105,7 @@ std::optional<Failed> PairInterior::record(BodyRecord& r) {
   r.energy.stored = integrator_->contact_energy(state_);
   r.members.resize(2);
   for (int m : {0, 1}) {
-    MemberRecord& member = r.members[index(m)];
+    MemberRecord& member = r.members[m];
     member.energy = {};
     member.energy.kinetic = integrator_->kinetic(state_, m);
     member.energy.stored = pair_.stored(m, state_.u);

@@ -99,16 +99,16 @@ std::vector<FieldValues> touch_field_values(const std::vector<TouchedSurface>& s
   for (const TouchedSurface& s : surfaces) {
     const Touch t = touch_of(s, forces, places);
     contact.see_gaps(s.port, [&](std::size_t point, double gap, bool sticks) {
-      double& least = out[1][index(s.nodes[point])];
-      double& status = out[2][index(s.nodes[point])];
+      double& least = out[1][s.nodes[point]];
+      double& status = out[2][s.nodes[point]];
       least = status == 0.0 ? gap : std::min(least, gap);  // of all partners
       status = std::max(status, sticks ? 3.0 : 1.0);
     });
     for (std::size_t a = 0; a < t.pressure.size(); ++a) {
       if (t.pressure[a] == 0.0) continue;
-      out[0][index(s.nodes[a])] = t.pressure[a];
+      out[0][s.nodes[a]] = t.pressure[a];
       if (t.pressure[a] > least_share * t.most)
-        out[2][index(s.nodes[a])] = std::max(2.0, out[2][index(s.nodes[a])]);
+        out[2][s.nodes[a]] = std::max(2.0, out[2][s.nodes[a]]);
     }
   }
   return out;

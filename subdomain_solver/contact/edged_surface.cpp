@@ -54,20 +54,20 @@ void EdgedSurface::join(std::span<const double> pose, const PosedSurface& other,
   mortar_rows(parts, other, pairs_, options_, buffers_, rows);
   mapped_.clear();
   for (int r = 0; r < rows.count(); ++r) {
-    for (std::int32_t e = rows.k.offsets[index(r)]; e < rows.k.offsets[index(r) + 1]; ++e) {
-      const std::size_t node = index(rows.k.columns[index(e)]);
-      const double share = rows.k.values[index(e)];
+    for (std::int32_t e = rows.k.offsets[r]; e < rows.k.offsets[index(r) + 1]; ++e) {
+      const std::size_t node = index(rows.k.columns[e]);
+      const double share = rows.k.values[e];
       for (std::int32_t i = divided_.nodes.offsets[node]; i < divided_.nodes.offsets[node + 1]; ++i)
-        sum_.add(divided_.nodes.columns[index(i)], share * divided_.nodes.values[index(i)]);
+        sum_.add(divided_.nodes.columns[i], share * divided_.nodes.values[i]);
     }
     sum_.flush(1.0, mapped_);
   }
   std::swap(rows.k, rows.n);
   std::swap(rows.n, mapped_);
   for (int r = 0; r < rows.count(); ++r) {
-    const auto first = rows.k.values.begin() + rows.k.offsets[index(r)];
+    const auto first = rows.k.values.begin() + rows.k.offsets[r];
     const auto most = std::max_element(first, rows.k.values.begin() + rows.k.offsets[index(r) + 1]);
-    rows.nodes[index(r)] = rows.k.columns[index(most - rows.k.values.begin())];
+    rows.nodes[r] = rows.k.columns[most - rows.k.values.begin()];
   }
   for (double& component : rows.normals) component = -component;
 }

@@ -77,9 +77,9 @@ void NearSurface::find(std::span<const double> pose, double reach,
   refit(own_tree_, own, margin_);
   overlapping_pairs(own_tree_, tree_, pairs_);
   std::vector<char> has(index(posed(*whole_).facet_count()), 0);
-  for (const FacetPair& pair : pairs_) has[index(pair.n)] = 1;
+  for (const FacetPair& pair : pairs_) has[pair.n] = 1;
   if (grows)
-    for (const std::int32_t facet : taken_) has[index(facet)] = 1;
+    for (const std::int32_t facet : taken_) has[facet] = 1;
   if (!needed.empty()) {
     for (std::size_t f = 0; f < has.size(); ++f)
       for (const std::int32_t node : posed(*whole_).nodes(static_cast<int>(f)))
@@ -97,14 +97,14 @@ void NearSurface::number(const std::vector<char>& has) {
   for (std::size_t f = 0; f < has.size(); ++f) {
     if (has[f] == 0) continue;
     taken_.push_back(static_cast<std::int32_t>(f));
-    for (const std::int32_t node : whole.nodes(static_cast<int>(f))) part_of_[index(node)] = 0;
+    for (const std::int32_t node : whole.nodes(static_cast<int>(f))) part_of_[node] = 0;
   }
   if (taken_.size() == has.size()) return take_all();
   listed_.clear();
   points.clear();
   for (std::int32_t node = 0; node < whole.node_count(); ++node) {
-    if (part_of_[index(node)] < 0) continue;
-    part_of_[index(node)] = static_cast<std::int32_t>(listed_.size());
+    if (part_of_[node] < 0) continue;
+    part_of_[node] = static_cast<std::int32_t>(listed_.size());
     listed_.push_back(node);
     const std::size_t first = index(node) * index(dim);
     for (std::size_t i = 0; i < index(dim); ++i) points.push_back(whole_->points[first + i]);
@@ -112,7 +112,7 @@ void NearSurface::number(const std::vector<char>& has) {
   facets.clear();
   offsets.assign(1, 0);
   for (const std::int32_t facet : taken_) {
-    for (const std::int32_t node : whole.nodes(facet)) facets.push_back(part_of_[index(node)]);
+    for (const std::int32_t node : whole.nodes(facet)) facets.push_back(part_of_[node]);
     offsets.push_back(static_cast<std::int32_t>(facets.size()));
   }
   list_values();

@@ -43,8 +43,8 @@ class NearSurface {
   /// Of the whole, ascending; empty: all of them. Never empty where it is a part.
   const std::vector<std::int32_t>& listed() const { return listed_; }
   /// Number of a point of it in the whole, and of a point of the whole in it; -1: not in it.
-  std::int32_t in_whole(std::int32_t point) const { return all_ ? point : listed_[index(point)]; }
-  std::int32_t in_part(std::int32_t point) const { return all_ ? point : part_of_[index(point)]; }
+  std::int32_t in_whole(std::int32_t point) const { return all_ ? point : listed_[point]; }
+  std::int32_t in_part(std::int32_t point) const { return all_ ? point : part_of_[point]; }
   /// Values (points, dim) of it among those of the whole.
   const std::vector<std::size_t>& values() const { return values_; }
 

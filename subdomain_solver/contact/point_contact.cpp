@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/index.hpp"
 #include "contract/kernel_misfit.hpp"
 
 namespace abut {
@@ -91,7 +90,7 @@ const Vector* PointContact::solve(double time, const Vector& free, Compliance& g
       const Vector* column = give.column(static_cast<int>(k));  // symmetric: its row too
       if (column == nullptr) return nullptr;
       const double own = (*column)(k), others = column->dot(force_) - own * force_(k);
-      const double now = push(ends_[acting_[index(k)]], in_substep, time, free(k) + others, own);
+      const double now = push(ends_[acting_[k]], in_substep, time, free(k) + others, own);
       change = std::max(change, std::abs(now - force_(k)));
       force_(k) = now;
     }

@@ -39,7 +39,7 @@ PointObstacle::Surface PointObstacle::between(double time) const {
 
 PointObstacle::Surface PointObstacle::at(int i, double reaction) {
   Surface surface =
-      same_times_ ? where(motion_->u[index(i)]) : between(i == 0 ? grid_.begin : grid_.time(i));
+      same_times_ ? where(motion_->u[i]) : between(i == 0 ? grid_.begin : grid_.time(i));
   if (yields()) give_way(i, reaction, surface);
   return surface;
 }

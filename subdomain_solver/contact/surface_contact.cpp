@@ -185,12 +185,12 @@ void SurfaceContact::see_gaps(std::size_t port, const SeeGap& see) const {
     if (m.obstacle->port() != port || !m.obstacle->acts()) continue;
     const SurfaceRows& rows = m.obstacle->rows();
     for (int r = 0; r < rows.count(); ++r) {
-      const std::int32_t first = rows.k.offsets[index(r)], last = rows.k.offsets[index(r) + 1];
+      const std::int32_t first = rows.k.offsets[r], last = rows.k.offsets[index(r) + 1];
       const auto begin = rows.k.values.begin();
       const auto most = std::max_element(begin + first, begin + last);
       const bool sticks =
-          r < m.rows && row_state(rows_[index(m.first_row + r)], row_force_) == RowState::sticks;
-      see(index(rows.k.columns[index(most - begin)]), rows.gaps[index(r)], sticks);
+          r < m.rows && row_state(rows_[m.first_row + r], row_force_) == RowState::sticks;
+      see(index(rows.k.columns[most - begin]), rows.gaps[r], sticks);
     }
   }
 }
@@ -236,14 +236,14 @@ void SurfaceContact::pose(const Vector& q) {
 void SurfaceContact::find_terms(const Own& own, const SurfaceRows& rows, int row,
                                 const double* direction) {
   const std::size_t dim = index(rows.dim);
-  for (std::int32_t e = rows.k.offsets[index(row)]; e < rows.k.offsets[index(row) + 1]; ++e) {
-    const std::size_t point = index(rows.k.columns[index(e)]);
+  for (std::int32_t e = rows.k.offsets[row]; e < rows.k.offsets[index(row) + 1]; ++e) {
+    const std::size_t point = index(rows.k.columns[e]);
     const Matrix3* axes = own.surface.frames[point];
     for (std::size_t i = 0; i < dim; ++i) {
       double along = axes == nullptr ? direction[i] : 0.0;
       for (std::size_t k = 0; axes != nullptr && k < dim; ++k)
         along += (*axes)(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) * direction[k];
-      terms_.push_back({own.at[point * dim + i], rows.k.values[index(e)] * along});
+      terms_.push_back({own.at[point * dim + i], rows.k.values[e] * along});
     }
   }
   first_term_.push_back(terms_.size());
@@ -262,7 +262,7 @@ void SurfaceContact::add_components(Meeting& m) {
       directions_.resize(at + index(m.parts) * dim);
       tangents(rows.dim, normal, std::span(directions_).subspan(at + dim));
     }
-    const bool slid = m.law.rubs() && slid_[m.slid + index(rows.nodes[index(r)])] != 0.0;
+    const bool slid = m.law.rubs() && slid_[m.slid + index(rows.nodes[r])] != 0.0;
     rows_.push_back({static_cast<Eigen::Index>(at / dim), m.parts,  // [M.126]
                      slid ? m.law.kinetic_friction : m.law.static_friction});
     for (int p = 0; p < m.parts; ++p)
@@ -304,17 +304,17 @@ bool SurfaceContact::find_problem(const Vector& free, Compliance& give) {
     if (m.rows == 0) continue;
     row_gaps_.resize(index(m.rows));
     gaps(m.obstacle->rows(), surfaces_[m.own].pose, m.obstacle->free(), row_gaps_);
-    for (int r = 0; r < m.rows; ++r) gaps_(m.first + r * m.parts) = row_gaps_[index(r)];
+    for (int r = 0; r < m.rows; ++r) gaps_(m.first + r * m.parts) = row_gaps_[r];
     if (m.parts > 1) find_slips(m);
     m.obstacle->add_compliance(m.first, directions(m), compliance_);
   }
   for (Eigen::Index r = 0; r < count; ++r) {
-    for (std::size_t t = first_term_[index(r)]; t < first_term_[index(r) + 1]; ++t) {
+    for (std::size_t t = first_term_[r]; t < first_term_[index(r) + 1]; ++t) {
       const Vector* column = give.column(terms_[t].coordinate);
       if (column == nullptr) return false;
       for (Eigen::Index s = 0; s < count; ++s) {
         double sum = 0.0;
-        for (std::size_t k = first_term_[index(s)]; k < first_term_[index(s) + 1]; ++k)
+        for (std::size_t k = first_term_[s]; k < first_term_[index(s) + 1]; ++k)
           sum += terms_[k].factor * (*column)(terms_[k].coordinate);
         compliance_(s, r) += terms_[t].factor * sum;
       }
@@ -346,8 +346,8 @@ void SurfaceContact::spread() {
       const auto add = [&](const SparseRows& of, double factor, const auto& to) {
         for (std::int32_t e = of.offsets[r]; e < of.offsets[r + 1]; ++e)
           for (std::size_t d = 0; d < dim; ++d)
-            to(of.columns[index(e)])[d] +=
-                factor * force * of.values[index(e)] * along[c * dim + d];
+            to(of.columns[e])[d] +=
+                factor * force * of.values[e] * along[c * dim + d];
       };
       add(rows.k, 1.0, [&](std::int32_t point) { return &pressed(m)[index(point) * dim]; });
       add(rows.n, -1.0,

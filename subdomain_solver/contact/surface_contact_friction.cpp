@@ -34,8 +34,8 @@ void SurfaceContact::settle_friction(std::size_t meeting) {
   std::ranges::fill(shears, 0.0);
   const std::span<const double> along = directions(m);
   for (int r = 0; r < m.rows; ++r) {
-    const FrictionRow& row = rows_[index(m.first_row + r)];
-    const std::size_t point = index(m.obstacle->rows().nodes[index(r)]);
+    const FrictionRow& row = rows_[m.first_row + r];
+    const std::size_t point = index(m.obstacle->rows().nodes[r]);
     if (row_state(row, row_force_) == RowState::slips) slid[point] = 1.0;
     for (int p = 1; p < row.parts; ++p) {
       const double* tangent = along.data() + index(row.first - m.first + p) * dim;
@@ -75,15 +75,15 @@ void SurfaceContact::find_slips(const Meeting& m) {
   for (std::size_t r = 0; r < index(m.rows); ++r) {
     std::array<double, 3> slip{};
     for (std::int32_t e = rows.k.offsets[r]; e < rows.k.offsets[r + 1]; ++e) {
-      const std::size_t v = index(rows.k.columns[index(e)]) * dim;
+      const std::size_t v = index(rows.k.columns[e]) * dim;
       for (std::size_t i = 0; i < dim; ++i)
-        slip[i] += rows.k.values[index(e)] * (own.pose[v + i] - own.begin[v + i]);
+        slip[i] += rows.k.values[e] * (own.pose[v + i] - own.begin[v + i]);
     }
     for (std::int32_t e = rows.n.offsets[r]; e < rows.n.offsets[r + 1]; ++e) {
-      const std::size_t v = index(rows.n.columns[index(e)]) * dim;
+      const std::size_t v = index(rows.n.columns[e]) * dim;
       for (std::size_t i = 0; i < dim; ++i) {
         const double moved = partner[v + i] - near.points[v + i] - begin[near.values()[v + i]];
-        slip[i] -= rows.n.values[index(e)] * moved;
+        slip[i] -= rows.n.values[e] * moved;
       }
     }
     for (std::size_t p = 1; p < index(m.parts); ++p) {
@@ -132,11 +132,11 @@ void SurfaceContact::tell_missing() {
     const SurfaceRows& rows = m.obstacle->rows();
     const std::vector<double>& pose = surfaces_[m.own].pose;
     for (int r = 0; r < m.rows; ++r) {
-      const std::span row(&rows_[index(m.first_row + r)], 1);
+      const std::span row(&rows_[m.first_row + r], 1);
       const double miss = friction_residual(compliance_, gaps_, row, row_force_);
       if (std::isfinite(miss) && miss <= most) continue;
       most = miss;
-      const std::size_t dim = index(rows.dim), at = index(rows.nodes[index(r)]) * dim;
+      const std::size_t dim = index(rows.dim), at = index(rows.nodes[r]) * dim;
       missing_ = fmt::format(
           "no contact forces were found that fit all of {} rows against {} partners: at ({:.4g}) "
           "they miss by {:.2g} of the largest; take a smaller step, or materials that are less "

@@ -13,7 +13,7 @@ class SurfaceContact::Eased final : public Compliance {
       : surfaces_(surfaces), own_(own), columns_(coordinates) {}
 
   const Vector* column(int k) override {
-    Vector& out = columns_[index(k)];
+    Vector& out = columns_[k];
     if (out.size() > 0) return &out;
     const Vector* own = own_.column(k);
     if (own == nullptr) return nullptr;

@@ -138,7 +138,7 @@ void SurfaceObstacle::aim(int i, std::span<const double> reaction, bool turned) 
   const auto after = std::ranges::lower_bound(motion_->time, time) - motion_->time.begin();
   const int next =
       static_cast<int>(std::clamp<std::ptrdiff_t>(after, 1, std::ssize(motion_->time) - 1));
-  const double before = motion_->time[index(next - 1)], end = motion_->time[index(next)];
+  const double before = motion_->time[next - 1], end = motion_->time[next];
   const double share = std::clamp((time - before) / (end - before), 0.0, 1.0);
   recall(next, share);
   find_give(next, share);
@@ -162,7 +162,7 @@ void SurfaceObstacle::lean(int level, double share) {
     if (level > 0) force += taken_[from + f];  // else what pressed at the begin
     for (std::size_t v = 0; v < z; ++v) {
       memory_[v] -= share * force * compliance[f * z + v];
-      if (level > 0) give_[f * z + v] -= share * later_[index(level)] * compliance[f * z + v];
+      if (level > 0) give_[f * z + v] -= share * later_[level] * compliance[f * z + v];
     }
   }
 }
@@ -184,7 +184,7 @@ void SurfaceObstacle::recall(int level, double share) {
 void SurfaceObstacle::find_give(int level, double share) {
   const std::size_t z = zone_.size();
   for (int at = 0; at <= level && level > 0; ++at) {
-    const double part = share * later_[index(at)];
+    const double part = share * later_[at];
     if (part == 0.0) continue;
     for (std::size_t f = 0; f < z; ++f) {
       const double* answer = response(level, at, f);
@@ -306,10 +306,10 @@ void SurfaceObstacle::add_compliance(Eigen::Index first, std::span<const double>
   const auto each = [&](std::size_t component, const auto& visit) {
     const std::size_t row = component / parts;
     for (std::int32_t e = rows_.n.offsets[row]; e < rows_.n.offsets[row + 1]; ++e) {
-      const int begin = in_zone_[index(rows_.n.columns[index(e)]) * dim];
+      const int begin = in_zone_[index(rows_.n.columns[e]) * dim];
       for (std::size_t d = 0; begin >= 0 && d < dim; ++d)
         if (const double part = directions[component * dim + d]; part != 0.0)
-          visit(index(begin) + d, rows_.n.values[index(e)] * part);
+          visit(index(begin) + d, rows_.n.values[e] * part);
     }
   };
   for (std::size_t r = 0; r < components; ++r) {

@@ -108,7 +108,7 @@ void BatchedCells::evaluate(std::size_t p, Copies& copies, std::span<const doubl
   PatchView view{patch.batches,          patch.places.data(),
                  patch.reference.data(), copies.displacement.data(),
                  copies.force.data(),    {}};
-  answers_[p] = kernels_[index(patch.block)](view, parameters_);
+  answers_[p] = kernels_[patch.block](view, parameters_);
   stored_[p] = 0.0;
   for (const double energy : view.stored) stored_[p] += energy;
   const std::span<const std::int32_t> own = std::span(patch.nodes).first(index(patch.own));
@@ -125,7 +125,7 @@ void BatchedCells::evaluate(std::size_t p, Copies& copies, std::span<const doubl
 bool BatchedCells::evaluate(std::span<const double> q, std::span<double> force, double& stored) {
   // Handed on by reference: a copy of what the lambdas hold would be allocated.
   const auto ask = [this, q, force](std::size_t patch, int worker) {
-    evaluate(patch, copies_[index(worker)], q, force);
+    evaluate(patch, copies_[worker], q, force);
   };
   threads_.run(patches_.list().size(), std::ref(ask));
   const std::size_t dim = index(dim_), count = patches_.shared_count();
@@ -158,7 +158,7 @@ void BatchedCells::ask_all(std::span<const double> q, std::span<const double> sc
   ABUT_ASSERT(scale == scales.data() + scales.size());
   const auto ask = [this, q](std::size_t p, int worker) {
     const CellPatch& patch = patches_.list()[p];
-    Copies& copies = copies_[index(worker)];
+    Copies& copies = copies_[worker];
     copy_displacement(patch, copies, q);
     const PatchView view{patch.batches,
                          patch.places.data(),
@@ -166,7 +166,7 @@ void BatchedCells::ask_all(std::span<const double> q, std::span<const double> sc
                          copies.displacement.data(),
                          nullptr,
                          {}};
-    frequencies_[index(patch.block)](view, parameters_, questions_[p]);
+    frequencies_[patch.block](view, parameters_, questions_[p]);
   };
   threads_.run(list.size(), std::ref(ask));
 }
@@ -192,7 +192,7 @@ void BatchedCells::find_fast(std::span<const double> q, double square,
   ask_all(q, scales);
   for (std::size_t p = 0; p < list.size(); ++p)
     for (int k = 0; k < questions_[p].found; ++k)
-      out.push_back({list[p].block, list[p].cells[index(fast_[p][index(k)])]});
+      out.push_back({list[p].block, list[p].cells[fast_[p][index(k)]]});
 }
 
 std::size_t BatchedCells::bytes() const {

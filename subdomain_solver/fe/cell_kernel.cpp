@@ -73,7 +73,7 @@ void CellKernel::fill_operators(const CellGeometry& cell) {
   dim_ = cell.dim;
   nodes_ = cell.nodes;
   points_.resize(index(cell.points));
-  for (int p = 0; p < cell.points; ++p) points_[index(p)].volume = cell.volume[index(p)];
+  for (int p = 0; p < cell.points; ++p) points_[p].volume = cell.volume[p];
   for (std::size_t i = 0; i < (dim_ == 2 ? 2 : 1); ++i) {
     b_[i].setZero(nodes_, 3 * cell.points);
     for (int p = 0; p < cell.points; ++p) {
@@ -94,8 +94,8 @@ void CellKernel::deform(std::span<const double> u) {
       for (int j = 0; j < 3; ++j) {
         const double* b = along(i).col(3 * p + j).data();
         double sum = 0.0;
-        for (int a = 0; a < nodes_; ++a) sum += b[a] * u[index(a * dim_ + i)];
-        points_[index(p)].f.data()[entry(i, j)] += sum;
+        for (int a = 0; a < nodes_; ++a) sum += b[a] * u[a * dim_ + i];
+        points_[p].f.data()[entry(i, j)] += sum;
       }
     }
   }
@@ -222,7 +222,7 @@ void CellKernel::couple_fields(Eigen::MatrixXd& tangent) {
   const Eigen::Map<const Eigen::MatrixXd> fields(fields_.data(), points, count);
   stiffness_.setZero(count, count);
   for (Eigen::Index p = 0; p < points; ++p) {
-    const double own = points_[index(p)].stiffness;
+    const double own = points_[p].stiffness;
     stiffness_.noalias() += own * fields.row(p).transpose() * fields.row(p);
   }
   added_.noalias() = 0.5 * swelling_ * stiffness_;

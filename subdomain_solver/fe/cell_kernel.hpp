@@ -57,8 +57,8 @@ class CellKernel {
                               std::span<const double> before, std::span<double> after, Need want,
                               CellResponse& out);
   /// F of a quadrature point as the material sees it in the last evaluated cell, P beside it.
-  const Matrix3& deformation(int point) const { return points_[index(point)].f; }
-  const Matrix3& stress(int point) const { return points_[index(point)].response.stress; }
+  const Matrix3& deformation(int point) const { return points_[point].f; }
+  const Matrix3& stress(int point) const { return points_[point].response.stress; }
 
  private:
   struct Point {

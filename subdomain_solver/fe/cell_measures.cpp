@@ -133,7 +133,7 @@ void measure_cell(const Mesh& mesh, const CellBlock& cells, int cell, const Tabu
     const Eigen::Map<const Eigen::VectorXd> n(t.n.data() + index(p * t.nodes), t.nodes);
     const Eigen::MatrixXd jacobian = x.transpose() * dn;  // dX/dxi
     const double radius = round ? n.dot(x.col(0)) : 0.0;
-    out.volume.push_back(share(p) * t.weight[index(p)] * jacobian.determinant() *
+    out.volume.push_back(share(p) * t.weight[p] * jacobian.determinant() *
                          options.depth(dim, radius));
     const Rows gradient = dn * jacobian.inverse();
     out.gradient.insert(out.gradient.end(), gradient.data(), gradient.data() + gradient.size());

@@ -51,7 +51,7 @@ std::vector<std::int32_t> along_a_curve(const Mesh& mesh, const CellBlock& cells
   std::vector<std::int32_t> order(key.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&key](std::int32_t a, std::int32_t b) {
-    return key[index(a)] < key[index(b)];
+    return key[a] < key[b];
   });
   return order;
 }
@@ -65,10 +65,10 @@ CellPatches::CellPatches(const Mesh& mesh) {
   std::vector<std::int32_t> last(index(mesh.node_count()), -1);
   for (std::size_t p = 0; p < patches_.size(); ++p)
     for (std::int32_t cell : patches_[p].cells)
-      for (std::int32_t node : nodes_of(mesh.blocks[index(patches_[p].block)], cell))
-        if (last[index(node)] != static_cast<std::int32_t>(p)) {
-          last[index(node)] = static_cast<std::int32_t>(p);
-          ++patches_at[index(node)];
+      for (std::int32_t node : nodes_of(mesh.blocks[patches_[p].block], cell))
+        if (last[node] != static_cast<std::int32_t>(p)) {
+          last[node] = static_cast<std::int32_t>(p);
+          ++patches_at[node];
         }
   std::size_t shared = 0;
   for (CellPatch& patch : patches_) {
@@ -80,7 +80,7 @@ CellPatches::CellPatches(const Mesh& mesh) {
 }
 
 void CellPatches::add_block(const Mesh& mesh, int block) {
-  const CellBlock& cells = mesh.blocks[index(block)];
+  const CellBlock& cells = mesh.blocks[block];
   const std::vector<std::int32_t> order = along_a_curve(mesh, cells);
   const std::size_t size =
       std::clamp(order.size() / wanted_patches / lanes * lanes, least_cells, most_cells);
@@ -98,7 +98,7 @@ void CellPatches::add_block(const Mesh& mesh, int block) {
 /// regular one at rest, on nodes of its own behind all others.
 void CellPatches::place_nodes(const Mesh& mesh, CellPatch& patch,
                               std::span<const std::int32_t> patches_at) {
-  const CellBlock& cells = mesh.blocks[index(patch.block)];
+  const CellBlock& cells = mesh.blocks[patch.block];
   const Element& element = *cells.element;
   const std::size_t each = index(element.nodes), dim = index(mesh.dim);
   for (std::int32_t cell : patch.cells)
@@ -114,7 +114,7 @@ void CellPatches::place_nodes(const Mesh& mesh, CellPatch& patch,
   };
   for (const bool own : {true, false}) {
     for (std::int32_t node : asked) {
-      if ((patches_at[index(node)] == 1) != own || copy[at(node)] >= 0) continue;
+      if ((patches_at[node] == 1) != own || copy[at(node)] >= 0) continue;
       copy[at(node)] = static_cast<std::int32_t>(patch.nodes.size());
       patch.nodes.push_back(node);
     }
@@ -142,7 +142,7 @@ void CellPatches::find_shared(int node_count) {
   std::vector<std::vector<std::int32_t>> copies(index(node_count));
   for (const CellPatch& patch : patches_)
     for (std::size_t n = index(patch.own); n < patch.nodes.size(); ++n)
-      copies[index(patch.nodes[n])].push_back(
+      copies[patch.nodes[n]].push_back(
           static_cast<std::int32_t>(patch.first_shared + n - index(patch.own)));
   first_.push_back(0);
   for (std::size_t node = 0; node < copies.size(); ++node) {

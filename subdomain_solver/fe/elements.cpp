@@ -109,7 +109,7 @@ std::vector<int> facet_nodes(const Element& cell, const std::vector<int>& corner
   std::vector<int> nodes = corners;
   for (const std::vector<int>& own : facet.between) {
     std::vector<int> of_cell;
-    for (const int corner : own) of_cell.push_back(corners[index(corner)]);
+    for (const int corner : own) of_cell.push_back(corners[corner]);
     const auto found = std::ranges::find_if(cell.between, [&of_cell](const std::vector<int>& all) {
       return std::ranges::is_permutation(all, of_cell);
     });

@@ -147,7 +147,7 @@ class Reader {
     }
     number_.assign(nodes_, -1);
     for (const CellBlock& block : mesh_.blocks)
-      for (std::int32_t node : block.nodes) number_[index(node)] = 0;
+      for (std::int32_t node : block.nodes) number_[node] = 0;
     std::int32_t next = 0;
     for (std::size_t n = 0; n < nodes_; ++n) {
       if (number_[n] < 0) continue;
@@ -155,7 +155,7 @@ class Reader {
       for (std::size_t d = 0; d < dim; ++d) mesh_.points.push_back(scale_ * x[d * nodes_ + n]);
     }
     for (CellBlock& block : mesh_.blocks) {
-      for (std::int32_t& node : block.nodes) node = number_[index(node)];
+      for (std::int32_t& node : block.nodes) node = number_[node];
       mesh_.node_sets[block.name] = block.nodes;
     }
   }
@@ -174,7 +174,7 @@ class Reader {
       std::vector<Facet>& side = mesh_.sides[names[s]];
       for (std::size_t f = 0; f < facets; ++f) {
         Facet facet = cells_[from_one(cells[f], cells_.size(), cell_list)];
-        const CellBlock& block = mesh_.blocks[index(facet.block)];
+        const CellBlock& block = mesh_.blocks[facet.block];
         // our facets are in Exodus' order
         facet.local = static_cast<std::int32_t>(
             from_one(locals[f], block.element->facets.size(), local_list));

@@ -111,7 +111,7 @@ void FeModel::find_pattern(Assembly& out) const {
   for (const CellBlock& cells : mesh_.blocks) {
     for (int c = 0; c < cells.count(); ++c) {
       for (std::int32_t a : nodes_of(cells, c)) {
-        for (std::int32_t b : nodes_of(cells, c)) neighbours[index(b)].push_back(a);
+        for (std::int32_t b : nodes_of(cells, c)) neighbours[b].push_back(a);
       }
     }
   }
@@ -139,7 +139,7 @@ void FeModel::find_pattern(Assembly& out) const {
     for (int c = 0; c < cells.count(); ++c) {
       for (std::int32_t a : nodes_of(cells, c)) {
         for (std::int32_t b : nodes_of(cells, c)) {
-          const std::vector<std::int32_t>& rows = neighbours[index(b)];
+          const std::vector<std::int32_t>& rows = neighbours[b];
           const auto at = std::lower_bound(rows.begin(), rows.end(), a) - rows.begin();
           position.push_back(out.pattern.outerIndexPtr()[b * dim] +
                              static_cast<std::int32_t>(at) * dim);
@@ -207,7 +207,7 @@ void FeModel::spring_force(std::span<const double> q, ModelResponse& out) const 
   out.stored = 0.0;
   for (std::size_t c = 0; c < springs.size(); ++c) {
     const std::int32_t left = cells.nodes[2 * c], right = cells.nodes[2 * c + 1];
-    const double stretch = q[index(right)] - q[index(left)], tension = springs[c] * stretch;
+    const double stretch = q[right] - q[left], tension = springs[c] * stretch;
     out.force(left) -= tension;
     out.force(right) += tension;
     out.stored += 0.5 * tension * stretch;
@@ -269,7 +269,7 @@ void FeModel::gather(const CellBlock& cells, int cell, std::span<const double> q
   const int dim = mesh_.dim;
   u.clear();
   for (std::int32_t node : nodes_of(cells, cell)) {
-    for (int i = 0; i < dim; ++i) u.push_back(q[index(node * dim + i)]);
+    for (int i = 0; i < dim; ++i) u.push_back(q[node * dim + i]);
     if (const Matrix3* axes = frame(node)) {
       Eigen::Map<Vector> local(u.data() + u.size() - index(dim), dim);
       const SmallVector given = local;
@@ -303,7 +303,7 @@ void FeModel::add_matrix(std::size_t block, int cell, const Assembly& assembly,
   for (int a = 0; a < n; ++a) {
     for (int b = 0; b < n; ++b) {
       const std::int32_t first = position[a * n + b];
-      const std::int32_t* column = assembly.pattern.outerIndexPtr() + nodes[index(b)] * dim;
+      const std::int32_t* column = assembly.pattern.outerIndexPtr() + nodes[b] * dim;
       for (int k = 0; k < dim; ++k) {
         double* at = values + first + (column[k] - column[0]);
         for (int i = 0; i < dim; ++i) at[i] += local(a * dim + i, b * dim + k);
@@ -374,7 +374,7 @@ void FeModel::add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::Matr
 
 CellMeasures FeModel::cell_measures(int block, int cell) const {
   CellMeasures measures;
-  measure_cell(mesh_, mesh_.blocks[index(block)], cell, blocks_[index(block)].table, options_,
+  measure_cell(mesh_, mesh_.blocks[block], cell, blocks_[block].table, options_,
                material_->moduli(), measures);
   return measures;
 }
@@ -383,7 +383,7 @@ CellMeasures FeModel::cell_measures(int block, int cell) const {
 bool FeModel::respond(int block, int cell, std::span<const double> q,
                       std::span<const double> history) {
   if (assembly_)
-    return respond(block, cell, assembly_->measures[index(block)].of(cell), q, history,
+    return respond(block, cell, assembly_->measures[block].of(cell), q, history,
                    Need::tangent);
   const CellMeasures own = cell_measures(block, cell);
   return respond(block, cell, own.of(0), q, history, Need::tangent);
@@ -392,9 +392,9 @@ bool FeModel::respond(int block, int cell, std::span<const double> q,
 bool FeModel::respond(int block, int cell, const CellGeometry& geometry, std::span<const double> q,
                       std::span<const double> history, Need need) {
   const std::size_t each = index(geometry.points * kernel_.history_size());
-  const std::size_t first = blocks_[index(block)].history + index(cell) * each;
+  const std::size_t first = blocks_[block].history + index(cell) * each;
   after_.resize(each);
-  gather(mesh_.blocks[index(block)], cell, q, u_);
+  gather(mesh_.blocks[block], cell, q, u_);
   return kernel_.evaluate(geometry, u_, history.subspan(first, each), after_, need, local_);
 }
 
@@ -433,7 +433,7 @@ bool FeModel::visit(std::span<const double> q, std::span<const double> history,
       for (int p = 0; p < cell.points; ++p) {
         const std::span<const double> own =
             std::span<const double>(after).subspan(index(p) * per_point, per_point);
-        see({static_cast<int>(k), c, p, cell.volume[index(p)],
+        see({static_cast<int>(k), c, p, cell.volume[p],
              material_->completed(kernel_.deformation(p), own), kernel_.stress(p),
              before.subspan(index(p) * per_point, per_point)});
       }

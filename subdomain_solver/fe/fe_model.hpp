@@ -78,7 +78,7 @@ class FeModel final : public Model {
   /// Its reference geometry, as that of one cell.
   CellMeasures cell_measures(int block, int cell) const;
   /// The rule at which a block's cells are integrated.
-  const Tabulation& rule(int block) const { return blocks_[index(block)].table; }
+  const Tabulation& rule(int block) const { return blocks_[block].table; }
   /// Null: forces are found cell by cell.
   BatchedCells* batched() { return batched_.get(); }
 

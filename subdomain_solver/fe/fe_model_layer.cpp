@@ -54,7 +54,7 @@ void FeModel::find_heirs(int direction) {
   std::vector<std::size_t> poor_cells;  // of layer_cells_
   for (std::size_t l = 0; l < layer_cells_.size(); ++l) {
     const auto& [block, cell] = layer_cells_[l];
-    const std::span<const std::int32_t> nodes = nodes_of(mesh_.blocks[index(block)], cell);
+    const std::span<const std::int32_t> nodes = nodes_of(mesh_.blocks[block], cell);
     const bool bare =
         std::ranges::any_of(nodes, [=, this](auto n) { return is_bare(n, direction); });
     const bool takes =
@@ -65,19 +65,19 @@ void FeModel::find_heirs(int direction) {
   std::vector<std::vector<std::size_t>> around(index(mesh_.node_count()));  // of layer_cells_
   for (std::size_t l = 0; l < layer_cells_.size(); ++l) {
     for (const std::int32_t node :
-         nodes_of(mesh_.blocks[index(layer_cells_[l].first)], layer_cells_[l].second))
-      around[index(node)].push_back(l);
+         nodes_of(mesh_.blocks[layer_cells_[l].first], layer_cells_[l].second))
+      around[node].push_back(l);
   }
   for (const std::size_t first : poor_cells) {
     std::vector<std::size_t> reached = {first}, ring = {first};
-    std::vector<std::int32_t>& heirs = heirs_[index(direction)][layer_cells_[first]];
+    std::vector<std::int32_t>& heirs = heirs_[direction][layer_cells_[first]];
     while (heirs.empty() && !ring.empty()) {
       std::vector<std::size_t> next;
       for (const std::size_t l : ring) {
         for (const std::int32_t node :
-             nodes_of(mesh_.blocks[index(layer_cells_[l].first)], layer_cells_[l].second)) {
+             nodes_of(mesh_.blocks[layer_cells_[l].first], layer_cells_[l].second)) {
           if (takes_mass(node, direction)) heirs.push_back(node);
-          for (const std::size_t other : around[index(node)]) {
+          for (const std::size_t other : around[node]) {
             if (std::ranges::find(reached, other) != reached.end()) continue;
             reached.push_back(other);
             next.push_back(other);
@@ -124,10 +124,10 @@ void FeModel::hand_over(std::span<const std::int32_t> nodes, int direction,
 template <class Whole, class Take>
 void FeModel::inherit(const Whole& whole, const Take& take) const {
   for (int i = 0; i < mesh_.dim; ++i) {
-    for (const auto& [cell, heirs] : heirs_[index(i)]) {
+    for (const auto& [cell, heirs] : heirs_[i]) {
       Eigen::MatrixXd nodal = whole(cell.first, cell.second);
       const double total = nodal.sum();
-      hand_over(nodes_of(mesh_.blocks[index(cell.first)], cell.second), i, nodal);
+      hand_over(nodes_of(mesh_.blocks[cell.first], cell.second), i, nodal);
       const double each = (total - nodal.sum()) / static_cast<double>(heirs.size());
       for (const std::int32_t heir : heirs) take(heir * mesh_.dim + i, each);
     }
@@ -153,13 +153,13 @@ void FeModel::find_layer_pattern(LayerResponse& out) {
   const auto each_cell = [&](const auto& visit) {
     std::size_t first = 0;
     for (const auto& [block, cell] : layer_cells_) {
-      const std::size_t count = nodes_of(mesh_.blocks[index(block)], cell).size() * index(dim);
+      const std::size_t count = nodes_of(mesh_.blocks[block], cell).size() * index(dim);
       visit(std::span(layer_places_).subspan(first, count));
       first += count;
     }
   };
   for (const auto& [block, cell] : layer_cells_)
-    for (const std::int32_t node : nodes_of(mesh_.blocks[index(block)], cell))
+    for (const std::int32_t node : nodes_of(mesh_.blocks[block], cell))
       for (int i = 0; i < dim; ++i) layer_places_.push_back(layer_place(node * dim + i));
   each_cell([&entries](std::span<const int> places) {
     for (const int row : places)
@@ -186,12 +186,12 @@ void FeModel::find_layer_rows(std::span<const double> q, std::span<const double>
   for (const auto& [block, cell] : layer_cells_) {
     const bool admissible = respond(block, cell, q, history);
     ABUT_ASSERT(admissible);
-    const std::span<const std::int32_t> own = nodes_of(mesh_.blocks[index(block)], cell);
+    const std::span<const std::int32_t> own = nodes_of(mesh_.blocks[block], cell);
     turn(own, nullptr, &local_.tangent);
     for (int a = 0; a < static_cast<int>(local_.tangent.rows()); ++a) {
-      const int row = layer_place(own[index(a / dim)] * dim + a % dim);
+      const int row = layer_place(own[a / dim] * dim + a % dim);
       for (int b = 0; row >= 0 && b < static_cast<int>(local_.tangent.cols()); ++b)
-        entries.emplace_back(row, own[index(b / dim)] * dim + b % dim, local_.tangent(a, b));
+        entries.emplace_back(row, own[b / dim] * dim + b % dim, local_.tangent(a, b));
     }
   }
   layer_rows_.resize(static_cast<Eigen::Index>(massless_.size()), dofs());
@@ -212,10 +212,10 @@ void FeModel::add_layer_rows(Eigen::Index row, const double* q, const double* he
   for (int e = 0; e < entries; e += dim) {
     for (int i = 0; i < dim; ++i) {
       const double difference = q[column[e] + i] - here[i];
-      for (int r = 0; r < count; ++r) sum[index(r)] += value[r * entries + e + i] * difference;
+      for (int r = 0; r < count; ++r) sum[r] += value[r * entries + e + i] * difference;
     }
   }
-  for (int r = 0; r < count; ++r) force(row + r) = sum[index(r)];
+  for (int r = 0; r < count; ++r) force(row + r) = sum[r];
 }
 
 template <int dim>
@@ -223,9 +223,9 @@ void FeModel::linear_layer_force(std::span<const double> q, Vector& force) const
   const bool translates = frames_.empty() && !round();
   const std::array<double, 3> origin{};
   for (Eigen::Index row = 0; row < layer_rows_.rows();) {
-    const int node = massless_[index(row)] / dim;
+    const int node = massless_[row] / dim;
     Eigen::Index end = row + 1;
-    while (end < layer_rows_.rows() && massless_[index(end)] / dim == node) ++end;
+    while (end < layer_rows_.rows() && massless_[end] / dim == node) ++end;
     const double* here = translates ? q.data() + node * dim : origin.data();
     if (end - row == 3) {
       add_layer_rows<dim, 3>(row, q.data(), here, force);
@@ -274,10 +274,10 @@ bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> 
   const int* slot = layer_slots_.data();
   for (const auto& [block, cell] : layer_cells_) {
     const CellGeometry geometry =
-        assembly_ ? assembly_->measures[index(block)].of(cell) : (measures++)->of(0);
+        assembly_ ? assembly_->measures[block].of(cell) : (measures++)->of(0);
     if (!respond(block, cell, geometry, q, history, tangent ? Need::tangent : Need::stress))
       return false;
-    turn(nodes_of(mesh_.blocks[index(block)], cell), &local_.force,
+    turn(nodes_of(mesh_.blocks[block], cell), &local_.force,
          tangent ? &local_.tangent : nullptr);
     for (Eigen::Index a = 0; a < local_.force.size(); ++a, ++place)
       if (*place >= 0) out.force(*place) += local_.force(a);

@@ -15,7 +15,7 @@ Eigen::MatrixXd FeModel::nodal_mass(std::size_t block, int cell) const {
   Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(t.nodes, t.nodes);
   for (int p = 0; p < t.points; ++p) {
     const Eigen::Map<const Vector> n(t.n.data() + index(p * t.nodes), t.nodes);
-    nodal += material_->density() * measures.volume[index(p)] * n * n.transpose();
+    nodal += material_->density() * measures.volume[p] * n * n.transpose();
   }
   return nodal;
 }

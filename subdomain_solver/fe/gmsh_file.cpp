@@ -87,7 +87,7 @@ class Builder {
     number_.assign(data_.node_tags.size(), -1);
     for (const GmshData::Elements& block : data_.elements) {
       if (block.type->dim != mesh_.dim) continue;
-      for (std::int32_t node : block.nodes) number_[index(node)] = 0;
+      for (std::int32_t node : block.nodes) number_[node] = 0;
     }
     std::int32_t next = 0;
     double lowest[3] = {}, highest[3] = {}, extent = 0.0;
@@ -121,7 +121,7 @@ class Builder {
       const auto [entry, is_new] = place.try_emplace({name, block.type}, mesh_.blocks.size());
       if (is_new) mesh_.blocks.push_back({block.type, {}, name, {}});
       std::vector<std::int32_t>& cells = mesh_.blocks[entry->second].nodes;
-      for (std::int32_t node : block.nodes) cells.push_back(number_[index(node)]);
+      for (std::int32_t node : block.nodes) cells.push_back(number_[node]);
     }
   }
 
@@ -130,11 +130,11 @@ class Builder {
                                        std::size_t element) const {
     std::vector<std::int32_t> nodes;
     for (std::int32_t node : nodes_of(block, element)) {
-      nodes.push_back(number_[index(node)]);
+      nodes.push_back(number_[node]);
       if (nodes.back() >= 0) continue;
       throw InputError(
           fmt::format("has element {} ({}) of group '{}' with node {}, which is in no cell",
-                      block.tags[element], block.type->name, group, data_.node_tags[index(node)]),
+                      block.tags[element], block.type->name, group, data_.node_tags[node]),
           block.where, "Embed the entity in the part, or drop the group.");
     }
     return nodes;

@@ -58,7 +58,7 @@ class Writer {
       std::map<const Element*, std::size_t> place;
       const int tag = group(mesh_.dim - 1, name);
       for (const Facet& facet : facets) {
-        const Element& cell = *mesh_.blocks[index(facet.block)].element;
+        const Element& cell = *mesh_.blocks[facet.block].element;
         const Element& type = element_named(cell.facet_name);
         const auto [entry, fresh] = place.try_emplace(&type, entities_.size());
         if (fresh) entities_.push_back({mesh_.dim - 1, {tag}, &type, {}});

@@ -30,7 +30,7 @@ Eigen::MatrixXd metric_of(const Mesh& mesh, const CellBlock& cells, int cell) {
   Eigen::MatrixXd x(dim, n);
   for (int a = 0; a < n; ++a) {
     const std::int32_t node = cells.nodes[index(cell) * index(n) + index(a)];
-    for (int i = 0; i < dim; ++i) x(i, a) = mesh.points[index(node * dim + i)];
+    for (int i = 0; i < dim; ++i) x(i, a) = mesh.points[node * dim + i];
   }
   Eigen::MatrixXd corner = Eigen::Map<const Eigen::MatrixXd>(element.corners.data(), dim, n);
   corner.colwise() -= corner.rowwise().mean().eval();
@@ -68,14 +68,14 @@ HighestFrequency::HighestFrequency(FeModel& model) : model_(model) {
 /// of the frequency with them.
 double HighestFrequency::scale_of(int block, int cell) {
   const Mesh& mesh = model_.mesh();
-  const Eigen::MatrixXd s = metric_of(mesh, mesh.blocks[index(block)], cell);
+  const Eigen::MatrixXd s = metric_of(mesh, mesh.blocks[block], cell);
   const CellMeasures measures = model_.cell_measures(block, cell);
   const CellGeometry g = measures.of(0);
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::MatrixXd laplacian = Eigen::MatrixXd::Zero(g.nodes, g.nodes);
   for (int p = 0; p < g.points; ++p) {
     const Eigen::Map<const Rows> b(g.gradient.data() + index(p * g.nodes * g.dim), g.nodes, g.dim);
-    laplacian += g.volume[index(p)] * b * s * b.transpose();
+    laplacian += g.volume[p] * b * s * b.transpose();
   }
   const Vector mass = model_.cell_mass(block, cell);
   if (g.hourglass.empty()) return 1.0 / highest_square(laplacian, mass);

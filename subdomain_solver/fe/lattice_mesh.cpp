@@ -16,7 +16,7 @@ LatticePoint middle(std::span<const LatticePoint> corners, const std::vector<int
   const int count = static_cast<int>(which.size());
   LatticePoint sum;
   for (const int corner : which)
-    for (std::size_t d = 0; d < sum.at.size(); ++d) sum.at[d] += corners[index(corner)].at[d];
+    for (std::size_t d = 0; d < sum.at.size(); ++d) sum.at[d] += corners[corner].at[d];
   for (int& number : sum.at) {
     ABUT_ASSERT(number % count == 0);
     number /= count;
@@ -84,7 +84,7 @@ void LatticeMesh::split(const Element& whole, std::span<const LatticePoint> corn
   const LatticePoint tip = *std::min_element(corners.begin(), corners.end());
   for (const std::vector<int>& facet : whole.facets) {
     std::vector<LatticePoint> base;
-    for (int a : facet) base.push_back(corners[index(a)]);
+    for (int a : facet) base.push_back(corners[a]);
     if (std::find(base.begin(), base.end(), tip) != base.end()) continue;
     if (whole.dim == 2) {
       add_element(std::array{base[0], base[1], tip});
@@ -108,7 +108,7 @@ void LatticeMesh::name_side(const std::string& name, const Predicate& contains) 
   for (const Facet& facet : boundary()) {
     const std::vector<std::int32_t> nodes = mesh_.nodes_of(facet);
     if (std::all_of(nodes.begin(), nodes.end(),
-                    [this, &contains](std::int32_t n) { return contains(places_[index(n)]); }))
+                    [this, &contains](std::int32_t n) { return contains(places_[n]); }))
       side.push_back(facet);
   }
   mesh_.sides[name] = std::move(side);

@@ -41,12 +41,12 @@ SidePoints SidePoints::of(const FeModel& model, const std::string& side) {
   const int dim = mesh.dim;
   SidePoints out;
   for (const Facet& facet : mesh.side(side)) {
-    const Element& element = element_named(mesh.blocks[index(facet.block)].element->facet_name);
+    const Element& element = element_named(mesh.blocks[facet.block].element->facet_name);
     const Tabulation table = tabulate(element, quadrature(element.shape, 2 * element.order + 1));
     FacetPoints f{mesh.nodes_of(facet), {}};
     Eigen::MatrixXd x = Eigen::MatrixXd::Zero(3, table.nodes);
     for (int a = 0; a < table.nodes; ++a) {
-      for (int i = 0; i < dim; ++i) x(i, a) = mesh.points[index(f.nodes[index(a)] * dim + i)];
+      for (int i = 0; i < dim; ++i) x(i, a) = mesh.points[f.nodes[index(a)] * dim + i];
     }
     for (int p = 0; p < table.points; ++p) {
       Point point;
@@ -54,7 +54,7 @@ SidePoints SidePoints::of(const FeModel& model, const std::string& side) {
       const double* dn = table.dn.data() + index(p * table.nodes * table.dim);
       point.n.assign(n, n + table.nodes);
       point.dn.assign(dn, dn + table.nodes * table.dim);
-      point.weight = table.weight[index(p)];
+      point.weight = table.weight[p];
       const Eigen::Vector3d position = x * Eigen::Map<const Vector>(n, table.nodes);
       point.position = {position(0), position(1), position(2)};
       const Eigen::Vector3d end(facet.local == 0 ? -1.0 : 1.0, 0.0, 0.0);  // of a line
@@ -89,8 +89,8 @@ void BodyForce::add(double time, std::span<const double>, Vector& force) const {
   const int nodes = mesh.node_count();
   for (int node = 0; node < nodes; ++node) {
     std::array<double, 3> at = {0.0, 0.0, 0.0};
-    for (int i = 0; i < dim; ++i) at[index(i)] = mesh.points[index(node * dim + i)];
-    for (int i = 0; i < dim; ++i) b(node * dim + i) = value(acceleration_[index(i)], at, time);
+    for (int i = 0; i < dim; ++i) at[i] = mesh.points[node * dim + i];
+    for (int i = 0; i < dim; ++i) b(node * dim + i) = value(acceleration_[i], at, time);
   }
   model_.to_frames({b.data(), index(b.size())});
   const double share = mass_ == MassForm::averaged ? 0.5 : 1.0;  // as mass_matrix() does
@@ -108,7 +108,7 @@ void Traction::add(double time, std::span<const double>, Vector& force) const {
   for (const SidePoints::FacetPoints& facet : side_.facets) {
     for (const SidePoints::Point& point : facet.points) {
       for (int i = 0; i < dim; ++i) {
-        const double f = point.area * value(traction_[index(i)], point.position, time);
+        const double f = point.area * value(traction_[i], point.position, time);
         for (std::size_t a = 0; a < facet.nodes.size(); ++a)
           nodal(facet.nodes[a] * dim + i) += f * point.n[a];
       }
@@ -210,7 +210,7 @@ void Pressure::add_stiffness(const SidePoints::Point& point, double time) const 
       }
       for (int a = 0; a < nodes; ++a) {
         for (int i = 0; i < dim; ++i)
-          local_(a * dim + i, b * dim + k) += p * point.n[index(a)] * change(i);
+          local_(a * dim + i, b * dim + k) += p * point.n[a] * change(i);
       }
     }
   }

@@ -70,9 +70,9 @@ const std::vector<Facet>& Mesh::side(const std::string& name) const {
 }
 
 std::vector<std::int32_t> Mesh::nodes_of(const Facet& facet) const {
-  const CellBlock& block = blocks[index(facet.block)];
+  const CellBlock& block = blocks[facet.block];
   const std::size_t first = index(facet.cell) * index(block.element->nodes);
-  const std::vector<int>& local = block.element->facets[index(facet.local)];
+  const std::vector<int>& local = block.element->facets[facet.local];
   std::vector<std::int32_t> nodes;
   nodes.reserve(local.size());
   for (int node : local) nodes.push_back(block.nodes[first + index(node)]);

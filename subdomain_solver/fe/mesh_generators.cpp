@@ -123,7 +123,7 @@ Mesh box(const Lengths<Dim>& data, const Element& element, const std::string& wh
   }
   LatticeMesh mesh(element, [&x](const LatticePoint& place) {
     Point point{};
-    for (std::size_t d = 0; d < Dim; ++d) point[d] = x[d][index(place.at[d])];
+    for (std::size_t d = 0; d < Dim; ++d) point[d] = x[d][place.at[d]];
     return point;
   });
   for_cells(cells, [&mesh](const LatticePoint& lowest) {
@@ -131,7 +131,7 @@ Mesh box(const Lengths<Dim>& data, const Element& element, const std::string& wh
   });
   for (std::size_t d = 0; d < Dim; ++d) {
     for (int end : {0, 1}) {
-      mesh.name_side(side_names[d][index(end)], [d, end, &last](const LatticePoint& place) {
+      mesh.name_side(side_names[d][end], [d, end, &last](const LatticePoint& place) {
         return place.at[d] == end * last[d];
       });
     }
@@ -285,7 +285,7 @@ Mesh generate(const CylinderMesh& data, const std::string& where) {
   LatticeMesh mesh(element, [&data, &z](const LatticePoint& place) {
     const Point unit = round_place<2>(place, data.core, data.layers);
     return Point{data.origin[0] + data.radius * unit[0], data.origin[1] + data.radius * unit[1],
-                 z[index(place.at[2])]};
+                 z[place.at[2]]};
   });
   add_round_cells<2>(mesh, 3, data.core, data.layers, data.elements);
   mesh.name_side("mantle", [&data](const LatticePoint& at) { return at.at[3] == 2 * data.layers; });

@@ -31,7 +31,7 @@ bool inside(const Mesh& mesh, const FacetIndex& facets, const std::vector<Facet>
   std::size_t shared = 0;
   for (const Facet& facet : side) {
     const std::vector<std::int32_t> nodes = mesh.nodes_of(facet);
-    const Element& cell = *mesh.blocks[index(facet.block)].element;
+    const Element& cell = *mesh.blocks[facet.block].element;
     const auto corners = index(element_named(cell.facet_name).corner_count());
     if (facets.find(std::span(nodes).first(corners)).size() > 1) ++shared;
   }

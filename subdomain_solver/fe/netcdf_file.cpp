@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "base/input_file.hpp"
 #include "base/machine_memory.hpp"
 
@@ -68,7 +67,7 @@ int NetcdfFile::variable_of(const std::string& name, std::size_t count, std::siz
   check(nc_inq_vardimid(id_, number, dimension.data()), "has no readable variable " + name);
   std::size_t values = 1, last = 1;
   for (int d = 0; d < dimensions; ++d) {
-    check(nc_inq_dimlen(id_, dimension[index(d)], &last), "is damaged");
+    check(nc_inq_dimlen(id_, dimension[d], &last), "is damaged");
     if (last != 0 && values > most_ / last)
       refuse("has a variable " + name + " of more values than its size can hold", damaged);
     values *= last;

@@ -26,9 +26,9 @@ Eigen::Index rank_of(const Eigen::JacobiSVD<Eigen::MatrixXd>& parts) {
 
 /// Root of the tree that a node hangs in; shortens the way to it.
 std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t node) {
-  while (parent[index(node)] != node) {
-    parent[index(node)] = parent[index(parent[index(node)])];
-    node = parent[index(node)];
+  while (parent[node] != node) {
+    parent[node] = parent[parent[index(node)]];
+    node = parent[node];
   }
   return node;
 }
@@ -80,7 +80,7 @@ std::vector<std::vector<std::int32_t>> connected_pieces(const Mesh& mesh) {
     for (std::size_t k = 0; k < cells.nodes.size(); ++k) {
       const std::int32_t a = root_of(parent, cells.nodes[k - k % each]);
       const std::int32_t b = root_of(parent, cells.nodes[k]);
-      parent[index(std::max(a, b))] = std::min(a, b);  // roots are the first of their nodes
+      parent[std::max(a, b)] = std::min(a, b);  // roots are the first of their nodes
     }
   }
   std::vector<std::vector<std::int32_t>> pieces;
@@ -88,10 +88,10 @@ std::vector<std::vector<std::int32_t>> connected_pieces(const Mesh& mesh) {
   for (std::int32_t node = 0; node < mesh.node_count(); ++node) {
     const std::int32_t root = root_of(parent, node);
     if (root == node) {
-      place[index(node)] = pieces.size();
+      place[node] = pieces.size();
       pieces.emplace_back();
     }
-    pieces[place[index(root)]].push_back(node);
+    pieces[place[root]].push_back(node);
   }
   return pieces;
 }
@@ -132,7 +132,7 @@ std::vector<double> translations_and_rotations(const FeModel& model,
   const int dim = mesh.dim, rotations = dim * (dim - 1) / 2;
   Eigen::MatrixXd units = Eigen::MatrixXd::Zero(model.dofs(), dim + rotations);
   for (int node = 0; node < mesh.node_count(); ++node) {
-    const double* x = &mesh.points[index(node * dim)];
+    const double* x = &mesh.points[node * dim];
     for (int i = 0; i < dim; ++i) units(node * dim + i, i) = 1.0;
     if (dim == 2) units.block(node * 2, 2, 2, 1) << -x[1], x[0];
     if (dim == 3)

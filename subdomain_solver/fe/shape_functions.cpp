@@ -94,8 +94,8 @@ void serendipity(std::span<const double> xi, Values n, Values dn) {
     for (std::size_t d = 0; d < Dim; ++d) dn[a * Dim + d] = dp[d] * sum + p * corner[a][d];
   }
   for (std::size_t e = 0; e < Edges.size(); ++e) {
-    const auto& from = corner[index(Edges[e][0])];
-    const auto& to = corner[index(Edges[e][1])];
+    const auto& from = corner[Edges[e][0]];
+    const auto& to = corner[Edges[e][1]];
     std::array<double, Dim> factor{}, derivative{};
     for (std::size_t d = 0; d < Dim; ++d) {
       const bool along = from[d] != to[d];

@@ -40,7 +40,7 @@ double stable_step(FeModel& model, std::span<const double> q, std::span<const do
   double most = 0.0;
   Eigen::MatrixXd stiffness;
   for (int b = 0; b < static_cast<int>(mesh.blocks.size()); ++b) {
-    const CellBlock& cells = mesh.blocks[index(b)];
+    const CellBlock& cells = mesh.blocks[b];
     CellKeys keys(mesh, cells);
     std::unordered_set<CellKeys::Key, CellKeys::Hash> seen;
     for (int c = 0; c < cells.count(); ++c) {

@@ -194,19 +194,19 @@ void Adjuster::add(const Meeting& m, const SurfaceRows& rows, bool as_partner, d
   const SparseRows& own = as_partner ? rows.n : rows.k;
   for (int r = 0; r < rows.count(); ++r) {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-    for (int i = 0; i < mesh_.dim; ++i) normal(i) = rows.normals[index(r * mesh_.dim + i)];
+    for (int i = 0; i < mesh_.dim; ++i) normal(i) = rows.normals[r * mesh_.dim + i];
     if (as_partner) normal = -normal;
-    for (std::int32_t e = own.offsets[index(r)]; e < own.offsets[index(r) + 1]; ++e) {
-      const std::int32_t node = m.nodes[index(own.columns[index(e)])];
+    for (std::int32_t e = own.offsets[r]; e < own.offsets[index(r) + 1]; ++e) {
+      const std::int32_t node = m.nodes[own.columns[index(e)]];
       const auto held = free_.find(node);
       const Eigen::Vector3d way = held == free_.end() ? normal : held->second * normal;
       for (int i = 0; i < mesh_.dim; ++i) {
         out.rows.columns.push_back(node * mesh_.dim + i);
-        out.rows.values.push_back(own.values[index(e)] * way(i));
+        out.rows.values.push_back(own.values[e] * way(i));
       }
     }
     out.rows.end_row();
-    const double gap = rows.gaps[index(r)] + allowed;
+    const double gap = rows.gaps[r] + allowed;
     if (-gap > out.overlap) out.interface = m.interface;
     out.overlap = std::max(out.overlap, -gap);
     out.gaps.push_back(gap);
@@ -223,7 +223,7 @@ void Adjuster::add_rows(const Meeting& m, bool closing, Rows& out) const {
     const SurfaceRows rows = m.rows(own, partner);
     add(m, rows, false, 0.0, out);
     for (std::size_t r = 0; r < rows.nodes.size(); ++r) {
-      out.met[first + r] = m.closes[index(rows.nodes[r])];
+      out.met[first + r] = m.closes[rows.nodes[r]];
       if (out.met[first + r] != 0) out.left = std::max(out.left, std::abs(rows.gaps[r]));
     }
     return;
@@ -249,7 +249,7 @@ void Adjuster::choose_gaps() {
                        "Move the body with initial.position, and give what is left.");
     const SurfaceRows rows = m.rows(m.one(), m.other());
     for (std::size_t r = 0; r < rows.nodes.size(); ++r)
-      m.closes[index(rows.nodes[r])] =
+      m.closes[rows.nodes[r]] =
           rows.gaps[r] > 0.0 && rows.gaps[r] <= spec_.initial.adjust_gaps;
   }
 }

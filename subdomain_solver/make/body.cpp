@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "base/yaml_fields.hpp"
 #include "subdomain_solver/bars/bar_interior.hpp"
 #include "subdomain_solver/bars/central_difference.hpp"
@@ -167,7 +166,7 @@ BarProperties fe_bar_properties(const BodySpec& spec) {
   }
   for (const auto& [name, port] : spec.ports) {
     const int end = spec.end_of(port.side);
-    if (end >= 0) bar.layer[index(end)] = layer_of(spec, port);
+    if (end >= 0) bar.layer[end] = layer_of(spec, port);
   }
   return bar;
 }

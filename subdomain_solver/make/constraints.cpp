@@ -216,7 +216,7 @@ namespace {
 
 /// The first cell of one of the pieces of a mesh.
 std::string cell_of_piece(const Mesh& mesh, int piece) {
-  const std::int32_t first = connected_pieces(mesh)[index(piece)].front();
+  const std::int32_t first = connected_pieces(mesh)[piece].front();
   for (std::size_t block = 0; block < mesh.blocks.size(); ++block) {
     const CellBlock& cells = mesh.blocks[block];
     const auto found = std::find(cells.nodes.begin(), cells.nodes.end(), first);

@@ -17,13 +17,13 @@ VectorField field_of(const std::vector<std::string>& texts, int dim, const std::
                      fmt::format("Give {} expressions, one per dimension.", dim));
   }
   VectorField field;
-  for (int i = 0; i < dim; ++i) field[index(i)] = expression(texts[index(i)], where);
+  for (int i = 0; i < dim; ++i) field[i] = expression(texts[i], where);
   return field;
 }
 
 std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node) {
   std::array<double, 3> at = {0.0, 0.0, 0.0};
-  for (int i = 0; i < mesh.dim; ++i) at[index(i)] = mesh.points[index(node * mesh.dim + i)];
+  for (int i = 0; i < mesh.dim; ++i) at[i] = mesh.points[node * mesh.dim + i];
   return at;
 }
 
@@ -69,7 +69,7 @@ std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place&
   if (weightless) return loads;
   VectorField uniform;
   for (int i = 0; i < dim; ++i)
-    uniform[index(i)] = [b = spec.body_force[index(i)]](const std::array<double, 3>&, double) {
+    uniform[i] = [b = spec.body_force[i]](const std::array<double, 3>&, double) {
       return b;
     };
   loads.push_back(std::make_unique<BodyForce>(model, std::move(uniform), mass));

@@ -116,7 +116,7 @@ std::pair<std::int32_t, double> nearest_node(const Mesh& mesh, const std::vector
   for (std::int32_t node = 0; node < mesh.node_count(); ++node) {
     double distance = 0.0;
     for (int i = 0; i < mesh.dim; ++i)
-      distance = std::hypot(distance, mesh.points[index(node * mesh.dim + i)] - at[index(i)]);
+      distance = std::hypot(distance, mesh.points[node * mesh.dim + i] - at[i]);
     if (distance < best.second) best = {node, distance};
   }
   return best;

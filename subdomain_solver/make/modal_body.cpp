@@ -83,7 +83,7 @@ double stored(Model& model, const std::vector<double>& q) {
 Motion modal_start(Motion nodes, const std::vector<Prescribed>& supports, const SparseMatrix& mass,
                    const ModalBasis& basis, FeModel& mesh, ModalModel& model,
                    std::string& told_of) {
-  for (const Prescribed& p : supports) nodes.q[index(p.dof)] = nodes.v[index(p.dof)] = 0.0;
+  for (const Prescribed& p : supports) nodes.q[p.dof] = nodes.v[p.dof] = 0.0;
   Motion start;
   const Vector momentum = mass * view(nodes.v);
   store(basis.shapes.transpose() * (mass * view(nodes.q)), start.q);

@@ -165,7 +165,7 @@ void Overlap::share_cells(const CommonParts& common) const {
   for (CellBlock& block : mesh_.blocks)
     if (block.shares.empty()) block.shares.assign(block.nodes.size(), 1.0);
   for (const CommonParts::Part& part : common.parts) {
-    CellBlock& block = mesh_.blocks[index(part.cell.block)];
+    CellBlock& block = mesh_.blocks[part.cell.block];
     if (is_shared(block, part.cell.cell)) {
       refuse(fmt::format("gives {} of body '{}' to a second partner",
                          cell_text(mesh_, index(part.cell.block), index(part.cell.cell)),
@@ -212,7 +212,7 @@ void Overlap::follow(EmbeddedSurface& inside) const {
       continue;
     }
     Eigen::Vector3d place = Eigen::Vector3d::Zero();
-    for (int i = 0; i < mesh_.dim; ++i) place(i) = coarse.points[index(held.node * mesh_.dim + i)];
+    for (int i = 0; i < mesh_.dim; ++i) place(i) = coarse.points[held.node * mesh_.dim + i];
     add_point(mesh_, place, held.cell, inside);
   }
 }
@@ -229,7 +229,7 @@ void Overlap::check_other_sides() const {
   for (const FacetPair& pair : pairs) {
     const Simplex facet = its.simplex(pair.k);
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (int i = 0; i < facet.count; ++i) middle += facet.x[index(i)] / facet.count;
+    for (int i = 0; i < facet.count; ++i) middle += facet.x[i] / facet.count;
     const std::vector<HalfSpace> cell = sides_of(own_.simplex(pair.n));
     const auto outside = [&](const HalfSpace& half) { return half.distance(middle) > 0.0; };
     if (std::ranges::any_of(cell, outside)) continue;
@@ -280,7 +280,7 @@ void Overlap::check_loads(const BodySpec& spec) const {
   for (const auto& [name, load] : spec.loads) {
     if (load.on.empty() || !mesh_.sides.contains(load.on)) continue;
     for (const Facet& facet : mesh_.side(load.on)) {
-      if (!is_shared(mesh_.blocks[index(facet.block)], facet.cell)) continue;
+      if (!is_shared(mesh_.blocks[facet.block], facet.cell)) continue;
       throw InputError(fmt::format("side '{}' reaches into the overlap {}, where body '{}' would "
                                    "carry the load as well",
                                    load.on, scene_.interface, scene_.body),

@@ -4,7 +4,6 @@
 #include <set>
 
 #include "base/fields.hpp"
-#include "base/index.hpp"
 #include "base/yaml_fields.hpp"
 #include "subdomain_solver/make/interface_sides.hpp"
 

@@ -62,13 +62,13 @@ std::vector<int> layer_coordinates(const FeModel& model, const BodySpec& spec,
                      place.where("contact_layer.massless.directions"), "Leave directions out.");
   }
   std::vector<int> held(index(mesh.node_count()), 0);
-  for (const Prescribed& p : constraints.supports) ++held[index(p.dof / mesh.dim)];
+  for (const Prescribed& p : constraints.supports) ++held[p.dof / mesh.dim];
   for (const SolidInterior::PortNodes& port : ports) {
     if (!port.touched || !mesh.sides.contains(port.side)) continue;
     const auto& nodes = mesh.nodes_of(port.side);
     const int only = normal_alone ? only_direction(model, port.side, nodes, place) : -1;
     for (const std::int32_t node : nodes)
-      for (int i = 0; held[index(node)] < mesh.dim && i < mesh.dim; ++i)
+      for (int i = 0; held[node] < mesh.dim && i < mesh.dim; ++i)
         if (only < 0 || i == only) dofs.push_back(node * mesh.dim + i);
   }
   std::ranges::sort(dofs);

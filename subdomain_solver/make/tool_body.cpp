@@ -21,7 +21,7 @@ std::unique_ptr<Interior> make_tool(const BodySpec& spec, const Place& place) {
       continue;
     }
     const std::string key = "model.rigid_tool.way[" + std::to_string(i) + "]";
-    way.push_back([formula = expression(tool.way[index(i)], place.where(key))](double time) {
+    way.push_back([formula = expression(tool.way[i], place.where(key))](double time) {
       return formula({0.0, 0.0, 0.0}, time);
     });
   }

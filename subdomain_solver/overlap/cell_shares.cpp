@@ -28,17 +28,17 @@ struct Cells {
       count += index(block.count());
     }
   }
-  std::size_t at(CellPlace place) const { return first[index(place.block)] + index(place.cell); }
+  std::size_t at(CellPlace place) const { return first[place.block] + index(place.cell); }
 };
 
 /// Adds the integrals of a cell's shape functions over a part of it, in reference coordinates.
 void add_integrals(const Mesh& mesh, CellPlace place, const Simplex& part,
                    std::vector<double>& out) {
-  const Element& element = *mesh.blocks[index(place.block)].element;
+  const Element& element = *mesh.blocks[place.block].element;
   const std::size_t dim = index(mesh.dim), nodes = index(element.nodes);
   const Quadrature rule = quadrature(dim == 2 ? Shape::triangle : Shape::tetrahedron, degree);
   const double unit = dim == 2 ? 2.0 : 6.0;  // volume of the reference simplex: 1 of so many
-  const std::span<const std::int32_t> own = nodes_of(mesh.blocks[index(place.block)], place.cell);
+  const std::span<const std::int32_t> own = nodes_of(mesh.blocks[place.block], place.cell);
   std::vector<double> n(nodes), dn(nodes * dim);
   for (int p = 0; p < rule.count(); ++p) {
     Eigen::Vector3d at = part.x[0];
@@ -52,7 +52,7 @@ void add_integrals(const Mesh& mesh, CellPlace place, const Simplex& part,
         for (std::size_t k = 0; k < dim; ++k)
           jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) +=
               mesh.points[index(own[a]) * dim + i] * dn[a * dim + k];
-    const double weight = unit * measure(part) * rule.weights[index(p)] / jacobian.determinant();
+    const double weight = unit * measure(part) * rule.weights[p] / jacobian.determinant();
     for (std::size_t a = 0; a < nodes; ++a) out[a] += weight * n[a];
   }
 }
@@ -63,7 +63,7 @@ std::vector<double> whole_integrals(const Element& element) {
   std::vector<double> out(index(t.nodes), 0.0);
   for (int p = 0; p < t.points; ++p)
     for (int a = 0; a < t.nodes; ++a)
-      out[index(a)] += t.weight[index(p)] * t.n[index(p * t.nodes + a)];
+      out[a] += t.weight[p] * t.n[p * t.nodes + a];
   return out;
 }
 
@@ -107,7 +107,7 @@ CommonParts common_parts(const MeshSimplices& own, const MeshSimplices& other) {
   for (auto& [at, part] : by_cell) {
     if (common[at] > 0.0) {
       const std::vector<double> whole =
-          whole_integrals(*mesh.blocks[index(part.cell.block)].element);
+          whole_integrals(*mesh.blocks[part.cell.block].element);
       for (std::size_t a = 0; a < whole.size(); ++a) part.of[a] /= whole[a];
     }
     out.parts.push_back(std::move(part));

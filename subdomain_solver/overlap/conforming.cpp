@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/index.hpp"
 
 namespace abut {
 
@@ -14,12 +13,12 @@ constexpr double same_place = 1.0e-6;  // of a cell
 
 Eigen::Vector3d place_of(const Mesh& mesh, std::int32_t node) {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
-  for (int i = 0; i < mesh.dim; ++i) x(i) = mesh.points[index(node * mesh.dim + i)];
+  for (int i = 0; i < mesh.dim; ++i) x(i) = mesh.points[node * mesh.dim + i];
   return x;
 }
 
 std::span<const std::int32_t> nodes_of(const Mesh& mesh, CellPlace place) {
-  return nodes_of(mesh.blocks[index(place.block)], place.cell);
+  return nodes_of(mesh.blocks[place.block], place.cell);
 }
 
 Eigen::Vector3d middle_of(const Mesh& mesh, CellPlace place) {

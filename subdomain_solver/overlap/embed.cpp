@@ -33,7 +33,7 @@ using Row = std::vector<std::pair<std::int32_t, double>>;
 
 /// Of values at the nodes of a cell; those that are rounding are left out, and the others sum to 1.
 Row row_of(const Mesh& mesh, CellPlace cell, const Eigen::VectorXd& values) {
-  const std::span<const std::int32_t> nodes = nodes_of(mesh.blocks[index(cell.block)], cell.cell);
+  const std::span<const std::int32_t> nodes = nodes_of(mesh.blocks[cell.block], cell.cell);
   Row row;
   double sum = 0.0;
   for (std::size_t a = 0; a < nodes.size(); ++a) {
@@ -88,10 +88,10 @@ Eigen::MatrixXd means(const Mesh& mesh, CellPlace cell, Corners corners) {
   for (int p = 0; p < t.points; ++p) {
     const Eigen::Map<const Eigen::VectorXd> n(t.n.data() + index(p) * corners.size(), count);
     Eigen::Vector3d at = Eigen::Vector3d::Zero();
-    for (Eigen::Index i = 0; i < count; ++i) at += n(i) * corners[index(i)];
+    for (Eigen::Index i = 0; i < count; ++i) at += n(i) * corners[i];
     const Eigen::VectorXd shapes = shapes_at(mesh, cell, at);
     if (p == 0) sums.setZero(count, shapes.size());
-    const double weight = t.weight[index(p)] * stretch(t, p, corners);
+    const double weight = t.weight[p] * stretch(t, p, corners);
     mass += weight * n * n.transpose();
     sums += weight * n * shapes.transpose();
   }
@@ -109,7 +109,7 @@ class Embedder {
     const Eigen::MatrixXd values = means(cells_.mesh(), cell, part);
     for (Eigen::Index i = values.rows() - 1; i >= 0; --i)  // seen from inside this body
       out_.facets.push_back(
-          point(part[index(i)], row_of(cells_.mesh(), cell, values.row(i).transpose())));
+          point(part[i], row_of(cells_.mesh(), cell, values.row(i).transpose())));
     out_.offsets.push_back(static_cast<std::int32_t>(out_.facets.size()));
   }
 
@@ -119,7 +119,7 @@ class Embedder {
   /// Parts share points where they say the same of them: where motion is linear along them.
   std::int32_t point(const Eigen::Vector3d& at, const Row& row) {
     Key key;
-    for (int i = 0; i < 3; ++i) key[index(i)] = std::llround(at(i) / (same * cells_.spacing()));
+    for (int i = 0; i < 3; ++i) key[i] = std::llround(at(i) / (same * cells_.spacing()));
     std::vector<std::pair<std::int32_t, Row>>& here = places_[key];
     for (const auto& [place, other] : here)
       if (equal(other, row)) return place;
@@ -196,8 +196,8 @@ namespace {
 std::optional<std::array<Eigen::Vector3d, 4>> quadrilateral(const BoundarySimplices& boundary,
                                                             int f) {
   const bool next =
-      f + 1 < boundary.count() && boundary.facet[index(f)] == boundary.facet[index(f) + 1];
-  const bool first = f == 0 || boundary.facet[index(f)] != boundary.facet[index(f) - 1];
+      f + 1 < boundary.count() && boundary.facet[f] == boundary.facet[index(f) + 1];
+  const bool first = f == 0 || boundary.facet[f] != boundary.facet[index(f) - 1];
   if (!next || !first || boundary.mesh.dim != 3) return std::nullopt;
   const Simplex one = boundary.simplex(f), two = boundary.simplex(f + 1);  // a fan
   return std::array{one.x[0], one.x[1], one.x[2], two.x[2]};
@@ -276,8 +276,8 @@ EmbeddedSurface embed(const BoundarySimplices& boundary, const MeshSimplices& ce
     divide_among(boundary.simplex(f), of(f, 1), cells, embedder, left);
     for (const Simplex& part : left) {
       for (int i = 0; i < part.count; ++i) {
-        const double apart = distance(skin, part.x[index(i)]);
-        if (apart > sticking.distance) sticking = {apart, part.x[index(i)]};
+        const double apart = distance(skin, part.x[i]);
+        if (apart > sticking.distance) sticking = {apart, part.x[i]};
       }
     }
   }

@@ -1,6 +1,5 @@
 #include "subdomain_solver/overlap/embedded_surface.hpp"
 
-#include "base/index.hpp"
 
 namespace abut {
 

@@ -23,7 +23,7 @@ PosedSurface view(const Mesh& mesh, std::span<const std::int32_t> nodes,
 
 Simplex simplex_of(const PosedSurface& surface, int i) {
   Simplex s;
-  for (const std::int32_t node : surface.nodes(i)) s.x[index(s.count++)] = surface.point(node);
+  for (const std::int32_t node : surface.nodes(i)) s.x[s.count++] = surface.point(node);
   return s;
 }
 
@@ -37,11 +37,11 @@ std::vector<std::vector<std::int32_t>> fan(const std::vector<std::int32_t>& face
 
 /// [m] (nodes, dim)
 Rows nodes_at(const Mesh& mesh, CellPlace place) {
-  const std::span<const std::int32_t> nodes = nodes_of(mesh.blocks[index(place.block)], place.cell);
+  const std::span<const std::int32_t> nodes = nodes_of(mesh.blocks[place.block], place.cell);
   Rows x(static_cast<Eigen::Index>(nodes.size()), mesh.dim);
   for (Eigen::Index a = 0; a < x.rows(); ++a)
     for (Eigen::Index i = 0; i < x.cols(); ++i)
-      x(a, i) = mesh.points[index(nodes[index(a)]) * index(mesh.dim) + index(i)];
+      x(a, i) = mesh.points[index(nodes[a]) * index(mesh.dim) + index(i)];
   return x;
 }
 
@@ -58,7 +58,7 @@ MeshSimplices::MeshSimplices(const Mesh& mesh) : mesh_(mesh), offsets_({0}) {
 }
 
 void MeshSimplices::add_fan(CellPlace place) {
-  const CellBlock& block = mesh_.blocks[index(place.block)];
+  const CellBlock& block = mesh_.blocks[place.block];
   const std::span<const std::int32_t> nodes = abut::nodes_of(block, place.cell);
   const auto add = [&](std::span<const std::int32_t> corners) {
     nodes_.insert(nodes_.end(), corners.begin(), corners.end());
@@ -98,7 +98,7 @@ Simplex BoundarySimplices::simplex(int i) const {
 
 /// Newton's method from the middle: one step where the cell is a parallelepiped or a simplex.
 std::vector<double> reference_place(const Mesh& mesh, CellPlace place, const Eigen::Vector3d& at) {
-  const Element& element = *mesh.blocks[index(place.block)].element;
+  const Element& element = *mesh.blocks[place.block].element;
   const Eigen::Index dim = mesh.dim;
   const Rows x = nodes_at(mesh, place);
   const Eigen::Map<const Rows> corners(element.corners.data(), element.nodes, dim);
@@ -120,7 +120,7 @@ std::vector<double> reference_place(const Mesh& mesh, CellPlace place, const Eig
 }
 
 std::vector<double> shape_values(const Mesh& mesh, CellPlace place, const std::vector<double>& xi) {
-  const Element& element = *mesh.blocks[index(place.block)].element;
+  const Element& element = *mesh.blocks[place.block].element;
   std::vector<double> n(index(element.nodes)), dn(n.size() * xi.size());
   element.evaluate(xi, n, dn);
   return n;

@@ -27,7 +27,7 @@ class MeshSimplices {
   const Mesh& mesh() const { return mesh_; }
   int count() const { return static_cast<int>(owner_.size()); }
   Simplex simplex(int i) const;
-  const CellPlace& cell(int i) const { return owner_[index(i)]; }
+  const CellPlace& cell(int i) const { return owner_[i]; }
   double spacing() const { return spacing_; }  // [m] of a usual cell
   const BoxTree& tree() const { return tree_; }
 

@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 
-#include "base/index.hpp"
 
 namespace abut {
 
@@ -23,20 +22,20 @@ void halve(const Simplex& s, const HalfSpace& side, double near, std::vector<Sim
   std::array<double, 4> d{};
   int in = -1, out = -1;
   for (int i = 0; i < s.count; ++i) {
-    d[index(i)] = distance(side, s.x[index(i)], near);
-    if (d[index(i)] < 0.0 && in < 0) in = i;
-    if (d[index(i)] > 0.0 && out < 0) out = i;
+    d[i] = distance(side, s.x[i], near);
+    if (d[i] < 0.0 && in < 0) in = i;
+    if (d[i] > 0.0 && out < 0) out = i;
   }
   if (out < 0) {
     inside.push_back(s);
   } else if (in < 0) {
     if (outside != nullptr) outside->push_back(s);
   } else {
-    const double share = d[index(in)] / (d[index(in)] - d[index(out)]);
-    const Eigen::Vector3d cut = s.x[index(in)] + share * (s.x[index(out)] - s.x[index(in)]);
+    const double share = d[in] / (d[in] - d[out]);
+    const Eigen::Vector3d cut = s.x[in] + share * (s.x[out] - s.x[in]);
     for (const int corner : {in, out}) {
       Simplex half = s;
-      half.x[index(corner)] = cut;
+      half.x[corner] = cut;
       halve(half, side, near, inside, outside);
     }
   }
@@ -56,7 +55,7 @@ std::vector<HalfSpace> sides_of(const Simplex& s) {
   std::vector<HalfSpace> sides;
   for (int apex = 0; apex < s.count; ++apex) {
     const auto corner = [&](int k) -> const Eigen::Vector3d& {
-      return s.x[index((apex + k) % s.count)];
+      return s.x[(apex + k) % s.count];
     };
     const Eigen::Vector3d along = corner(2) - corner(1);
     Eigen::Vector3d normal = s.count == 3 ? Eigen::Vector3d(along.y(), -along.x(), 0.0)

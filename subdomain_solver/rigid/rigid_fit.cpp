@@ -6,7 +6,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "base/index.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -18,7 +17,7 @@ using Eigen::Vector3d;
 
 Vector3d at_node(std::span<const double> field, int node, int dim) {
   Vector3d out = Vector3d::Zero();
-  for (int i = 0; i < dim; ++i) out(i) = field[index(node * dim + i)];
+  for (int i = 0; i < dim; ++i) out(i) = field[node * dim + i];
   return out;
 }
 

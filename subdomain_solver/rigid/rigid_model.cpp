@@ -6,7 +6,6 @@
 #include <Eigen/Eigenvalues>
 
 #include "base/assert.hpp"
-#include "base/index.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -16,7 +15,7 @@ namespace {
 /// The first numbers of a list as a vector of space.
 Eigen::Vector3d first(std::span<const double> list, int dim) {
   Eigen::Vector3d out = Eigen::Vector3d::Zero();
-  for (int i = 0; i < dim; ++i) out(i) = list[index(i)];
+  for (int i = 0; i < dim; ++i) out(i) = list[i];
   return out;
 }
 
@@ -49,11 +48,11 @@ struct Moments {
     std::array<Vector, 3> arm, heavy;
     for (int i = 0; i < dim; ++i) {
       centre(i) = share.dot(component(points, i)) / mass;
-      arm[index(i)] = component(points, i).array() - centre(i);
-      heavy[index(i)] = times(arm[index(i)]);
+      arm[i] = component(points, i).array() - centre(i);
+      heavy[i] = times(arm[i]);
     }
     for (int i = 0; i < dim; ++i) {
-      for (int j = 0; j < dim; ++j) second(i, j) = arm[index(i)].dot(heavy[index(j)]);
+      for (int j = 0; j < dim; ++j) second(i, j) = arm[i].dot(heavy[j]);
     }
   }
 };

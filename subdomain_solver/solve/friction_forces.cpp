@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/index.hpp"
 
 namespace abut {
 
@@ -164,7 +163,7 @@ class Linearised {
     b_.step = b_.factors.solve(b_.rest);
     if (!b_.step.allFinite()) return false;
     z.setZero();
-    for (Eigen::Index k = 0; k < n; ++k) z(b_.active[index(k)]) = b_.step(k);
+    for (Eigen::Index k = 0; k < n; ++k) z(b_.active[k]) = b_.step(k);
     return true;
   }
 

@@ -1,7 +1,6 @@
 #include "subdomain_solver/solve/matrix_sum.hpp"
 
 #include "base/assert.hpp"
-#include "base/index.hpp"
 
 namespace abut {
 

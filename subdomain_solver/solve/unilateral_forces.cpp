@@ -27,8 +27,8 @@ bool close(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& for
   b.part.resize(n, n);
   b.rest.resize(n);
   for (Eigen::Index k = 0; k < n; ++k) {
-    const Eigen::Index column = b.pressed[index(k)];
-    for (Eigen::Index i = 0; i < n; ++i) b.part(i, k) = a(b.pressed[index(i)], column);
+    const Eigen::Index column = b.pressed[k];
+    for (Eigen::Index i = 0; i < n; ++i) b.part(i, k) = a(b.pressed[i], column);
     b.part(k, k) += soft;
     b.rest(k) = -gap(column);
   }
@@ -36,7 +36,7 @@ bool close(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& for
   if (b.factors.info() != Eigen::Success) return false;
   b.factors.solveInPlace(b.rest);
   if (!b.rest.allFinite()) return false;
-  for (Eigen::Index k = 0; k < n; ++k) force(b.pressed[index(k)]) = b.rest(k);
+  for (Eigen::Index k = 0; k < n; ++k) force(b.pressed[k]) = b.rest(k);
   return true;
 }
 
@@ -46,15 +46,15 @@ bool by_active_sets(const Eigen::MatrixXd& a, const Vector& gap, Vector& force,
   for (int set = 0; set < most_sets; ++set) {
     b.pressed.clear();
     for (Eigen::Index i = 0; i < gap.size(); ++i)
-      if (b.is_pressed[index(i)]) b.pressed.push_back(i);
+      if (b.is_pressed[i]) b.pressed.push_back(i);
     if (!close(a, gap, 0.0, force, b)) return false;
     b.gap = gap;
     b.gap.noalias() += a * force;
     bool same = true;
     for (Eigen::Index i = 0; i < gap.size(); ++i) {
-      const char before = b.is_pressed[index(i)];
-      b.is_pressed[index(i)] = before ? force(i) > 0.0 : b.gap(i) < -least;
-      same = same && before == b.is_pressed[index(i)];
+      const char before = b.is_pressed[i];
+      b.is_pressed[i] = before ? force(i) > 0.0 : b.gap(i) < -least;
+      same = same && before == b.is_pressed[i];
     }
     if (same) return true;
   }
@@ -67,7 +67,7 @@ bool press(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& for
            UnilateralBuffers& b) {
   b.pressed.clear();
   for (Eigen::Index i = 0; i < gap.size(); ++i)
-    if (b.is_pressed[index(i)]) b.pressed.push_back(i);
+    if (b.is_pressed[i]) b.pressed.push_back(i);
   b.from = force;
   if (!close(a, gap, soft, force, b)) return true;  // not a number: told by the caller
   double way = 1.0;
@@ -83,7 +83,7 @@ bool press(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& for
   force = b.from + way * (force - b.from);
   for (const Eigen::Index i : b.pressed) force(i) = std::max(0.0, force(i));
   force(first) = 0.0;
-  b.is_pressed[index(first)] = 0;
+  b.is_pressed[first] = 0;
   return false;
 }
 
@@ -92,7 +92,7 @@ bool press(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& for
 bool by_rows(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& force,
              UnilateralBuffers& b) {
   force = force.cwiseMax(0.0);
-  for (Eigen::Index i = 0; i < gap.size(); ++i) b.is_pressed[index(i)] = force(i) > 0.0;
+  for (Eigen::Index i = 0; i < gap.size(); ++i) b.is_pressed[i] = force(i) > 0.0;
   const Eigen::Index most_steps = 10 * gap.size() + 100;
   for (Eigen::Index step = 0; step < most_steps; ++step) {
     while (!press(a, gap, soft, force, b)) {
@@ -104,9 +104,9 @@ bool by_rows(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& f
     const double least =
         std::max(settled * gap.lpNorm<Eigen::Infinity>(), soft * force.lpNorm<Eigen::Infinity>());
     for (Eigen::Index i = 0; i < gap.size(); ++i)
-      if (b.is_pressed[index(i)]) b.gap(i) = 0.0;
+      if (b.is_pressed[i]) b.gap(i) = 0.0;
     if (b.gap.minCoeff(&deepest) >= -least) return true;
-    b.is_pressed[index(deepest)] = 1;
+    b.is_pressed[deepest] = 1;
   }
   return false;
 }
@@ -120,7 +120,7 @@ bool unilateral_forces(const Eigen::MatrixXd& a, const Vector& gap, Vector& forc
   buffers.guess.setZero(gap.size());
   for (Eigen::Index i = 0; i < gap.size(); ++i) {
     if (i < force.size()) buffers.guess(i) = std::max(0.0, force(i));
-    buffers.is_pressed[index(i)] = gap(i) < 0.0 || buffers.guess(i) > 0.0;
+    buffers.is_pressed[i] = gap(i) < 0.0 || buffers.guess(i) > 0.0;
   }
   force.resize(gap.size());
   if (by_active_sets(a, gap, force, buffers)) return true;

@@ -28,7 +28,7 @@ void ContactTurns::begin(Contact* contact, const std::vector<double>& force) {
   }
   force_.resize(n);
   pose_.resize(n);
-  for (Eigen::Index k = 0; k < n; ++k) force_(k) = force[index(touched_[index(k)])];
+  for (Eigen::Index k = 0; k < n; ++k) force_(k) = force[touched_[index(k)]];
 }
 
 void ContactTurns::weigh(double load, double move) {
@@ -39,15 +39,15 @@ void ContactTurns::weigh(double load, double move) {
 }
 
 void ContactTurns::add_to(Vector& external) const {
-  for (Eigen::Index k = 0; k < force_.size(); ++k) external(touched_[index(k)]) += force_(k);
+  for (Eigen::Index k = 0; k < force_.size(); ++k) external(touched_[k]) += force_(k);
 }
 
 const Vector* ContactTurns::column(int k) {
-  Vector& column = columns_[index(k)];
-  if (known_[index(k)]) return &column;
-  known_[index(k)] = 1;
+  Vector& column = columns_[k];
+  if (known_[k]) return &column;
+  known_[k] = 1;
   column.setZero(static_cast<Eigen::Index>(touched_.size()));
-  const int place = free_.place(touched_[index(k)]);
+  const int place = free_.place(touched_[k]);
   if (place < 0) return &column;
   unit_.setZero(free_.count());
   unit_(place) = load_;
@@ -71,7 +71,7 @@ void ContactTurns::relax(int turn) {
 }
 
 bool ContactTurns::press(double time, const Vector& q, int turn, Vector& x, double& change) {
-  for (Eigen::Index k = 0; k < force_.size(); ++k) pose_(k) = q(touched_[index(k)]);
+  for (Eigen::Index k = 0; k < force_.size(); ++k) pose_(k) = q(touched_[k]);
   for (int k = 0; k < static_cast<int>(force_.size()); ++k) {
     if (force_(k) == 0.0) continue;
     const Vector* give = column(k);

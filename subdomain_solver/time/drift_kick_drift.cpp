@@ -37,7 +37,7 @@ DriftKickDrift::Known* DriftKickDrift::respond(const std::vector<double>& histor
 /// The stored energy is that of the scheme's invariant: as if a step lay behind.
 std::optional<Failed> DriftKickDrift::begin(Motion& motion, double time) {
   motion.history.resize(problem_.model->history_size(), 0.0);
-  for (const Prescribed& p : problem_.supports) motion.q[index(p.dof)] = p.value(time);
+  for (const Prescribed& p : problem_.supports) motion.q[p.dof] = p.value(time);
   middle_ = motion.q;
   view(middle_) -= 0.5 * step_ * view(motion.v);
   const Known* known = respond(motion.history);
@@ -62,7 +62,7 @@ bool DriftKickDrift::find_middle(const Motion& motion, double time, double dt) {
   for (const Prescribed& p : problem_.supports) {
     const double value = given_.emplace_back(p.value(time + dt));
     if (!std::isfinite(value)) return false;
-    middle_[index(p.dof)] = 0.5 * (motion.q[index(p.dof)] + value);
+    middle_[p.dof] = 0.5 * (motion.q[p.dof] + value);
   }
   return true;
 }
@@ -78,7 +78,7 @@ bool DriftKickDrift::peek(const Motion& motion, double time, double dt, std::vec
   view(q) =
       view(known->at) +
       half * (view(motion.v) + dt * inverse_mass_.cwiseProduct(loads_ - known->response.force));
-  for (std::size_t k = 0; k < given_.size(); ++k) q[index(problem_.supports[k].dof)] = given_[k];
+  for (std::size_t k = 0; k < given_.size(); ++k) q[problem_.supports[k].dof] = given_[k];
   return true;
 }
 

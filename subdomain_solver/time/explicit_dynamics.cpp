@@ -41,7 +41,7 @@ void ExplicitDynamics::find_loads(double time, std::span<const double> q) {
 
 std::optional<Failed> ExplicitDynamics::begin(Motion& motion, double time) {
   motion.history.resize(problem_.model->history_size(), 0.0);
-  for (const Prescribed& p : problem_.supports) motion.q[index(p.dof)] = p.value(time);
+  for (const Prescribed& p : problem_.supports) motion.q[p.dof] = p.value(time);
   if (!layer_.empty()) {
     find_loads(time, motion.q);
     if (auto failed = layer_.settle(time, motion.q, motion.history, loads_, nullptr)) return failed;
@@ -129,7 +129,7 @@ std::optional<Failed> ExplicitDynamics::step(Motion& motion, double time, double
   for (const Prescribed& p : problem_.supports) {
     const double value = p.value(time + dt);
     if (!std::isfinite(value)) return not_finite(time + dt);
-    next_[index(p.dof)] = value;
+    next_[p.dof] = value;
   }
   if (!layer_.empty()) {
     const double end = time + dt;

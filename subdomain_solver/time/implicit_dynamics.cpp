@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/assert.hpp"
-#include "base/index.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -74,7 +73,7 @@ class ImplicitDynamics::Balance final : public Equations {
   }
 
   [[nodiscard]] bool residual(const Vector& x, Vector& r, ResidualUnits& units) override {
-    for (int i = 0; i < o_.free_.count(); ++i) b_.a(o_.free_.list()[index(i)]) = x(i);
+    for (int i = 0; i < o_.free_.count(); ++i) b_.a(o_.free_.list()[i]) = x(i);
     b_.q = b_.q_start + w_.beta * dt_ * dt_ * b_.a;
     Model& model = *o_.problem_.model;
     const std::span<const double> q = span_of(b_.q);
@@ -145,8 +144,8 @@ class ImplicitDynamics::Balance final : public Equations {
     store(b_.response.force, motion.force);
     // Their velocity is that of the step: nothing but traces reads it.
     for (const int dof : o_.layer_.dofs()) {
-      motion.v[index(dof)] = b_.moved(dof) / dt_;
-      motion.a[index(dof)] = 0.0;
+      motion.v[dof] = b_.moved(dof) / dt_;
+      motion.a[dof] = 0.0;
     }
   }
 
@@ -274,7 +273,7 @@ void ImplicitDynamics::find_lag(const Motion& motion, double step, const Vector&
   const double inertia = step * (1.0 - w.alpha_m - w.gamma), forces = step * (0.5 - w.alpha_f);
   out.setZero(external.size());
   for (const int i : inertial_.list())
-    out(i) = inertia * of_mass_.rest(i) - forces * (external(i) - motion.force[index(i)]);
+    out(i) = inertia * of_mass_.rest(i) - forces * (external(i) - motion.force[i]);
 }
 
 /// Accelerations from the balance at the begin: M a = f - r on the free coordinates. Those of
@@ -287,8 +286,8 @@ std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
   Vector& a = of_mass_.acceleration;  // jump finds it grown
   a.setZero(model.dofs());
   for (const Prescribed& p : problem_.supports) {
-    motion.q[index(p.dof)] = p.value(time);
-    a(p.dof) = motion.a[index(p.dof)];
+    motion.q[p.dof] = p.value(time);
+    a(p.dof) = motion.a[p.dof];
   }
   if (!layer_.empty()) {
     const Vector& loads = problem_.external_force(time, motion.q);

@@ -68,11 +68,11 @@ bool MasslessLayer::factor() {
 }
 
 const Vector* MasslessLayer::column(int k) {
-  Vector& column = columns_[index(k)];
-  if (known_[index(k)]) return &column;
+  Vector& column = columns_[k];
+  if (known_[k]) return &column;
   column.setZero(static_cast<Eigen::Index>(place_.size()));
-  known_[index(k)] = 1;
-  const int place = place_[index(k)];
+  known_[k] = 1;
+  const int place = place_[k];
   if (place < 0) return &column;
   unit_(place) = 1.0;
   const bool solved = factors_->solve(unit_, answer_);
@@ -102,7 +102,7 @@ bool MasslessLayer::press(double time, std::span<const double> q, Contact& conta
   free_.resize(pressed_.size());
   for (std::size_t i = 0; i < place_.size(); ++i) {
     const double step = place_[i] >= 0 ? step_(place_[i]) : 0.0;
-    free_(static_cast<Eigen::Index>(i)) = q[index(touched_[i])] + step;
+    free_(static_cast<Eigen::Index>(i)) = q[touched_[i]] + step;
   }
   for (int k = 0; k < static_cast<int>(pressed_.size()); ++k) {
     if (pressed_(k) == 0.0) continue;
@@ -128,7 +128,7 @@ bool MasslessLayer::press(double time, std::span<const double> q, Contact& conta
 double MasslessLayer::move(std::vector<double>& q, double part) {
   double largest = 0.0;
   for (std::size_t i = 0; i < dofs_.size(); ++i) {
-    double& at = q[index(dofs_[i])];
+    double& at = q[dofs_[i]];
     at += part * step_(static_cast<Eigen::Index>(i));
     largest = std::max(largest, std::abs(at));
   }

@@ -47,10 +47,10 @@ void Problem::set_accelerations(double time, double step, Vector& acceleration) 
 FreeCoordinates::FreeCoordinates(int dofs, const std::vector<Prescribed>& supports,
                                  const std::vector<int>& without)
     : place_(index(dofs), 0) {
-  for (const Prescribed& p : supports) place_[index(p.dof)] = -1;
-  for (const int dof : without) place_[index(dof)] = -1;
+  for (const Prescribed& p : supports) place_[p.dof] = -1;
+  for (const int dof : without) place_[dof] = -1;
   for (int i = 0; i < dofs; ++i) {
-    int& place = place_[index(i)];
+    int& place = place_[i];
     if (place < 0) continue;
     place = count();
     free_.push_back(i);
@@ -59,11 +59,11 @@ FreeCoordinates::FreeCoordinates(int dofs, const std::vector<Prescribed>& suppor
 
 void FreeCoordinates::pick(const Vector& all, Vector& free) const {
   free.resize(count());
-  for (int i = 0; i < count(); ++i) free(i) = all(free_[index(i)]);
+  for (int i = 0; i < count(); ++i) free(i) = all(free_[i]);
 }
 
 void FreeCoordinates::add(const Vector& free, Vector& all) const {
-  for (int i = 0; i < count(); ++i) all(free_[index(i)]) += free(i);
+  for (int i = 0; i < count(); ++i) all(free_[i]) += free(i);
 }
 
 void FreeCoordinates::extract(const SparseMatrix& all, SparseMatrix& free) {
@@ -74,9 +74,9 @@ void FreeCoordinates::extract(const SparseMatrix& all, SparseMatrix& free) {
     for (int column : free_) {
       const int first = all.outerIndexPtr()[column], last = all.outerIndexPtr()[column + 1];
       for (int k = first; k < last; ++k) {
-        const int row = place_[index(all.innerIndexPtr()[k])];
+        const int row = place_[all.innerIndexPtr()[k]];
         if (row < 0) continue;
-        entries.emplace_back(row, place_[index(column)], 0.0);
+        entries.emplace_back(row, place_[column], 0.0);
         from_.push_back(k);
       }
     }

@@ -59,7 +59,7 @@ class FreeCoordinates {
 
   int count() const { return static_cast<int>(free_.size()); }
   const std::vector<int>& list() const { return free_; }
-  int place(int dof) const { return place_[index(dof)]; }  // among the free ones; -1: it is none
+  int place(int dof) const { return place_[dof]; }  // among the free ones; -1: it is none
   void pick(const Vector& all, Vector& free) const;
   void add(const Vector& free, Vector& all) const;
   void extract(const SparseMatrix& all, SparseMatrix& free);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/index.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -63,7 +62,7 @@ class QuasiStatic::Balance final : public Equations {
   }
 
   [[nodiscard]] bool residual(const Vector& x, Vector& r, ResidualUnits& units) override {
-    for (int i = 0; i < o_.free_.count(); ++i) b_.q(o_.free_.list()[index(i)]) = x(i);
+    for (int i = 0; i < o_.free_.count(); ++i) b_.q(o_.free_.list()[i]) = x(i);
     Model& model = *o_.problem_.model;
     const std::span<const double> q = span_of(b_.q);
     if (!model.evaluate(q, motion_.history, Model::Want::force, b_.response)) return false;

@@ -35,7 +35,7 @@ SolidText brick(const std::string& name, const std::vector<double>& lengths,
     std::string row;
     for (int j = 0; j < dim; ++j)
       row += fmt::format("{}{} * ({} - {})", j == 0 ? "" : " + ", number(turned(i, j)), "xyz"[j],
-                         number(0.5 * lengths[index(j)]));
+                         number(0.5 * lengths[j]));
     map += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", row);
   }
   return {.name = name,

@@ -42,7 +42,7 @@ std::vector<SolidText> row(const Case& c) {
   std::vector<SolidText> bars;
   for (const int k : {0, 1, 2}) {
     SolidText bar;
-    bar.name = std::vector<std::string>{"middle", "left", "right"}[index(k)];
+    bar.name = std::vector<std::string>{"middle", "left", "right"}[k];
     bar.dim = c.dim;
     bar.mesh = bar_mesh(c.dim, 2 - (c.dim - 2) + k % 2);  // in space as few as do not match
     bar.material = c.law;

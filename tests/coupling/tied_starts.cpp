@@ -180,11 +180,11 @@ Eigen::MatrixXd mobility_of(const Strips& strips) {
   for (const std::size_t b : {0u, 1u}) {
     Eigen::MatrixXd g = Eigen::MatrixXd::Zero(rows.count(), face(b).count());
     for (int r = 0; r < rows.count(); ++r)
-      for (auto e = rows.of[b].offsets[index(r)]; e < rows.of[b].offsets[index(r) + 1]; ++e)
-        g(r, rows.of[b].columns[index(e)]) += rows.of[b].values[index(e)];
+      for (auto e = rows.of[b].offsets[r]; e < rows.of[b].offsets[index(r) + 1]; ++e)
+        g(r, rows.of[b].columns[e]) += rows.of[b].values[e];
     const double corner = 0.1 / strips.along[b] / 4.0;
     for (int node = 0; node < face(b).count(); ++node) {
-      const double x = face(b).points[index(2 * node)];
+      const double x = face(b).points[2 * node];
       const bool end = x < 1.0e-9 || x > 1.0 - 1.0e-9;
       mobility += g.col(node) * g.col(node).transpose() / (end ? corner : 2.0 * corner);
     }

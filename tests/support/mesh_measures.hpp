@@ -49,7 +49,7 @@ class MeshMeasures {
   Surface surface(const std::string& side) const {
     Surface sum;
     for (const Facet& facet : mesh_.side(side)) {
-      const Element& cell = *mesh_.blocks[index(facet.block)].element;
+      const Element& cell = *mesh_.blocks[facet.block].element;
       const Element& face = element_named(cell.facet_name);
       const Tabulation table = tabulate(face, quadrature(face.shape, degree));
       const std::vector<std::int32_t> own = mesh_.nodes_of(facet);

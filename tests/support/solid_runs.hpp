@@ -25,7 +25,7 @@ using Place = std::function<Position(const Position&)>;
 /// Reference position of a node; zeros beyond the mesh's dimension.
 inline Position position(const Mesh& mesh, int node) {
   Position x = Position::Zero();
-  for (int i = 0; i < mesh.dim; ++i) x(i) = mesh.points[index(node * mesh.dim + i)];
+  for (int i = 0; i < mesh.dim; ++i) x(i) = mesh.points[node * mesh.dim + i];
   return x;
 }
 
@@ -34,7 +34,7 @@ inline std::vector<double> nodal(const Mesh& mesh, const Place& field) {
   std::vector<double> out(mesh.points.size());
   for (int node = 0; node < mesh.node_count(); ++node) {
     const Position value = field(position(mesh, node));
-    for (int i = 0; i < mesh.dim; ++i) out[index(node * mesh.dim + i)] = value(i);
+    for (int i = 0; i < mesh.dim; ++i) out[node * mesh.dim + i] = value(i);
   }
   return out;
 }
@@ -98,7 +98,7 @@ struct Solid {
   /// Displacement of a node.
   Position displacement(int node) const {
     Position u = Position::Zero();
-    for (int i = 0; i < model.mesh().dim; ++i) u(i) = motion.q[index(node * model.mesh().dim + i)];
+    for (int i = 0; i < model.mesh().dim; ++i) u(i) = motion.q[node * model.mesh().dim + i];
     return u;
   }
   /// Mean over the nodes of a side or node set.

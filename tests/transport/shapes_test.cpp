@@ -232,7 +232,7 @@ TEST(Shapes, KernelsOfPatternsComeBackAsTheyWereSent) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Dice& dice = talk.dice;
     const int port = dice.upto(static_cast<int>(talk.body.ports.size()) - 1);
-    const int width = size_of(talk.body.ports[index(port)].geometry).width();
+    const int width = size_of(talk.body.ports[port].geometry).width();
     const int patterns = 1 + dice.upto(3), count = 1 + dice.upto(4);
     const Probing probing{port, dice.values(index(patterns * width)), 0.5 + dice.value(), count};
     Probing asked;

@@ -37,7 +37,7 @@ struct Crowd {
       PortResponse& port = bodies.back()->reply.ports[0];
       for (int corner = 0; corner < 2; ++corner)
         for (int i = 0; i < dim; ++i)
-          surface.points.push_back(corner == 0 ? place(random) : surface.points[index(i)] + size);
+          surface.points.push_back(corner == 0 ? place(random) : surface.points[i] + size);
       surface.facets = {0, 1};
       surface.offsets = {0, 2};
       port.lower.assign(surface.points.begin(), surface.points.begin() + dim);
@@ -50,9 +50,9 @@ struct Crowd {
     EXPECT_FALSE(all->advance_all());
   }
   bool meet(int a, int b, double time) const {
-    const auto stands = [this](int k) { return std::isinf(bodies[index(k)]->description_.mass); };
-    const PortResponse &one = bodies[index(a)]->reply.ports[0],
-                       &two = bodies[index(b)]->reply.ports[0];
+    const auto stands = [this](int k) { return std::isinf(bodies[k]->description_.mass); };
+    const PortResponse &one = bodies[a]->reply.ports[0],
+                       &two = bodies[b]->reply.ports[0];
     const double way = time * (one.speed_bound + two.speed_bound);
     for (std::size_t i = 0; i < index(dim); ++i)
       if (one.lower[i] > two.upper[i] + way || two.lower[i] > one.upper[i] + way) return false;

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/horizon.hpp"
 #include "tests/support/scripted.hpp"

@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/index.hpp"
 #include "coordinator/coupling/joint.hpp"
 #include "coordinator/coupling/parallel_force.hpp"
 #include "coordinator/coupling/transmission.hpp"
@@ -276,7 +275,7 @@ TEST(UnilateralSolution, MakesForcesAndGapsComplementary) {
     Eigen::VectorXd left = overlap + normal * r;
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j <= i; ++j)
-        left[i] -= (ck[index(i - j)] + cn[index(i - j)]) * change[j];
+        left[i] -= (ck[i - j] + cn[i - j]) * change[j];
     const Eigen::VectorXd now = force + change;
     int pressed = 0;
     for (Eigen::Index i = 0; i < n; ++i) {

@@ -37,8 +37,8 @@ double moved(const PortKernel& kernel, const std::vector<double>& forces, int st
   double sum = 0.0;
   for (int j = 0; j <= step; ++j)
     for (int p = 0; p < width; ++p)
-      sum += forces[index(j * width + p)] *
-             kernel.displacement[index(((step - j) * width + p) * width + at)];
+      sum += forces[j * width + p] *
+             kernel.displacement[((step - j) * width + p) * width + at];
   return sum;
 }
 
@@ -54,7 +54,7 @@ TEST(KernelSupport, OfForcesAtLevelsIsTheMotionUnderTheirImpulsesInSubsteps) {
     force.f = numbers((steps + 1) * width, random);
     std::vector<double> means;  // over substeps, as the body takes them
     for (int i = 1; i <= steps; ++i) {
-      const double from = force.time[index(i - 1)], to = force.time[index(i)];
+      const double from = force.time[i - 1], to = force.time[i];
       std::vector<double> impulse(width);
       force.impulse(from, to, impulse);
       for (const double value : impulse) means.push_back(value / (to - from));
@@ -64,9 +64,9 @@ TEST(KernelSupport, OfForcesAtLevelsIsTheMotionUnderTheirImpulsesInSubsteps) {
         double told = 0.0;
         for (int p = 0; p < width; ++p) {
           const auto place = [&](int lag) { return index((lag * width + p) * width + at); };
-          told += force.f[index(p)] * levels.begin[place(i)];
+          told += force.f[p] * levels.begin[place(i)];
           for (int j = 0; j <= i; ++j)
-            told += force.f[index((j + 1) * width + p)] * levels.displacement[place(i - j)];
+            told += force.f[(j + 1) * width + p] * levels.displacement[place(i - j)];
         }
         EXPECT_NEAR(told, moved(own, means, i, at), 1.0e-13) << i << ' ' << at;  // sums of 48
       }

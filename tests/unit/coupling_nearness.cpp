@@ -8,7 +8,6 @@
 
 #include <cmath>
 
-#include "base/index.hpp"
 #include "coordinator/coupling/horizon.hpp"
 #include "tests/support/scripted.hpp"
 #include "tests/support/surfaces.hpp"

@@ -164,14 +164,14 @@ struct Triangle {
     Bodies all({&bodies[0], &bodies[1], &bodies[2]});
     Roles roles(all, 4.0, false);
     roles.start(joints);
-    for (int j : touches) roles.choose(joints[index(j)]);
+    for (int j : touches) roles.choose(joints[j]);
   }
 };
 
 TEST(Roles, ThatWouldGoRoundInACircleAreThoseOfAnOrder) {
   // Pair by pair 2 > 1 and 1 > 0 by the mesh, and 0 > 2 by the compliance: the last one turns.
   Triangle t({4.0, 2.0, 1.0});
-  for (int b : {0, 1, 2}) t.bodies[index(b)].description_.ports[0].geometry.spacing = 3.0 - b;
+  for (int b : {0, 1, 2}) t.bodies[b].description_.ports[0].geometry.spacing = 3.0 - b;
   t.choose();
   EXPECT_EQ(t.joints[0].kinematic_side().body, 1);
   EXPECT_EQ(t.joints[1].kinematic_side().body, 2);
@@ -187,9 +187,9 @@ TEST(Roles, OfAnyBodiesInAnyOrderOfTouchesAreThoseOfAnOrder) {
       Triangle t({1.0, 1.0, 1.0});
       int code = trial;
       for (Scripted& body : t.bodies) {
-        body.compliance = std::array{1.0, 2.0, 5.0}[index(code % 3)];
+        body.compliance = std::array{1.0, 2.0, 5.0}[code % 3];
         body.description_.ports[0].geometry.spacing =
-            std::array{1.0, 2.0, 3.0}[index(code / 3 % 3)];
+            std::array{1.0, 2.0, 3.0}[code / 3 % 3];
         code /= 9;
       }
       t.choose(touches);

@@ -42,7 +42,7 @@ struct Face {
     }
     const auto& parts = straight_parts(port.dim, count);
     for (const std::vector<int>& part : parts) {
-      for (const int local : part) port.facets.push_back(nodes[index(local)]);
+      for (const int local : part) port.facets.push_back(nodes[local]);
       port.offsets.push_back(static_cast<std::int32_t>(port.facets.size()));
     }
     port.parts.push_back(static_cast<std::int32_t>(parts.size()));
@@ -97,8 +97,8 @@ const Map other_uneven = [](const Vector2d& x) {
 
 double row_of(const SparseRows& rows, int row, const std::function<double(std::int32_t)>& value) {
   double sum = 0.0;
-  for (std::int32_t e = rows.offsets[index(row)]; e < rows.offsets[index(row) + 1]; ++e)
-    sum += rows.values[index(e)] * value(rows.columns[index(e)]);
+  for (std::int32_t e = rows.offsets[row]; e < rows.offsets[index(row) + 1]; ++e)
+    sum += rows.values[e] * value(rows.columns[e]);
   return sum;
 }
 
@@ -126,9 +126,9 @@ TEST(WholeFacets, HaveTheShapeFunctionsOfTheirElements) {
       std::vector<double> values(index(element.nodes)), derivatives(values.size() * index(dim - 1));
       element.evaluate(std::span(at.data(), index(dim - 1)), values, derivatives);
       for (int a = 0; a < element.nodes; ++a) {
-        EXPECT_NEAR(n[a], values[index(a)], 1.0e-15) << name;
+        EXPECT_NEAR(n[a], values[a], 1.0e-15) << name;
         for (int d = 0; d < dim - 1; ++d)
-          EXPECT_NEAR(slopes(a, d), derivatives[index(a * (dim - 1) + d)], 1.0e-15) << name;
+          EXPECT_NEAR(slopes(a, d), derivatives[a * (dim - 1) + d], 1.0e-15) << name;
       }
     }
   }
@@ -147,7 +147,7 @@ TEST(WholeFacets, AreFoundAgainInTheirStraightParts) {
     for (int f = 0; f < port.dim; ++f) {
       for (int a = corners; a < k.one; ++a) {
         const auto x = [&](int node) {
-          return port.points[index(whole.nodes[index(f * k.one + node)] * k.dim)];
+          return port.points[whole.nodes[index(f * k.one + node)] * k.dim];
         };
         const int i = a - corners;
         EXPECT_NEAR(x(a), 0.5 * (x(i) + x((i + 1) % corners)), 1.0e-15);
@@ -196,7 +196,7 @@ TEST(TieRows, OfSecondOrderSeeNoLinearFieldJump) {
           for (int d = 0; d < k.dim; ++d) {
             const auto along = [&](const PortGeometry& port) {
               return
-                  [&port, d](std::int32_t node) { return port.points[index(node * port.dim + d)]; };
+                  [&port, d](std::int32_t node) { return port.points[node * port.dim + d]; };
             };
             EXPECT_NEAR(row_of(rows.of[0], r, along(one)), row_of(rows.of[1], r, along(other)),
                         exact);
@@ -233,8 +233,8 @@ TEST(TieRows, AnyForcesBalance) {
         for (int node = 0; node < ports[s].count(); ++node) {
           Eigen::Vector3d x = Eigen::Vector3d::Zero(), f = x;
           for (int d = 0; d < k.dim; ++d) {
-            x(d) = ports[s].points[index(node * k.dim + d)];
-            f(d) = nodal[index(node * k.dim + d)];
+            x(d) = ports[s].points[node * k.dim + d];
+            f(d) = nodal[node * k.dim + d];
           }
           resultant[s] += f;
           moment[s] += x.cross(f);
@@ -268,7 +268,7 @@ TEST(TieRows, OfSecondOrderPassAUniformTraction) {
       const WholeFacets whole = whole_facets(port);
       for (std::size_t f = 0; f + 1 < whole.offsets.size(); ++f)
         for (int a = 0; a < nodes; ++a)
-          force[index(whole.nodes[index(whole.offsets[f] + a)])] += a < corners ? corner : middle;
+          force[whole.nodes[index(whole.offsets[f] + a)]] += a < corners ? corner : middle;
       for (std::size_t node = 0; node < force.size(); ++node)
         EXPECT_NEAR(told[node], force[node], exact) << s << " " << node;
     }
@@ -282,7 +282,7 @@ TEST(TieRows, NodesAreTwinsWhereFacetsAreTheSame) {
   const TieRows twins = make_tie_rows(one, same, 0);
   EXPECT_EQ(twins.count(), 7);
   for (int r = 0; r < twins.count(); ++r)
-    EXPECT_EQ(twins.of[0].offsets[index(r) + 1] - twins.of[0].offsets[index(r)], 1);
+    EXPECT_EQ(twins.of[0].offsets[index(r) + 1] - twins.of[0].offsets[r], 1);
   const Map shifted = [](const Vector2d& x) {
     return Vector2d(x.x() * 4.0 / 3.0 - 1.0 / 6.0, 0.0);
   };

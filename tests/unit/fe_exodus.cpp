@@ -86,8 +86,8 @@ TEST_P(ExodusBlocks, HaveTheirVolumesSidesAndSets) {
   expect_area("right", 0, 3.0);
   EXPECT_FALSE(mesh.sides.contains("between"));
   for (std::int32_t n : mesh.nodes_of("edge")) {
-    EXPECT_EQ(mesh.points[index(3 * n + 1)], 0.0);
-    EXPECT_EQ(mesh.points[index(3 * n + 2)], 0.0);
+    EXPECT_EQ(mesh.points[3 * n + 1], 0.0);
+    EXPECT_EQ(mesh.points[3 * n + 2], 0.0);
   }
   EXPECT_EQ(mesh.nodes_of("nodelist_5"), (std::vector<std::int32_t>{0}));
 }

@@ -62,7 +62,7 @@ TEST_P(GmshBlocks, HaveTheirVolumesSidesAndSets) {
   EXPECT_EQ(mesh.sides.size(), 3u);  // and the one without a name:
   EXPECT_NEAR(measures.surface("surface_77").vector[1], -6.0, roundoff(500, 6.0));
   for (std::int32_t n : mesh.nodes_of("between"))
-    EXPECT_NEAR(mesh.points[index(3 * n + 2)], 1.0, roundoff(4, 1.0));
+    EXPECT_NEAR(mesh.points[3 * n + 2], 1.0, roundoff(4, 1.0));
   EXPECT_GE(mesh.nodes_of("between").size(), 4u);
   EXPECT_EQ(mesh.nodes_of("edge").size(), mesh.blocks[0].element->order == 2 ? 3u : 2u);
   ASSERT_EQ(mesh.nodes_of("origin").size(), 1u);
@@ -128,7 +128,7 @@ TEST(GmshFile, PlanePartsKeepTheirCurvedSides) {
         0.5 * std::sin(2.0 * half) + 4.0 / 3.0 * std::sin(half) * (1.0 - std::cos(half));
     EXPECT_NEAR(hole, 0.25 * arcs * arc, 1e-10) << file;  // Gmsh's own precision, as below
     for (std::int32_t n : mesh.nodes_of("hole")) {
-      const double* x = &mesh.points[index(2 * n)];
+      const double* x = &mesh.points[2 * n];
       EXPECT_NEAR(std::hypot(x[0] - 1.0, x[1] - 1.0), 0.5, 1e-10);
     }
     EXPECT_NEAR(measures.surface("right").vector[0], 2.0, roundoff(100, 2.0));

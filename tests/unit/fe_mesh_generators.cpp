@@ -79,8 +79,8 @@ TEST_P(PlaneParts, RectanglesHaveTheirAreaAndSides) {
     EXPECT_NEAR(measures.surface("top").vector[1], 3.0, roundoff(100, 3.0));
     EXPECT_EQ(mesh.cell_count(), element_named(data.element).shape == Shape::triangle ? 24 : 12);
     const std::int32_t corner = mesh.nodes_of("right_bottom").at(0);
-    EXPECT_EQ(mesh.points[index(2 * corner)], at == Origin::corner ? 4.0 : 2.5);
-    EXPECT_EQ(mesh.points[index(2 * corner + 1)], at == Origin::corner ? -2.0 : -2.25);
+    EXPECT_EQ(mesh.points[2 * corner], at == Origin::corner ? 4.0 : 2.5);
+    EXPECT_EQ(mesh.points[2 * corner + 1], at == Origin::corner ? -2.0 : -2.25);
   }
 }
 

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/solids.hpp"

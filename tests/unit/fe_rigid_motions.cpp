@@ -45,7 +45,7 @@ TEST(ConnectedPieces, AreTheNodesThatCellsJoin) {
     const std::vector<std::vector<std::int32_t>> found = connected_pieces(pieces(element, 3));
     ASSERT_EQ(found.size(), 3u) << element;
     for (std::int32_t k = 0; k < 3; ++k) {
-      const std::vector<std::int32_t>& nodes = found[index(k)];
+      const std::vector<std::int32_t>& nodes = found[k];
       EXPECT_EQ(static_cast<std::int32_t>(nodes.size()), each) << element;
       EXPECT_EQ(nodes.front(), k * each) << element;
       EXPECT_TRUE(std::is_sorted(nodes.begin(), nodes.end())) << element;

@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/index.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/modal/modal_map.hpp"
 #include "subdomain_solver/port_map.hpp"
@@ -49,7 +48,7 @@ void expect_that_of_the_whole(const NodalMap& whole, std::size_t coordinates) {
   const std::unique_ptr<NodalMap> some = whole.on(values, nodal);
   std::vector<double> all(nodal), few(values.size());
   const auto expect_equal = [&] {
-    for (std::size_t k = 0; k < values.size(); ++k) EXPECT_DOUBLE_EQ(few[k], all[index(values[k])]);
+    for (std::size_t k = 0; k < values.size(); ++k) EXPECT_DOUBLE_EQ(few[k], all[values[k]]);
   };
   whole.displacement(q, all);
   some->displacement(q, few);
@@ -62,7 +61,7 @@ void expect_that_of_the_whole(const NodalMap& whole, std::size_t coordinates) {
   expect_equal();
   const std::vector<double> forces = {1.0, -2.0, 0.5, 3.0};
   std::vector<double> spread(nodal, 0.0);
-  for (std::size_t k = 0; k < values.size(); ++k) spread[index(values[k])] += forces[k];
+  for (std::size_t k = 0; k < values.size(); ++k) spread[values[k]] += forces[k];
   Vector one = Vector::Ones(static_cast<Eigen::Index>(coordinates)), other = one;
   whole.lift(q, spread, one);
   some->lift(q, forces, other);

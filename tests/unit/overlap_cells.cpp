@@ -87,11 +87,11 @@ TEST(OverlapCells, SidesInsideFollowLinearFields) {
       EXPECT_NEAR((area - Eigen::Vector3d::UnitX()).norm(), 0.0, rounding);
       for (int k = 0; k < inside.count(); ++k) {
         double value = 0.0;
-        for (std::int32_t e = inside.rows.offsets[index(k)]; e < inside.rows.offsets[index(k) + 1];
+        for (std::int32_t e = inside.rows.offsets[k]; e < inside.rows.offsets[index(k) + 1];
              ++e)
-          value += inside.rows.values[index(e)] *
-                   linear(&own.points[index(inside.rows.columns[index(e)] * kind.dim)], kind.dim);
-        EXPECT_NEAR(value, linear(&inside.points[index(k * kind.dim)], kind.dim), rounding);
+          value += inside.rows.values[e] *
+                   linear(&own.points[inside.rows.columns[index(e)] * kind.dim], kind.dim);
+        EXPECT_NEAR(value, linear(&inside.points[k * kind.dim], kind.dim), rounding);
       }
     }
   }

@@ -102,7 +102,7 @@ TEST(RigidModel, HasTheMomentaOfItsFiniteElements) {
       for (int node = 0; node < m.mesh.mesh().node_count(); ++node) {
         Vector3d x = position(m.mesh.mesh(), node), p = Vector3d::Zero();
         for (int i = 0; i < dim; ++i) {
-          x(i) += m.u[index(node * dim + i)];
+          x(i) += m.u[node * dim + i];
           p(i) = momentum(node * dim + i);
         }
         linear += p;

@@ -63,11 +63,11 @@ TEST(VtkCells, HoldEveryNodeOnceWithCornersFirstAndEveryOtherNodeBetweenItsCorne
     std::vector<int> sorted = cell.nodes;
     std::sort(sorted.begin(), sorted.end());
     ASSERT_EQ(static_cast<int>(sorted.size()), element.nodes);
-    for (int i = 0; i < element.nodes; ++i) EXPECT_EQ(sorted[index(i)], i);
+    for (int i = 0; i < element.nodes; ++i) EXPECT_EQ(sorted[i], i);
     const int corners = vtk_corners(cell.type);
     EXPECT_EQ(corners, element.corner_count());
     // Both go around the base first, so that corners agree; their orientation is the Jacobian's.
-    for (int i = 0; i < corners; ++i) EXPECT_EQ(cell.nodes[index(i)], i);
+    for (int i = 0; i < corners; ++i) EXPECT_EQ(cell.nodes[i], i);
     if (element.order == 1) {
       EXPECT_EQ(element.nodes, corners);
       continue;
@@ -75,8 +75,8 @@ TEST(VtkCells, HoldEveryNodeOnceWithCornersFirstAndEveryOtherNodeBetweenItsCorne
     const Edges& edges = vtk_edges().at(cell.type);
     ASSERT_EQ(static_cast<int>(edges.size()), element.nodes - corners);
     const auto at = [&](int vtk_node, int axis) {
-      const int ours = cell.nodes[index(vtk_node)];
-      return element.corners[index(ours * element.dim + axis)];
+      const int ours = cell.nodes[vtk_node];
+      return element.corners[ours * element.dim + axis];
     };
     for (std::size_t e = 0; e < edges.size(); ++e) {
       for (int axis = 0; axis < element.dim; ++axis) {
@@ -113,8 +113,8 @@ std::vector<double> homogeneous(const Mesh& mesh, const Matrix3& f) {
   for (int node = 0; node < mesh.node_count(); ++node) {
     for (int i = 0; i < mesh.dim; ++i) {
       for (int j = 0; j < mesh.dim; ++j)
-        u[index(node * mesh.dim + i)] +=
-            (f(i, j) - (i == j ? 1.0 : 0.0)) * mesh.points[index(node * mesh.dim + j)];
+        u[node * mesh.dim + i] +=
+            (f(i, j) - (i == j ? 1.0 : 0.0)) * mesh.points[node * mesh.dim + j];
     }
   }
   return u;

@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "base/index.hpp"
 #include "subdomain_solver/solve/unilateral_forces.hpp"
 #include "tests/support/tolerance.hpp"
 

@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/index.hpp"
 #include "subdomain_solver/solve/linear_solver.hpp"
 #include "subdomain_solver/solve/orthonormal.hpp"
 #include "tests/support/tolerance.hpp"
@@ -91,7 +90,7 @@ void expect_modes(const Lattice& lattice, const Modes& modes, int count) {
   for (int k = 0; k < count; ++k) {
     // Errors are squares of residuals of 1e-9; what is left is the round-off of 1/lambda, which is
     // that of the largest one, 1/lambda_1 < 10: lambda < 12 magnifies it by 120 in relative terms.
-    const double exact = lattice.exact[index(k)];
+    const double exact = lattice.exact[k];
     EXPECT_NEAR(modes.eigenvalues(k), exact, roundoff(1.0e4, exact)) << k;
   }
   const Eigen::MatrixXd gram = modes.shapes.transpose() * modes.shapes;

@@ -17,7 +17,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "base/index.hpp"
 #include "subdomain_solver/solve/cholmod_solver.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -100,14 +99,14 @@ std::string solid(const std::string& model, int dim, const std::string& law,
       "rectangle: {{lengths: [3.0, 2.0], elements: [3, 2]{}}}",
       "box: {{lengths: [3.0, 2.0, 2.0], elements: [3, 2, 2]{}}}"};
   const std::vector<std::string> velocity = {"0.1", "0.1, 0.0", "0.1, 0.0, 0.0"};
-  const std::string mesh = fmt::format(fmt::runtime(meshes[index(dim - 1)]),
+  const std::string mesh = fmt::format(fmt::runtime(meshes[dim - 1]),
                                        element.empty() ? "" : ", element: " + element);
   const bool moves = integrator.find("quasi_static") == std::string::npos;
   return fmt::format(
       "model: {{{}dimension: {}, mesh: {{{}}}}}}}, material: {{{}}}, integrator: {{{}}}, {}"
       "ports: {{face: {{side: right}}}}{}",
       model, dim, mesh, law_in(dim, law), integrator,
-      moves ? fmt::format("initial: {{velocity_field: [{}]}}, ", velocity[index(dim - 1)]) : "",
+      moves ? fmt::format("initial: {{velocity_field: [{}]}}, ", velocity[dim - 1]) : "",
       more);
 }
 

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
-#include "base/index.hpp"
 #include "subdomain_solver/bars/bar.hpp"
 #include "subdomain_solver/bars/central_difference.hpp"
 #include "subdomain_solver/solve/tridiagonal.hpp"
@@ -167,7 +166,7 @@ TEST(TriDiagonal, SolvesAsADenseSolverDoes) {
     matrix.solve(right);
     for (int i = 0; i < n; ++i) {
       // condition below 20, a few roundings per row; sizes of about 1
-      EXPECT_NEAR(right[index(i)], expected[i], roundoff(20 * 8, 1.0));
+      EXPECT_NEAR(right[i], expected[i], roundoff(20 * 8, 1.0));
     }
   }
 }

@@ -105,7 +105,7 @@ inline void meet_point(Subdomain& body, std::size_t port, bool tied, double dist
 
 /// The kernel of a port of one point along its outward normal.
 inline PortKernel normal_kernel(Subdomain& body, int port, double step, int count) {
-  const std::vector<double> normal = body.describe().ports[index(port)].geometry.normals;
+  const std::vector<double> normal = body.describe().ports[port].geometry.normals;
   PortKernel kernel = body.probe(port, normal, step, count);
   for (std::vector<double>* values : {&kernel.compliance, &kernel.displacement, &kernel.begin})
     for (double& value : *values) value *= normal[0];

@@ -33,13 +33,13 @@ TEST(EdgedSurface, RowsNameNodesOfTheFinder) {
   edged.join(partner.points, face.pose(), tree, 0.0, MeetingCorners(), rows);
   ASSERT_GT(rows.count(), face.nodes());
   for (int r = 0; r < rows.count(); ++r) {
-    const std::int32_t node = rows.nodes[index(r)];
+    const std::int32_t node = rows.nodes[r];
     ASSERT_LT(node, face.nodes());
     // The node of most weight in the row.
     double most = 0.0, its = 0.0;
-    for (std::int32_t e = rows.k.offsets[index(r)]; e < rows.k.offsets[index(r) + 1]; ++e) {
-      most = std::max(most, rows.k.values[index(e)]);
-      if (rows.k.columns[index(e)] == node) its = rows.k.values[index(e)];
+    for (std::int32_t e = rows.k.offsets[r]; e < rows.k.offsets[index(r) + 1]; ++e) {
+      most = std::max(most, rows.k.values[e]);
+      if (rows.k.columns[e] == node) its = rows.k.values[e];
     }
     EXPECT_EQ(its, most);
   }

@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 

@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
@@ -105,7 +104,7 @@ TEST_P(PairBesideBars, MoveAsTwoBodiesUnderTheirContactForceWould) {
   for (int side : {0, 1}) {
     const std::unique_ptr<Subdomain> bar = build(single(m, side));
     Advance request = free_request(*bar, 0.0, 60.0);
-    const Waveform& seen = both.ports[index(side)].trace;
+    const Waveform& seen = both.ports[side].trace;
     request.boundary[0].forces = {seen};
     Response alone;
     step(*bar, request, alone);
@@ -117,7 +116,7 @@ TEST_P(PairBesideBars, MoveAsTwoBodiesUnderTheirContactForceWould) {
     }
     // inside a window an explicit bar shows its half-step velocities
     EXPECT_NEAR(own.v.back(), seen.v.back(), roundoff(10000, pair_speed));
-    const MemberRecord& member = both.records[0].members[index(side)];
+    const MemberRecord& member = both.records[0].members[side];
     EXPECT_NEAR(alone.records[0].energy.total(), member.energy.total(), roundoff(100000, 0.05));
     expect_same_fields(*bar, *pair, side);
   }

@@ -72,7 +72,7 @@ TEST_P(PortLine, KernelIsTheInverseOfTheReactionToAnObstacle) {
   for (int i = 0; i < window_steps; ++i) {
     moved[i] = request.boundary[0].obstacles[0].motion.u[index(i) + 1];
     reaction[i] = answer.ports[0].trace.f[index(i) + 1];
-    for (int j = 0; j <= i; ++j) responses(i, j) = kernel.displacement[index(i - j)];
+    for (int j = 0; j <= i; ++j) responses(i, j) = kernel.displacement[i - j];
   }
   const Eigen::VectorXd expected = responses.triangularView<Eigen::Lower>().solve(moved);
   // Differences of neighbouring displacements are divided by the first compliance; in the

@@ -97,7 +97,7 @@ std::vector<MeshPart> parts_of(const Mesh& mesh, int count,
 
 /// Nodes of a part's cells in the whole mesh.
 std::vector<std::int32_t> in_whole(const MeshPart& part, std::vector<std::int32_t> nodes) {
-  for (std::int32_t& node : nodes) node = part.nodes[index(node)];
+  for (std::int32_t& node : nodes) node = part.nodes[node];
   return nodes;
 }
 
@@ -157,7 +157,7 @@ TEST(DividedMesh, CutsCloseTheParts) {
     for (std::size_t p = 0; p < parts.size(); ++p) {
       outside += FacetIndex(parts[p].mesh).boundary().size();
       for (const auto& [other, side] : parts[p].towards) {
-        const MeshPart& partner = parts[index(other)];
+        const MeshPart& partner = parts[other];
         const auto places = [](const MeshPart& part, const std::string& of) {
           std::set<std::set<std::int32_t>> all;
           for (const Facet& facet : part.mesh.side(of)) {

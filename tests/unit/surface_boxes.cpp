@@ -8,7 +8,6 @@
 #include <cmath>
 #include <vector>
 
-#include "base/index.hpp"
 #include "tests/support/surfaces.hpp"
 
 namespace abut {
@@ -108,7 +107,7 @@ TEST(Tree, IsShallowHoweverFacetsAreCrowded) {
   std::vector<int> depth(tree.boxes.size(), 0);
   for (std::size_t i = 0; i < depth.size(); ++i) {
     if (tree.is_leaf(static_cast<int>(i))) continue;
-    depth[i + 1] = depth[index(tree.second[i])] = depth[i] + 1;
+    depth[i + 1] = depth[tree.second[i]] = depth[i] + 1;
   }
   EXPECT_EQ(*std::max_element(depth.begin(), depth.end()), 10);  // 2^10 >= 1000
 }

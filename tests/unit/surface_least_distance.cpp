@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/index.hpp"
 #include "tests/support/surfaces.hpp"
 #include "tests/support/tolerance.hpp"
 

@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "coordinator/exact/bar_row.hpp"
 
 namespace abut {
@@ -139,7 +138,7 @@ TEST(BarRow, ThreeBarsPassTheBlowOn) {  // A6
 TEST(BarRow, CradleOfFiveSendsOffTheLast) {  // A6
   const BarRow r =
       row({bar(0.0, 1.0), bar(1.0, 0.0), bar(2.0, 0.0), bar(3.0, 0.0), bar(4.0, 0.0)}, 7.0);
-  for (int k = 0; k < 4; ++k) expect_steps(r.contacts()[index(k)], {{1.0 * k, k + 2.0, 0.5}});
+  for (int k = 0; k < 4; ++k) expect_steps(r.contacts()[k], {{1.0 * k, k + 2.0, 0.5}});
   EXPECT_NEAR(r.mean_velocity(4, 5.0), 1.0, roundoff);
   for (int b = 0; b < 4; ++b) EXPECT_NEAR(r.total(b, 7.0), 0.0, roundoff);
 }
@@ -192,7 +191,7 @@ TEST(BarRow, BetweenTwoWallsABarComesAndGoesForAThousandPeriods) {  // A10
   EXPECT_EQ(r.contacts()[0].count(), 1000);
   EXPECT_EQ(r.contacts()[1].count(), 1000);
   for (int k = 0; k < 1000; ++k) {
-    const RowContact::Stretch& s = r.contacts()[1].stretches[index(k)];
+    const RowContact::Stretch& s = r.contacts()[1].stretches[k];
     EXPECT_NEAR(s.begin, 2.5 + period * k, slip);
     EXPECT_NEAR(s.end, 4.5 + period * k, slip);
     EXPECT_NEAR(s.force, 0.1, roundoff);

@@ -10,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/index.hpp"
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -126,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Ratios, StepsInRows,
 TEST_P(StepsInRows, AnyRatioGivesTheSameImpact) {
   const auto [ratio, fine] = GetParam();
   SceneText scene = pair(1.0, 0.5, 3.0, 10 * step);
-  scene.bars[index(fine)].integrator = explicit_scheme(step / ratio, 6);
+  scene.bars[fine].integrator = explicit_scheme(step / ratio, 6);
   const ResultPtr r = run(scene);
   ASSERT_TRUE(r->completed());
   EXPECT_EQ(r->measure("contact.first.count_error"), 0.0);

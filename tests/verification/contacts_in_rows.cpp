@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "base/index.hpp"
 #include "tests/support/runs.hpp"
 
 namespace abut {

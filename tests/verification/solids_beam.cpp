@@ -3,7 +3,6 @@
 // ed., article 21; Augarde and Deeks 2008 on how to support and load it as the solution says).
 #include <cmath>
 
-#include "base/index.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
@@ -51,13 +50,13 @@ Mesh beam_mesh(const std::string& element, int n) {
 
 /// Reference position of a quadrature point.
 Position place(const FeModel& model, const FeModel::PointState& at) {
-  const CellBlock& cells = model.mesh().blocks[index(at.block)];
+  const CellBlock& cells = model.mesh().blocks[at.block];
   const Element& e = *cells.element;
   const Tabulation t = tabulate(e, quadrature(e.shape, stiffness_degree(e)));
   Position x = Position::Zero();
   for (int a = 0; a < e.nodes; ++a) {
-    const std::int32_t node = cells.nodes[index(at.cell * e.nodes + a)];
-    x += t.n[index(at.point * e.nodes + a)] * position(model.mesh(), node);
+    const std::int32_t node = cells.nodes[at.cell * e.nodes + a];
+    x += t.n[at.point * e.nodes + a] * position(model.mesh(), node);
   }
   return x;
 }

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/archive.hpp"
-#include "base/index.hpp"
 #include "subdomain_solver/fe/highest_frequency.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
 #include "subdomain_solver/time/explicit_dynamics.hpp"
@@ -73,7 +72,7 @@ struct Pressed {
   double kinetic_of_supports() const {
     double sum = 0.0;
     for (const Prescribed& p : solid.problem.supports) {
-      const double v = solid.motion.v[index(p.dof)];
+      const double v = solid.motion.v[p.dof];
       sum += 0.5 * solid.model.lumped_mass()(p.dof) * v * v;
     }
     return sum;

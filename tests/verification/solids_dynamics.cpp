@@ -181,7 +181,7 @@ TEST(MovedSide, KeepsTheVelocityThatItBeginsWith) {
       ASSERT_FALSE(run.step(plate.s.motion, 0.01 * k, 0.01));
       // Round-off of a difference over a step of 0.01, which alternates and adds up.
       for (const Prescribed& p : plate.s.problem.supports)
-        ASSERT_NEAR(plate.s.motion.v[index(p.dof)], 0.25, roundoff(1.0e4, 1.0));
+        ASSERT_NEAR(plate.s.motion.v[p.dof], 0.25, roundoff(1.0e4, 1.0));
     }
   }
 }

@@ -25,7 +25,7 @@ struct Case {
 
 void PrintTo(const Case& c, std::ostream* out) {
   *out << c.element << " " << static_cast<int>(c.formulation) << " "
-       << all_laws()[index(c.law)].name;
+       << all_laws()[c.law].name;
 }
 
 std::vector<Case> cases() {

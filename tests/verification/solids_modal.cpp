@@ -7,7 +7,6 @@
 #include <Eigen/SVD>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/time/explicit_dynamics.hpp"
 #include "tests/support/modal_solid.hpp"
@@ -59,8 +58,8 @@ Solid solid_of(const Case& c) {
   for (double& q : s.motion.q) q = 0.1 * draw();
   for (double& v : s.motion.v) v = draw();
   for (const Prescribed& p : s.problem.supports) {
-    s.motion.q[index(p.dof)] = 0.0;
-    s.motion.v[index(p.dof)] = 0.0;
+    s.motion.q[p.dof] = 0.0;
+    s.motion.v[p.dof] = 0.0;
   }
   return s;
 }

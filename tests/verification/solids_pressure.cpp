@@ -4,7 +4,6 @@
 
 #include <Eigen/Dense>
 
-#include "base/index.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/solid_runs.hpp"
@@ -87,7 +86,7 @@ TEST(FollowerPressure, OnAClosedSurfaceHasNoForceAndNoMoment) {
       Position f = Position::Zero(), x = position(model.mesh(), node);
       for (int i = 0; i < dim; ++i) {
         f(i) = nodal_force(node * dim + i);
-        x(i) += q[index(node * dim + i)];
+        x(i) += q[node * dim + i];
       }
       force += f;
       moment += x.cross(f);

@@ -168,7 +168,7 @@ Mesh hinged(const std::string& element) {
     for (std::size_t i = 0; i < dim; ++i)
       both.points.push_back(one.points[index(node) * dim + i] + 1.0);
   }
-  for (std::int32_t node : one.blocks[0].nodes) both.blocks[0].nodes.push_back(number[index(node)]);
+  for (std::int32_t node : one.blocks[0].nodes) both.blocks[0].nodes.push_back(number[node]);
   return both;
 }
 
