@@ -6,8 +6,7 @@
 
 namespace abut {
 
-/// A number that is known not to be negative, or a choice, as a place in a container. Where such a
-/// number is the whole subscript of a container, it needs no conversion: `list[i]`.
+/// A choice, or a part of a sum of places, as a place in a container; a whole subscript needs none.
 template <class T>
   requires std::integral<T> || std::is_enum_v<T>
 constexpr std::size_t index(T place) {
