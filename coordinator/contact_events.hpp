@@ -1,19 +1,19 @@
 #pragma once
 
 #include <optional>
-#include <span>
+#include <vector>
 
 #include "base/archive.hpp"
 #include "contract/time_window.hpp"
-#include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/roles.hpp"
+#include "coordinator/coupling/watch.hpp"
 #include "coordinator/narrator.hpp"
 
 namespace abut {
 
-/// What contact makes of a run of windows: it closes and opens joints, says where a window must end
-/// because of that, and keeps the account of what contact gave the bodies and took from them
-/// (docs/METHOD.md, energy of events). Reads the latest responses.
+/// What contact makes of a run of windows: it closes and opens joints, and says where a window must
+/// end because of that. What each joint watches for is its Watch's affair. Reads the latest
+/// responses.
 class ContactEvents {
  public:
   /// `tolerance`: of the iteration; `window` [s]: a whole one. All references must outlive it.
@@ -23,14 +23,12 @@ class ContactEvents {
         bodies_(bodies),
         roles_(roles),
         narrator_(narrator),
-        tolerance_(tolerance),
-        window_(window) {}
+        window_(window),
+        run_{.tolerance = tolerance} {}
 
   /// Before the first window: settles the roles that are not open, and closes tied joints.
   void start();
-  /// After it, when velocities of tied surfaces are one: from where these go on.
-  void join();
-  /// Before a window: the published criteria of joints that decide there.
+  /// Before a window: what begins or ends with it.
   void begin(const TimeWindow& window);
 
   // Of a window that was tried:
@@ -49,36 +47,25 @@ class ContactEvents {
   /// An earlier end: fewer substeps at once, fewer kinks in the map that is iterated.
   std::optional<double> earlier_end(const TimeWindow& window) const;
 
-  // Of a window that was accepted:
-
-  /// What contact did in it: its account, the impulse that pays it, and what is told of it.
+  /// What contact did in a window that was accepted: its account, the impulse that pays it, and
+  /// what observers hear of it.
   void settle(const TimeWindow& window, double energy);
-  /// Contact inside a body is computed there: nothing is imposed, it is told what was seen.
-  void watch_inside(std::span<InterfaceReport> reports);
-  /// The published form exchanges roles after every window in contact.
-  void swap_roles();
 
-  void state(Archive& archive);
+  void state(Archive& archive) { run_.state(archive); }
 
  private:
   void open(Joint& joint);
-  void engage(Joint& joint, double speed, double time);
-  void approach(Joint& joint, const TimeWindow& window);
-  void settle_surfaces(Joint& joint);
-  void pay(Joint& joint, double energy);
-  void narrate(Joint& joint);
-  void disengage(Joint& joint, const TimeWindow& window) const;
-  double least_force(const Joint& joint) const;
-  double still() const;
+  void engage(Joint& joint, const Engagement& how, double time);
+  void narrate(const Joint& joint);
+  double negligible() const { return run_.still() * bodies_.shortest_step(); }
 
   std::vector<Joint>& joints_;  // which grow, where everything may touch everything
   Bodies& bodies_;
   Roles& roles_;
   Narrator& narrator_;
-  double tolerance_, window_;
-  double fastest_touch_ = 0.0;    // [m/s] of all first touches
-  double force_reference_ = 0.0;  // [N] largest contact force of the run
-  ContactHistory history_;
+  double window_;
+  ContactRun run_;
+  ContactChanges changes_;  // of one joint
 };
 
 }  // namespace abut

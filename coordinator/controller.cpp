@@ -14,10 +14,10 @@
 #include "base/index.hpp"
 #include "base/without_remedy.hpp"
 #include "coordinator/coupling/contact.hpp"
+#include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/horizon.hpp"
-#include "coordinator/coupling/tie.hpp"
-#include "coordinator/coupling/transmission.hpp"
 #include "coordinator/coupling/velocity_start.hpp"
+#include "coordinator/energy_account.hpp"
 #include "coordinator/flight_work.hpp"
 #include "coordinator/record/validity_notes.hpp"
 
@@ -50,7 +50,8 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       clock_(scene.time.begin, scene.time.end, scene.time.window),
       roles_(bodies_, scene.time.window, scene.schwarz.parallel),
       events_(joints_, bodies_, roles_, narrator_, scene.schwarz.tolerance, scene.time.window),
-      guard_(scene.schwarz.energy_guard, conserving_bodies(), sums_energy(), stepping()),
+      guard_(
+          make_energy_guard(scene.schwarz.energy_guard, joints_, !broad_phase_.empty(), bodies_)),
       reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {
   end_.status = "completed";
   flight_.longest = flight_.limit =
@@ -66,8 +67,9 @@ RunEnd Controller::run() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   };
   try {
-    start();
+    if (!resumed_) start();
     while (running()) {
+      if (between_windows) between_windows();
       join_near();
       if (!fly_free()) step_window();
     }
@@ -86,19 +88,29 @@ bool Controller::running() const {
   return end_.status == "completed" && !interrupted && !clock_.at_end();
 }
 
-void Controller::start() {
-  for (Joint& joint : joints_) introduce(joint, bodies_);
-  narrator_.start(scene_.time.begin, scene_.time.end, joints_, !broad_phase_.empty());
-  const bool accelerations = std::ranges::any_of(joints_, [](const Joint& joint) {
-    return joint.how != nullptr && joint.how->overwrites_motion();
+/// What bodies are told before the first window: whom they may meet, and what replies are to hold.
+void Controller::introduce() {
+  for (Joint& joint : joints_)
+    if (joint.exchange != nullptr) joint.exchange->introduce(joint, bodies_);
+  bodies_.want({.a = wants_accelerations(), .points = {}});
+}
+
+/// The published form exchanges them.
+bool Controller::wants_accelerations() const {
+  return std::ranges::any_of(scene_.interfaces, [](const auto& entry) {
+    return std::holds_alternative<DirichletNeumannTransmission>(entry.second.transmission);
   });
+}
+
+void Controller::start() {
+  introduce();
+  narrator_.start(scene_.time.begin, scene_.time.end, joints_, !broad_phase_.empty());
   for (const Joint& joint : joints_) {
-    if (!passes_motions_alone(joint)) continue;
+    if (energy_account_of(joint) != EnergyAccount::doubled) continue;
     narrator_.warning(clock_.time(), joint.name,
                       "where bodies overlap and exchange motions alone, each has all of the "
                       "material: energy.total and momentum.total count it twice there");
   }
-  bodies_.want({.a = accelerations, .points = {}});
   want_opening_accelerations(true);
   const TimeWindow instant{0, clock_.time(), clock_.time()};
   bodies_.save_all();
@@ -106,20 +118,21 @@ void Controller::start() {
   if (std::optional<Failed> failed = bodies_.advance_all())
     return fail(failed->time, failed->detail);
   events_.start();
-  for (const Joint& joint : joints_) narrator_.found(joint, clock_.time());
+  for (const auto& [joint, contact, part] : known_exchanges(joints_).obstacles)
+    narrator_.found(*joint, clock_.time());
   watch_energy(guard_.look(bodies_.responses(), bodies_.struck()));
   fill_reports(true);
   narrator_.window({instant, bodies_.responses(), reports_, 0, {}});
-  want_opening_accelerations(accelerations);
+  want_opening_accelerations(wants_accelerations());
   unite_start();
 }
 
 /// Of ends of bars that share a node.
 void Controller::want_opening_accelerations(bool wanted) {
-  for (const Joint& joint : joints_) {
-    if (!joint.tied() || joint.how->tie() != nullptr) continue;
-    for (const Side& side : joint.sides)
-      bodies_.request(side.body).want[side.port].a = wanted;
+  const std::vector<bool> share = share_nodes(joints_);
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    if (!share[j]) continue;
+    for (const Side& side : joints_[j].sides) bodies_.request(side.body).want[side.port].a = wanted;
   }
 }
 
@@ -134,7 +147,6 @@ void Controller::unite_start() {
                                   "body '{}' takes no impulses that would make them one: the sides "
                                   "go on swinging against each other; give both the same",
                                   start.speed, start.body));
-  events_.join();
 }
 
 /// Pairs that may meet within the next windows are watched one by one from now on.
@@ -152,7 +164,7 @@ void Controller::join(std::span<const PortPair> pairs) {
 
 bool Controller::fly_free() {
   const bool waits = std::ranges::any_of(
-      joints_, [](const Joint& joint) { return joint.closed() || joint.impulse != 0.0; });
+      joints_, [](const Joint& joint) { return joint.closed() || joint.contact.impulse != 0.0; });
   if (waits || std::exchange(flight_.grounded, false)) return false;
   const int windows = windows_to_fly();
   if (windows < 1) return false;
@@ -265,7 +277,6 @@ void Controller::accept(const TimeWindow& window) {
   if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
   halvings_ = 0;
   watch_energy(energy);
-  events_.swap_roles();
 }
 
 // ---- of a window --------------------------------------------------------------------------------
@@ -304,9 +315,9 @@ int Controller::windows_to_fly() {
 void Controller::prepare(const TimeWindow& window, int records, Sampling sampling) {
   bodies_.prepare(window, records, sampling);
   for (const Joint& joint : joints_) {
-    if (joint.impulse == 0.0) continue;
+    if (joint.contact.impulse == 0.0) continue;
     for (int s : {0, 1})
-      bodies_.boundary(joint.sides[s]).impulse = {-joint.normal_of(s) * joint.impulse};
+      bodies_.boundary(joint.sides[s]).impulse = {-joint.normal_of(s) * joint.contact.impulse};
   }
 }
 
@@ -320,17 +331,14 @@ void Controller::fill_reports(bool flown) {
   std::ranges::fill(reports_, InterfaceReport{});
   pairs_.clear();
   for (const Joint& joint : joints_) {
-    const bool silent = joint.deciding() && peak_force(joint, bodies_) == 0.0;
+    const Shown shown = joint.watch->show(joint, bodies_);
     InterfaceReport& report = reports_[joint.interface];
-    report.closed = report.closed || (joint.closed() && !silent);
-    report.kinematic = joint.kinematic;
-    if (const Tie* tie = joint.how != nullptr ? joint.how->tie() : nullptr) {
-      report.missed = tie->missed();
-      report.force = tie->largest_force();
-    }
+    report.closed = report.closed || shown.closed;
+    report.kinematic = joint.role.kinematic;
+    report.missed = std::max(report.missed, shown.missed);
+    report.force = std::max(report.force, shown.force);
   }
   if (flown) return;
-  events_.watch_inside(reports_);
   for (std::size_t k = 0; k < attempt_.reports.size(); ++k) {
     for (const int j : partition_.islands()[k].joints) {
       const Joint& joint = joints_[j];
@@ -343,7 +351,7 @@ void Controller::fill_reports(bool flown) {
                         {one.body, two.body},
                         {one.port, two.port},
                         {one.partner, two.partner},
-                        joint.kinematic});
+                        joint.role.kinematic});
     }
   }
 }
@@ -353,8 +361,8 @@ void Controller::fill_reports(bool flown) {
 /// Contact is passive, and so are supports: energy that appears says that steps or windows are
 /// unstable here. Contact inside a body is that body's own affair.
 void Controller::watch_energy(EnergyGuard::Verdict verdict) {
-  const bool inside = std::ranges::any_of(
-      joints_, [](const Joint& joint) { return joint.decision == Decision::inside; });
+  const bool inside =
+      std::ranges::any_of(joints_, [](const Joint& joint) { return joint.exchange == nullptr; });
   if (verdict == EnergyGuard::Verdict::fine || inside) return;
   if (verdict == EnergyGuard::Verdict::warn) {
     narrator_.energy(guard_, joints_, clock_.time());
@@ -365,45 +373,10 @@ void Controller::watch_energy(EnergyGuard::Verdict verdict) {
   }
 }
 
-/// Bodies whose every exchange of energy is told. The published form overwrites motion, which does
-/// work that nobody knows, and dashpots take what sides cannot follow.
-std::vector<bool> Controller::conserving_bodies() const {
-  std::vector<bool> conserves;
-  for (int b = 0; b < bodies_.count(); ++b) conserves.push_back(bodies_.describe(b).conserves);
-  for (const Joint& joint : joints_) {
-    if (joint.how != nullptr && !joint.how->overwrites_motion() && !damps(joint)) continue;
-    for (const Side& side : joint.sides) conserves[side.body] = false;
-  }
-  return conserves;
-}
-
-std::vector<EnergyGuard::Stepping> Controller::stepping() const {
-  std::vector<EnergyGuard::Stepping> all;
-  for (int b = 0; b < bodies_.count(); ++b) {
-    const Description& body = bodies_.describe(b);
-    const bool moves = std::isfinite(body.mass) && !body.quasi_static;
-    all.push_back(moves ? EnergyGuard::Stepping{body.mass, body.step} : EnergyGuard::Stepping{});
-  }
-  return all;
-}
-
-/// Whether what all bodies have together may not grow. Rows that close inside a step without
-/// inertia leave an energy of the order of the step, whatever it is: nothing would be unstable. And
-/// what bodies that exchange motions alone share is there twice.
-bool Controller::sums_energy() const {
-  for (int b = 0; b < bodies_.count() && !broad_phase_.empty(); ++b)
-    if (bodies_.describe(b).quasi_static) return false;
-  return std::ranges::none_of(joints_, [this](const Joint& joint) {
-    const bool rests = std::ranges::any_of(
-        joint.sides, [this](const Side& side) { return bodies_.describe(side.body).quasi_static; });
-    return joint.tied() ? passes_motions_alone(joint) : rests;
-  });
-}
-
 /// After a window or a flight: nothing passes without a word. Bodies are asked where their fields
 /// are written anyway.
 void Controller::watch_passing(std::int64_t windows_before) {
-  passing_.watch(joints_, bodies_);
+  for (Joint& joint : joints_) joint.watch->see_passing(joint, bodies_);
   if (!scene_.output.field_output) return;
   const int every = scene_.output.field_output->every;
   if (clock_.windows() / every > windows_before / every) look_for_overlaps();
@@ -417,24 +390,17 @@ void Controller::look_for_overlaps() {
 }
 
 void Controller::look_for_passed() {
-  end_.never_met = passing_.passed(joints_, bodies_);
-  for (const std::string& name : end_.never_met) narrator_.never_met(name, clock_.time());
+  for (const Joint& joint : joints_) {
+    if (joint.contact.force_scale > 0.0 || !joint.watch->passed(joint, bodies_)) continue;
+    end_.never_met.push_back(joint.name);
+    narrator_.never_met(joint.name, clock_.time());
+  }
 }
 
 void Controller::fail(double time, const std::string& text) {
   end_.status = "failed";
   end_.reason = text;
   narrator_.failure(time, text);
-}
-
-/// What changes from window to window on this side of the messages. How far is flown at once, and
-/// what the guard saw at the ends of flights, hang on the records that are wanted: they decide
-/// nothing that a state could differ in.
-void Controller::state(Archive& archive) {
-  clock_.state(archive);
-  events_.state(archive);
-  archive.field("halvings", halvings_);
-  for (Joint& joint : joints_) joint.state(archive);
 }
 
 RunEnd Controller::finish(double wall_seconds) {

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,7 +15,6 @@
 #include "coordinator/energy_guard.hpp"
 #include "coordinator/narrator.hpp"
 #include "coordinator/overlap_search.hpp"
-#include "coordinator/passing_watch.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/scene.hpp"
 #include "coordinator/window_clock.hpp"
@@ -39,6 +41,16 @@ class Controller {
   /// peer, what a body cannot take, lack of memory.
   RunEnd run();
 
+  /// The state of the run on this side of the messages, between windows: all that the windows to
+  /// come depend on, beside the scene and the bodies' own states.
+  std::vector<std::byte> save();
+  /// Before `run`, which then goes on from there and tells nothing of the start. Tells the bodies
+  /// whom they have met; afterwards they must be given their states of that time. Throws RunError
+  /// where bytes are of another scene.
+  void load(std::span<const std::byte> bytes);
+  /// Called by `run` before every window or flight; may call `save`.
+  std::function<void()> between_windows;
+
  private:
   struct Attempt {  // of one window
     std::optional<Failed> failed;
@@ -63,6 +75,8 @@ class Controller {
     bool grounded = false;  // came too near: step once
   };
 
+  void introduce();
+  bool wants_accelerations() const;
   void start();
   void want_opening_accelerations(bool wanted);
   void unite_start();
@@ -84,11 +98,9 @@ class Controller {
   void watch_passing(std::int64_t windows_before);
   void look_for_overlaps();
   void look_for_passed();
-  std::vector<bool> conserving_bodies() const;
-  std::vector<EnergyGuard::Stepping> stepping() const;
-  bool sums_energy() const;
   void fail(double time, const std::string& text);
   void state(Archive& archive);
+  void state_of_pairs(Archive& archive);
   RunEnd finish(double wall_seconds);
   void give_up(const std::exception& error, bool interrupted, double wall_seconds);
 
@@ -105,13 +117,13 @@ class Controller {
   ContactEvents events_;
   EnergyGuard guard_;
   OverlapSearch overlaps_;
-  PassingWatch passing_;
   Flight flight_;
   std::int64_t halvings_ = 0;
   Attempt attempt_;
   std::vector<InterfaceReport> reports_;
   std::vector<PairReport> pairs_;
   RunEnd end_;
+  bool resumed_ = false;
 };
 
 }  // namespace abut

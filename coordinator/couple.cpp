@@ -11,12 +11,14 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "coordinator/coupling/compliant_obstacle.hpp"
+#include "coordinator/coupling/dirichlet_neumann.hpp"
+#include "coordinator/coupling/line_watch.hpp"
 #include "coordinator/coupling/loose_motions.hpp"
 #include "coordinator/coupling/parallel_force.hpp"
 #include "coordinator/coupling/robin.hpp"
 #include "coordinator/coupling/roles.hpp"
-#include "coordinator/coupling/tie.hpp"
-#include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/row_margin.hpp"
+#include "coordinator/coupling/unilateral.hpp"
 #include "coordinator/shared_nodes.hpp"
 #include "coordinator/surface_start.hpp"
 #include "coordinator/tied_surfaces.hpp"
@@ -80,15 +82,15 @@ void tie(const InterfaceSpec& spec, const Bodies& bodies, Joint& joint) {
                      "interfaces." + spec.name + ".tied.overlap",
                      "Leave overlap out, and let the ends of the bars meet.");
   }
-  joint.decision = Decision::never;
+  joint.watch = std::make_unique<SharedNodeWatch>();
   const double spacing = std::max(bodies.port(joint.sides[0]).geometry.spacing,
                                   bodies.port(joint.sides[1]).geometry.spacing);
-  if (joint.reference_gap > coincidence * spacing) {
-    throw InputError(fmt::format("its sides are {:g} m apart", joint.reference_gap),
+  if (joint.line.reference_gap > coincidence * spacing) {
+    throw InputError(fmt::format("its sides are {:g} m apart", joint.line.reference_gap),
                      "interfaces." + spec.name + ".tied",
                      "Move a body with initial.position until they coincide.");
   }
-  joint.reference_gap = 0.0;
+  joint.line.reference_gap = 0.0;
   check_shared_node(spec, bodies, joint);
 }
 
@@ -129,9 +131,10 @@ void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
             one.name, one.model, other.name, other.model),
         where, "Make one side a bar of model fe whose ports are not tied.");
   }
-  joint.role_fixed = how.kinematic != "auto";
-  if (joint.role_fixed) {
-    joint.kinematic = index_of(spec, how.kinematic, where + ".transmission.unilateral.kinematic");
+  joint.role.fixed = how.kinematic != "auto";
+  if (joint.role.fixed) {
+    joint.role.kinematic =
+        index_of(spec, how.kinematic, where + ".transmission.unilateral.kinematic");
     const Description& body = bodies.describe(joint.kinematic_side().body);
     require(body.can.obstacle, body, where + ".transmission.unilateral.kinematic",
             "takes forces only and cannot be the kinematic side", "Name the other side, or auto.");
@@ -140,9 +143,9 @@ void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
   const bool kernels = std::holds_alternative<KernelAcceleration>(schwarz.accelerator);
   constexpr double never = std::numeric_limits<double>::infinity();
   if (schwarz.parallel) {
-    joint.how = std::make_unique<ParallelForce>(kernels);
+    joint.exchange = std::make_unique<ParallelForce>(kernels);
   } else {
-    joint.how = std::make_unique<Unilateral>(kernels ? schwarz.tolerance : never);
+    joint.exchange = std::make_unique<Unilateral>(kernels ? schwarz.tolerance : never);
   }
 }
 
@@ -156,6 +159,12 @@ void refuse_flat_beside_round(const Joint& joint, const Bodies& bodies, const st
             fmt::format("is plane, but '{}' is axisymmetric", bodies.describe(round.body).name),
             "Give both bodies plane: axisymmetric, or use a rigid_tool.");
   }
+}
+
+ContactLaw law_of(const ContactSpec& spec) {
+  return {.points = spec.points,
+          .static_friction = spec.static_friction.value_or(spec.friction),
+          .kinetic_friction = spec.friction};
 }
 
 /// Bodies that are surfaces to each other.
@@ -181,33 +190,33 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
                      "time.");
   }
   refuse_flat_beside_round(joint, bodies, where);
-  joint.role_fixed = how->kinematic != "auto";
-  if (joint.role_fixed) {
-    joint.kinematic = index_of(spec, how->kinematic, where + ".transmission.unilateral.kinematic");
+  joint.role.fixed = how->kinematic != "auto";
+  if (joint.role.fixed) {
+    joint.role.kinematic =
+        index_of(spec, how->kinematic, where + ".transmission.unilateral.kinematic");
     const Description& body = bodies.describe(joint.kinematic_side().body);
     require(body.can.obstacle, body, where + ".transmission.unilateral.kinematic",
             "takes forces only and cannot be the kinematic side", "Name the other side, or auto.");
   }
   const int finder = contact_finder(joint, bodies);
-  joint.points = spec.contact->points;
-  if (joint.points && scene.bodies[joint.sides[index(finder)].body].second.external) {
+  const ContactLaw law = law_of(*spec.contact);
+  if (law.points && scene.bodies[joint.sides[finder].body].second.external) {
     throw InputError(
         fmt::format("is point_to_surface, but {} finds the contact, and has rows of its "
                     "own program",
                     spec.sides[finder]),
         where + ".contact.rows", "Leave rows out.");
   }
-  joint.kinetic_friction = spec.contact->friction;
-  joint.static_friction = spec.contact->static_friction.value_or(spec.contact->friction);
-  if (joint.static_friction > 0.0) {
+  if (law.rubs()) {
     const Description& body = bodies.describe(joint.sides[finder].body);
     require(body.can.friction, body, where + ".contact.friction",
             "finds the contact and takes no friction",
             "Leave friction out, or let the other side find contact by "
             "transmission.unilateral.kinematic.");
   }
-  joint.how = std::make_unique<CompliantObstacle>(how->kernel_memory.value_or(usual_kernel_memory) *
-                                                  1048576.0);
+  joint.exchange = std::make_unique<CompliantObstacle>(
+      how->kernel_memory.value_or(usual_kernel_memory) * 1048576.0, row_margin(joint.sides, bodies),
+      law);
 }
 
 /// What no contact can start from.
@@ -217,7 +226,7 @@ void check_start(const InterfaceSpec& spec, const std::string& where, const Join
     return NamedSurface{spec.sides[s], bodies.port(joint.sides[s]).geometry};
   };
   const int finder = contact_finder(joint, bodies);
-  if (joint.points) {
+  if (spec.contact->points) {
     check_points(side(finder), side(1 - finder), where);
   } else {
     check_surfaces(side(finder), side(1 - finder), where + ".sides");
@@ -227,9 +236,9 @@ void check_start(const InterfaceSpec& spec, const std::string& where, const Join
 void set_published(const InterfaceSpec& spec, const DirichletNeumannTransmission& how,
                    const SchwarzSpec& schwarz, const Bodies& bodies, Joint& joint) {
   const std::string where = "interfaces." + spec.name + ".transmission.dirichlet_neumann";
-  joint.kinematic = index_of(spec, how.dirichlet, where + ".dirichlet");
+  joint.role.kinematic = index_of(spec, how.dirichlet, where + ".dirichlet");
   for (int s : {0, 1}) {
-    if (s != joint.kinematic && !how.swap_every_window) continue;
+    if (s != joint.role.kinematic && !how.swap_every_window) continue;
     const Description& body = bodies.describe(joint.sides[s].body);
     require(body.can.motion, body, where, "does not take prescribed motion",
             "Give the body contact_layer: {massive: {}}.");
@@ -239,11 +248,13 @@ void set_published(const InterfaceSpec& spec, const DirichletNeumannTransmission
         "the published form knows neither the parallel form nor port kernels", "schwarz",
         "Give form: alternating and an accelerator of none, relaxation, aitken or anderson.");
   }
-  joint.how = std::make_unique<DirichletNeumann>(how.swap_every_window);
-  joint.role_fixed = true;
-  if (!joint.tied()) joint.decision = Decision::window_begin;
-  joint.roles_swap = how.swap_every_window;
-  joint.projection = how.impact_projection;
+  joint.exchange = std::make_unique<DirichletNeumann>(how.swap_every_window);
+  joint.role.fixed = true;
+  if (joint.tied()) {
+    joint.watch = std::make_unique<SharedNodeWatch>(how.swap_every_window);
+  } else {
+    joint.watch = std::make_unique<PublishedWatch>(how.swap_every_window, how.impact_projection);
+  }
 }
 
 /// Ports of a body that solves its contact itself show it and take nothing.
@@ -268,12 +279,12 @@ void set_robin(const InterfaceSpec& spec, const RobinTransmission& how, const Sc
     throw InputError("Robin conditions do not use port kernels as Jacobian", "schwarz.accelerator",
                      "Give an accelerator of none, relaxation, aitken or anderson.");
   }
-  joint.kinematic = coarser_side(joint, bodies);
-  joint.role_fixed = true;
+  joint.role.kinematic = coarser_side(joint, bodies);
+  joint.role.fixed = true;
   const Robin::Rule rule = how.impedance == "matched"  ? Robin::Rule::matched
                            : how.impedance == "kernel" ? Robin::Rule::kernel
                                                        : Robin::Rule::given;
-  joint.how = std::make_unique<Robin>(rule, how.number, schwarz.parallel);
+  joint.exchange = std::make_unique<Robin>(rule, how.number, schwarz.parallel);
 }
 
 }  // namespace
@@ -282,7 +293,7 @@ namespace {
 
 void see_adjusted(const Scene& scene, Joint& joint) {
   for (const int s : {0, 1})
-    if (scene.bodies[joint.sides[index(s)].body].second.adjusts) joint.adjusted = s;
+    if (scene.bodies[joint.sides[index(s)].body].second.adjusts) joint.role.adjusted = s;
 }
 
 /// A pair of a scene where everything may touch everything, as if the scene wrote it.
@@ -318,12 +329,13 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
       joints.back().interface = number;
       continue;
     }
-    Joint& joint = joints.emplace_back(surfaces ? make_surface_joint(name, sides, bodies)
-                                                : make_joint(name, sides, bodies));
+    Joint& joint = joints.emplace_back(
+        surfaces ? make_surface_joint(name, sides, law_of(*spec.contact).rubs(), bodies)
+                 : make_joint(name, sides, bodies));
     joint.interface = number;
     see_adjusted(scene, joint);
     if (std::holds_alternative<InternalTransmission>(spec.transmission)) {
-      joint.decision = Decision::inside;
+      joint.watch = std::make_unique<InsideWatch>();
       continue;
     }
     refuse_members(joint, bodies, "interfaces." + name);
@@ -332,7 +344,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     } else {
       refuse_tied_ports(spec, bodies, joint);
     }
-    if (joint.surfaces) {
+    if (surfaces) {
       set_surfaces(spec, "interfaces." + name, scene, bodies, joint);
       check_start(spec, "interfaces." + name, joint, bodies);
     } else if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
@@ -347,8 +359,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
   check_supports(joints, bodies);
   check_still_contact(joints, scene.everything() != nullptr, bodies);
   share_out_loose_motions(joints, bodies);
-  const auto has_rows = [](const Joint& joint) { return joint.how && joint.how->tie() != nullptr; };
-  if (scene.schwarz.ties && std::ranges::none_of(joints, has_rows)) {
+  if (scene.schwarz.ties && known_exchanges(joints).ties.empty()) {
     throw InputError("has no effect: no surfaces are tied", std::string(TieKernelSpec::path),
                      "Leave it out.");
   }
@@ -357,7 +368,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
 
 Joint make_pair(const Scene& scene, const PortPair& pair, const Bodies& bodies) {
   const InterfaceSpec spec = spec_of(scene, pair, bodies);
-  Joint joint = make_surface_joint(spec.name, pair, bodies);
+  Joint joint = make_surface_joint(spec.name, pair, law_of(*spec.contact).rubs(), bodies);
   joint.interface = static_cast<int>(scene.interfaces.size());
   see_adjusted(scene, joint);
   const std::string where(everything_path);
@@ -392,27 +403,24 @@ TieKernelOptions tie_kernel_options(const SchwarzSpec& spec) {
 
 Schwarz make_schwarz(const SchwarzSpec& spec) {
   struct Maker {
-    ApplyInverse inverse, probe;
+    static Preconditioner by(const RelaxationFactor& factor) {
+      return factor.probed() ? Preconditioner::relaxed() : Preconditioner::number(factor.value);
+    }
     std::unique_ptr<Accelerator> operator()(const NoAcceleration&) const {
-      return std::make_unique<Relaxation>(1.0);
+      return std::make_unique<Relaxation>(Preconditioner::number(1.0));
     }
     std::unique_ptr<Accelerator> operator()(const FixedRelaxation& s) const {
-      if (s.factor.probed()) return std::make_unique<Relaxation>(probe);
-      return std::make_unique<Relaxation>(s.factor.value);
+      return std::make_unique<Relaxation>(by(s.factor));
     }
     std::unique_ptr<Accelerator> operator()(const AitkenAcceleration& s) const {
-      if (s.initial.probed()) return std::make_unique<Aitken>(probe);
-      return std::make_unique<Aitken>(s.initial.value);
+      if (s.initial.probed()) return std::make_unique<Aitken>(Preconditioner::relaxed());
+      return std::make_unique<Aitken>(Preconditioner::number(1.0), s.initial.value);
     }
     std::unique_ptr<Accelerator> operator()(const AndersonAcceleration& s) const {
-      ApplyInverse relaxed = [factor = s.initial.value](const Eigen::VectorXd& r) {
-        return Eigen::VectorXd(factor * r);
-      };
-      return std::make_unique<QuasiNewton>(s.initial.probed() ? probe : relaxed, s.reuse, s.filter,
-                                           0);
+      return std::make_unique<QuasiNewton>(by(s.initial), s.reuse, s.filter, 0);
     }
     std::unique_ptr<Accelerator> operator()(const KernelAcceleration& s) const {
-      return std::make_unique<QuasiNewton>(inverse, s.reuse, s.filter, 1);
+      return std::make_unique<QuasiNewton>(Preconditioner::kernels(), s.reuse, s.filter, 1);
     }
   };
   struct UsesKernels {
@@ -422,13 +430,11 @@ Schwarz make_schwarz(const SchwarzSpec& spec) {
     bool operator()(const AndersonAcceleration& s) const { return s.initial.probed(); }
     bool operator()(const KernelAcceleration&) const { return true; }
   };
-  const Schwarz::Options options{spec.max_iterations, spec.tolerance,
+  const Schwarz::Options options{{spec.max_iterations, spec.tolerance},
                                  std::visit(UsesKernels{}, spec.accelerator),
                                  tie_kernel_options(spec)};
   return Schwarz(options,
-                 [accelerator = spec.accelerator](ApplyInverse inverse, ApplyInverse probe) {
-                   return std::visit(Maker{std::move(inverse), std::move(probe)}, accelerator);
-                 });
+                 [accelerator = spec.accelerator] { return std::visit(Maker{}, accelerator); });
 }
 
 }  // namespace abut

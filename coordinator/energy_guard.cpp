@@ -97,4 +97,24 @@ EnergyGuard::Verdict EnergyGuard::verdict(double change, double share, bool loss
   return notable && !std::exchange(warned_, true) ? Verdict::warn : Verdict::fine;
 }
 
+void EnergyGuard::Account::state(Archive& archive) {
+  archive.field("first", first);
+  archive.field("ports", ports);
+  archive.field("change", change);
+}
+
+void EnergyGuard::state(Archive& archive) {
+  archive.field("begun", begun_);
+  archive.field("warned", warned_);
+  std::int64_t unjudged = unjudged_, count = static_cast<std::int64_t>(bodies_.size());
+  archive.field("unjudged", unjudged);
+  archive.field("accounts", count);
+  unjudged_ = static_cast<int>(unjudged);
+  bodies_.resize(static_cast<std::size_t>(count));
+  for (Account& account : bodies_) account.state(archive);
+  archive.field("first", first_);
+  archive.field("most", most_);
+  archive.field("growth", growth_);
+}
+
 }  // namespace abut

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "contract/subdomain.hpp"
 
 namespace abut {
@@ -37,13 +38,15 @@ class EnergyGuard {
   Verdict look(std::span<const Response> responses, std::span<const double> struck = {});
   double growth() const { return growth_; }  // as a fraction, at the last look
   double most() const { return most_; }      // [J] largest kinetic and stored energy so far
-  int culprit() const { return culprit_; }   // body that a verdict is about; -1: all together
+  void state(Archive& archive);
+  int culprit() const { return culprit_; }  // body that a verdict is about; -1: all together
 
  private:
   struct Account {
     double first = 0.0;   // [J] its own energy at the first look
     double ports = 0.0;   // [J] done on it through its ports since
     double change = 0.0;  // [J] that nothing explains
+    void state(Archive& archive);
   };
 
   double unresolved(std::span<const Response> responses) const;

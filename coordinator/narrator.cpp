@@ -21,7 +21,7 @@ void Narrator::start(double begin, double end, std::span<const Joint> joints, bo
     start.interfaces.push_back({j.name,
                                 {j.sides[0].body, j.sides[1].body},
                                 {j.sides[0].port, j.sides[1].port},
-                                j.reference_gap,
+                                j.line.reference_gap,
                                 j.tied(),
                                 {j.sides[0].partner, j.sides[1].partner},
                                 false});
@@ -66,10 +66,10 @@ void Narrator::opened(const Joint& joint, double time) {
         time,
         interface_of(joint),
         fmt::format("contact '{}' opens", joint.name),
-        {{"release_impulse", joint.impulse}}});
+        {{"release_impulse", joint.contact.impulse}}});
 }
 
-void Narrator::inside(const Joint& joint, const InternalContact::Change& change) {
+void Narrator::inside(const Joint& joint, const ContactChange& change) {
   if (!change.closes)
     return tell({RunEvent::Kind::contact_opened, change.time, joint.name, "contact opens", {}});
   tell({RunEvent::Kind::contact_closed,
@@ -81,8 +81,7 @@ void Narrator::inside(const Joint& joint, const InternalContact::Change& change)
 }
 
 void Narrator::found(const Joint& joint, double time) {
-  if (!joint.surfaces || joint.tied()) return;
-  if (shorter_steps(joint, bodies_).value_or(joint.kinematic) == joint.kinematic) return;
+  if (shorter_steps(joint, bodies_).value_or(joint.role.kinematic) == joint.role.kinematic) return;
   const Description& finder = bodies_.describe(joint.kinematic_side().body);
   const Description& other = bodies_.describe(joint.neumann_side().body);
   tell({RunEvent::Kind::warning,
@@ -115,7 +114,7 @@ void Narrator::overlap(const Overlap& overlap, std::span<const Joint> joints) {
   if (joint != joints.end()) {
     advice = fmt::format(
         "contact '{}' has {}", joint->name,
-        joint->force_scale > 0.0
+        joint->contact.force_scale > 0.0
             ? "not kept them apart: give smaller windows and steps, or finer "
               "meshes where they meet"
             : "never closed: look whether its ports are the sides that meet, and "
@@ -158,13 +157,12 @@ bool stands_for_round(const PortGeometry& geometry) {
 std::string Narrator::remedies(std::span<const Joint> joints) const {
   bool round = false, kicks = false, published = false;
   for (const Joint& joint : joints) {
-    if (joint.tied() || !(joint.closed() || joint.force_scale > 0.0)) continue;
-    published = published || joint.decision == Decision::window_begin;
+    if (joint.tied() || !(joint.closed() || joint.contact.force_scale > 0.0)) continue;
+    published = published || joint.watch->decision() == Decision::window_begin;
     for (const Side& side : joint.sides) {
-      if (joint.surfaces)
-        round = round || stands_for_round(bodies_.port(side).geometry);
-      else
-        kicks = kicks || trace_of(bodies_, side).support == ForceSupport::step;
+      const PortGeometry& port = bodies_.port(side).geometry;
+      round = round || stands_for_round(port);
+      kicks = kicks || (port.dim == 1 && trace_of(bodies_, side).support == ForceSupport::step);
     }
   }
   return fmt::format("give smaller steps{}{}{}", round ? ", a finer mesh of round surfaces" : "",

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "coordinator/coupling/internal_contact.hpp"
+#include "coordinator/coupling/contact_account.hpp"
+#include "coordinator/coupling/watch.hpp"
 #include "coordinator/energy_guard.hpp"
 #include "coordinator/record/observer.hpp"
 
@@ -28,7 +29,7 @@ class Narrator {
 
   void closed(const Joint& joint, double time, double speed);
   void opened(const Joint& joint, double time);
-  void inside(const Joint& joint, const InternalContact::Change& change);
+  void inside(const Joint& joint, const ContactChange& change);
   /// Warns where the side that finds a contact of surfaces has the longer steps.
   void found(const Joint& joint, double time);
   /// The contact spring of a joint lowers its Neumann side's stable step to a limit [s].
@@ -50,9 +51,7 @@ class Narrator {
   void tell(const RunEvent& event);
   std::string blamed(const std::string& text) const;  // the body that a text names, or empty
 
-  const std::string& interface_of(const Joint& joint) const {
-    return interfaces_[joint.interface];
-  }
+  const std::string& interface_of(const Joint& joint) const { return interfaces_[joint.interface]; }
 
   const Bodies& bodies_;
   std::vector<Observer*> observers_;

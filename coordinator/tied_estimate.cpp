@@ -3,23 +3,23 @@
 #include <algorithm>
 
 #include "coordinator/couple.hpp"
+#include "coordinator/coupling/exchange_parts.hpp"
 #include "coordinator/coupling/islands.hpp"
 #include "coordinator/coupling/tie_kernel_plan.hpp"
-#include "coordinator/coupling/transmission_parts.hpp"
 
 namespace abut {
 
 namespace {
 
-TieLayout layout_of(const Island& island, std::span<const Joint> joints, const Bodies& bodies,
-                    double window) {
+TieLayout layout_of(const Island& island, std::span<const Joint> joints,
+                    const std::vector<Tie*>& tie_of, const Bodies& bodies, double window) {
   TieLayout layout;
   for (const int j : island.joints) {
     const Joint& joint = joints[j];
     std::array<int, 2> counts;
     for (const std::size_t s : {0u, 1u})
       counts[s] = substeps_of(bodies, joint.sides[s], {0, 0.0, window}).count;
-    layout.add(joint, counts, 0);
+    layout.add(joint, *tie_of[j], counts, 0);
   }
   layout.arrange(bodies);
   return layout;
@@ -68,14 +68,18 @@ bool is_touched(const TieLayout& layout, std::span<const Joint> joints) {
 
 std::vector<Estimate::Ties> estimate_ties(const Scene& scene, std::vector<Joint>& joints,
                                           const Bodies& bodies) {
-  for (Joint& joint : joints)
-    if (joint.how != nullptr && joint.how->tie() != nullptr) joint.press();
+  const KnownExchanges known = known_exchanges(joints);
+  std::vector<Tie*> tie_of(joints.size(), nullptr);
+  for (const auto& [joint, tie, part] : known.ties) {
+    joints[part].press();
+    tie_of[part] = tie;
+  }
   std::vector<Estimate::Ties> all;
   for (const Island& island : find_islands(joints, bodies.count())) {
-    const bool ties = std::ranges::any_of(
-        island.joints, [&joints](int j) { return joints[j].how->tie() != nullptr; });
+    const bool ties =
+        std::ranges::any_of(island.joints, [&tie_of](int j) { return tie_of[j] != nullptr; });
     if (!ties) continue;
-    const TieLayout layout = layout_of(island, joints, bodies, scene.time.window);
+    const TieLayout layout = layout_of(island, joints, tie_of, bodies, scene.time.window);
     all.push_back(ties_of(layout, tie_kernel_options(scene.schwarz), bodies));
     all.back().touched = is_touched(layout, joints);
   }

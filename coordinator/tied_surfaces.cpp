@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "coordinator/coupling/tie.hpp"
+#include "coordinator/coupling/tie_watch.hpp"
 #include "surface/unlike_meshes.hpp"
 
 namespace abut {
@@ -138,23 +139,23 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, cons
   Joint joint;
   joint.name = spec.name;
   joint.sides = sides;
-  joint.decision = Decision::never;
   const int coarser = coarser_steps(sides, bodies);
-  joint.kinematic = spec.tied->finer ? 1 - coarser : coarser;
-  joint.role_fixed = true;
-  joint.normal = {1.0, -1.0};
-  joint.jump.assign(static_cast<std::size_t>(rows.width()), 0.0);
-  joint.how = std::make_unique<Tie>(std::move(rows));
+  joint.role.kinematic = spec.tied->finer ? 1 - coarser : coarser;
+  joint.role.fixed = true;
+  joint.line.normal = {1.0, -1.0};
+  auto tie = std::make_unique<Tie>(std::move(rows));
+  joint.watch = std::make_unique<TieWatch>(*tie);
+  joint.exchange = std::move(tie);
   return joint;
 }
 
 void check_still_contact(std::span<const Joint> joints, bool everything, const Bodies& bodies) {
-  const auto ties = [joints](int body, int port) {  // -1: any port
-    return std::ranges::any_of(joints, [body, port](const Joint& joint) {
-      return joint.how != nullptr && joint.how->tie() != nullptr &&
-             std::ranges::any_of(joint.sides, [body, port](const Side& side) {
-               return side.body == body && (port < 0 || side.port == port);
-             });
+  const KnownExchanges known = known_exchanges(joints);
+  const auto ties = [&known](int body, int port) {  // -1: any port
+    return std::ranges::any_of(known.ties, [body, port](const auto& tied) {
+      return std::ranges::any_of(tied.joint->sides, [body, port](const Side& side) {
+        return side.body == body && (port < 0 || side.port == port);
+      });
     });
   };
   const auto refuse = [&bodies](int body, const std::string& where) {
@@ -165,12 +166,10 @@ void check_still_contact(std::span<const Joint> joints, bool everything, const B
         where,
         "Integrate the body in time (newmark), or make it one mesh with what it is tied to.");
   };
-  for (const Joint& joint : joints) {
-    if (!joint.surfaces) continue;
-    for (const Side& side : joint.sides)
+  for (const auto& [joint, contact, part] : known.obstacles)
+    for (const Side& side : joint->sides)
       if (bodies.describe(side.body).quasi_static && ties(side.body, -1))
-        refuse(side.body, "interfaces." + joint.name);
-  }
+        refuse(side.body, "interfaces." + joint->name);
   for (int b = 0; everything && b < bodies.count(); ++b) {
     const Description& body = bodies.describe(b);
     if (!body.quasi_static || !ties(b, -1)) continue;

@@ -1,4 +1,5 @@
 #include "coordinator/coupling/accelerator.hpp"
+#include "coordinator/coupling/state_fields.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +13,9 @@ namespace {
 constexpr int stagnation = 6;
 }  // namespace
 
-Eigen::VectorXd Relaxation::next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) {
-  if (probe_) return iterate + factor_ * probe_(image - iterate);
-  return iterate + factor_ * (image - iterate);
+Eigen::VectorXd Relaxation::next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image,
+                                 const Inverses& inverses) {
+  return iterate + by_.apply(image - iterate, inverses);
 }
 
 void Aitken::reset(std::uint64_t) {
@@ -22,9 +23,9 @@ void Aitken::reset(std::uint64_t) {
   previous_.resize(0);
 }
 
-Eigen::VectorXd Aitken::next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) {
-  Eigen::VectorXd residual = image - iterate;
-  if (probe_) residual = probe_(residual);
+Eigen::VectorXd Aitken::next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image,
+                             const Inverses& inverses) {
+  const Eigen::VectorXd residual = by_.apply(image - iterate, inverses);
   if (previous_.size() == residual.size()) {
     const Eigen::VectorXd change = weighted(residual - previous_);
     const double squared = change.squaredNorm();
@@ -36,8 +37,8 @@ Eigen::VectorXd Aitken::next(const Eigen::VectorXd& iterate, const Eigen::Vector
   return iterate + factor_ * residual;
 }
 
-QuasiNewton::QuasiNewton(Inverse inverse, int reuse, double filter, int exact_enough)
-    : inverse_(std::move(inverse)), reuse_(reuse), filter_(filter), exact_enough_(exact_enough) {}
+QuasiNewton::QuasiNewton(Preconditioner inverse, int reuse, double filter, int exact_enough)
+    : inverse_(inverse), reuse_(reuse), filter_(filter), exact_enough_(exact_enough) {}
 
 void QuasiNewton::reset(std::uint64_t key) {
   if (key != key_) earlier_.clear();  // secants of another window length are noise
@@ -81,7 +82,8 @@ QuasiNewton::Selection QuasiNewton::select() const {
   return selection;
 }
 
-Eigen::VectorXd QuasiNewton::next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) {
+Eigen::VectorXd QuasiNewton::next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image,
+                                  const Inverses& inverses) {
   const Eigen::VectorXd residual = image - iterate;
   if (previous_residual_.size() == residual.size()) {
     current_.push_front({residual - previous_residual_, image - previous_image_});
@@ -90,10 +92,10 @@ Eigen::VectorXd QuasiNewton::next(const Eigen::VectorXd& iterate, const Eigen::V
   previous_image_ = image;
   ++updates_;
   const Selection secants = select();
-  if (secants.residuals.cols() == 0) return iterate + inverse_(residual);
+  if (secants.residuals.cols() == 0) return iterate + inverse_.apply(residual, inverses);
   const Eigen::VectorXd weights = secants.weighted.householderQr().solve(-weighted(residual));
   const Eigen::VectorXd rest = residual + secants.residuals * weights;
-  return iterate + (secants.images - secants.residuals) * weights + inverse_(rest);
+  return iterate + (secants.images - secants.residuals) * weights + inverse_.apply(rest, inverses);
 }
 
 void QuasiNewton::forget() {
@@ -108,6 +110,19 @@ void QuasiNewton::accept() {
   earlier_.push_front(std::move(current_));
   current_.clear();
   while (static_cast<int>(earlier_.size()) > reuse_) earlier_.pop_back();
+}
+
+/// Between windows: what belongs to one window is not listed.
+void QuasiNewton::state(Archive& archive) {
+  const auto secants = [](Archive& a, std::deque<Secant>& window) {
+    list(a, "secants", window, [](Archive& each, Secant& secant) {
+      field(each, "residual", secant.residual);
+      field(each, "image", secant.image);
+    });
+  };
+  archive.field("needed", needed_);
+  whole(archive, "key", key_);
+  list(archive, "windows", earlier_, secants);
 }
 
 }  // namespace abut

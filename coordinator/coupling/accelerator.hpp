@@ -3,12 +3,40 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <memory>
-#include <utility>
 
 #include <Eigen/Dense>
 
+#include "base/archive.hpp"
+
 namespace abut {
+
+/// Multiplies a residual by something that stands for the inverse Jacobian.
+using ApplyInverse = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
+
+/// What an island knows of its inverse Jacobian in a window.
+struct Inverses {
+  ApplyInverse kernels;  // by the port kernels of the bodies
+  ApplyInverse relaxed;  // one number per joint, by impedance probe
+};
+
+/// What an accelerator takes in place of the inverse Jacobian.
+class Preconditioner {
+ public:
+  static Preconditioner kernels() { return {Kind::kernels, 1.0}; }
+  static Preconditioner relaxed() { return {Kind::relaxed, 1.0}; }
+  static Preconditioner number(double factor) { return {Kind::number, factor}; }
+
+  Eigen::VectorXd apply(const Eigen::VectorXd& r, const Inverses& inverses) const {
+    if (kind_ == Kind::number) return factor_ * r;
+    return kind_ == Kind::kernels ? inverses.kernels(r) : inverses.relaxed(r);
+  }
+
+ private:
+  enum class Kind { kernels, relaxed, number };
+  Preconditioner(Kind kind, double factor) : kind_(kind), factor_(factor) {}
+  Kind kind_;
+  double factor_;
+};
 
 /// Chooses the next iterate from the last one and its image. Sees one stacked vector for the whole
 /// window: every trace of every exchanged field, in units of its own.
@@ -22,13 +50,16 @@ class Accelerator {
   /// used.
   virtual void reset(std::uint64_t key) = 0;
   /// x_k, G(x_k) -> x_{k+1}
-  virtual Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) = 0;
+  virtual Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image,
+                               const Inverses& inverses) = 0;
   /// In this window the inverse alone is not enough: what earlier ones have learned counts at once.
-  virtual void doubt() {}
+  virtual void doubt() = 0;
   /// What was learned led away from the solution: it holds no longer.
-  virtual void forget() {}
+  virtual void forget() = 0;
   /// The window was accepted: what was learned in it may serve the next one.
-  virtual void accept() {}
+  virtual void accept() = 0;
+  /// What it carries from window to window.
+  virtual void state(Archive& archive) = 0;
 
  protected:
   Eigen::VectorXd weighted(const Eigen::VectorXd& r) const {
@@ -39,35 +70,38 @@ class Accelerator {
   Eigen::VectorXd weights_;
 };
 
-/// Multiplies a residual by something that stands for the inverse Jacobian: a matrix, or one number
-/// per interface.
-using ApplyInverse = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
-
-/// x_{k+1} = x_k + factor (G - x_k); factor 1 is the plain iteration.
-class Relaxation final : public Accelerator {
+/// An accelerator that carries nothing from window to window.
+class Forgetful : public Accelerator {
  public:
-  explicit Relaxation(double factor) : factor_(factor) {}
-  explicit Relaxation(ApplyInverse probe) : factor_(1.0), probe_(std::move(probe)) {}
-  void reset(std::uint64_t) override {}
-  Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) override;
-
- private:
-  double factor_;
-  ApplyInverse probe_;  // empty: 1
+  void doubt() override {}
+  void forget() override {}
+  void accept() override {}
+  void state(Archive&) override {}
 };
 
-/// Aitken's dynamic relaxation, |factor| limited to 2. With a probe it relaxes the probed residual.
-class Aitken final : public Accelerator {
+/// x_{k+1} = x_k + P (G - x_k); with P = 1 it is the plain iteration.
+class Relaxation final : public Forgetful {
  public:
-  explicit Aitken(double initial) : initial_(initial) {}
-  explicit Aitken(ApplyInverse probe, double initial = 1.0)
-      : initial_(initial), probe_(std::move(probe)) {}
-  void reset(std::uint64_t) override;
-  Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) override;
+  explicit Relaxation(Preconditioner by) : by_(by) {}
+  void reset(std::uint64_t) override {}
+  Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image,
+                       const Inverses& inverses) override;
 
  private:
+  Preconditioner by_;
+};
+
+/// Aitken's dynamic relaxation of P (G - x), |factor| limited to 2.
+class Aitken final : public Forgetful {
+ public:
+  explicit Aitken(Preconditioner by, double initial = 1.0) : by_(by), initial_(initial) {}
+  void reset(std::uint64_t) override;
+  Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image,
+                       const Inverses& inverses) override;
+
+ private:
+  Preconditioner by_;
   double initial_;
-  ApplyInverse probe_;  // empty: 1
   double factor_ = 0.0;
   Eigen::VectorXd previous_;  // residual
 };
@@ -80,16 +114,16 @@ class Aitken final : public Accelerator {
 /// proved not to be enough.
 class QuasiNewton final : public Accelerator {
  public:
-  using Inverse = ApplyInverse;
-
   /// `exact_enough`: number of iterations up to which the inverse alone is trusted; 0: secants
   /// always.
-  QuasiNewton(Inverse inverse, int reuse, double filter, int exact_enough);
+  QuasiNewton(Preconditioner inverse, int reuse, double filter, int exact_enough);
   void reset(std::uint64_t key) override;
-  Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image) override;
+  Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image,
+                       const Inverses& inverses) override;
   void doubt() override { needed_ = true; }
   void forget() override;
   void accept() override;
+  void state(Archive& archive) override;
 
  private:
   struct Secant {
@@ -100,7 +134,7 @@ class QuasiNewton final : public Accelerator {
   };
   Selection select() const;
 
-  Inverse inverse_;
+  Preconditioner inverse_;
   int reuse_;
   double filter_;
   int exact_enough_;

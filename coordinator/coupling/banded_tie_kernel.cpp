@@ -58,8 +58,7 @@ BandedResponses responses_of(const TieLayout& layout, const TieLayout::Part& par
     std::vector<std::vector<int>> pressed(index(own.band.colours[e]));  // rows by colour
     for (int r = 0; r < count; ++r) pressed[own.band.colour[index(first + r)]].push_back(r);
     const auto fill = [&](int pattern, std::span<double> forces) {
-      for (const int r : pressed[pattern / dim])
-        forces[r * dim + pattern % dim] = 1.0;
+      for (const int r : pressed[pattern / dim]) forces[r * dim + pattern % dim] = 1.0;
     };
     const auto take = [&](int pattern, int later, const TieLayout::End& of,
                           std::span<const double> moved) {
@@ -116,6 +115,10 @@ class BandedTieKernel final : public TieKernel {
   Eigen::Index size() const override { return blocks_[0].rows(); }
   int lags() const override { return static_cast<int>(blocks_.size()); }
   double bytes() const override;
+  bool renew(const TieLayout&, Bodies&) override { return false; }
+  void turn(const TieLayout&) override {}
+  std::vector<double> answers() const override { return {}; }
+  void take(const TieLayout&, std::span<const double>) override {}
 
  private:
   void subtract(int lag, const Eigen::Ref<const Eigen::VectorXd>& force,
@@ -126,7 +129,7 @@ class BandedTieKernel final : public TieKernel {
   /// It is not known: the iteration finds an answer where there is one.
   bool redundant() const override { return true; }
 
-  std::vector<Sparse> blocks_;  // [m/N] by lag
+  std::vector<Sparse> blocks_;      // [m/N] by lag
   std::array<Sparse, 2> softened_;  // the first block
   std::array<Eigen::BiCGSTAB<Sparse>, 2> first_;
 };

@@ -15,6 +15,7 @@
 #include "contract/kernel_parts.hpp"
 #include "coordinator/coupling/kernel_support.hpp"
 #include "coordinator/coupling/port_pose.hpp"
+#include "coordinator/coupling/state_fields.hpp"
 
 namespace abut {
 
@@ -33,9 +34,16 @@ PortKernel along(const PortKernel& all, const PortGeometry& surface) {
       out[k / normals.size()] += normals[k % normals.size()] * values[k] / count;
     return out;
   };
-  return {all.step, all.support, 1, 1,
+  return {all.step,
+          all.support,
+          1,
+          1,
           surface.count() == 1 ? mean(all.compliance) : std::vector<double>(),
-          mean(all.displacement), mean(all.begin), {}, {}, {}};
+          mean(all.displacement),
+          mean(all.begin),
+          {},
+          {},
+          {}};
 }
 
 /// The responses of some points alone, to patterns of as many.
@@ -138,7 +146,10 @@ void Bodies::prepare(const TimeWindow& window, int records, Sampling sampling) {
     request.sampling = sampling;
     request.ahead = 0.0;
     request.carry.clear();
-    for (BoundaryData& data : request.boundary) data.clear();
+    for (BoundaryData& data : request.boundary) {
+      data.clear();
+      for (Obstacle& obstacle : data.obstacles) obstacle.motion.width = 1;  // no trace of the past
+    }
   }
 }
 
@@ -299,6 +310,20 @@ double Bodies::overhead_median() const {
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   return static_cast<double>(*middle);
+}
+
+void Bodies::state(Archive& archive) {
+  archive.field("taken_back", taken_back_);
+  archive.field("struck", struck_);
+  for (Response& response : responses_) field(archive, "response", response);
+  for (Advance& request : requests_)  // replies have a reaction for every place
+    for (BoundaryData& boundary : request.boundary)
+      list(archive, "obstacles", boundary.obstacles, [](Archive&, Obstacle&) {});
+  list(archive, "kernels", kernels_, [](Archive& a, CachedKernel& known) {
+    whole(a, "body", known.body);
+    whole(a, "port", known.port);
+    field(a, "kernel", known.kernel);
+  });
 }
 
 }  // namespace abut

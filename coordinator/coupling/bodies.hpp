@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "base/index.hpp"
 #include "contract/subdomain.hpp"
 
@@ -50,6 +51,8 @@ class Bodies {
   /// Whether the latest responses are of an attempt that was taken back.
   bool taken_back() const { return taken_back_; }
 
+  /// Counts meetings of pairs of sides.
+  int next_meeting() { return meetings_++; }
   /// Numbers the partner of a side, and tells it whom it may meet where it takes obstacles.
   void meet(Side& side, const PortGeometry& partner, const ContactLaw& law);
   /// Fields of the traces that later responses are to hold.
@@ -92,6 +95,9 @@ class Bodies {
   /// its normal at the begin of a window, of a linear body. Precondition: all stand as saved.
   std::vector<double> impulse_response(const Side& side, const TimeWindow& window);
 
+  /// Latest responses and what was told of the bodies, between windows.
+  void state(Archive& archive);
+
   double shortest_step() const;              // [s] of all bodies, at most a window
   double window() const { return window_; }  // [s] a whole one
   double longest_step() const;               // [s] of those that have one; a window where none has
@@ -114,6 +120,7 @@ class Bodies {
   std::vector<Response> responses_;
   std::vector<std::vector<std::unique_ptr<PortPose>>> poses_;  // by body and port
   std::vector<std::vector<int>> partners_;                     // met so far, by body and port
+  int meetings_ = 0;
   bool taken_back_ = false;
   std::vector<double> struck_;
   std::vector<int> everybody_;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/row_margin.hpp"
 
 namespace abut {
@@ -92,8 +93,7 @@ BroadPhase::BroadPhase(const Bodies& bodies, std::span<const Joint> joined) {
     }
   }
   margin_ = row_margin_of_all(sides, bodies);
-  for (const Joint& joint : joined)
-    if (joint.surfaces) join(joint.sides);
+  for (const auto& [joint, contact, part] : known_exchanges(joined).obstacles) join(joint->sides);
 }
 
 void BroadPhase::join(const PortPair& pair) {

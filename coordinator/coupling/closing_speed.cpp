@@ -89,7 +89,8 @@ class Seen {
 
 }  // namespace
 
-double closing_speed_before(const Joint& joint, const Bodies& bodies, std::size_t substep) {
+double closing_speed_before(const Joint& joint, bool rubs, const Bodies& bodies,
+                            std::size_t substep) {
   const Waveform& force = bodies.reaction(joint.kinematic_side());
   const int dim = bodies.port(joint.sides[0]).geometry.dim;
   const double time = force.time[substep - 1];
@@ -114,7 +115,7 @@ double closing_speed_before(const Joint& joint, const Bodies& bodies, std::size_
   }
   if (all == 0.0) return 0.0;
   Vector3 normal = push;
-  if (joint.static_friction > 0.0) {  // the force leans; of a corner on a plane, the plane tells
+  if (rubs) {  // the force leans; of a corner on a plane, the plane tells
     const Vector3 own = finder.normal(), theirs = other.normal();
     normal = own.norm() >= theirs.norm() ? own : Vector3(-theirs);
   }

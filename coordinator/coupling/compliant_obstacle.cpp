@@ -6,9 +6,10 @@
 
 #include "contract/force_means.hpp"
 #include "coordinator/coupling/contact.hpp"
+#include "coordinator/coupling/exchange_parts.hpp"
 #include "coordinator/coupling/kernel_bytes.hpp"
+#include "coordinator/coupling/state_fields.hpp"
 #include "coordinator/coupling/tie_net.hpp"
-#include "coordinator/coupling/transmission_parts.hpp"
 
 namespace abut {
 
@@ -39,7 +40,7 @@ void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodi
   flies_ = !stands && !looked;
   looks_ = !stands && free_ahead() ? window.length() : 0.0;
   scale_.step = std::max(kinematic_grid_.step, iterate_.steps.step);
-  scale_.velocity = usual_speed_ = measured_speed_ = joint.closing_speed;
+  scale_.velocity = usual_speed_ = measured_speed_ = joint.contact.closing_speed;
   swept_ = false;
 }
 
@@ -98,10 +99,14 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
     return;
   }
   kernel_ = &answer_;
-  if (answer_.count() >= iterate_.steps.count && answer_.points == zone_.points()) return;
-  answer_ = bodies.full_kernel(n.body, n.port, iterate_.steps.count, zone_.points());
-  if (levels_of(kinematic_grid_) == levels_of(iterate_.steps)) answer_.compliance.clear();
+  const bool holds = answer_.count() >= iterate_.steps.count && answer_.points == zone_.points();
+  if (holds && answer_told_) return;
+  if (!holds) {
+    answer_ = bodies.full_kernel(n.body, n.port, iterate_.steps.count, zone_.points());
+    if (levels_of(kinematic_grid_) == levels_of(iterate_.steps)) answer_.compliance.clear();
+  }
   bodies.yields(k, k.partner, n, answer_);
+  answer_told_ = true;
   eased_[1].told = {};
 }
 
@@ -150,7 +155,7 @@ void CompliantObstacle::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 void CompliantObstacle::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
                                const Joint& joint, Bodies& bodies) {
   const Side& here = joint.sides[side];
-  if (side != joint.kinematic) {
+  if (side != joint.role.kinematic) {
     bodies.force(here) = bodies.reaction(joint.kinematic_side());
     bodies.request(here.body).ahead = looks_;
     return;
@@ -220,8 +225,7 @@ void CompliantObstacle::withdraw(const Joint& joint, Bodies& bodies) {
     bodies.yields(k, own_surface, k, own.told);
     own.told = {};
   }
-  if (other.told.count() > 0)
-    bodies.yields(k, k.partner, joint.neumann_side(), answer_);
+  if (other.told.count() > 0) bodies.yields(k, k.partner, joint.neumann_side(), answer_);
   other.told = {};
 }
 
@@ -241,8 +245,7 @@ void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>& x, const 
   double now = std::max(reached(trace), reached(trace_of(bodies, joint.kinematic_side())));
   // Gaps are differences of places, and no rounder than these.
   const double place = largest(bodies.port(joint.neumann_side()).geometry.points);
-  scale_.roundoff =
-      roundoff_of(place + largest(u_begin_), g.tail(width).lpNorm<Eigen::Infinity>());
+  scale_.roundoff = roundoff_of(place + largest(u_begin_), g.tail(width).lpNorm<Eigen::Infinity>());
   if (!zone_.empty()) {
     take(bodies.reaction(joint.kinematic_side()));
     if (kernel_ != nullptr) {
@@ -361,6 +364,13 @@ double CompliantObstacle::stray() const {
 void CompliantObstacle::scales(Eigen::Ref<Eigen::VectorXd> s) const {
   const double unit = scale_.velocity * scale_.step;
   s.setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
+}
+
+/// The kernel as well: that of a body that is not linear is of the state in which it was probed.
+void CompliantObstacle::state(Archive& archive) {
+  zone_.state(archive);
+  field(archive, "answer", answer_);
+  if (!archive.writing()) answer_told_ = false;
 }
 
 }  // namespace abut

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "coordinator/coupling/contact_zone.hpp"
-#include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/exchange.hpp"
+#include "coordinator/coupling/tie_net.hpp"
 
 namespace abut {
 
@@ -15,17 +16,17 @@ namespace abut {
 /// without reactions, the kinematic body against it, the partner under the reaction. Partners
 /// without a kernel, or of other substeps, are obstacles that do not give way: d is their motion,
 /// first guessed under the forces of the window before, carried on, and relaxed.
-class CompliantObstacle final : public Transmission {
+class CompliantObstacle final : public Exchange {
  public:
   /// `largest_kernel`: [B] beyond which the obstacle does not give way.
-  explicit CompliantObstacle(double largest_kernel) : largest_kernel_(largest_kernel) {}
+  /// `margin` [m]: rows of facets may press before these touch.
+  CompliantObstacle(double largest_kernel, double margin, const ContactLaw& law)
+      : largest_kernel_(largest_kernel), zone_(margin) {
+    law_ = law;
+  }
 
-  void share(bool shared) override { shared_ = shared; }
   void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
   int values() const override { return static_cast<int>(iterate_.size()); }
-  bool flies() const override { return flies_; }
-  void release(const Joint& joint, Bodies& bodies) override;
-  void see_flight(const Joint& joint, const Bodies& bodies) override;
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
@@ -38,12 +39,31 @@ class CompliantObstacle final : public Transmission {
     return first_factor_ * r;
   }
   double first_factor() const override { return first_factor_; }
-  bool contracts() const override { return true; }
-  double stray() const override;
-  bool ease(TieNet& net, const Joint& joint, Bodies& bodies) override;
-  void withdraw(const Joint& joint, Bodies& bodies) override;
-  void follow(const Eigen::VectorXd& change, Eigen::Ref<Eigen::VectorXd> own) const override;
   bool ordered() const override { return true; }
+  void enter(const Joint& joint, std::size_t part, KnownExchanges& known) override {
+    known.obstacles.push_back({&joint, this, part});
+  }
+  void state(Archive& archive) override;
+
+  // What a net asks beside (Net):
+
+  /// Whether the Neumann side's body has other closed joints in the window that begins next.
+  void share(bool shared) { shared_ = shared; }
+  /// Whether the first guess is a flight: the Neumann side is advanced once, as `release` asks, and
+  /// brought back, before the guess is made.
+  bool flies() const { return flies_; }
+  void release(const Joint& joint, Bodies& bodies);
+  void see_flight(const Joint& joint, const Bodies& bodies);
+  /// The largest speed by which mismatches of this window were measured over that of this sweep and
+  /// the first, >= 1: a sweep that went astray must not loosen the test for those after it.
+  double stray() const;
+  /// The ties of bodies on either side have laid out their iterates: how they give way under
+  /// contact. False: that is not known.
+  bool ease(TieNet& net, const Joint& joint, Bodies& bodies);
+  /// The bodies are not told any more how ties give way.
+  void withdraw(const Joint& joint, Bodies& bodies);
+  /// The forces of ties change by their parts of a stacked vector: adds what that does to g - x.
+  void follow(const Eigen::VectorXd& change, Eigen::Ref<Eigen::VectorXd> own) const;
 
  private:
   void find_kernel(double length, const Joint& joint, Bodies& bodies);
@@ -72,10 +92,11 @@ class CompliantObstacle final : public Transmission {
   std::vector<double> f_begin_, f_rate_;   // [N] [N/s] (width) reaction at the window's begin
   Waveform guess_;                         // [N] under which the Neumann side flies
   std::size_t dim_ = 1;
-  ContactZone zone_;                       // of points that give way
-  std::vector<double> u_k_;                // [m] of the kinematic port, at the window's begin
-  const PortKernel* kernel_ = nullptr;     // null: the obstacle does not give way
-  PortKernel answer_;                      // of the zone, as the kinematic body knows it
+  ContactZone zone_;                    // of points that give way
+  std::vector<double> u_k_;             // [m] of the kinematic port, at the window's begin
+  const PortKernel* kernel_ = nullptr;  // null: the obstacle does not give way
+  PortKernel answer_;                   // of the zone
+  bool answer_told_ = false;            // the kinematic body knows it
   // What bodies tied to either side answer, as the kinematic body was told; null: none are.
   struct Eased {
     const TiedPort* port = nullptr;
@@ -84,10 +105,10 @@ class CompliantObstacle final : public Transmission {
   std::array<Eased, 2> eased_;  // of the kinematic side, of the other
   const TieLayout* layout_ = nullptr;
   Eigen::MatrixXd fits_;  // [N] as taken_: what forces of ties fit, of the sweep before
-  bool linear_ = false;                    // of the Neumann side
-  bool shared_ = false;                    // the Neumann side has other joints
+  bool linear_ = false;   // of the Neumann side
+  bool shared_ = false;   // the Neumann side has other joints
   bool flies_ = false;
-  double looks_ = 0.0;  // [s] by which the Neumann side looks on after the window
+  double looks_ = 0.0;      // [s] by which the Neumann side looks on after the window
   Eigen::VectorXd flight_;  // [m] as the iterate; empty: none was flown
   Waveform given_;          // the obstacle of this sweep
   ReferenceScales scale_;
@@ -97,7 +118,7 @@ class CompliantObstacle final : public Transmission {
   double first_factor_ = 1.0;
   Eigen::VectorXd moved_;    // [m] (width) by the reaction, at the window's end
   Eigen::MatrixXd pressed_;  // [N] (width, times of the reaction)
-  Eigen::MatrixXd taken_;  // [N] (width, levels) of the reaction by the Neumann side, beyond d's
+  Eigen::MatrixXd taken_;    // [N] (width, levels) of the reaction by the Neumann side, beyond d's
 };
 
 }  // namespace abut

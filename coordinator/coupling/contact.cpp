@@ -42,13 +42,13 @@ std::optional<Touch> first_overlap(const Joint& joint, const Bodies& bodies, dou
   return std::nullopt;
 }
 
-void ContactHistory::read(const Joint& joint, Bodies& bodies) {
+void ContactHistory::read(const Joint& joint, double opened_at, Bodies& bodies) {
   const Side& here = joint.kinematic_side();
   const Side& there = joint.neumann_side();
   const Waveform& own = trace_of(bodies, here);
   const bool coarser = bodies.describe(there.body).step > bodies.describe(here.body).step;
   const std::vector<double>& t = coarser ? trace_of(bodies, there).time : own.time;
-  const double inward = -joint.normal_of(joint.kinematic);
+  const double inward = -joint.normal_of(joint.role.kinematic);
   kicks_ = own.support == ForceSupport::step;
   finer_.clear();
   for (std::size_t i = 0; coarser && i < own.size(); ++i)
@@ -65,12 +65,12 @@ void ContactHistory::read(const Joint& joint, Bodies& bodies) {
     levels_[i] = {t[i], inward * force, gap_at(joint, bodies, t[i])};
   }
   // the coordinator has seen the release at this instant already
-  if (joint.opened_at == t.front()) levels_.front().force = 0.0;
+  if (opened_at == t.front()) levels_.front().force = 0.0;
   compliance_ = 0.0;
   for (const Side& side : joint.sides)
     compliance_ += bodies.kernel(side.body, side.port, 1).displacement.front();
   constexpr double units = 2.0 * std::numeric_limits<double>::epsilon();
-  const double moved = std::max(std::abs(own.u.back()), joint.reference_gap);
+  const double moved = std::max(std::abs(own.u.back()), joint.line.reference_gap);
   rounding_ = compliance_ > 0.0 ? units * moved / compliance_ : 0.0;
 }
 
@@ -150,14 +150,8 @@ double push_of_all(int body, const Bodies& bodies, double length) {
   return std::hypot(sum[0], sum[1], sum[2]) * length / about.mass;
 }
 
-double peak_force(const Joint& joint, const Bodies& bodies) {
+double largest_force(const Joint& joint, const Bodies& bodies) {
   double peak = 0.0;
-  if (joint.surfaces) {
-    const Waveform& force = bodies.reaction(joint.kinematic_side());
-    const int dim = bodies.port(joint.sides[0]).geometry.dim;
-    for (std::size_t i = 0; i < force.size(); ++i) peak = std::max(peak, resultant(force, i, dim));
-    return peak;
-  }
   for (double f : trace_of(bodies, joint.kinematic_side()).f) peak = std::max(peak, std::abs(f));
   return peak;
 }
@@ -195,23 +189,23 @@ double opening_kick(const Joint& joint, const Bodies& bodies) {
   return recoil ? -0.5 * step * closing / recoil->mobility : 0.0;
 }
 
-double release_impulse(const Joint& joint, const Bodies& bodies) {
+double release_impulse(const Joint& joint, double debt, const Bodies& bodies) {
   const std::optional<Recoil> recoil = joint_recoil(joint, bodies);
-  if (!recoil || joint.debt <= 0.0) return 0.0;
+  if (!recoil || debt <= 0.0) return 0.0;
   const double w = recoil->velocity;
-  return (w + std::sqrt(w * w + 2.0 * recoil->mobility * joint.debt)) / recoil->mobility;
+  return (w + std::sqrt(w * w + 2.0 * recoil->mobility * debt)) / recoil->mobility;
 }
 
-double paying_impulse(const Joint& joint, const Bodies& bodies) {
+double paying_impulse(const Joint& joint, double debt, const Bodies& bodies) {
   // Of the energy of approach: a larger debt waits, its impulse would stir up more than it finds.
   constexpr double most = 3.0;
   const std::optional<Recoil> recoil = joint_recoil(joint, bodies);
   if (!recoil) return 0.0;
   const double w = recoil->velocity;
-  const double owed = 2.0 * recoil->mobility * joint.debt;
+  const double owed = 2.0 * recoil->mobility * debt;
   if (w == 0.0 || owed > most * w * w) return 0.0;
   if (owed < -w * w) return w / recoil->mobility;  // all that can be taken back this way
-  return -2.0 * joint.debt / (w + std::copysign(std::sqrt(w * w + owed), w));
+  return -2.0 * debt / (w + std::copysign(std::sqrt(w * w + owed), w));
 }
 
 }  // namespace abut

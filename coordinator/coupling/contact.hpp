@@ -32,8 +32,9 @@ struct ContactLevel {
 /// first. Judged there, because single values of the finer side spike.
 class ContactHistory {
  public:
-  /// Reads the latest responses. Reuse it: levels keep their memory.
-  void read(const Joint& joint, Bodies& bodies);
+  /// Reads the latest responses. Reuse it: levels keep their memory. `opened_at` [s]: last release
+  /// of a kick layer.
+  void read(const Joint& joint, double opened_at, Bodies& bodies);
 
   std::size_t size() const { return levels_.size(); }
   const ContactLevel& operator[](std::size_t i) const { return levels_[i]; }
@@ -73,8 +74,8 @@ double resultant(const Waveform& force, std::size_t i, int dim);
 /// over a window of this length [s] with the forces of its end; 0: it is moved by nothing.
 double push_of_all(int body, const Bodies& bodies, double length);
 
-/// Largest contact force [N] on the kinematic side in the latest responses.
-double peak_force(const Joint& joint, const Bodies& bodies);
+/// [N] Of two points, the largest force on the kinematic side in the latest responses.
+double largest_force(const Joint& joint, const Bodies& bodies);
 
 /// [J] that contact did on both bodies in the latest responses  [M.23].
 double contact_work(const Joint& joint, const Bodies& bodies);
@@ -87,13 +88,13 @@ double closing_impulse(const Joint& joint, const Bodies& bodies);
 /// step that would lie before the begin. Of what the bodies told of the begin, with accelerations.
 double opening_kick(const Joint& joint, const Bodies& bodies);
 
-/// Impulse [N s] that gives back, when massive contact nodes part that took kicks, what contact has
-/// taken from the bodies [M.13]. 0 when a side takes no impulses.
-double release_impulse(const Joint& joint, const Bodies& bodies);
+/// Impulse [N s] that gives back, when massive contact nodes part that took kicks, the `debt` [J]:
+/// what contact has taken from the bodies [M.13]. 0 when a side takes no impulses.
+double release_impulse(const Joint& joint, double debt, const Bodies& bodies);
 
 /// Impulse [N s] between sides in contact, positive where it pushes them apart, that pays what
 /// contact owes the bodies  [M.26]. 0 where a side takes no impulses, or where their velocity of
 /// approach is too small to pay with: the debt waits.
-double paying_impulse(const Joint& joint, const Bodies& bodies);
+double paying_impulse(const Joint& joint, double debt, const Bodies& bodies);
 
 }  // namespace abut

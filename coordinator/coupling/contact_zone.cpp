@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coordinator/coupling/state_fields.hpp"
 #include "surface/closest_point.hpp"
 
 namespace abut {
@@ -49,7 +50,7 @@ void ContactZone::see(const Joint& joint, const Bodies& bodies, std::span<const 
   const PortGeometry& own = bodies.port(joint.kinematic_side()).geometry;
   const PortGeometry& other = bodies.port(joint.neumann_side()).geometry;
   const double facet = std::max(own.spacing, other.spacing);
-  const double reach = facet + way + joint.margin;
+  const double reach = facet + way + margin_;
   if (holds(k, n, pressed, reach)) return;
   k_ = pose(own, k, pose_k_);
   n_ = pose(other, n, pose_n_);
@@ -104,6 +105,14 @@ std::vector<std::int32_t> ContactZone::around(const std::vector<std::int32_t>& p
     if (std::ranges::any_of(points, beside)) out.push_back(node);
   }
   return out;
+}
+
+void ContactZone::state(Archive& archive) {
+  archive.field("all", all_);
+  field(archive, "zone", points_);
+  archive.field("seen_k", seen_k_);
+  archive.field("seen_n", seen_n_);
+  archive.field("clear", clear_);
 }
 
 }  // namespace abut

@@ -40,6 +40,10 @@ class DenseTieKernel final : public TieKernel {
   double bytes() const override {
     return 8.0 * static_cast<double>(blocks_.size() + 1) * static_cast<double>(blocks_[0].size());
   }
+  bool renew(const TieLayout& layout, Bodies& bodies) override;
+  void turn(const TieLayout& layout) override;
+  std::vector<double> answers() const override;
+  void take(const TieLayout& layout, std::span<const double> answers) override;
 
  private:
   void subtract(int lag, const Eigen::Ref<const Eigen::VectorXd>& force,
@@ -47,8 +51,6 @@ class DenseTieKernel final : public TieKernel {
     left -= blocks_[lag] * force;
   }
   Eigen::VectorXd invert(const Eigen::VectorXd& jump) const override;
-  bool renew(const TieLayout& layout, Bodies& bodies) override;
-  void turn(const TieLayout& layout) override;
   void find_blocks(const TieLayout& layout, int lags);
   void find_scale(const TieLayout& layout);
   void damp(const TieLayout& layout);
@@ -110,8 +112,7 @@ void add(const TieLayout& layout, const TieLayout::Part& part, const Responses& 
        layout.shares(part, of, by, lag, static_cast<int>(responses.size()))) {
     block.block(row.inner + Eigen::Index{share.of} * row.width,
                 column.inner + Eigen::Index{share.by} * column.width, row.width, column.width) +=
-        share.weight *
-        responses[share.later].block(of.first, by.first, row.width, column.width);
+        share.weight * responses[share.later].block(of.first, by.first, row.width, column.width);
   }
 }
 
@@ -181,6 +182,32 @@ bool DenseTieKernel::renew(const TieLayout& layout, Bodies& bodies) {
   return true;
 }
 
+std::vector<double> DenseTieKernel::answers() const {
+  std::vector<double> all;
+  const auto put = [&all](const Eigen::MatrixXd& m) {
+    all.insert(all.end(), m.data(), m.data() + m.size());
+  };
+  for (const Responses& responses : responses_)
+    for (const Eigen::MatrixXd& response : responses) put(response);
+  for (const Eigen::MatrixXd& turn : turns_) put(turn);
+  return all;
+}
+
+void DenseTieKernel::take(const TieLayout& layout, std::span<const double> answers) {
+  const auto get = [&answers](Eigen::MatrixXd& m) {
+    m = Eigen::Map<const Eigen::MatrixXd>(answers.data(), m.rows(), m.cols());
+    answers = answers.subspan(static_cast<std::size_t>(m.size()));
+  };
+  for (Responses& responses : responses_)
+    for (Eigen::MatrixXd& response : responses) get(response);
+  turns_.clear();
+  while (!answers.empty()) {
+    const Eigen::Index dim = layout.members.front().tie->rows().dim;
+    get(turns_.emplace_back(dim, dim));
+  }
+  find_blocks(layout, lags());
+}
+
 /// A joint of stiff bodies counts as much as one of soft ones, and places of loose motions as
 /// forces do.
 void DenseTieKernel::find_scale(const TieLayout& layout) {
@@ -221,17 +248,15 @@ void DenseTieKernel::damp(const TieLayout& layout) {
     for (int lag = lags() - 1; lag >= 0; --lag) {
       for (int step = member.steps - 1; step >= 0; --step) {
         if (step > 0) of(blocks_[lag], step) -= of(blocks_[lag], step - 1);
-        if (step == 0 && lag > 0)
-          of(blocks_[lag], 0) -= of(blocks_[lag - 1], member.steps - 1);
+        if (step == 0 && lag > 0) of(blocks_[lag], 0) -= of(blocks_[lag - 1], member.steps - 1);
       }
     }
-    const double length = member.tie->grid(member.joint->kinematic).step;
+    const double length = member.tie->grid(member.joint->role.kinematic).step;
     for (int k = 0; k < member.width * member.steps; ++k) {
       const int row = k % member.width / rows.dim;
       const double worth = length / rows.dashpots[row];
       const Eigen::Index at = member.inner + k, first = at - row * rows.dim - k % rows.dim;
-      for (auto e = rows.incoming.offsets[row]; e < rows.incoming.offsets[index(row) + 1];
-           ++e)
+      for (auto e = rows.incoming.offsets[row]; e < rows.incoming.offsets[index(row) + 1]; ++e)
         blocks_[0](at, first + rows.incoming.columns[e] * rows.dim + k % rows.dim) +=
             worth * rows.incoming.values[e];
     }

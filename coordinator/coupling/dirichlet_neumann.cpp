@@ -1,17 +1,18 @@
+#include "coordinator/coupling/dirichlet_neumann.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/assert.hpp"
-#include "coordinator/coupling/transmission.hpp"
-#include "coordinator/coupling/transmission_parts.hpp"
+#include "coordinator/coupling/exchange_parts.hpp"
 
 namespace abut {
 
 void DirichletNeumann::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
   const Side& n = joint.neumann_side();
-  iterate_ = {substeps_of(bodies, n, window), joint.width};
+  iterate_ = {substeps_of(bodies, n, window), 1};
   const Waveform& trace = trace_of(bodies, n);
-  ABUT_ASSERT(trace.width == joint.width);
+  ABUT_ASSERT(trace.width == 1);
   const std::size_t now = index_at_begin(trace, window.begin);
   keep_row(trace, trace.u, now, u_begin_);
   keep_row(trace, trace.v, now, v_begin_);
@@ -20,10 +21,11 @@ void DirichletNeumann::begin(const TimeWindow& window, const Joint& joint, Bodie
   // the guess holds the velocity after the impulse that this window begins with
   const PortResponse& port = port_of(bodies, n);
   if (port.recoil) {
-    v_begin_[0] -= joint.normal_of(1 - joint.kinematic) * port.recoil->mobility * joint.impulse;
+    v_begin_[0] -=
+        joint.normal_of(1 - joint.role.kinematic) * port.recoil->mobility * joint.contact.impulse;
   }
   scale_.step = iterate_.steps.step;
-  scale_.velocity = joint.closing_speed;
+  scale_.velocity = joint.contact.closing_speed;
   scale_.roundoff = roundoff_of(largest(u_begin_), 0.0);
 }
 
@@ -40,7 +42,7 @@ void DirichletNeumann::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 void DirichletNeumann::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x,
                               const Joint& joint, Bodies& bodies) {
   const Side& here = joint.sides[side];
-  if (side != joint.kinematic) {
+  if (side != joint.role.kinematic) {
     const Waveform& from = trace_of(bodies, joint.kinematic_side());
     Waveform& force = bodies.force(here);
     force.width = from.width;
@@ -87,7 +89,7 @@ void DirichletNeumann::image(const Eigen::Ref<const Eigen::VectorXd>&, const Joi
     trace.interpolate(trace.a, time, to(2));
   }
   // sides that were tied from the start have no velocity of a first touch
-  if (joint.closing_speed == 0.0) {
+  if (joint.contact.closing_speed == 0.0) {
     scale_.velocity = std::max(largest(v_begin_), g.segment(size, size).lpNorm<Eigen::Infinity>());
   }
 }
@@ -113,5 +115,8 @@ void DirichletNeumann::scales(Eigen::Ref<Eigen::VectorXd> s) const {
   s.segment(n, n).setConstant(1.0 / v);
   s.segment(2 * n, n).setConstant(scale_.step / v);
 }
+
+/// All of it is read from the latest responses when a window begins.
+void DirichletNeumann::state(Archive&) {}
 
 }  // namespace abut

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "coordinator/coupling/nearness.hpp"
+#include "coordinator/coupling/watch.hpp"
 
 namespace abut {
 
@@ -18,14 +18,10 @@ double free_flight_horizon(std::span<Joint> joints, const Bodies& bodies) {
   double horizon = std::numeric_limits<double>::infinity();
   for (Joint& joint : joints) {
     if (joint.closed()) return 0.0;
-    if (joint.surfaces) measure_approach(joint, bodies);
-    const PortResponse& p0 = port_of(bodies, joint.sides[0]);
-    const PortResponse& p1 = port_of(bodies, joint.sides[1]);
-    const double gap =
-        joint.surfaces ? joint.approach.apart : joint.gap(p0.trace.u.back(), p1.trace.u.back());
+    const auto [gap, v] = joint.watch->approach(joint, bodies);
     if (gap <= 0.0) return 0.0;
-    const double v = joint.surfaces ? joint.approach.speed : p0.speed_bound + p1.speed_bound;
-    const double a = p0.acceleration_bound + p1.acceleration_bound;
+    double a = 0.0;
+    for (const Side& side : joint.sides) a += port_of(bodies, side).acceleration_bound;
     const double root = std::sqrt(std::max(0.0, v * v + 2.0 * a * gap));
     if (v + root <= 0.0) continue;
     horizon = std::min(horizon, margin * 2.0 * gap / (v + root));
@@ -35,16 +31,7 @@ double free_flight_horizon(std::span<Joint> joints, const Bodies& bodies) {
 
 bool stayed_apart(std::span<const Joint> joints, const Bodies& bodies, double length) {
   return std::ranges::all_of(joints, [&bodies, length](const Joint& joint) {
-    if (joint.surfaces) return kept_apart(joint, bodies, length);
-    const PortResponse& p0 = port_of(bodies, joint.sides[0]);
-    const PortResponse& p1 = port_of(bodies, joint.sides[1]);
-    const bool right = joint.normal[0] > 0.0;  // side 0 looks to the right
-    const std::vector<double>& left_side = right ? p0.upper : p1.upper;
-    const std::vector<double>& right_side = right ? p1.lower : p0.lower;
-    for (std::size_t part = 0; part < std::min(left_side.size(), right_side.size()); ++part) {
-      if (right_side[part] <= left_side[part]) return false;
-    }
-    return true;
+    return joint.watch->stayed_apart(joint, bodies, length);
   });
 }
 

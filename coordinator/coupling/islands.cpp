@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/exchange.hpp"
 
 namespace abut {
 
@@ -21,7 +21,7 @@ class Sets {
   }
   int root(int body) {
     while (parent_[body] != body) {
-      parent_[body] = parent_[parent_[index(body)]];
+      parent_[body] = parent_[parent_[body]];
       body = parent_[body];
     }
     return body;
@@ -45,7 +45,7 @@ std::vector<std::vector<int>> levels_of(const std::vector<int>& members,
   std::vector<std::vector<int>> levels(1);
   for (const int j : island) {
     const Joint& joint = joints[j];
-    if (joint.how->ordered()) ++waits_for[joint.neumann_side().body];
+    if (joint.exchange->ordered()) ++waits_for[joint.neumann_side().body];
   }
   for (const int body : members)
     if (waits_for[body] == 0) levels[0].push_back(body);
@@ -54,7 +54,7 @@ std::vector<std::vector<int>> levels_of(const std::vector<int>& members,
     std::vector<int> next;
     for (const int j : island) {
       const Joint& joint = joints[j];
-      if (!joint.how->ordered()) continue;
+      if (!joint.exchange->ordered()) continue;
       if (!std::ranges::binary_search(levels.back(), joint.kinematic_side().body)) continue;
       const int body = joint.neumann_side().body;
       if (--waits_for[body] == 0) next.push_back(body);
@@ -79,7 +79,7 @@ std::vector<std::vector<Island::End>> ends_of(const Island& island, std::span<co
   for (std::size_t i = 0; i < island.joints.size(); ++i)
     for (const int side : {0, 1}) {
       const int body = joints[island.joints[i]].sides[side].body;
-      ends[level_of[index(body)]].push_back({i, side});
+      ends[level_of[body]].push_back({i, side});
     }
   return ends;
 }
@@ -146,7 +146,7 @@ bool Partition::update(std::span<const Joint> joints, int bodies) {
   bool same = roles_.size() == joints.size() && !(islands_.empty() && free_.empty());
   roles_.resize(joints.size(), -1);
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    const int role = joints[j].closed() ? joints[j].kinematic : -1;
+    const int role = joints[j].closed() ? joints[j].role.kinematic : -1;
     same = same && roles_[j] == role;
     roles_[j] = role;
   }

@@ -3,11 +3,17 @@
 #include <cmath>
 #include <utility>
 
+#include "coordinator/coupling/state_fields.hpp"
+
 namespace abut {
 
 namespace {
 /// Factored Jacobians kept per joint; windows cut short by events have lengths of their own.
 constexpr std::size_t kept_inverses = 32;
+
+/// Ends of windows are rounded: equal windows differ in their last bits.
+bool same(double a, double b) { return std::abs(a - b) <= 1.0e-9 * b; }
+
 }  // namespace
 
 Eigen::VectorXd KernelInverse::Entry::solve(const Eigen::VectorXd& r) const {
@@ -15,11 +21,23 @@ Eigen::VectorXd KernelInverse::Entry::solve(const Eigen::VectorXd& r) const {
 }
 
 const KernelInverse::Entry* KernelInverse::find(double length) const {
-  for (const std::unique_ptr<Entry>& entry : entries_) {
-    // Ends of windows are rounded: equal windows differ in their last bits.
-    if (std::abs(entry->length - length) <= 1.0e-9 * length) return entry.get();
-  }
+  for (const std::unique_ptr<Entry>& entry : entries_)
+    if (same(entry->length, length)) return entry.get();
   return nullptr;
+}
+
+TimeWindow KernelInverse::first_of(const TimeWindow& window) {
+  for (const TimeWindow& first : windows_)
+    if (same(first.length(), window.length())) return first;
+  if (windows_.size() >= kept_inverses) windows_.erase(windows_.begin() + 1);
+  return windows_.emplace_back(window);
+}
+
+void KernelInverse::state(Archive& archive) {
+  list(archive, "windows", windows_, [](Archive& a, TimeWindow& window) {
+    a.field("begin", window.begin);
+    a.field("end", window.end);
+  });
 }
 
 const KernelInverse::Entry* KernelInverse::add(Entry entry) {

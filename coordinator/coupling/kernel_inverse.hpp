@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "base/archive.hpp"
+#include "contract/time_window.hpp"
 #include "coordinator/coupling/port_jacobian.hpp"
 
 namespace abut {
@@ -22,6 +24,10 @@ class KernelInverse {
     Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
   };
   const Entry* find(double length) const;  // null: not there yet
+  /// The window by whose substeps those of its length are found: itself, or an earlier one. Equal
+  /// windows differ in their last bits, which a run that goes on from its state must not.
+  TimeWindow first_of(const TimeWindow& window);
+  void state(Archive& archive);
   const Entry* store(double length, const Eigen::MatrixXd& jacobian);
   const Entry* store(double length, ContactMaps maps);
   const Entry* store(double length, std::vector<double> column);
@@ -31,6 +37,7 @@ class KernelInverse {
  private:
   const Entry* add(Entry entry);
   std::vector<std::unique_ptr<Entry>> entries_;
+  std::vector<TimeWindow> windows_;  // by which they were found
 };
 
 }  // namespace abut

@@ -21,9 +21,8 @@ constexpr double nothing = 1.0e-12;
 std::map<int, Eigen::Index> columns_of(std::span<const Joint> joints, const Bodies& bodies) {
   std::map<int, Eigen::Index> columns;
   Eigen::Index next = 0;
-  for (const Joint& joint : joints) {
-    if (joint.how == nullptr || joint.how->tie() == nullptr) continue;
-    for (const Side& side : joint.sides) {
+  for (const auto& [joint, tie, part] : known_exchanges(joints).ties) {
+    for (const Side& side : joint->sides) {
       const int count = loose_motions(bodies.describe(side.body));
       if (count > 0 && columns.emplace(side.body, next).second) next += count;
     }
@@ -32,9 +31,9 @@ std::map<int, Eigen::Index> columns_of(std::span<const Joint> joints, const Bodi
 }
 
 /// [m] (rows of a tie, all loose motions) by which motions part its sides.
-Eigen::MatrixXd parted(const Joint& joint, const std::map<int, Eigen::Index>& columns,
-                       Eigen::Index count, const Bodies& bodies) {
-  const TieRows& rows = joint.how->tie()->rows();
+Eigen::MatrixXd parted(const Joint& joint, const TieRows& rows,
+                       const std::map<int, Eigen::Index>& columns, Eigen::Index count,
+                       const Bodies& bodies) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows.width(), count);
   std::vector<double> seen(index(rows.width()));
   for (const std::size_t s : {0u, 1u}) {
@@ -78,9 +77,8 @@ void check_supports(std::span<const Joint> joints, const Bodies& bodies) {
   Eigen::Index count = 0;
   for (const auto& [body, first] : columns) count += loose_motions(bodies.describe(body));
   Eigen::MatrixXd square = Eigen::MatrixXd::Zero(count, count);
-  for (const Joint& joint : joints) {
-    if (joint.how == nullptr || joint.how->tie() == nullptr) continue;
-    const Eigen::MatrixXd apart = parted(joint, columns, count, bodies);
+  for (const auto& [joint, tie, part] : known_exchanges(joints).ties) {
+    const Eigen::MatrixXd apart = parted(*joint, tie->rows(), columns, count, bodies);
     square.noalias() += apart.transpose() * apart;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> motions(square);
@@ -100,12 +98,11 @@ void check_supports(std::span<const Joint> joints, const Bodies& bodies) {
 
 void share_out_loose_motions(std::span<const Joint> joints, const Bodies& bodies) {
   std::set<int> carried;
-  for (const Joint& joint : joints) {
-    if (joint.how == nullptr || joint.how->tie() == nullptr) continue;
+  for (const auto& [joint, tie, part] : known_exchanges(joints).ties) {
     for (const int s : {0, 1}) {
-      const int body = joint.sides[s].body;
+      const int body = joint->sides[s].body;
       const int count = loose_motions(bodies.describe(body));
-      if (count > 0 && carried.insert(body).second) joint.how->tie()->carry(s, count);
+      if (count > 0 && carried.insert(body).second) tie->carry(s, count);
     }
   }
 }

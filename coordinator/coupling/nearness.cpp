@@ -60,10 +60,6 @@ double closing_bound(const Joint& joint, const Bodies& bodies) {
   return std::min(absolute, (a.velocity() - b.velocity()).norm() + foreseen);
 }
 
-Joint::Approach approach(const Joint& joint, const Bodies& bodies) {
-  return {std::max(0.0, distance(joint, bodies) - joint.margin), closing_bound(joint, bodies)};
-}
-
 /// [m/s] Of two boxes of velocities, the largest difference.
 double difference(const PortResponse& a, const PortResponse& b) {
   double square = 0.0;
@@ -85,11 +81,12 @@ double fastest(const PortResponse& reply) {
 }
 
 /// [m/s] No two points of the sides came together faster at any time of the last replies.
-double fastest_closing(const Joint& joint, const Bodies& bodies, const Joint::Approach& now) {
+double fastest_closing(const Joint& joint, const Bodies& bodies, const Approach& before,
+                       const Approach& now) {
   const PortResponse& a = port_of(bodies, joint.sides[0]);
   const PortResponse& b = port_of(bodies, joint.sides[1]);
   if (!a.slowest.empty() && !b.slowest.empty()) return difference(a, b);
-  return std::max({fastest(a) + fastest(b), joint.approach.speed, now.speed});
+  return std::max({fastest(a) + fastest(b), before.speed, now.speed});
 }
 
 double largest_coordinate(const PortResponse& reply) {
@@ -101,11 +98,11 @@ double largest_coordinate(const PortResponse& reply) {
 
 }  // namespace
 
-void measure_approach(Joint& joint, const Bodies& bodies) {
-  if (!bodies.taken_back()) joint.approach = approach(joint, bodies);
+Approach approach_of(const Joint& joint, double margin, const Bodies& bodies) {
+  return {std::max(0.0, distance(joint, bodies) - margin), closing_bound(joint, bodies)};
 }
 
-bool swept_apart(const Joint& joint, const Bodies& bodies) {
+bool swept_apart(const Joint& joint, double margin, const Bodies& bodies) {
   const PortResponse& a = port_of(bodies, joint.sides[0]);
   const PortResponse& b = port_of(bodies, joint.sides[1]);
   const std::size_t dim = index(bodies.port(joint.sides[0]).geometry.dim);
@@ -113,19 +110,19 @@ bool swept_apart(const Joint& joint, const Bodies& bodies) {
   for (std::size_t part = 0; part < values; part += dim) {
     bool apart = false;
     for (std::size_t i = part; i < part + dim; ++i)
-      apart =
-          apart || a.lower[i] > b.upper[i] + joint.margin || b.lower[i] > a.upper[i] + joint.margin;
+      apart = apart || a.lower[i] > b.upper[i] + margin || b.lower[i] > a.upper[i] + margin;
     if (!apart) return false;
   }
   return true;
 }
 
-bool kept_apart(const Joint& joint, const Bodies& bodies, double length) {
-  if (swept_apart(joint, bodies)) return true;
-  const Joint::Approach now = approach(joint, bodies);
+bool kept_apart(const Joint& joint, const Approach& before, double margin, const Bodies& bodies,
+                double length) {
+  if (swept_apart(joint, margin, bodies)) return true;
+  const Approach now = approach_of(joint, margin, bodies);
   const double rounded = rounding * std::max(largest_coordinate(port_of(bodies, joint.sides[0])),
                                              largest_coordinate(port_of(bodies, joint.sides[1])));
-  return joint.approach.apart + now.apart > length * fastest_closing(joint, bodies, now) + rounded;
+  return before.apart + now.apart > length * fastest_closing(joint, bodies, before, now) + rounded;
 }
 
 }  // namespace abut

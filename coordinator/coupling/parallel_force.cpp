@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/assert.hpp"
-#include "coordinator/coupling/transmission_parts.hpp"
+#include "coordinator/coupling/exchange_parts.hpp"
 
 namespace abut {
 
@@ -13,25 +13,25 @@ void ParallelForce::begin(const TimeWindow& window, const Joint& joint, Bodies& 
   std::vector<const PortKernel*> kernels;
   compliance_ = 0.0;
   projects_ = false;
-  unilateral_ = joint.unilateral();
+  unilateral_ = !joint.tied();
   for (const Side& side : joint.sides) {
     grids.push_back(substeps_of(bodies, side, window));
     kernels.push_back(&bodies.kernel(side.body, side.port, grids.back().count));
     compliance_ += kernels.back()->displacement.front();
   }
-  const std::size_t source = index(joint.kinematic);
-  iterate_ = {grids[source], joint.width};
+  const std::size_t source = index(joint.role.kinematic);
+  iterate_ = {grids[source], 1};
   support_ = kernels[source]->support;
   const Waveform& trace = trace_of(bodies, joint.kinematic_side());
-  ABUT_ASSERT(trace.width == joint.width);
+  ABUT_ASSERT(trace.width == 1);
   keep_row(trace, trace.f, index_at_begin(trace, window.begin), force_begin_);
   const bool unknown = !joint.closed() || support_ == ForceSupport::step;
-  for (double& f : force_begin_) f = unknown ? 0.0 : -joint.normal_of(joint.kinematic) * f;
+  for (double& f : force_begin_) f = unknown ? 0.0 : -joint.normal_of(joint.role.kinematic) * f;
   scale_.step = iterate_.steps.step;
   scale_.velocity = reference_velocity(joint, compliance_, scale_.step);
-  scale_.force = joint.force_scale;
+  scale_.force = joint.contact.force_scale;
   inverse_ = nullptr;
-  if (joint.width == 1) find_inverse(kernels, grids, window.length());  // else secants do it
+  find_inverse(kernels, window, joint, bodies);
   window_ = window;
   see_trial({grids[0], grids[1]}, joint, bodies);
   const bool linear = std::ranges::all_of(
@@ -40,11 +40,17 @@ void ParallelForce::begin(const TimeWindow& window, const Joint& joint, Bodies& 
 }
 
 void ParallelForce::find_inverse(const std::vector<const PortKernel*>& kernels,
-                                 const std::vector<Substeps>& grids, double length) {
+                                 const TimeWindow& window, const Joint& joint,
+                                 const Bodies& bodies) {
+  const TimeWindow first = inverses_.first_of(window);
+  const double length = window.length();
   inverse_ = inverses_.find(length);
   if (inverse_ != nullptr) return;
+  std::vector<Substeps> grids;
+  for (const Side& side : joint.sides) grids.push_back(substeps_of(bodies, side, first));
   if (std::max(grids[0].count, grids[1].count) > KernelInverse::largest) return;
-  Eigen::MatrixXd jacobian = parallel_jacobian(kernels, grids, iterate_.steps, support_);
+  Eigen::MatrixXd jacobian =
+      parallel_jacobian(kernels, grids, grids[joint.role.kinematic], support_);
   inverse_ = unilateral_ ? inverses_.store(length, ContactMaps{std::move(jacobian), {}, {}})
                          : inverses_.store(length, jacobian / compliance_);
 }
@@ -95,9 +101,9 @@ void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Join
   if (unilateral_) g = g.cwiseMax(0.0);
   force_ = x;
   projects_ = unilateral_ && inverse_ != nullptr && g.minCoeff() <= 0.0;
-  scale_.force = std::max(joint.force_scale, x.lpNorm<Eigen::Infinity>());
+  scale_.force = std::max(joint.contact.force_scale, x.lpNorm<Eigen::Infinity>());
   balance(scale_, compliance_);
-  scale_.roundoff = roundoff_of(travelled, joint.reference_gap);
+  scale_.roundoff = roundoff_of(travelled, joint.line.reference_gap);
 }
 
 /// Of motions of both sides, at the iterate's substeps. Returns [m] how far they went.
@@ -136,6 +142,11 @@ Eigen::VectorXd ParallelForce::apply_inverse(const Eigen::VectorXd& r) const {
   if (inverse_ == nullptr) return r;
   if (!unilateral_) return inverse_->solve(r);
   return solve_complementarity(inverse_->maps.overlap, overlap_, force_);
+}
+
+void ParallelForce::state(Archive& archive) {
+  trial_.state(archive);
+  inverses_.state(archive);
 }
 
 }  // namespace abut

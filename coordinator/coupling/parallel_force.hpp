@@ -3,13 +3,15 @@
 #include <array>
 #include <vector>
 
-#include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/exchange.hpp"
+#include "coordinator/coupling/kernel_inverse.hpp"
+#include "coordinator/coupling/trial.hpp"
 
 namespace abut {
 
 /// Both sides take the same contact force and advance at once; iterated is the force at the coarser
 /// side's substeps until no overlap is left  [M.12].
-class ParallelForce final : public Transmission {
+class ParallelForce final : public Exchange {
  public:
   explicit ParallelForce(bool trials = true) : trials_(trials) {}
 
@@ -26,12 +28,13 @@ class ParallelForce final : public Transmission {
   Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override;
   bool projects() const override { return projects_; }
   bool ordered() const override { return false; }
+  void state(Archive& archive) override;
 
  private:
   void see_trial(const std::array<Substeps, 2>& grids, const Joint& joint, Bodies& bodies);
   double see_overlap(const Joint& joint, const std::array<const Waveform*, 2>& motions);
-  void find_inverse(const std::vector<const PortKernel*>& kernels,
-                    const std::vector<Substeps>& grids, double length);
+  void find_inverse(const std::vector<const PortKernel*>& kernels, const TimeWindow& window,
+                    const Joint& joint, const Bodies& bodies);
 
   IterateGrid iterate_;     // of the force, compressive
   bool unilateral_ = true;  // contact: every substep decides for itself

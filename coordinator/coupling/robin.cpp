@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "base/assert.hpp"
-#include "coordinator/coupling/transmission_parts.hpp"
+#include "coordinator/coupling/exchange_parts.hpp"
 
 namespace abut {
 
@@ -35,8 +35,7 @@ std::array<int, 2> Robin::iterated() const { return {kinematic_, 1 - kinematic_}
 
 int Robin::values() const {
   int count = 0;
-  for (int k = 0; k < parts(); ++k)
-    count += static_cast<int>(partner(iterated()[k]).grid.size());
+  for (int k = 0; k < parts(); ++k) count += static_cast<int>(partner(iterated()[k]).grid.size());
   return count;
 }
 
@@ -54,17 +53,17 @@ void Robin::find_impedances(const Joint& joint, Bodies& bodies) {
 }
 
 void Robin::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
-  kinematic_ = joint.kinematic;
-  double compliance = 0.0, moved = joint.reference_gap;
+  kinematic_ = joint.role.kinematic;
+  double compliance = 0.0, moved = joint.line.reference_gap;
   std::array<std::vector<double>, 2> u;
   for (std::size_t s : {0u, 1u}) {
     const Side& here = joint.sides[s];
     const Waveform& trace = trace_of(bodies, here);
-    ABUT_ASSERT(trace.width == joint.width);
+    ABUT_ASSERT(trace.width == 1);
     const std::size_t now = index_at_begin(trace, window.begin);
     const double n = joint.normal_of(static_cast<int>(s));
     Begin& side = sides_[s];
-    side.grid = {substeps_of(bodies, here, window), joint.width};
+    side.grid = {substeps_of(bodies, here, window), 1};
     side.support = trace.support;
     keep_row(trace, trace.u, now, u[s]);
     keep_row(trace, trace.v, now, side.v);
@@ -79,7 +78,7 @@ void Robin::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) 
   if (impedance_sum_ == 0.0) find_impedances(joint, bodies);
   scale_.step = std::max(sides_[0].grid.steps.step, sides_[1].grid.steps.step);
   scale_.velocity = reference_velocity(joint, compliance, scale_.step);
-  scale_.force = joint.force_scale;
+  scale_.force = joint.contact.force_scale;
   scale_.roundoff = roundoff_of(moved, 0.0);
 }
 
@@ -96,8 +95,7 @@ void Robin::predict(Eigen::Ref<Eigen::VectorXd> x) const {
       const std::size_t c = index(i % other.grid.width);
       const bool first = i < other.grid.width;
       const double close = first ? overlap_[c] / (steps.time(1) - steps.time(0)) : 0.0;
-      x[at++] =
-          known ? here.incoming[i] : other.force[c] + here.impedance * (other.v[c] + close);
+      x[at++] = known ? here.incoming[i] : other.force[c] + here.impedance * (other.v[c] + close);
     }
   }
 }
@@ -139,7 +137,7 @@ void Robin::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const J
   const double inward = -joint.normal_of(side);
   Waveform& force = bodies.force(port);
   force.clear();
-  force.width = joint.width;
+  force.width = 1;
   force.support = other.support;
   for (int i = 0; i <= steps.count; ++i) force.time.push_back(steps.time(i));
   for (std::size_t c = 0; c < overlap_.size(); ++c)
@@ -185,6 +183,11 @@ FieldResiduals Robin::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
 void Robin::scales(Eigen::Ref<Eigen::VectorXd> s) const {
   const double unit = impedance_sum_ * scale_.velocity;
   s.setConstant(unit > 0.0 ? 1.0 / unit : 1.0);
+}
+
+void Robin::state(Archive& archive) {
+  archive.field("impedance_sum", impedance_sum_);
+  for (Begin& side : sides_) archive.field("impedance", side.impedance);
 }
 
 }  // namespace abut

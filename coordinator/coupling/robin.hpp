@@ -3,7 +3,7 @@
 #include <array>
 
 #include "base/index.hpp"
-#include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/exchange.hpp"
 
 namespace abut {
 
@@ -13,7 +13,7 @@ namespace abut {
 /// rate, as one force q at the partner's substeps. In the parallel form both sides' q.
 ///
 /// Conditions on velocities keep any gap that is there at the begin: the first substep closes it.
-class Robin final : public Transmission {
+class Robin final : public Exchange {
  public:
   enum class Rule { matched, kernel, given };
 
@@ -33,6 +33,7 @@ class Robin final : public Transmission {
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
   Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override { return r; }
   bool ordered() const override { return !parallel_; }
+  void state(Archive& archive) override;
 
  private:
   /// What is known of a side at the window's begin; displacements along its outward normal.

@@ -8,8 +8,9 @@
 
 #include "base/error.hpp"
 #include "contract/substeps.hpp"
+#include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/port_jacobian.hpp"
-#include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/state_fields.hpp"
 
 namespace abut {
 
@@ -74,9 +75,9 @@ std::optional<int> shorter_steps(const Joint& joint, const Bodies& bodies) {
 }
 
 int contact_finder(const Joint& joint, const Bodies& bodies) {
-  if (joint.role_fixed) return joint.kinematic;
+  if (joint.role.fixed) return joint.role.kinematic;
   if (const std::optional<int> only = only_side(joint, bodies)) return *only;
-  if (joint.adjusted >= 0) return joint.adjusted;
+  if (joint.role.adjusted >= 0) return joint.role.adjusted;
   bool yields[2];
   double spacing[2];
   for (std::size_t s : {0u, 1u}) {
@@ -90,7 +91,7 @@ int contact_finder(const Joint& joint, const Bodies& bodies) {
 }
 
 void Roles::settle(Joint& joint, int kinematic, bool may_turn) {
-  joint.kinematic = kinematic;
+  joint.role.kinematic = kinematic;
   if (order_.comes_before(joint.neumann_side().body, joint.kinematic_side().body)) {
     if (!may_turn) {
       throw InputError(
@@ -98,41 +99,40 @@ void Roles::settle(Joint& joint, int kinematic, bool may_turn) {
           "interfaces." + joint.name,
           "Fix fewer roles: leave `kinematic: auto` on at least one interface of the circle.");
     }
-    joint.kinematic = 1 - kinematic;
+    joint.role.kinematic = 1 - kinematic;
   }
   order_.add(joint.kinematic_side().body, joint.neumann_side().body);
 }
 
 void Roles::start(std::span<Joint> joints) {
   const auto ordered = [](const Joint& joint) {
-    return joint.how != nullptr && joint.how->ordered();
+    return joint.exchange != nullptr && joint.exchange->ordered();
   };
   for (Joint& joint : joints) {
     const std::optional<int> only = only_side(joint, bodies_);
-    if (joint.role_fixed && ordered(joint)) {
-      settle(joint, joint.kinematic, false);
+    if (joint.role.fixed && ordered(joint)) {
+      settle(joint, joint.role.kinematic, false);
     } else if (only && ordered(joint)) {
       settle(joint, *only, false);
     }
   }
-  for (Joint& joint : joints) {
+  for (Joint& joint : joints)
     if (joint.tied()) choose(joint);
-    if (joint.surfaces) join(joint);
-  }
+  for (const auto& [own, contact, part] : known_exchanges(joints).obstacles) join(joints[part]);
 }
 
 void Roles::join(Joint& joint) {
-  if (joint.role_fixed) return;
+  if (joint.role.fixed) return;
   const std::optional<int> only = only_side(joint, bodies_);
   settle(joint, only ? *only : contact_finder(joint, bodies_), !only);
-  joint.role_fixed = true;
+  joint.role.fixed = true;
 }
 
 bool Roles::choose(Joint& joint) {
-  if (joint.role_fixed) return false;
-  joint.role_fixed = true;
+  if (joint.role.fixed) return false;
+  joint.role.fixed = true;
   if (parallel_) {
-    joint.kinematic = coarser_side(joint, bodies_);
+    joint.role.kinematic = coarser_side(joint, bodies_);
   } else if (const std::optional<int> only = only_side(joint, bodies_)) {
     // settled at the start; the whole window's kernel will be needed, so that one probe is enough
     moved_over(joint.sides[*only], bodies_, window_);
@@ -164,6 +164,11 @@ int coarser_side(const Joint& joint, const Bodies& bodies) {
   const double step0 = bodies.describe(joint.sides[0].body).step;
   const double step1 = bodies.describe(joint.sides[1].body).step;
   return step1 > step0 ? 1 : 0;
+}
+
+void BodyOrder::state(Archive& archive) {
+  list(archive, "order", after_,
+       [](Archive& a, std::vector<int>& after) { field(a, "after", after); });
 }
 
 }  // namespace abut

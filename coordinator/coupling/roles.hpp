@@ -15,6 +15,7 @@ class BodyOrder {
   explicit BodyOrder(int bodies) : after_(index(bodies)) {}
   void add(int before, int after) { after_[before].push_back(after); }
   bool comes_before(int before, int after) const;  // a body comes before itself
+  void state(Archive& archive);
 
  private:
   std::vector<std::vector<int>> after_;  // by body, without circles
@@ -42,6 +43,8 @@ class Roles {
   void join(Joint& joint);
   /// At first touch, for the rest of the run; true when the role was open.
   bool choose(Joint& joint);
+  /// The order of the bodies.
+  void state(Archive& archive) { order_.state(archive); }
 
  private:
   int wish(const Joint& joint);

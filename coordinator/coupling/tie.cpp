@@ -6,27 +6,24 @@
 
 #include "base/assert.hpp"
 #include "coordinator/coupling/contact.hpp"
+#include "coordinator/coupling/exchange_parts.hpp"
 #include "coordinator/coupling/port_turn.hpp"
-#include "coordinator/coupling/transmission_parts.hpp"
+#include "coordinator/coupling/state_fields.hpp"
 
 namespace abut {
 
-bool passes_motions_alone(const Joint& joint) {
-  const Tie* tie = joint.how == nullptr ? nullptr : joint.how->tie();
-  return tie != nullptr && !tie->rows().moves.empty() && tie->rows().dashpots.empty();
-}
-
-bool damps(const Joint& joint) {
-  const Tie* tie = joint.how == nullptr ? nullptr : joint.how->tie();
-  return tie != nullptr && !tie->rows().dashpots.empty();
+EnergyAccount Tie::energy_account() const {
+  if (!rows_.dashpots.empty()) return EnergyAccount::unknown;
+  return rows_.moves.empty() ? EnergyAccount::exact : EnergyAccount::doubled;
 }
 
 void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
+  if (start_.empty()) keep_start(joint, bodies);
   remember(window);
   straight_ = !looks(joint, bodies);
   for (const int s : {0, 1}) grids_[s] = substeps_of(bodies, joint.sides[s], window);
   see_turns(joint, bodies);
-  iterate_ = {grids_[joint.kinematic], rows_.width()};
+  iterate_ = {grids_[joint.role.kinematic], rows_.width()};
   window_ = window;
   first_speed_ = -1.0;
   way_.begin();
@@ -46,10 +43,10 @@ void Tie::part_at(double time, const Joint& joint, const std::array<const Wavefo
     u.resize(index(motion.width));
     motion.interpolate(motion.u, time, u);
     apply(rows_.of[s], rows_.dim, u, seen);
-    const bool kinematic = s == index(joint.kinematic);
+    const bool kinematic = s == index(joint.role.kinematic);
     for (std::size_t k = 0; k < seen.size(); ++k) {
       double& to = out[static_cast<Eigen::Index>(k)];
-      if (s == 0) to = -joint.jump[k] * (joint.kinematic == 0 ? 1.0 : -1.0);
+      if (s == 0) to = -start_[k] * (joint.role.kinematic == 0 ? 1.0 : -1.0);
       to += kinematic ? seen[k] : -seen[k];
     }
   }
@@ -84,7 +81,7 @@ void Tie::see_way(const Joint& joint, const std::array<const Waveform*, 2>& moti
       for (int k = 0; k < iterate_.width; ++k) {
         if (!rows_.acts(k / rows_.dim, s)) continue;
         own[iterate_.at(i) + k] = seen[k];
-        if (s == joint.kinematic) step[iterate_.at(i) + k] *= -1.0;
+        if (s == joint.role.kinematic) step[iterate_.at(i) + k] *= -1.0;
       }
     }
   }
@@ -104,14 +101,14 @@ void Tie::damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump
   }
 }
 
-std::vector<double> Tie::jump(const Joint& joint, const Bodies& bodies) const {
-  std::vector<double> out(index(rows_.width()), 0.0), seen(out.size());
+void Tie::keep_start(const Joint& joint, const Bodies& bodies) {
+  std::vector<double> seen(index(rows_.width()));
+  start_.assign(seen.size(), 0.0);
   for (const std::size_t s : {0u, 1u}) {
     const Waveform& trace = trace_of(bodies, joint.sides[s]);
     apply(rows_.of[s], rows_.dim, row(trace, trace.u, trace.size() - 1), seen);
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] += s == 0 ? seen[k] : -seen[k];
+    for (std::size_t k = 0; k < seen.size(); ++k) start_[k] += s == 0 ? seen[k] : -seen[k];
   }
-  return out;
 }
 
 void Tie::see_turns(const Joint& joint, const Bodies& bodies) {
@@ -183,7 +180,7 @@ void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joi
   on_body.points.clear();
   on_body.time = force_.time;
   on_body.f.assign(on_body.time.size() * width, 0.0);
-  const double sign = side == joint.kinematic ? 1.0 : -1.0;
+  const double sign = side == joint.role.kinematic ? 1.0 : -1.0;
   for (std::size_t i = 1; i < on_body.time.size(); ++i)
     rows_.press(side, sign, row(force_, force_.f, i),
                 std::span(on_body.f).subspan(i * width, width));
@@ -231,11 +228,11 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
     g.segment(first_place(s), places(s)) = x.segment(first_place(s), places(s)) - compliance_ * sum;
     unbalanced_ = std::max(unbalanced_, sum.lpNorm<Eigen::Infinity>());
   }
-  scale_.velocity = std::max(joint.closing_speed, std::min(first_speed_, speed_));
+  scale_.velocity = std::max(joint.contact.closing_speed, std::min(first_speed_, speed_));
   moved_ = scale_.velocity * scale_.step;
   row_force_ = x.head(iterate_.size()).lpNorm<Eigen::Infinity>();
   // Or what the force moves in a step: bodies at rest have no other measure.
-  const double force = joint.force_scale > 0.0 ? joint.force_scale : row_force_;
+  const double force = joint.contact.force_scale > 0.0 ? joint.contact.force_scale : row_force_;
   scale_.velocity = std::max(scale_.velocity, force * compliance_ / scale_.step);
   // Laws of finite strain know strains to the round-off of 1: ends that no wave has reached yet
   // answer a force with noise.
@@ -274,6 +271,19 @@ FieldResiduals Tie::measure(const Eigen::Ref<const Eigen::VectorXd>&,
 void Tie::scales(Eigen::Ref<Eigen::VectorXd> s) const {
   s.setConstant(unit_ / compliance_);
   s.head(iterate_.size()).setConstant(unit_);
+}
+
+void Tie::Past::state(Archive& archive) {
+  archive.field("time", time);
+  archive.field("force", force);
+  for (std::vector<double>& of : place) archive.field("place", of);
+}
+
+void Tie::state(Archive& archive) {
+  archive.field("start", start_);
+  last_.state(archive);
+  list(archive, "past", past_, [](Archive& a, Past& past) { past.state(a); });
+  field(archive, "force", force_);
 }
 
 }  // namespace abut

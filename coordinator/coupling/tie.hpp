@@ -3,9 +3,9 @@
 #include <array>
 #include <vector>
 
+#include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/remaining_way.hpp"
 #include "coordinator/coupling/tie_rows.hpp"
-#include "coordinator/coupling/transmission.hpp"
 
 namespace abut {
 
@@ -13,7 +13,7 @@ namespace abut {
 /// in the rows that join them, constant in every step of the kinematic side, and advance at once;
 /// iterated is this force until both sides move alike at those steps' ends  [M.107], [M.108]. What
 /// answers it knows all joints of a net at once (TieNet).
-class Tie final : public Transmission {
+class Tie final : public Exchange {
  public:
   explicit Tie(TieRows rows) : rows_(std::move(rows)) {}
 
@@ -28,8 +28,12 @@ class Tie final : public Transmission {
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
   Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override { return r; }
-  Tie* tie() override { return this; }
   bool ordered() const override { return false; }
+  EnergyAccount energy_account() const override;
+  void enter(const Joint& joint, std::size_t part, KnownExchanges& known) override {
+    known.ties.push_back({&joint, this, part});
+  }
+  void state(Archive& archive) override;
 
   /// From now on, where these many loose motions of a side's body are is part of the iterate, which
   /// is (forces, places of side 0, places of side 1): what is left over of the forces along them
@@ -52,8 +56,6 @@ class Tie final : public Transmission {
   void set_unit(double compliance) { compliance_ = compliance; }
   double unit() const { return compliance_; }
 
-  /// [m] (rows, dim) by which displacements of the sides are to differ for good: as they stand.
-  std::vector<double> jump(const Joint& joint, const Bodies& bodies) const;
   /// Of the latest sweep: [m/s] how fast anything on the sides moved, [m] by how much they missed
   /// each other at most, [N] the largest resultant of the forces between them.
   double speed() const { return speed_; }
@@ -69,6 +71,7 @@ class Tie final : public Transmission {
   double row_force() const { return row_force_; }  // [N] the largest of a row
 
  private:
+  void keep_start(const Joint& joint, const Bodies& bodies);
   void part(const Joint& joint, const std::array<const Waveform*, 2>& motions,
             Eigen::VectorXd& out) const;
   void part_at(double time, const Joint& joint, const std::array<const Waveform*, 2>& motions,
@@ -76,21 +79,22 @@ class Tie final : public Transmission {
   void see_way(const Joint& joint, const std::array<const Waveform*, 2>& motions);
   void damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump) const;
 
-  Eigen::Index places(int side) const {
-    return Eigen::Index{loose_[side]} * grids_[side].count;
-  }
+  Eigen::Index places(int side) const { return Eigen::Index{loose_[side]} * grids_[side].count; }
   bool looks(const Joint& joint, const Bodies& bodies) const;
   void remember(const TimeWindow& window);
   void see_turns(const Joint& joint, const Bodies& bodies);
   void go_straight_on(Eigen::Ref<Eigen::VectorXd> x) const;
 
   TieRows rows_;
+  // [m] (rows, dim) by which displacements of the sides differ for good: as they stood at the start
+  std::vector<double> start_;
   std::array<int, 2> loose_ = {0, 0};
   /// At the end of a window: of the last sweep, and of windows that went before.
   struct Past {
     double time = 0.0;                         // [s]
     std::vector<double> force;                 // [N]
     std::array<std::vector<double>, 2> place;  // [m] of loose motions, by side
+    void state(Archive& archive);
   };
   Past last_;
   std::vector<Past> past_;  // two at most, the later one first
@@ -111,10 +115,5 @@ class Tie final : public Transmission {
   double first_speed_ = -1.0;  // and of the first one; below 0: none yet
   ReferenceScales scale_;
 };
-
-/// Whether bodies overlap over a joint without forces between them  [M.116].
-bool passes_motions_alone(const Joint& joint);
-/// Whether the sides of a joint see each other as dashpots  [M.117].
-bool damps(const Joint& joint);
 
 }  // namespace abut

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include <Eigen/Dense>
 
@@ -25,9 +27,13 @@ class TieKernel {
   virtual double bytes() const = 0;       // with its factors
   /// Asks bodies that bend (TieLayout::Part) anew. True: what it says of this sweep is better than
   /// secants, of such bodies and of those that turn.
-  virtual bool renew(const TieLayout&, Bodies&) { return false; }
+  virtual bool renew(const TieLayout& layout, Bodies& bodies) = 0;
   /// A window begins: what bodies that turn (TieLayout::Part) answer turns with their ports.
-  virtual void turn(const TieLayout&) {}
+  virtual void turn(const TieLayout& layout) = 0;
+  /// What bodies that bend or turn told, which later ones of the same layout take over; empty: all
+  /// are linear.
+  virtual std::vector<double> answers() const = 0;
+  virtual void take(const TieLayout& layout, std::span<const double> answers) = 0;
 
  private:
   /// Whether there may be jumps without an answer.

@@ -20,16 +20,16 @@ double shared(int i, int here, int k, int there) {
 
 }  // namespace
 
-void TieLayout::add(const Joint& joint, const std::array<int, 2>& counts, Eigen::Index first) {
-  Tie* tie = joint.how->tie();
-  members.push_back({.joint = &joint, .tie = tie, .counts = counts, .first = first});
+void TieLayout::add(const Joint& joint, Tie& tie, const std::array<int, 2>& counts,
+                    Eigen::Index first) {
+  members.push_back({.joint = &joint, .tie = &tie, .counts = counts, .first = first});
   for (const int s : {0, 1}) {
-    if (tie->carried(s) == 0) continue;
+    if (tie.carried(s) == 0) continue;
     members.push_back({.joint = &joint,
-                       .tie = tie,
+                       .tie = &tie,
                        .counts = counts,
                        .carried = s,
-                       .first = first + tie->first_place(s)});
+                       .first = first + tie.first_place(s)});
   }
 }
 
@@ -40,7 +40,7 @@ void TieLayout::arrange(const Bodies& bodies) {
     Member& member = members[m];
     const bool carries = member.carried >= 0;
     member.width = carries ? member.tie->carried(member.carried) : member.tie->rows().width();
-    member.total = member.counts[carries ? member.carried : member.joint->kinematic];
+    member.total = member.counts[carries ? member.carried : member.joint->role.kinematic];
     for (const int s : {0, 1}) {
       if (carries && member.carried != s) continue;
       const int body = member.joint->sides[s].body;
@@ -82,7 +82,7 @@ std::vector<TieLayout::Share> TieLayout::shares(const Part& part, const End& of,
                                                 int lag, int known) const {
   const Member &row = members[of.member], &column = members[by.member];
   const auto sign = [](const Member& member, const End& end) {
-    return member.carried >= 0 || end.side == member.joint->kinematic ? 1.0 : -1.0;
+    return member.carried >= 0 || end.side == member.joint->role.kinematic ? 1.0 : -1.0;
   };
   const double turn = sign(row, of) * sign(column, by);
   std::vector<Share> all;

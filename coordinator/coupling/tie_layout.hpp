@@ -55,13 +55,11 @@ struct TieLayout {
   /// Finds all but joint, tie, first, counts and carried of the members, which are given.
   void arrange(const Bodies& bodies);
   /// The members of a tie, whose part of the stacked vector begins at `first`.
-  void add(const Joint& joint, const std::array<int, 2>& counts, Eigen::Index first);
+  void add(const Joint& joint, Tie& tie, const std::array<int, 2>& counts, Eigen::Index first);
   /// Equal: what is known of the kernels holds.
   std::vector<int> pattern() const;
   const TieRows& rows(const End& end) const { return members[end.member].tie->rows(); }
-  const Side& side(const End& end) const {
-    return members[end.member].joint->sides[end.side];
-  }
+  const Side& side(const End& end) const { return members[end.member].joint->sides[end.side]; }
   const Side& other_side(const End& end) const {
     return members[end.member].joint->sides[1 - end.side];
   }

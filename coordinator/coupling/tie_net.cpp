@@ -5,6 +5,7 @@
 
 #include "coordinator/coupling/banded_tie_kernel.hpp"
 #include "coordinator/coupling/kernel_bytes.hpp"
+#include "coordinator/coupling/state_fields.hpp"
 #include "coordinator/coupling/tie_contradiction.hpp"
 
 namespace abut {
@@ -18,14 +19,11 @@ double unit_of(const TieLayout::Member& member) {
 
 }  // namespace
 
-void TieNet::begin(const Island& island, std::span<const Joint> joints,
-                   std::span<const Eigen::Index> first, Bodies& bodies) {
+void TieNet::begin(const KnownExchanges& known, std::span<const Eigen::Index> first,
+                   Bodies& bodies) {
   layout_.members.clear();
-  for (std::size_t i = 0; i < island.joints.size(); ++i) {
-    const Joint& joint = joints[island.joints[i]];
-    const Tie* tie = joint.how->tie();
-    if (tie != nullptr) layout_.add(joint, {tie->grid(0).count, tie->grid(1).count}, first[i]);
-  }
+  for (const auto& [joint, tie, part] : known.ties)
+    layout_.add(*joint, *tie, {tie->grid(0).count, tie->grid(1).count}, first[part]);
   if (empty()) return;
   layout_.arrange(bodies);
   alternating_ = std::ranges::any_of(layout_.members, [](const TieLayout::Member& member) {
@@ -55,6 +53,8 @@ void TieNet::find_kernel(Bodies& bodies) {
   const TieKernelPlan plan = plan_tie_kernel(layout_, options, bodies);
   kernel_ = plan.banded ? make_banded_tie_kernel(layout_, plan.width, plan.lags, bodies)
                         : make_dense_tie_kernel(layout_, plan.lags, bodies);
+  if (!restored_.empty()) kernel_->take(layout_, restored_);
+  restored_.clear();
 }
 
 bool TieNet::joins(int body) const {
@@ -154,6 +154,13 @@ std::string TieNet::contradiction(const Eigen::VectorXd& r, double tolerance, do
     member.tie->leave_open(-own);  // residuals are what jumps ask for
   }
   return judged.contradiction;
+}
+
+void TieNet::state(Archive& archive) {
+  whole(archive, "blocks", blocks_);
+  if (archive.writing() && kernel_ != nullptr) restored_ = kernel_->answers();
+  archive.field("answers", restored_);
+  if (archive.writing()) restored_.clear();
 }
 
 }  // namespace abut

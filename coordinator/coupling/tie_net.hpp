@@ -7,7 +7,7 @@
 
 #include <Eigen/Dense>
 
-#include "coordinator/coupling/islands.hpp"
+#include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/tie_kernel.hpp"
 #include "coordinator/coupling/tie_kernel_plan.hpp"
 #include "coordinator/coupling/tied_port.hpp"
@@ -25,8 +25,7 @@ class TieNet {
 
   /// A window begins: the ties have laid out their iterates. `first`: of the joints of the island,
   /// where their parts of a stacked vector begin.
-  void begin(const Island& island, std::span<const Joint> joints,
-             std::span<const Eigen::Index> first, Bodies& bodies);
+  void begin(const KnownExchanges& known, std::span<const Eigen::Index> first, Bodies& bodies);
   /// After a sweep: bodies without inertia that are not linear are asked anew how they give way.
   /// True: what they say is the derivative at this sweep, better than secants.
   bool renew(Bodies& bodies);
@@ -47,6 +46,8 @@ class TieNet {
   const TiedPort* touching(const Side& side, const std::vector<std::int32_t>& points, double most,
                            Bodies& bodies);
   bool joins(int body) const;
+  /// Kernels of linear bodies are found anew, equal to the last bit.
+  void state(Archive& archive);
   const TieLayout& layout() const { return layout_; }
   /// Answers the ties' parts of a residual g - x, in the ties' units; leaves the others alone.
   void apply_inverse(Eigen::VectorXd& r) const;
@@ -58,8 +59,9 @@ class TieNet {
 
   TieKernelOptions options_;
   TieLayout layout_;
-  std::vector<int> pattern_;  // of the layout for which the kernel holds
-  int blocks_ = 0;            // the same
+  std::vector<int> pattern_;      // of the layout for which the kernel holds
+  int blocks_ = 0;                // the same
+  std::vector<double> restored_;  // of the kernel that is found next; empty: nothing
   bool alternating_ = false;
   std::unique_ptr<TieKernel> kernel_;
   struct Touching {

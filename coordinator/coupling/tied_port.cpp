@@ -32,7 +32,7 @@ void TiedPort::probe(const TieLayout& layout, const TieLayout::Part& part, int p
     const int tied = layout.side(end).port;
     End& to = ends_.emplace_back();
     to.member = end.member;
-    to.sign = end.side == layout.members[end.member].joint->kinematic ? 1.0 : -1.0;
+    to.sign = end.side == layout.members[end.member].joint->role.kinematic ? 1.0 : -1.0;
     const int seen[] = {tied};
     const PortKernel out = for_levels(bodies.probe(part.body, port, units, steps_, seen));
     moved.resize(index(rows.width()));
@@ -78,8 +78,7 @@ void TiedPort::find_give(const TieLayout& layout, const TieKernel& kernel) {
     for (const End& end : ends_) {
       const TieLayout::Member& member = layout.members[end.member];
       for (int l = 0; l < steps_; ++l)
-        jump.segment(l * layout.size + member.inner, member.width) +=
-            end.sign * end.rows[l].col(k);
+        jump.segment(l * layout.size + member.inner, member.width) += end.sign * end.rows[l].col(k);
     }
     if (jump.isZero(0.0)) continue;
     const Eigen::VectorXd force = -kernel.solve(jump);

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coordinator/coupling/transmission_parts.hpp"
+#include "coordinator/coupling/exchange_parts.hpp"
+#include "coordinator/coupling/state_fields.hpp"
 
 namespace abut {
 
@@ -25,11 +26,11 @@ bool Trial::see(const TimeWindow& window, const std::array<Substeps, 2>& grids, 
   for (int s : {0, 1}) {
     Waveform& motion = motions_[s];
     motion = *looks[s];
-    if (joint.impulse == 0.0) continue;
+    if (joint.contact.impulse == 0.0) continue;
     const std::vector<double>& moved = answer(s, window, joint, bodies);
     if (moved.size() + 1 != motion.size()) return false;
     for (std::size_t i = 0; i < moved.size(); ++i)
-      motion.u[i + 1] += joint.normal_of(s) * joint.impulse * moved[i];
+      motion.u[i + 1] += joint.normal_of(s) * joint.contact.impulse * moved[i];
   }
   return true;
 }
@@ -45,6 +46,14 @@ const std::vector<double>& Trial::answer(int side, const TimeWindow& window, con
   if (answers_.size() >= kept_answers) answers_.pop_front();
   answers_.push_back({length, side, bodies.impulse_response(joint.sides[side], window)});
   return answers_.back().moved;
+}
+
+void Trial::state(Archive& archive) {
+  list(archive, "answers", answers_, [](Archive& a, Struck& struck) {
+    a.field("length", struck.length);
+    whole(a, "side", struck.side);
+    a.field("moved", struck.moved);
+  });
 }
 
 }  // namespace abut

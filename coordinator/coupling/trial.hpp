@@ -4,6 +4,7 @@
 #include <deque>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "contract/substeps.hpp"
 #include "contract/time_window.hpp"
 #include "coordinator/coupling/bodies.hpp"
@@ -23,6 +24,7 @@ class Trial {
            Bodies& bodies);
   /// u [m] (substeps + 1) of a side.
   const Waveform& motion(int side) const { return motions_[side]; }
+  void state(Archive& archive);
 
  private:
   struct Struck {

@@ -1,9 +1,10 @@
+#include "coordinator/coupling/unilateral.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/assert.hpp"
-#include "coordinator/coupling/transmission.hpp"
-#include "coordinator/coupling/transmission_parts.hpp"
+#include "coordinator/coupling/exchange_parts.hpp"
 
 namespace abut {
 
@@ -21,13 +22,13 @@ void Unilateral::begin(const TimeWindow& window, const Joint& joint, Bodies& bod
   const Side& n = joint.neumann_side();
   kinematic_grid_ = substeps_of(bodies, k, window);
   window_ = window;
-  iterate_ = {substeps_of(bodies, n, window), joint.width};
+  iterate_ = {substeps_of(bodies, n, window), 1};
   const Substeps& neumann = iterate_.steps;
   const Waveform& trace = trace_of(bodies, n);
   const std::size_t now = index_at_begin(trace, window.begin);
   keep_row(trace, trace.u, now, u_begin_);
   keep_row(trace, trace.v, now, v_begin_);
-  ABUT_ASSERT(trace.width == joint.width);
+  ABUT_ASSERT(trace.width == 1);
   kernel_k_ = &bodies.kernel(k.body, k.port, kinematic_grid_.count);
   kernel_n_ = &bodies.kernel(n.body, n.port, neumann.count);
   kinematic_compliance_ = kernel_k_->displacement.front();
@@ -39,17 +40,16 @@ void Unilateral::begin(const TimeWindow& window, const Joint& joint, Bodies& bod
   roundoff_gain_ = 1.0 + moved / kinematic_compliance_;
   scale_.step = bodies.describe(n.body).step > 0.0 ? neumann.step : kinematic_grid_.step;
   scale_.velocity = reference_velocity(joint, kinematic_compliance_, scale_.step);
-  scale_.force = joint.force_scale;
+  scale_.force = joint.contact.force_scale;
   first_factor_ = 1.0 / (1.0 + neumann_compliance_ / kinematic_compliance_);
   alike_ = kinematic_grid_.same_as(neumann) && kernel_k_->support == kernel_n_->support;
   projects_ = false;
-  unilateral_ = joint.unilateral();
-  outward_n_ = joint.normal_of(1 - joint.kinematic);
+  unilateral_ = !joint.tied();
+  outward_n_ = joint.normal_of(1 - joint.role.kinematic);
   inverse_ = nullptr;
   // A side that does not give way leaves nothing to iterate; of surfaces the inverse is the body's
   // own that maps them, and secants do the rest.
-  if (!std::isinf(bodies.describe(n.body).mass) && joint.width == 1)
-    find_inverse(joint, window.length());
+  if (!std::isinf(bodies.describe(n.body).mass)) find_inverse(joint, window.length(), bodies);
   see_trial(window, joint, bodies);
   const bool linear = bodies.describe(k.body).linear && bodies.describe(n.body).linear;
   looks_ = linear && unilateral_ && inverse_ != nullptr &&
@@ -62,30 +62,31 @@ void Unilateral::see_trial(const TimeWindow& window, const Joint& joint, Bodies&
   predicted_.resize(0);
   if (!unilateral_ || inverse_ == nullptr) return;
   std::array<Substeps, 2> grids;
-  grids[joint.kinematic] = kinematic_grid_;
-  grids[1 - joint.kinematic] = iterate_.steps;
+  grids[joint.role.kinematic] = kinematic_grid_;
+  grids[1 - joint.role.kinematic] = iterate_.steps;
   if (!trial_.see(window, grids, joint, bodies)) return;
-  const Waveform& n = trial_.motion(1 - joint.kinematic);
+  const Waveform& n = trial_.motion(1 - joint.role.kinematic);
   force_.setZero(kinematic_grid_.count);
-  see_overlap(joint, trial_.motion(joint.kinematic), n);
+  see_overlap(joint, trial_.motion(joint.role.kinematic), n);
   predicted_ = Eigen::Map<const Eigen::VectorXd>(n.u.data() + 1, iterate_.size());
   predicted_ += apply_inverse(Eigen::VectorXd::Zero(iterate_.size()));
 }
 
-void Unilateral::find_inverse(const Joint& joint, double length) {
+void Unilateral::find_inverse(const Joint& joint, double length, const Bodies& bodies) {
+  const TimeWindow first = inverses_.first_of(window_);
   inverse_ = inverses_.find(length);
   if (inverse_ != nullptr) return;
-  const Substeps& neumann = iterate_.steps;
-  const bool small = std::max(kinematic_grid_.count, neumann.count) <= KernelInverse::largest;
+  const Substeps neumann = substeps_of(bodies, joint.neumann_side(), first);
+  const Substeps kinematic = substeps_of(bodies, joint.kinematic_side(), first);
+  const bool small = std::max(kinematic.count, neumann.count) <= KernelInverse::largest;
   if (alike_) {
     inverse_ =
         inverses_.store(length, unilateral_jacobian_column(*kernel_k_, *kernel_n_, neumann.count));
   } else if (small && joint.tied()) {
-    inverse_ = inverses_.store(
-        length, unilateral_jacobian(*kernel_k_, kinematic_grid_, *kernel_n_, neumann));
-  } else if (small) {
     inverse_ =
-        inverses_.store(length, contact_maps(*kernel_k_, kinematic_grid_, *kernel_n_, neumann));
+        inverses_.store(length, unilateral_jacobian(*kernel_k_, kinematic, *kernel_n_, neumann));
+  } else if (small) {
+    inverse_ = inverses_.store(length, contact_maps(*kernel_k_, kinematic, *kernel_n_, neumann));
   }
 }
 
@@ -104,7 +105,7 @@ void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, co
                         Bodies& bodies) {
   const Side& here = joint.sides[side];
   if (looks_) Trial::ask(window_, joint, bodies);
-  if (side != joint.kinematic) {
+  if (side != joint.role.kinematic) {
     bodies.force(here) = bodies.reaction(joint.kinematic_side());
     return;
   }
@@ -130,7 +131,8 @@ void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Joint& jo
     }
   }
   if (unilateral_ && inverse_ != nullptr) see_contact(joint, bodies);
-  scale_.force = std::max(joint.force_scale, largest(trace_of(bodies, joint.kinematic_side()).f));
+  scale_.force =
+      std::max(joint.contact.force_scale, largest(trace_of(bodies, joint.kinematic_side()).f));
   balance(scale_, kinematic_compliance_);
   const double travelled = g.tail(iterate_.width).lpNorm<Eigen::Infinity>();
   scale_.roundoff = roundoff_gain_ * roundoff_of(largest(u_begin_), travelled);
@@ -153,7 +155,7 @@ void Unilateral::see_contact(const Joint& joint, const Bodies& bodies) {
   see_overlap(joint, reply, guess_);
   force_.resize(kinematic_grid_.count);
   for (Eigen::Index i = 0; i < force_.size(); ++i)
-    force_[i] = -joint.normal_of(joint.kinematic) * reply.f[index(i) + 1];
+    force_[i] = -joint.normal_of(joint.role.kinematic) * reply.f[index(i) + 1];
   projects_ = force_.minCoeff() <= 0.0;
 }
 
@@ -162,8 +164,8 @@ void Unilateral::see_overlap(const Joint& joint, const Waveform& k, const Wavefo
   overlap_.resize(kinematic_grid_.count);
   for (int i = 1; i <= kinematic_grid_.count; ++i) {
     double u[2];
-    u[joint.kinematic] = k.u[i];
-    n.interpolate(n.u, kinematic_grid_.time(i), {&u[1 - joint.kinematic], 1});
+    u[joint.role.kinematic] = k.u[i];
+    n.interpolate(n.u, kinematic_grid_.time(i), {&u[1 - joint.role.kinematic], 1});
     overlap_[i - 1] = -joint.gap(u[0], u[1]);
   }
 }
@@ -194,6 +196,13 @@ Eigen::VectorXd Unilateral::apply_inverse(const Eigen::VectorXd& r) const {
   const ContactMaps& maps = inverse_->maps;
   const Eigen::VectorXd left = overlap_ + outward_n_ * (maps.seen * r);
   return r - outward_n_ * (maps.motion * solve_complementarity(maps.overlap, left, force_));
+}
+
+/// What the first guess knows of earlier windows: its own, of the same window, is no state.
+void Unilateral::state(Archive& archive) {
+  archive.field("straight_residual", straight_residual_);
+  inverses_.state(archive);
+  trial_.state(archive);
 }
 
 }  // namespace abut

@@ -5,8 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "coordinator/coupling/exchange_parts.hpp"
 #include "coordinator/coupling/tie.hpp"
-#include "coordinator/coupling/transmission_parts.hpp"
 
 namespace abut {
 
@@ -17,6 +17,8 @@ constexpr double rounding = 1.0e-13;
 /// Masses of faces have condition numbers of ten or so: conjugate residuals take some twenty steps.
 constexpr int most_steps = 200, patience = 20;
 
+using Tied = KnownExchanges::Entry<Tie>;
+
 bool stands(const Description& body) { return std::isinf(body.mass); }
 
 /// The rows of all ties whose velocities are made one, and the bodies that they join.
@@ -24,21 +26,20 @@ class Rows {
  public:
   Rows(std::span<const Joint> joints, double time, Bodies& bodies)
       : bodies_(bodies), instant_{0, time, time} {
-    for (const Joint& joint : joints) {
-      if (!takes_part(joint)) continue;
-      ties_.push_back(&joint);
-      size_ += joint.how->tie()->rows().width();
-      for (const Side& side : joint.sides)
+    for (const auto& tied : known_exchanges(joints).ties) {
+      if (!takes_part(tied)) continue;
+      ties_.push_back(tied);
+      size_ += tied.exchange->rows().width();
+      for (const Side& side : tied.joint->sides)
         if (std::ranges::find(moved_, side.body) == moved_.end()) moved_.push_back(side.body);
     }
     std::ranges::sort(moved_);
   }
 
   /// Both sides' bodies take impulses, or one of them, where nothing moves the other.
-  bool takes_part(const Joint& joint) const {
-    const Tie* tie = joint.how == nullptr ? nullptr : joint.how->tie();
-    if (tie == nullptr || !tie->rows().moves.empty() || !tie->rows().dashpots.empty()) return false;
-    return std::ranges::all_of(joint.sides, [this](const Side& side) {
+  bool takes_part(const Tied& tied) const {
+    if (tied.exchange->energy_account() != EnergyAccount::exact) return false;
+    return std::ranges::all_of(tied.joint->sides, [this](const Side& side) {
       const Description& body = bodies_.describe(side.body);
       return body.can.impulse || stands(body);
     });
@@ -52,11 +53,11 @@ class Rows {
     out.resize(size_);
     double fastest = 0.0;
     Eigen::Index first = 0;
-    for (const Joint* joint : ties_) {
-      const std::vector<double> seen = velocities_apart(*joint, bodies_);
+    for (const Tied& tied : ties_) {
+      const std::vector<double> seen = velocities_apart(tied, bodies_);
       std::ranges::copy(seen, out.data() + first);
       first += static_cast<Eigen::Index>(seen.size());
-      for (const Side& side : joint->sides)
+      for (const Side& side : tied.joint->sides)
         fastest = std::max(fastest, largest(trace_of(bodies_, side).v));
     }
     return fastest;
@@ -66,12 +67,12 @@ class Rows {
   [[nodiscard]] std::optional<Failed> strike(const Eigen::VectorXd& p) {
     bodies_.prepare(instant_, 1, Sampling::substeps);
     Eigen::Index first = 0;
-    for (const Joint* joint : ties_) {
-      const TieRows& rows = joint->how->tie()->rows();
+    for (const Tied& tied : ties_) {
+      const TieRows& rows = tied.exchange->rows();
       const std::span<const double> own(p.data() + first, index(rows.width()));
       first += rows.width();
       for (const int s : {0, 1}) {
-        const Side& side = joint->sides[s];
+        const Side& side = tied.joint->sides[s];
         if (!bodies_.describe(side.body).can.impulse) continue;
         std::vector<double>& impulse = bodies_.boundary(side).impulse;
         impulse.resize(bodies_.port(side).geometry.points.size(), 0.0);
@@ -84,11 +85,11 @@ class Rows {
     return bodies_.advance(moved_);
   }
 
-  static std::vector<double> velocities_apart(const Joint& joint, const Bodies& bodies) {
-    const TieRows& rows = joint.how->tie()->rows();
+  static std::vector<double> velocities_apart(const Tied& tied, const Bodies& bodies) {
+    const TieRows& rows = tied.exchange->rows();
     std::vector<double> out(index(rows.width()), 0.0), seen(out.size());
     for (const std::size_t s : {0u, 1u}) {
-      const Waveform& trace = trace_of(bodies, joint.sides[s]);
+      const Waveform& trace = trace_of(bodies, tied.joint->sides[s]);
       apply(rows.of[s], rows.dim, row(trace, trace.v, trace.size() - 1), seen);
       for (std::size_t k = 0; k < out.size(); ++k) out[k] += s == 0 ? seen[k] : -seen[k];
     }
@@ -98,7 +99,7 @@ class Rows {
  private:
   Bodies& bodies_;
   TimeWindow instant_;
-  std::vector<const Joint*> ties_;
+  std::vector<Tied> ties_;
   std::vector<int> moved_;
   Eigen::Index size_ = 0;
 };
@@ -191,10 +192,9 @@ class Mobility {
 
 void find_unlike(const Rows& rows, std::span<const Joint> joints, const Bodies& bodies,
                  std::vector<UnlikeStart>& unlike) {
-  for (const Joint& joint : joints) {
-    const Tie* tie = joint.how == nullptr ? nullptr : joint.how->tie();
-    if (tie == nullptr || !tie->rows().moves.empty() || !tie->rows().dashpots.empty()) continue;
-    if (rows.takes_part(joint)) continue;
+  for (const Tied& tied : known_exchanges(joints).ties) {
+    if (tied.exchange->energy_account() != EnergyAccount::exact || rows.takes_part(tied)) continue;
+    const Joint& joint = *tied.joint;
     std::string body;
     bool inert = true;
     double fastest = 0.0;
@@ -204,7 +204,7 @@ void find_unlike(const Rows& rows, std::span<const Joint> joints, const Bodies& 
       fastest = std::max(fastest, largest(trace_of(bodies, side).v));
       if (!about.can.impulse && !stands(about)) body = about.name;
     }
-    const double speed = largest(Rows::velocities_apart(joint, bodies));
+    const double speed = largest(Rows::velocities_apart(tied, bodies));
     if (inert && speed > 1.0e-9 * fastest) unlike.push_back({&joint, speed, body});
   }
 }

@@ -10,8 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "coordinator/couple.hpp"
-#include "coordinator/coupling/contact.hpp"
+#include "coordinator/coupling/line_watch.hpp"
 #include "coordinator/coupling/parallel_force.hpp"
+#include "coordinator/coupling/unilateral.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -70,15 +71,15 @@ class Pieces {
       const int left = static_cast<int>(i);
       Joint& joint =
           joints_.emplace_back(make_joint("i", {Side{left, 1}, Side{left + 1, 0}}, *bodies_));
-      joint.kinematic = kinematic[i];
-      joint.decision = Decision::never;
+      joint.role.kinematic = kinematic[i];
+      joint.watch = std::make_unique<SharedNodeWatch>();
       joint.engage(blow);
       if (parallel) {
-        joint.how = std::make_unique<ParallelForce>();
+        joint.exchange = std::make_unique<ParallelForce>();
       } else {
-        joint.how = std::make_unique<Unilateral>();
+        joint.exchange = std::make_unique<Unilateral>();
       }
-      introduce(joint, *bodies_);
+      joint.exchange->introduce(joint, *bodies_);
     }
     SchwarzSpec spec;
     spec.tolerance = tolerance;
@@ -99,7 +100,8 @@ class Pieces {
       if (report != nullptr) iterations_ = std::max(iterations_, report->iterations);
       schwarz_->accept(islands[0]);
       for (Joint& joint : joints_)
-        joint.force_scale = std::max(joint.force_scale, peak_force(joint, *bodies_));
+        joint.contact.force_scale =
+            std::max(joint.contact.force_scale, joint.watch->peak_force(joint, *bodies_));
       append(bodies_->response(0).ports[0].trace.u, ends.left);
       append(bodies_->response(bodies_->count() - 1).ports[1].trace.u, ends.right);
     }

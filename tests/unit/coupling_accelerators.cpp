@@ -25,42 +25,42 @@ struct AffineMap {
   Eigen::VectorXd operator()(const Eigen::VectorXd& x) const { return fixed + a * (x - fixed); }
 };
 
-QuasiNewton::Inverse relaxed(double factor) {
-  return [factor](const Eigen::VectorXd& r) { return Eigen::VectorXd(factor * r); };
-}
+Preconditioner relaxed(double factor) { return Preconditioner::number(factor); }
+/// Of a joint that nobody asks.
+const Inverses none;
 
 TEST(Relaxation, TakesTheGivenShareOfTheResidual) {
-  Relaxation half(0.5);
-  EXPECT_EQ(half.next(one(2.0), one(4.0))[0], 3.0);
-  Relaxation plain(1.0);
-  EXPECT_EQ(plain.next(one(2.0), one(4.0))[0], 4.0);
+  Relaxation half(relaxed(0.5));
+  EXPECT_EQ(half.next(one(2.0), one(4.0), none)[0], 3.0);
+  Relaxation plain(relaxed(1.0));
+  EXPECT_EQ(plain.next(one(2.0), one(4.0), none)[0], 4.0);
 }
 
 TEST(Aitken, IsExactAfterTwoStepsOfAScalarAffineMap) {
   for (double slope : {-0.9, -0.5, 0.3}) {  // 1 / (1 - slope) within the limit of 2
-    Aitken aitken(0.4);
+    Aitken aitken(relaxed(1.0), 0.4);
     aitken.reset(1);
     auto image = [slope](const Eigen::VectorXd& x) { return one(7.0 + slope * (x[0] - 7.0)); };
     Eigen::VectorXd x = one(1.0);
-    for (int step = 0; step < 2; ++step) x = aitken.next(x, image(x));
+    for (int step = 0; step < 2; ++step) x = aitken.next(x, image(x), none);
     EXPECT_NEAR(x[0], 7.0, roundoff(20, 7.0)) << slope;
   }
 }
 
 TEST(Aitken, KeepsItsFactorWithinTwo) {
-  Aitken aitken(1.0);
+  Aitken aitken(relaxed(1.0), 1.0);
   aitken.reset(1);
-  aitken.next(one(0.0), one(1.0));
-  const Eigen::VectorXd x = aitken.next(one(1.0), one(1.0 + 1.0 - 1e-12));  // asks for 1e12
+  aitken.next(one(0.0), one(1.0), none);
+  const Eigen::VectorXd x = aitken.next(one(1.0), one(1.0 + 1.0 - 1e-12), none);  // asks for 1e12
   EXPECT_LE(std::abs(x[0] - 1.0), 2.0);
 }
 
 TEST(Aitken, EveryWindowStartsFromTheFirstFactor) {
-  Aitken aitken(0.25);
+  Aitken aitken(relaxed(1.0), 0.25);
   for (int window = 0; window < 2; ++window) {
     aitken.reset(1);
-    EXPECT_EQ(aitken.next(one(0.0), one(4.0))[0], 1.0);
-    aitken.next(one(1.0), one(3.0));
+    EXPECT_EQ(aitken.next(one(0.0), one(4.0), none)[0], 1.0);
+    aitken.next(one(1.0), one(3.0), none);
   }
 }
 
@@ -70,7 +70,7 @@ TEST(QuasiNewton, ReachesTheFixedPointOfAnAffineMapInOneStepMoreThanItsSize) {
     QuasiNewton newton(relaxed(0.5), 0, 1e-12, 0);
     newton.reset(1);
     Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-    for (int step = 0; step < n + 1; ++step) x = newton.next(x, map(x));
+    for (int step = 0; step < n + 1; ++step) x = newton.next(x, map(x), none);
     // Secants of a random map: its condition, and that of the secants, stays below 1e6 here.
     EXPECT_LT((x - map.fixed).norm(), roundoff(1e6, 1.0)) << n;
   }
@@ -85,7 +85,7 @@ TEST(QuasiNewton, WeightsThatChangeFromStepToStepLeaveSecantsAsTheyAre) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
   for (int step = 0; step < n + 1; ++step) {
     newton.weigh(Eigen::VectorXd::LinSpaced(n, 1.0, 1.0 + step));
-    x = newton.next(x, map(x));
+    x = newton.next(x, map(x), none);
   }
   EXPECT_LT((x - map.fixed).norm(), roundoff(1e6, 1.0));  // as above
 }
@@ -93,12 +93,14 @@ TEST(QuasiNewton, WeightsThatChangeFromStepToStepLeaveSecantsAsTheyAre) {
 TEST(QuasiNewton, AnExactInverseNeedsOneStep) {
   const AffineMap map(6);
   const Eigen::MatrixXd inverse = (Eigen::MatrixXd::Identity(6, 6) - map.a).inverse();
-  QuasiNewton newton([&inverse](const Eigen::VectorXd& r) { return Eigen::VectorXd(inverse * r); },
-                     5, 1e-7, 1);
+  const Inverses exact{
+      .kernels = [&inverse](const Eigen::VectorXd& r) { return Eigen::VectorXd(inverse * r); },
+      .relaxed = {}};
+  QuasiNewton newton(Preconditioner::kernels(), 5, 1e-7, 1);
   for (int window = 0; window < 3; ++window) {
     newton.reset(1);
     const Eigen::VectorXd start = Eigen::VectorXd::Constant(6, window + 1.0);
-    const Eigen::VectorXd x = newton.next(start, map(start));
+    const Eigen::VectorXd x = newton.next(start, map(start), exact);
     EXPECT_LT((x - map.fixed).norm(), roundoff(1e4, 4.0));  // condition of 1 - A below 100
     newton.accept();
   }
@@ -109,11 +111,11 @@ TEST(QuasiNewton, SecantsOfEarlierWindowsShortenTheNext) {
   QuasiNewton newton(relaxed(0.5), 5, 1e-12, 0);
   newton.reset(1);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(4);
-  for (int step = 0; step < 5; ++step) x = newton.next(x, map(x));
+  for (int step = 0; step < 5; ++step) x = newton.next(x, map(x), none);
   newton.accept();
   newton.reset(1);
   x = Eigen::VectorXd::Constant(4, 3.0);
-  x = newton.next(x, map(x));  // four secants are known: the whole map
+  x = newton.next(x, map(x), none);  // four secants are known: the whole map
   EXPECT_LT((x - map.fixed).norm(), roundoff(1e6, 3.0));
 }
 
@@ -122,15 +124,15 @@ TEST(QuasiNewton, SecantsOfAnotherLayoutAreNotUsed) {
   QuasiNewton newton(relaxed(0.5), 5, 1e-12, 0);
   newton.reset(1);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(4);
-  for (int step = 0; step < 5; ++step) x = newton.next(x, map(x));
+  for (int step = 0; step < 5; ++step) x = newton.next(x, map(x), none);
   newton.accept();
   newton.reset(2);
   x = Eigen::VectorXd::Constant(4, 3.0);
   const Eigen::VectorXd image = map(x);
-  EXPECT_LT((newton.next(x, image) - (x + 0.5 * (image - x))).norm(), roundoff(10, 3.0));
+  EXPECT_LT((newton.next(x, image, none) - (x + 0.5 * (image - x))).norm(), roundoff(10, 3.0));
   newton.reset(3);
   const Eigen::VectorXd longer = Eigen::VectorXd::Zero(7);  // and a vector of another size is fine
-  EXPECT_EQ(newton.next(longer, longer).norm(), 0.0);
+  EXPECT_EQ(newton.next(longer, longer, none).norm(), 0.0);
 }
 
 TEST(QuasiNewton, ReuseOfNoneForgetsTheLastWindow) {
@@ -138,12 +140,12 @@ TEST(QuasiNewton, ReuseOfNoneForgetsTheLastWindow) {
   QuasiNewton newton(relaxed(0.5), 0, 1e-12, 0);
   newton.reset(1);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(3);
-  for (int step = 0; step < 4; ++step) x = newton.next(x, map(x));
+  for (int step = 0; step < 4; ++step) x = newton.next(x, map(x), none);
   newton.accept();
   newton.reset(1);
   x = Eigen::VectorXd::Constant(3, 2.0);
   const Eigen::VectorXd image = map(x);
-  EXPECT_LT((newton.next(x, image) - (x + 0.5 * (image - x))).norm(), roundoff(10, 2.0));
+  EXPECT_LT((newton.next(x, image, none) - (x + 0.5 * (image - x))).norm(), roundoff(10, 2.0));
 }
 
 TEST(QuasiNewton, ForgetsSecantsOfThisAndEarlierWindows) {
@@ -151,14 +153,14 @@ TEST(QuasiNewton, ForgetsSecantsOfThisAndEarlierWindows) {
   QuasiNewton newton(relaxed(0.5), 5, 1e-12, 0);
   newton.reset(1);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(3);
-  for (int step = 0; step < 4; ++step) x = newton.next(x, map(x));
+  for (int step = 0; step < 4; ++step) x = newton.next(x, map(x), none);
   newton.accept();
   newton.reset(1);
-  for (int step = 0; step < 2; ++step) x = newton.next(x, map(x));
+  for (int step = 0; step < 2; ++step) x = newton.next(x, map(x), none);
   newton.forget();
   x = Eigen::VectorXd::Constant(3, 2.0);
   const Eigen::VectorXd image = map(x);
-  EXPECT_LT((newton.next(x, image) - (x + 0.5 * (image - x))).norm(), roundoff(10, 2.0));
+  EXPECT_LT((newton.next(x, image, none) - (x + 0.5 * (image - x))).norm(), roundoff(10, 2.0));
 }
 
 TEST(Toeplitz, SolvesWhatTheMatrixMultiplies) {

@@ -9,8 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "coordinator/coupling/joint.hpp"
+#include "coordinator/coupling/line_watch.hpp"
 #include "coordinator/coupling/parallel_force.hpp"
-#include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/unilateral.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -41,7 +42,7 @@ BarText bar(const std::string& name, const std::string& integrator, const std::s
   b.sides = {name == "left" ? "right" : "left"};
   b.solid = layer == solid;
   if (b.solid) b.layer = "massless: {}";
-  if (name == "right") b.modulus = 2.0;   // not the symmetric special case
+  if (name == "right") b.modulus = 2.0;  // not the symmetric special case
   return b;
 }
 
@@ -86,7 +87,7 @@ std::vector<Pair> pairs() {
 class Contact {
  public:
   /// `gap` [m] at the begin; without one contact stays, and the map is linear.
-  Contact(const Pair& pair, Transmission& transmission, int kinematic,
+  Contact(const Pair& pair, Exchange& transmission, int kinematic,
           std::optional<double> gap = std::nullopt)
       : left_(build(bar("left", pair.left, pair.left_layer))),
         right_(build(bar("right", pair.right, pair.right_layer))),
@@ -96,14 +97,14 @@ class Contact {
     EXPECT_FALSE(bodies_.advance_all());
     bodies_.save_all();
     joint_ = make_joint("impact", {Side{0, 0}, Side{1, 0}}, bodies_);
-    if (!gap) joint_.decision = Decision::never;
-    joint_.reference_gap = gap.value_or(0.0);
-    joint_.kinematic = kinematic;
+    if (!gap) joint_.watch = std::make_unique<SharedNodeWatch>();
+    joint_.line.reference_gap = gap.value_or(0.0);
+    joint_.role.kinematic = kinematic;
     joint_.engage(0.03);
     for (std::size_t s : {0u, 1u}) {  // the bodies see the gap in the places of the surfaces
       PortGeometry partner = bodies_.port(joint_.sides[1 - s]).geometry;
-      partner.points[0] = bodies_.port(joint_.sides[s]).geometry.points[0] +
-                          joint_.offset(static_cast<int>(s));
+      partner.points[0] =
+          bodies_.port(joint_.sides[s]).geometry.points[0] + joint_.offset(static_cast<int>(s));
       bodies_.meet(joint_.sides[s], partner, {joint_.tied()});
     }
     bodies_.prepare(window_, 1, Sampling::substeps);
@@ -118,7 +119,7 @@ class Contact {
   Eigen::VectorXd image(const Eigen::VectorXd& x) {
     bodies_.restore_all();
     bodies_.prepare(window_, 1, Sampling::substeps);
-    const int k = joint_.kinematic;
+    const int k = joint_.role.kinematic;
     if (transmission_.ordered()) {
       for (int side : {k, 1 - k}) {
         transmission_.impose(side, x, joint_, bodies_);
@@ -154,7 +155,7 @@ class Contact {
   std::unique_ptr<Subdomain> left_, right_;
   Bodies bodies_;
   Joint joint_;
-  Transmission& transmission_;
+  Exchange& transmission_;
   TimeWindow window_{0, 0.0, 3.6};
 };
 
@@ -206,8 +207,7 @@ TEST_P(PortJacobian, AnswersContactThatBeginsInTheWindowInOneCorrection) {
   for (double gap : {0.0, 0.02, 0.045, 0.07}) {  // closing at 0.03 m/s, 3.6 s
     Unilateral alternating;
     ParallelForce parallel;
-    for (Transmission* transmission :
-         std::initializer_list<Transmission*>{&alternating, &parallel}) {
+    for (Exchange* transmission : std::initializer_list<Exchange*>{&alternating, &parallel}) {
       Contact contact(GetParam(), *transmission, 0, gap);
       Eigen::VectorXd x = contact.predict();
       const Eigen::VectorXd first = contact.image(x) - x;
@@ -274,8 +274,7 @@ TEST(UnilateralSolution, MakesForcesAndGapsComplementary) {
     const Eigen::VectorXd change = solve_toeplitz(cn, normal * (r - motion));
     Eigen::VectorXd left = overlap + normal * r;
     for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j <= i; ++j)
-        left[i] -= (ck[i - j] + cn[i - j]) * change[j];
+      for (Eigen::Index j = 0; j <= i; ++j) left[i] -= (ck[i - j] + cn[i - j]) * change[j];
     const Eigen::VectorXd now = force + change;
     int pressed = 0;
     for (Eigen::Index i = 0; i < n; ++i) {

@@ -2,7 +2,7 @@
 // shortens nothing, and a flight in which they may have met is seen.
 // Oracle: two rings, one of them passing the other's box at its corner.
 
-#include "coordinator/coupling/nearness.hpp"
+#include "coordinator/coupling/surface_watch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -40,9 +40,11 @@ struct Rings {
   Scripted a, b;
   Bodies bodies;
   Joint joint;
+  Approach seen;
 
+  void look() { seen = joint.watch->approach(joint, bodies); }
   Rings() : a(shaped()), b(shaped()), bodies({&a, &b}) {
-    joint = make_surface_joint("rings", {Side{0, 0}, Side{1, 0}}, bodies);
+    joint = make_surface_joint("rings", {Side{0, 0}, Side{1, 0}}, false, bodies);
   }
   static Scripted shaped() {
     Scripted body(0.0, 1.0, 1.0);
@@ -75,11 +77,11 @@ struct Rings {
 TEST(Nearness, OfRingsInOverlappingBoxesIsThatOfTheirFacets) {
   Rings r;
   r.stand({1.5, 1.5}, {1.0, 0.0}, {0.0, -1.0});
-  measure_approach(r.joint, r.bodies);
+  r.look();
   const double gap = 1.5 * std::sqrt(2.0) - 2.0;
   const double rise = 2.0e-4;  // (2 pi/400)^2/8 of both, and the margin
-  EXPECT_NEAR(r.joint.approach.apart, gap, rise);
-  EXPECT_NEAR(r.joint.approach.speed, std::sqrt(2.0), roundoff(16, 2.0));
+  EXPECT_NEAR(r.seen.apart, gap, rise);
+  EXPECT_NEAR(r.seen.speed, std::sqrt(2.0), roundoff(16, 2.0));
   EXPECT_NEAR(free_flight_horizon({&r.joint, 1}, r.bodies), 0.95 * gap / std::sqrt(2.0), rise);
 }
 
@@ -95,12 +97,12 @@ TEST(Nearness, ABoundBeyondTheVelocitiesCounts) {
   r.stand({1.5, 1.5}, {3.0, 0.0}, {3.0, 0.0});
   r.a.reply.ports[0].speed_bound = 4.0;
   EXPECT_FALSE(r.bodies.advance_all());
-  measure_approach(r.joint, r.bodies);
-  EXPECT_NEAR(r.joint.approach.speed, 1.0, roundoff(16, 4.0));
+  r.look();
+  EXPECT_NEAR(r.seen.speed, 1.0, roundoff(16, 4.0));
   r.a.reply.ports[0].speed_bound = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(r.bodies.advance_all());
-  measure_approach(r.joint, r.bodies);
-  EXPECT_TRUE(std::isinf(r.joint.approach.speed));
+  r.look();
+  EXPECT_TRUE(std::isinf(r.seen.speed));
 }
 
 /// Over one second at 1 m/s of closing, with boxes that overlap all the while.
@@ -108,17 +110,17 @@ TEST(Nearness, AFlightIsSafeWhereItsEndsLeaveNoTimeToMeet) {
   Rings r;
   const double d = (2.0 + 0.6) / std::sqrt(2.0);
   r.stand({d, d}, {0.0, 0.0}, {-std::sqrt(0.5), -std::sqrt(0.5)});
-  measure_approach(r.joint, r.bodies);  // .6 m apart
+  r.look();  // .6 m apart
   const auto end_at = [&r](double apart) {
     const double e = (2.0 + apart) / std::sqrt(2.0);
     r.stand({e, e}, {0.0, 0.0}, {-std::sqrt(0.5), -std::sqrt(0.5)});
   };
   end_at(0.45);
-  EXPECT_TRUE(kept_apart(r.joint, r.bodies, 1.0));
+  EXPECT_TRUE(r.joint.watch->stayed_apart(r.joint, r.bodies, 1.0));
   end_at(0.35);  // there and back again, it could have touched
-  EXPECT_FALSE(kept_apart(r.joint, r.bodies, 1.0));
+  EXPECT_FALSE(r.joint.watch->stayed_apart(r.joint, r.bodies, 1.0));
   end_at(0.01);
-  EXPECT_TRUE(kept_apart(r.joint, r.bodies, 0.6));
+  EXPECT_TRUE(r.joint.watch->stayed_apart(r.joint, r.bodies, 0.6));
 }
 
 /// The velocities at the ends tell nothing of a way out and back in between, and a bound of the
@@ -127,13 +129,13 @@ TEST(Nearness, VelocitiesBetweenTheEndsOfAFlightCount) {
   Rings r;
   const double d = (2.0 + 0.6) / std::sqrt(2.0);
   r.stand({d, d}, {0.0, 0.0}, {0.0, 0.0});
-  measure_approach(r.joint, r.bodies);  // .6 m apart
+  r.look();  // .6 m apart
   const auto told = [&r](Eigen::Vector2d of_a, Eigen::Vector2d least, Eigen::Vector2d most) {
     r.a.reply.ports[0].slowest = r.a.reply.ports[0].fastest = {of_a.x(), of_a.y()};
     r.b.reply.ports[0].slowest = {least.x(), least.y()};
     r.b.reply.ports[0].fastest = {most.x(), most.y()};
     EXPECT_FALSE(r.bodies.advance_all());
-    return kept_apart(r.joint, r.bodies, 1.0);
+    return r.joint.watch->stayed_apart(r.joint, r.bodies, 1.0);
   };
   EXPECT_TRUE(told({0.0, 0.0}, {0.0, -1.19}, {0.0, 1.19}));  // .595 m there, as far back
   EXPECT_FALSE(told({0.0, 0.0}, {0.0, -1.21}, {0.0, 1.21}));
@@ -155,23 +157,23 @@ TEST(Nearness, AWayThatIsAllThatTheEndsAreApartIsNotSafe) {
     EXPECT_FALSE(r.bodies.advance_all());
   };
   at(2.5);
-  measure_approach(r.joint, r.bodies);
-  const double before = r.joint.approach.apart;
+  r.look();
+  const double before = r.seen.apart;
   at(-2.5);
   const double after = before;  // by symmetry
-  EXPECT_FALSE(kept_apart(r.joint, r.bodies, before + after));
-  EXPECT_TRUE(kept_apart(r.joint, r.bodies, (1.0 - 1.0e-9) * (before + after)));
+  EXPECT_FALSE(r.joint.watch->stayed_apart(r.joint, r.bodies, before + after));
+  EXPECT_TRUE(r.joint.watch->stayed_apart(r.joint, r.bodies, (1.0 - 1.0e-9) * (before + after)));
 }
 
 TEST(Nearness, IsThatOfTheBeginWhereAnAttemptWasTakenBack) {
   Rings r;
   r.stand({1.5, 1.5}, {0.0, 0.0}, {0.0, 0.0});
-  measure_approach(r.joint, r.bodies);
-  const double apart = r.joint.approach.apart;
+  r.look();
+  const double apart = r.seen.apart;
   r.stand({3.0, 3.0}, {0.0, 0.0}, {0.0, 0.0});
   r.bodies.restore_all();
-  measure_approach(r.joint, r.bodies);
-  EXPECT_EQ(r.joint.approach.apart, apart);
+  r.look();
+  EXPECT_EQ(r.seen.apart, apart);
 }
 
 }  // namespace

@@ -10,9 +10,10 @@
 
 #include "base/error.hpp"
 #include "coordinator/coupling/islands.hpp"
+#include "coordinator/coupling/line_watch.hpp"
 #include "coordinator/coupling/parallel_force.hpp"
 #include "coordinator/coupling/roles.hpp"
-#include "coordinator/coupling/transmission.hpp"
+#include "coordinator/coupling/unilateral.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/scripted.hpp"
 
@@ -23,11 +24,11 @@ int kinematic_of(const BarText& left, const BarText& right) {
   const std::unique_ptr<Subdomain> a = build(left), b = build(right);
   Bodies bodies({a.get(), b.get()});
   Joint joint = make_joint("i", {Side{0, 0}, Side{1, 0}}, bodies);
-  joint.how = std::make_unique<Unilateral>();
+  joint.exchange = std::make_unique<Unilateral>();
   Roles roles(bodies, 1e-5, false);
   roles.start({&joint, 1});
   roles.choose(joint);
-  return joint.kinematic;
+  return joint.role.kinematic;
 }
 
 BarText right_bar() {
@@ -71,7 +72,7 @@ TEST(Roles, TheContactSpringLowersTheStableStepOfAMassiveNode) {
   const std::unique_ptr<Subdomain> a = build(soft), b = build(graded);
   Bodies bodies({a.get(), b.get()});
   Joint joint = make_joint("i", {Side{0, 0}, Side{1, 0}}, bodies);
-  joint.kinematic = 0;
+  joint.role.kinematic = 0;
   const double alone = bodies.describe(1).stable_step;
   EXPECT_NEAR(stable_step_in_contact(joint, bodies, 1.0e-5) / alone, std::sqrt(4.0 / 6.0),
               1.0e-3);  // the bound of solids is sharp to 1e-4
@@ -87,11 +88,11 @@ TEST(Roles, AWallNeverIsKinematic) {
     Bodies bodies(wall_first ? std::vector<Subdomain*>{wall.get(), bar.get()}
                              : std::vector<Subdomain*>{bar.get(), wall.get()});
     Joint joint = make_joint("i", {Side{0, 0}, Side{1, 0}}, bodies);
-    joint.how = std::make_unique<Unilateral>();
+    joint.exchange = std::make_unique<Unilateral>();
     Roles roles(bodies, 1e-5, false);
     roles.start({&joint, 1});
     roles.choose(joint);
-    EXPECT_EQ(joint.kinematic, wall_first ? 1 : 0);
+    EXPECT_EQ(joint.role.kinematic, wall_first ? 1 : 0);
   }
 }
 
@@ -105,11 +106,12 @@ std::vector<Joint> joined(const std::vector<std::array<int, 2>>& pairs, bool ord
   std::vector<Joint> joints(pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     joints[i].sides = {Side{pairs[i][0], 0}, Side{pairs[i][1], 0}};
+    joints[i].watch = std::make_unique<PointWatch>();
     joints[i].engage(1.0);
     if (ordered) {
-      joints[i].how = std::make_unique<Unilateral>();
+      joints[i].exchange = std::make_unique<Unilateral>();
     } else {
-      joints[i].how = std::make_unique<ParallelForce>();
+      joints[i].exchange = std::make_unique<ParallelForce>();
     }
   }
   return joints;
@@ -133,11 +135,11 @@ TEST(Islands, KinematicBodiesAdvanceBeforeThoseThatTakeTheirReactions) {
   std::vector<Joint> joints = joined({{0, 1}, {1, 2}});  // 0 is kinematic to 1, 1 to 2
   const std::vector<std::vector<int>> chain = {{0}, {1}, {2}};
   EXPECT_EQ(find_islands(joints, 3)[0].levels, chain);
-  joints[0].kinematic = 1;  // the middle one is kinematic to both
+  joints[0].role.kinematic = 1;  // the middle one is kinematic to both
   const std::vector<std::vector<int>> middle = {{1}, {0, 2}};
   EXPECT_EQ(find_islands(joints, 3)[0].levels, middle);
-  joints[0].kinematic = 0;
-  joints[1].kinematic = 1;  // the outer ones are
+  joints[0].role.kinematic = 0;
+  joints[1].role.kinematic = 1;  // the outer ones are
   const std::vector<std::vector<int>> outer = {{0, 2}, {1}};
   EXPECT_EQ(find_islands(joints, 3)[0].levels, outer);
 }
@@ -188,8 +190,7 @@ TEST(Roles, OfAnyBodiesInAnyOrderOfTouchesAreThoseOfAnOrder) {
       int code = trial;
       for (Scripted& body : t.bodies) {
         body.compliance = std::array{1.0, 2.0, 5.0}[code % 3];
-        body.description_.ports[0].geometry.spacing =
-            std::array{1.0, 2.0, 3.0}[code / 3 % 3];
+        body.description_.ports[0].geometry.spacing = std::array{1.0, 2.0, 3.0}[code / 3 % 3];
         code /= 9;
       }
       t.choose(touches);
@@ -208,10 +209,10 @@ TEST(Roles, GiveWayToThoseThatOnlyOneSideCanTake) {
 
 TEST(Roles, ThatTheSceneFixesInACircleAreRefusedBeforeTheRun) {
   Triangle t({1.0, 1.0, 1.0});
-  for (Joint& joint : t.joints) joint.role_fixed = true;
+  for (Joint& joint : t.joints) joint.role.fixed = true;
   EXPECT_THROW(t.choose(), InputError);
   Triangle open({1.0, 1.0, 1.0});
-  open.joints[0].role_fixed = open.joints[1].role_fixed = true;
+  open.joints[0].role.fixed = open.joints[1].role.fixed = true;
   EXPECT_NO_THROW(open.choose());
   EXPECT_EQ(open.joints[2].kinematic_side().body, 0);
 }

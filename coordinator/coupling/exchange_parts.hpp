@@ -50,7 +50,7 @@ inline double roundoff_of(double displacement, double travelled) {
 /// Velocity against which mismatch is measured: of the first touch, or what the contact force moves
 /// in a step.
 inline double reference_velocity(const Joint& joint, double compliance, double step) {
-  return std::max(joint.closing_speed, joint.force_scale * compliance / step);
+  return std::max(joint.contact.closing_speed, joint.contact.force_scale * compliance / step);
 }
 
 /// Velocity and force that go with each other: neither is measured against less than a thousandth

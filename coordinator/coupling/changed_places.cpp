@@ -1,10 +1,8 @@
-#include "coordinator/passing_watch.hpp"
+#include "coordinator/coupling/changed_places.hpp"
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
-#include "coordinator/coupling/nearness.hpp"
 #include "coordinator/coupling/port_pose.hpp"
 
 namespace abut {
@@ -40,6 +38,8 @@ bool changed(const Front& side, const Front& other, const Front& side_now, const
   return (before > 0.0) != (now > 0.0);
 }
 
+}  // namespace
+
 bool changed_places(const Joint& joint, const Bodies& bodies) {
   std::array<Front, 2> before, now;
   for (const std::size_t s : {0u, 1u}) {
@@ -48,39 +48,6 @@ bool changed_places(const Joint& joint, const Bodies& bodies) {
   }
   return changed(before[0], before[1], now[0], now[1]) ||
          changed(before[1], before[0], now[1], now[0]);
-}
-
-bool behind(const Joint& joint, const Bodies& bodies) {
-  const double gap = joint.gap(trace_of(bodies, joint.sides[0]).u.back(),
-                               trace_of(bodies, joint.sides[1]).u.back());
-  double spacing = std::numeric_limits<double>::infinity();
-  for (const Side& side : joint.sides) {
-    const double own = bodies.port(side).geometry.spacing;
-    if (own > 0.0) spacing = std::min(spacing, own);
-  }
-  return gap < -spacing;
-}
-
-}  // namespace
-
-void PassingWatch::watch(std::span<const Joint> joints, const Bodies& bodies) {
-  near_.resize(joints.size(), false);
-  for (std::size_t j = 0; j < joints.size(); ++j)
-    if (joints[j].surfaces && !near_[j]) near_[j] = !swept_apart(joints[j], bodies);
-}
-
-std::vector<std::string> PassingWatch::passed(std::span<const Joint> joints,
-                                              const Bodies& bodies) const {
-  std::vector<std::string> names;
-  for (std::size_t j = 0; j < std::min(joints.size(), near_.size()); ++j) {
-    const Joint& joint = joints[j];
-    const bool meets = !joint.tied() && joint.decision != Decision::inside;
-    if (!meets || joint.force_scale > 0.0) continue;
-    const bool past =
-        joint.surfaces ? near_[j] && changed_places(joint, bodies) : behind(joint, bodies);
-    if (past) names.push_back(joint.name);
-  }
-  return names;
 }
 
 }  // namespace abut

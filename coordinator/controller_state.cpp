@@ -1,0 +1,68 @@
+// The state list of a run on the coordinator's side, and how a run goes on from one.
+
+#include <algorithm>
+#include <utility>
+
+#include "base/error.hpp"
+#include "coordinator/controller.hpp"
+#include "coordinator/coupling/state_fields.hpp"
+
+namespace abut {
+
+std::vector<std::byte> Controller::save() {
+  std::vector<std::byte> bytes;
+  Archive archive = Archive::writer(bytes, Archive::Form::named);
+  state(archive);
+  archive.finish();
+  return bytes;
+}
+
+void Controller::load(std::span<const std::byte> bytes) {
+  resumed_ = true;
+  introduce();
+  Archive archive = Archive::reader(bytes, Archive::Form::named);
+  state(archive);
+  archive.finish();
+  narrator_.start(clock_.time(), scene_.time.end,
+                  std::span(joints_).first(scene_.interfaces.size()), !broad_phase_.empty());
+}
+
+/// What decides of the windows to come. What a run counts for its end alone is not listed, nor what
+/// the next window fills anew.
+void Controller::state(Archive& archive) {
+  clock_.state(archive);
+  events_.state(archive);
+  guard_.state(archive);
+  bodies_.state(archive);
+  archive.field("halvings", halvings_);
+  whole(archive, "flight_limit", flight_.limit);
+  archive.field("grounded", flight_.grounded);
+  state_of_pairs(archive);
+  for (Joint& joint : joints_) joint.state(archive);
+  roles_.state(archive);
+  schwarz_.state(archive);
+}
+
+/// Joints of pairs that came near during the run, and in which order the bodies met.
+void Controller::state_of_pairs(Archive& archive) {
+  const std::size_t written = scene_.interfaces.size();
+  std::vector<PortPair> pairs;
+  for (std::size_t j = written; j < joints_.size(); ++j) pairs.push_back(joints_[j].sides);
+  list(archive, "pairs", pairs, [](Archive& a, PortPair& pair) {
+    for (Side& side : pair) {
+      whole(a, "body", side.body);
+      whole(a, "port", side.port);
+    }
+  });
+  if (!archive.writing()) join(pairs);
+  std::vector<std::int32_t> met;
+  if (archive.writing()) {
+    for (std::size_t j = written; j < joints_.size(); ++j)
+      if (joints_[j].exchange->met()) met.push_back(static_cast<std::int32_t>(j));
+    std::ranges::sort(met, {}, [this](int j) { return *joints_[j].exchange->met(); });
+  }
+  field(archive, "met", met);
+  for (const int j : met) joints_[j].exchange->introduce(joints_[j], bodies_);
+}
+
+}  // namespace abut

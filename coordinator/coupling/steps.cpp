@@ -1,0 +1,77 @@
+#include "coordinator/coupling/steps.hpp"
+
+#include <utility>
+
+namespace abut {
+
+namespace {
+
+/// Of the mismatch, from sweep to sweep: where several joints wait for each other, secants that
+/// lead to the answer may let it grow before.
+constexpr double most_growth = 10.0;
+
+}  // namespace
+
+Steps::Steps(Net& net, Accelerator& accelerator, const Options& options, Bodies& bodies)
+    : net_(net),
+      accelerator_(accelerator),
+      options_(options),
+      inverses_{[this](const Eigen::VectorXd& r) { return net_.inverse(r); },
+                [this](const Eigen::VectorXd& r) { return net_.relaxed(r); }},
+      contracts_(net.contracts()),
+      beside_ties_(net.contact_beside_ties()),
+      shared_(contracts_ && net.shares_bodies()),
+      eased_(net.ease(bodies)) {
+  accelerator_.reset(net.layout_key());
+  // Bodies that others hold answer a sweep with little of what they would if they were left alone.
+  if (shared_) accelerator_.doubt();
+}
+
+bool Steps::enough(const Iterate& it) const {
+  if (!it.contradiction.empty() || it.sweep >= options_.max_iterations) return true;
+  const bool doubted = shared_ && early(it) && it.residual.largest() > 0.0;
+  return it.converged && !doubted;
+}
+
+void Steps::next(Iterate& it, Bodies& bodies) {
+  it.seen = it.x;
+  const double before = std::exchange(mismatch_, it.mismatch);
+  const bool grown = it.sweep > 1 && it.mismatch > (shared_ ? most_growth : 1.0) * before;
+  if (eased_ && !early(it)) {
+    eased_ = false;
+    net_.withdraw(bodies);
+  }
+  if (net_.renew(bodies) || net_.projects() || eased_) {
+    it.x += net_.inverse(it.g - it.x);
+    return;
+  }
+  net_.answer_alone(it.x, it.g);
+  if (beside_ties_ && best_.left(it.x, it.g, it.mismatch)) {
+    accelerator_.forget();
+    it.x = accelerator_.next(best_.iterate(), best_.image(), inverses_);
+    return;
+  }
+  if (contracts_ && !beside_ties_ && early(it) && grown) {
+    accelerator_.forget();
+    if (growths_++ > 0 && careful_ == nullptr)
+      careful_ = std::make_unique<Aitken>(Preconditioner::relaxed(), 0.5);
+  }
+  Accelerator& steps = careful_ != nullptr ? *careful_ : accelerator_;
+  steps.weigh(it.s);
+  it.x = steps.next(it.x, it.g, inverses_);
+}
+
+bool Steps::arrived(const Iterate& it) const {
+  return it.converged && net_.distance(it.seen, it.x) <= options_.tolerance;
+}
+
+bool Steps::back(Iterate& it) {
+  if (!contracts_ || it.sweep <= 1 || it.sweep >= options_.max_iterations) return false;
+  accelerator_.forget();
+  share_ *= 0.5;
+  if (!beside_ties_) careful_ = std::make_unique<Aitken>(Preconditioner::kernels(), share_);
+  it.x = it.seen + share_ * net_.inverse(it.g - it.seen);
+  return true;
+}
+
+}  // namespace abut

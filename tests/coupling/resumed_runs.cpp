@@ -1,0 +1,151 @@
+// Goal: the state lists are complete: a run that goes on from its state at any window, with a new
+// coordinator and new bodies, ends as the uninterrupted one. Oracle: the hashes of the bodies at
+// the end, bit for bit, of a scene of every kind of joint.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/runs.hpp"
+
+namespace abut {
+namespace {
+
+/// The state of a whole run between two windows.
+struct Kept {
+  std::vector<std::byte> run;
+  std::vector<std::vector<std::byte>> bodies;
+};
+
+/// A run of its own, with its own bodies.
+class Whole {
+ public:
+  explicit Whole(const Document& document)
+      : scene_(read_scene(document)), bodies_(launch_local(scene_, document)) {
+    std::vector<Subdomain*> pointers;
+    for (const std::unique_ptr<Subdomain>& body : bodies_) pointers.push_back(body.get());
+    controller_ = std::make_unique<Controller>(scene_, pointers, std::vector<Observer*>{});
+  }
+  Kept keep() {
+    Kept kept{controller_->save(), {}};
+    for (const std::unique_ptr<Subdomain>& body : bodies_)
+      kept.bodies.push_back(body->checkpoint());
+    return kept;
+  }
+  RunEnd run(const std::function<void()>& between = {}) {
+    controller_->between_windows = between;
+    return controller_->run();
+  }
+  RunEnd run_from(const Kept& kept) {
+    controller_->load(kept.run);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b]->resume(kept.bodies[b]);
+    return controller_->run();
+  }
+
+ private:
+  Scene scene_;
+  std::vector<std::unique_ptr<Subdomain>> bodies_;
+  std::unique_ptr<Controller> controller_;
+};
+
+struct Cut {
+  std::string scene;
+  int every = 1;  // windows between states that are kept; odd, so that all stages are met
+  std::vector<std::string> overrides = {};
+};
+
+class ResumedRuns : public testing::TestWithParam<Cut> {};
+
+TEST_P(ResumedRuns, EndAsTheUninterruptedOne) {
+  const Cut& cut = GetParam();
+  const Document document = Document::load(
+      std::string(ABUT_SOURCE_DIR) + "/configs/" + cut.scene + ".yaml", cut.overrides);
+  std::vector<Kept> kept;
+  Whole whole(document);
+  int window = 0;
+  const RunEnd end = whole.run([&] {
+    if (window++ % cut.every == 0) kept.push_back(whole.keep());
+  });
+  ASSERT_EQ(end.status, "completed") << end.reason;
+  ASSERT_GT(kept.size(), 3u);  // else the scene is cut nowhere
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    const RunEnd resumed = Whole(document).run_from(kept[k]);
+    ASSERT_EQ(resumed.status, "completed") << resumed.reason;
+    ASSERT_EQ(resumed.body_hashes, end.body_hashes) << "window " << k * cut.every;
+    ASSERT_EQ(resumed.state_hash, end.state_hash) << "window " << k * cut.every;
+  }
+}
+
+TEST(ResumedRuns, RefuseTheStateOfAnotherScene) {
+  const std::string folder = std::string(ABUT_SOURCE_DIR) + "/configs/";
+  Whole bars(Document::load(folder + "two_bars.yaml", {}));
+  const Kept kept = bars.keep();
+  const Document other = Document::load(folder + "bars/bouncing_bar.yaml", {});
+  EXPECT_THROW(Whole(other).run_from(kept), RunError);
+}
+
+std::vector<Cut> cuts();
+std::string name_of(const testing::TestParamInfo<Cut>& info) {
+  std::string name = info.param.scene;
+  for (char& c : name)
+    if (c == '/' || c == '.') c = '_';
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(Coupling, ResumedRuns, testing::ValuesIn(cuts()), name_of);
+
+std::vector<Cut> cuts() {
+  return {
+      {"two_bars", 7},
+      {"two_bars_implicit", 7},
+      {"two_bars_parallel", 7},
+      {"bars/bouncing_bar", 1901},
+      {"bars/cradle_five", 17},
+      {"bars/finite_strain_bars_collide", 7},
+      {"bars/hit_from_both_sides", 11},
+      {"bars/impact_inside_window", 1},
+      {"bars/plastic_bar_meets_a_wall", 7},
+      {"bars/pressed_bar", 41},
+      {"bars/solid_meets_bar", 9},
+      {"bars/steps_three_to_two", 5},
+      {"bars/subcycling", 5},
+      {"bars/three_bars_with_gap", 13},
+      {"bars/tied_graded_halves", 9},
+      {"bars/wall_bounce_coarse", 301},
+      {"methods/lagrange_explicit", 101},
+      {"methods/schwarz_published_ee", 1301},
+      {"methods/schwarz_published_ii", 301},
+      {"methods/schwarz_projection_ii", 301},
+      {"methods/schwarz_recommended_ii", 17},
+      {"methods/schwarz_robin_kick_ee", 1301},
+      {"methods/schwarz_robin_massless_ee", 1301},
+      {"contact/ball_in_corner", 21},
+      {"contact/ball_on_wall", 5},
+      {"contact/balls", 91},
+      {"contact/bars_2d", 23},
+      {"contact/bars_2d_implicit", 13},
+      {"contact/belt_stick_slip", 401},
+      {"contact/block_slides_and_stops", 71},
+      {"contact/bolted_joint_slips", 31},
+      {"contact/cattaneo_mindlin", 1},
+      {"contact/cradle_bricks", 91},
+      {"contact/disk_on_wall", 21},
+      {"contact/edges_cross", 17},
+      {"contact/incline", 61},
+      {"contact/ladder_contact", 31},
+      {"contact/sphere_impact", 5},
+      {"contact/stack_of_ten", 61},
+      {"joined/block_in_four_rests", 31},
+      {"joined/blocks_2x2x2", 7},
+      {"joined/cantilever_split", 31},
+      {"joined/notched_specimen", 133},
+      {"joined/plate_with_insert", 7},
+      {"joined/row_of_eight", 1},
+      {"joined/torsion_multi_scale", 61},
+      {"joined/weld_overlap", 3},
+  };
+}
+
+}  // namespace
+}  // namespace abut
