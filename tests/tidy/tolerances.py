@@ -1,5 +1,6 @@
-"""Goal: every tolerance has its reason beside it. A bare power of ten says nothing: derive it
-(support/tolerance.hpp: operations times eps times scale), or say in a comment where it comes from.
+"""Goal: every tolerance has its reason beside it. A bare power of ten, a hundredth or less, says
+nothing: derive it (support/tolerance.hpp: operations times eps times scale), or say in a comment of
+the same line or the one above where it comes from.
 
 tolerances.txt counts what is left by file; a count may only fall.
 """
@@ -11,8 +12,10 @@ from findings import CPP, Finding, project_files, read_lines, run
 
 LEFT = "tests/tidy/tolerances.txt"
 EXPECTATION = re.compile(r"\b(?:EXPECT|ASSERT)_(NEAR|LT|LE)\(")
-POWER = re.compile(r"(?<![\w.])(?:1(?:\.0*)?[eE]-\d+|0?\.0*1)(?![\w.])")
-REASON = re.compile(r"\b(?:roundoff|iteration)\([^()]*\)")  # of support/tolerance.hpp
+POWER = re.compile(r"(?<![\w.-])(?<![<>] )(?:1(?:\.0*)?[eE]-\d+|0?\.0+1)(?![\w.])")
+# Of support/tolerance.hpp, with a factor before or behind it.
+REASON = re.compile(r"(?:[\w.-]+ \* )?\b(?:roundoff|iteration)\((?:[^()]|\([^()]*\))*\)"
+                    r"(?: [*/] [\w.-]+)?")
 NAMED = re.compile(r"\bconstexpr double (?:\w*tolerance|round\w*|exact|few|same\w*|left_open)"
                    r" = ([^;]*);")
 STRING = re.compile(r'"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])\'')

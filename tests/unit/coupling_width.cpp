@@ -23,8 +23,8 @@ namespace {
 
 constexpr double step = 1.0e-6;                            // [s] of the left bars
 constexpr std::array<double, 3> speed = {3.0, 1.0, -2.0};  // [m/s] with which sides approach
-constexpr double tolerance = 1.0e-9;
-constexpr int windows = 20, substeps = 5;  // a wave goes to and fro in 20 elements
+constexpr double tolerance = 1.0e-9;                       // of the iteration
+constexpr int windows = 20, substeps = 5;                  // a wave goes to and fro in 20 elements
 
 struct Case {
   std::string name;
