@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/runs.hpp"
 #include "tests/support/solid_scenes.hpp"
 
 namespace abut {
@@ -35,24 +34,28 @@ std::string scene(const Case& c) {
                 number(k), number(s), x, y)
           : fmt::format("\"{0}*({2} + x) - ({1})*({3} + y)\", \"({1})*({2} + x) + {0}*({3} + y)\"",
                         number(k), number(s), x, y);
-  const auto body = [](const char* name, const char* lengths, const std::string& map, double vx,
+  const auto body = [](const char* name, double length, const std::string& map, double vx,
                        double vy, const char* side) {
-    return fmt::format(
-        "  {}:\n    model: {{fe: {{dimension: 2, mesh: {{rectangle: {{lengths: {}, elements: [8, "
-        "4]}}}}, map: [{}]}}}}\n    material: {{linear_elastic: {{youngs_modulus: 1.0e4, "
-        "poissons_ratio: 0.3, density: 1.0}}}}\n    integrator: {{central_difference: {{step: "
-        "1.0e-4}}}}\n    initial: {{velocity: [{}, {}]}}\n    ports: {{face: {{side: {}}}}}\n",
-        name, lengths, map, number(vx), number(vy), side);
+    return SolidText{
+        .name = name,
+        .material = "linear_elastic: {youngs_modulus: 1.0e4, poissons_ratio: 0.3, density: 1.0}",
+        .integrator = "central_difference: {step: 1.0e-4}",
+        .velocity = {vx, vy},
+        .side = side,
+        .keys = "map: [" + map + "], ",
+        .lengths = {length, 0.2},
+        .cells = {8, 4}}
+        .text();
   };
   const double v = c.sliding, w = -0.1;
-  return "meta: {title: test}\ntime: {begin: 0.0, end: 0.02, window: 1.0e-3}\nbodies:\n" +
-         body("block", "[0.4, 0.2]", block, k * v - s * w, s * v + k * w,
-              c.on_corner ? "boundary" : "bottom") +
-         body("plate", "[2.0, 0.2]", turn, 0.0, 0.0, "top") +
-         fmt::format(
-             "interfaces:\n  hit:\n    sides: [block.face, plate.face]\n    contact: {}\n    "
-             "transmission: {{unilateral: {{kinematic: {}}}}}\n",
-             c.friction > 0.0 ? fmt::format("{{friction: {}}}", c.friction) : "{}", c.finder);
+  const std::string friction = c.friction > 0.0 ? fmt::format("friction: {}", c.friction) : "";
+  return scene_text(
+      0.02, 1.0e-3,
+      body("block", 0.4, block, k * v - s * w, s * v + k * w, c.on_corner ? "boundary" : "bottom") +
+          body("plate", 2.0, turn, 0.0, 0.0, "top"),
+      fmt::format("interfaces: {{hit: {{sides: [block.face, plate.face], contact: {{{}}}, "
+                  "transmission: {{unilateral: {{kinematic: {}}}}}}}}}\n",
+                  friction, c.finder));
 }
 
 TEST(ClosingSpeeds, AreAlongTheNormal) {

@@ -9,6 +9,7 @@
 #include "coordinator/energy_guard.hpp"
 #include "tests/support/runs.hpp"
 #include "tests/support/solid_scenes.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
@@ -30,7 +31,7 @@ TEST(EnergyGuard, CountsWhatExternalWorkDoesNotExplain) {
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 10.6, 100.0)}), Verdict::warn);
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 10.7, 100.0)}), Verdict::fine) << "told already";
   EXPECT_EQ(guard.look(std::vector{holding(90.0, 11.1, 100.0)}), Verdict::fail);
-  EXPECT_NEAR(guard.growth(), 1.1 / 101.1, 1e-15);
+  EXPECT_NEAR(guard.growth(), 1.1 / 101.1, roundoff(4.0, 1.0));  // of energies of 100
 }
 
 TEST(EnergyGuard, JudgesFromRestWhenThereIsEnergyToCompareWith) {
@@ -91,7 +92,7 @@ TEST(EnergyGuard, TellsOfALossWhereNothingDissipates) {
   EXPECT_EQ(guard.look(std::vector{holding(100.0, 0.0)}), Verdict::fine);
   EXPECT_EQ(guard.look(std::vector{holding(98.0, 1.1)}), Verdict::fine);
   EXPECT_EQ(guard.look(std::vector{holding(98.0, 0.9)}), Verdict::warn);
-  EXPECT_NEAR(guard.growth(), -0.011, 1e-15);
+  EXPECT_NEAR(guard.growth(), -0.011, roundoff(4.0, 1.0));
 }
 
 TEST(EnergyGuard, HeatIsNoLoss) {

@@ -49,10 +49,10 @@ std::vector<SolidText> row(const Case& c) {
     bar.integrator = c.integrator;
     bar.position = {k == 0 ? 0.0 : k == 1 ? -1.0002 : 1.004};
     bar.velocity = {k == 0 ? 0.0 : k == 1 ? 1.0e-3 : -1.0e-3, k == 1 ? 2.0e-4 : 0.0};
-    bar.side = k == 1 ? "right" : "left";
     if (k == 0) {
-      bar.port = "west";
-      bar.side = "left}, east: {side: right";
+      bar.sides = {"left", "right"};
+    } else {
+      bar.side = k == 1 ? "right" : "left";
     }
     bars.push_back(bar);
   }
@@ -65,12 +65,10 @@ std::unique_ptr<RunResult> run(const Case& c, bool everything) {
     const auto pair = [&c](const char* name, const char* sides) {
       return fmt::format("  {}: {{sides: [{}], contact: {{{}}}}}\n", name, sides, c.contact);
     };
-    rest = "interfaces:\n" + pair("west", "middle.west, left.face") +
-           pair("east", "middle.east, right.face");
+    rest = "interfaces:\n" + pair("west", "middle.left, left.face") +
+           pair("east", "middle.right, right.face");
   }
-  std::string text = "meta: {title: test}\ntime: {begin: 0.0, end: 6.0, window: 0.025}\nbodies:\n";
-  for (const SolidText& bar : row(c)) text += bar.text();
-  return run_document(Document::from_text("test", text + rest));
+  return run_solids(6.0, 0.025, row(c), "", rest);
 }
 
 class Everything : public testing::TestWithParam<Case> {};
@@ -95,10 +93,7 @@ TEST_P(Everything, IsThePairsThatTouchBitForBit) {
 /// Bars in a row whose moduli and densities differ alike; the first comes, a little sideways.
 std::string chain(const std::vector<double>& ratios, const std::string& scheme, int steps,
                   double friction) {
-  std::string text = fmt::format(
-      "meta: {{title: test}}\ntime: {{begin: 0.0, end: 12.0, window: "
-      "{}}}\nbodies:\n",
-      number(0.0125 * steps));
+  std::string text;
   for (std::size_t k = 0; k < ratios.size(); ++k) {
     SolidText bar;
     bar.name = fmt::format("bar_{}", k);
@@ -109,11 +104,11 @@ std::string chain(const std::vector<double>& ratios, const std::string& scheme, 
     bar.integrator = scheme + ": {step: 0.0125}";
     bar.position = {1.0001 * static_cast<double>(k)};
     bar.velocity = {k == 0 ? 1.0e-3 : 0.0, k == 0 ? 2.0e-4 : 0.0};
-    bar.port = "west";
-    bar.side = "left}, east: {side: right";
+    bar.sides = {"left", "right"};
     text += bar.text();
   }
-  return text + fmt::format("contact: {{everything: {{friction: {}}}}}\n", number(friction));
+  return scene_text(12.0, 0.0125 * steps, text,
+                    fmt::format("contact: {{everything: {{friction: {}}}}}\n", number(friction)));
 }
 
 /// The goal of chains is 4 sweeps. Trapezoidal bars lose and gain what one step of a flat impact is

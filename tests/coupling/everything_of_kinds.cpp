@@ -62,8 +62,8 @@ std::string row(const Kind& k) {
       bar.model = k.model;
       bar.keys = k.keys;
       bar.more = k.more;
-      bar.port = "west";
-      bar.side = "left}, east: {side: right";
+      bar.side = "";
+      bar.sides = {"left", "right"};
     }
     text += bar.text();
   }
@@ -71,10 +71,7 @@ std::string row(const Kind& k) {
 }
 
 std::unique_ptr<RunResult> run(const std::string& bodies, const std::string& rest, double end) {
-  return run_document(Document::from_text(
-      "test", fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: "
-                          "0.025}}\nbodies:\n{}{}",
-                          number(end), bodies, rest)));
+  return run_scene(end, 0.025, bodies, rest);
 }
 
 std::string written(const std::string& name, const std::string& sides, const std::string& law) {
@@ -91,8 +88,8 @@ TEST_P(EverythingOfKinds, IsThePairsThatTouchBitForBit) {
     SCOPED_TRACE(law);
     const std::string bodies = row(GetParam());
     const auto pairs = run(bodies,
-                           "interfaces:\n" + written("west", "middle.west, left.face", law) +
-                               written("east", "middle.east, right.face", law),
+                           "interfaces:\n" + written("west", "middle.left, left.face", law) +
+                               written("east", "middle.right, right.face", law),
                            6.0);
     const auto all = run(bodies, fmt::format("contact: {{everything: {{{}}}}}\n", law), 6.0);
     ASSERT_TRUE(pairs->completed());

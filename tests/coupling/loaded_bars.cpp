@@ -80,12 +80,13 @@ TEST(LoadedHalves, MoveAsTheUndividedBar) {
     const std::unique_ptr<RunResult> one = run_document(Document::from_text("test", undivided));
     ASSERT_TRUE(two->completed() && one->completed()) << scheme;
     const RunResult::Row &halves = two->rows.back(), &bar = one->rows.back();
-    // Iterations end at 1e-9 of the reference velocity times the step, in a hundred windows.
     const double energy = bar.total[0];
-    EXPECT_NEAR(halves.total[0] + halves.total[1], energy, 1.0e-6 * energy) << scheme;
-    EXPECT_NEAR(total_momentum(*two), bar.momentum[0], 1.0e-6) << scheme;
+    // Iterations end at 1e-9 of the reference velocity times the step, in a hundred windows.
+    const double left = 2.0 * iteration(1.0e-9, 100.0);
+    EXPECT_NEAR(halves.total[0] + halves.total[1], energy, left * energy) << scheme;
+    EXPECT_NEAR(total_momentum(*two), bar.momentum[0], left) << scheme;
     EXPECT_GT(std::abs(bar.momentum[0]), 1.0e-2) << scheme;
-    EXPECT_LT(two->measure("energy.total.relative_drift_max"), 1.0e-6) << scheme;
+    EXPECT_LT(two->measure("energy.total.relative_drift_max"), left) << scheme;
   }
 }
 

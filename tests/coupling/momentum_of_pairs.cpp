@@ -50,19 +50,18 @@ std::unique_ptr<RunResult> run(int dim, bool tied, const Steps& steps, const std
                                const std::string& other) {
   const std::string tie = tied && dim == 1 ? ", tied: true" : "";
   const double windows = std::round(3.0 / steps.window);
-  std::string text = fmt::format(
-      "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n",
-      number(windows * steps.window), number(steps.window));
   const auto start = [dim](double place, double v) {
     return fmt::format("position: {}, velocity: {}", components({place}, dim),
                        components({v}, dim));
   };
-  text += body("a", dim, 2, one, start(-1.0, speed), "face: {side: right" + tie + "}");
-  text += body("b", dim, 3, other, start(tied ? 0.0 : 0.002, 0.0), "face: {side: left" + tie + "}");
-  text += fmt::format("interfaces: {{i: {{sides: [a.face, b.face], {}: {{}}}}}}\n",
-                      tied ? "tied" : "contact");
   // How unlike steps and a plastic start treat energy has tests of its own.
-  return run_document(Document::from_text("test", text + "schwarz: {energy_guard: 10.0}\n"));
+  return run_scene(
+      windows * steps.window, steps.window,
+      body("a", dim, 2, one, start(-1.0, speed), "face: {side: right" + tie + "}") +
+          body("b", dim, 3, other, start(tied ? 0.0 : 0.002, 0.0), "face: {side: left" + tie + "}"),
+      fmt::format("interfaces: {{i: {{sides: [a.face, b.face], {}: {{}}}}}}\n"
+                  "schwarz: {{energy_guard: 10.0}}\n",
+                  tied ? "tied" : "contact"));
 }
 
 struct Kind {
@@ -71,13 +70,13 @@ struct Kind {
 };
 
 class MomentumOfPairs : public testing::TestWithParam<Kind> {};
-INSTANTIATE_TEST_SUITE_P(
-    Joints, MomentumOfPairs,
-    testing::Values(Kind{1, true}, Kind{1, false}, Kind{2, true}, Kind{2, false}, Kind{3, true},
-                    Kind{3, false}),
-    [](const auto& c) {
-      return fmt::format("{}d_{}", c.param.dim, c.param.tied ? "tied" : "contact");
-    });
+INSTANTIATE_TEST_SUITE_P(Joints, MomentumOfPairs,
+                         testing::Values(Kind{1, true}, Kind{1, false}, Kind{2, true},
+                                         Kind{2, false}, Kind{3, true}, Kind{3, false}),
+                         [](const auto& c) {
+                           return fmt::format("{}d_{}", c.param.dim,
+                                              c.param.tied ? "tied" : "contact");
+                         });
 
 TEST_P(MomentumOfPairs, IsExactForAllSchemesAndSteps) {
   const auto& [dim, tied] = GetParam();
@@ -102,17 +101,15 @@ TEST(MomentumOfPairs, IsExactWhereAJointAndAContactMeet) {
   for (const std::string& one : schemes(steps.one)) {
     for (const std::string& other : schemes(steps.other)) {
       SCOPED_TRACE(one + " and " + other);
-      std::string text =
-          "meta: {title: test}\ntime: {begin: 0.0, end: 3.0, window: 0.05}\nbodies:\n";
-      text += body("a", 2, 2, one, "position: [0.0, 0.0]", "face: {side: right}");
-      text += body("b", 2, 2, other, "position: [1.0, 0.0]",
-                   "face: {side: left}, end: {side: right}");
+      std::string text = body("a", 2, 2, one, "position: [0.0, 0.0]", "face: {side: right}");
+      text +=
+          body("b", 2, 2, other, "position: [1.0, 0.0]", "face: {side: left}, end: {side: right}");
       text += body("c", 2, 3, one, "position: [2.001, 0.0], velocity: [-0.01, 0.0]",
                    "face: {side: left}");
-      text +=
-          "interfaces:\n  joint: {sides: [a.face, b.face], tied: {}}\n"
-          "  hit: {sides: [b.end, c.face], contact: {}}\nschwarz: {energy_guard: 10.0}\n";
-      const auto result = run_document(Document::from_text("test", text));
+      const auto result =
+          run_scene(3.0, 0.05, text,
+                    "interfaces:\n" + joined("joint", "a.face", "b.face") +
+                        touching("hit", "b.end", "c.face") + "schwarz: {energy_guard: 10.0}\n");
       ASSERT_TRUE(result->completed());
       EXPECT_LE(result->measure("momentum.total"), rounding);
     }

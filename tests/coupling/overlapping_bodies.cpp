@@ -15,6 +15,7 @@
 
 #include "tests/support/overlapping_pair.hpp"
 #include "tests/support/solid_scenes.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
@@ -82,7 +83,7 @@ TEST(OverlappingBodies, ShareTheMaterial) {
         pair.start = dim == 2 ? "velocity: [1.0, 0.0]" : "velocity: [1.0, 0.0, 0.0]";
         const auto result = pair.run(0.2, 0.2);
         ASSERT_TRUE(result->completed());
-        EXPECT_NEAR(sum(*result, "momentum.x"), 6.0, 1.0e-12);
+        EXPECT_NEAR(sum(*result, "momentum.x"), 6.0, roundoff(600.0, 6.0));  // nodes times steps
       }
     }
   }
@@ -115,7 +116,8 @@ TEST(OverlappingBodies, LinearFieldsPass) {
     const auto result = pair.run(2.0, 0.2);
     ASSERT_TRUE(result->completed());
     for (const char* body : {"left", "right"}) {
-      for (const char* end : {"min", "max"}) {  // 1 % of a modulus of one: 1e-10 of it
+      for (const char* end : {"min", "max"}) {
+        // 1 % of a modulus of one: 1e-10 of it
         EXPECT_NEAR(result->measure(fmt::format("body.{}.nodal_stress.xx.{}", body, end)), 0.01,
                     1.0e-12);
         EXPECT_NEAR(result->measure(fmt::format("body.{}.displacement.y.{}", body, end)), 0.0,
@@ -166,6 +168,7 @@ TEST(OverlappingBodies, LetPulsesThrough) {
   for (const double overlap : {0.5, 1.0, 2.0, 3.0}) {
     for (const std::vector<int>& across : {std::vector<int>{4, 4}, {4, 6}, {3, 4}, {6, 4}}) {
       const double left = left_behind(across, overlap, "overlap: {}");
+      // as ties of such meshes leave
       EXPECT_LE(left, 1.0e-3) << overlap << " " << fmt::format("{}", fmt::join(across, ":"));
     }
   }

@@ -17,9 +17,9 @@ namespace {
 /// two finds their contact. They are as stiff as strains of about 1e-3 need, and an undamped mode
 /// would never come to rest: the scheme damps all that is faster than its step.
 std::string stack(const std::vector<double>& masses, double ratio, double tolerance) {
-  std::string text = "meta: {title: test}\ntime: {begin: 0.0, end: 5.6, window: 0.0125}\nbodies:\n";
+  std::string text;
   std::string joints =
-      "  joint_0: {sides: [block_0.sole, ground.face], contact: {friction: 0.3}}\n";
+      "  joint_0: {sides: [block_0.bottom, ground.face], contact: {friction: 0.3}}\n";
   for (std::size_t k = 0; k < masses.size(); ++k) {
     SolidText block;
     block.name = fmt::format("block_{}", k);
@@ -30,8 +30,7 @@ std::string stack(const std::vector<double>& masses, double ratio, double tolera
         number(1.0e7 * ratio * (ratio > 1.0e3 ? 1.0 : 10.0)), number(1.0e3 * masses[k]));
     block.integrator = "generalized_alpha: {spectral_radius: 0.0, step: 0.0125}";
     block.position = {0.0, 0.5 * static_cast<double>(k)};
-    block.port = "sole";
-    block.side = "bottom}, lid: {side: top";
+    block.sides = {"bottom", "top"};
     block.more =
         "    equations: {tolerance: 1.0e-12}\n"
         "    loads: {gravity: {acceleration: [\"0\", \"-9.81 * (min(t / 2, 1) - "
@@ -39,9 +38,9 @@ std::string stack(const std::vector<double>& masses, double ratio, double tolera
     text += block.text();
     if (k == 0) continue;
     const bool lower = masses[k - 1] <= masses[k];
-    const std::string finds = lower ? fmt::format("block_{}.lid", k - 1) : block.name + ".sole";
+    const std::string finds = lower ? fmt::format("block_{}.top", k - 1) : block.name + ".bottom";
     joints += fmt::format(
-        "  joint_{0}: {{sides: [block_{1}.lid, block_{0}.sole], contact: {{friction: 0.3}}, "
+        "  joint_{0}: {{sides: [block_{1}.top, block_{0}.bottom], contact: {{friction: 0.3}}, "
         "transmission: {{unilateral: {{kinematic: {2}}}}}}}\n",
         k, k - 1, finds);
   }
@@ -51,8 +50,10 @@ std::string stack(const std::vector<double>& masses, double ratio, double tolera
   ground.mesh = block_mesh({3.0, 0.2}, {3, 1});
   ground.position = {-1.0, -0.2};
   ground.side = "top";
-  return text + ground.text() + "interfaces:\n" + joints +
-         fmt::format("schwarz: {{max_iterations: 100, tolerance: {}}}\n", number(tolerance));
+  return scene_text(
+      5.6, 0.0125, text + ground.text(),
+      "interfaces:\n" + joints +
+          fmt::format("schwarz: {{max_iterations: 100, tolerance: {}}}\n", number(tolerance)));
 }
 
 /// Two and three blocks with light and heavy ones in every order, five that alternate or grow.
@@ -85,11 +86,12 @@ TEST(StacksAtRest, BearTheirWeight) {
       double above = 0.0;
       for (std::size_t k = masses.size(); k-- > 0;) {
         above += 9.81 * 500.0 * masses[k];
+        const bool finest = above < 1.0e-5 * 9.81 * 500.0 * heaviest;
         // The goal, but for what bears a millionth of the forces that hold the block below: it
         // finds that block's face uneven by their rounding, some 1e-10; and for the hard ones.
-        const bool finest = above < 1.0e-5 * 9.81 * 500.0 * heaviest;
         EXPECT_NEAR(
-            result->measure(fmt::format("body.block_{}.sole.contact.pressure_max", k)) / above, 1.0,
+            result->measure(fmt::format("body.block_{}.bottom.contact.pressure_max", k)) / above,
+            1.0,
             finest ? 5.0e-4
             : hard ? 1.0e-5
                    : 1.0e-6);

@@ -32,21 +32,28 @@ TEST(StaticFriction, HoldsUntilItIsOvercomeAndThenLetsGo) {
     for (const Friction& friction : {Friction{0.2, 0.4}, {0.1, 0.5}, {0.3, 0.4}, {0.39, 0.4}}) {
       for (const int steps : {1, 5}) {
         SCOPED_TRACE(fmt::format("{} {} {}", scheme, friction.text(), steps));
-        const auto result = run_document(Document::from_text(
-            "test",
-            fmt::format(
-                "meta: {{title: test}}\ntime: {{begin: 0.0, end: 1.0, window: {}}}\nbodies:\n"
-                "  block:\n    model: {{fe: {{dimension: 2, mesh: {{{}}}}}}}\n"
-                "    material: {{linear_elastic: {{youngs_modulus: 1.0e7, poissons_ratio: 0.0, "
-                "density: 1000.0}}}}\n    integrator: {{{}}}\n    loads:\n"
-                "      weight: {{acceleration: [\"0\", \"-10 * min(1, 5 * t)\"]}}\n"
-                "      pull: {{on: bottom, traction: [\"400 * max(t - 0.2, 0)\", \"0\"]}}\n"
-                "    ports: {{sole: {{side: bottom}}}}\n"
-                "  plane:\n    model: {{rigid_tool: {{dimension: 2, mesh: {{{}}}}}}}\n"
-                "    initial: {{position: [-1.0, -0.2]}}\n    ports: {{face: {{side: top}}}}\n"
-                "interfaces: {{rubs: {{sides: [block.sole, plane.face], {}}}}}\n",
-                number(step * steps), block_mesh({1.0, 0.05}, {8, 1}), scheme,
-                block_mesh({12.0, 0.2}, {4, 1}), friction.text())));
+        const SolidText block{
+            .name = "block",
+            .material =
+                "linear_elastic: {youngs_modulus: 1.0e7, poissons_ratio: 0.0, density: 1000.0}",
+            .integrator = scheme,
+            .port = "sole",
+            .side = "bottom",
+            .more =
+                "    loads:\n"
+                "      weight: {acceleration: [\"0\", \"-10 * min(1, 5 * t)\"]}\n"
+                "      pull: {on: bottom, traction: [\"400 * max(t - 0.2, 0)\", \"0\"]}\n",
+            .lengths = {1.0, 0.05},
+            .cells = {8, 1}};
+        const SolidText plane{.name = "plane",
+                              .position = {-1.0, -0.2},
+                              .side = "top",
+                              .model = "rigid_tool",
+                              .lengths = {12.0, 0.2},
+                              .cells = {4, 1}};
+        const auto result = run_solids(
+            1.0, step * steps, {block, plane},
+            fmt::format("  rubs: {{sides: [block.sole, plane.face], {}}}\n", friction.text()));
         ASSERT_TRUE(result->completed());
         const double at = 0.2 + friction.sticks * 10.0 / 8.0, rest = 1.0 - at;
         const double pulled = 4.0 * (0.8 * 0.8 - (at - 0.2) * (at - 0.2));
@@ -63,23 +70,22 @@ TEST(StaticFriction, HoldsUntilItIsOvercomeAndThenLetsGo) {
 
 /// Disks of rubber that meet beside their centres; they stick and slide in parts.
 std::unique_ptr<RunResult> disks(const Friction& friction, int steps) {
-  const double window = 6.0e-6 * steps;
-  const auto disk = [](const std::string& name, int core, const std::string& start) {
-    return fmt::format(
-        "  {}:\n    model: {{fe: {{dimension: 2, mesh: {{disk: {{radius: 0.5, core: {}, layers: "
-        "3}}}}}}}}\n    material: {{neo_hookean: {{youngs_modulus: 1.0e9, poissons_ratio: 0.3, "
-        "density: 1000.0}}}}\n    integrator: {{central_difference: {{step: 6.0e-6}}}}\n"
-        "    initial: {{{}}}\n    ports: {{rim: {{side: mantle}}}}\n",
-        name, core, start);
+  const auto disk = [](const std::string& name, int core, const std::vector<double>& place,
+                       double speed) {
+    return SolidText{
+        .name = name,
+        .mesh = fmt::format("disk: {{radius: 0.5, core: {}, layers: 3}}", core),
+        .material = "neo_hookean: {youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000.0}",
+        .integrator = "central_difference: {step: 6.0e-6}",
+        .position = place,
+        .velocity = {speed},
+        .port = "rim",
+        .side = "mantle"};
   };
-  return run_document(Document::from_text(
-      "test", fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: 0.003, window: {}}}\n"
-                          "bodies:\n{}{}interfaces: {{impact: {{sides: [left.rim, right.rim], "
-                          "{}}}}}\nschwarz: {{tolerance: 1.0e-3}}\n",
-                          number(window),
-                          disk("left", 6, "position: [-0.51, 0.0], velocity: [50.0, 0.0]"),
-                          disk("right", 4, "position: [0.51, 0.3], velocity: [-50.0, 0.0]"),
-                          friction.text())));
+  return run_solids(
+      0.003, 6.0e-6 * steps, {disk("left", 6, {-0.51}, 50.0), disk("right", 4, {0.51, 0.3}, -50.0)},
+      fmt::format("  impact: {{sides: [left.rim, right.rim], {}}}\n", friction.text()),
+      "schwarz: {tolerance: 1.0e-3}\n");
 }
 
 TEST(StaticFriction, AddsNoSweepWhereItDiffersFromThatOfWhatSlides) {
@@ -87,9 +93,15 @@ TEST(StaticFriction, AddsNoSweepWhereItDiffersFromThatOfWhatSlides) {
     const auto same = disks({0.2, 0.2}, steps);
     ASSERT_TRUE(same->completed());
     const double sweeps = same->measure("schwarz.iterations_mean");
-    for (const Friction& friction :
-         std::vector<Friction>{{0.2, 0.25}, {0.2, 0.22}, {0.2, 0.5}, {0.1, 0.5}, {0.4, 0.5},
-                               {0.3, 0.6}, {0.05, 0.8}, {0.25, 0.3}, {0.15, 0.2}}) {
+    for (const Friction& friction : std::vector<Friction>{{0.2, 0.25},
+                                                          {0.2, 0.22},
+                                                          {0.2, 0.5},
+                                                          {0.1, 0.5},
+                                                          {0.4, 0.5},
+                                                          {0.3, 0.6},
+                                                          {0.05, 0.8},
+                                                          {0.25, 0.3},
+                                                          {0.15, 0.2}}) {
       SCOPED_TRACE(fmt::format("{} {}", friction.text(), steps));
       const auto result = disks(friction, steps);
       ASSERT_TRUE(result->completed());

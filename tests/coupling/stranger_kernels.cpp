@@ -194,8 +194,8 @@ TEST_P(StrangerKernel, ForSubstepsIsTakenAndSavesIterations) {
   EXPECT_GT(run->velocity(1), 0.0);  // thrown back
   // Impulses are taken as they are given: rounding of some hundred sums.
   EXPECT_LT(run->momentum_error(), 1.0e-12);
-  // Both converge to one motion, to some tolerances of 1e-8 of the step's way.
   for (std::size_t r = 0; r < run->rows.size(); ++r)
+    // Both converge to one motion, to some tolerances of 1e-8 of the step's way.
     EXPECT_NEAR(run->rows[r].u[1], slow->rows[r].u[1], 1.0e-6 * 2.0 * 3.0e-4) << r;
   EXPECT_LT(most_sweeps(*run), most_sweeps(*slow));
   if (GetParam() == step) {

@@ -100,8 +100,8 @@ TEST_P(SurfacePair, TouchesAndParts) {
                                   block(pair, "right", 3, 0.002, -speed, "left")},
                                  touching("impact", "left.face", "right.face"));
   ASSERT_TRUE(result->completed());
-  // Newton's method leaves 1e-9 of the forces.
   const bool is_explicit = pair.integrator.starts_with("central");
+  // Newton's method leaves 1e-9 of the forces in every step.
   EXPECT_LE(result->measure("momentum.total"), is_explicit ? 1.0e-12 : 1.0e-8);
   // What became heat is no drift; the layer and the step leave 2.4e-4 of eight elements at most.
   EXPECT_NEAR(result->measure("energy.total.relative_drift_end"), 0.0, 1.0e-3);

@@ -113,7 +113,7 @@ TEST_P(SurfaceFriction, TakesItsPartOfTheImpulseWhereAllSlides) {
   // Normals lean by 2e-4, of a friction of 0.05, and by 4e-4 where a face yields.
   EXPECT_NEAR(std::hypot(y, z), friction * pressed, 1.0e-2 * friction * pressed);
   if (pair.dim == 3) {
-    EXPECT_NEAR(z, 0.5 * y, 1.0e-2 * std::abs(y));
+    EXPECT_NEAR(z, 0.5 * y, 1.0e-2 * std::abs(y));  // as much as their sum
   }
   EXPECT_GT(result->measure("contact.impact.dissipated"), 0.0);
 }
@@ -122,6 +122,7 @@ TEST_P(SurfaceFriction, TakesNothingWhereAllSticks) {
   const Pair& pair = GetParam();
   const auto result = impact(pair, 0.02 * speed, "rough");
   ASSERT_TRUE(result->completed());
+  // Rounding; where bodies solve equations, 1e-9 of the forces in every step.
   EXPECT_LE(result->measure("momentum.total"), pair.exact ? 2.0e-12 : 1.0e-8);
   EXPECT_NEAR(result->measure("energy.total.relative_drift_end"), 0.0, 2.0e-3);
   // Rows that part give up half a step of the shear that they held; faces that yield flow apart.

@@ -140,6 +140,7 @@ TEST(SurfaceSteps, OneSweepWhateverStepsAndWindowsAre) {
         const std::string what = fmt::format("{} {} on {} {}, {} windows", k, a, n, b, windows);
         ASSERT_TRUE(result->completed()) << what;
         EXPECT_EQ(result->measure("schwarz.iterations_max"), 1.0) << what;
+        // Newton's method leaves as much of the forces.
         EXPECT_LE(result->momentum_error(), 1.0e-9) << what;
         EXPECT_NEAR(result->velocity(0), -speed, 0.06 * speed) << what;
         // Touch and release inside a long step cost up to c dt/L of the energy each.
@@ -192,8 +193,8 @@ TEST_P(SurfaceFixedPoint, IsTheUndividedProblem) {
     const auto two = run_solids(2.6, window, {left, solid("right", 0.001, -speed, "left")},
                                 touching("impact", "left.face", "right.face") + tight);
     ASSERT_TRUE(one->completed() && two->completed());
-    // What sweeps leave open at that tolerance.
     const double impulse = one->measure("contact.impact.impulse");
+    // What sweeps leave open at that tolerance.
     EXPECT_NEAR(two->measure("contact.impact.impulse"), impulse, 1.0e-6 * impulse);
     const double scale = one->masses[0] * speed;
     std::size_t alike = 0, r = 0;
@@ -201,6 +202,7 @@ TEST_P(SurfaceFixedPoint, IsTheUndividedProblem) {
       while (r + 1 < two->rows.size() && two->rows[r].time < row.time - 0.5 * step) ++r;
       if (std::abs(two->rows[r].time - row.time) > 1.0e-9) continue;
       ++alike;
+      // as much
       ASSERT_NEAR(two->rows[r].momentum[0], row.momentum[0], 1.0e-6 * scale)
           << "at " << row.time << " s";
     }

@@ -36,37 +36,35 @@ struct Slabs {
 
   double step() const { return courant / across[0] / std::sqrt(1.2); }  // plane strain, nu = 1/4
 
-  std::string body(const std::string& name, std::size_t k) const {
+  SolidText body(std::size_t k) const {
     const double thick = 5.0 / across[0];
-    std::vector<double> lengths(index(dim), 1.0);
-    std::vector<int> cells(index(dim), across[k]);
-    lengths[0] = thick;
-    cells[0] = (5 * across[k] + across[0] - 1) / across[0];
-    const bool whole = k == 1 && partner != "fe";  // stands at the start
-    const std::string start =
-        whole ? "velocity: " + components({}, dim)
-              : fmt::format("velocity_field: [\"sin(2*x + 5*y)\", \"0.3*cos(3*x + 7*y)\"{}]",
-                            dim == 3 ? ", \"sin(6*z - y)\"" : "");
-    return fmt::format(
-        "  {}:\n    model: {{{}: {{dimension: {}, {}mesh: {{{}}}}}}}\n    material: {{{}}}\n"
-        "    integrator: {{{}: {{step: {}}}}}\n    initial: {{position: {}, {}}}\n    ports: "
-        "{{face: {{side: {}}}}}\n",
-        name, whole ? partner : "fe", dim, whole && partner == "modal" ? "modes: 12, " : "",
-        block_mesh(lengths, cells), unit_law("linear_elastic", 0.25),
-        whole && partner == "rigid" ? "rigid_motion"
-        : schemes[k] == 'I'         ? "newmark"
-                                    : "central_difference",
-        number(k == 0 ? step() : step() / ratio), components({k == 0 ? 0.0 : thick}, dim), start,
-        k == 0 ? "right" : "left");
+    SolidText out{.name = k == 0 ? "one" : "two",
+                  .material = unit_law("linear_elastic", 0.25),
+                  .integrator = scheme_named(schemes[k], k == 0 ? step() : step() / ratio),
+                  .position = {k == 0 ? 0.0 : thick},
+                  .side = k == 0 ? "right" : "left",
+                  .lengths = std::vector<double>(index(dim), 1.0),
+                  .cells = std::vector<int>(index(dim), across[k])};
+    out.lengths[0] = thick;
+    out.cells[0] = (5 * across[k] + across[0] - 1) / across[0];
+    if (k == 1 && partner != "fe") {  // stands at the start
+      out.model = partner;
+      out.velocity = {0.0};
+      if (partner == "modal") out.keys = "modes: 12, ";
+      if (partner == "rigid") out.integrator = scheme_named('R', step() / ratio);
+    } else {
+      out.field = fmt::format("\"sin(2*x + 5*y)\", \"0.3*cos(3*x + 7*y)\"{}",
+                              dim == 3 ? ", \"sin(6*z - y)\"" : "");
+    }
+    return out;
   }
   Document document() const {
     const double window = steps * step();
     return Document::from_text(
-        "test", fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\n"
-                            "bodies:\n{}{}interfaces:\n  tie: {{sides: [one.face, two.face], tied: "
-                            "{{}}}}\nschwarz: {{tolerance: {}, {}}}\n",
-                            number(windows * window), number(window), body("one", 0),
-                            body("two", 1), number(tolerance), schwarz));
+        "test", scene_text(windows * window, window, texts_of({body(0), body(1)}),
+                           "interfaces:\n" + joined("tie", "one.face", "two.face") +
+                               fmt::format("schwarz: {{tolerance: {}, {}}}\n", number(tolerance),
+                                           schwarz)));
   }
   std::unique_ptr<RunResult> run() const { return run_document(document()); }
   Estimate::Ties estimate() const {
@@ -108,7 +106,8 @@ TEST(TiedBands, WholeBandsAreTheKernelOfAllRows) {
     const auto band = slabs.run(), dense = other.run();
     ASSERT_TRUE(band->completed());
     EXPECT_EQ(band->measure("schwarz.iterations_mean"), dense->measure("schwarz.iterations_mean"));
-    for (const char* what : motion)  // of the order of 0.1 to 1; rounding of some hundred steps
+    for (const char* what : motion)
+      // of the order of 0.1 to 1; rounding of some hundred steps
       EXPECT_NEAR(band->measure(what), dense->measure(what), 1.0e-11) << what;
     EXPECT_TRUE(slabs.estimate().banded);
     EXPECT_FALSE(other.estimate().banded);

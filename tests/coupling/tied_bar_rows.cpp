@@ -159,8 +159,8 @@ TEST(TiedBars, InRowsOfAnyStepsKeepTheirEnergy) {
     if (integrators.size() > 3) continue;  // these are not back by the end
     const auto hit = row(integrators, wall);
     ASSERT_TRUE(hit->completed()) << hit->events.back().text;
-    // It has bounced: the whole flies back as it came, but for what vibrates.
     const double mass = 0.5 * static_cast<double>(integrators.size());
+    // It has bounced: the whole flies back as it came, but for what vibrates.
     EXPECT_NEAR(sum(hit->rows.back().momentum), 0.001 * mass, 0.02 * 0.001 * mass);
     EXPECT_NEAR(hit->energy_error(), 0.0, 1.0e-2);
   }

@@ -173,7 +173,8 @@ TEST_P(TiedPulse, PassesASharedNodeAsIfThereWereNone) {
       const Field one = run_displaced(whole(scene), gauss);
       // Gate of B1: 1e-6 of the error; here of the solution itself, 40 windows of the tolerance
       EXPECT_LT(largest_difference(two.u, one.u), 1.0e-6 * height) << how << form;
-      EXPECT_NEAR(error_at(pulse_end, two), error_at(pulse_end, one), 1.0e-6) << how << form;
+      EXPECT_NEAR(error_at(pulse_end, two), error_at(pulse_end, one), 1.0e-6)  // the gate
+          << how << form;
       EXPECT_LE(two.run->measure("schwarz.iterations_max"), robin ? 20.0 : 2.0) << how << form;
     }
   }

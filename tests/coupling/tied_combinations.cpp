@@ -39,41 +39,40 @@ struct Bar {
   std::string integrator, more = {};
 
   int dim() const { return plane == "space" ? 3 : 2; }
-  std::string piece(const std::string& name, double from, double to, const char* ports) const {
-    const int cells = static_cast<int>(std::lround(4.0 * (to - from)));
-    const double inner = plane == "axisymmetric" ? 1.0 : 0.0;
-    const bool locks = law.heats && plane != "stress";
-    const std::string x = fmt::format("(x - {})", inner);
-    return fmt::format(
-        "  {}:\n    model: {{fe: {{dimension: {}, {}{}mesh: {{{}}}}}}}\n    material: {{{}}}\n"
-        "    integrator: {{{}}}\n    initial: {{position: {}, velocity_field: [\"0.1*sin(2*{})\", "
-        "\"0.06*cos(3*{})\"{}]}}\n    ports: {{{}}}\n{}",
-        name, dim(), dim() == 3 ? "" : "plane: " + plane + ", ",
-        locks ? "formulation: mean_dilatation, " : "",
-        dim() == 3 ? block_mesh({to - from, 0.5, 0.5}, {cells, 2, 2})
-                   : block_mesh({to - from, 0.5}, {cells, 3}),
-        law.text, integrator, components({inner + from}, dim()), x, x,
-        dim() == 3 ? ", \"0.03*x*y\"" : "", ports, more);
+  std::string field() const {
+    const std::string x = plane == "axisymmetric" ? "(x - 1)" : "x";
+    return fmt::format("\"0.1*sin(2*{0})\", \"0.06*cos(3*{0})\"{1}", x,
+                       dim() == 3 ? ", \"0.03*x*y\"" : "");
+  }
+  SolidText piece(const std::string& name, double from, double to,
+                  const std::vector<std::string>& sides) const {
+    const int along = static_cast<int>(std::lround(4.0 * (to - from)));
+    const bool space = dim() == 3, locks = law.heats && plane != "stress";
+    return {.name = name,
+            .material = law.text,
+            .integrator = integrator,
+            .position = {from + (plane == "axisymmetric" ? 1.0 : 0.0)},
+            .keys = (space ? "" : "plane: " + plane + ", ") +
+                    (locks ? "formulation: mean_dilatation, " : ""),
+            .field = field(),
+            .sides = sides,
+            .more = more,
+            .lengths = space ? std::vector{to - from, 0.5, 0.5} : std::vector{to - from, 0.5},
+            .cells = space ? std::vector{along, 2, 2} : std::vector{along, 3}};
   }
 };
 
-std::unique_ptr<RunResult> run(const std::string& bodies, const std::string& rest,
-                               double end = 1.0) {
-  return run_document(Document::from_text(
-      "test", fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: 0.1}}\n"
-                          "bodies:\n{}{}",
-                          number(end), bodies, rest)));
-}
-
-const std::string tie = "interfaces: {tie: {sides: [a.right, b.left], tied: {}}}\n";
+const std::string tie = joined("tie", "a.right", "b.left");
 const std::string sharp = "schwarz: {tolerance: 1.0e-9}\n";
 
-std::unique_ptr<RunResult> whole(const Bar& bar) { return run(bar.piece("a", 0.0, 2.0, ""), ""); }
+std::unique_ptr<RunResult> whole(const Bar& bar) {
+  return run_solids(1.0, 0.1, {bar.piece("a", 0.0, 2.0, {})});
+}
 
 std::unique_ptr<RunResult> divided(const Bar& bar, double at = 1.0) {
-  return run(bar.piece("a", 0.0, at, "right: {side: right}") +
-                 bar.piece("b", at, 2.0, "left: {side: left}"),
-             tie + sharp);
+  return run_solids(1.0, 0.1,
+                    {bar.piece("a", 0.0, at, {"right"}), bar.piece("b", at, 2.0, {"left"})}, tie,
+                    sharp);
 }
 
 void expect_same(const RunResult& one, const RunResult& other, double tolerance) {
@@ -158,10 +157,9 @@ TEST(TiedCombinations, DampingIntegratorsGoOnAsInWholeBodies) {
         SCOPED_TRACE(fmt::format("{} {} {}", one, other, ratio));
         const Bar coarse{linear, "strain", one + "1.0}"};
         const Bar fine{linear, "strain", fmt::format("{}{}}}", other, number(1.0 / ratio))};
-        const auto result = run_document(Document::from_text(
-            "test", "meta: {title: test}\ntime: {begin: 0.0, end: 100.0, window: 2.0}\nbodies:\n" +
-                        coarse.piece("a", 0.0, 1.0, "right: {side: right}") +
-                        fine.piece("b", 1.0, 2.0, "left: {side: left}") + tie));
+        const auto result = run_solids(
+            100.0, 2.0,
+            {coarse.piece("a", 0.0, 1.0, {"right"}), fine.piece("b", 1.0, 2.0, {"left"})}, tie);
         ASSERT_TRUE(result->completed());
         EXPECT_LE(result->measure("energy.total.relative_drift_end"), 1.0e-10);
       }
@@ -174,23 +172,22 @@ TEST(TiedCombinations, CallsStayFewWhereNothingIsLinear) {
   const std::string elastic = "youngs_modulus: 6.895e9, poissons_ratio: 0.25, density: 2768.0";
   const auto calls = [&elastic](const std::string& k, const std::string& n, const char* scheme,
                                 double ratio) {
-    const auto body = [&](const std::string& name, const std::string& law, double step, int cells,
-                          const std::string& rest) {
-      return fmt::format(
-          "  {}:\n    model: {{fe: {{dimension: 2, plane: strain, mesh: {{{}}}}}}}\n    material: "
-          "{{{}: {{{}}}}}\n    integrator: {{{}: {{step: {}}}}}\n    initial: {{position: [{}, 0], "
-          "displacement_field: [\"0\", \"0.393701*x^2\"]}}\n{}",
-          name, block_mesh({0.127, 0.0254}, {5 * cells, cells}), law, elastic, scheme, number(step),
-          name == "a" ? "0" : "0.127", rest);
+    const auto body = [&](const std::string& law, double step, int cells) {
+      return SolidText{.material = fmt::format("{}: {{{}}}", law, elastic),
+                       .integrator = implicit_scheme(scheme, step),
+                       .start = "displacement_field: [\"0\", \"0.393701*x^2\"]",
+                       .lengths = {0.127, 0.0254},
+                       .cells = {5 * cells, cells}};
     };
-    const auto result = run_document(Document::from_text(
-        "test",
-        "meta: {title: test}\ntime: {begin: 0.0, end: 2.0e-4, window: 1.0e-5}\nbodies:\n" +
-            body("a", k, 1.0e-6, 4,
-                 "    constraints: {clamp: {on: left, fixed: true}}\n    ports: {right: {side: "
-                 "right}}\n") +
-            body("b", n, 1.0e-6 / ratio, 6, "    ports: {left: {side: left}}\n") + tie +
-            "schwarz: {tolerance: 1.0e-3}\n"));
+    SolidText a = body(k, 1.0e-6, 4), b = body(n, 1.0e-6 / ratio, 6);
+    a.name = "a";
+    a.position = {0.0};
+    a.sides = {"right"};
+    a.more = "    constraints: {clamp: {on: left, fixed: true}}\n";
+    b.name = "b";
+    b.position = {0.127};
+    b.sides = {"left"};
+    const auto result = run_solids(2.0e-4, 1.0e-5, {a, b}, tie, "schwarz: {tolerance: 1.0e-3}\n");
     EXPECT_TRUE(result->completed());
     return result->measure("schwarz.iterations_mean");
   };
@@ -212,22 +209,20 @@ TEST(TiedCombinations, CallsDoNotGrowAsBodiesTurn) {
   for (const char* scheme : {"central_difference: {step: 0.005}", "newmark: {step: 0.01}"}) {
     const auto calls = [scheme](double end) {
       const auto half = [scheme](const std::string& name, double at, int cells,
-                                 const std::string& port) {
-        return fmt::format(
-            "  {}:\n    model: {{fe: {{dimension: 2, plane: strain, mesh: {{{}}}}}}}\n    "
-            "material: "
-            "{{neo_hookean: {{youngs_modulus: 100.0, poissons_ratio: 0.25, density: 1.0}}}}\n    "
-            "integrator: {{{}}}\n    initial: {{position: [{}, -0.25], velocity_field: [\"-y\", "
-            "\"x\"]}}\n    ports: {{{}}}\n",
-            name, block_mesh({1.0, 0.5}, {2 * cells, cells}), scheme, number(at), port);
+                                 const std::string& side) {
+        return SolidText{
+            .name = name,
+            .material = "neo_hookean: {youngs_modulus: 100.0, poissons_ratio: 0.25, density: 1.0}",
+            .integrator = scheme,
+            .position = {at, -0.25},
+            .field = "\"-y\", \"x\"",
+            .sides = {side},
+            .lengths = {1.0, 0.5},
+            .cells = {2 * cells, cells}};
       };
-      const auto result = run_document(Document::from_text(
-          "test", fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\n"
-                              "bodies:\n",
-                              number(end), scheme[0] == 'c' ? 0.05 : 0.1) +
-                      half("a", -1.0, 4, "right: {side: right}") +
-                      half("b", 0.0, 6, "left: {side: left}") + tie +
-                      "schwarz: {tolerance: 1.0e-4}\n"));
+      const auto result = run_solids(end, scheme[0] == 'c' ? 0.05 : 0.1,
+                                     {half("a", -1.0, 4, "right"), half("b", 0.0, 6, "left")}, tie,
+                                     "schwarz: {tolerance: 1.0e-4}\n");
       EXPECT_TRUE(result->completed());
       return result->measure("schwarz.iterations_mean");
     };
@@ -256,16 +251,15 @@ TEST(TiedCombinations, DividedStaticBodiesBendAsWholeOnes) {
                                   ring    ? "\"0.005*t\", 0"
                                   : space ? "0, \"-4.0e-4*t\", \"2.0e-4*t\""
                                           : "0, \"-4.0e-4*t\"");
-        std::string text = bar.piece(name, from, to,
-                                     held && loaded ? ""
-                                     : held         ? "right: {side: right}"
-                                                    : "left: {side: left}");
-        const std::size_t at = text.find(", velocity_field"), end = text.find("]}", at);
-        return text.replace(at, end + 1 - at, "");
+        SolidText text = bar.piece(name, from, to, {});
+        if (held != loaded) text.sides = {held ? "right" : "left"};
+        text.field = "";
+        return text;
       };
-      const auto one = run(piece("a", 0.0, 2.0, true, true), "");
-      const auto two =
-          run(piece("a", 0.0, 1.0, true, false) + piece("b", 1.0, 2.0, false, true), tie + sharp);
+      const auto one = run_solids(1.0, 0.1, {piece("a", 0.0, 2.0, true, true)});
+      const auto two = run_solids(
+          1.0, 0.1, {piece("a", 0.0, 1.0, true, false), piece("b", 1.0, 2.0, false, true)}, tie,
+          sharp);
       ASSERT_TRUE(two->completed());
       const double stored = one->measure("body.a.energy.stored");
       EXPECT_GT(stored, 0.0);

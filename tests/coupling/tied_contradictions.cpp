@@ -22,30 +22,31 @@ std::string square(const std::string& name, double x, const std::string& integra
                    const std::string& more, const std::string& law = "linear_elastic",
                    const std::string& model = "fe") {
   const bool tool = integrator.empty();
-  return fmt::format(
-      "  {}:\n    model: {{{}: {{dimension: 2, mesh: {{{}}}{}}}}}\n{}    initial: {{position: "
-      "[{}, 0]}}\n    ports: {{left: {{side: left}}, right: {{side: right}}}}\n{}",
-      name, tool ? "rigid_tool" : model, block_mesh({1.0, 1.0}, {3, 3}),
-      tool ? ", way: [" + more + "]" : "",
-      tool ? ""
-           : fmt::format("    material: {{{}}}\n    integrator: {{{}}}\n", unit_law(law, 0.3),
-                         integrator),
-      number(x), tool ? "" : more);
+  return SolidText{.name = name,
+                   .material = tool ? "" : unit_law(law, 0.3),
+                   .integrator = integrator,
+                   .position = {x},
+                   .model = tool ? "rigid_tool" : model,
+                   .keys = tool ? "way: [" + more + "], " : "",
+                   .sides = {"left", "right"},
+                   .more = tool ? "" : more,
+                   .lengths = {1.0, 1.0},
+                   .cells = {3, 3}}
+      .text();
 }
 
 const std::string moves = "\"0.01*t\", 0", stands = "0, 0";
 
 std::string held(const std::string& sides) { return "    constraints: {" + sides + "}\n"; }
 
-std::unique_ptr<RunResult> run(const std::string& bodies, const std::vector<std::string>& ties,
+using Ties = std::vector<std::array<std::string, 2>>;
+
+std::unique_ptr<RunResult> run(const std::string& bodies, const Ties& ties,
                                const std::string& more = "") {
-  std::string text = fmt::format(
-      "meta: {{title: test}}\ntime: {{begin: 0.0, end: 0.5, window: {}}}\nbodies:\n{}"
-      "interfaces:\n",
-      number(window), bodies);
+  std::string interfaces = "interfaces:\n";
   for (std::size_t k = 0; k < ties.size(); ++k)
-    text += fmt::format("  tie{}: {{sides: [{}], tied: {{}}}}\n", k, ties[k]);
-  return run_document(Document::from_text("test", text + more));
+    interfaces += joined(fmt::format("tie{}", k), ties[k][0], ties[k][1]);
+  return run_scene(0.5, window, bodies, interfaces + more);
 }
 
 void expect_refused(const RunResult& result, const std::vector<std::string>& words) {
@@ -89,7 +90,7 @@ TEST(TiedContradictions, GivenMotionsThatDifferAreToldByName) {
       const auto result =
           run(body("a", 0.0, held("wall: {on: left, fixed: true}, end: {on: right, fixed: true}")) +
                   body("b", 1.0, held("end: {on: left, x: \"0.01*t\", y: 0}")),
-              {"a.right, b.left"}, way.more);
+              {{"a.right", "b.left"}}, way.more);
       expect_refused(*result, {"interfaces.tie0", apart(), "at (1, ", "bodies a, b"});
     }
     {
@@ -97,28 +98,28 @@ TEST(TiedContradictions, GivenMotionsThatDifferAreToldByName) {
       const auto result = run(
           body("a", 0.0, held("floor: {on: bottom, fixed: true}, lid: {on: top, y: \"0.01*t\"}")) +
               body("b", 1.0, held("floor: {on: bottom, fixed: true}, lid: {on: top, y: 0}")),
-          {"a.right, b.left"}, way.more);
+          {{"a.right", "b.left"}}, way.more);
       expect_refused(*result, {"interfaces.tie0", apart(), "at (1, 1)", "bodies a, b"});
     }
     {
       SCOPED_TRACE("a tool moves what is held");
       const auto result = run(
           body("a", 0.0, held("end: {on: right, fixed: true}")) + square("tool", 1.0, "", moves),
-          {"a.right, tool.left"}, way.more);
+          {{"a.right", "tool.left"}}, way.more);
       expect_refused(*result, {"interfaces.tie0", "m apart at (1, ", "bodies a, tool"});
     }
     {
       SCOPED_TRACE("two tools on one port part");
       const auto result =
           run(body("a", 0.0, "") + square("p", 1.0, "", moves) + square("q", 1.0, "", stands),
-              {"a.right, p.left", "a.right, q.left"}, way.more);
+              {{"a.right", "p.left"}, {"a.right", "q.left"}}, way.more);
       expect_refused(*result, {"interfaces.tie0", "interfaces.tie1", "m apart at (1, ", "p", "q"});
     }
   }
   const auto rigid =
       run(square("a", 0.0, "rigid_motion: {step: 0.02}", "", "linear_elastic", "rigid") +
               square("p", 1.0, "", moves) + square("q", -1.0, "", stands),
-          {"a.right, p.left", "q.right, a.left"});
+          {{"a.right", "p.left"}, {"q.right", "a.left"}});
   expect_refused(*rigid, {"interfaces.tie0", "interfaces.tie1", "bodies a, p, q"});
 }
 
@@ -132,7 +133,7 @@ TEST(TiedContradictions, GivenMotionsThatAgreeGoOn) {
     const std::string lifted =
         held("floor: {on: bottom, fixed: true}, lid: {on: top, y: \"0.01*t\"}");
     const auto clamped =
-        run(body("a", 0.0, lifted) + body("b", 1.0, lifted), {"a.right, b.left"}, way.more);
+        run(body("a", 0.0, lifted) + body("b", 1.0, lifted), {{"a.right", "b.left"}}, way.more);
     EXPECT_TRUE(clamped->completed());
     const std::string slid =
         held("floor: {on: bottom, x: 0}, end: {on: SIDE, x: 0, y: \"0.01*t\"}");
@@ -140,16 +141,16 @@ TEST(TiedContradictions, GivenMotionsThatAgreeGoOn) {
       return std::string(slid).replace(slid.find("SIDE"), 4, side);
     };
     const auto moved = run(body("a", 0.0, with("right")) + body("b", 1.0, with("left")),
-                           {"a.right, b.left"}, way.more);
+                           {{"a.right", "b.left"}}, way.more);
     EXPECT_TRUE(moved->completed());
     const auto pulled =
         run(body("a", 0.0, "") + square("p", 1.0, "", moves) + square("q", -1.0, "", stands),
-            {"a.right, p.left", "q.right, a.left"}, way.more);
+            {{"a.right", "p.left"}, {"q.right", "a.left"}}, way.more);
     EXPECT_TRUE(pulled->completed());
     EXPECT_NEAR(pulled->measure("body.a.right.displacement.x"), 0.005, 1.0e-3 * gone);
     const auto twice =
         run(body("a", 0.0, "") + square("p", 1.0, "", moves) + square("q", 1.0, "", moves),
-            {"a.right, p.left", "a.right, q.left"}, way.more);
+            {{"a.right", "p.left"}, {"a.right", "q.left"}}, way.more);
     EXPECT_TRUE(twice->completed());
   }
 }
@@ -159,14 +160,17 @@ std::string moved_along(const std::array<int, 2>& cells, const std::string& way,
                         const std::string& other, const std::string& integrator) {
   std::string text;
   for (const std::size_t k : {0u, 1u})
-    text += fmt::format(
-        "  {}:\n    model: {{fe: {{dimension: 3, mesh: {{{}}}}}}}\n    material: {{{}}}\n"
-        "    integrator: {{{}}}\n    initial: {{position: [{}, 0, 0]}}\n"
-        "    constraints: {{base: {{on: bottom, x: 0, z: 0, y: \"{}\"}}}}\n"
-        "    ports: {{{}}}\n",
-        k == 0 ? "a" : "b", block_mesh({0.5, 0.5, 1.0}, {2, 2, cells[k]}),
-        unit_law("linear_elastic", 0.3), integrator, k == 0 ? "0" : "0.5", k == 0 ? way : other,
-        k == 0 ? "right: {side: right}" : "left: {side: left}");
+    text += SolidText{.name = k == 0 ? "a" : "b",
+                      .material = unit_law("linear_elastic", 0.3),
+                      .integrator = integrator,
+                      .position = {k == 0 ? 0.0 : 0.5},
+                      .sides = {k == 0 ? "right" : "left"},
+                      .more = fmt::format(
+                          "    constraints: {{base: {{on: bottom, x: 0, z: 0, y: \"{}\"}}}}\n",
+                          k == 0 ? way : other),
+                      .lengths = {0.5, 0.5, 1.0},
+                      .cells = {2, 2, cells[k]}}
+                .text();
   return text;
 }
 
@@ -179,7 +183,7 @@ TEST(TiedContradictions, MeshesThatFollowOneCurveGoOn) {
     for (const std::array<int, 2>& cells :
          {std::array{3, 4}, {4, 3}, {6, 8}, {12, 16}, {24, 16}, {7, 11}}) {
       SCOPED_TRACE(fmt::format("{} {}:{}", integrator, cells[0], cells[1]));
-      const std::vector<std::string> tie = {"a.right, b.left"};
+      const Ties tie = {{"a.right", "b.left"}};
       EXPECT_TRUE(run(moved_along(cells, curve, curve, integrator), tie)->completed());
       expect_refused(*run(moved_along(cells, "0.0001*t*z", "0.0001*t", integrator), tie),
                      {"interfaces.tie0", "bodies a, b"});

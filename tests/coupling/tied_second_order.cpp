@@ -24,35 +24,24 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// A block of unit modulus and density with a port, joint, on one of its sides.
-struct Half {
-  std::vector<double> lengths = {}, position = {};
-  std::vector<int> cells = {};
-  std::string element = {}, joint = {};
-  std::string keys = {};  // of fe, with commas
-  std::string law = "linear_elastic: {youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0}";
-  std::string integrator = "quasi_static: {step: 1.0}";
-  std::string start = {};  // keys of initial beside position, after a comma
-  std::string more = {};   // keys of the body, in lines of their own
+/// A static block of unit modulus and density with a port, joint, on one of its sides.
+SolidText half(const std::vector<double>& lengths, const std::vector<int>& cells,
+               const std::string& element, const std::string& joint) {
+  return {.material = unit_law("linear_elastic", 0.3),
+          .integrator = "quasi_static: {step: 1.0}",
+          .position = {0.0},
+          .port = "joint",
+          .side = joint,
+          .lengths = lengths,
+          .cells = cells,
+          .element = element};
+}
 
-  std::string text(const std::string& name) const {
-    const int dim = static_cast<int>(lengths.size());
-    return fmt::format(
-        "  {}:\n    model: {{fe: {{dimension: {}, {}mesh: {{{}}}}}}}\n    material: {{{}}}\n"
-        "    integrator: {{{}}}\n    initial: {{position: {}{}}}\n"
-        "    ports: {{joint: {{side: {}}}}}\n{}",
-        name, dim, keys, block_mesh(lengths, cells, element), law, integrator,
-        components(position, dim), start, joint, more);
-  }
-};
-
-std::unique_ptr<RunResult> run(const Half& one, const Half& other, double end = 1.0,
+std::unique_ptr<RunResult> run(std::array<SolidText, 2> halves, double end = 1.0,
                                double window = 1.0) {
-  return run_document(Document::from_text(
-      "test", fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\n"
-                          "bodies:\n{}{}interfaces: {{tie: {{sides: [one.joint, other.joint], "
-                          "tied: {{}}}}}}\n",
-                          number(end), number(window), one.text("one"), other.text("other"))));
+  halves[0].name = "one";
+  halves[1].name = "other";
+  return run_solids(end, window, {halves[0], halves[1]}, joined("tie", "one.joint", "other.joint"));
 }
 
 /// Displacements that are prescribed wherever there is no joint, and what stress they mean.
@@ -78,24 +67,20 @@ std::unique_ptr<RunResult> pass(const Words& elements, const std::array<int, 2>&
                                 const std::string& plane, const Field& field) {
   const std::size_t dim = field.u.size();
   const bool rings = plane == "axisymmetric";
-  std::array<Half, 2> halves;
+  std::array<SolidText, 2> halves;
   for (const std::size_t k : {0u, 1u}) {
-    Half& half = halves[k];
-    half.lengths.assign(dim, 1.0);
-    half.position.assign(dim, 0.0);
-    half.position[rings ? 1 : 0] = static_cast<double>(k);
-    if (rings) half.position[0] = 1.0;
-    half.cells.assign(dim, across[k]);
-    half.element = elements[k];
-    if (dim == 2) half.keys = fmt::format("plane: {}, ", plane);
     const Words ends = rings ? Words{"bottom", "top"} : Words{"left", "right"};
-    half.joint = ends[1 - k];
+    halves[k] = half(std::vector<double>(dim, 1.0), std::vector<int>(dim, across[k]), elements[k],
+                     ends[1 - k]);
+    const double along = static_cast<double>(k);
+    halves[k].position = rings ? std::vector<double>{1.0, along} : std::vector<double>{along};
+    if (dim == 2) halves[k].keys = fmt::format("plane: {}, ", plane);
     Words outer = rings ? Words{"left", "right"} : Words{"bottom", "top"};
     outer.push_back(ends[k]);
     if (dim == 3) outer.insert(outer.end(), {"back", "front"});
-    half.more = held(outer, field);
+    halves[k].more = held(outer, field);
   }
-  return run(halves[0], halves[1]);
+  return run(halves);
 }
 
 void expect_stress(const RunResult& result, const Field& field) {
@@ -133,9 +118,7 @@ Field uniform(const std::vector<std::vector<double>>& gradient, const std::strin
   return field;
 }
 
-bool is_second_order(const std::string& element) {
-  return element_named(element).order == 2;
-}
+bool is_second_order(const std::string& element) { return element_named(element).order == 2; }
 
 /// A linear field is at rest with any elements on either side, of faces of any ratio.
 TEST(TiedSecondOrder, LinearFieldsPass) {
@@ -199,26 +182,20 @@ TEST(TiedSecondOrder, BendingPasses) {
 /// Two halves of a bar that shake in all directions, the other one in finer steps.
 std::unique_ptr<RunResult> shaken(const Words& elements, const std::array<int, 2>& across,
                                   const std::string& schemes, double ratio, std::size_t dim) {
-  std::array<Half, 2> halves;
+  std::array<SolidText, 2> halves;
   for (const std::size_t k : {0u, 1u}) {
-    Half& half = halves[k];
-    half.lengths.assign(dim, 0.5);
-    half.lengths[0] = 1.0;
-    half.position.assign(dim, 0.0);
-    half.position[0] = static_cast<double>(k);
-    half.cells.assign(dim, across[k]);
-    half.cells[0] = 2 * across[k];
-    half.element = elements[k];
-    half.joint = k == 0 ? "right" : "left";
+    std::vector<double> lengths(dim, 0.5);
+    std::vector<int> cells(dim, across[k]);
+    lengths[0] = 1.0;
+    cells[0] = 2 * across[k];
+    halves[k] = half(lengths, cells, elements[k], k == 0 ? "right" : "left");
+    halves[k].position = {static_cast<double>(k)};
     // half the stable step of the finest mesh here
-    half.integrator =
-        fmt::format("{}: {{step: {}}}", schemes[k] == 'I' ? "newmark" : "central_difference",
-                    number(k == 0 ? 0.01 : 0.01 / ratio));
-    half.start =
-        fmt::format(", velocity_field: [\"0.5*cos(_pi/2*x)*(1 + y)\", \"0.3*sin(_pi/2*x)\"{}]",
-                    dim == 2 ? "" : ", \"0.2*y*cos(_pi/2*x)\"");
+    halves[k].integrator = scheme_named(schemes[k], k == 0 ? 0.01 : 0.01 / ratio);
+    halves[k].field = fmt::format("\"0.5*cos(_pi/2*x)*(1 + y)\", \"0.3*sin(_pi/2*x)\"{}",
+                                  dim == 2 ? "" : ", \"0.2*y*cos(_pi/2*x)\"");
   }
-  return run(halves[0], halves[1], 1.0, 0.1);
+  return run(halves, 1.0, 0.1);
 }
 
 /// Energy and momentum are kept for any schemes and steps, in one call per window.
@@ -228,6 +205,7 @@ TEST(TiedSecondOrder, EnergyIsAnIdentityInOneCallPerWindow) {
     SCOPED_TRACE(fmt::format("{} {} {} {}", fmt::join(elements, " "), schemes, ratio, dim));
     const auto result = shaken(elements, across, schemes, ratio, dim);
     ASSERT_TRUE(result->completed());
+    // Rounding of 100 steps of each body; momenta are some 0.1.
     EXPECT_NEAR(result->measure("energy.total.relative_drift_max"), 0.0, 1.0e-13);
     EXPECT_LE(result->measure("momentum.total"), 1.0e-12);  // of some 0.1, rounding of 100 steps
     EXPECT_EQ(result->measure("schwarz.iterations_max"), 2.0);  // the first window has no trial
@@ -266,27 +244,24 @@ TEST(TiedSecondOrder, ToolsHoldEveryNode) {
   const std::string load = "    loads: {pull: {on: right, traction: [\"0.01\", \"0.002\"]}}\n";
   for (const std::string element : {"quad8", "tri6"}) {
     SCOPED_TRACE(element);
-    Half body{.lengths = {1.0, 1.0},
-              .position = {0.0, 0.0},
-              .cells = {3, 3},
-              .element = element,
-              .joint = "left",
-              .more = load};
-    const std::string head =
-        "meta: {title: test}\ntime: {begin: 0.0, end: 1.0, window: 1.0}\nbodies:\n";
-    const auto tied = run_document(Document::from_text(
-        "test",
-        head + body.text("one") +
-            "  tool:\n    model: {rigid_tool: {dimension: 2, mesh: {rectangle: {lengths: [1.0, "
-            "1.0], elements: [2, 2], element: quad8}}, way: [\"0\", \"0\"]}}\n"
-            "    initial: {position: [-1.0, 0.0]}\n    ports: {right: {side: right}}\n"
-            "interfaces: {tie: {sides: [one.joint, tool.right], tied: {}}}\n"));
+    SolidText body = half({1.0, 1.0}, {3, 3}, element, "left");
+    body.name = "one";
+    body.more = load;
+    const SolidText tool{.name = "tool",
+                         .position = {-1.0},
+                         .model = "rigid_tool",
+                         .keys = "way: [\"0\", \"0\"], ",
+                         .sides = {"right"},
+                         .lengths = {1.0, 1.0},
+                         .cells = {2, 2},
+                         .element = "quad8"};
+    const auto tied = run_solids(1.0, 1.0, {body, tool}, joined("tie", "one.joint", "tool.right"));
     body.more += "    constraints: {clamp: {on: left, fixed: true}}\n";
-    const auto held = run_document(Document::from_text("test", head + body.text("one")));
+    const auto held = run_solids(1.0, 1.0, {body});
     ASSERT_TRUE(tied->completed());
     for (const char* what : {"nodal_stress.xx.max", "nodal_stress.xy.max", "displacement.y.max"}) {
       const std::string measure = fmt::format("body.one.{}", what);
-      EXPECT_NEAR(tied->measure(measure), held->measure(measure), 1.0e-12);
+      EXPECT_NEAR(tied->measure(measure), held->measure(measure), 1.0e-12);  // of some 0.01
     }
   }
 }
@@ -317,27 +292,23 @@ TEST(TiedSecondOrder, MovesAsExactlyAsOneMesh) {
 /// Radii 1/2, 1, 2; moduli 1 and 3.
 double tube_error(const Words& elements, const std::vector<std::vector<int>>& cells) {
   const std::size_t dim = cells[0].size();
-  std::array<Half, 2> halves;
+  std::array<SolidText, 2> halves;
   for (const std::size_t k : {0u, 1u}) {
-    Half& half = halves[k];
-    half.lengths = {std::numbers::ln2, 1.0};
-    half.position.assign(dim, 0.0);
-    half.cells = cells[k];
-    half.element = elements[k];
-    half.joint = k == 0 ? "right" : "left";
-    const double inner = k == 0 ? 0.5 : 1.0;
-    half.keys = fmt::format("map: [\"{0}*exp(x)*cos(_pi/2*y)\", \"{0}*exp(x)*sin(_pi/2*y)\"{1}], ",
-                            number(inner), dim == 3 ? ", \"z\"" : "");
-    half.law =
+    std::vector<double> lengths = {std::numbers::ln2, 1.0};
+    if (dim == 3) lengths.push_back(0.25);
+    halves[k] = half(lengths, cells[k], elements[k], k == 0 ? "right" : "left");
+    halves[k].keys =
+        fmt::format("map: [\"{0}*exp(x)*cos(_pi/2*y)\", \"{0}*exp(x)*sin(_pi/2*y)\"{1}], ",
+                    number(k == 0 ? 0.5 : 1.0), dim == 3 ? ", \"z\"" : "");
+    halves[k].material =
         fmt::format("linear_elastic: {{youngs_modulus: {}, poissons_ratio: 0.3, density: 1.0}}",
                     k == 0 ? "1.0" : "3.0");
-    half.more =
+    halves[k].more =
         fmt::format("    constraints: {{low: {{on: bottom, y: 0}}, high: {{on: top, x: 0}}{}}}\n",
                     dim == 3 ? ", back: {on: back, z: 0}, front: {on: front, z: 0}" : "");
-    if (dim == 3) half.lengths.push_back(0.25);
   }
   halves[0].more += "    loads: {inside: {on: left, pressure: \"0.01\"}}\n";
-  const auto result = run(halves[0], halves[1]);
+  const auto result = run(halves);
   EXPECT_TRUE(result->completed());
   const double stored =
       result->measure("body.one.energy.stored") + result->measure("body.other.energy.stored");

@@ -62,23 +62,24 @@ struct Strips {
   double step = 0.005, end = 0.25;
   std::string options = {};  // of the schemes
 
-  std::string body(std::size_t k) const {
-    return fmt::format(
-        "  {}:\n    model: {{fe: {{dimension: 2, mesh: {{{}}}}}}}\n"
-        "    material: {{linear_elastic: {{youngs_modulus: {}, poissons_ratio: 0.3, density: "
-        "1.0}}}}\n    integrator: {{{}: {{step: {}{}}}}}\n"
-        "    initial: {{position: [0, {}], {}}}\n    ports: {{{}}}\n{}",
-        k == 0 ? "lower" : "upper", block_mesh({1.0, 0.1}, {along[k], 1}),
-        number(k == 0 ? 1.0 : contrast), schemes[k], number(step), options, k == 0 ? "0" : "0.1",
-        starts[k], k == 0 ? "top: {side: top}" : "bottom: {side: bottom}",
-        support.empty() ? "" : "    constraints: {end: {on: left, " + support + "}}\n");
+  SolidText body(std::size_t k) const {
+    const bool lower = k == 0;
+    return {.name = lower ? "lower" : "upper",
+            .material = fmt::format(
+                "linear_elastic: {{youngs_modulus: {}, poissons_ratio: 0.3, density: 1.0}}",
+                number(lower ? 1.0 : contrast)),
+            .integrator = fmt::format("{}: {{step: {}{}}}", schemes[k], number(step), options),
+            .position = {0.0, lower ? 0.0 : 0.1},
+            .start = starts[k],
+            .sides = {lower ? "top" : "bottom"},
+            .more = support.empty() ? "" : "    constraints: {end: {on: left, " + support + "}}\n",
+            .lengths = {1.0, 0.1},
+            .cells = {along[k], 1}};
   }
   std::string text() const {
-    return fmt::format(
-        "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n{}{}"
-        "interfaces: {{joint: {{sides: [lower.top, upper.bottom], tied: {{}}}}}}\n"
-        "schwarz: {{energy_guard: 1.0e9}}\n",
-        number(end), number(step), body(0), body(1));
+    return scene_text(end, step, texts_of({body(0), body(1)}),
+                      "interfaces:\n" + joined("joint", "lower.top", "upper.bottom") +
+                          "schwarz: {energy_guard: 1.0e9}\n");
   }
 };
 

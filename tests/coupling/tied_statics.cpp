@@ -21,43 +21,40 @@ namespace {
 /// Two calls of all bodies: one tells what is missing, the next is exact.
 constexpr double two_calls = 2.0;
 
-struct Piece {
-  std::vector<int> cells = {4, 4};
-  std::string law = "linear_elastic: {youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0}";
-  std::string cell = {}, keys = {};
-  std::string integrator = "quasi_static: {step: 0.25}";
-  std::string more = {};
-};
-
 std::string linear(double modulus, double poissons_ratio) {
   return fmt::format("linear_elastic: {{youngs_modulus: {}, poissons_ratio: {}, density: 1.0}}",
                      number(modulus), number(poissons_ratio));
 }
 
+/// A cube or square of side 1.
+SolidText piece(const std::vector<int>& cells = {4, 4}, const std::string& law = linear(1.0, 0.3)) {
+  return {.material = law,
+          .integrator = "quasi_static: {step: 0.25}",
+          .sides = {"left", "right"},
+          .lengths = std::vector<double>(cells.size(), 1.0),
+          .cells = cells};
+}
+
 const std::string clamp = "    constraints: {clamp: {on: left, fixed: true}}\n";
 
-/// Cubes or squares of side 1 in a row, tied, over 4 windows (or as many as `windows`) to time 1.
-std::unique_ptr<RunResult> row(const std::vector<Piece>& pieces, int dim = 2, int windows = 4,
+/// Pieces in a row, tied, over 4 windows (or as many as `windows`) to time 1.
+std::unique_ptr<RunResult> row(std::vector<SolidText> pieces, int windows = 4,
                                double tolerance = 1.0e-6) {
-  std::string text = fmt::format(
-      "meta: {{title: test}}\ntime: {{begin: 0.0, end: 1.0, window: {}}}\n"
-      "schwarz: {{tolerance: {}}}\nbodies:\n",
-      number(1.0 / windows), number(tolerance));
-  std::string ties = "interfaces:\n";
+  std::string ties;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const Piece& p = pieces[k];
-    const std::vector<double> lengths(index(dim), 1.0);
-    text += fmt::format(
-        "  b{}:\n    model: {{fe: {{dimension: {}, {}mesh: {{{}}}}}}}\n    material: {{{}}}\n"
-        "    integrator: {{{}}}\n    initial: {{position: {}}}\n"
-        "    ports: {{left: {{side: left}}, right: {{side: right}}}}\n{}",
-        k, dim, p.keys, block_mesh(lengths, p.cells, p.cell), p.law, p.integrator,
-        components({static_cast<double>(k)}, dim), p.more);
+    pieces[k].name = fmt::format("b{}", k);
+    pieces[k].position = {static_cast<double>(k)};
     if (k > 0)
-      ties += fmt::format("  t{0}: {{sides: [b{1}.right, b{0}.left], tied: {{}}}}\n", k, k - 1);
+      ties += joined(fmt::format("t{}", k), fmt::format("b{}.right", k - 1),
+                     fmt::format("b{}.left", k));
   }
-  return run_document(Document::from_text("test", text + (pieces.size() > 1 ? ties : "")));
+  return run_solids(1.0, 1.0 / windows, pieces, ties,
+                    fmt::format("schwarz: {{tolerance: {}}}\n", number(tolerance)));
 }
+
+/// Of displacements and forces of a row: round-off of a body's factors, 1e-14, times how much
+/// softer its neighbours are.
+double rounding(double contrast, int count) { return 1.0e-14 * contrast * count + 1.0e-12; }
 
 std::string pull(const std::string& x, const std::string& y) {
   return fmt::format("    loads: {{pull: {{on: right, traction: [\"{}\", \"{}\"]}}}}\n", x, y);
@@ -69,11 +66,11 @@ TEST(TiedStatics, FloatingRowsOfAnyContrastTakeTwoCalls) {
     for (const std::vector<double>& moduli :
          {std::vector<double>{1.0, 1.0}, {1.0, 1.0e3}, {1.0e3, 1.0}, {1.0e-6, 1.0}}) {
       SCOPED_TRACE(fmt::format("{} {}", count, fmt::join(moduli, ":")));
-      std::vector<Piece> pieces(index(count));
+      std::vector<SolidText> pieces;
       double stretch = 0.0;
-      for (std::size_t k = 0; k < pieces.size(); ++k) {
-        if (k % 2 == 1) pieces[k].cells = {3, 3};
-        pieces[k].law = linear(moduli[k % 2], 0.0);
+      for (std::size_t k = 0; k < index(count); ++k) {
+        const int cells = k % 2 == 1 ? 3 : 4;
+        pieces.push_back(piece({cells, cells}, linear(moduli[k % 2], 0.0)));
         stretch += 1.0e-8 / moduli[k % 2];
       }
       pieces.front().more = clamp;
@@ -82,11 +79,10 @@ TEST(TiedStatics, FloatingRowsOfAnyContrastTakeTwoCalls) {
       ASSERT_TRUE(result->completed());
       EXPECT_EQ(result->measure("schwarz.iterations_max"), two_calls);
       const std::string end = fmt::format("body.b{}.right.displacement.", count - 1);
-      // Round-off of a body's factors, 1e-14, times how much softer its neighbours are.
       const double contrast = std::max(moduli[0] / moduli[1], moduli[1] / moduli[0]);
-      const double rounding = 1.0e-14 * contrast * count + 1.0e-12;
-      EXPECT_NEAR(result->measure(end + "x"), stretch, rounding * stretch);
-      EXPECT_NEAR(result->measure("body.b0.clamp.reaction.x"), -1.0e-8, rounding * 1.0e-8);
+      const double left = rounding(contrast, count), force = 1.0e-8;
+      EXPECT_NEAR(result->measure(end + "x"), stretch, left * stretch);
+      EXPECT_NEAR(result->measure("body.b0.clamp.reaction.x"), -force, left * force);
     }
   }
 }
@@ -109,20 +105,19 @@ TEST(TiedStatics, CutBodyIsAsTheWholeOne) {
   for (const Case& c : cases) {
     for (const int count : {2, 4}) {
       SCOPED_TRACE(fmt::format("{} {}", c.law, count));
-      std::vector<Piece> pieces(index(count), Piece{.law = c.law, .keys = c.keys});
+      SolidText part = piece({4, 4}, c.law);
+      part.keys = c.keys;
+      std::vector<SolidText> pieces(index(count), part);
       pieces.front().more += clamp;
       pieces.back().more += pull(c.x, c.y);
       const auto divided = row(pieces);
       ASSERT_TRUE(divided->completed());
       EXPECT_LE(divided->measure("schwarz.iterations_max"), c.most_calls);
-      const auto whole = run_document(Document::from_text(
-          "test",
-          fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: 1.0, window: 0.25}}\n"
-                      "bodies:\n  whole:\n    model: {{fe: {{dimension: 2, {}mesh: {{{}}}}}}}\n"
-                      "    material: {{{}}}\n    integrator: {{quasi_static: {{step: 0.25}}}}\n"
-                      "    ports: {{right: {{side: right}}}}\n{}{}",
-                      c.keys, block_mesh({1.0 * count, 1.0}, {4 * count, 4}), c.law, clamp,
-                      pull(c.x, c.y))));
+      part.name = "whole";
+      part.lengths[0] = 1.0 * count;
+      part.cells[0] = 4 * count;
+      part.more = clamp + pull(c.x, c.y);
+      const auto whole = run_solids(1.0, 0.25, {part});
       const double size = std::abs(whole->measure("body.whole.right.displacement.y"));
       for (const char* i : {"x", "y"}) {
         EXPECT_NEAR(divided->measure(fmt::format("body.b{}.right.displacement.{}", count - 1, i)),
@@ -136,48 +131,47 @@ TEST(TiedStatics, CutBodyIsAsTheWholeOne) {
 
 /// Uniform stress passes joints of any meshes; the one body keeps a motion, the other one all.
 TEST(TiedStatics, UniformStressPasses) {
-  const auto check = [](int dim, const Piece& first, const Piece& second) {
-    SCOPED_TRACE(fmt::format("{}d {} {}", dim, second.cell, fmt::join(second.cells, "x")));
-    Piece left = first, right = second;
+  const auto check = [](SolidText left, SolidText right, const char* cell) {
+    const std::size_t dim = left.cells.size();
+    SCOPED_TRACE(fmt::format("{}d {} {}", dim, cell, fmt::join(right.cells, "x")));
+    right.element = cell;
     left.more = dim == 2 ? "    constraints: {end: {on: left, x: 0}, floor: {on: bottom, y: 0}}\n"
                          : "    constraints: {end: {on: left, x: 0}, floor: {on: bottom, y: 0}, "
                            "back: {on: back, z: 0}}\n";
     right.more = dim == 2
                      ? pull("0.01*t", "0")
                      : "    loads: {pull: {on: right, traction: [\"0.01*t\", \"0\", \"0\"]}}\n";
-    const auto result = row({left, right}, dim);
+    const auto result = row({left, right});
     ASSERT_TRUE(result->completed());
     EXPECT_EQ(result->measure("schwarz.iterations_max"), two_calls);
     for (const char* body : {"b0", "b1"})
       for (const char* end : {"min", "max"})
+        // 1 % of a modulus of one: 1e-10 of it
         EXPECT_NEAR(result->measure(fmt::format("body.{}.nodal_stress.xx.{}", body, end)), 0.01,
                     1.0e-12);
   };
   for (const std::vector<int>& cells : {std::vector<int>{3, 3}, {2, 2}, {5, 5}})
-    for (const char* cell : {"quad4", "tri3"})
-      check(2, {.cells = {3, 3}}, {.cells = cells, .cell = cell});
-  for (const char* cell : {"hex8", "tet4"})
-    check(3, {.cells = {2, 2, 2}}, {.cells = {3, 3, 3}, .cell = cell});
+    for (const char* cell : {"quad4", "tri3"}) check(piece({3, 3}), piece(cells), cell);
+  for (const char* cell : {"hex8", "tet4"}) check(piece({2, 2, 2}), piece({3, 3, 3}), cell);
 }
 
 /// Rings are carried along their axis alone.
 TEST(TiedStatics, RingsFloatToo) {
-  std::vector<Piece> rings(2, Piece{.keys = "plane: axisymmetric, "});
-  std::string text = "meta: {title: test}\ntime: {begin: 0.0, end: 1.0, window: 0.25}\nbodies:\n";
-  for (const int k : {0, 1})
-    text += fmt::format(
-        "  b{}:\n    model: {{fe: {{dimension: 2, plane: axisymmetric, mesh: {{{}}}}}}}\n"
-        "    material: {{{}}}\n    integrator: {{quasi_static: {{step: 0.25}}}}\n"
-        "    initial: {{position: [1.0, {}]}}\n    ports: {{low: {{side: bottom}}, high: {{side: "
-        "top}}}}\n{}",
-        k, block_mesh({1.0, 1.0}, {4 - k, 4}), linear(k == 0 ? 1.0 : 10.0, 0.0), k,
-        k == 0 ? "    constraints: {floor: {on: bottom, y: 0}}\n"
-               : "    loads: {pull: {on: top, traction: [\"0\", \"0.01*t\"]}}\n");
-  const auto result = run_document(Document::from_text(
-      "test", text + "interfaces: {t: {sides: [b0.high, b1.low], tied: {}}}\n"));
+  std::vector<SolidText> rings;
+  for (const int k : {0, 1}) {
+    SolidText ring = piece({4 - k, 4}, linear(k == 0 ? 1.0 : 10.0, 0.0));
+    ring.name = fmt::format("b{}", k);
+    ring.keys = "plane: axisymmetric, ";
+    ring.position = {1.0, 1.0 * k};
+    ring.sides = {"bottom", "top"};
+    ring.more = k == 0 ? "    constraints: {floor: {on: bottom, y: 0}}\n"
+                       : "    loads: {pull: {on: top, traction: [\"0\", \"0.01*t\"]}}\n";
+    rings.push_back(ring);
+  }
+  const auto result = run_solids(1.0, 0.25, rings, joined("t", "b0.top", "b1.bottom"));
   ASSERT_TRUE(result->completed());
   EXPECT_EQ(result->measure("schwarz.iterations_max"), two_calls);
-  EXPECT_NEAR(result->measure("body.b1.high.displacement.y"), 0.01 + 0.001, 1.0e-12);
+  EXPECT_NEAR(result->measure("body.b1.top.displacement.y"), 0.011, rounding(10.0, 2) * 0.011);
 }
 
 /// Where the material yields, bodies are asked after every sweep how they give way now.
@@ -191,14 +185,15 @@ TEST(TiedStatics, PlasticBodiesTakeFewCalls) {
   for (const auto& [first, second] :
        {std::pair(1.0e-3, 1.0), std::pair(1.0, 1.0e-3), std::pair(1.0e-3, 1.0e-3)}) {
     SCOPED_TRACE(fmt::format("{} {}", first, second));
-    Piece held{.cells = {4, 3}, .law = law(first), .more = clamp};
+    SolidText held = piece({4, 3}, law(first));
+    held.more = clamp;
     held.keys = "formulation: mean_dilatation, ";
     held.integrator = fmt::format("quasi_static: {{step: {}}}", number(1.0 / 6.0));
-    Piece loaded = held;
+    SolidText loaded = held;
     loaded.cells = {5, 4};
-    loaded.law = law(second);
+    loaded.material = law(second);
     loaded.more = pull("1.224e-3*t", "-2.0e-5*t");
-    const auto result = row({held, loaded}, 2, 6, 1.0e-5);
+    const auto result = row({held, loaded}, 6, 1.0e-5);
     ASSERT_TRUE(result->completed());
     EXPECT_GT(
         result->measure("body.b0.energy.dissipated") + result->measure("body.b1.energy.dissipated"),
@@ -209,12 +204,12 @@ TEST(TiedStatics, PlasticBodiesTakeFewCalls) {
 
 /// A body without inertia that only one with inertia holds goes where that goes.
 TEST(TiedStatics, BodiesWithInertiaHoldThem) {
-  const auto result =
-      row({{.law = linear(1.0, 0.0),  // without Poisson's effect its face stays straight
-            .integrator = "newmark: {step: 0.05}",
-            .more = "    constraints: {clamp: {on: left, x: \"0.1*sin(t)\", y: 0}}\n"},
-           {.cells = {3, 3}, .law = linear(1.0, 0.0), .integrator = "quasi_static: {step: 0.05}"}},
-          2, 20);
+  SolidText moved = piece({4, 4}, linear(1.0, 0.0));  // without Poisson's effect: a straight face
+  moved.integrator = "newmark: {step: 0.05}";
+  moved.more = "    constraints: {clamp: {on: left, x: \"0.1*sin(t)\", y: 0}}\n";
+  SolidText carried = piece({3, 3}, linear(1.0, 0.0));
+  carried.integrator = "quasi_static: {step: 0.05}";
+  const auto result = row({moved, carried}, 20);
   ASSERT_TRUE(result->completed());
   EXPECT_LE(result->measure("schwarz.iterations_max"), two_calls);
   // Without forces on it, it is carried without strain.
@@ -224,7 +219,7 @@ TEST(TiedStatics, BodiesWithInertiaHoldThem) {
 }
 
 TEST(TiedStatics, NetThatNothingHoldsIsRefused) {
-  const auto message = [](const std::vector<Piece>& pieces) -> std::string {
+  const auto message = [](const std::vector<SolidText>& pieces) -> std::string {
     try {
       row(pieces);
     } catch (const InputError& error) {
@@ -232,8 +227,10 @@ TEST(TiedStatics, NetThatNothingHoldsIsRefused) {
     }
     return "";
   };
-  const Piece floats{}, held{.more = clamp},
-      slides{.more = "    constraints: {end: {on: bottom, y: 0}}\n"};
+  const SolidText floats = piece();
+  SolidText held = floats, slides = floats;
+  held.more = clamp;
+  slides.more = "    constraints: {end: {on: bottom, y: 0}}\n";
   EXPECT_NE(message({floats, floats}).find("'b0', 'b1'"), std::string::npos);
   EXPECT_NE(message({slides, floats}).find("free to move or turn"), std::string::npos);
   EXPECT_EQ(message({held, floats, floats}), "");

@@ -36,7 +36,7 @@ BarText piece(const std::string& name, int first, int bars, double step) {
   return bar;
 }
 
-constexpr double tolerance = 1.0e-10;
+constexpr double tolerance = 1.0e-10;  // of the iteration
 
 /// Displacements of the outermost ends over time.
 struct Ends {

@@ -26,7 +26,7 @@ struct OverlappingPair {
   std::vector<std::string> more = {"", ""};  // keys of the bodies
   std::string tied = "overlap: {}", law = "linear_elastic", schwarz = "",
               seam = "";  // of the interface
-  double shift = 0.0;  // of the overlap, from the middle
+  double shift = 0.0;     // of the overlap, from the middle
   double length = 6.0;
 
   std::string body(std::size_t k) const {
@@ -37,20 +37,24 @@ struct OverlappingPair {
     std::vector<int> count = {along, n, n};
     lengths.resize(index(dim));
     count.resize(index(dim));
-    return fmt::format(
-        "  {}:\n    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n    material: {{{}: "
-        "{{youngs_modulus: 1.0, poissons_ratio: {}, density: 1.0}}}}\n    integrator: {{{}: "
-        "{{step: {}}}}}\n    initial: {{position: {}, {}}}\n    ports: {{cut: {{side: {}}}}}\n{}",
-        k == 0 ? "left" : "right", dim, block_mesh(lengths, count, cells[k]), law,
-        number(poissons_ratio), scheme(schemes[k]), number(k == 0 ? step : step / ratio),
-        components({low}, dim), start, k == 0 ? "right" : "left", more[k]);
+    return SolidText{.name = k == 0 ? "left" : "right",
+                     .material = unit_law(law, poissons_ratio),
+                     .integrator = scheme_named(schemes[k], k == 0 ? step : step / ratio),
+                     .position = {low},
+                     .port = "cut",
+                     .side = k == 0 ? "right" : "left",
+                     .start = start,
+                     .more = more[k],
+                     .lengths = lengths,
+                     .cells = count,
+                     .element = cells[k]}
+        .text();
   }
   std::unique_ptr<RunResult> run(double end, double window) const {
-    const std::string text = fmt::format(
-        "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n{}{}"
-        "interfaces:\n  seam: {{sides: [left.cut, right.cut], tied: {{{}}}{}}}\nschwarz: {{{}}}\n",
-        number(end), number(window), body(0), body(1), tied, seam, schwarz);
-    return run_document(Document::from_text("test", text));
+    return run_scene(end, window, body(0) + body(1),
+                     fmt::format("interfaces:\n  seam: {{sides: [left.cut, right.cut], tied: "
+                                 "{{{}}}{}}}\nschwarz: {{{}}}\n",
+                                 tied, seam, schwarz));
   }
   /// The undivided body, of the left one's cells and keys and the right one's more.
   std::unique_ptr<RunResult> run_whole(double end, double window) const {
@@ -58,13 +62,7 @@ struct OverlappingPair {
     one.overlap = length;
     one.shift = 0.0;
     one.more[0] += one.more[1];
-    return run_document(Document::from_text(
-        "test", fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\n"
-                            "bodies:\n{}",
-                            number(end), number(window), one.body(0))));
-  }
-  static const char* scheme(char letter) {
-    return letter == 'I' ? "newmark" : letter == 'S' ? "quasi_static" : "central_difference";
+    return run_scene(end, window, one.body(0));
   }
 };
 

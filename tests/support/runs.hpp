@@ -161,6 +161,12 @@ inline std::unique_ptr<RunResult> run_document(const Document& document) {
   return result;
 }
 
+/// Runs a scene that begins at time 0 (scene_text).
+inline std::unique_ptr<RunResult> run_scene(double end, double window, const std::string& bodies,
+                                            const std::string& rest = "") {
+  return run_document(Document::from_text("test", scene_text(end, window, bodies, rest)));
+}
+
 /// Runs a scene in this process. Throws what the scene's reader throws.
 inline std::unique_ptr<RunResult> run(const SceneText& scene) {
   return run_document(Document::from_text("test", scene.text()));

@@ -16,6 +16,14 @@ namespace abut {
 
 inline std::string number(double x) { return fmt::format("{:.17e}", x); }
 
+/// A scene that begins at time 0, of bodies in lines of their own; `rest`: its other sections.
+inline std::string scene_text(double end, double window, const std::string& bodies,
+                              const std::string& rest = "") {
+  return fmt::format(
+      "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n{}{}",
+      number(end), number(window), bodies, rest);
+}
+
 // The schemes that tests go through, as scenes write them; the step is filled in.
 inline std::string explicit_scheme(double step, int terms = 1) {
   const std::string more = terms > 1 ? fmt::format(", dispersion_terms: {}", terms) : "";

@@ -40,7 +40,16 @@ inline std::string unit_law(const std::string& law, double poissons_ratio,
                      number(poissons_ratio), more);
 }
 
-/// A body in two or three dimensions with one port, as a scene file writes it.
+/// A scheme by its letter. I: implicit, E: explicit, S: statics, R: of rigid bodies.
+inline std::string scheme_named(char letter, double step) {
+  return implicit_scheme(letter == 'I'   ? "newmark"
+                         : letter == 'S' ? "quasi_static"
+                         : letter == 'R' ? "rigid_motion"
+                                         : "central_difference",
+                         step);
+}
+
+/// A body in two or three dimensions as a scene file writes it. What is empty is left out.
 struct SolidText {
   std::string name = {};
   int dim = 2;
@@ -50,20 +59,43 @@ struct SolidText {
   std::string port = "face", side = {};
   std::string model = "fe", keys = {};  // kind; keys beside dimension and mesh, with commas
   std::string field = {};               // of velocity, one expression per dimension, or empty
+  std::string start = {};               // other keys of initial
+  std::vector<std::string> sides = {};  // with ports of their names
   std::string more = {};                // keys of the body, in lines of their own
+  // In place of dim and mesh: a block of cells.
+  std::vector<double> lengths = {};
+  std::vector<int> cells = {};
+  std::string element = {};
 
   std::string text() const {
+    if (!lengths.empty()) {
+      SolidText block = *this;
+      block.dim = static_cast<int>(lengths.size());
+      block.mesh = block_mesh(lengths, cells, element);
+      block.lengths.clear();
+      return block.text();
+    }
     std::string out = fmt::format("  {}:\n    model: {{{}: {{dimension: {}, {}mesh: {{{}}}}}}}\n",
                                   name, model, dim, keys, mesh);
     if (!material.empty()) out += fmt::format("    material: {{{}}}\n", material);
     if (!integrator.empty()) out += fmt::format("    integrator: {{{}}}\n", integrator);
-    out += "    initial: {";
-    if (!position.empty()) out += fmt::format("position: {}, ", components(position, dim));
-    if (!velocity.empty()) out += fmt::format("velocity: {}", components(velocity, dim));
-    if (!field.empty()) out += fmt::format("velocity_field: [{}]", field);
-    return out + fmt::format("}}\n    ports: {{{}: {{side: {}}}}}\n{}", port, side, more);
+    std::vector<std::string> initial, ports;
+    if (!position.empty()) initial.push_back("position: " + components(position, dim));
+    if (!velocity.empty()) initial.push_back("velocity: " + components(velocity, dim));
+    if (!field.empty()) initial.push_back(fmt::format("velocity_field: [{}]", field));
+    if (!start.empty()) initial.push_back(start);
+    if (!side.empty()) ports.push_back(fmt::format("{}: {{side: {}}}", port, side));
+    for (const std::string& each : sides) ports.push_back(fmt::format("{0}: {{side: {0}}}", each));
+    return out + fmt::format("    initial: {{{}}}\n    ports: {{{}}}\n{}", fmt::join(initial, ", "),
+                             fmt::join(ports, ", "), more);
   }
 };
+
+inline std::string texts_of(const std::vector<SolidText>& bodies) {
+  std::string all;
+  for (const SolidText& body : bodies) all += body.text();
+  return all;
+}
 
 /// Two surfaces that touch; `more`: keys of the interface after a comma.
 inline std::string touching(const std::string& name, const std::string& one,
@@ -71,15 +103,19 @@ inline std::string touching(const std::string& name, const std::string& one,
   return fmt::format("  {}: {{sides: [{}, {}], contact: {{}}{}}}\n", name, one, other, more);
 }
 
-/// A run of such bodies from time 0 in windows of one length.
+/// Two sides that are joined; `keys`: of tied.
+inline std::string joined(const std::string& name, const std::string& one, const std::string& other,
+                          const std::string& keys = "") {
+  return fmt::format("  {}: {{sides: [{}, {}], tied: {{{}}}}}\n", name, one, other, keys);
+}
+
+/// A run of such bodies from time 0 in windows of one length; `rest`: other sections.
 inline std::unique_ptr<RunResult> run_solids(double end, double window,
                                              const std::vector<SolidText>& bodies,
-                                             const std::string& interfaces) {
-  std::string text =
-      fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n",
-                  number(end), number(window));
-  for (const SolidText& body : bodies) text += body.text();
-  return run_document(Document::from_text("test", text + "interfaces:\n" + interfaces));
+                                             const std::string& interfaces = "",
+                                             const std::string& rest = "") {
+  return run_scene(end, window, texts_of(bodies),
+                   (interfaces.empty() ? "" : "interfaces:\n" + interfaces) + rest);
 }
 
 }  // namespace abut

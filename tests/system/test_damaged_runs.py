@@ -27,6 +27,7 @@ sys.path.insert(0, str(ABUT.parent))
 SCENES = ("two_bars", "bars/three_bars_with_gap")  # one contact in closed form, and several
 NAMES = ("summary.json", "history.csv", "closed_form.csv", "events.jsonl")
 ROUNDS = 60  # of every scene and file
+EVERY = 20  # of the rows of a table is kept: what a damage does to one it does to any
 NOBODY = 65534
 
 
@@ -35,6 +36,15 @@ def program():
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("abut_report", loader))
     loader.exec_module(module)
     return module
+
+
+def whole_file(scene: str, name: str) -> bytes:
+    """A file of a real run, its tables with a row in twenty and the last."""
+    data = (shared_run(scene) / name).read_bytes()
+    if not name.endswith(".csv"):
+        return data
+    header, *rows = data.splitlines(keepends=True)
+    return b"".join([header, *rows[:-1:EVERY], rows[-1]])
 
 
 def places_in(value: object, path: tuple = ()):
@@ -126,7 +136,7 @@ class DamagedRuns(SystemTest):
         copy.mkdir()
         for name in NAMES:
             if (shared_run(scene) / name).is_file():
-                shutil.copy(shared_run(scene) / name, copy)
+                (copy / name).write_bytes(whole_file(scene, name))
         return copy
 
     def outcome(self, folder: Path) -> tuple[int, str]:
@@ -152,7 +162,7 @@ class DamagedRuns(SystemTest):
     def test_damage_by_chance_is_told_in_one_line(self):
         for scene in SCENES:
             for name in NAMES:
-                whole = (shared_run(scene) / name).read_bytes()
+                whole = whole_file(scene, name)
                 refused = 0
                 for seed in range(ROUNDS):
                     with self.subTest(scene=scene, file=name, seed=seed):

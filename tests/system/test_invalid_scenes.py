@@ -2,18 +2,23 @@
 files stay as they are.
 
 The oracle stands at the head of every configs/invalid/*.yaml: `# refused with: <message>`, and
-where there are several errors, ` And with: ` before each further message.
+where there are several errors, ` And with: ` before each further message. Where line numbers do
+not matter, it is a row of configs/invalid/rows.txt: what to --set in a valid scene, and all but the
+place of each message.
 usage: test_invalid_scenes.py ABUT ROOT
 """
 
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
+from typing import NamedTuple
 
 ABUT = Path(sys.argv[1]).resolve()
 ROOT = Path(sys.argv[2]).resolve()
+INVALID = ROOT / "configs" / "invalid"
 SECONDS = 20  # a refusal takes milliseconds; only a hang takes longer
 
 VALID = """\
@@ -45,11 +50,48 @@ def expected_messages(scene: Path) -> list:
     return text[len(mark):].split(" And with: ")
 
 
+class Row(NamedTuple):
+    """A base scene, what is set in it, and the messages without their places."""
+    base: str
+    name: str
+    sets: list
+    messages: list
+
+
+def rows() -> list:
+    """The table of scenes that differ from a valid one by little."""
+    lines = []
+    for line in (INVALID / "rows.txt").read_text(encoding="utf-8").splitlines():
+        if line.startswith("    "):
+            lines[-1] += " " + line.strip()
+        elif line.strip() and not line.startswith("#"):
+            lines.append(line)
+    found, base = [], ""
+    for line in lines:
+        if line.startswith("base "):
+            base = line[len("base "):]
+        elif not line.startswith("  "):
+            found.append(Row(base, line, [], []))
+        elif line.startswith("  --set "):
+            found[-1].sets.append(line[len("  --set "):])
+        else:
+            found[-1].messages.append(line.strip())
+    return found
+
+
+def without_place(line: str, scene: Path, sets: list) -> str:
+    """The message of a line that begins with the scene's path and a line, or with what was set."""
+    start = f"error: {scene}"
+    places = [re.escape(f", from --set {word}") for word in sets] + [r":\d+"]
+    match = re.match(f"{re.escape(start)}(?:{'|'.join(places)}): ", line)
+    return line[match.end():] if match else f"no place of this scene: {line}"
+
+
 def files_below(folder: Path) -> dict:
     return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-class InvalidScenes(unittest.TestCase):
+class RefusalTest(unittest.TestCase):
     def setUp(self):
         holder = tempfile.TemporaryDirectory()
         self.addCleanup(holder.cleanup)
@@ -60,6 +102,8 @@ class InvalidScenes(unittest.TestCase):
         self.assertEqual(result.stdout, "")
         self.assertEqual(result.returncode, 2)
 
+
+class InvalidScenes(RefusalTest):
     def test_an_empty_scene_is_said_to_be_empty(self):
         for text in ("", "\n\n", "---\n", "# nothing\n", "null\n"):
             with self.subTest(text=text):
@@ -70,28 +114,52 @@ class InvalidScenes(unittest.TestCase):
                                     "beginning with meta:, time:, bodies:.")
 
     def test_every_scene_is_refused_with_its_message_and_writes_nothing(self):
-        scenes = sorted((ROOT / "configs" / "invalid").glob("*.yaml"))
+        scenes = sorted(INVALID.glob("*.yaml"))
         self.assertGreater(len(scenes), 30, "the scenes are found")
-        kept = self.folder / "kept"
-        kept.mkdir()
-        (kept / "notes.txt").write_text("mine", encoding="utf-8")
-        (kept / "summary.json").write_text("{}", encoding="utf-8")
-        before = files_below(kept)
         for scene in scenes:
             with self.subTest(scene=scene.name):
                 name, messages = scene.relative_to(ROOT), expected_messages(scene)
-                self.assert_refused(abut("check", name), *messages)
-                fresh = self.folder / "fresh"
-                self.assert_refused(abut("run", name, "--out", fresh), *messages)
-                self.assertFalse(fresh.exists())
-                self.assert_refused(abut("run", name, "--local", "--force", "--out", kept),
-                                    *messages)
-                self.assertEqual(files_below(kept), before)
+                for result in self.whoever_reads(name):
+                    self.assert_refused(result, *messages)
+
+    def test_every_row_is_refused_with_its_message_and_writes_nothing(self):
+        table = rows()
+        self.assertGreater(len(table), 100, "the rows are found")
+        self.assertEqual(len({row.name for row in table}), len(table), "each has a name of its own")
+        for row in table:
+            with self.subTest(row=row.name):
+                self.assertTrue(row.sets and row.messages)
+                scene = (INVALID / "base" / f"{row.base}.yaml").relative_to(ROOT)
+                overrides = [word for change in row.sets for word in ("--set", change)]
+                for result in self.whoever_reads(scene, *overrides):
+                    said = [without_place(line, scene, row.sets)
+                            for line in result.stderr.splitlines()]
+                    self.assertEqual(said, row.messages)
+                    self.assertEqual((result.stdout, result.returncode), ("", 2))
+
+    def test_every_base_of_a_row_is_valid_and_used(self):
+        scenes = sorted((INVALID / "base").glob("*.yaml"))
+        self.assertEqual([scene.stem for scene in scenes], sorted({row.base for row in rows()}))
+        for scene in scenes:
+            with self.subTest(scene=scene.name):
+                result = abut("check", scene)
+                self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def whoever_reads(self, scene: Path, *overrides: str):
+        """What check says, and what both ways to run say, which leave their folders as they are."""
+        fresh, kept = self.folder / "fresh", self.folder / "kept"
+        kept.mkdir(exist_ok=True)
+        (kept / "notes.txt").write_text("mine", encoding="utf-8")
+        (kept / "summary.json").write_text("{}", encoding="utf-8")
+        before = files_below(kept)
+        yield abut("check", scene, *overrides)
+        yield abut("run", scene, "--out", fresh, *overrides)
+        self.assertFalse(fresh.exists())
+        yield abut("run", scene, "--local", "--force", "--out", kept, *overrides)
+        self.assertEqual(files_below(kept), before)
 
 
-class RunDirectories(InvalidScenes):
-    test_every_scene_is_refused_with_its_message_and_writes_nothing = None
-
+class RunDirectories(RefusalTest):
     def setUp(self):
         super().setUp()
         self.scene = self.folder / "scene.yaml"
@@ -125,9 +193,7 @@ class RunDirectories(InvalidScenes):
         self.assertTrue(result.stderr.startswith("error: /proc/abut: cannot be "), result.stderr)
 
 
-class CommandLines(InvalidScenes):
-    test_every_scene_is_refused_with_its_message_and_writes_nothing = None
-
+class CommandLines(RefusalTest):
     def test_a_scene_that_is_not_there_is_refused(self):
         self.assert_refused(abut("check", "no/such.yaml"),
                             "no/such.yaml: cannot be opened. Give the path of a scene file.")

@@ -6,6 +6,7 @@ makes it first (tests/system/CMakeLists.txt). Oracles: the scene's own expectati
 state hashes and of files.
 usage: test_scenes.py ABUT ROOT RUNS SCENE Shared     the run that others read
        test_scenes.py ABUT ROOT RUNS SCENE Elsewhere  its bodies in processes
+       test_scenes.py ABUT ROOT RUNS SCENE Files      the same from the scene's own text
 """
 
 import shutil
@@ -60,10 +61,12 @@ class Elsewhere(SceneTest):
             self.assertEqual(bits(self.run_in(self.folder / "own", SCENE)), expected)
         self.fail("the resolved scene in processes gives other bits")
 
+
+class Files(Elsewhere):
+    test_processes_that_read_the_resolved_scene_reach_the_same_bits = None
+
     def test_processes_find_the_files_that_the_scene_names(self):
         """The resolved scene names them in full; the scene does so from its own folder."""
-        if "file:" not in SCENE.read_text(encoding="utf-8"):
-            return
         self.assertEqual(bits(self.run_in(self.folder / "own", SCENE)),
                          bits(shared_run(sys.argv[4])))
 

@@ -14,6 +14,7 @@ import headers
 import layers
 import lengths
 import packages
+import tolerances
 import words
 from findings import Finding
 
@@ -168,6 +169,36 @@ class Equations(unittest.TestCase):
     def test_formula_or_row_that_ends_with_a_citation_defines_nothing(self) -> None:
         self.check([], self.METHOD + "    e = f under [M.1]\n| f | as [M.2] |\n")
         self.check(["docs/METHOD.md:4"], self.METHOD + "    e = f under [M.4]\n")
+
+
+class Tolerances(unittest.TestCase):
+    def check(self, expected: list[int], text: str) -> None:
+        self.assertEqual(tolerances.bare(text.splitlines()), expected)
+
+    def test_power_of_ten_without_a_reason(self) -> None:
+        for bad in ("EXPECT_NEAR(a, b, 1e-9);", "EXPECT_LT(f(a, {1, 2}),\n  1.0e-9 * size);",
+                    "ASSERT_LE(a, 0.01) << \"// no reason\";", "constexpr double exact = 1e-9;"):
+            self.check([2], "// Goal.\n".replace("//", "x;") + bad)
+            for good in (f"// Rounding of 1e6.\n{bad}", f"{bad}  // rounding of 1e6"):
+                self.check([], good)
+
+    def test_derived_and_other_numbers_speak_for_themselves(self) -> None:
+        for good in ("EXPECT_NEAR(a, b, roundoff(4, 1e-3));", "EXPECT_NEAR(1e-9, b, c);",
+                     "EXPECT_LT(a, iteration(1e-6));", "EXPECT_LE(a, 2.5e-3);",
+                     "EXPECT_GT(a, 1e-3);", "constexpr double speed = 1e-3;"):
+            self.check([], good)
+
+    def test_reason_reaches_the_next_line_with_the_same_tolerance(self) -> None:
+        first = "EXPECT_NEAR(a, b, 1e-9);  // why\n"
+        self.check([], first + "EXPECT_NEAR(c, d, 1e-9);")
+        self.check([2], first + "EXPECT_NEAR(c, d, 1e-8);")
+
+    def test_listed_counts_may_only_fall(self) -> None:
+        text = "EXPECT_LT(a, 1e-9);\n"
+        for listed, count in (("1", 0), ("0", 1), ("2", 1)):
+            found = findings(tolerances.check, tests__a_dot_cpp=text,
+                             tests__tidy__tolerances_dot_txt=f"# left\n{listed} tests/a.cpp\n")
+            self.assertEqual(len(found), count)
 
 
 class HeadersPackagesAndDocs(unittest.TestCase):

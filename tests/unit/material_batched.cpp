@@ -51,9 +51,9 @@ void expect_agreement(const Batched& batched, const Material& law) {
     for (int l = 0; l < N; ++l) {
       History none;
       const PointResponse r = answer(law, f[i + index(l)], none);
-      // F rounds at 1e-16 of itself, P then at the modulus times that: some hundred of these.
       const double scale = r.tangent.cwiseAbs().maxCoeff();
       for (int k = 0; k < 9; ++k)
+        // F rounds at 1e-16 of itself, P then at the modulus times that: some hundred of these.
         EXPECT_NEAR(p.entry[k][l], r.stress.reshaped()[k], 1.0e-13 * scale);
       // Strains of 1e-3 against F of 1: a rounding of F is 1e-13 of them.
       EXPECT_NEAR(energy[l], r.energy, 1.0e-13 * r.energy);
@@ -87,7 +87,8 @@ void expect_equal_tangents(const Batched& batched, const Material& law) {
       const double scale = t.cwiseAbs().maxCoeff();
       for (int j = 0; j < 3; ++j)
         for (int l = j; l < 3; ++l)
-          for (int r = 0; r < 9; ++r)  // rounding as that of stresses
+          for (int r = 0; r < 9; ++r)
+            // rounding as that of stresses
             EXPECT_NEAR(moduli.at[j][l][r / 3][r % 3][lane], t(r / 3 + 3 * j, r % 3 + 3 * l),
                         1.0e-13 * scale);
     }

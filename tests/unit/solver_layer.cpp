@@ -148,7 +148,8 @@ TEST_P(LayeredBar, NeitherPullsNorPassesThroughASurface) {
       EXPECT_GE(port.f[i], 0.0);
       // Newton's method leaves 1e-9 of a force of 0.05, where 1 N makes 1 m.
       EXPECT_LT(port.u[i] - port.surface[i], 1.0e-9) << i;
-      EXPECT_LT(port.f[i] * std::abs(port.u[i] - port.surface[i]), 1.0e-10) << i;
+      EXPECT_LT(port.f[i] * std::abs(port.u[i] - port.surface[i]), 1.0e-10)
+          << i;  // that times the force
     }
     EXPECT_GT(most, 5.0e-3);
   }
@@ -166,8 +167,8 @@ TEST_P(LayeredBar, GivesTheMomentumAndTheEnergyThatItLoses) {
     const std::size_t k = (i - 1) % (times.size() - 1);
     impulse -= 0.5 * (port.f[i] + port.f[i - 1]) * (times[k + 1] - times[k]);
   }
-  // Schemes that weigh forces of both ends otherwise lag behind the mean by part of a step.
   const bool means = GetParam().name.find("alpha") == std::string::npos;
+  // Schemes that weigh forces of both ends otherwise lag behind the mean by part of a step.
   EXPECT_NEAR(end.momentum[0], impulse, means ? 1.0e-9 : 2.0e-2 * std::abs(impulse));
   // Second order in the step: nodal energies of central differences swing by (w dt)^2 / 8.
   const double total = end.energy.total() + end.energy.dissipated;

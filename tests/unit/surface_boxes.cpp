@@ -84,7 +84,8 @@ TEST_P(Trees, SweptBoxesHoldTheFacetAllTheWay) {
     for (int node = 0; node < static_cast<int>(tree.boxes.size()); ++node) {
       if (!tree.is_leaf(node)) continue;
       const Box inner = facet_box(from.pose(between), tree.facet(node), 0.0);
-      for (int d = 0; d < 3; ++d) {  // a mean of two numbers may round to beyond them
+      for (int d = 0; d < 3; ++d) {
+        // a mean of two numbers may round to beyond them
         EXPECT_LE(tree.boxes[node].low[d], inner.low[d] + 1e-15);
         EXPECT_GE(tree.boxes[node].high[d], inner.high[d] - 1e-15);
       }

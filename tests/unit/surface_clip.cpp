@@ -14,9 +14,10 @@
 #include <cmath>
 #include <vector>
 
-#include "surface/clip.hpp"
 #include "base/index.hpp"
+#include "surface/clip.hpp"
 #include "tests/support/surfaces.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
@@ -65,11 +66,11 @@ TEST(Clip, AreasAreThoseOfBoostGeometry) {
     bg::intersection(boost_of(a), boost_of(b), parts);
     double area = 0.0;
     for (const BoostPolygon& part : parts) area += bg::area(part);
+    const double ours = signed_area(clip(a, b));
     // Corners of size one at worst, moved by some ten roundings. Boost drops corners that are
     // nearer than that to another one and is no better.
-    const double ours = signed_area(clip(a, b));
     EXPECT_NEAR(ours, area, 1e-13) << k;
-    EXPECT_NEAR(signed_area(clip(b, a)), ours, 1e-14) << k;
+    EXPECT_NEAR(signed_area(clip(b, a)), ours, roundoff(40.0, 1.0)) << k;
     common += area > 0.0 ? 1 : 0;
   }
   EXPECT_GT(common, 5000);
@@ -138,8 +139,8 @@ TEST(Clip, BearsRepeatedAndCollinearCorners) {
                                    {0.5, 1},
                                    {0.5, 1 - 1e-17},
                                    {0.5, 0}});
-  EXPECT_NEAR(signed_area(clip(unit, crowded)), 0.5, 1e-15);
-  EXPECT_NEAR(signed_area(clip(crowded, unit)), 0.5, 1e-15);
+  EXPECT_NEAR(signed_area(clip(unit, crowded)), 0.5, roundoff(4.0, 1.0));
+  EXPECT_NEAR(signed_area(clip(crowded, unit)), 0.5, roundoff(4.0, 1.0));
   const Polygon line = polygon({{0, 0.5}, {1, 0.5}, {0.5, 0.5}}), point = box(0.5, 0.5, 0.5, 0.5);
   for (const Polygon& flat : {line, point, Polygon{}}) {
     EXPECT_EQ(clip(unit, flat).count, 0);

@@ -76,7 +76,7 @@ TEST_P(FilteredForce, ChannelClassConvergesToTheFilteredExactForce) {
     // elements: class 600 3.0e-3 to 1.2e-3 and 3.6e-4 to 1.2e-4, class 1000 1.7e-4 to 5.4e-5 and
     // 1.6e-5 to 6e-7, with one term and six. Samples at 1000 times the class are good for 1e-5.
     EXPECT_LT(errors.back(), 1.5e-3) << of_class;
-    EXPECT_LT(errors.back(), 0.5 * errors.front() + 1.0e-5) << of_class;
+    EXPECT_LT(errors.back(), 0.5 * errors.front() + 1.0e-5) << of_class;  // of samples
   }
 }
 

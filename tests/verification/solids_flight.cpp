@@ -92,9 +92,9 @@ TEST_P(Flights, OfAKilometreAtTheSpeedOfAShellEndWell) {
   // Round-off of the positions, added up over the steps.
   const Position moved = s.mean_displacement("boundary") - Position(distance, 0.0, 0.0);
   EXPECT_LT(moved.norm(), roundoff(10.0 * steps, distance));
+  const double turn = flight.spin * dt, size = 0.046;
   // Positions of 1 km have no digits below 1e-13 m. The chord by which a step begins is (w dt)^2/8
   // of the size too long, and what makes it whole again may ring by as much.
-  const double turn = flight.spin * dt, size = 0.046;
   EXPECT_LT(change_of_shape(s), 1.0e-11 + 0.5 * turn * turn * size);
 }
 

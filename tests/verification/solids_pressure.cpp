@@ -33,7 +33,7 @@ double stretch_of_cube(const std::string& element, Formulation formulation, doub
   for (int node = 0; node < s.model.mesh().node_count(); ++node) {
     const Position x = position(s.model.mesh(), node);
     const Position u = s.displacement(node), first = s.mean_displacement("right");
-    EXPECT_LT((u - first.x() * x).norm(), 1.0e-11) << "the cube stays a cube";
+    EXPECT_LT((u - first.x() * x).norm(), 10.0 * newton.tolerance) << "the cube stays a cube";
   }
   return 1.0 + s.mean_displacement("right").x();
 }
@@ -58,7 +58,8 @@ TEST(PressedCube, DeadPressureIsTheNominalStress) {
     l -= (0.5 * bulk * (std::pow(l, 5) - 1.0 / l) + p) /
          (0.5 * bulk * (5.0 * std::pow(l, 4) + 1.0 / (l * l)));
   for (const std::string element : {"tet4", "tet10", "hex8", "hex20"})
-    EXPECT_NEAR(stretch_of_cube(element, Formulation::full, p, false), l, 1.0e-11) << element;
+    EXPECT_NEAR(stretch_of_cube(element, Formulation::full, p, false), l, 1.0e-11)
+        << element;  // ten of Newton's tolerances
 }
 
 /// A body turned, stretched and made irregular.

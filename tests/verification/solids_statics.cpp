@@ -63,7 +63,7 @@ TEST(YieldingCube, FollowsTheUniaxialLawThroughLoadAndUnload) {
       }
       // What is neither stored nor given back is dissipated: s0 a.
       const double plastic = (young * loaded - s0) / (young + h);
-      EXPECT_NEAR(s.motion.dissipated, s0 * plastic, 1.0e-10 * s0) << element;
+      EXPECT_NEAR(s.motion.dissipated, s0 * plastic, 1.0e-10 * s0) << element;  // as kirchhoff()
     }
   }
 }
@@ -96,9 +96,9 @@ std::vector<double> block_on_rollers(std::unique_ptr<const Material> law, double
 
 TEST(InclinedRollers, CarryATurnedBodyAsLevelOnesDo) {
   const Moduli moduli = isotropic(1.0, 0.3);
-  // Newton's tolerance of 1e-12 of the forces, over the softest mode: the block tilts on its
-  // rollers by some ten times the strain.
   for (double angle : {0.5, 2.0}) {
+    // Newton's tolerance of 1e-12 of the forces, over the softest mode: the block tilts on its
+    // rollers by some ten times the strain.
     EXPECT_LT(
         largest_difference(block_on_rollers(std::make_unique<LinearElastic>(moduli, 1.0), angle),
                            block_on_rollers(std::make_unique<LinearElastic>(moduli, 1.0), 0.0)),
