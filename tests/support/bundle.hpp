@@ -14,7 +14,6 @@ namespace abut {
 /// and what each point must do is known from the bar alone.
 class Bundle : public Subdomain {
  public:
-  using Subdomain::probe;
   /// Bars with one port each, at the same place.
   explicit Bundle(std::vector<std::unique_ptr<Subdomain>> bars)
       : bars_(std::move(bars)), requests_(bars_.size()), responses_(bars_.size()) {
@@ -26,15 +25,15 @@ class Bundle : public Subdomain {
   }
 
   const Description& describe() const override { return description_; }
-  void meet(int port, const PortGeometry& partner, const ContactLaw& law) override {
+  void meet(const Meeting& meeting) override {
+    if (meeting.surface == nullptr) return;
     for (std::size_t b = 0; b < bars_.size(); ++b) {
-      PortGeometry point = partner;
-      point.points = {partner.points[b]};
-      point.normals = {partner.normals[b]};
-      bars_[b]->meet(port, point, law);
+      PortGeometry point = *meeting.surface;
+      point.points = {meeting.surface->points[b]};
+      point.normals = {meeting.surface->normals[b]};
+      bars_[b]->meet({meeting.port, meeting.partner, &point, meeting.law});
     }
   }
-  void yields(int, int, const PortKernel&) override {}
   void save() override {
     for (auto& bar : bars_) bar->save();
   }
@@ -61,10 +60,11 @@ class Bundle : public Subdomain {
     }
     return Advanced{};
   }
-  PortKernel probe(int port, std::span<const double> patterns, double step, int count) override {
+  PortKernel probe(const Probing& asked) override {
+    const auto& [port, patterns, step, count, seen] = asked;
     PortKernel all;  // bars do not feel each other
     for (std::size_t b = 0; b < bars_.size(); ++b) {
-      const PortKernel one = bars_[b]->probe(port, patterns.subspan(b, 1), step, count);
+      const PortKernel one = bars_[b]->probe({port, {patterns[b]}, step, count});
       if (b == 0) all = one;
       all.width = static_cast<int>(bars_.size());
       all.displacement.resize(index(count) * bars_.size());
@@ -96,7 +96,7 @@ class Bundle : public Subdomain {
     BoundaryData one;
     one.motion = point_of(wide.motion, b);
     for (const Waveform& force : wide.forces) one.forces.push_back(point_of(force, b));
-    for (const Obstacle& o : wide.obstacles) one.obstacles.push_back({point_of(o.motion, b)});
+    for (const Obstacle& o : wide.obstacles) one.obstacles.push_back({point_of(o.motion, b), {}});
     one.impedance = wide.impedance;
     return one;
   }

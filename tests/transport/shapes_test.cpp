@@ -99,8 +99,8 @@ struct Talk {
     met.resize(body.ports.size());
     for (std::size_t p = 0; p < met.size(); ++p)
       for (int k = dice.upto(3); k > 0; --k) {
-        meetings.push_back({static_cast<int>(p), dice.surface(body.dim), {dice.coin()}});
-        met[p].push_back(size_of(meetings.back().partner));
+        surfaces.push_back({static_cast<int>(p), dice.surface(body.dim), {dice.coin()}});
+        met[p].push_back(size_of(surfaces.back().surface));
       }
     make_request();
     make_reply();
@@ -119,8 +119,11 @@ struct Talk {
       if (dice.coin()) data.motion = any(shape);
       for (int k = dice.upto(3); k > 0; --k)
         data.forces.push_back(dice.coin() ? any(shape) : Waveform());
-      for (const SurfaceSize& partner : met[p])
-        data.obstacles.push_back({dice.coin() ? any(partner) : Waveform()});
+      for (const SurfaceSize& partner : met[p]) {
+        data.obstacles.push_back({dice.coin() ? any(partner) : Waveform(), {}});
+        if (!data.obstacles.back().empty()) data.obstacles.back().slid = dice.points(20);
+      }
+      if (dice.coin()) data.balanced = dice.wave(shape, {}, request.window);
       if (dice.coin()) data.impedance = {1.0 + dice.value(), dice.coin()};
       if (dice.coin()) data.impulse = dice.values(index(shape.width()));
       Want& want = request.want.emplace_back();
@@ -157,11 +160,21 @@ struct Talk {
       record.columns = {dice.value()};
     }
     reply.steps = dice.upto(9);
+    for (std::size_t p = 0; p < body.ports.size(); ++p)
+      for (Reaction& reaction : reply.ports[p].reactions)
+        if (!reaction.force.empty() && reply.steps > 1)
+          reaction.slid = dice.points((reply.steps - 1) * body.ports[p].geometry.count());
   }
+
+  struct Surface {  // that a port has met
+    int port;
+    PortGeometry surface;
+    ContactLaw law;
+  };
 
   Dice dice;
   Description body;
-  std::vector<Meeting> meetings;
+  std::vector<Surface> surfaces;
   Partners met;
   Advance request;
   Response reply;
@@ -204,11 +217,17 @@ TEST(Shapes, EveryMessageComesBackAsItWasSent) {
     decode(parsed<v1::Description>(described), body);
     EXPECT_TRUE(bytes_of<v1::Description>(body) == described);
 
-    for (const Meeting& meeting : talk.meetings) {
-      Meeting got;
-      const std::string sent = bytes_of<v1::Meet>(meeting);
-      decode(parsed<v1::Meet>(sent), body, got);
-      EXPECT_TRUE(bytes_of<v1::Meet>(got) == sent);
+    Partners met(body.ports.size());
+    for (const auto& [port, surface, law] : talk.surfaces) {
+      const int width = surface.count() * surface.dim;
+      const PortKernel kernel = talk.dice.kernel(width, width, 2);
+      const int partner = static_cast<int>(met[port].size());
+      const Meeting meeting{port, partner, &surface, law, talk.dice.coin() ? &kernel : nullptr};
+      const std::string sent = bytes_of<v1::Meet>(meeting, std::nullopt);
+      ReceivedMeeting got;
+      decode(parsed<v1::Meet>(sent), body, met, got);
+      EXPECT_TRUE(bytes_of<v1::Meet>(got.meeting, got.first) == sent);
+      met[port].push_back(size_of(surface));
     }
 
     const std::string asked = bytes_of<v1::Advance>(talk.request);
@@ -247,10 +266,12 @@ TEST(Shapes, KernelsOfPatternsComeBackAsTheyWereSent) {
 
     const bool own = talk.met[0].empty() || seed % 2 == 0;
     const int wide = own ? size_of(talk.body.ports[0].geometry).width() : talk.met[0][0].width();
-    const Yielding yielding{0, own ? own_surface : 0, dice.kernel(wide, wide, count)};
-    Yielding told;
-    decode(parsed<v1::Yields>(bytes_of<v1::Yields>(yielding)), talk.body, talk.met, told);
-    EXPECT_TRUE(bytes_of<v1::Yields>(told) == bytes_of<v1::Yields>(yielding));
+    const PortKernel gives = dice.kernel(wide, wide, count);
+    const std::string sent =
+        bytes_of<v1::Meet>(Meeting{0, own ? own_surface : 0, nullptr, {}, &gives}, std::nullopt);
+    ReceivedMeeting told;
+    decode(parsed<v1::Meet>(sent), talk.body, talk.met, told);
+    EXPECT_TRUE(bytes_of<v1::Meet>(told.meeting, told.first) == sent);
   }
 }
 
@@ -307,14 +328,14 @@ struct Plane {
     port.geometry.facets = {0, 1, 1, 2};
     port.geometry.offsets = {0, 2, 4};
     body.ports.push_back(port);
-    meeting.partner = port.geometry;
-    meeting.partner.points = {0, 1, 1, 1, 2, 1, 3, 1};
-    meeting.partner.normals.assign(8, 0.0);
-    met = {{size_of(meeting.partner)}};
+    partner = port.geometry;
+    partner.points = {0, 1, 1, 1, 2, 1, 3, 1};
+    partner.normals.assign(8, 0.0);
+    met = {{size_of(partner)}};
     asked.window = {0, 0.0, 1.0};
     asked.boundary.resize(1);
     asked.boundary[0].forces = {flat(6)};
-    asked.boundary[0].obstacles = {Obstacle{flat(4)}};
+    asked.boundary[0].obstacles = {Obstacle{flat(4), {}}};
     asked.boundary[0].obstacles[0].motion.points = {1, 3};
     asked.want.resize(1);
     asked.want[0].points = {0, 2};
@@ -334,7 +355,7 @@ struct Plane {
   }
 
   Description body;
-  Meeting meeting;
+  PortGeometry partner;
   Partners met;
   Advance asked;
   Response reply;
@@ -395,6 +416,30 @@ TEST(Shapes, RequestsThatDoNotFitAreRefusedByFieldName) {
             "advance.boundary[0].obstacles[1] is of nobody: the port has met 1 partners");
   EXPECT_EQ(request_refused([](v1::Advance& a) { a.mutable_boundary(0)->add_impulse(1.0); }),
             "advance.boundary[0].impulse has 1 numbers where 6 belong");
+  const auto slid = [](v1::Advance& a, int entry) {
+    a.mutable_boundary(0)->mutable_obstacles(0)->add_slid(entry);
+  };
+  EXPECT_EQ(request_refused([&](v1::Advance& a) { slid(a, -1); }),
+            "advance.boundary[0].obstacles[0].slid does not ascend at entry 0");
+  EXPECT_EQ(request_refused([&](v1::Advance& a) { slid(a, 3), slid(a, 3); }),
+            "advance.boundary[0].obstacles[0].slid does not ascend at entry 1");
+  const auto balanced = [](v1::Advance& a) {
+    v1::Waveform& to = *a.mutable_boundary(0)->mutable_balanced();
+    to = a.boundary(0).forces(0);
+    return &to;
+  };
+  EXPECT_EQ(request_refused([&](v1::Advance& a) { balanced(a); }), "accepted");
+  EXPECT_EQ(request_refused([&](v1::Advance& a) { balanced(a)->Clear(); }),
+            "advance.boundary[0].balanced is present but empty");
+  EXPECT_EQ(request_refused([&](v1::Advance& a) { balanced(a)->clear_f(); }),
+            "advance.boundary[0].balanced.f is missing");
+  EXPECT_EQ(request_refused([&](v1::Advance& a) { balanced(a)->set_width(4); }),
+            "advance.boundary[0].balanced.width is 4, but 3 points of dimension 2 are 6 numbers");
+  EXPECT_EQ(request_refused([&](v1::Advance& a) {
+              v1::Waveform& to = *balanced(a);
+              for (const int point : {0, 1, 2}) to.add_points(point);
+            }),
+            "advance.boundary[0].balanced.points is not of all points");
   EXPECT_EQ(request_refused([](v1::Advance& a) { a.add_want(); }),
             "advance.want has more entries than the body's 1 ports");
   EXPECT_EQ(request_refused([](v1::Advance& a) { a.mutable_want(0)->set_points(0, 3); }),
@@ -423,6 +468,9 @@ TEST(Shapes, RepliesThatDoNotFitAreRefusedByFieldName) {
             "numbers");
   EXPECT_EQ(reply_refused([](v1::PortResponse& p) { p.add_lower(1.0); }),
             "advanced.ports[0].lower has 1 numbers where 2 belong");
+  EXPECT_EQ(reply_refused([](v1::PortResponse& p) { p.mutable_reactions(0)->add_slid(0); }),
+            "advanced.ports[0].reactions[0].slid has entry 0, but 0 are all of substeps and "
+            "points");
   EXPECT_EQ(reply_refused([](v1::PortResponse& p) {
               p.add_lower(0.0);
               p.add_lower(0.0);
@@ -434,14 +482,19 @@ TEST(Shapes, SurfacesAndKernelsThatDoNotFitAreRefusedByFieldName) {
   const Plane plane;
   const auto meet_refused = [&plane](const std::function<void(v1::Meet&)>& spoil) {
     v1::Meet wire;
-    encode(plane.meeting, wire);
+    encode({0, 1, &plane.partner}, {}, wire);
     spoil(wire);
-    Meeting got;
-    return refusal([&] { decode(wire, plane.body, got); });
+    ReceivedMeeting got;
+    return refusal([&] { decode(wire, plane.body, plane.met, got); });
   };
   EXPECT_EQ(meet_refused([](v1::Meet&) {}), "accepted");
   EXPECT_EQ(meet_refused([](v1::Meet& m) { m.set_port(1); }), "meet.port is 1, but there are 1");
-  EXPECT_EQ(meet_refused([](v1::Meet& m) { m.clear_surface(); }), "meet.surface is missing");
+  EXPECT_EQ(meet_refused([](v1::Meet& m) { m.clear_surface(); }),
+            "meet.surface is missing, and so is kernel");
+  EXPECT_EQ(meet_refused([](v1::Meet& m) { m.set_partner(0); }),
+            "meet.partner is 0, where 1 is next");
+  EXPECT_EQ(meet_refused([](v1::Meet& m) { m.set_first(0); }),
+            "meet.first is of a part, which has no surface");
   EXPECT_EQ(meet_refused([](v1::Meet& m) { m.mutable_surface()->set_dim(1); }),
             "meet.surface.dim is 1, but the port's is 2");
   EXPECT_EQ(meet_refused([](v1::Meet& m) { m.mutable_surface()->add_points(0.0); }),
@@ -459,22 +512,23 @@ TEST(Shapes, SurfacesAndKernelsThatDoNotFitAreRefusedByFieldName) {
   EXPECT_EQ(meet_refused([](v1::Meet& m) { m.mutable_surface()->set_spacing(-1.0); }),
             "meet.surface.spacing is negative: -1");
 
-  const auto yields_refused = [&plane](const std::function<void(v1::Yields&)>& spoil) {
-    v1::Yields wire;
-    encode(Yielding{0, 0, Dice(1).kernel(8, 8, 2)}, wire);
+  const auto kernel_refused = [&plane](const std::function<void(v1::Meet&)>& spoil) {
+    v1::Meet wire;
+    const PortKernel kernel = Dice(1).kernel(8, 8, 2);
+    encode({0, 0, nullptr, {}, &kernel}, {}, wire);
     spoil(wire);
-    Yielding got;
+    ReceivedMeeting got;
     return refusal([&] { decode(wire, plane.body, plane.met, got); });
   };
-  EXPECT_EQ(yields_refused([](v1::Yields&) {}), "accepted");
-  EXPECT_EQ(yields_refused([](v1::Yields& y) { y.set_partner(1); }),
-            "yields.partner is 1, but there are 1");
-  EXPECT_EQ(yields_refused([](v1::Yields& y) { y.mutable_kernel()->set_width(6); }),
-            "yields.kernel.width is 6, but the surface's is 8");
-  EXPECT_EQ(yields_refused([](v1::Yields& y) { y.mutable_kernel()->set_patterns(1); }),
-            "yields.kernel.patterns is 1, not 8");
-  EXPECT_EQ(yields_refused([](v1::Yields& y) { y.mutable_kernel()->add_displacement(1.0); }),
-            "yields.kernel.displacement has 129 numbers, no whole number of substeps of 64");
+  EXPECT_EQ(kernel_refused([](v1::Meet&) {}), "accepted");
+  EXPECT_EQ(kernel_refused([](v1::Meet& y) { y.set_partner(1); }),
+            "meet.partner is 1, but there are 1");
+  EXPECT_EQ(kernel_refused([](v1::Meet& y) { y.mutable_kernel()->set_width(6); }),
+            "meet.kernel.width is 6, but the surface's is 8");
+  EXPECT_EQ(kernel_refused([](v1::Meet& y) { y.mutable_kernel()->set_patterns(1); }),
+            "meet.kernel.patterns is 1, not 8");
+  EXPECT_EQ(kernel_refused([](v1::Meet& y) { y.mutable_kernel()->add_displacement(1.0); }),
+            "meet.kernel.displacement has 129 numbers, no whole number of substeps of 64");
 
   const Probing probing{0, std::vector<double>(6, 1.0), 0.1, 2};
   const auto probe_refused = [&](const std::function<void(v1::Probe&)>& spoil) {
