@@ -51,7 +51,7 @@ struct Reaction {
   // some of them perhaps: nothing acts on the others
   Waveform force;
   double dissipated = 0.0;  // [J] by friction, since the run began
-  // Where what sticks has a coefficient of its own: which points of the body's port count as sliding
+  // Where what sticks has a coefficient of its own: points of the body's port that count as sliding
   // at the ends of substeps but the last, ascending: (substep - 1) x points + point.
   std::vector<std::int32_t> slid{};
 };

@@ -103,7 +103,7 @@ struct Advance {
 /// accepts. Substeps divide the window; the last one lands on its end exactly and the adjusted step
 /// is not kept.
 /// A window of no length advances nothing and reports the state.
-/// A reply is a function of the state and of the request, bit for bit, whatever was advanced before.
+/// A reply is a function of the state and of the request, bit for bit, whatever came before.
 /// restore() is exact. start() returns at once so that bodies in other processes run
 /// concurrently; finish() waits and fills the response. Between start() and finish() nothing else
 /// is called.

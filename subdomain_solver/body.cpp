@@ -71,8 +71,9 @@ void Body::meet(const Meeting& meeting) {
   const std::string partner_of = fmt::format("a partner of body '{}'", describe().name);
   if (meeting.surface != nullptr) {
     if (meeting.partner != static_cast<int>(partners.size()))
-      throw RunError(fmt::format("is number {}, where {} is next", meeting.partner, partners.size()),
-                     partner_of, "Number the partners of a port in the order of their surfaces.");
+      throw RunError(
+          fmt::format("is number {}, where {} is next", meeting.partner, partners.size()),
+          partner_of, "Number the partners of a port in the order of their surfaces.");
     partners.push_back({*meeting.surface, meeting.law, {}});
   }
   if (meeting.kernel == nullptr) return;

@@ -28,8 +28,8 @@ class FakeSubdomain : public Subdomain {
     int substeps = 10;        // per window
   };
   struct Counts {
-    int advances = 0, saves = 0, restores = 0, kernels = 0, grids = 0, fields = 0, meetings = 0,
-        kernels_told = 0;
+    int advances = 0, saves = 0, restores = 0, kernels = 0, grids = 0, fields = 0, meetings = 0;
+    int kernels_told = 0;
   };
 
   FakeSubdomain() : FakeSubdomain(Options{}) {}
@@ -118,14 +118,10 @@ class FakeSubdomain : public Subdomain {
 
   PortKernel probe(const Probing& asked) override {
     ++counts.kernels;
-    const auto& [port, patterns, step, count, seen] = asked;
-    PortKernel kernel;
-    kernel.step = step;
-    kernel.support = ForceSupport::step;
-    kernel.patterns = static_cast<int>(patterns.size());
-    for (int i = 1; i <= count; ++i)
-      for (const double force : patterns)
-        kernel.displacement.push_back(force * step * step * i / options_.mass);
+    PortKernel kernel{asked.step, ForceSupport::step, static_cast<int>(asked.patterns.size())};
+    for (int i = 1; i <= asked.count; ++i)
+      for (const double force : asked.patterns)
+        kernel.displacement.push_back(force * asked.step * asked.step * i / options_.mass);
     return kernel;
   }
 

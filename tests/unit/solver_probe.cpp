@@ -115,8 +115,9 @@ TEST_P(Probe, InPartsIsTheWholeToTheLastBit) {
     PortKernel made = room_for(whole, whole.patterns);
     for (std::size_t first = 0; first < width; first += at_once) {
       const std::size_t some = std::min(at_once, width - first);
-      put(body->probe({0, std::span(units).subspan(first * width, some * width), substep, count}),
-          static_cast<int>(first), made);
+      const auto from = units.begin() + static_cast<std::ptrdiff_t>(first * width);
+      const std::vector<double> part(from, from + static_cast<std::ptrdiff_t>(some * width));
+      put(body->probe({0, part, substep, count}), static_cast<int>(first), made);
     }
     EXPECT_EQ(made.displacement, whole.displacement);
     EXPECT_EQ(made.begin, whole.begin);
