@@ -118,7 +118,9 @@ class FakeSubdomain : public Subdomain {
 
   PortKernel probe(const Probing& asked) override {
     ++counts.kernels;
-    PortKernel kernel{asked.step, ForceSupport::step, static_cast<int>(asked.patterns.size())};
+    PortKernel kernel;
+    kernel.step = asked.step, kernel.support = ForceSupport::step;
+    kernel.patterns = static_cast<int>(asked.patterns.size());
     for (int i = 1; i <= asked.count; ++i)
       for (const double force : asked.patterns)
         kernel.displacement.push_back(force * asked.step * asked.step * i / options_.mass);

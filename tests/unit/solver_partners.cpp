@@ -153,7 +153,10 @@ TEST(Partners, OfABarAreObstaclesOneAtATime) {
   const SolverCase c = complete_cases().front();
   const std::unique_ptr<Subdomain> body = build(case_bar(c));
   const std::vector<double> times = substep_times(0.0, 6.0, case_step);
-  for (int k = 0; k < 2; ++k) meet_point(*body, 0, true);
+  PortGeometry point = body->describe().ports[0].geometry;
+  point.normals[0] *= -1.0;
+  for (const int k : {0, 1}) body->meet({0, k, &point, {.tied = true}});
+  EXPECT_THROW(body->meet({0, 3, &point}), RunError) << "2 is next";
   Advance request = free_request(*body, 0.0, 6.0);
   std::vector<Obstacle>& obstacles = request.boundary[0].obstacles;
   obstacles.resize(2);
