@@ -190,7 +190,7 @@ void check_speeds(const Scene& scene, const Document& document) {
     const std::array<PortName, 2> names = {split_port(interface.sides[0]),
                                            split_port(interface.sides[1])};
     const std::array<ImpactSide, 2> sides = {meeting_of(document, names[0]),
-                                          meeting_of(document, names[1])};
+                                             meeting_of(document, names[1])};
     if (!sides[0].known || !sides[1].known) continue;
     for (const std::size_t s : {0u, 1u})
       if (sides[s].bar)

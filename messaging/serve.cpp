@@ -269,8 +269,7 @@ void Server::meet(const v1::Meet& request) {
   }
   body_->meet(meeting);
   gathered_.reset();
-  if (meeting.surface != nullptr)
-    partners_[meeting.port].push_back(size_of(*meeting.surface));
+  if (meeting.surface != nullptr) partners_[meeting.port].push_back(size_of(*meeting.surface));
 }
 
 /// Whether the kernel is whole with this part.

@@ -353,8 +353,8 @@ PortKernel Body::probe(const Probing& asked) {
   const int own[] = {asked.port};
   const std::span<const int> seen = asked.seen.empty() ? std::span<const int>(own) : asked.seen;
   const bool joined = interior_->support(index(asked.port)) == ForceSupport::step;
-  PortKernel kernel = describe().quasi_static && joined ? probe_statics(asked, seen)
-                                                        : probe_dynamics(asked, seen);
+  PortKernel kernel =
+      describe().quasi_static && joined ? probe_statics(asked, seen) : probe_dynamics(asked, seen);
   const double compliance = asked.seen.empty() ? interior_->compliance(index(asked.port)) : 0.0;
   if (compliance > 0.0)
     for (const double value : asked.patterns) kernel.compliance.push_back(compliance * value);
@@ -413,8 +413,7 @@ PortKernel Body::probe_dynamics(const Probing& asked, std::span<const int> seen)
   read(*interior_, kept, Archive::Form::bare);
   interior_->restored();
   if (!failed) return kernel;
-  throw RunError("has no port kernel: " + failed->detail,
-                 fmt::format("body '{}'", describe().name),
+  throw RunError("has no port kernel: " + failed->detail, fmt::format("body '{}'", describe().name),
                  "Give the body inertia or supports that hold it.");
 }
 

@@ -88,7 +88,7 @@ class CompliantObstacle final : public Transmission {
   Eigen::MatrixXd fits_;  // [N] as taken_: what forces of ties fit, of the sweep before
   Waveform balanced_;     // [N] f of the kinematic port that forces of ties fit, as fits_
   int sweeps_ = 0;        // of the window so far
-  std::vector<std::int32_t> slid_;  // points that count as sliding in the next sweep
+  std::vector<std::int32_t> slid_;         // points that count as sliding in the next sweep
   bool linear_ = false;                    // of the Neumann side
   bool shared_ = false;                    // the Neumann side has other joints
   bool flies_ = false;

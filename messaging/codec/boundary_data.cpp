@@ -60,8 +60,7 @@ void decode_motion(Bytes from, const SurfaceSize& surface, const FieldPath& path
   require_field(to, to.u, "u", path);
 }
 
-void decode_obstacle(Bytes bytes, const SurfaceSize& partner, const FieldPath& path,
-                     Obstacle& to) {
+void decode_obstacle(Bytes bytes, const SurfaceSize& partner, const FieldPath& path, Obstacle& to) {
   Bytes motion;
   to.slid.clear();
   for (WireReader from(bytes, path); from.next();) {

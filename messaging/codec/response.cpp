@@ -134,8 +134,7 @@ void decode_reaction(Bytes bytes, const Waveform& motion, int dim, const TimeWin
 void check_slid(const Response& reply, const Description& body, int steps, const FieldPath& path) {
   for (std::size_t p = 0; p < reply.ports.size(); ++p) {
     const FieldPath port{&path, "ports", static_cast<int>(p)};
-    const std::int64_t most =
-        std::int64_t{std::max(0, steps - 1)} * body.ports[p].geometry.count();
+    const std::int64_t most = std::int64_t{std::max(0, steps - 1)} * body.ports[p].geometry.count();
     for (std::size_t k = 0; k < reply.ports[p].reactions.size(); ++k) {
       const FieldPath reaction{&port, "reactions", static_cast<int>(k)};
       check_slid(reply.ports[p].reactions[k].slid, most, FieldPath{&reaction, "slid"});

@@ -40,7 +40,7 @@ inline std::string integrator_text(const std::string& scheme) {
 
 /// A bar, square or cube of two cells along each edge, clamped, and pushed at the other side.
 inline std::string solid_text(int dim, const std::string& model, const std::string& law,
-                       const std::string& scheme) {
+                              const std::string& scheme) {
   const char* meshes[] = {"bar: {length: 1.0, elements: 4, area: 1.0, grading: 1.2}",
                           "rectangle: {lengths: [1.0, 1.0], elements: [2, 2]}",
                           "box: {lengths: [1.0, 1.0, 1.0], elements: [2, 2, 2]}"};

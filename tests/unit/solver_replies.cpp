@@ -28,9 +28,7 @@ class Dice {
   explicit Dice(unsigned seed) : random_(seed) {}
   bool coin() { return upto(1) == 1; }
   int upto(int most) { return std::uniform_int_distribution<int>(0, most)(random_); }
-  double value(double size) {
-    return std::uniform_real_distribution<double>(-size, size)(random_);
-  }
+  double value(double size) { return std::uniform_real_distribution<double>(-size, size)(random_); }
   std::vector<double> values(std::size_t count, double size) {
     std::vector<double> out;
     for (std::size_t i = 0; i < count; ++i) out.push_back(value(size));
@@ -115,8 +113,8 @@ Advance any_request(const Player& p, const TimeWindow& window, Dice& dice) {
       data.motion.u = dice.values(2 * p.width(q), 0.01);
       data.motion.v = data.motion.a = dice.values(2 * p.width(q), 0.1);
     } else if (d.can.force && closed) {
-      push(p.width(q), d.dim > 1 ? ForceSupport::linear : ForceSupport::nodal, request.window,
-           dice, data);
+      push(p.width(q), d.dim > 1 ? ForceSupport::linear : ForceSupport::nodal, request.window, dice,
+           data);
     }
     if (d.can.impulse && dice.coin()) data.impulse = dice.values(p.width(q), 1.0e-3);
   }
@@ -258,9 +256,8 @@ struct Touched {
   }
 
   std::unique_ptr<Subdomain> make() const {
-    const std::string mesh =
-        dim == 2 ? "rectangle: {lengths: [1.0, 1.0], elements: [3, 3]}"
-                 : "box: {lengths: [1.0, 1.0, 1.0], elements: [2, 2, 2]}";
+    const std::string mesh = dim == 2 ? "rectangle: {lengths: [1.0, 1.0], elements: [3, 3]}"
+                                      : "box: {lengths: [1.0, 1.0, 1.0], elements: [2, 2, 2]}";
     const auto block = [&](const std::string& called, const std::string& port) {
       return fmt::format(
           "{}: {{model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}, material: {{{}: "
@@ -305,7 +302,7 @@ struct Touched {
     const std::size_t each = width * width;
     for (std::size_t k = 0; k < 10 * each; ++k)
       kernel.displacement.push_back(k % each % (width + 1) == 0 ? 0.1
-                                    : k < each ? 0.0
+                                    : k < each                  ? 0.0
                                                : 0.01 * std::sin(static_cast<double>(k)));
     kernel.begin = kernel.displacement;
     return kernel;
@@ -322,8 +319,7 @@ struct Touched {
       p.met[0].push_back(surface);
     }
     const PortKernel own = kernel_of(p.width(0));
-    if (kernels && p.describe().can.neighbours)
-      p.body->meet({0, own_surface, nullptr, {}, &own});
+    if (kernels && p.describe().can.neighbours) p.body->meet({0, own_surface, nullptr, {}, &own});
     return p;
   }
 };
@@ -337,22 +333,26 @@ std::vector<Touched> touched() {
           for (const bool kernels : {false, true})
             for (const auto& [sticks, slides] : {std::pair(0.0, 0.0), {0.3, 0.3}, {0.4, 0.1}})
               if (dim == 2 || (kernels && sticks != slides) || (tied && kernels && sticks == 0.0))
-                all.push_back({dim, law, scheme, tied, kernels,
+                all.push_back({dim,
+                               law,
+                               scheme,
+                               tied,
+                               kernels,
                                {.static_friction = sticks, .kinetic_friction = slides}});
   return all;
 }
 
 TEST(Replies, OfBodiesThatTouchDependOnStateAndRequestAlone) {
   std::vector<std::pair<std::string, MakePlayer>> players;
-  for (const Touched& t : touched())
-    players.push_back({t.name(), [t] { return t.player(); }});
+  for (const Touched& t : touched()) players.push_back({t.name(), [t] { return t.player(); }});
   EXPECT_GE(compare_all(players, 2), 80);
 }
 
 /// What the fields are for: without them the reply is another one.
 TEST(Replies, DependOnTheForceThatIsBalancedAndOnWhatSlid) {
-  Touched t{2, "linear_elastic", "newmark", true, true,
-            {.static_friction = 0.4, .kinetic_friction = 0.1}};
+  Touched t{2,         "linear_elastic",
+            "newmark", true,
+            true,      {.static_friction = 0.4, .kinetic_friction = 0.1}};
   ASSERT_TRUE(t.make()->describe().can.neighbours);
   Player p = t.player();
   Dice dice(3);
