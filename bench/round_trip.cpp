@@ -74,12 +74,14 @@ class InstantBody : public Subdomain {
  public:
   explicit InstantBody(int points) : points_(points) {
     description_.dim = points > 1 ? 3 : 1;
+    description_.mass = 1.0;
     description_.ports.resize(1);
     description_.ports[0].name = "tip";
     PortGeometry& geometry = description_.ports[0].geometry;
     geometry.dim = description_.dim;
     geometry.points.assign(index(points * geometry.dim), 0.0);
-    geometry.normals.assign(geometry.points.size(), 1.0);
+    geometry.normals.assign(geometry.points.size(), 0.0);  // points without facets face nothing
+    if (points == 1) geometry.normals = {1.0};
     description_.can.obstacle = points > 1;
   }
   const Description& describe() const override { return description_; }
@@ -97,9 +99,11 @@ class InstantBody : public Subdomain {
     if (response.steps != substeps) {
       response.ports.resize(1);
       response.ports[0].trace = wave(substeps);
-      response.ports[0].lower = response.ports[0].upper = {0.0};
+      response.ports[0].lower = {-1.0};  // holds the wave
+      response.ports[0].upper = {1.0};
       response.records.resize(1);
       response.records[0].momentum = {0.0};
+      response.records[0].time = request_->window.end;
       response.steps = substeps;
     }
     response.compute_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
@@ -122,6 +126,7 @@ class InstantBody : public Subdomain {
     port.lower = port.upper = {0.0, 0.0, 0.0};
     response.records.resize(1);
     response.records[0].momentum = {0.0, 0.0, 0.0};
+    response.records[0].time = request_->window.end;
     response.steps = 1;
   }
 
