@@ -56,7 +56,7 @@ double cost(int elements, int terms, bool closed, int repeats) {
   request.sampling = closed ? Sampling::substeps : Sampling::records;
   request.boundary.resize(1);
   if (closed) {
-    bar->meet(0, bar->describe().ports[0].geometry, {.tied = true});
+    bar->meet({0, 0, &bar->describe().ports[0].geometry, {.tied = true}});
     request.boundary[0].obstacles.resize(1);
   }
   std::vector<double> samples;

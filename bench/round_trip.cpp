@@ -72,15 +72,16 @@ Waveform wave_of_surface(int points, std::vector<double> Waveform::*field) {
 /// one point it answers forces by motion, of several the motion of an obstacle by the reaction.
 class InstantBody : public Subdomain {
  public:
-  using Subdomain::probe;
   explicit InstantBody(int points) : points_(points) {
     description_.dim = points > 1 ? 3 : 1;
+    description_.mass = 1.0;
     description_.ports.resize(1);
     description_.ports[0].name = "tip";
     PortGeometry& geometry = description_.ports[0].geometry;
     geometry.dim = description_.dim;
     geometry.points.assign(index(points * geometry.dim), 0.0);
-    geometry.normals.assign(geometry.points.size(), 1.0);
+    geometry.normals.assign(geometry.points.size(), 0.0);  // points without facets face nothing
+    if (points == 1) geometry.normals = {1.0};
     description_.can.obstacle = points > 1;
   }
   const Description& describe() const override { return description_; }
@@ -98,17 +99,18 @@ class InstantBody : public Subdomain {
     if (response.steps != substeps) {
       response.ports.resize(1);
       response.ports[0].trace = wave(substeps);
-      response.ports[0].lower = response.ports[0].upper = {0.0};
+      response.ports[0].lower = {-1.0};  // holds the wave
+      response.ports[0].upper = {1.0};
       response.records.resize(1);
       response.records[0].momentum = {0.0};
+      response.records[0].time = request_->window.end;
       response.steps = substeps;
     }
     response.compute_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     return Advanced{};
   }
-  void meet(int, const PortGeometry&, const ContactLaw&) override {}
-  void yields(int, int, const PortKernel&) override {}
-  PortKernel probe(int, std::span<const double>, double, int) override { return {}; }
+  void meet(const Meeting&) override {}
+  PortKernel probe(const Probing&) override { return {}; }
   std::vector<std::byte> checkpoint() override { return {}; }
   void resume(std::span<const std::byte>) override {}
   std::uint64_t state_hash() override { return 0; }
@@ -124,6 +126,7 @@ class InstantBody : public Subdomain {
     port.lower = port.upper = {0.0, 0.0, 0.0};
     response.records.resize(1);
     response.records[0].momentum = {0.0, 0.0, 0.0};
+    response.records[0].time = request_->window.end;
     response.steps = 1;
   }
 
@@ -214,11 +217,11 @@ class OurExchange {
   }
   /// The motion of an obstacle there, the reaction back.
   std::pair<std::size_t, std::size_t> prepare_surface(int points) {
-    body_.meet(0, body_.describe().ports[0].geometry, ContactLaw{});
+    body_.meet({0, 0, &body_.describe().ports[0].geometry});
     advance_.window = TimeWindow{0, 0.0, 1.0e-7};
     advance_.want = {Want{false, false, false, false, {}}};
     advance_.boundary.resize(1);
-    advance_.boundary[0].obstacles = {Obstacle{wave_of_surface(points, &Waveform::u)}};
+    advance_.boundary[0].obstacles = {Obstacle{wave_of_surface(points, &Waveform::u), {}}};
     return sizes();
   }
   double once() {

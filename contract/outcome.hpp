@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -50,6 +51,9 @@ struct Reaction {
   // some of them perhaps: nothing acts on the others
   Waveform force;
   double dissipated = 0.0;  // [J] by friction, since the run began
+  // Where what sticks has a coefficient of its own: points of the body's port that count as sliding
+  // at the ends of substeps but the last, ascending: (substep - 1) x points + point.
+  std::vector<std::int32_t> slid{};
 };
 
 /// One port's reply to a window.

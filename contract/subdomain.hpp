@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "base/assert.hpp"
 #include "contract/boundary_data.hpp"
 #include "contract/field.hpp"
+#include "contract/meeting.hpp"
 #include "contract/outcome.hpp"
 #include "contract/port.hpp"
 #include "contract/time_window.hpp"
@@ -23,14 +23,11 @@ struct Capabilities {
   bool impulse = false;    // accepts BoundaryData::impulse
   bool kernel = false;     // answers probe()
   bool impedance = false;  // accepts BoundaryData::impedance
-  bool yielding = false;   // takes obstacles that give way: yields()
+  bool yielding = false;   // takes obstacles that give way: Meeting::kernel
   bool friction = false;   // takes laws with friction: ContactLaw::rubs()
-  // Takes how bodies that are tied to it give way: yields() of its own surface.
+  // Takes how bodies that are tied to it respond: Meeting::kernel of its own surface.
   bool neighbours = false;
 };
-
-/// In place of a partner: the port's own surface.
-constexpr int own_surface = -1;
 
 /// A solid inside a body that tables show as if it were a body: monolithic models hold several.
 struct Member {
@@ -106,36 +103,23 @@ struct Advance {
 /// accepts. Substeps divide the window; the last one lands on its end exactly and the adjusted step
 /// is not kept.
 /// A window of no length advances nothing and reports the state.
-/// restore() is exact, bit for bit. start() returns at once so that bodies in other processes run
+/// A reply is a function of the state and of the request, bit for bit, whatever came before.
+/// restore() is exact. start() returns at once so that bodies in other processes run
 /// concurrently; finish() waits and fills the response. Between start() and finish() nothing else
 /// is called.
 class Subdomain {
  public:
   virtual ~Subdomain() = default;
   virtual const Description& describe() const = 0;
-  /// A partner that a port may meet from the next advance on: its surface in the reference
-  /// configuration, and the law. Partners of a port are numbered from 0 in the order of the calls,
-  /// which restore() does not take back. Bodies that take no obstacles are not told.
-  virtual void meet(int port, const PortGeometry& partner, const ContactLaw& law) = 0;
-  /// How that partner's surface gives way: its kernel for unit forces on its points, one pattern
-  /// per component. Bodies that take no yielding obstacles are not told. `own_surface`: how bodies
-  /// that are tied to this one, at other ports, move the port's own surface [M.121].
-  virtual void yields(int port, int partner, const PortKernel& kernel) = 0;
+  /// A partner that a port may meet from the next advance on, or how its surface gives way;
+  /// restore() does not take it back. Bodies are not told what they do not take (Capabilities).
+  virtual void meet(const Meeting& meeting) = 0;
   virtual void save() = 0;  // the one state that restore() returns to
   virtual void restore() = 0;
   virtual void start(const Advance& request) = 0;  // the request must live until finish() returns
   [[nodiscard]] virtual Outcome finish(Response& response) = 0;
-  /// Responses of a port to patterns of force (patterns, points x dim) over `count` substeps of
-  /// length `step`; the state is left untouched.
-  virtual PortKernel probe(int port, std::span<const double> patterns, double step, int count) = 0;
-  /// The same, as responses of these ports, one after the other: what a force on one port does at
-  /// the others. Its quasi-static part and that of the window's begin are left out. Bodies that
-  /// tell of their own ports alone answer for `seen` = {port}.
-  virtual PortKernel probe(int port, std::span<const double> patterns, double step, int count,
-                           std::span<const int> seen) {
-    ABUT_ASSERT(seen.size() == 1 && seen.front() == port);
-    return probe(port, patterns, step, count);
-  }
+  /// Responses of ports to forces on one of them; the state is left untouched.
+  virtual PortKernel probe(const Probing& asked) = 0;
   virtual std::vector<std::byte> checkpoint() = 0;  // durable form of the state
   virtual void resume(std::span<const std::byte> bytes) = 0;
   virtual std::uint64_t state_hash() = 0;  // equal states, equal hashes

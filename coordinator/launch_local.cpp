@@ -135,14 +135,14 @@ ClosedForm impact_of(const Scene& scene, const Row& row, const std::string& inte
 }
 
 /// What meets at an interface: a bar with the side at which it is met, or anything else.
-struct Meeting {
+struct ImpactSide {
   std::optional<BarProperties> bar;
   double outward = 0.0;   // along x
   double velocity = 0.0;  // [m/s]
   bool known = false;     // a bar or a wall
 };
 
-Meeting meeting_of(const Document& document, const PortName& name) {
+ImpactSide meeting_of(const Document& document, const PortName& name) {
   if (is_external(document, name.body)) return {};
   const BodySpec spec = read_body(document, path_of(name.body));
   if (std::holds_alternative<BarPairSpec>(spec.model)) {
@@ -160,13 +160,13 @@ Meeting meeting_of(const Document& document, const PortName& name) {
 }
 
 /// Impedance of a bar [kg/s]; of a wall none is higher.
-double impedance_of(const Meeting& side) {
+double impedance_of(const ImpactSide& side) {
   if (!side.bar) return std::numeric_limits<double>::infinity();
   return side.bar->density * side.bar->wave_speed() * side.bar->area;
 }
 
 /// The strain with which a front leaves the contact, as d'Alembert has it.
-void check_strain(const Meeting& one, const Meeting& other, const std::string& body,
+void check_strain(const ImpactSide& one, const ImpactSide& other, const std::string& body,
                   const Document& document) {
   const double closing = one.outward * (one.velocity - other.velocity);
   const double mine = impedance_of(one), its = impedance_of(other);
@@ -189,8 +189,8 @@ void check_speeds(const Scene& scene, const Document& document) {
     if (interface.tied) continue;
     const std::array<PortName, 2> names = {split_port(interface.sides[0]),
                                            split_port(interface.sides[1])};
-    const std::array<Meeting, 2> sides = {meeting_of(document, names[0]),
-                                          meeting_of(document, names[1])};
+    const std::array<ImpactSide, 2> sides = {meeting_of(document, names[0]),
+                                             meeting_of(document, names[1])};
     if (!sides[0].known || !sides[1].known) continue;
     for (const std::size_t s : {0u, 1u})
       if (sides[s].bar)

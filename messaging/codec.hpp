@@ -32,27 +32,13 @@ SurfaceSize size_of(const PortGeometry& surface);
 /// Of the surfaces that each port has met, by port and partner.
 using Partners = std::vector<std::vector<SurfaceSize>>;
 
-/// Subdomain::meet as a value.
-struct Meeting {
-  int port = 0;
-  PortGeometry partner;
-  ContactLaw law;
-};
-/// Subdomain::yields as a value.
-struct Yielding {
-  int port = 0;
-  int partner = 0;
+/// A Meeting as it comes over the wire: `meeting` points to what stands beside it.
+struct ReceivedMeeting {
+  Meeting meeting;
+  PortGeometry surface;
   PortKernel kernel;
-  std::optional<int> first = {};  // pattern of a part; absent: the kernel is whole
-  int patterns = 0;               // of the whole; told by decode()
-};
-/// Subdomain::probe as a value.
-struct Probing {
-  int port = 0;
-  std::vector<double> patterns;  // [N] (patterns, points x dim)
-  double step = 0.0;             // [s]
-  int count = 0;
-  std::vector<int> seen = {};  // ports; empty: the pressed one, with all that a kernel has
+  std::optional<int> first;  // pattern of a part; absent: the kernel is whole
+  int patterns = 0;          // of the whole
 };
 
 // Contract to wire. The target may hold an earlier message: every field is overwritten, memory is
@@ -62,8 +48,8 @@ void encode(const Advance& from, WireWriter& to);
 void encode(const Response& from, const Advance& asked, WireWriter& to);
 void encode(const Failed& from, v1::Failed& to);
 void encode(const Description& from, v1::Description& to);
-void encode(const Meeting& from, v1::Meet& to);
-void encode(const Yielding& from, v1::Yields& to);
+/// `first`: the kernel is a part, which begins with this pattern.
+void encode(const Meeting& from, std::optional<int> first, v1::Meet& to);
 void encode(const Probing& from, v1::Probe& to);
 void encode(const PortKernel& from, v1::PortKernel& to);
 void encode(const Grid& from, v1::GridReply& to);
@@ -76,8 +62,8 @@ void decode(Bytes advance, const Description& body, const Partners& met, Advance
 void decode(Bytes advanced, const Description& body, const Advance& asked, Response& to);
 void decode(const v1::Failed& from, Failed& to);
 void decode(const v1::Description& from, Description& to);
-void decode(const v1::Meet& from, const Description& body, Meeting& to);
-void decode(const v1::Yields& from, const Description& body, const Partners& met, Yielding& to);
+void decode(const v1::Meet& from, const Description& body, const Partners& met,
+            ReceivedMeeting& to);
 void decode(const v1::Probe& from, const Description& body, Probing& to);
 void decode(const v1::PortKernel& from, const Description& body, const Probing& asked,
             PortKernel& to);

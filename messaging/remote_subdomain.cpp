@@ -55,27 +55,26 @@ void RemoteSubdomain::ping() {
   if (!caller_.call("ping").has_pong()) caller_.refuse_reply("not a pong");
 }
 
-void RemoteSubdomain::meet(int port, const PortGeometry& partner, const ContactLaw& law) {
-  encode(Meeting{port, partner, law}, *caller_.request().mutable_meet());
-  carry_flags();
-  if (!caller_.call("meet").has_met()) caller_.refuse_reply("not a meeting");
-}
-
-void RemoteSubdomain::yields(int port, int partner, const PortKernel& kernel) {
+void RemoteSubdomain::meet(const Meeting& meeting) {
+  if (meeting.kernel == nullptr) return meet_part(meeting, {});
+  const PortKernel& kernel = *meeting.kernel;
   const int at_once =
       patterns_at_once(index(kernel.patterns), bytes_of_pattern(kernel),
                        sizeof(std::int32_t) * kernel.points.size(), caller_.frame_limit());
-  if (at_once >= kernel.patterns) return yield_part({port, partner, kernel});
+  if (meeting.surface != nullptr)
+    meet_part({meeting.port, meeting.partner, meeting.surface, meeting.law}, {});
+  if (at_once >= kernel.patterns)
+    return meet_part({meeting.port, meeting.partner, nullptr, {}, &kernel}, {});
   for (int first = 0; first < kernel.patterns; first += at_once) {
-    const int count = std::min(at_once, kernel.patterns - first);
-    yield_part({port, partner, part_of(kernel, first, count), first});
+    const PortKernel part = part_of(kernel, first, std::min(at_once, kernel.patterns - first));
+    meet_part({meeting.port, meeting.partner, nullptr, {}, &part}, first);
   }
 }
 
-void RemoteSubdomain::yield_part(const Yielding& yielding) {
-  encode(yielding, *caller_.request().mutable_yields());
+void RemoteSubdomain::meet_part(const Meeting& meeting, std::optional<int> first) {
+  encode(meeting, first, *caller_.request().mutable_meet());
   carry_flags();
-  if (!caller_.call("yields").has_yielding()) caller_.refuse_reply("not a yielding");
+  if (!caller_.call("meet").has_met()) caller_.refuse_reply("not a meeting");
 }
 
 void RemoteSubdomain::save() { save_first_ = true; }
@@ -117,13 +116,8 @@ Outcome RemoteSubdomain::finish(Response& response) {
   caller_.refuse_reply("not a response");
 }
 
-PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, double step,
-                                  int count) {
-  return probe(port, patterns, step, count, {});
-}
-
-PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, double step,
-                                  int count, std::span<const int> seen) {
+PortKernel RemoteSubdomain::probe(const Probing& asked) {
+  const auto& [port, patterns, step, count, seen] = asked;
   const auto width_of = [this](int p) {
     return description_.ports[p].geometry.points.size();
   };
@@ -139,10 +133,10 @@ PortKernel RemoteSubdomain::probe(int port, std::span<const double> patterns, do
   ABUT_ASSERT(all > 0 && patterns.size() == all * pressed);
   PortKernel whole;
   for (std::size_t first = 0; first < all; first += at_once) {
-    const auto part = patterns.subspan(first * pressed, std::min(at_once, all - first) * pressed);
-    PortKernel answer =
-        probe_part({port, {part.begin(), part.end()}, step, count, {seen.begin(), seen.end()}});
-    if (at_once >= all) return answer;
+    if (at_once >= all) return probe_part(asked);
+    const auto from = patterns.begin() + static_cast<std::ptrdiff_t>(first * pressed);
+    const auto some = static_cast<std::ptrdiff_t>(std::min(at_once, all - first) * pressed);
+    const PortKernel answer = probe_part({port, {from, from + some}, step, count, seen});
     if (first == 0) whole = room_for(answer, static_cast<int>(all));
     if (!fits(answer, static_cast<int>(first), whole))
       caller_.refuse_reply("kernel has other arrays than that of the patterns before");

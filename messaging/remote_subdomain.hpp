@@ -28,15 +28,12 @@ class RemoteSubdomain : public Subdomain {
   void ping();
 
   const Description& describe() const override { return description_; }
-  void meet(int port, const PortGeometry& partner, const ContactLaw& law) override;
-  void yields(int port, int partner, const PortKernel& kernel) override;
+  void meet(const Meeting& meeting) override;
   void save() override;
   void restore() override;
   void start(const Advance& request) override;
   [[nodiscard]] Outcome finish(Response& response) override;
-  PortKernel probe(int port, std::span<const double> patterns, double step, int count) override;
-  PortKernel probe(int port, std::span<const double> patterns, double step, int count,
-                   std::span<const int> seen) override;
+  PortKernel probe(const Probing& asked) override;
   std::vector<std::byte> checkpoint() override;
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override;
@@ -48,7 +45,7 @@ class RemoteSubdomain : public Subdomain {
  private:
   void carry_flags();
   PortKernel probe_part(const Probing& probing);
-  void yield_part(const Yielding& yielding);
+  void meet_part(const Meeting& meeting, std::optional<int> first);
 
   Caller& caller_;
   Description description_;

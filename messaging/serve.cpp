@@ -208,9 +208,6 @@ void Server::dispatch() {
     case v1::Request::kMeet:
       meet(request_.meet());
       return;
-    case v1::Request::kYields:
-      yields(request_.yields());
-      return;
     case v1::Request::kProbe:
       probe(request_.probe());
       return;
@@ -258,39 +255,37 @@ void Server::configure(const v1::Configure& wire) {
 }
 
 void Server::meet(const v1::Meet& request) {
-  Meeting meeting;
-  decode(request, body_->describe(), meeting);
-  const FieldPath meet{nullptr, "meet"};
-  require_sound(meeting.partner, FieldPath{&meet, "surface"});
-  body_->meet(meeting.port, meeting.partner, meeting.law);
-  partners_[meeting.port].push_back(size_of(meeting.partner));
+  ReceivedMeeting received;
+  decode(request, body_->describe(), partners_, received);
+  Meeting& meeting = received.meeting;
   reply_.mutable_met();
-}
-
-void Server::yields(const v1::Yields& request) {
-  Yielding yielding;
-  decode(request, body_->describe(), partners_, yielding);
-  if (!yielding.first) {
-    body_->yields(yielding.port, yielding.partner, yielding.kernel);
-  } else if (gather(yielding)) {
-    body_->yields(yielding_->port, yielding_->partner, yielding_->kernel);
-    yielding_.reset();
+  if (meeting.surface != nullptr) {
+    const FieldPath meet{nullptr, "meet"};
+    require_sound(*meeting.surface, FieldPath{&meet, "surface"});
   }
-  reply_.mutable_yielding();
+  if (received.first) {
+    if (!gather(received)) return;
+    meeting.kernel = &gathered_->kernel;
+  }
+  body_->meet(meeting);
+  gathered_.reset();
+  if (meeting.surface != nullptr) partners_[meeting.port].push_back(size_of(*meeting.surface));
 }
 
 /// Whether the kernel is whole with this part.
-bool Server::gather(Yielding& part) {
+bool Server::gather(const ReceivedMeeting& part) {
   const int first = *part.first, end = first + part.kernel.patterns;
   if (first == 0) {
-    yielding_ = Yielding{part.port, part.partner, room_for(part.kernel, part.patterns), 0};
-  } else if (!yielding_ || yielding_->first != first || yielding_->port != part.port ||
-             yielding_->partner != part.partner || !fits(part.kernel, first, yielding_->kernel)) {
-    yielding_.reset();
-    throw CodecError("yields.first does not follow the parts before");
+    gathered_ = ReceivedMeeting{part.meeting, {}, room_for(part.kernel, part.patterns), 0, 0};
+  } else if (!gathered_ || gathered_->first != first ||
+             gathered_->meeting.port != part.meeting.port ||
+             gathered_->meeting.partner != part.meeting.partner ||
+             !fits(part.kernel, first, gathered_->kernel)) {
+    gathered_.reset();
+    throw CodecError("meet.first does not follow the parts before");
   }
-  put(part.kernel, first, yielding_->kernel);
-  yielding_->first = end;
+  put(part.kernel, first, gathered_->kernel);
+  gathered_->first = end;
   return end == part.patterns;
 }
 
@@ -305,10 +300,7 @@ void Server::probe(const v1::Probe& request) {
                                probing.count, probing.patterns.size(), least, reply_limit_),
                    name_, remedy_of_large_frame(request_));
   }
-  const auto& [port, patterns, step, count, seen] = probing;
-  encode(seen.empty() ? body_->probe(port, patterns, step, count)
-                      : body_->probe(port, patterns, step, count, seen),
-         *reply_.mutable_kernel());
+  encode(body_->probe(probing), *reply_.mutable_kernel());
 }
 
 void Server::advance() {

@@ -68,8 +68,7 @@ class Server {
   void dispatch();
   void configure(const v1::Configure& specification);
   void meet(const v1::Meet& request);
-  void yields(const v1::Yields& request);
-  bool gather(Yielding& part);
+  bool gather(const ReceivedMeeting& part);
   void probe(const v1::Probe& request);
   void advance();
   void fault(v1::FaultKind kind, const std::string& what, const std::string& where,
@@ -85,7 +84,7 @@ class Server {
   Deadlines deadlines_;
   std::unique_ptr<Subdomain> body_;
   Partners partners_;   // that the body has met
-  std::optional<Yielding> yielding_;  // of a kernel that comes in parts, as far as it has come
+  std::optional<ReceivedMeeting> gathered_;  // of a kernel in parts, as far as they have come
   bool saved_ = false;  // there is a state to restore
   v1::Request request_;
   Bytes bulk_;  // the Advance of the request, in the channel's memory

@@ -66,18 +66,24 @@ Body::Body(std::unique_ptr<Interior> interior, std::function<void()> progress)
   step_effort_ = interior_->effort();
 }
 
-void Body::meet(int port, const PortGeometry& partner, const ContactLaw& law) {
-  partners_.at(index(port)).push_back({partner, law, {}});
-}
-
-void Body::yields(int port, int partner, const PortKernel& kernel) {
-  if (const std::string misfit = interior_->misfit(port, kernel); !misfit.empty()) {
-    throw RunError("gives way by a kernel that this body cannot take: " + misfit,
-                   fmt::format("a partner of body '{}'", describe().name),
+void Body::meet(const Meeting& meeting) {
+  std::deque<Partner>& partners = partners_.at(index(meeting.port));
+  const std::string partner_of = fmt::format("a partner of body '{}'", describe().name);
+  if (meeting.surface != nullptr) {
+    if (meeting.partner != static_cast<int>(partners.size()))
+      throw RunError(
+          fmt::format("is number {}, where {} is next", meeting.partner, partners.size()),
+          partner_of, "Number the partners of a port in the order of their surfaces.");
+    partners.push_back({*meeting.surface, meeting.law, {}});
+  }
+  if (meeting.kernel == nullptr) return;
+  if (const std::string misfit = interior_->misfit(meeting.port, *meeting.kernel);
+      !misfit.empty()) {
+    throw RunError("gives way by a kernel that this body cannot take: " + misfit, partner_of,
                    "Let obstacles give way only with kernels of this body's step and support.");
   }
-  if (partner == own_surface) return interior_->ease(port, kernel);
-  partners_.at(index(port)).at(index(partner)).kernel = kernel;
+  if (meeting.partner == own_surface) return interior_->ease(meeting.port, *meeting.kernel);
+  partners.at(index(meeting.partner)).kernel = *meeting.kernel;
 }
 
 void Body::save() { write(*interior_, saved_, Archive::Form::bare); }
@@ -296,6 +302,8 @@ void Body::begin_replies(const Advance& request, Response& response) {
       force.support = interior_->reaction_support(p);
       force.width = obstacles[k].motion.width;
       force.points = obstacles[k].motion.points;
+      port.reactions[k].dissipated = 0.0;
+      port.reactions[k].slid.clear();
     }
     port.ahead.clear();
     port.lower.clear();
@@ -337,30 +345,26 @@ std::optional<Failed> Body::record(double time, Response& response) {
                   describe().name, describe().step)};
 }
 
-PortKernel Body::probe(int port, std::span<const double> patterns, double step, int count) {
-  const int own[] = {port};
-  PortKernel kernel = probe(port, patterns, step, count, own, true);
-  if (const double compliance = interior_->compliance(index(port)); compliance > 0.0)
-    for (const double value : patterns) kernel.compliance.push_back(compliance * value);
+PortKernel Body::probe(const Probing& asked) {
+  if (!describe().can.kernel) {
+    throw RunError("does not answer for port kernels", fmt::format("body '{}'", describe().name),
+                   "Ask bodies for kernels only when they offer them.");
+  }
+  const int own[] = {asked.port};
+  const std::span<const int> seen = asked.seen.empty() ? std::span<const int>(own) : asked.seen;
+  const bool joined = interior_->support(index(asked.port)) == ForceSupport::step;
+  PortKernel kernel =
+      describe().quasi_static && joined ? probe_statics(asked, seen) : probe_dynamics(asked, seen);
+  const double compliance = asked.seen.empty() ? interior_->compliance(index(asked.port)) : 0.0;
+  if (compliance > 0.0)
+    for (const double value : asked.patterns) kernel.compliance.push_back(compliance * value);
   return kernel;
 }
 
-PortKernel Body::probe(int port, std::span<const double> patterns, double step, int count,
-                       std::span<const int> seen) {
-  return probe(port, patterns, step, count, seen, false);
-}
-
-PortKernel Body::probe(int port, std::span<const double> patterns, double step, int count,
-                       std::span<const int> seen, bool begin) {
-  const std::string where = fmt::format("body '{}'", describe().name);
-  if (!describe().can.kernel) {
-    throw RunError("does not answer for port kernels", where,
-                   "Ask bodies for kernels only when they offer them.");
-  }
+PortKernel Body::probe_dynamics(const Probing& asked, std::span<const int> seen) {
+  const auto& [port, patterns, step, count, only] = asked;
   const std::size_t p = index(port), width = describe().ports.at(p).geometry.points.size();
   ABUT_ASSERT(step > 0.0 && patterns.size() % width == 0);
-  const bool joined = interior_->support(p) == ForceSupport::step;
-  if (describe().quasi_static && joined) return probe_statics(port, patterns, step, count, seen);
   std::vector<std::byte> kept;
   write(*interior_, kept, Archive::Form::bare);
   const Substeps grid{0.0, count * step, step, step, count};
@@ -372,7 +376,7 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
   for (const int s : seen)
     kernel.width += static_cast<int>(describe().ports.at(index(s)).geometry.points.size());
   kernel.displacement.assign(index(count) * kernel.per_step(), 0.0);
-  const bool nodal = begin && kernel.support == ForceSupport::nodal;
+  const bool nodal = only.empty() && kernel.support == ForceSupport::nodal;
   if (nodal) kernel.begin = kernel.displacement;
   // Surfaces without mass, and with inertia behind them; of a point it is asked for.
   const bool leans = width > 1 && describe().can.obstacle && !describe().quasi_static;
@@ -409,13 +413,13 @@ PortKernel Body::probe(int port, std::span<const double> patterns, double step, 
   read(*interior_, kept, Archive::Form::bare);
   interior_->restored();
   if (!failed) return kernel;
-  throw RunError("has no port kernel: " + failed->detail, where,
+  throw RunError("has no port kernel: " + failed->detail, fmt::format("body '{}'", describe().name),
                  "Give the body inertia or supports that hold it.");
 }
 
 /// What has no inertia answers at once, and forgets.
-PortKernel Body::probe_statics(int port, std::span<const double> patterns, double step, int count,
-                               std::span<const int> seen) {
+PortKernel Body::probe_statics(const Probing& asked, std::span<const int> seen) {
+  const auto& [port, patterns, step, count, only] = asked;
   const Watched& pressed = ports_[port];
   PortKernel kernel;
   kernel.step = step;
@@ -436,7 +440,7 @@ PortKernel Body::probe_statics(int port, std::span<const double> patterns, doubl
     }
   };
   for (std::size_t k = 0; k < index(kernel.patterns); ++k) {
-    std::ranges::copy(patterns.subspan(k * pressed.width, pressed.width),
+    std::ranges::copy(std::span(patterns).subspan(k * pressed.width, pressed.width),
                       force.begin() + static_cast<std::ptrdiff_t>(pressed.first));
     see(kernel.displacement);
   }

@@ -19,15 +19,12 @@ class Body final : public Subdomain {
   explicit Body(std::unique_ptr<Interior> interior, std::function<void()> progress = {});
 
   const Description& describe() const override { return interior_->describe(); }
-  void meet(int port, const PortGeometry& partner, const ContactLaw& law) override;
-  void yields(int port, int partner, const PortKernel& kernel) override;
+  void meet(const Meeting& meeting) override;
   void save() override;
   void restore() override;
   void start(const Advance& request) override { request_ = &request; }
   [[nodiscard]] Outcome finish(Response& response) override;
-  PortKernel probe(int port, std::span<const double> patterns, double step, int count) override;
-  PortKernel probe(int port, std::span<const double> patterns, double step, int count,
-                   std::span<const int> seen) override;
+  PortKernel probe(const Probing& asked) override;
   std::vector<std::byte> checkpoint() override;
   void resume(std::span<const std::byte> bytes) override;
   std::uint64_t state_hash() override;
@@ -36,10 +33,8 @@ class Body final : public Subdomain {
   std::vector<FieldValues> fields() override { return interior_->fields(); }
 
  private:
-  PortKernel probe(int port, std::span<const double> patterns, double step, int count,
-                   std::span<const int> seen, bool begin);
-  PortKernel probe_statics(int port, std::span<const double> patterns, double step, int count,
-                           std::span<const int> seen);
+  PortKernel probe_dynamics(const Probing& asked, std::span<const int> seen);
+  PortKernel probe_statics(const Probing& asked, std::span<const int> seen);
   /// A port as substeps see it.
   struct Watched {
     const PortGeometry* geometry = nullptr;

@@ -464,7 +464,7 @@ Energy SolidInterior::energy() const {
 void SolidInterior::finish(std::size_t port, PortResponse& reply) const {
   if (description_.dim == 1) return;
   for (std::size_t k = 0; contact_ && k < reply.reactions.size(); ++k)
-    reply.reactions[k].dissipated = contact_->dissipated(port, k);
+    contact_->finish(port, k, reply.reactions[k]);
   const std::size_t dim = index(description_.dim);
   const double* v = seen_.v.data() + port_map_->first(port);
   double most = 0.0;

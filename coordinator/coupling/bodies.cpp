@@ -122,7 +122,8 @@ const PortPose& Bodies::pose(const Side& side) const {
 
 void Bodies::meet(Side& side, const PortGeometry& partner, const ContactLaw& law) {
   side.partner = partners_[side.body][side.port]++;
-  if (describe(side.body).can.obstacle) (*this)[side.body].meet(side.port, partner, law);
+  if (describe(side.body).can.obstacle)
+    (*this)[side.body].meet({side.port, side.partner, &partner, law});
 }
 
 void Bodies::want(const Want& fields) {
@@ -210,25 +211,25 @@ PortKernel& Bodies::cached(Kernels& kernels, int body, int port) {
   return kernels.emplace_back(CachedKernel{body, port, {}}).kernel;
 }
 
-PortKernel Bodies::ask(int body, int port, std::span<const double> patterns, int count) {
+PortKernel Bodies::ask(int body, Probing probing) {
   const double step = describe(body).step;
+  probing.step = step > 0.0 ? step : window_;
   ++exchanges_;
-  return (*this)[body].probe(port, patterns, step > 0.0 ? step : window_, count);
+  return (*this)[body].probe(probing);
 }
 
 PortKernel Bodies::probe(int body, int port, std::span<const double> patterns, int count,
                          std::span<const int> seen) {
-  if (seen.size() == 1 && seen.front() == port) return ask(body, port, patterns, count);
-  const double step = describe(body).step;
-  ++exchanges_;
-  return (*this)[body].probe(port, patterns, step > 0.0 ? step : window_, count, seen);
+  Probing probing{port, {patterns.begin(), patterns.end()}, 0.0, count};
+  if (seen.size() != 1 || seen.front() != port) probing.seen.assign(seen.begin(), seen.end());
+  return ask(body, std::move(probing));
 }
 
 const PortKernel& Bodies::kernel(int body, int port, int count) {
   PortKernel& kernel = cached(kernels_, body, port);
   if (kernel.count() >= count) return kernel;
   const PortGeometry& surface = describe(body).ports[port].geometry;
-  kernel = along(ask(body, port, surface.normals, count), surface);
+  kernel = along(ask(body, {port, surface.normals, 0.0, count}), surface);
   return kernel;
 }
 
@@ -249,7 +250,7 @@ PortKernel Bodies::full_kernel(int body, int port, int count,
       const std::size_t v = first + k;
       units[k * width + (points.empty() ? v : index(points[v / dim]) * dim + v % dim)] = 1.0;
     }
-    PortKernel part = for_levels(cut(ask(body, port, units, count), points, dim));
+    PortKernel part = for_levels(cut(ask(body, {port, units, 0.0, count}), points, dim));
     if (some == values) return part;
     if (first == 0) whole = room_for(part, static_cast<int>(values));
     put(part, static_cast<int>(first), whole);
@@ -257,9 +258,9 @@ PortKernel Bodies::full_kernel(int body, int port, int count,
   return whole;
 }
 
-void Bodies::yields(const Side& kinematic, int partner, const Side& of, const PortKernel& kernel) {
+void Bodies::meet(const Side& kinematic, int partner, const Side& of, const PortKernel& kernel) {
   try {
-    (*this)[kinematic.body].yields(kinematic.port, partner, kernel);
+    (*this)[kinematic.body].meet({kinematic.port, partner, nullptr, {}, &kernel});
   } catch (const RunError& error) {
     throw RunError(fmt::format("{} (body '{}', told how body '{}' gives way)", error.what_is_wrong,
                                describe(kinematic.body).name, describe(of.body).name),

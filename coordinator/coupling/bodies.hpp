@@ -85,7 +85,7 @@ class Bodies {
 
   /// Tells the kinematic side how its partner's surface gives way, or for `own_surface` how its own
   /// one does; `of` is whose kernel it is.
-  void yields(const Side& kinematic, int partner, const Side& of, const PortKernel& kernel);
+  void meet(const Side& kinematic, int partner, const Side& of, const PortKernel& kernel);
 
   /// Responses of some ports, one after the other, to patterns of force on one of them.
   PortKernel probe(int body, int port, std::span<const double> patterns, int count,
@@ -112,7 +112,7 @@ class Bodies {
   };
   using Kernels = std::deque<CachedKernel>;  // references to kernels stay valid
   static PortKernel& cached(Kernels& kernels, int body, int port);
-  PortKernel ask(int body, int port, std::span<const double> patterns, int count);
+  PortKernel ask(int body, Probing probing);
 
   std::vector<Subdomain*> subdomains_;
   double window_;  // [s]

@@ -18,6 +18,10 @@ namespace {
 /// Substeps over which a force goes on rising or falling as it did; then it stays.
 constexpr int most_rising = 3;
 
+/// Sweeps before it come from guesses: what slides in them may be far from what will. From the
+/// next one on points that slid count as sliding: they become more and never fewer, which ends.
+constexpr int first_that_counts = 3;
+
 }  // namespace
 
 void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
@@ -42,6 +46,8 @@ void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodi
   scale_.step = std::max(kinematic_grid_.step, iterate_.steps.step);
   scale_.velocity = usual_speed_ = measured_speed_ = joint.contact.closing_speed;
   swept_ = false;
+  sweeps_ = 0;
+  slid_.clear();
 }
 
 /// Where its last reply told the Neumann side would fly: over a window like this one.
@@ -105,7 +111,7 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
     answer_ = bodies.full_kernel(n.body, n.port, iterate_.steps.count, zone_.points());
     if (levels_of(kinematic_grid_) == levels_of(iterate_.steps)) answer_.compliance.clear();
   }
-  bodies.yields(k, k.partner, n, answer_);
+  bodies.meet(k, k.partner, n, answer_);
   answer_told_ = true;
   eased_[1].told = {};
 }
@@ -170,11 +176,14 @@ void CompliantObstacle::impose(int side, const Eigen::Ref<const Eigen::VectorXd>
     std::ranges::copy(f_begin_, given_.f.begin());
     if (eased_[1].port != nullptr) fit_ties();
   }
-  bodies.obstacle(here).motion = given_;
+  Obstacle& obstacle = bodies.obstacle(here);
+  obstacle.motion = given_;
+  obstacle.slid = slid_;
+  if (eased_[0].port != nullptr) bodies.boundary(here).balanced = balanced_;
 }
 
-/// Forces of ties fit a reaction: the surface stands where that leads it, and neighbours answer
-/// what comes beyond.
+/// The tie forces balance f of the sweep before: the surface is where that moves it, and the kernel
+/// adds the effect of what exceeds it.
 void CompliantObstacle::fit_ties() {
   Eigen::Map<Eigen::VectorXd> moved(given_.u.data() + iterate_.width, iterate_.size());
   take_back(-fits_, moved);
@@ -193,7 +202,10 @@ bool CompliantObstacle::ease(TieNet& net, const Joint& joint, Bodies& bodies) {
     eased_[1].port = net.touching(n, zone_.points(), largest_kernel_, bodies);
   if (net.joins(k.body) && eased_[0].port == nullptr) return false;
   if (net.joins(n.body) && eased_[1].port == nullptr && !zone_.empty()) return false;
-  if (eased_[0].port != nullptr) tell_neighbours(k, eased_[0].port->give(), bodies);
+  if (eased_[0].port != nullptr) {
+    tell_neighbours(k, eased_[0].port->give(), bodies);
+    balance_begin(k, bodies);
+  }
   if (eased_[1].port == nullptr) return true;
   fits_.setZero(iterate_.width, iterate_.steps.count + 1);
   for (int i = 1; i <= iterate_.steps.count; ++i)
@@ -204,29 +216,46 @@ bool CompliantObstacle::ease(TieNet& net, const Joint& joint, Bodies& bodies) {
     all.displacement[v] += more[v];
   if (eased_[1].told.points == all.points && eased_[1].told.displacement == all.displacement)
     return true;
-  bodies.yields(k, k.partner, n, all);
+  bodies.meet(k, k.partner, n, all);
   eased_[1].told = std::move(all);
   return true;
 }
 
 void CompliantObstacle::tell_neighbours(const Side& k, const PortKernel& give, Bodies& bodies) {
   if (eased_[0].told.displacement == give.displacement) return;
-  bodies.yields(k, own_surface, k, give);
+  bodies.meet(k, own_surface, k, give);
   eased_[0].told = give;
 }
 
 void CompliantObstacle::withdraw(const Joint& joint, Bodies& bodies) {
   const Side& k = joint.kinematic_side();
-  Eased &own = eased_[0], &other = eased_[1];
-  own.port = other.port = nullptr;
-  if (own.told.count() > 0) {
-    own.told.displacement.assign(own.told.per_step(), 0.0);
-    own.told.begin = own.told.displacement;
-    bodies.yields(k, own_surface, k, own.told);
-    own.told = {};
-  }
-  if (other.told.count() > 0) bodies.yields(k, k.partner, joint.neumann_side(), answer_);
-  other.told = {};
+  for (Eased& eased : eased_) eased.port = nullptr;
+  bodies.boundary(k).balanced.clear();
+  PortKernel& told = eased_[1].told;
+  if (told.count() > 0) bodies.meet(k, k.partner, joint.neumann_side(), answer_);
+  told = {};
+}
+
+/// In the first sweep the tie forces balance what presses when the window begins.
+void CompliantObstacle::balance_begin(const Side& k, const Bodies& bodies) {
+  const Waveform& trace = trace_of(bodies, k);
+  const std::span<const double> begin =
+      row(trace, trace.f, index_at_begin(trace, kinematic_grid_.begin));
+  balanced_.clear();
+  balanced_.width = trace.width;
+  balanced_.time = levels_of(kinematic_grid_);
+  for (std::size_t i = 0; i < balanced_.time.size(); ++i)
+    balanced_.f.insert(balanced_.f.end(), begin.begin(), begin.end());
+}
+
+/// What the kinematic side found in this sweep, for the next one.
+void CompliantObstacle::keep_found(const Side& k, const Bodies& bodies) {
+  ++sweeps_;
+  if (sweeps_ >= first_that_counts) slid_ = port_of(bodies, k).reactions.at(index(k.partner)).slid;
+  if (eased_[0].port == nullptr) return;
+  const Waveform& trace = trace_of(bodies, k);
+  balanced_.time = trace.time;
+  balanced_.f = trace.f;
 }
 
 void CompliantObstacle::follow(const Eigen::VectorXd& change,
@@ -237,6 +266,7 @@ void CompliantObstacle::follow(const Eigen::VectorXd& change,
 /// d = y - kernel * reaction, of the last replies.
 void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                               const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
+  keep_found(joint.kinematic_side(), bodies);
   const Waveform& trace = trace_of(bodies, joint.neumann_side());
   const int width = iterate_.width;
   for (int i = 1; i <= iterate_.steps.count; ++i)
@@ -370,7 +400,9 @@ void CompliantObstacle::scales(Eigen::Ref<Eigen::VectorXd> s) const {
 void CompliantObstacle::state(Archive& archive) {
   zone_.state(archive);
   field(archive, "answer", answer_);
-  if (!archive.writing()) answer_told_ = false;
+  if (archive.writing()) return;
+  answer_told_ = false;
+  eased_ = {};
 }
 
 }  // namespace abut

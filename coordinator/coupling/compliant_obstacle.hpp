@@ -77,6 +77,8 @@ class CompliantObstacle final : public Exchange {
   void take_back_end(Eigen::Ref<Eigen::VectorXd> motion) const;
   void fit_ties();
   void tell_neighbours(const Side& k, const PortKernel& give, Bodies& bodies);
+  void balance_begin(const Side& k, const Bodies& bodies);
+  void keep_found(const Side& k, const Bodies& bodies);
   void leave_far(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> g) const;
   double reached(const Waveform& trace) const;
   void see_speed(double now);
@@ -105,8 +107,11 @@ class CompliantObstacle final : public Exchange {
   std::array<Eased, 2> eased_;  // of the kinematic side, of the other
   const TieLayout* layout_ = nullptr;
   Eigen::MatrixXd fits_;  // [N] as taken_: what forces of ties fit, of the sweep before
-  bool linear_ = false;   // of the Neumann side
-  bool shared_ = false;   // the Neumann side has other joints
+  Waveform balanced_;     // [N] f of the kinematic port that forces of ties fit, as fits_
+  int sweeps_ = 0;        // of the window so far
+  std::vector<std::int32_t> slid_;         // points that count as sliding in the next sweep
+  bool linear_ = false;                    // of the Neumann side
+  bool shared_ = false;                    // the Neumann side has other joints
   bool flies_ = false;
   double looks_ = 0.0;      // [s] by which the Neumann side looks on after the window
   Eigen::VectorXd flight_;  // [m] as the iterate; empty: none was flown

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "base/index.hpp"
 #include "messaging/codec/parts.hpp"
@@ -10,10 +11,10 @@ namespace abut {
 namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
-static_assert(sizeof(Obstacle) == sizeof(Waveform));
+static_assert(sizeof(Obstacle) == sizeof(Waveform) + sizeof(std::vector<std::int32_t>));
 static_assert(sizeof(Impedance) == 2 * sizeof(double));
 static_assert(sizeof(BoundaryData) ==
-              sizeof(Waveform) + sizeof(Impedance) + 3 * sizeof(std::vector<double>));
+              2 * sizeof(Waveform) + sizeof(Impedance) + 3 * sizeof(std::vector<double>));
 
 using Wire = v1::BoundaryData;
 
@@ -30,19 +31,6 @@ template <class T>
 T& entry(std::vector<T>& entries, std::size_t place) {
   if (place == entries.size()) entries.emplace_back();
   return entries[place];
-}
-
-/// The waveform inside an obstacle; empty: absent.
-Bytes motion_of(Bytes obstacle, const FieldPath& path) {
-  Bytes motion;
-  for (WireReader from(obstacle, path); from.next();) {
-    if (from.field() == v1::Obstacle::kMotionFieldNumber) {
-      motion = from.message();
-    } else {
-      from.skip();
-    }
-  }
-  return motion;
 }
 
 Impedance decode_impedance(Bytes bytes, const FieldPath& path) {
@@ -72,16 +60,37 @@ void decode_motion(Bytes from, const SurfaceSize& surface, const FieldPath& path
   require_field(to, to.u, "u", path);
 }
 
-void decode_obstacle(Bytes from, const std::vector<SurfaceSize>& partners, std::size_t place,
-                     const FieldPath& path, Waveform& to) {
-  const Bytes bytes = motion_of(from, path);
-  if (bytes.empty()) return to.clear();  // absent
-  decode_motion(bytes, partners[place], FieldPath{&path, "motion"}, to);
+void decode_obstacle(Bytes bytes, const SurfaceSize& partner, const FieldPath& path, Obstacle& to) {
+  Bytes motion;
+  to.slid.clear();
+  for (WireReader from(bytes, path); from.next();) {
+    switch (from.field()) {
+      case v1::Obstacle::kMotionFieldNumber:
+        motion = from.message();
+        break;
+      case v1::Obstacle::kSlidFieldNumber:
+        from.integers(to.slid);
+        break;
+      default:
+        from.skip();
+    }
+  }
+  check_slid(to.slid, std::numeric_limits<std::int32_t>::max(), FieldPath{&path, "slid"});
+  if (motion.empty()) return to.clear();  // absent
+  decode_motion(motion, partner, FieldPath{&path, "motion"}, to.motion);
+}
+
+/// Of all points of the port, which bodies that are tied respond at.
+void decode_balanced(Bytes from, const SurfaceSize& port, const FieldPath& path, Waveform& to) {
+  decode_force(from, port, path, to);
+  if (to.empty()) path.fail("is present but empty");
+  if (!to.points.empty()) FieldPath{&path, "points"}.fail("is not of all points");
 }
 
 }  // namespace
 
 void encode(const BoundaryData& from, WireWriter& to) {
+  if (!from.balanced.empty()) encode(from.balanced, Want{}, Wire::kBalancedFieldNumber, to);
   if (!from.impedance.empty()) {
     const std::size_t before = to.size();
     to.integer(v1::Impedance::kBilateralFieldNumber, from.impedance.bilateral);
@@ -92,6 +101,7 @@ void encode(const BoundaryData& from, WireWriter& to) {
   for (std::size_t i = filled(from.obstacles); i-- > 0;) {
     const std::size_t before = to.size();
     const Waveform& motion = from.obstacles[i].motion;
+    to.integers(v1::Obstacle::kSlidFieldNumber, from.obstacles[i].slid);
     if (!motion.empty()) encode(motion, Want{}, v1::Obstacle::kMotionFieldNumber, to);
     to.close(Wire::kObstaclesFieldNumber, before);
   }
@@ -111,7 +121,7 @@ void decode(Bytes bytes, const SurfaceSize& port, const std::vector<SurfaceSize>
   to.impedance = {};
   to.impulse.clear();
   std::size_t forces = 0, obstacles = 0;
-  bool moved = false;
+  bool moved = false, balanced = false;
   for (WireReader from(bytes, path); from.next();) {
     const FieldPath force{&path, "forces", static_cast<int>(forces)};
     const FieldPath obstacle{&path, "obstacles", static_cast<int>(obstacles)};
@@ -129,8 +139,8 @@ void decode(Bytes bytes, const SurfaceSize& port, const std::vector<SurfaceSize>
         if (obstacles >= partners.size()) {
           obstacle.fail(fmt::format("is of nobody: the port has met {} partners", partners.size()));
         }
-        decode_obstacle(from.message(), partners, obstacles, obstacle,
-                        entry(to.obstacles, obstacles).motion);
+        decode_obstacle(from.message(), partners[obstacles], obstacle,
+                        entry(to.obstacles, obstacles));
         ++obstacles;
         break;
       case Wire::kImpulseFieldNumber:
@@ -139,13 +149,18 @@ void decode(Bytes bytes, const SurfaceSize& port, const std::vector<SurfaceSize>
       case Wire::kImpedanceFieldNumber:
         to.impedance = decode_impedance(from.message(), FieldPath{&path, "impedance"});
         break;
+      case Wire::kBalancedFieldNumber:
+        decode_balanced(from.message(), port, FieldPath{&path, "balanced"}, to.balanced);
+        balanced = true;
+        break;
       default:
         from.skip();
     }
   }
   if (!moved) to.motion.clear();
+  if (!balanced) to.balanced.clear();
   for (; forces < to.forces.size(); ++forces) to.forces[forces].clear();
-  for (; obstacles < to.obstacles.size(); ++obstacles) to.obstacles[obstacles].motion.clear();
+  for (; obstacles < to.obstacles.size(); ++obstacles) to.obstacles[obstacles].clear();
   check(to.impulse, index(port.width()), true, FieldPath{&path, "impulse"});
 }
 

@@ -10,7 +10,8 @@ namespace {
 // A member added to the contract and forgotten here would silently arrive as zero.
 static_assert(sizeof(PortKernel) == 3 * sizeof(double) + 6 * sizeof(std::vector<double>));
 
-/// The arrays are whole and of one size; patterns and width are those that the caller expects.
+}  // namespace
+
 void decode(const v1::PortKernel& from, int patterns, int width, const FieldPath& path,
             PortKernel& to) {
   to.step = number(from.step(), FieldPath{&path, "step"}, Allow::not_negative);
@@ -33,8 +34,6 @@ void decode(const v1::PortKernel& from, int patterns, int width, const FieldPath
   take(from.displacement(), displacement, to.displacement);
   take(from.begin(), to.displacement.size(), true, FieldPath{&path, "begin"}, to.begin);
 }
-
-}  // namespace
 
 void encode(const Probing& from, v1::Probe& to) {
   to.set_port(from.port);
@@ -95,41 +94,6 @@ void decode(const v1::PortKernel& from, const Description& body, const Probing& 
   if (to.count() == asked.count) return;
   FieldPath{&path, "displacement"}.fail(
       fmt::format("has {} substeps where {} were asked for", to.count(), asked.count));
-}
-
-void encode(const Yielding& from, v1::Yields& to) {
-  to.set_port(from.port);
-  to.set_partner(from.partner);
-  encode(from.kernel, *to.mutable_kernel());
-  if (from.first) {
-    to.set_first(*from.first);
-  } else {
-    to.clear_first();
-  }
-}
-
-void decode(const v1::Yields& from, const Description& body, const Partners& met, Yielding& to) {
-  const FieldPath path{nullptr, "yields"};
-  to.port = position(from.port(), met.size(), FieldPath{&path, "port"});
-  const std::vector<SurfaceSize>& partners = met[to.port];
-  to.partner = from.partner();
-  const bool own = to.partner == own_surface;
-  if (!own) position(to.partner, partners.size(), FieldPath{&path, "partner"});
-  const FieldPath kernel{&path, "kernel"};
-  if (!from.has_kernel()) kernel.fail("is missing");
-  const SurfaceSize surface =
-      own ? size_of(body.ports[to.port].geometry) : partners[to.partner];
-  to.kernel.points.assign(from.kernel().points().begin(), from.kernel().points().end());
-  check_points(to.kernel.points, surface.points, FieldPath{&kernel, "points"});
-  const int width = to.kernel.points.empty()
-                        ? surface.width()
-                        : static_cast<int>(to.kernel.points.size()) * surface.dim;
-  to.patterns = width;
-  to.first.reset();
-  if (from.has_first()) to.first = position(from.first(), index(width), FieldPath{&path, "first"});
-  const int most = width - to.first.value_or(0), some = from.kernel().patterns();
-  const int patterns = to.first && some > 0 && some < most ? some : most;
-  decode(from.kernel(), patterns, width, kernel, to.kernel);
 }
 
 }  // namespace abut

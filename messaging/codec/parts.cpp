@@ -80,6 +80,16 @@ void check_points(const std::vector<std::int32_t>& points, int count, const Fiel
   }
 }
 
+void check_slid(const std::vector<std::int32_t>& slid, std::int64_t most, const FieldPath& path) {
+  std::int32_t least = 0;
+  for (std::size_t i = 0; i < slid.size(); ++i) {
+    if (slid[i] < least) path.fail(fmt::format("does not ascend at entry {}", i));
+    if (slid[i] >= most)
+      path.fail(fmt::format("has entry {}, but {} are all of substeps and points", slid[i], most));
+    least = slid[i] + 1;
+  }
+}
+
 void take_names(const google::protobuf::RepeatedPtrField<std::string>& from, const FieldPath& path,
                 std::vector<std::string>& to) {
   if (from.size() > most_names) path.fail("has too many entries");

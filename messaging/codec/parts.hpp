@@ -74,12 +74,18 @@ ForceSupport decode(v1::ForceSupport support, const FieldPath& path);
 void encode(const Waveform& from, const Want& want, int field, WireWriter& to);
 /// Of the surface's points, or of those that it lists.
 void decode(Bytes from, const SurfaceSize& surface, const FieldPath& path, Waveform& to);
+/// Entries of substeps x points ascend from 0, and are below `most`.
+void check_slid(const std::vector<std::int32_t>& slid, std::int64_t most, const FieldPath& path);
 /// A field of a waveform that this message is for is there.
 void require_field(const Waveform& of, const std::vector<double>& field, const char* name,
                    const FieldPath& path);
 
 void encode(const PortGeometry& from, v1::Surface& to);
 void decode(const v1::Surface& from, const FieldPath& path, PortGeometry& to);
+
+/// The arrays are whole and of one size; patterns and width are those that the caller expects.
+void decode(const v1::PortKernel& from, int patterns, int width, const FieldPath& path,
+            PortKernel& to);
 
 void encode(const BoundaryData& from, WireWriter& to);
 void decode(Bytes from, const SurfaceSize& port, const std::vector<SurfaceSize>& partners,

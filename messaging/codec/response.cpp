@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "base/index.hpp"
@@ -11,7 +12,8 @@ namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
 static_assert(sizeof(Recoil) == 2 * sizeof(double));
-static_assert(sizeof(Reaction) == sizeof(Waveform) + sizeof(double));
+static_assert(sizeof(Reaction) ==
+              sizeof(Waveform) + sizeof(double) + sizeof(std::vector<std::int32_t>));
 static_assert(sizeof(PortResponse) == 2 * sizeof(Waveform) + 5 * sizeof(std::vector<double>) +
                                           3 * sizeof(double) + sizeof(std::optional<Recoil>));
 
@@ -35,6 +37,7 @@ void encode(const PortResponse& from, const Want& want, WireWriter& to) {
     const std::size_t before = to.size();
     const Waveform& force = from.reactions[reactions].force;
     if (!force.empty()) {
+      to.integers(v1::Reaction::kSlidFieldNumber, from.reactions[reactions].slid);
       to.number(v1::Reaction::kDissipatedFieldNumber, from.reactions[reactions].dissipated);
       encode(force, Want{}, v1::Reaction::kForceFieldNumber, to);
     }
@@ -86,16 +89,23 @@ void decode_ahead(Bytes from, const Port& port, const Advance& asked, const Fiel
 }
 
 /// The force inside a reaction; empty: absent. Reads the rest of it.
-Bytes force_of(Bytes reaction, const FieldPath& path, double& dissipated) {
+Bytes force_of(Bytes bytes, const FieldPath& path, Reaction& to) {
   Bytes force;
-  dissipated = 0.0;
-  for (WireReader from(reaction, path); from.next();) {
-    if (from.field() == v1::Reaction::kForceFieldNumber) {
-      force = from.message();
-    } else if (from.field() == v1::Reaction::kDissipatedFieldNumber) {
-      dissipated = number(from.number(), FieldPath{&path, "dissipated"});
-    } else {
-      from.skip();
+  to.dissipated = 0.0;
+  to.slid.clear();
+  for (WireReader from(bytes, path); from.next();) {
+    switch (from.field()) {
+      case v1::Reaction::kForceFieldNumber:
+        force = from.message();
+        break;
+      case v1::Reaction::kDissipatedFieldNumber:
+        to.dissipated = number(from.number(), FieldPath{&path, "dissipated"});
+        break;
+      case v1::Reaction::kSlidFieldNumber:
+        from.integers(to.slid);
+        break;
+      default:
+        from.skip();
     }
   }
   return force;
@@ -106,7 +116,7 @@ Bytes force_of(Bytes reaction, const FieldPath& path, double& dissipated) {
 void decode_reaction(Bytes bytes, const Waveform& motion, int dim, const TimeWindow& window,
                      const FieldPath& parent, Reaction& reaction) {
   Waveform& to = reaction.force;
-  const Bytes from = force_of(bytes, parent, reaction.dissipated);
+  const Bytes from = force_of(bytes, parent, reaction);
   if (from.empty()) return to.clear();  // absent
   const FieldPath path{&parent, "force"};
   if (motion.empty()) path.fail("answers an obstacle that is absent");
@@ -118,6 +128,18 @@ void decode_reaction(Bytes bytes, const Waveform& motion, int dim, const TimeWin
     FieldPath{&path, "points"}.fail("is not that of the obstacle");
   require_field(to, to.f, "f", path);
   check_span(to, window, path);
+}
+
+/// Points that slid are of the port, at the end of a substep but the last.
+void check_slid(const Response& reply, const Description& body, int steps, const FieldPath& path) {
+  for (std::size_t p = 0; p < reply.ports.size(); ++p) {
+    const FieldPath port{&path, "ports", static_cast<int>(p)};
+    const std::int64_t most = std::int64_t{std::max(0, steps - 1)} * body.ports[p].geometry.count();
+    for (std::size_t k = 0; k < reply.ports[p].reactions.size(); ++k) {
+      const FieldPath reaction{&port, "reactions", static_cast<int>(k)};
+      check_slid(reply.ports[p].reactions[k].slid, most, FieldPath{&reaction, "slid"});
+    }
+  }
 }
 
 /// Each obstacle of the request has its reaction.
@@ -213,7 +235,10 @@ void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance
   }
   if (!traced) to.trace.clear();
   if (!looked) to.ahead.clear();
-  for (; reactions < to.reactions.size(); ++reactions) to.reactions[reactions].force.clear();
+  for (; reactions < to.reactions.size(); ++reactions) {
+    to.reactions[reactions].force.clear();
+    to.reactions[reactions].slid.clear();
+  }
   require_reactions(asked.boundary[place], path, to.reactions);
   check(to.lower, index(asked.records * port.geometry.dim), true, FieldPath{&path, "lower"});
   check(to.upper, to.lower.size(), false, FieldPath{&path, "upper"});
@@ -286,6 +311,7 @@ void decode(Bytes bytes, const Description& body, const Advance& asked, Response
   require_count(ports, body.ports.size(), "ports", all_ports);
   require_count(records, to.records.size(), "records that were asked for", all_records);
   to.steps = static_cast<int>(steps);
+  check_slid(to, body, to.steps, path);
   check(to.unbalanced, index(steps) * index(loose_motions(body)), false,
         FieldPath{&path, "unbalanced"});
 }

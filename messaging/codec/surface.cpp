@@ -11,7 +11,6 @@ namespace {
 // A member added to the contract and forgotten here would silently arrive as zero.
 static_assert(sizeof(PortGeometry) ==
               5 * sizeof(std::vector<double>) + 4 * sizeof(double));  // dim, round and embedded
-static_assert(sizeof(ContactLaw) == 3 * sizeof(double));              // the first are two flags
 
 /// Facets are nodes one facet after the other; offsets say where each begins, and the last ends.
 void check_facets(const PortGeometry& surface, const FieldPath& path) {
@@ -69,34 +68,6 @@ void decode(const v1::Surface& from, const FieldPath& path, PortGeometry& to) {
   to.parts.assign(from.parts().begin(), from.parts().end());
   if (const std::string wrong = unsound_parts(to); !wrong.empty())
     FieldPath{&path, "parts"}.fail(wrong);
-}
-
-void encode(const Meeting& from, v1::Meet& to) {
-  to.set_port(from.port);
-  encode(from.partner, *to.mutable_surface());
-  to.set_tied(from.law.tied);
-  to.set_points(from.law.points);
-  to.set_static_friction(from.law.static_friction);
-  to.set_kinetic_friction(from.law.kinetic_friction);
-}
-
-void decode(const v1::Meet& from, const Description& body, Meeting& to) {
-  const FieldPath path{nullptr, "meet"};
-  to.port = position(from.port(), body.ports.size(), FieldPath{&path, "port"});
-  const FieldPath surface{&path, "surface"};
-  if (!from.has_surface()) surface.fail("is missing");
-  decode(from.surface(), surface, to.partner);
-  const int dim = body.ports[to.port].geometry.dim;
-  if (to.partner.dim != dim) {
-    FieldPath{&surface, "dim"}.fail(
-        fmt::format("is {}, but the port's is {}", to.partner.dim, dim));
-  }
-  if (to.partner.count() == 0) FieldPath{&surface, "points"}.fail("is empty");
-  to.law.tied = from.tied();
-  to.law.points = from.points();
-  const FieldPath sticks{&path, "static_friction"}, slides{&path, "kinetic_friction"};
-  to.law.static_friction = number(from.static_friction(), sticks, Allow::not_negative);
-  to.law.kinetic_friction = number(from.kinetic_friction(), slides, Allow::not_negative);
 }
 
 }  // namespace abut

@@ -43,9 +43,9 @@ class PortContact : public Contact {
   /// Appends the force on these points [N].
   virtual void react(std::size_t port, std::size_t partner, const std::vector<double>& forces,
                      std::vector<double>& out) const = 0;
-  /// [J] by friction with a partner, since the run began.
-  virtual double dissipated(std::size_t, std::size_t) const { return 0.0; }
-  /// [J] with all.
+  /// Completes the reply to an obstacle at the window's end: what friction did.
+  virtual void finish(std::size_t /*port*/, std::size_t /*partner*/, Reaction&) const {}
+  /// [J] by friction with all partners, since the run began.
   virtual double dissipated() const { return 0.0; }
   /// Calls `see` with the points of a port that have something near, the gaps [m] there, and
   /// whether friction holds them.

@@ -115,6 +115,7 @@ void SurfaceContact::impose(const Window& window) {
   for (std::size_t k = 0; k < meetings_.size(); ++k) {
     Meeting& m = meetings_[k];
     const std::size_t port = m.obstacle->port();
+    begin_slid(m, window.request.boundary[port], window.grid);
     m.obstacle->impose(window.request.boundary[port], window.partners[port][m.obstacle->partner()],
                        window.grid, surfaces_[m.own].pose, reacted(m));
     if (m.obstacle->acts()) continue;
@@ -123,7 +124,6 @@ void SurfaceContact::impose(const Window& window) {
     std::ranges::fill(pressed(m), 0.0);
     std::ranges::fill(reacted(m), 0.0);
   }
-  if (sticks_harder()) slides_.begin(window.request.window, window.grid.count, sizes_.slid);
   begin_neighbours(window);
 }
 
@@ -155,7 +155,6 @@ void SurfaceContact::settle(std::vector<double>& forces) {
     if (own.neighbours.act()) own.neighbours.settle(pressing(own));
   for (std::size_t k = 0; k < meetings_.size(); ++k)
     if (meetings_[k].law.rubs() && meetings_[k].obstacle->acts()) settle_friction(k);
-  if (sticks_harder()) slides_.see(substep_, slid_);
 }
 
 void SurfaceContact::react(std::size_t port, std::size_t partner, const std::vector<double>&,

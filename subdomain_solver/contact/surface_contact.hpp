@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "subdomain_solver/contact/port_contact.hpp"
-#include "subdomain_solver/contact/slid_points.hpp"
 #include "subdomain_solver/contact/surface_obstacle.hpp"
 #include "subdomain_solver/contact/tied_neighbours.hpp"
 #include "subdomain_solver/fe/cell_kernel.hpp"
@@ -41,7 +40,7 @@ class SurfaceContact final : public PortContact {
   const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override;
   std::string misfit(std::size_t port, const PortKernel& kernel) const override;
   void ease(std::size_t port, const PortKernel& kernel) override;
-  double dissipated(std::size_t port, std::size_t partner) const override;
+  void finish(std::size_t port, std::size_t partner, Reaction& reply) const override;
   double dissipated() const override;
   void see_gaps(std::size_t port, const SeeGap& see) const override;
 
@@ -65,6 +64,9 @@ class SurfaceContact final : public PortContact {
     ContactLaw law;
     std::size_t pressed = 0, reacted = 0;    // where its forces begin in pressed_, reactions_
     std::size_t slid = 0, anchor = 0;        // and its parts of slid_, anchors_, where it rubs
+    // Where what sticks has a coefficient of its own, of the window: points that count as sliding
+    // because they slid in earlier sweeps, and those that slid in this one (Reaction::slid).
+    std::vector<std::int32_t> told_slid, slid_now;
     Eigen::Index first = 0;                  // of its components
     int first_row = 0, rows = 0, parts = 1;  // of the problem; components of a row
   };
@@ -88,7 +90,8 @@ class SurfaceContact final : public PortContact {
   [[nodiscard]] bool find_forces();
   void tell_missing();
   void guess_forces();
-  bool sticks_harder() const;
+  void begin_slid(Meeting& m, const BoundaryData& boundary, const Substeps& grid);
+  void settle_slid(Meeting& m);
   void settle_friction(std::size_t meeting);
   void forget_shears(const Meeting& m);
   void spread();
@@ -113,7 +116,7 @@ class SurfaceContact final : public PortContact {
   // [N] (meetings that rub, values of the port) along the surface, on the body: state
   std::vector<double> shears_;
   std::vector<double> shears_before_;
-  SlidPoints slides_;  // of the window, where what sticks has a coefficient of its own
+  int substeps_ = 0;  // of the window
   int substep_ = 0;
   std::vector<double> anchors_;     // [m] (meetings that rub, values of the partner): state
   std::vector<double> anchored_;    // (meetings) 1: anchors are those of now: state

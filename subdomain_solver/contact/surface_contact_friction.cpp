@@ -7,6 +7,7 @@
 
 #include <fmt/ranges.h>
 
+#include "base/error.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/contact/surface_contact.hpp"
 
@@ -22,7 +23,7 @@ void SurfaceContact::forget_shears(const Meeting& m) {
 /// What friction took in the substep: by the mean of the forces at its ends, as the schemes work
 /// with them. Which points slid, and where the partner was.
 void SurfaceContact::settle_friction(std::size_t meeting) {
-  const Meeting& m = meetings_[meeting];
+  Meeting& m = meetings_[meeting];
   opened_ = gaps_;
   opened_.noalias() += compliance_ * row_force_;
   const std::size_t dim = index(surfaces_[m.own].surface.geometry->dim);
@@ -50,13 +51,46 @@ void SurfaceContact::settle_friction(std::size_t meeting) {
   }
   m.obstacle->end_slip(reacted(m), anchor(m));
   anchored_[meeting] = 1.0;
+  if (m.law.static_friction != m.law.kinetic_friction) settle_slid(m);
 }
 
-double SurfaceContact::dissipated(std::size_t port, std::size_t partner) const {
-  for (std::size_t k = 0; k < meetings_.size() && k < dissipated_.size(); ++k)
-    if (meetings_[k].obstacle->port() == port && meetings_[k].obstacle->partner() == partner)
-      return dissipated_[k];
-  return 0.0;
+void SurfaceContact::begin_slid(Meeting& m, const BoundaryData& boundary, const Substeps& grid) {
+  m.slid_now.clear();
+  m.told_slid.clear();
+  substeps_ = grid.count;
+  const std::size_t partner = m.obstacle->partner();
+  if (partner >= boundary.obstacles.size()) return;
+  m.told_slid = boundary.obstacles[partner].slid;
+  const std::size_t points = surfaces_[m.own].surface.nodes.size();
+  if (!m.told_slid.empty() && index(m.told_slid.back()) >= points * index(grid.count))
+    throw RunError(fmt::format("is told that entry {} slid, of {} points and {} substeps",
+                               m.told_slid.back(), points, grid.count),
+                   fmt::format("body '{}'", body_), "Give entries of this window alone.");
+}
+
+/// Whether a point slides may depend on what a sweep leaves open, and its coefficient in the next
+/// substep depends on that. So points that slid in earlier sweeps count as sliding, but not at the
+/// window's end: what is handed on is what happened [M.126].
+void SurfaceContact::settle_slid(Meeting& m) {
+  if (substep_ < 1 || substep_ >= substeps_) return;
+  const std::size_t points = surfaces_[m.own].surface.nodes.size();
+  const std::span<double> slid = std::span(slid_).subspan(m.slid, points);
+  const auto first = static_cast<std::int32_t>(index(substep_ - 1) * points);
+  const auto last = first + static_cast<std::int32_t>(points);
+  for (auto told = std::ranges::lower_bound(m.told_slid, first);
+       told != m.told_slid.end() && *told < last; ++told)
+    slid[index(*told - first)] = 1.0;
+  for (std::size_t p = 0; p < points; ++p)
+    if (slid[p] != 0.0) m.slid_now.push_back(first + static_cast<std::int32_t>(p));
+}
+
+void SurfaceContact::finish(std::size_t port, std::size_t partner, Reaction& reply) const {
+  for (std::size_t k = 0; k < meetings_.size() && k < dissipated_.size(); ++k) {
+    const SurfaceObstacle& obstacle = *meetings_[k].obstacle;
+    if (obstacle.port() != port || obstacle.partner() != partner) continue;
+    reply.dissipated = dissipated_[k];
+    reply.slid = meetings_[k].slid_now;
+  }
 }
 
 double SurfaceContact::dissipated() const {
@@ -93,12 +127,6 @@ void SurfaceContact::find_slips(const Meeting& m) {
       gaps_(m.first + static_cast<Eigen::Index>(r * index(m.parts) + p)) = sum;
     }
   }
-}
-
-bool SurfaceContact::sticks_harder() const {
-  return std::ranges::any_of(meetings_, [](const Meeting& m) {
-    return m.law.static_friction != m.law.kinetic_friction;
-  });
 }
 
 /// What pressed on the rows' nodes last: in the state, or in the look before.

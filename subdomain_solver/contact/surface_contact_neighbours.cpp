@@ -56,9 +56,8 @@ std::span<const double> SurfaceContact::pressing(const Own& own) {
 
 void SurfaceContact::begin_neighbours(const Window& window) {
   for (Own& own : surfaces_) {
-    if (own.neighbours.empty()) continue;
     if (acts(own.surface.port))
-      own.neighbours.begin(window.request.window, window.grid, pressing(own));
+      own.neighbours.begin(window.grid, window.request.boundary[own.surface.port].balanced);
     else
       own.neighbours.rest();
   }

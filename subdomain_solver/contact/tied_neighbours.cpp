@@ -6,23 +6,15 @@
 
 namespace abut {
 
-void TiedNeighbours::begin(const TimeWindow& window, const Substeps& grid,
-                           std::span<const double> pressing) {
-  const std::size_t size = width();
-  acts_ = kernel_.count() >= grid.count && pressing.size() == size;
+void TiedNeighbours::begin(const Substeps& grid, const Waveform& balanced) {
+  const std::size_t size = width(), levels = index(grid.count) + 1;
+  acts_ = !balanced.empty() && kernel_.count() >= std::max(1, grid.count);
   if (!acts_) return;
-  const bool again = window.index == window_.index && window.begin == window_.begin &&
-                     window.end == window_.end && count_ == grid.count &&
-                     pressed_.size() == index(grid.count + 1) * size &&
-                     std::ranges::equal(std::span(pressed_).first(size), pressing);
-  window_ = window;
-  count_ = grid.count;
-  if (!again) {
-    pressed_.clear();
-    for (int i = 0; i <= grid.count; ++i)
-      pressed_.insert(pressed_.end(), pressing.begin(), pressing.end());
-  }
-  expected_ = pressed_;
+  balanced_.resize(levels * size);
+  for (std::size_t i = 0; i < levels; ++i)
+    balanced.force_at(i == 0 ? grid.begin : grid.time(static_cast<int>(i)),
+                      std::span(balanced_).subspan(i * size, size));
+  pressed_.assign(levels * size, 0.0);
   moved_.assign(size, 0.0);
 }
 
@@ -42,7 +34,7 @@ void TiedNeighbours::aim(int i) {
   substep_ = i;
   std::ranges::fill(moved_, 0.0);
   for (int at = 1; at <= i; ++at) {
-    recall(i, at, -1.0, expected_);
+    recall(i, at, -1.0, balanced_);
     if (at < i) recall(i, at, 1.0, pressed_);
   }
 }

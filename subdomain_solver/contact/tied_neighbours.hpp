@@ -3,24 +3,23 @@
 #include <vector>
 
 #include "contract/port.hpp"
-#include "contract/time_window.hpp"
+#include "contract/waveform.hpp"
 #include "subdomain_solver/substeps.hpp"
 
 namespace abut {
 
-/// How a surface moves because bodies that are tied to its own give way under what presses on it
-/// [M.121]. The forces between them are given with a request, and fit what pressed when they were
-/// found: in the sweep before, at first when the window began. Of what presses beyond that, the
-/// kernel tells the rest.
+/// Adds the compliance of bodies tied to this surface [M.121]. The tie forces of a request balance
+/// the contact force of an earlier sweep, which comes with the request (BoundaryData::balanced);
+/// the kernel adds the effect of what presses beyond that.
 class TiedNeighbours {
  public:
   void take(PortKernel kernel) { kernel_ = std::move(kernel); }
-  bool empty() const { return kernel_.count() == 0; }
-  /// Whether they give way in this window.
+  /// Whether they respond in this window.
   bool act() const { return acts_; }
 
-  /// A window begins, or is tried again. `pressing`: [N] (values) on the surface then.
-  void begin(const TimeWindow& window, const Substeps& grid, std::span<const double> pressing);
+  /// A window begins. `balanced`: f [N] on all points of the surface. Absent, or without a kernel:
+  /// they do not respond.
+  void begin(const Substeps& grid, const Waveform& balanced);
   /// Nothing presses in this window.
   void rest() { acts_ = false; }
   /// The substep i is next.
@@ -40,10 +39,7 @@ class TiedNeighbours {
   PortKernel kernel_;
   bool acts_ = false;
   int substep_ = 0;
-  // Of the latest window, not of the state: what it began with is, and sweeps repeat it.
-  TimeWindow window_;
-  int count_ = 0;
-  std::vector<double> expected_, pressed_;  // [N] (substeps + 1, values) at their ends
+  std::vector<double> balanced_, pressed_;  // [N] (substeps + 1, values) at their ends
   std::vector<double> moved_;
 };
 

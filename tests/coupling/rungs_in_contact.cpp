@@ -40,7 +40,7 @@ const std::vector<double> push = {1.0};  // along x
 TEST_P(KernelOfASolid, TellsWhatForcesDo) {
   const std::unique_ptr<Subdomain> body = build(small_bar(GetParam()));
   ASSERT_TRUE(body->describe().can.kernel);
-  const PortKernel kernel = body->probe(0, push, 0.6, steps);
+  const PortKernel kernel = body->probe({0, push, 0.6, steps});
   Advance request = free_request(*body, 0.0, steps * 0.6);
   Waveform& force = request.boundary[0].forces.emplace_back();
   for (int i = 0; i <= steps; ++i) {
@@ -67,7 +67,7 @@ TEST_P(KernelOfASolid, LeavesTheStateAndWhatFollowsUntouched) {
       std::holds_alternative<Advanced>(body->advance(free_request(*body, 0.0, 6.0), first)));
   body->save();
   const std::uint64_t hash = body->state_hash();
-  const PortKernel kernel = body->probe(0, push, 0.6, steps);
+  const PortKernel kernel = body->probe({0, push, 0.6, steps});
   EXPECT_EQ(body->state_hash(), hash);
   ASSERT_TRUE(
       std::holds_alternative<Advanced>(body->advance(free_request(*body, 6.0, 12.0), first)));
@@ -77,7 +77,7 @@ TEST_P(KernelOfASolid, LeavesTheStateAndWhatFollowsUntouched) {
   EXPECT_EQ(first.ports[0].trace.u, second.ports[0].trace.u);
   // Nothing of velocity and weight is in it.
   EXPECT_EQ(kernel.displacement,
-            build(small_bar(GetParam()))->probe(0, push, 0.6, steps).displacement);
+            build(small_bar(GetParam()))->probe({0, push, 0.6, steps}).displacement);
 }
 
 // Of schemes with gamma = 1/2: others take steps' ends by unequal weights.

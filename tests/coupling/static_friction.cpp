@@ -3,14 +3,12 @@
 // Oracles: closed form of a block that is pulled until it slides; friction takes energy and makes
 // none; the sweeps that one coefficient takes.
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "subdomain_solver/contact/slid_points.hpp"
 #include "tests/support/solid_scenes.hpp"
 
 namespace abut {
@@ -112,23 +110,6 @@ TEST(StaticFriction, AddsNoSweepWhereItDiffersFromThatOfWhatSlides) {
       EXPECT_LE(result->measure("energy.total.relative_drift_max"), 0.01);
     }
   }
-}
-
-/// Sweeps that go to and fro.
-TEST(SlidPoints, BecomeMoreAndNeverFewerFromTheFourthSweepOn) {
-  SlidPoints slides;
-  const TimeWindow window{3, 0.0, 1.0};
-  const auto sweep = [&slides](const TimeWindow& over, int i, std::array<double, 2> slid) {
-    slides.begin(over, 2, 2);
-    slides.see(i, slid);
-    return slid;
-  };
-  using Slid = std::array<double, 2>;
-  for (const Slid& slid : {Slid{1, 1}, {0, 1}, {1, 0}}) EXPECT_EQ(sweep(window, 1, slid), slid);
-  EXPECT_EQ(sweep(window, 1, {0, 0}), (Slid{1, 0}));  // the first two are guesses
-  EXPECT_EQ(sweep(window, 1, {0, 1}), (Slid{1, 1}));
-  EXPECT_EQ(sweep(window, 2, {0, 0}), (Slid{0, 0})) << "what is handed on is what happened";
-  EXPECT_EQ(sweep({3, 0.0, 0.5}, 1, {0, 0}), (Slid{0, 0})) << "another window";
 }
 
 }  // namespace

@@ -22,7 +22,6 @@ constexpr double step = 1.0e-6;  // [s] of the block
 /// A rigid block in the plane that turns nowhere. A force is constant in each of its substeps.
 class Stranger final : public Subdomain {
  public:
-  using Subdomain::probe;
   Stranger(double own_step, ForceSupport support, bool tells) : tells_(support) {
     description_.name = "stranger";
     description_.model = "rigid, of another program";
@@ -46,8 +45,7 @@ class Stranger final : public Subdomain {
   }
 
   const Description& describe() const override { return description_; }
-  void meet(int, const PortGeometry&, const ContactLaw&) override {}
-  void yields(int, int, const PortKernel&) override {}
+  void meet(const Meeting&) override {}
   void save() override { saved_ = state_; }
   void restore() override { state_ = saved_; }
   void start(const Advance& request) override { request_ = &request; }
@@ -84,7 +82,8 @@ class Stranger final : public Subdomain {
     return Advanced{};
   }
 
-  PortKernel probe(int, std::span<const double> patterns, double h, int count) override {
+  PortKernel probe(const Probing& asked) override {
+    const auto& [port, patterns, h, count, seen] = asked;
     PortKernel kernel;
     kernel.step = h;
     kernel.support = tells_;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double speed = 0.01;  // of that of sound
 
-struct Meeting {
+struct Facing {
   std::array<std::string, 2> schemes;
   std::array<double, 2> steps;  // [s]
   double window = 0.0;          // [s]
@@ -28,7 +28,7 @@ struct Meeting {
 };
 
 /// The first bar flies at the second one, of unit length and modulus like itself.
-std::unique_ptr<RunResult> run(const Meeting& m, const std::string& finder,
+std::unique_ptr<RunResult> run(const Facing& m, const std::string& finder,
                                const std::string& more = "") {
   const auto bar = [&m](const std::string& name, int k, double place, double v,
                         const std::string& side) {
@@ -52,8 +52,8 @@ std::unique_ptr<RunResult> run(const Meeting& m, const std::string& finder,
                     touching("impact", "a.face", "b.face", role) + more);
 }
 
-std::vector<Meeting> meetings(int cells) {
-  std::vector<Meeting> all;
+std::vector<Facing> meetings(int cells) {
+  std::vector<Facing> all;
   const std::string by_drifts = "central_difference", newmark = "newmark";
   for (const double density : {1.0, 30.0})
     for (const std::string& a : {by_drifts, newmark})
@@ -71,7 +71,7 @@ std::vector<Meeting> meetings(int cells) {
 
 TEST(UnlikeSteps, MakeNoEnergyAndRolesDifferByTheLongerStepAtMost) {
   for (const int cells : {8, 32}) {
-    for (const Meeting& m : meetings(cells)) {
+    for (const Facing& m : meetings(cells)) {
       SCOPED_TRACE(fmt::format("{} cells, {} of {} on {} of {}, density {}", cells, m.schemes[0],
                                m.steps[0], m.schemes[1], m.steps[1], m.density));
       const bool first = m.steps[0] < m.steps[1];
@@ -100,7 +100,7 @@ bool warned(const RunResult& result) {
 
 /// And a scene that has the other one find it is told so.
 TEST(UnlikeSteps, LetTheSideOfTheShorterOnesFindTheContact) {
-  Meeting m{{"newmark", "newmark"}, {0.0125, 0.125}, 0.125, 1000.0, 8};
+  Facing m{{"newmark", "newmark"}, {0.0125, 0.125}, 0.125, 1000.0, 8};
   for (const bool first : {true, false}) {
     if (!first) std::swap(m.steps[0], m.steps[1]);
     const auto open = run(m, ""), shorter = run(m, first ? "a" : "b"),

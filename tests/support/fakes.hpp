@@ -19,7 +19,6 @@ namespace abut {
 /// force on its one port. Deterministic; rewinds exactly; counts what is asked of it.
 class FakeSubdomain : public Subdomain {
  public:
-  using Subdomain::probe;
   struct Options {
     std::string name = "fake";
     double mass = 2.0;        // [kg]
@@ -29,8 +28,8 @@ class FakeSubdomain : public Subdomain {
     int substeps = 10;        // per window
   };
   struct Counts {
-    int advances = 0, saves = 0, restores = 0, kernels = 0, grids = 0, fields = 0, meetings = 0,
-        yieldings = 0;
+    int advances = 0, saves = 0, restores = 0, kernels = 0, grids = 0, fields = 0, meetings = 0;
+    int kernels_told = 0;
   };
 
   FakeSubdomain() : FakeSubdomain(Options{}) {}
@@ -57,11 +56,13 @@ class FakeSubdomain : public Subdomain {
   std::function<void(Grid&)> spoil_grid;  // a test may make the grid or the fields unsound here
   std::function<void(std::vector<FieldValues>&)> spoil_fields;
   Counts counts;
-  PortKernel told;  // by the last yields()
+  PortKernel told;  // the last kernel that it was told
 
   const Description& describe() const override { return description_; }
-  void meet(int, const PortGeometry&, const ContactLaw&) override { ++counts.meetings; }
-  void yields(int, int, const PortKernel& kernel) override { ++counts.yieldings, told = kernel; }
+  void meet(const Meeting& meeting) override {
+    if (meeting.surface != nullptr) ++counts.meetings;
+    if (meeting.kernel != nullptr) ++counts.kernels_told, told = *meeting.kernel;
+  }
   void save() override {
     ++counts.saves;
     saved_.clear();
@@ -115,15 +116,14 @@ class FakeSubdomain : public Subdomain {
     return Advanced{};
   }
 
-  PortKernel probe(int, std::span<const double> patterns, double step, int count) override {
+  PortKernel probe(const Probing& asked) override {
     ++counts.kernels;
     PortKernel kernel;
-    kernel.step = step;
-    kernel.support = ForceSupport::step;
-    kernel.patterns = static_cast<int>(patterns.size());
-    for (int i = 1; i <= count; ++i)
-      for (const double force : patterns)
-        kernel.displacement.push_back(force * step * step * i / options_.mass);
+    kernel.step = asked.step, kernel.support = ForceSupport::step;
+    kernel.patterns = static_cast<int>(asked.patterns.size());
+    for (int i = 1; i <= asked.count; ++i)
+      for (const double force : asked.patterns)
+        kernel.displacement.push_back(force * asked.step * asked.step * i / options_.mass);
     return kernel;
   }
 

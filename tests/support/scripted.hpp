@@ -13,7 +13,6 @@ namespace abut {
 /// A body whose reply is written down beforehand.
 class Scripted : public Subdomain {
  public:
-  using Subdomain::probe;
   Scripted(double place, double normal, double step, int ports = 1) {
     description_.step = step;
     description_.mass = 1.0;
@@ -40,13 +39,12 @@ class Scripted : public Subdomain {
     response = reply;
     return Advanced{};
   }
-  void meet(int, const PortGeometry&, const ContactLaw&) override {}
-  void yields(int, int, const PortKernel&) override {}
-  PortKernel probe(int, std::span<const double> patterns, double step, int count) override {
+  void meet(const Meeting&) override {}
+  PortKernel probe(const Probing& asked) override {
     PortKernel kernel;
-    kernel.width = static_cast<int>(patterns.size());
-    kernel.step = step;
-    kernel.displacement.assign(index(count), patterns[0] * compliance);
+    kernel.width = static_cast<int>(asked.patterns.size());
+    kernel.step = asked.step;
+    kernel.displacement.assign(index(asked.count), asked.patterns[0] * compliance);
     return kernel;
   }
   std::vector<std::byte> checkpoint() override { return {}; }
@@ -60,12 +58,12 @@ class Scripted : public Subdomain {
 };
 
 /// Two scripted bodies, the left one looking right, 1 m apart.
-struct Meeting {
+struct Facing {
   Scripted left, right;
   Bodies bodies;
   Joint joint;
 
-  explicit Meeting(double left_step = 1.0, double right_step = 1.0)
+  explicit Facing(double left_step = 1.0, double right_step = 1.0)
       : left(-1.0, 1.0, left_step), right(0.0, -1.0, right_step), bodies({&left, &right}) {
     joint = make_joint("meeting", {Side{0, 0}, Side{1, 0}}, bodies);
   }

@@ -51,7 +51,7 @@ TEST(Allocations, AWindowThatIsWrittenAndReadTakesNoMemory) {
   advance.window = {3, 0.0, 1.0};
   advance.boundary.resize(1);
   advance.boundary[0].forces = {wave(40)};
-  advance.boundary[0].obstacles = {Obstacle{wave(60)}};
+  advance.boundary[0].obstacles = {Obstacle{wave(60), {}}};
   advance.want.resize(1);
   Response response;
   response.ports.resize(1);

@@ -119,8 +119,8 @@ TEST(Transport, AKernelComesBackAsTheBodyMadeIt) {
   Loop loop;
   loop.configure();
   const std::vector<double> patterns{1.0, -2.5};
-  const PortKernel got = loop.body.probe(0, patterns, 0.01, 5);
-  EXPECT_EQ(got.displacement, loop.fake->probe(0, patterns, 0.01, 5).displacement);
+  const PortKernel got = loop.body.probe({0, patterns, 0.01, 5});
+  EXPECT_EQ(got.displacement, loop.fake->probe({0, patterns, 0.01, 5}).displacement);
   EXPECT_EQ(got.patterns, 2);
   EXPECT_EQ(got.count(), 5);
 }

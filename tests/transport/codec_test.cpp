@@ -54,7 +54,7 @@ Advance full_advance() {
   advance.boundary.resize(2);
   advance.boundary[0].motion = wave(1, 0.0);
   advance.boundary[0].forces = {wave(1, 1.0), Waveform(), wave(1, 3.0)};
-  advance.boundary[0].obstacles = {Obstacle{}, Obstacle{wave(1, 2.0)}};
+  advance.boundary[0].obstacles = {Obstacle{}, Obstacle{wave(1, 2.0), {}}};
   advance.boundary[0].impedance = {2.5, false};
   advance.boundary[0].impulse = {-0.5};
   advance.want = {Want{true, false, true, false, {0}}, Want{false, true, false, true, {}}};

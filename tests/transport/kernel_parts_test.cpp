@@ -81,9 +81,9 @@ TEST(KernelParts, ProbesOfMorePatternsThanAFrameHoldsAreAskedInParts) {
   for (const std::size_t bytes : {2000, 10'000, 1'000'000}) {
     Loop loop({}, {}, 0, frames_of(bytes));
     loop.configure();
-    const PortKernel got = loop.body.probe(0, patterns, 0.01, 5);
+    const PortKernel got = loop.body.probe({0, patterns, 0.01, 5});
     const int requests = loop.fake->counts.kernels;
-    expect_equal(got, loop.fake->probe(0, patterns, 0.01, 5));
+    expect_equal(got, loop.fake->probe({0, patterns, 0.01, 5}));
     EXPECT_GE(requests * bytes, 88'000u) << bytes;
     EXPECT_LE(requests, bytes >= 1'000'000 ? 1 : 110) << bytes;
   }
@@ -98,14 +98,15 @@ TEST(KernelParts, OfYieldingPartnersReachTheBodyAsOne) {
         const FaultyChannel::Chances rough{.drop = 0.05, .delay = 0.1, .duplicate = 0.2};
         Loop loop(rough, rough, bytes, frames_of(bytes));
         loop.configure();
-        loop.body.meet(0, points_on_a_line(40), ContactLaw{});
+        const PortGeometry surface = points_on_a_line(40);
+        loop.body.meet({0, 0, &surface});
         loop.body.save();  // rides on the first part alone
-        loop.body.yields(0, 0, kernel);
+        loop.body.meet({0, 0, nullptr, {}, &kernel});
         EXPECT_EQ(loop.fake->counts.saves, 1) << bytes;
-        EXPECT_EQ(loop.fake->counts.yieldings, 1) << bytes;
+        EXPECT_EQ(loop.fake->counts.kernels_told, 1) << bytes;
         expect_equal(loop.fake->told, kernel);
-        loop.body.yields(0, 0, kernel);  // and again
-        EXPECT_EQ(loop.fake->counts.yieldings, 2) << bytes;
+        loop.body.meet({0, 0, nullptr, {}, &kernel});  // and again
+        EXPECT_EQ(loop.fake->counts.kernels_told, 2) << bytes;
       }
     }
   }
@@ -116,22 +117,22 @@ TEST(KernelParts, ThatDoNotFollowEachOtherAreRefused) {
   const auto sent = [&kernel](const std::vector<int>& firsts) {
     Loop loop;
     loop.configure();
-    loop.body.meet(0, points_on_a_line(40), ContactLaw{});
-    loop.body.meet(0, points_on_a_line(40), ContactLaw{});
+    const PortGeometry surface = points_on_a_line(40);
+    for (const int partner : {0, 1}) loop.body.meet({0, partner, &surface});
     try {
       for (std::size_t k = 0; k < firsts.size(); ++k) {
         const int partner = k > 0 && firsts[k] == 20 ? 1 : 0;
-        encode(Yielding{0, partner, part_of(kernel, firsts[k], 10), firsts[k]},
-               *loop.caller.request().mutable_yields());
-        loop.caller.call("yields");
+        const PortKernel part = part_of(kernel, firsts[k], 10);
+        encode({0, partner, nullptr, {}, &part}, firsts[k], *loop.caller.request().mutable_meet());
+        loop.caller.call("meet");
       }
     } catch (const RunError& error) {
-      EXPECT_EQ(loop.fake->counts.yieldings, 0);
+      EXPECT_EQ(loop.fake->counts.kernels_told, 0);
       return error.what_is_wrong;
     }
     return std::string("accepted");
   };
-  const std::string refused = "unsound request: yields.first does not follow the parts before";
+  const std::string refused = "unsound request: meet.first does not follow the parts before";
   EXPECT_EQ(sent({0, 10}), "accepted");
   for (const std::vector<int>& firsts :
        {std::vector<int>{10}, {0, 30}, {0, 10, 10}, {0, 10, 20}})  // the last of another partner

@@ -152,13 +152,13 @@ TEST(Remote, PartnersAndHowTheyYieldReachTheBody) {
   PortGeometry wall;
   wall.points = {0.5};
   wall.normals = {-1.0};
-  loop.body.meet(0, wall, ContactLaw{true});
+  loop.body.meet({0, 0, &wall, {true}});
   PortKernel kernel;
   kernel.step = 0.1;
   kernel.displacement = {1.0, 2.0};
-  loop.body.yields(0, 0, kernel);
+  loop.body.meet({0, 0, nullptr, {}, &kernel});
   EXPECT_EQ(loop.fake->counts.meetings, 1);
-  EXPECT_EQ(loop.fake->counts.yieldings, 1);
+  EXPECT_EQ(loop.fake->counts.kernels_told, 1);
   Advance advance = request_for(0);
   advance.boundary[0].obstacles.resize(1);
   Waveform& motion = advance.boundary[0].obstacles[0].motion;
@@ -193,7 +193,7 @@ TEST(Remote, AKernelThatNoFrameHoldsIsRefusedBeforeItIsMade) {
   Loop loop({}, {}, 0, limits);
   loop.configure();
   try {
-    loop.body.probe(0, std::vector<double>{1.0}, 0.1, 1000);
+    loop.body.probe({0, {1.0}, 0.1, 1000});
     FAIL() << "no error";
   } catch (const RunError& error) {
     EXPECT_NE(error.what_is_wrong.find("above the limit of 1000"), std::string::npos);

@@ -21,7 +21,7 @@ namespace {
 constexpr double never_opened = -std::numeric_limits<double>::infinity();
 
 TEST(Joints, KnowsItsGapAndOffsets) {
-  const Meeting m;
+  const Facing m;
   EXPECT_EQ(m.joint.line.reference_gap, 1.0);
   EXPECT_EQ(m.joint.gap(0.25, -0.25), 0.5);
   EXPECT_EQ(m.joint.offset(0), 1.0);
@@ -54,7 +54,7 @@ TEST(Joints, RefusesSidesThatOverlapAtTheStart) {
 }
 
 TEST(FirstOverlap, LocatesTheTouchOnTheFinerSide) {
-  Meeting m;
+  Facing m;
   m.left.trace({0, 1, 2, 3, 4}, {0.0, 0.25, 0.5, 0.75, 1.0});
   m.right.trace({0, 4}, {0.0, -1.0});  // closing at 0.5 m/s: the gap of 1 m is gone at 2
   m.reply();
@@ -66,7 +66,7 @@ TEST(FirstOverlap, LocatesTheTouchOnTheFinerSide) {
 }
 
 TEST(FirstOverlap, InterpolatesWithinASubstep) {
-  Meeting m;
+  Facing m;
   m.left.trace({0, 1, 2}, {0.0, 0.8, 1.6});
   m.right.trace({0, 2}, {0.0, 0.0});
   m.reply();
@@ -77,7 +77,7 @@ TEST(FirstOverlap, InterpolatesWithinASubstep) {
 }
 
 TEST(FirstOverlap, SidesThatOnlyMeetAreNotApartAndDoNotOverlap) {
-  Meeting m;
+  Facing m;
   m.left.trace({0, 1}, {0.0, 1.0});
   m.right.trace({0, 1}, {0.0, 0.0});
   m.reply();
@@ -85,7 +85,7 @@ TEST(FirstOverlap, SidesThatOnlyMeetAreNotApartAndDoNotOverlap) {
 }
 
 TEST(FirstOverlap, WhatIsNegligibleIsNone) {
-  Meeting m;
+  Facing m;
   m.left.trace({0, 1}, {0.0, 1.0 + 1e-13});  // numerical forerunners
   m.right.trace({0, 1}, {0.0, 0.0});
   m.reply();
@@ -94,7 +94,7 @@ TEST(FirstOverlap, WhatIsNegligibleIsNone) {
 }
 
 TEST(FirstOverlap, AnOverlapThatGetsSmallerIsARelease) {
-  Meeting m;
+  Facing m;
   m.left.trace({0, 1, 2}, {1.01, 1.005, 0.99});
   m.right.trace({0, 2}, {0.0, 0.0});
   m.reply();
@@ -102,7 +102,7 @@ TEST(FirstOverlap, AnOverlapThatGetsSmallerIsARelease) {
 }
 
 /// What the interface of two scripted bodies shows. Both give way by half a metre per newton.
-ContactHistory history(Meeting& m) {
+ContactHistory history(Facing& m) {
   m.left.compliance = m.right.compliance = 0.5;
   m.reply();
   ContactHistory h;
@@ -111,7 +111,7 @@ ContactHistory history(Meeting& m) {
 }
 
 TEST(ContactHistory, ReadsForcesAndGapsAtTheSubsteps) {
-  Meeting m;
+  Facing m;
   m.left.trace({0, 1, 2}, {0.5, 1.0, 0.75}, {0, -3, 0});  // pushed to the left
   m.right.trace({0, 1, 2}, {0, 0, 0.25});
   const ContactHistory h = history(m);
@@ -124,7 +124,7 @@ TEST(ContactHistory, ReadsForcesAndGapsAtTheSubsteps) {
 }
 
 TEST(ContactHistory, EventsAreWhereGapAndForceOfTheFreeAndTheHeldSidesCrossZero) {
-  Meeting m;
+  Facing m;
   m.left.trace({0, 1, 2}, {0.5, 1.0, 0.75}, {0, -3, 0});
   m.right.trace({0, 1, 2}, {0, 0, 0.25});
   const ContactHistory h = history(m);
@@ -137,7 +137,7 @@ TEST(ContactHistory, EventsAreWhereGapAndForceOfTheFreeAndTheHeldSidesCrossZero)
 
 TEST(ContactHistory, KnowsTheEnergyOfEventsFromGapsAndForcesAlone) {
   // Goal: [M.25]. Oracle: a spring of 1 N/m that a surface loads, its energy and the work on it.
-  Meeting m;
+  Facing m;
   m.left.trace({0, 1, 2, 3}, {0.5, 1.0, 1.0, 0.75}, {0, -3, -2, 0});
   m.right.trace({0, 1, 2, 3}, {0, 0, 0, 0.25});
   const ContactHistory h = history(m);
@@ -147,7 +147,7 @@ TEST(ContactHistory, KnowsTheEnergyOfEventsFromGapsAndForcesAlone) {
 }
 
 TEST(ContactHistory, AForceOfKicksActsAtTheBeginOfItsSubstep) {
-  Meeting m;
+  Facing m;
   m.left.reply.ports[0].trace.support = ForceSupport::step;
   m.left.trace({0, 1, 2, 3}, {1, 1, 1, 0}, {0, -3, -3, 0});
   m.right.trace({0, 1, 2, 3}, {0, 0, 0, 0});
@@ -157,7 +157,7 @@ TEST(ContactHistory, AForceOfKicksActsAtTheBeginOfItsSubstep) {
 }
 
 TEST(ContactHistory, JudgesTheMeansOverTheCoarserSide) {
-  Meeting m(0.5, 2.0);  // a hole in the force of the finer, kinematic side is none of the coarser
+  Facing m(0.5, 2.0);  // a hole in the force of the finer, kinematic side is none of the coarser
   m.left.trace({0, .5, 1, 1.5, 2, 2.5, 3, 3.5, 4}, {1, 1, 1, 1, 1, 1, 1, 1, 1},
                {-4, -4, 0, -4, -4, -4, -4, -4, -4});
   m.right.trace({0, 2, 4}, {0, 0, 0});
@@ -177,7 +177,7 @@ TEST(PayingImpulse, GivesExactlyWhatIsOwed) {
   // Goal: [M.26]. Oracle: the energy of two masses before and after the impulse.
   for (double debt : {0.3, -0.3, 1e-9}) {
     for (double approach : {2.0, -2.0}) {
-      Meeting m;
+      Facing m;
       m.left.reply.ports[0].recoil = Recoil{approach, 1.0 / 2.0};
       m.right.reply.ports[0].recoil = Recoil{0.0, 1.0 / 3.0};
       m.reply();
@@ -192,7 +192,7 @@ TEST(PayingImpulse, GivesExactlyWhatIsOwed) {
 }
 
 TEST(PayingImpulse, TakesBackNoMoreThanThereIsAndWaitsWhereItWouldStirUpMore) {
-  Meeting m;
+  Facing m;
   m.left.reply.ports[0].recoil = Recoil{2.0, 0.5};
   m.right.reply.ports[0].recoil = Recoil{};  // a wall
   m.reply();
@@ -201,7 +201,7 @@ TEST(PayingImpulse, TakesBackNoMoreThanThereIsAndWaitsWhereItWouldStirUpMore) {
 }
 
 TEST(ReleaseImpulse, GivesBackAllThatContactTook) {
-  Meeting m;
+  Facing m;
   m.left.reply.ports[0].recoil = Recoil{0.5, 0.5};
   m.right.reply.ports[0].recoil = Recoil{};
   m.reply();
@@ -211,7 +211,7 @@ TEST(ReleaseImpulse, GivesBackAllThatContactTook) {
 }
 
 TEST(Horizon, IsTheGapOverTheBoundOfTheClosingSpeedAndAMargin) {
-  Meeting m;
+  Facing m;
   m.left.trace({0.0}, {0.2});
   m.right.trace({0.0}, {-0.3});
   m.left.reply.ports[0].speed_bound = 2.0;
@@ -223,7 +223,7 @@ TEST(Horizon, IsTheGapOverTheBoundOfTheClosingSpeedAndAMargin) {
 }
 
 TEST(Horizon, CountsTheAccelerationOfBodyForces) {
-  Meeting m;
+  Facing m;
   m.left.trace({0.0}, {0.0});
   m.right.trace({0.0}, {0.0});
   m.left.reply.ports[0].acceleration_bound = 2.0;
@@ -239,7 +239,7 @@ TEST(Horizon, CountsTheAccelerationOfBodyForces) {
 }
 
 TEST(Horizon, IsEndlessForBodiesThatPartAndNothingForContact) {
-  Meeting m;
+  Facing m;
   m.left.trace({0.0}, {0.0});
   m.right.trace({0.0}, {0.0});
   m.left.reply.ports[0].speed_bound = -1.0;
@@ -255,7 +255,7 @@ TEST(Horizon, IsEndlessForBodiesThatPartAndNothingForContact) {
 }
 
 TEST(Horizon, SweptBoxesThatMeetInAnyPartAreSeen) {
-  Meeting m;
+  Facing m;
   m.left.reply.ports[0].lower = {-1.0, -1.0};
   m.left.reply.ports[0].upper = {-0.6, -0.1};
   m.right.reply.ports[0].lower = {-0.5, -0.05};

@@ -87,7 +87,7 @@ TEST(KernelSupport, OfLevelsStaysAsItIs) {
 class Refusing final : public Scripted {
  public:
   using Scripted::Scripted;
-  void yields(int, int, const PortKernel&) override {
+  void meet(const Meeting&) override {
     throw RunError("gives way by a kernel that this body cannot take", "here", "Do.");
   }
 };
@@ -99,7 +99,7 @@ TEST(KernelSupport, OfWhatIsRefusedBothBodiesAreNamed) {
   other.description_.name = "other";
   Bodies bodies({&finder, &other}, 1.0);
   try {
-    bodies.yields({0, 0}, 0, {1, 0}, PortKernel{});
+    bodies.meet({0, 0}, 0, {1, 0}, PortKernel{});
     FAIL() << "no error";
   } catch (const RunError& error) {
     EXPECT_EQ(error.what_is_wrong,

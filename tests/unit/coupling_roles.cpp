@@ -97,8 +97,8 @@ TEST(Roles, AWallNeverIsKinematic) {
 }
 
 TEST(Roles, TheForceOfTheParallelFormLivesOnTheLongerSteps) {
-  EXPECT_EQ(coarser_side(Meeting(1.0, 2.0).joint, Meeting(1.0, 2.0).bodies), 1);
-  EXPECT_EQ(coarser_side(Meeting(2.0, 1.0).joint, Meeting(2.0, 1.0).bodies), 0);
+  EXPECT_EQ(coarser_side(Facing(1.0, 2.0).joint, Facing(1.0, 2.0).bodies), 1);
+  EXPECT_EQ(coarser_side(Facing(2.0, 1.0).joint, Facing(2.0, 1.0).bodies), 0);
 }
 
 /// Bodies with closed joints between pairs of them.

@@ -255,7 +255,7 @@ TEST_P(Allocations, AreNoneFromTheSecondWindowOn) {
         Document::from_text("test", "bodies: {it: {" + GetParam().body + "}}"), "bodies.it");
     const Description& d = body->describe();
     if (obstructed && !d.can.obstacle) continue;
-    if (obstructed) body->meet(0, d.ports[0].geometry, {});
+    if (obstructed) body->meet({0, 0, &d.ports[0].geometry});
     const double length = d.step > 0.0 ? 10.0 * d.step : 6.0;
     Advance request = free_request(*body, 0.0, 0.0, 2);
     Response response;

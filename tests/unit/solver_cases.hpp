@@ -100,13 +100,13 @@ inline void meet_point(Subdomain& body, std::size_t port, bool tied, double dist
   PortGeometry point = body.describe().ports[port].geometry;
   point.points[0] += distance * point.normals[0];
   point.normals[0] *= -1.0;
-  body.meet(static_cast<int>(port), point, {tied});
+  body.meet({static_cast<int>(port), 0, &point, {tied}});
 }
 
 /// The kernel of a port of one point along its outward normal.
 inline PortKernel normal_kernel(Subdomain& body, int port, double step, int count) {
   const std::vector<double> normal = body.describe().ports[port].geometry.normals;
-  PortKernel kernel = body.probe(port, normal, step, count);
+  PortKernel kernel = body.probe({port, normal, step, count});
   for (std::vector<double>* values : {&kernel.compliance, &kernel.displacement, &kernel.begin})
     for (double& value : *values) value *= normal[0];
   return kernel;

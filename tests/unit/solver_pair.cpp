@@ -206,7 +206,7 @@ TEST_P(Pair, IsDescribedByItsMembersAndOffersNothing) {
   EXPECT_EQ(d.ports[1].geometry.transit, 1.0);  // h / c
   EXPECT_EQ(d.mass, 50.0);
   EXPECT_FALSE(d.can.force || d.can.motion || d.can.obstacle || d.can.impulse || d.can.kernel);
-  EXPECT_THROW(pair->probe(0, std::vector<double>{1.0}, pair_step, 3), RunError);
+  EXPECT_THROW(pair->probe({0, {1.0}, pair_step, 3}), RunError);
 }
 
 TEST(PairEnergy, OfThePenaltySpringIsPartOfTheWhole) {

@@ -17,14 +17,14 @@
 namespace abut {
 namespace {
 
-struct Meeting {
+struct Pairing {
   std::string name, integrator, layer;  // no layer: joined
-  friend std::ostream& operator<<(std::ostream& out, const Meeting& m) { return out << m.name; }
+  friend std::ostream& operator<<(std::ostream& out, const Pairing& m) { return out << m.name; }
 };
 
 /// Kick layers of several terms smooth otherwise while they are held, which is always in joints.
-std::vector<Meeting> meetings() {
-  std::vector<Meeting> all;
+std::vector<Pairing> meetings() {
+  std::vector<Pairing> all;
   for (int terms : {1, 2, 6, 12})
     all.push_back({"explicit" + std::to_string(terms) + "_massless",
                    explicit_scheme(case_step, terms), "massless: {stiffness_factor: 1.4}"});
@@ -42,23 +42,23 @@ std::vector<Meeting> meetings() {
 
 constexpr double speed = 0.02;
 
-std::unique_ptr<Subdomain> build_side(const Meeting& m, const std::string& side) {
+std::unique_ptr<Subdomain> build_side(const Pairing& m, const std::string& side) {
   BarText bar = case_bar({"", m.integrator, m.layer, {side}}, side == "right" ? speed : 0.0);
   bar.position = side == "right" ? -case_elements : 0.0;
   if (m.layer.empty()) bar.tied = side;
   return build(bar);
 }
 
-class YieldingObstacle : public testing::TestWithParam<Meeting> {};
+class YieldingObstacle : public testing::TestWithParam<Pairing> {};
 INSTANTIATE_TEST_SUITE_P(Solver, YieldingObstacle, testing::ValuesIn(meetings()),
                          [](const auto& m) { return m.param.name; });
 
 /// The bar and the one that it runs into, or is joined with.
 struct Pair {
-  explicit Pair(const Meeting& m, int most)
+  explicit Pair(const Pairing& m, int most)
       : here(build_side(m, "right")), there(build_side(m, "left")) {
-    here->meet(0, there->describe().ports[0].geometry, {m.layer.empty()});
-    here->yields(0, 0, there->probe(0, std::vector<double>{1.0}, case_step, most));
+    const PortKernel kernel = there->probe({0, {1.0}, case_step, most});
+    here->meet({0, 0, &there->describe().ports[0].geometry, {m.layer.empty()}, &kernel});
   }
 
   /// The surface as the other bar moves under a force, from the present state.
@@ -76,7 +76,7 @@ struct Pair {
     Response response;
     Advance request = free_request(*there, begin, end);
     Waveform& imposed = request.boundary[0].forces.emplace_back();
-    imposed.support = there->probe(0, std::vector<double>{1.0}, case_step, 1).support;
+    imposed.support = there->probe({0, {1.0}, case_step, 1}).support;
     imposed.time = substep_times(begin, end, case_step);
     imposed.f = force;
     step(*there, request, response);
@@ -123,13 +123,13 @@ TEST_P(YieldingObstacle, IsTheOtherBarInOneAdvance) {
 }
 
 TEST(YieldingObstacle, OfOtherStepsIsRefused) {
-  const Meeting m = meetings().front();
+  const Pairing m = meetings().front();
   const std::unique_ptr<Subdomain> here = build_side(m, "right"), there = build_side(m, "left");
-  here->meet(0, there->describe().ports[0].geometry, {});
-  PortKernel kernel = there->probe(0, std::vector<double>{1.0}, 0.5 * case_step, 3);
+  here->meet({0, 0, &there->describe().ports[0].geometry});
+  PortKernel kernel = there->probe({0, {1.0}, 0.5 * case_step, 3});
   const auto refusal = [&]() -> std::string {
     try {
-      here->yields(0, 0, kernel);
+      here->meet({0, 0, nullptr, {}, &kernel});
     } catch (const RunError& error) {
       return error.what_is_wrong;
     }
@@ -153,7 +153,10 @@ TEST(Partners, OfABarAreObstaclesOneAtATime) {
   const SolverCase c = complete_cases().front();
   const std::unique_ptr<Subdomain> body = build(case_bar(c));
   const std::vector<double> times = substep_times(0.0, 6.0, case_step);
-  for (int k = 0; k < 2; ++k) meet_point(*body, 0, true);
+  PortGeometry point = body->describe().ports[0].geometry;
+  point.normals[0] *= -1.0;
+  for (const int k : {0, 1}) body->meet({0, k, &point, {.tied = true}});
+  EXPECT_THROW(body->meet({0, 3, &point}), RunError) << "2 is next";
   Advance request = free_request(*body, 0.0, 6.0);
   std::vector<Obstacle>& obstacles = request.boundary[0].obstacles;
   obstacles.resize(2);

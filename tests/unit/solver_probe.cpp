@@ -75,7 +75,7 @@ TEST_P(Probe, IsReciprocal) {
   const std::unique_ptr<Subdomain> body = GetParam().build(true);
   ASSERT_TRUE(body->describe().can.kernel);
   const std::size_t width = body->describe().ports[0].geometry.points.size();
-  const PortKernel kernel = body->probe(0, unit_patterns(width), substep, count);
+  const PortKernel kernel = body->probe({0, unit_patterns(width), substep, count});
   ASSERT_EQ(kernel.count(), count);
   ASSERT_EQ(kernel.patterns * kernel.width, static_cast<int>(width * width));
   for (const std::vector<double>* responses : {&kernel.displacement, &kernel.begin}) {
@@ -92,10 +92,10 @@ TEST_P(Probe, IsReciprocal) {
 TEST_P(Probe, Superposes) {
   const std::unique_ptr<Subdomain> body = GetParam().build(false);
   const std::size_t width = body->describe().ports[0].geometry.points.size();
-  const PortKernel units = body->probe(0, unit_patterns(width), substep, count);
+  const PortKernel units = body->probe({0, unit_patterns(width), substep, count});
   std::vector<double> pattern;
   for (std::size_t i = 0; i < width; ++i) pattern.push_back(1.0 + 0.5 * static_cast<double>(i));
-  const PortKernel whole = body->probe(0, pattern, substep, count);
+  const PortKernel whole = body->probe({0, pattern, substep, count});
   EXPECT_EQ(whole.patterns, 1);
   for (std::size_t i = 0; i < whole.displacement.size(); ++i) {
     double sum = 0.0;
@@ -110,13 +110,14 @@ TEST_P(Probe, InPartsIsTheWholeToTheLastBit) {
   const std::unique_ptr<Subdomain> body = GetParam().build(true);
   const std::size_t width = body->describe().ports[0].geometry.points.size();
   const std::vector<double> units = unit_patterns(width);
-  const PortKernel whole = body->probe(0, units, substep, count);
+  const PortKernel whole = body->probe({0, units, substep, count});
   for (const std::size_t at_once : {std::size_t{1}, (width + 1) / 2}) {
     PortKernel made = room_for(whole, whole.patterns);
     for (std::size_t first = 0; first < width; first += at_once) {
       const std::size_t some = std::min(at_once, width - first);
-      put(body->probe(0, std::span(units).subspan(first * width, some * width), substep, count),
-          static_cast<int>(first), made);
+      const auto from = units.begin() + static_cast<std::ptrdiff_t>(first * width);
+      const std::vector<double> part(from, from + static_cast<std::ptrdiff_t>(some * width));
+      put(body->probe({0, part, substep, count}), static_cast<int>(first), made);
     }
     EXPECT_EQ(made.displacement, whole.displacement);
     EXPECT_EQ(made.begin, whole.begin);
@@ -132,9 +133,9 @@ TEST_P(Probe, LeavesNoTraceAndSeesNoOtherLoad) {
       std::holds_alternative<Advanced>(moving->advance(free_request(*moving, 0.0, 0.3), response)));
   const std::uint64_t hash = moving->state_hash();
   const std::size_t width = moving->describe().ports[0].geometry.points.size();
-  const PortKernel one = moving->probe(0, unit_patterns(width), substep, count);
+  const PortKernel one = moving->probe({0, unit_patterns(width), substep, count});
   EXPECT_EQ(moving->state_hash(), hash);
-  const PortKernel two = resting->probe(0, unit_patterns(width), substep, count);
+  const PortKernel two = resting->probe({0, unit_patterns(width), substep, count});
   EXPECT_EQ(one.displacement, two.displacement);
   EXPECT_EQ(one.begin, two.begin);
 }
@@ -143,7 +144,7 @@ TEST_P(Probe, IsTheMotionUnderForcesFromRest) {
   const std::unique_ptr<Subdomain> body = GetParam().build(false);
   const PortGeometry& port = body->describe().ports[0].geometry;
   const std::size_t dim = index(port.dim), width = port.points.size();
-  const PortKernel kernel = body->probe(0, unit_patterns(width), substep, count);
+  const PortKernel kernel = body->probe({0, unit_patterns(width), substep, count});
   // On the last point alone, which the reply shows alone.
   const std::int32_t last = port.count() - 1;
   Advance request = free_request(*body, 0.0, count * substep);

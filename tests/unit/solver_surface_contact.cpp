@@ -99,7 +99,11 @@ class SurfaceContactOf : public testing::TestWithParam<Case> {
   void SetUp() override {
     body = block(GetParam());
     ASSERT_TRUE(body->describe().can.obstacle);
-    body->meet(0, plate(GetParam().dim), {});
+    press_plate(*body);
+  }
+  static void press_plate(Subdomain& on) {
+    const PortGeometry surface = plate(GetParam().dim);
+    on.meet({0, 0, &surface});
   }
   Response advance(Subdomain& of, double begin, double end) {
     Response response;
@@ -157,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Bodies, StaticContactOf, testing::ValuesIn(static_cases
 TEST_P(StaticContactOf, ReactionsBearAllThatPresses) {
   const std::size_t dim = index(GetParam().dim);
   body = block(GetParam(), ", wall: {on: left, fixed: true}");
-  body->meet(0, plate(GetParam().dim), {});
+  press_plate(*body);
   const Response r = advance(*body, 0.0, 0.2);
   const Waveform& trace = r.ports[0].trace;
   const std::size_t last = trace.size() - 1;
@@ -186,7 +190,7 @@ TEST_P(SurfaceContactOf, ComesBackBitForBit) {
   EXPECT_EQ(first.ports[0].reactions[0].force.f, second.ports[0].reactions[0].force.f);
   EXPECT_EQ(first.ports[0].trace.u, second.ports[0].trace.u);
   const std::unique_ptr<Subdomain> twin = block(GetParam());
-  twin->meet(0, plate(GetParam().dim), {});
+  press_plate(*twin);
   twin->resume(durable);
   const Response third = advance(*twin, 0.2, 0.4);
   EXPECT_EQ(twin->state_hash(), after);
@@ -234,7 +238,7 @@ TEST_P(SurfaceContactOf, ProbesLeaveItAlone) {
   const std::size_t width = body->describe().ports[0].geometry.points.size();
   std::vector<double> unit(width, 0.0);
   unit[width - 1] = 1.0;
-  const PortKernel kernel = body->probe(0, unit, 0.02, 2);
+  const PortKernel kernel = body->probe({0, unit, 0.02, 2});
   EXPECT_GT(kernel.displacement[width - 1], 0.0);
   EXPECT_EQ(body->state_hash(), before);
 }

@@ -85,8 +85,7 @@ TEST(LoadedBars, ThatPullTheirContactNodeStretchItsElementByItsCompliance) {
     const std::unique_ptr<Subdomain> body = bar(scheme, "pull: {on: right, traction: ['0.2']}");
     Response response;
     (void)body->advance(free_request(*body, 0.0, 0.0), response);
-    const double one[] = {1.0};
-    const PortKernel kernel = body->probe(0, one, 0.6, 1);
+    const PortKernel kernel = body->probe({0, {1.0}, 0.6, 1});
     const double exact = 0.2 * kernel.compliance.at(0);
     EXPECT_NEAR(response.ports[0].trace.u[0], exact, roundoff(10.0, 0.2)) << scheme;
     EXPECT_NEAR(exact, 0.2, 0.01);  // F h / (E A), and a little less of the corrected operator
@@ -116,7 +115,7 @@ TEST(LoadedBars, PressOnAWallWithTwiceThePressureThatArrives) {
         "bodies.bar");
     PortGeometry wall = body->describe().ports[0].geometry;
     wall.normals[0] = -1.0;
-    body->meet(0, wall, {});
+    body->meet({0, 0, &wall});
     Advance request = free_request(*body, 0.0, 12.0 * transit);
     Obstacle& obstacle = request.boundary[0].obstacles.emplace_back();
     obstacle.motion.time = {0.0, 12.0 * transit};
