@@ -98,6 +98,7 @@ class CompliantObstacle final : public Transmission {
   Eigen::VectorXd moved_;    // [m] (width) by the reaction, at the window's end
   Eigen::MatrixXd pressed_;  // [N] (width, times of the reaction)
   Eigen::MatrixXd taken_;  // [N] (width, levels) of the reaction by the Neumann side, beyond d's
+  mutable std::vector<double> level_force_, level_moved_;  // [N], [m] (kernel) at one level
 };
 
 }  // namespace abut
