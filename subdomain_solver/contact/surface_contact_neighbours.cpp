@@ -35,15 +35,6 @@ class SurfaceContact::Eased final : public Compliance {
   std::vector<Vector> columns_;
 };
 
-/// Sides along axes of their own know no components along those of space.
-void SurfaceContact::ease(std::size_t port, const PortKernel& kernel) {
-  for (Own& own : surfaces_) {
-    const auto turned = [](const Matrix3* frame) { return frame != nullptr; };
-    if (own.surface.port == port && std::ranges::none_of(own.surface.frames, turned))
-      own.neighbours.take(kernel);
-  }
-}
-
 /// [N] (values) of all partners, along the axes of space.
 std::span<const double> SurfaceContact::pressing(const Own& own) {
   sum_.assign(own.at.size(), 0.0);
@@ -54,11 +45,14 @@ std::span<const double> SurfaceContact::pressing(const Own& own) {
   return sum_;
 }
 
+/// Sides along axes of their own know no components along those of space.
 void SurfaceContact::begin_neighbours(const Window& window) {
   for (Own& own : surfaces_) {
-    if (own.neighbours.empty()) continue;
-    if (acts(own.surface.port))
-      own.neighbours.begin(window.request.window, window.grid, pressing(own));
+    const auto turned = [](const Matrix3* frame) { return frame != nullptr; };
+    const PortKernel& kernel = window.neighbours[own.surface.port];
+    if (kernel.count() > 0 && acts(own.surface.port) &&
+        std::ranges::none_of(own.surface.frames, turned))
+      own.neighbours.begin(kernel, window.request.window, window.grid, pressing(own));
     else
       own.neighbours.rest();
   }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/index.hpp"
 #include "contract/port.hpp"
 #include "contract/time_window.hpp"
 #include "subdomain_solver/substeps.hpp"
@@ -14,13 +15,13 @@ namespace abut {
 /// kernel tells the rest.
 class TiedNeighbours {
  public:
-  void take(PortKernel kernel) { kernel_ = std::move(kernel); }
-  bool empty() const { return kernel_.count() == 0; }
   /// Whether they give way in this window.
   bool act() const { return acts_; }
 
-  /// A window begins, or is tried again. `pressing`: [N] (values) on the surface then.
-  void begin(const TimeWindow& window, const Substeps& grid, std::span<const double> pressing);
+  /// A window begins, or is tried again. `kernel`, which must live until its end: of the surface,
+  /// for what the tied bodies add; `pressing`: [N] (values) on the surface then.
+  void begin(const PortKernel& kernel, const TimeWindow& window, const Substeps& grid,
+             std::span<const double> pressing);
   /// Nothing presses in this window.
   void rest() { acts_ = false; }
   /// The substep i is next.
@@ -34,10 +35,10 @@ class TiedNeighbours {
   std::span<const double> response(std::size_t value) const;
 
  private:
-  std::size_t width() const { return static_cast<std::size_t>(kernel_.width); }
-  void recall(int level, int at, double sign, const std::vector<double>& forces);
+  std::size_t width() const { return index(kernel_->width); }
+  void recall(int level, int at, double sign, std::span<const double> forces);
 
-  PortKernel kernel_;
+  const PortKernel* kernel_ = nullptr;
   bool acts_ = false;
   int substep_ = 0;
   // Of the latest window, not of the state: what it began with is, and sweeps repeat it.

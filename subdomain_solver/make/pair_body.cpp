@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "subdomain_solver/bars/pair_interior.hpp"
+#include "subdomain_solver/compare/pair_interior.hpp"
 #include "subdomain_solver/fe/element_limit.hpp"
 #include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/make/mass_range.hpp"

@@ -21,8 +21,8 @@ PortKernel kernel() {
 }
 
 // Goal: a term of the convolution is sign * sum over patterns of force times response, entry by
-// entry. Oracle: the definition of the arrays of PortKernel, (n, patterns, width); bits, because the
-// same products are summed in the same order.
+// entry. Oracle: the definition of the arrays of PortKernel, (n, patterns, width); bits, because
+// the same products are summed in the same order.
 TEST(ContractKernel, TermIsForceTimesResponseAtItsLag) {
   const PortKernel k = kernel();
   const std::vector<double> forces = {1.7, -0.4};
