@@ -85,8 +85,11 @@ struct SchemeMaker {
             s.step, std::numeric_limits<double>::infinity(), MassForm::lumped,
             fmt::format("quasi-static, step {:g} s", s.step)};
   }
-  SolidInterior::Scheme operator()(const RigidMotionSpec&) const { return {}; }    // refused before
-  SolidInterior::Scheme operator()(const BackwardEulerSpec&) const { return {}; }  // refused before
+  template <class Other>
+  SolidInterior::Scheme operator()(const Other&) const {
+    throw InputError(fmt::format("{} is not offered to a solid", Other::name),
+                     place.where("integrator"), "Use newmark or central_difference.");
+  }
 
   SolidInterior::Scheme implicit(const AlphaWeights& weights, double step, MassForm mass,
                                  const char* words) const {
