@@ -153,9 +153,8 @@ std::optional<Failed> Body::advance(const Window& window, Response& response) {
   for (int i = 1; i <= grid.count; ++i) {
     const bool due = i == clock.substep();
     if (auto failed = patiently([&] { return interior_->step(window, i, due); })) return failed;
-    const std::span<const double> left =
-        statics != nullptr ? statics->unbalanced() : std::span<const double>{};
-    response.unbalanced.insert(response.unbalanced.end(), left.begin(), left.end());
+    if (statics != nullptr)
+      for (const double left : statics->unbalanced()) response.unbalanced.push_back(left);
     if (window.request.sampling == Sampling::substeps) {
       follow(window, i, grid.time(i), true);
     } else {
