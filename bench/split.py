@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """A long explicit bar of hexahedra in two tied processes against one process with two threads.
 
-usage: split.py DIRECTORY_OF_PROGRAMS [CELLS_ACROSS CELLS_ALONG]
+usage: split.py DIRECTORY_OF_PROGRAMS [CELLS_ACROSS CELLS_ALONG [LAW]]
 
 Prints the time of a step in either way, start and kernels taken off as the difference of runs of
 two lengths, and their ratio beside its limit; exit code 1 when that is passed. The default is 1e6
-cells, of 10 x 10 across so that a joint has few rows.
+cells of linear_elastic, of 10 x 10 across so that a joint has few rows.
 """
 
 import json
@@ -31,7 +31,7 @@ bodies:
             lengths: [{across}.0, {across}.0, {along}.0]
             elements: [{across}, {across}, {along}]
         threads: {threads}
-    material: {{linear_elastic: {{youngs_modulus: 1.0, poissons_ratio: 0.25, density: 1.0}}}}
+    material: {{{law}: {{youngs_modulus: 1.0, poissons_ratio: 0.25, density: 1.0}}}}
     integrator: {{central_difference: {{step: 0.25}}}}
     initial: {{velocity_field: ["0.01*sin(0.3*z)", "0.01*cos(0.2*z)", "0.01*sin(0.1*z)"]}}
 """
@@ -52,6 +52,7 @@ def wall(abut, scene, out):
 def main():
     abut = pathlib.Path(sys.argv[1]).resolve() / "abut"
     across, along = map(int, sys.argv[2:4]) if len(sys.argv) > 3 else (10, 10000)
+    law = sys.argv[4] if len(sys.argv) > 4 else "linear_elastic"
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         scenes = {}
@@ -59,7 +60,7 @@ def main():
             for way, threads in (("threads", 2), ("processes", 1)):
                 scene = folder / f"{way}_{steps}.yaml"
                 scene.write_text(SCENE.format(end=0.25 * steps, window=0.25, across=across,
-                                              along=along, threads=threads))
+                                              along=along, threads=threads, law=law))
                 if way == "processes":
                     call(abut, "split", scene, "--bodies", 2, "--out", folder / scene.stem)
                     scene = folder / scene.stem / scene.name

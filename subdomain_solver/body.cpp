@@ -13,6 +13,8 @@
 #include "base/index.hpp"
 #include "base/life_signs.hpp"
 #include "contract/force_means.hpp"
+#include "subdomain_solver/port_forecast.hpp"
+#include "subdomain_solver/port_statics.hpp"
 
 namespace abut {
 
@@ -63,7 +65,8 @@ Body::Body(std::unique_ptr<Interior> interior, std::function<void()> progress)
     watched.upper.resize(index(port.geometry.dim));
   }
   partners_.resize(ports_.size());
-  step_effort_ = interior_->effort();
+  neighbours_.resize(ports_.size());
+  step_effort_ = interior_->traits().effort;
 }
 
 void Body::meet(const Meeting& meeting) {
@@ -77,13 +80,19 @@ void Body::meet(const Meeting& meeting) {
     partners.push_back({*meeting.surface, meeting.law, {}});
   }
   if (meeting.kernel == nullptr) return;
-  if (const std::string misfit = interior_->misfit(meeting.port, *meeting.kernel);
-      !misfit.empty()) {
+  const Obstructed* obstructed = interior_->able().obstructed;
+  const std::string misfit = obstructed != nullptr
+                                 ? obstructed->misfit(meeting.port, *meeting.kernel)
+                                 : "it takes none";
+  if (!misfit.empty()) {
     throw RunError("gives way by a kernel that this body cannot take: " + misfit, partner_of,
                    "Let obstacles give way only with kernels of this body's step and support.");
   }
-  if (meeting.partner == own_surface) return interior_->ease(meeting.port, *meeting.kernel);
-  partners.at(index(meeting.partner)).kernel = *meeting.kernel;
+  if (meeting.partner == own_surface) {
+    neighbours_.at(index(meeting.port)) = *meeting.kernel;
+  } else {
+    partners.at(index(meeting.partner)).kernel = *meeting.kernel;
+  }
 }
 
 void Body::save() { write(*interior_, saved_, Archive::Form::bare); }
@@ -127,7 +136,7 @@ Outcome Body::finish(Response& response) {
   ABUT_ASSERT(request_ != nullptr);
   const Advance& request = *std::exchange(request_, nullptr);
   const auto began = std::chrono::steady_clock::now();
-  const Window window{request, divide(request), partners_};
+  const Window window = window_of(request, divide(request));
   begin_replies(request, response);
   recorded_ = 0;
   if (std::optional<Failed> failed = advance(window, response)) return *failed;
@@ -147,12 +156,12 @@ std::optional<Failed> Body::advance(const Window& window, Response& response) {
   interior_->set_off(window);
   begin_sweep();
   RecordClock clock(window.request, grid.count);
+  const PortStatics* statics = interior_->able().statics;
   for (int i = 1; i <= grid.count; ++i) {
-    if (auto failed = patiently([&] { return interior_->step(window, i); })) return failed;
-    const std::span<const double> left = interior_->unbalanced();
-    response.unbalanced.insert(response.unbalanced.end(), left.begin(), left.end());
     const bool due = i == clock.substep();
-    if (due) interior_->settle(window, i);
+    if (auto failed = patiently([&] { return interior_->step(window, i, due); })) return failed;
+    if (statics != nullptr)
+      for (const double left : statics->unbalanced()) response.unbalanced.push_back(left);
     if (window.request.sampling == Sampling::substeps) {
       follow(window, i, grid.time(i), true);
     } else {
@@ -175,7 +184,7 @@ std::optional<Failed> Body::walk(const Window& window, const Visit& visit) {
   visit(0);
   interior_->set_off(window);
   for (int i = 1; i <= window.grid.count; ++i) {
-    if (auto failed = patiently([&] { return interior_->step(window, i); })) return failed;
+    if (auto failed = patiently([&] { return interior_->step(window, i, false); })) return failed;
     report_progress();
     visit(i);
   }
@@ -185,7 +194,7 @@ std::optional<Failed> Body::walk(const Window& window, const Visit& visit) {
 /// What partners press with at the window's end is gone by the end of the next substep. A look that
 /// fails has nothing to tell.
 void Body::look_ahead(const Advance& request, Response& response) {
-  if (!interior_->looks_ahead()) return;
+  if (!interior_->traits().looks_ahead) return;
   for (std::size_t p = 0; p < ports_.size(); ++p)
     if (request.boundary[p].obstructed() && ports_[p].width > 1) return;
   const double begin = request.window.end;
@@ -194,7 +203,7 @@ void Body::look_ahead(const Advance& request, Response& response) {
   const Substeps grid = divide(ahead_);
   for (std::size_t p = 0; p < ports_.size(); ++p)
     release(p, request, grid, response.ports[p].trace);
-  const Window window{ahead_, grid, partners_};
+  const Window window = window_of(ahead_, grid);
   const auto tell = [&](double time, const std::vector<double>& u) {
     for (std::size_t p = 0; p < ports_.size(); ++p) {
       Waveform& told = response.ports[p].ahead;
@@ -205,7 +214,8 @@ void Body::look_ahead(const Advance& request, Response& response) {
     }
   };
   const auto values = static_cast<std::ptrdiff_t>(ports_.back().first + ports_.back().width);
-  if (interior_->peek(window, peeked_)) {
+  PortForecast* forecast = interior_->able().forecast;
+  if (forecast != nullptr && forecast->tell(window, peeked_)) {
     tell(grid.begin, interior_->see(window, grid.begin, false).u);
     for (int i = 1; i <= grid.count; ++i) {
       const auto from = peeked_.begin() + (i - 1) * values;
@@ -346,7 +356,8 @@ std::optional<Failed> Body::record(double time, Response& response) {
 }
 
 PortKernel Body::probe(const Probing& asked) {
-  if (!describe().can.kernel) {
+  Probed* probed = interior_->able().probed;
+  if (!describe().can.kernel || probed == nullptr) {
     throw RunError("does not answer for port kernels", fmt::format("body '{}'", describe().name),
                    "Ask bodies for kernels only when they offer them.");
   }
@@ -355,7 +366,7 @@ PortKernel Body::probe(const Probing& asked) {
   const bool joined = interior_->support(index(asked.port)) == ForceSupport::step;
   PortKernel kernel =
       describe().quasi_static && joined ? probe_statics(asked, seen) : probe_dynamics(asked, seen);
-  const double compliance = asked.seen.empty() ? interior_->compliance(index(asked.port)) : 0.0;
+  const double compliance = asked.seen.empty() ? probed->compliance(index(asked.port)) : 0.0;
   if (compliance > 0.0)
     for (const double value : asked.patterns) kernel.compliance.push_back(compliance * value);
   return kernel;
@@ -363,6 +374,7 @@ PortKernel Body::probe(const Probing& asked) {
 
 PortKernel Body::probe_dynamics(const Probing& asked, std::span<const int> seen) {
   const auto& [port, patterns, step, count, only] = asked;
+  Probed* probed = interior_->able().probed;
   const std::size_t p = index(port), width = describe().ports.at(p).geometry.points.size();
   ABUT_ASSERT(step > 0.0 && patterns.size() % width == 0);
   std::vector<std::byte> kept;
@@ -386,12 +398,12 @@ PortKernel Body::probe_dynamics(const Probing& asked, std::span<const int> seen)
   Waveform& force = request.boundary[p].forces.emplace_back(static_cast<int>(width));
   force.support = kernel.support;
   for (int i = 0; i <= count; ++i) force.time.push_back(i == 0 ? grid.begin : grid.time(i));
-  const double light = interior_->light_force(p);
+  const double light = probed->light_force(p);
   const std::size_t values = index(kernel.width);
   std::vector<double> alone, moved;
   std::optional<Failed> failed;
   force.f.assign(force.time.size() * width, 0.0);
-  if (interior_->rest(p)) failed = respond(request, grid, seen, alone);
+  if (probed->rest(p)) failed = respond(request, grid, seen, alone);
   alone.resize(index(count) * values, 0.0);
   for (std::size_t k = 0; k < index(kernel.patterns) && !failed; ++k) {
     for (const std::size_t at : {0u, 1u}) {  // at the begin, at the end of the first substep
@@ -400,7 +412,7 @@ PortKernel Body::probe_dynamics(const Probing& asked, std::span<const int> seen)
       force.f.assign(force.time.size() * width, 0.0);
       for (std::size_t i = 0; i < width; ++i)
         force.f[at * width + i] = light * patterns[k * width + i];
-      interior_->rest(p);
+      probed->rest(p);
       failed = respond(request, grid, seen, moved);
       for (std::size_t i = 0; at == 0 && leans && i < at_begin_.size(); ++i)
         kernel.compliance.push_back(at_begin_[i] / light);
@@ -409,7 +421,7 @@ PortKernel Body::probe_dynamics(const Probing& asked, std::span<const int> seen)
             (moved[i] - alone[i]) / light;
     }
   }
-  interior_->wake();
+  probed->wake();
   read(*interior_, kept, Archive::Form::bare);
   interior_->restored();
   if (!failed) return kernel;
@@ -430,7 +442,7 @@ PortKernel Body::probe_statics(const Probing& asked, std::span<const int> seen) 
   std::vector<double> force(ports_.back().first + ports_.back().width, 0.0), moved;
   Eigen::VectorXd place = Eigen::VectorXd::Zero(loose_motions(describe())), left;
   const auto see = [&](std::vector<double>& to) {
-    if (!interior_->give(force, place, moved, left)) {
+    if (!interior_->able().statics->give(force, place, moved, left)) {
       throw RunError("has no port kernel: its stiffness is singular",
                      fmt::format("body '{}'", describe().name), "Give the body more supports.");
     }
@@ -458,7 +470,7 @@ PortKernel Body::probe_statics(const Probing& asked, std::span<const int> seen) 
 /// [m].
 std::optional<Failed> Body::respond(const Advance& request, const Substeps& grid,
                                     std::span<const int> ports, std::vector<double>& displacement) {
-  const Window window{request, grid, partners_};
+  const Window window = window_of(request, grid);
   displacement.clear();
   at_begin_.clear();
   return walk(window, [&](int i) {
@@ -475,7 +487,7 @@ std::optional<Failed> Body::respond(const Advance& request, const Substeps& grid
 /// With signs of life meanwhile, where a single call may take long.
 template <class Call>
 std::optional<Failed> Body::patiently(const Call& call) const {
-  if (!progress_ || !interior_->slow()) return call();
+  if (!progress_ || !interior_->traits().slow) return call();
   LifeSigns life(progress_, life_interval);
   std::optional<Failed> outcome = call();
   life.end();

@@ -47,6 +47,9 @@ class Body final : public Subdomain {
     PortResponse* reply = nullptr;
   };
 
+  Window window_of(const Advance& request, const Substeps& grid) const {
+    return {request, grid, partners_, neighbours_};
+  }
   std::optional<Failed> advance(const Window& window, Response& response);
   template <class Visit>
   std::optional<Failed> walk(const Window& window, const Visit& visit);
@@ -74,6 +77,7 @@ class Body final : public Subdomain {
   std::function<void()> progress_;
   std::vector<Watched> ports_;
   std::vector<std::deque<Partner>> partners_;  // by port; contact holds on to them
+  std::vector<PortKernel> neighbours_;         // by port; empty: none tied to this body
   const Advance* request_ = nullptr;
   const PortValues* seen_ = nullptr;
   std::size_t recorded_ = 0;  // records of the window so far

@@ -59,14 +59,15 @@ void Body::push_trace(const Watched& port, double time) const {
 
 void Body::push_reactions(std::size_t p, double time) const {
   const Watched& port = ports_[p];
+  const Obstructed* obstructed = interior_->able().obstructed;
   for (std::size_t k = 0; k < port.reply->reactions.size(); ++k) {
-    if ((*port.obstacles)[k].empty()) continue;
+    if (obstructed == nullptr || (*port.obstacles)[k].empty()) continue;
     Waveform& force = port.reply->reactions[k].force;
-    const std::vector<std::int32_t>* points = interior_->reacting(p, k);
+    const std::vector<std::int32_t>* points = obstructed->reacting(p, k);
     if (points != nullptr && (force.time.empty() || force.points != *points))
       list(force, *points, (*port.obstacles)[k].motion.width, port.geometry->dim);
     force.time.push_back(time);
-    interior_->react(p, k, force.f);
+    obstructed->react(p, k, force.f);
   }
 }
 

@@ -3,15 +3,17 @@
 #include <deque>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
-
-#include <Eigen/Dense>
 
 #include "base/archive.hpp"
 #include "contract/subdomain.hpp"
 #include "subdomain_solver/substeps.hpp"
 
 namespace abut {
+
+class PortForecast;
+class PortStatics;
 
 /// A partner that a port has met.
 struct Partner {
@@ -25,6 +27,8 @@ struct Window {
   const Advance& request;
   Substeps grid;
   std::span<const std::deque<Partner>> partners;  // by port, in the order in which they were met
+  // By port: how bodies that are tied to this one give way under forces on it; empty: they do not.
+  std::span<const PortKernel> neighbours;
 };
 
 /// Motion and force of all points of all ports at one time, port after port (values) [SI units].
@@ -32,11 +36,70 @@ struct PortValues {
   std::vector<double> u, v, a, f;
 };
 
+/// A body whose ports can be pressed from rest: it answers for their kernels.
+class Probed {
+ public:
+  /// Quasi-static compliance of a port of one point [m/N]; 0: none.
+  virtual double compliance(std::size_t port) const = 0;
+  /// A force [N] on a port to which the body answers linearly: probes press with it.
+  virtual double light_force(std::size_t port) const = 0;
+  /// Puts the body at rest, a port held and loads away; true: one stays that moves it.
+  virtual bool rest(std::size_t port) = 0;
+  /// Brings the loads back; the state is restored by others.
+  virtual void wake() = 0;
+
+ protected:
+  ~Probed() = default;
+};
+
+/// A body whose ports take obstacles, and react to them.
+class Obstructed {
+ public:
+  /// Why the body cannot take the kernel of a surface that gives way; empty: it can.
+  virtual std::string misfit(int port, const PortKernel& kernel) const = 0;
+  /// Points of a partner that react() is of, ascending, empty: all; more of them as the window goes
+  /// on. Null: those that its obstacle lists.
+  virtual const std::vector<std::int32_t>* reacting(std::size_t port,
+                                                    std::size_t partner) const = 0;
+  /// Appends the force on these points [N].
+  virtual void react(std::size_t port, std::size_t partner, std::vector<double>& force) const = 0;
+
+ protected:
+  ~Obstructed() = default;
+};
+
 /// What makes one body differ from another; the rest is Body's. Called as Body::advance shows.
 class Interior {
  public:
+  /// What only some bodies can do, as objects; null: this one cannot.
+  struct Abilities {
+    Probed* probed = nullptr;
+    Obstructed* obstructed = nullptr;
+    PortForecast* forecast = nullptr;  // tells where ports go without going there
+    PortStatics* statics = nullptr;    // answers of a body without inertia
+  };
+  /// What never changes, beside the description.
+  struct Traits {
+    std::vector<ForceSupport> support;   // by port, of its forces; empty: all nodal
+    std::vector<ForceSupport> reaction;  // by port, of reactions to obstacles; empty: as its forces
+    double effort = 0.0;                 // parts of 10 ms that a substep takes, about
+    bool slow = false;                   // a single substep may take seconds
+    bool looks_ahead = true;  // where it goes without its partners is worth the way
+  };
+
+  Interior() = default;
   virtual ~Interior() = default;
+  Interior(const Interior&) = delete;
+  Interior& operator=(const Interior&) = delete;
   const Description& describe() const { return description_; }
+  const Abilities& able() const { return able_; }
+  const Traits& traits() const { return traits_; }
+  ForceSupport support(std::size_t port) const {
+    return traits_.support.empty() ? ForceSupport::nodal : traits_.support[port];
+  }
+  ForceSupport reaction_support(std::size_t port) const {
+    return traits_.reaction.empty() ? support(port) : traits_.reaction[port];
+  }
 
   /// The one list of all that changes during a step.
   virtual void state(Archive& archive) = 0;
@@ -49,63 +112,24 @@ class Interior {
   [[nodiscard]] virtual std::optional<Failed> begin(const Window&) { return std::nullopt; }
   /// Impulses and the first half of a step, which the ports do not show at the window's begin.
   virtual void set_off(const Window&) {}
-  [[nodiscard]] virtual std::optional<Failed> step(const Window& window, int i) = 0;
-  /// Displacements (substeps, values of all ports) [m] at the ends of the substeps of a window,
-  /// told without going there. False: only a walk tells them.
-  [[nodiscard]] virtual bool peek(const Window&, std::vector<double>&) { return false; }
-  /// Whether where the body would go without its partners is worth the way.
-  virtual bool looks_ahead() const { return true; }
-  /// [N] of the last substep, along Description::loose motions.
-  virtual std::span<const double> unbalanced() const { return {}; }
-  /// By the present tangent of a body without inertia: [m] by which a force [N] on the ports moves
-  /// them (values of all ports), at places [m] of its loose motions, and what is left over along
-  /// these [N]. The state is left untouched. False: it has none.
-  [[nodiscard]] virtual bool give(std::span<const double> /*force*/, const Eigen::VectorXd&,
-                                  std::vector<double>& /*moved*/, Eigen::VectorXd& /*left*/) {
-    return false;
-  }
-  /// Brings the state of the last substep to one time, for records.
-  virtual void settle(const Window&, int) {}
+  /// The window's substep i, from 1. `whole`: all of the state is of one time behind it, for a
+  /// record.
+  [[nodiscard]] virtual std::optional<Failed> step(const Window& window, int i, bool whole) = 0;
   /// Ports now; the displacements alone, unless all is wanted for their traces at `time`.
   virtual const PortValues& see(const Window& window, double time, bool all) = 0;
-  /// Points of a partner that react() is of, ascending, empty: all; more of them as the window goes
-  /// on. Null: those that its obstacle lists.
-  virtual const std::vector<std::int32_t>* reacting(std::size_t, std::size_t) const {
-    return nullptr;
-  }
-  /// Appends the force on these points [N].
-  virtual void react(std::size_t, std::size_t, std::vector<double>&) const {}
   /// Fills a record whose time is given. Values may be anything: Body looks at them.
   [[nodiscard]] virtual std::optional<Failed> record(BodyRecord& record) = 0;
   /// Completes a port's reply at the window's end: bounds, work, recoil.
   virtual void finish(std::size_t, PortResponse&) const {}
 
-  /// A partner whose surface gives way: why the body cannot take its kernel; empty: it can.
-  virtual std::string misfit(int, const PortKernel&) const { return "it takes none"; }
-  /// How bodies tied to this one give way under forces on a port that touches.
-  virtual void ease(int, const PortKernel&) {}
-  virtual ForceSupport support(std::size_t) const { return ForceSupport::nodal; }
-  /// The same of the reactions to obstacles.
-  virtual ForceSupport reaction_support(std::size_t port) const { return support(port); }
-  /// Quasi-static compliance of a port of one point [m/N]; 0: none.
-  virtual double compliance(std::size_t) const { return 0.0; }
-  /// A force [N] on a port to which the body answers linearly: probes press with it.
-  virtual double light_force(std::size_t) const { return 1.0; }
-  /// Puts the body at rest, a port held and loads away; true: one stays that moves it.
-  virtual bool rest(std::size_t) { return false; }
-  /// Brings the loads back; the state is restored by others.
-  virtual void wake() {}
-
-  /// Parts of 10 ms that a substep takes, about; always the same.
-  virtual double effort() const { return 0.0; }
-  /// A single substep may take seconds.
-  virtual bool slow() const { return false; }
   virtual std::vector<double> measure() { return {}; }
   virtual Grid grid() = 0;
   virtual std::vector<FieldValues> fields() = 0;
 
  protected:
   Description description_;
+  Abilities able_;
+  Traits traits_;
 };
 
 }  // namespace abut

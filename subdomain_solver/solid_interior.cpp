@@ -12,7 +12,10 @@
 #include "subdomain_solver/port_geometry.hpp"
 #include "subdomain_solver/solid_fields.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
+#include "subdomain_solver/time/inertia.hpp"
+#include "subdomain_solver/time/massless_layer.hpp"
 #include "subdomain_solver/time/quasi_static.hpp"
+#include "subdomain_solver/time/stable_steps.hpp"
 #include "subdomain_solver/validity_measures.hpp"
 
 namespace abut {
@@ -52,6 +55,39 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
     parts_.problem->loads.push_back(std::move(forces));
     find_contacts();
   }
+  find_traits();
+  find_abilities();
+}
+
+void SolidInterior::find_traits() {
+  const bool explicit_in_time = std::isfinite(description_.stable_step);
+  for (const char joined : joined_) {
+    traits_.support.push_back(joined != 0 ? ForceSupport::step : ForceSupport::nodal);
+    traits_.reaction.push_back(description_.dim == 1 ? ForceSupport::nodal : ForceSupport::linear);
+  }
+  traits_.effort = parts_.model->mesh().cell_count() / usual_work;
+  // It may factor a large matrix.
+  traits_.slow = !explicit_in_time && description_.dofs >= long_factorisation;
+  // Let go of, material with a history would unload at a joined port: implicit bodies take the way
+  // there by Newton's method or by a tangent that is not that of loading, and neither saves a call.
+  traits_.looks_ahead =
+      !joins_ || parts_.problem->model->history_size() == 0 || explicit_in_time;
+}
+
+void SolidInterior::find_abilities() {
+  if (ports_.empty()) return;
+  able_.probed = this;
+  if (contact_) able_.obstructed = this;
+  const Integrator::Abilities& scheme = parts_.scheme.integrator->able();
+  if (scheme.foreseeing != nullptr && joins_ && !contact_) {
+    forecast_ = std::make_unique<PortForecast>(state_.motion, *scheme.foreseeing, *port_map_,
+                                               *port_forces_);
+    able_.forecast = forecast_.get();
+  }
+  if (scheme.statics == nullptr) return;
+  statics_ =
+      std::make_unique<PortStatics>(state_.motion, state_.time, *scheme.statics, *port_map_);
+  able_.statics = statics_.get();
 }
 
 /// Ports without mass meet obstacles.
@@ -91,7 +127,9 @@ void SolidInterior::find_surfaces() {
     for (const std::int32_t node : nodes) surface.frames.push_back(model.frame(node));
   }
   if (surfaces.empty()) return;
-  contact_ = std::make_unique<SurfaceContact>(std::move(surfaces), description_.name);
+  auto contact = std::make_unique<SurfaceContact>(std::move(surfaces), description_.name);
+  surfaces_ = contact.get();
+  contact_ = std::move(contact);
   for (std::string& name : touch_measure_names(touched_))
     description_.measures.push_back(std::move(name));
   if (parts_.deforms && !parts_.problem->model->is_linear()) {
@@ -115,14 +153,15 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   description_.dofs = parts_.problem->model->dofs();
   description_.mass = parts_.model->material().density() * parts_.model->volume();
   description_.step = parts_.scheme.step;
-  description_.quasi_static = !parts_.scheme.integrator->has_inertia();
+  const Integrator::Abilities& scheme = parts_.scheme.integrator->able();
+  description_.quasi_static = scheme.statics != nullptr;
   description_.loose = parts_.loose;
   description_.stable_step = parts_.scheme.stable_step;
   description_.can.force = true;
   const bool small = parts_.problem->model->is_linear() && parts_.deforms;
   description_.linear = small;
   description_.can.kernel =
-      (small || mesh.dim == 1) && parts_.scheme.integrator->has_inertia() && !ports.empty();
+      (small || mesh.dim == 1) && scheme.inertia != nullptr && !ports.empty();
   for (const PortNodes& p : ports) {
     ports_.push_back({p.name, mesh.nodes_of(p.side), p.inside.rows});
     may_touch_.push_back(p.touched);
@@ -138,7 +177,7 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
     description_.measures.insert(description_.measures.end(), names.begin(), names.end());
   };
   also(reaction_measure_names(mesh.dim, parts_.constraints));
-  also(parts_.scheme.integrator->measure_names());
+  if (scheme.held != nullptr) also(StableSteps::measure_names());
   also(validity_measure_names(*parts_.model, parts_.deforms));
   description_.columns = reaction_columns(mesh.dim, parts_.constraints);
   description_.frequencies = parts_.frequencies;
@@ -154,14 +193,7 @@ void SolidInterior::state(Archive& archive) {
   archive.field("port_work", state_.port_work);
   archive.field("turned", state_.turned);
   if (crossings_) archive.field("crossed", state_.crossed);
-  if (contact_) contact_->state(archive);
-}
-
-double SolidInterior::effort() const { return parts_.model->mesh().cell_count() / usual_work; }
-
-/// It may factor a large matrix.
-bool SolidInterior::slow() const {
-  return std::isinf(description_.stable_step) && description_.dofs >= long_factorisation;
+  if (surfaces_ != nullptr) surfaces_->state(archive);
 }
 
 std::optional<Failed> SolidInterior::begin(const Window& window) {
@@ -182,12 +214,13 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
   if (std::optional<Failed> failed = meet_port_forces(time)) return failed;
   if (parts_.problem->contact != nullptr) contact_->aim(0, state_.port_force, places_);
   if (!state_.begun) {
-    const bool steady = port_forces_ != nullptr && parts_.scheme.integrator->joins_steadily();
-    if (steady) port_forces_->enter(0);
+    const bool without_ties =
+        port_forces_ != nullptr && parts_.scheme.integrator->able().accelerates_without_ties;
+    if (without_ties) port_forces_->enter(0);
     parts_.problem->set_rates(time, parts_.scheme.step, state_.motion);
     if (std::optional<Failed> failed = parts_.scheme.integrator->begin(state_.motion, time))
       return failed;
-    if (steady) port_forces_->enter(1);
+    if (without_ties) port_forces_->enter(1);
     state_.begun = true;
     state_.time = time;
   }
@@ -207,7 +240,7 @@ void SolidInterior::set_off(const Window& window) {
                       before_.begin() + static_cast<std::ptrdiff_t>(port_map_->first(p)));
   change_.setZero(parts_.problem->model->dofs());
   port_map_->lift(state_.motion.q, before_, change_);
-  parts_.scheme.integrator->strike(state_.motion, change_);
+  parts_.scheme.integrator->able().inertia->strike(state_.motion, change_);
   for (const Prescribed& p : parts_.problem->supports)  // they withstand it, and go on as told
     state_.motion.external_work -= change_(p.dof) * state_.motion.v[p.dof];
 }
@@ -216,7 +249,7 @@ void SolidInterior::restored() {
   if (port_map_) port_map_->displacement(state_.motion.q, places_);
 }
 
-std::optional<Failed> SolidInterior::step(const Window& window, int i) {
+std::optional<Failed> SolidInterior::step(const Window& window, int i, bool) {
   Integrator& integrator = *parts_.scheme.integrator;
   const double begin = window.grid.time(i - 1), dt = window.grid.length(i);
   substep_ = i;
@@ -228,32 +261,13 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i) {
   if (!description_.loose.empty()) {
     const std::span<const double> carry = window.request.carry;
     const std::size_t each = index(loose_motions(description_));
-    integrator.statics()->carry_to(carry.empty() ? carry
+    integrator.able().statics->carry_to(carry.empty() ? carry
                                                  : carry.subspan(index(i - 1) * each, each));
   }
   if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);
   if (port_map_) follow_ports(state_.time);
   return i == window.grid.count ? meet_end() : std::nullopt;
-}
-
-std::span<const double> SolidInterior::unbalanced() const {
-  if (description_.loose.empty()) return {};
-  return parts_.scheme.integrator->statics()->unbalanced();
-}
-
-bool SolidInterior::give(std::span<const double> force, const Eigen::VectorXd& place,
-                         std::vector<double>& moved, Eigen::VectorXd& left) {
-  const Motion& motion = state_.motion;
-  before_.assign(force.begin(), force.end());
-  change_.setZero(parts_.problem->model->dofs());
-  port_map_->lift(motion.q, before_, change_);
-  QuasiStatic& statics = *parts_.scheme.integrator->statics();
-  Vector gives;
-  if (!statics.give(motion, state_.time, change_, place, gives, left)) return false;
-  moved.resize(port_map_->values());
-  port_map_->velocity(motion.q, {gives.data(), index(gives.size())}, moved);
-  return true;
 }
 
 /// Where the nodes are and how they move now.
@@ -299,17 +313,16 @@ void SolidInterior::react(std::size_t port, std::size_t partner, std::vector<dou
   contact_->react(port, partner, state_.port_force, force);
 }
 
-void SolidInterior::ease(int port, const PortKernel& kernel) {
-  if (contact_) contact_->ease(index(port), kernel);
-}
-
 std::string SolidInterior::misfit(int port, const PortKernel& kernel) const {
-  return contact_ ? contact_->misfit(index(port), kernel) : Interior::misfit(port, kernel);
+  return contact_->misfit(index(port), kernel);
 }
 
 double SolidInterior::compliance(std::size_t port) const {
   if (description_.dim > 1 || !contact_ || !contact_->has(port)) return 0.0;
-  return parts_.scheme.integrator->compliance(state_.motion, ports_[port].nodes.front());
+  const Motion& motion = state_.motion;
+  MasslessLayer* layer = parts_.scheme.integrator->able().layer;
+  if (layer == nullptr) return 0.0;
+  return layer->compliance(motion.q, motion.history, ports_[port].nodes.front());
 }
 
 /// Forces on ports begin and end between windows: accelerations follow at once, and ports without
@@ -337,7 +350,9 @@ std::optional<Failed> SolidInterior::take_port_forces(double time) {
     change_.setZero(parts_.problem->model->dofs());
     port_map_->lift(state_.motion.q, before_, change_);
     if (contact_) port_map_->displacement(state_.motion.q, before_);
-    if (auto failed = parts_.scheme.integrator->jump(state_.motion, time, change_)) return failed;
+    Inertia* inertia = parts_.scheme.integrator->able().inertia;
+    if (inertia != nullptr)
+      if (auto failed = inertia->jump(state_.motion, time, change_)) return failed;
     if (contact_) {
       port_map_->displacement(state_.motion.q, places_);
       add_port_work();
@@ -420,11 +435,13 @@ std::vector<double> SolidInterior::measure() {
       *parts_.model, {parts_.deforms, q, v_, state_.motion.history, energy(), momentum_}, ports_);
   std::vector<double> sums;
   reactions(sums);
+  const StableSteps* held = parts_.scheme.integrator->able().held;
   for (const std::vector<double>& more :
-       {reaction_measures(description_.dim, sums), parts_.scheme.integrator->measure(state_.motion),
+       {reaction_measures(description_.dim, sums),
+        held != nullptr ? held->measure(state_.motion) : std::vector<double>{},
         validity_measures(*parts_.model, parts_.deforms, u_, state_.motion.stored, state_.turned)})
     out.insert(out.end(), more.begin(), more.end());
-  if (contact_) touch_measures(touched_, *contact_, state_.port_force, places_, out);
+  if (surfaces_ != nullptr) touch_measures(touched_, *surfaces_, state_.port_force, places_, out);
   if (crossings_) out.push_back(state_.crossed);
   return out;
 }
@@ -440,7 +457,7 @@ std::vector<FieldValues> SolidInterior::fields() {
   if (parts_.reactions) values.push_back(nodal_reactions());
   if (touched_.empty()) return values;
   for (FieldValues& field :
-       touch_field_values(touched_, *contact_, index(parts_.model->mesh().node_count()),
+       touch_field_values(touched_, *surfaces_, index(parts_.model->mesh().node_count()),
                           state_.port_force, places_))
     values.push_back(std::move(field));
   return values;
@@ -455,7 +472,7 @@ FieldValues SolidInterior::nodal_reactions() {
 
 Energy SolidInterior::energy() const {
   const Motion& motion = state_.motion;
-  const double rubbed = contact_ ? contact_->dissipated() : 0.0;
+  const double rubbed = surfaces_ != nullptr ? surfaces_->dissipated() : 0.0;
   return {parts_.scheme.integrator->kinetic(motion), motion.stored, motion.dissipated + rubbed,
           motion.external_work - state_.port_work};  // partners account for what ports exchange
 }
@@ -463,8 +480,8 @@ Energy SolidInterior::energy() const {
 /// A hint, which the horizon's flight verifies: waves inside may yet throw the surface faster.
 void SolidInterior::finish(std::size_t port, PortResponse& reply) const {
   if (description_.dim == 1) return;
-  for (std::size_t k = 0; contact_ && k < reply.reactions.size(); ++k)
-    contact_->finish(port, k, reply.reactions[k]);
+  for (std::size_t k = 0; surfaces_ != nullptr && k < reply.reactions.size(); ++k)
+    surfaces_->finish(port, k, reply.reactions[k]);
   const std::size_t dim = index(description_.dim);
   const double* v = seen_.v.data() + port_map_->first(port);
   double most = 0.0;

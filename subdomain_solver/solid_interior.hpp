@@ -8,12 +8,15 @@
 #include "subdomain_solver/contact/contact_fields.hpp"
 #include "subdomain_solver/contact/port_contact.hpp"
 #include "subdomain_solver/contact/self_crossings.hpp"
+#include "subdomain_solver/contact/surface_contact.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/interior.hpp"
 #include "subdomain_solver/linearised_model.hpp"
 #include "subdomain_solver/nodal_map.hpp"
 #include "subdomain_solver/overlap/embedded_surface.hpp"
+#include "subdomain_solver/port_forecast.hpp"
 #include "subdomain_solver/port_forces.hpp"
+#include "subdomain_solver/port_statics.hpp"
 #include "subdomain_solver/reactions.hpp"
 #include "subdomain_solver/solid_measures.hpp"
 #include "subdomain_solver/time/integrator.hpp"
@@ -24,7 +27,7 @@ namespace abut {
 /// coordinates move it, what acts on it, an integrator, and ports, which are sides or node sets of
 /// the mesh. Ports take forces; linear bodies answer for their port kernels too. Ports without mass
 /// meet obstacles: ends of bars, surfaces in the plane and in space.
-class SolidInterior final : public Interior {
+class SolidInterior final : public Interior, private Probed, private Obstructed {
  public:
   struct PortNodes {
     std::string name, side;
@@ -63,39 +66,26 @@ class SolidInterior final : public Interior {
   void restored() override;
   std::optional<Failed> begin(const Window& window) override;
   void set_off(const Window& window) override;
-  std::optional<Failed> step(const Window& window, int i) override;
-  bool peek(const Window& window, std::vector<double>& u) override;
-  bool looks_ahead() const override;
-  std::span<const double> unbalanced() const override;
-  bool give(std::span<const double> force, const Eigen::VectorXd& place, std::vector<double>& moved,
-            Eigen::VectorXd& left) override;
+  std::optional<Failed> step(const Window& window, int i, bool whole) override;
   const PortValues& see(const Window& window, double time, bool all) override;
   std::optional<Failed> record(BodyRecord& record) override;
-  void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;
-  const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override {
-    return contact_ ? contact_->reacting(port, partner) : nullptr;
-  }
   void finish(std::size_t port, PortResponse& reply) const override;
-  std::string misfit(int port, const PortKernel& kernel) const override;
-  void ease(int port, const PortKernel& kernel) override;
-  ForceSupport support(std::size_t port) const override {
-    return joined_[port] ? ForceSupport::step : ForceSupport::nodal;
-  }
-  ForceSupport reaction_support(std::size_t) const override {
-    return description_.dim == 1 ? ForceSupport::nodal : ForceSupport::linear;
-  }
-  double compliance(std::size_t port) const override;
-  double light_force(std::size_t port) const override;
-  bool rest(std::size_t port) override;
-  void wake() override;
-  double effort() const override;
-  bool slow() const override;
   std::vector<double> measure() override;
   Grid grid() override;
   std::vector<FieldValues> fields() override;
 
  private:
-  bool go_on(const Window& window, std::vector<double>& u);
+  double compliance(std::size_t port) const override;
+  double light_force(std::size_t port) const override;
+  bool rest(std::size_t port) override;
+  void wake() override;
+
+  std::string misfit(int port, const PortKernel& kernel) const override;
+  void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;
+  const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override {
+    return surfaces_ != nullptr ? surfaces_->reacting(port, partner) : nullptr;
+  }
+
   struct State {
     double time = 0.0;  // [s]
     Motion motion;
@@ -107,6 +97,8 @@ class SolidInterior final : public Interior {
   };
 
   void describe(std::string name, const std::vector<PortNodes>& ports);
+  void find_traits();
+  void find_abilities();
   Energy energy() const;
   std::size_t nodal_values() const { return index(parts_.model->dofs()); }
   bool probed_as_linear() const;
@@ -132,6 +124,7 @@ class SolidInterior final : public Interior {
   bool joins_ = false;                    // one of them is joined
   std::unique_ptr<PortMap> port_map_;  // null: no ports
   std::unique_ptr<PortContact> contact_;  // null: no port meets obstacles
+  SurfaceContact* surfaces_ = nullptr;    // the same of ports that are surfaces; null: points
   std::vector<TouchedSurface> touched_;   // its ports, where they are surfaces
   std::unique_ptr<SelfCrossings> crossings_;  // null: strains are small
   PortForces* port_forces_ = nullptr;  // owned by the problem, the last of its loads
@@ -149,8 +142,9 @@ class SolidInterior final : public Interior {
   Vector behind_, nodes_behind_;      // [kg m/s] behind the impulses: of coordinates, of the nodes
   std::vector<double> before_, now_;  // [m], [N] (port values)
   Vector change_;                     // [N] (coordinates)
-  std::vector<double> peeked_;        // [m] (coordinates)
   Vector on_ports_;                   // [N] (nodes, dim)
+  std::unique_ptr<PortForecast> forecast_;  // null: only walks tell where ports go
+  std::unique_ptr<PortStatics> statics_;    // null: the body has inertia, or no ports
 };
 
 }  // namespace abut

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "subdomain_solver/time/momentum_lag.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -26,10 +27,10 @@ std::array<bool, 3> held_axes(const FeModel& model, const std::vector<HeldCoordi
 
 /// To the momenta of the nodes, along the axes of space  [M.24].
 void SolidInterior::add_lag() {
-  const Integrator& integrator = *parts_.scheme.integrator;
-  if (!state_.begun || !integrator.lags()) return;
+  const MomentumLag* lag = parts_.scheme.integrator->able().lag;
+  if (!state_.begun || lag == nullptr) return;
   const Motion& motion = state_.motion;
-  integrator.find_lag(motion, parts_.scheme.step, forces_now(), behind_);
+  lag->find(motion, parts_.scheme.step, forces_now(), behind_);
   Vector& nodes = parts_.reduced ? nodes_behind_ : behind_;
   if (parts_.reduced) {
     lag_.resize(nodal_values());
@@ -51,7 +52,8 @@ const Vector& SolidInterior::forces_now() {
     if (load.get() != port_forces_) load->add(state_.time, state_.motion.q, change_);
   if (port_forces_ == nullptr) return change_;
   before_ = state_.port_force;
-  for (std::size_t p = 0; parts_.scheme.integrator->joins_steadily() && p < ports_.size(); ++p) {
+  const bool without_ties = parts_.scheme.integrator->able().accelerates_without_ties;
+  for (std::size_t p = 0; without_ties && p < ports_.size(); ++p) {
     const auto first = before_.begin() + static_cast<std::ptrdiff_t>(port_map_->first(p));
     if (joined_[p]) std::fill_n(first, port_map_->width(p), 0.0);
   }

@@ -23,7 +23,7 @@ double SolidInterior::light_force(std::size_t port) const {
 
 /// Where it is joined, and steps need its stiffness anyway.
 bool SolidInterior::probed_as_linear() const {
-  return joins_ && parts_.deforms && parts_.scheme.integrator->has_inertia() &&
+  return joins_ && parts_.deforms && parts_.scheme.integrator->able().inertia != nullptr &&
          std::isinf(description_.stable_step);
 }
 

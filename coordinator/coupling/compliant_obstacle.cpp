@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "contract/force_means.hpp"
+#include "contract/kernel.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/exchange_parts.hpp"
 #include "coordinator/coupling/kernel_bytes.hpp"
@@ -317,19 +318,18 @@ void CompliantObstacle::leave_far(const Eigen::Ref<const Eigen::VectorXd>& x,
 /// Takes from the Neumann side's motion what the forces taken have moved it by the kernel.
 void CompliantObstacle::take_back(const Eigen::MatrixXd& taken,
                                   Eigen::Ref<Eigen::VectorXd> motion) const {
-  const int width = kernel_->width;
+  const std::size_t width = index(kernel_->width);
+  level_force_.resize(width);
+  level_moved_.resize(width);
   for (int j = 0; j <= iterate_.steps.count; ++j) {
-    for (int p = 0; p < width; ++p) {
-      const double force = taken(static_cast<Eigen::Index>(value(kernel_->points, index(p))), j);
-      if (force == 0.0) continue;
-      const std::vector<double>& of = j == 0 ? kernel_->begin : kernel_->displacement;
-      for (int i = std::max(1, j); i <= iterate_.steps.count; ++i) {
-        const int lag = j == 0 ? i - 1 : i - j;
-        const double* response = of.data() + index(lag) * kernel_->per_step() + index(p * width);
-        double* moved = &motion[iterate_.at(i)];
-        for (int q = 0; q < width; ++q)
-          moved[value(kernel_->points, index(q))] -= force * response[q];
-      }
+    for (std::size_t p = 0; p < width; ++p)
+      level_force_[p] = taken(static_cast<Eigen::Index>(value(kernel_->points, p)), j);
+    if (std::ranges::all_of(level_force_, [](double force) { return force == 0.0; })) continue;
+    for (int i = std::max(1, j); i <= iterate_.steps.count; ++i) {
+      double* at = &motion[iterate_.at(i)];
+      for (std::size_t q = 0; q < width; ++q) level_moved_[q] = at[value(kernel_->points, q)];
+      add_response(*kernel_, j == 0 ? i - 1 : i - j, j == 0, -1.0, level_force_, level_moved_);
+      for (std::size_t q = 0; q < width; ++q) at[value(kernel_->points, q)] = level_moved_[q];
     }
   }
 }

@@ -123,7 +123,8 @@ class CompliantObstacle final : public Exchange {
   double first_factor_ = 1.0;
   Eigen::VectorXd moved_;    // [m] (width) by the reaction, at the window's end
   Eigen::MatrixXd pressed_;  // [N] (width, times of the reaction)
-  Eigen::MatrixXd taken_;    // [N] (width, levels) of the reaction by the Neumann side, beyond d's
+  Eigen::MatrixXd taken_;  // [N] (width, levels) of the reaction by the Neumann side, beyond d's
+  mutable std::vector<double> level_force_, level_moved_;  // [N], [m] (kernel) at one level
 };
 
 }  // namespace abut

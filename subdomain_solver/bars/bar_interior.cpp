@@ -101,6 +101,8 @@ void BarInterior::describe(std::string name, const std::vector<End>& ends) {
       can.kernel = can.obstacle = can.yielding = can.impedance = false;
     }
     ends_.push_back(e.end);
+    const bool kick = data.layer[e.end] == ContactLayer::kick;
+    traits_.support.push_back(kick ? ForceSupport::step : ForceSupport::nodal);
     Port port;
     port.name = e.name;
     port.tied = e.tied;
@@ -113,6 +115,10 @@ void BarInterior::describe(std::string name, const std::vector<End>& ends) {
   }
   for (std::vector<double>* values : {&seen_.u, &seen_.v, &seen_.a, &seen_.f})
     values->resize(ends.size());
+  traits_.effort = data.elements / usual_work;
+  if (ends.empty()) return;
+  able_.probed = this;
+  able_.obstructed = this;
 }
 
 std::size_t BarInterior::coordinates() const {
@@ -120,21 +126,14 @@ std::size_t BarInterior::coordinates() const {
   return state_.v.size() == n && state_.a.size() == n ? n : 0;
 }
 
-ForceSupport BarInterior::support(std::size_t port) const {
-  const bool kick = bar_->data().layer[ends_[port]] == ContactLayer::kick;
-  return kick ? ForceSupport::step : ForceSupport::nodal;
-}
-
 double BarInterior::compliance(std::size_t port) const {
   return scheme_.integrator->static_compliance(ends_[port]);
 }
 
 std::string BarInterior::misfit(int port, const PortKernel& kernel) const {
-  if (!description_.can.yielding) return Interior::misfit(port, kernel);
+  if (!description_.can.yielding) return "it takes none";
   return misfit_of(kernel, scheme_.step, support(index(port)), 1);
 }
-
-double BarInterior::effort() const { return bar_->data().elements / usual_work; }
 
 Grid BarInterior::grid() {
   Grid grid;
@@ -185,7 +184,7 @@ void BarInterior::set_off(const Window& window) {
   if (loaded()) add_load_work();
 }
 
-std::optional<Failed> BarInterior::step(const Window& window, int i) {
+std::optional<Failed> BarInterior::step(const Window& window, int i, bool whole) {
   const double dt = window.grid.length(i);
   if (!open_) scheme_.integrator->open(state_, dt, actions_);
   open_ = true;
@@ -194,12 +193,10 @@ std::optional<Failed> BarInterior::step(const Window& window, int i) {
   scheme_.integrator->substep(state_, dt, actions_);
   if (driven_) add_work();
   if (loaded()) add_load_work();
-  return std::nullopt;
-}
-
-void BarInterior::settle(const Window& window, int i) {
-  scheme_.integrator->close(state_, window.grid.length(i));
+  if (!whole) return std::nullopt;
+  scheme_.integrator->close(state_, dt);
   open_ = false;
+  return std::nullopt;
 }
 
 BarInterior::EndPlaces BarInterior::end_places() const {

@@ -14,7 +14,7 @@
 namespace abut {
 
 /// A bar, its integrator and its ends: tells the integrator what acts on the ends in each substep.
-class BarInterior final : public Interior {
+class BarInterior final : public Interior, private Probed, private Obstructed {
  public:
   struct End {
     std::string name;
@@ -42,22 +42,25 @@ class BarInterior final : public Interior {
   std::size_t coordinates() const override;
   std::optional<Failed> begin(const Window& window) override;
   void set_off(const Window& window) override;
-  std::optional<Failed> step(const Window& window, int i) override;
-  void settle(const Window& window, int i) override;
+  std::optional<Failed> step(const Window& window, int i, bool whole) override;
   const PortValues& see(const Window& window, double time, bool all) override;
-  void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;
   std::optional<Failed> record(BodyRecord& record) override;
   void finish(std::size_t port, PortResponse& reply) const override;
-  std::string misfit(int port, const PortKernel& kernel) const override;
-  ForceSupport support(std::size_t port) const override;
-  double compliance(std::size_t port) const override;
-  bool rest(std::size_t port) override;
-  void wake() override { probed_ = -1; }
-  double effort() const override;
   Grid grid() override;
   std::vector<FieldValues> fields() override;
 
  private:
+  double compliance(std::size_t port) const override;
+  double light_force(std::size_t) const override { return 1.0; }
+  bool rest(std::size_t port) override;
+  void wake() override { probed_ = -1; }
+
+  std::string misfit(int port, const PortKernel& kernel) const override;
+  const std::vector<std::int32_t>* reacting(std::size_t, std::size_t) const override {
+    return nullptr;
+  }
+  void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;
+
   /// What an end does in the present window.
   struct Imposed {
     std::vector<char> same_grid;  // by partner: a force is sampled at our own substeps

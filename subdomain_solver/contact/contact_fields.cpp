@@ -50,7 +50,7 @@ std::vector<std::string> touch_measure_names(const std::vector<TouchedSurface>& 
   return names;
 }
 
-void touch_measures(const std::vector<TouchedSurface>& surfaces, const PortContact& contact,
+void touch_measures(const std::vector<TouchedSurface>& surfaces, const SurfaceContact& contact,
                     std::span<const double> forces, std::span<const double> places,
                     std::vector<double>& out) {
   std::vector<bool> held;  // (points)
@@ -92,7 +92,7 @@ std::vector<FieldInfo> touch_fields() {
 }
 
 std::vector<FieldValues> touch_field_values(const std::vector<TouchedSurface>& surfaces,
-                                            const PortContact& contact, std::size_t nodes,
+                                            const SurfaceContact& contact, std::size_t nodes,
                                             std::span<const double> forces,
                                             std::span<const double> places) {
   std::vector<FieldValues> out(3, FieldValues(nodes, 0.0));

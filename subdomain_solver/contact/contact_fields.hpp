@@ -6,7 +6,7 @@
 
 #include "contract/field.hpp"
 #include "contract/port.hpp"
-#include "subdomain_solver/contact/port_contact.hpp"
+#include "subdomain_solver/contact/surface_contact.hpp"
 
 namespace abut {
 
@@ -22,7 +22,7 @@ struct TouchedSurface : PortSurface {
 /// distance of the pressure from its centre.
 std::vector<std::string> touch_measure_names(const std::vector<TouchedSurface>& surfaces);
 /// Their values, of forces [N] and displacements [m] of the ports (port values).
-void touch_measures(const std::vector<TouchedSurface>& surfaces, const PortContact& contact,
+void touch_measures(const std::vector<TouchedSurface>& surfaces, const SurfaceContact& contact,
                     std::span<const double> forces, std::span<const double> places,
                     std::vector<double>& out);
 
@@ -31,7 +31,7 @@ void touch_measures(const std::vector<TouchedSurface>& surfaces, const PortConta
 /// and held by friction, told of the side that finds contact).
 std::vector<FieldInfo> touch_fields();
 std::vector<FieldValues> touch_field_values(const std::vector<TouchedSurface>& surfaces,
-                                            const PortContact& contact, std::size_t nodes,
+                                            const SurfaceContact& contact, std::size_t nodes,
                                             std::span<const double> forces,
                                             std::span<const double> places);
 

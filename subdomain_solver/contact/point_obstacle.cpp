@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "contract/kernel.hpp"
 
 namespace abut {
 
@@ -60,9 +61,13 @@ void PointObstacle::give_way(int i, double reaction, Surface& surface) {
   excess_.resize(under.size());
   if (i != 1) excess_[now > 0 ? now - 1 : 0] = reaction - under[now > 0 ? now - 1 : 0];
   if (i == 0) return;  // that of the begin is known
-  double moved = -kernel.displacement[0] * under[now];
-  if (!kernel.begin.empty()) moved += kernel.begin[now - 1] * excess_[0];
-  for (std::size_t j = 1; j < now; ++j) moved += kernel.displacement[now - j] * excess_[j];
+  double moved = 0.0;
+  const auto add = [&kernel, &moved](int lag, bool at_begin, double sign, const double& force) {
+    add_response(kernel, lag, at_begin, sign, {&force, 1}, {&moved, 1});
+  };
+  add(0, false, -1.0, under[now]);
+  if (!kernel.begin.empty()) add(i - 1, true, 1.0, excess_[0]);
+  for (int j = 1; j < i; ++j) add(i - j, false, 1.0, excess_[j]);
   surface.target += outward_ * moved;
   surface.give = kernel.displacement[0];
 }

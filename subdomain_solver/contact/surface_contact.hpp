@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "subdomain_solver/contact/port_contact.hpp"
 #include "subdomain_solver/contact/surface_obstacle.hpp"
 #include "subdomain_solver/contact/tied_neighbours.hpp"
@@ -26,7 +28,8 @@ class SurfaceContact final : public PortContact {
   /// `body`: its name, for people. Frames must outlive it.
   SurfaceContact(std::vector<Surface> surfaces, const std::string& body);
 
-  void state(Archive& archive) override;
+  /// What changes during a step beside the forces on ports.
+  void state(Archive& archive);
   /// Throws RunError for what surfaces cannot take.
   void impose(const Window& window) override;
   bool acts() const override;
@@ -37,16 +40,21 @@ class SurfaceContact final : public PortContact {
   void settle(std::vector<double>& forces) override;
   void react(std::size_t port, std::size_t partner, const std::vector<double>& forces,
              std::vector<double>& out) const override;
-  const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override;
+  /// Points of a partner that react() is of in this window, ascending, empty: all; more of them as
+  /// the window goes on. Null: those that its obstacle lists.
+  const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const;
   std::string misfit(std::size_t port, const PortKernel& kernel) const override;
-  void ease(std::size_t port, const PortKernel& kernel) override;
-  void finish(std::size_t port, std::size_t partner, Reaction& reply) const override;
-  double dissipated() const override;
-  void see_gaps(std::size_t port, const SeeGap& see) const override;
+  /// Completes the reply to an obstacle at the window's end: what friction did.
+  void finish(std::size_t port, std::size_t partner, Reaction& reply) const;
+  /// [J] by friction with all partners, since the run began.
+  double dissipated() const;
+  /// Calls `see` with the points of a port that have something near, the gaps [m] there, and
+  /// whether friction holds them.
+  using SeeGap = std::function<void(std::size_t point, double gap, bool sticks)>;
+  void see_gaps(std::size_t port, const SeeGap& see) const;
 
   const std::vector<int>& coordinates() const override { return dofs_; }
   const Vector* solve(double time, const Vector& free, Compliance& give) override;
-  std::string missing() const override { return missing_; }
 
  private:
   struct Own {  // a surface in its pose
@@ -135,7 +143,6 @@ class SurfaceContact final : public PortContact {
   Vector opened_;  // [m] gaps and slips under the forces
   UnilateralBuffers buffers_;
   FrictionBuffers friction_buffers_;
-  std::string missing_;
   Vector force_, last_, moved_;  // [N], [N], [m] (coordinates)
   Vector eased_;                 // [m] (coordinates) free places, as tied neighbours let them be
   std::vector<double> sum_;      // [N] (values) on a surface

@@ -35,15 +35,6 @@ class SurfaceContact::Eased final : public Compliance {
   std::vector<Vector> columns_;
 };
 
-/// Sides along axes of their own know no components along those of space.
-void SurfaceContact::ease(std::size_t port, const PortKernel& kernel) {
-  for (Own& own : surfaces_) {
-    const auto turned = [](const Matrix3* frame) { return frame != nullptr; };
-    if (own.surface.port == port && std::ranges::none_of(own.surface.frames, turned))
-      own.neighbours.take(kernel);
-  }
-}
-
 /// [N] (values) of all partners, along the axes of space.
 std::span<const double> SurfaceContact::pressing(const Own& own) {
   sum_.assign(own.at.size(), 0.0);
@@ -54,10 +45,15 @@ std::span<const double> SurfaceContact::pressing(const Own& own) {
   return sum_;
 }
 
+/// Sides along axes of their own know no components along those of space.
 void SurfaceContact::begin_neighbours(const Window& window) {
   for (Own& own : surfaces_) {
-    if (acts(own.surface.port))
-      own.neighbours.begin(window.grid, window.request.boundary[own.surface.port].balanced);
+    const auto turned = [](const Matrix3* frame) { return frame != nullptr; };
+    const PortKernel& kernel = window.neighbours[own.surface.port];
+    if (kernel.count() > 0 && acts(own.surface.port) &&
+        std::ranges::none_of(own.surface.frames, turned))
+      own.neighbours.begin(kernel, window.grid,
+                           window.request.boundary[own.surface.port].balanced);
     else
       own.neighbours.rest();
   }

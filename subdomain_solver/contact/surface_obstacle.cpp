@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "contract/force_means.hpp"
+#include "contract/kernel.hpp"
 
 namespace abut {
 
@@ -105,14 +106,6 @@ void SurfaceObstacle::find_zone() {
   }
 }
 
-/// [m/N] (zone) of the surface at a level to a force at another one, 0: the window's begin.
-const double* SurfaceObstacle::response(int level, int at, std::size_t force) const {
-  const PortKernel& kernel = met_->kernel;
-  const std::vector<double>& of = at == 0 ? kernel.begin : kernel.displacement;
-  const std::size_t z = zone_.size();
-  return of.data() + (index(at == 0 ? level - 1 : level - at) * z + force) * z;
-}
-
 /// Earlier reactions are known, this substep's goes on being the later ones' guess [M.92].
 void SurfaceObstacle::aim(int i, std::span<const double> reaction, bool turned) {
   const std::size_t z = zone_.size(), levels = motion_->size(), columns = index(grid_.count + 1);
@@ -171,25 +164,21 @@ void SurfaceObstacle::lean(int level, double share) {
 void SurfaceObstacle::recall(int level, double share) {
   const std::size_t z = zone_.size();
   for (int at = 0; at <= level && level > 0; ++at) {
-    for (std::size_t f = 0; f < z; ++f) {
-      const double force = share * taken_[index(at) * z + f];
-      if (force == 0.0) continue;
-      const double* answer = response(level, at, f);
-      for (std::size_t v = 0; v < z; ++v) memory_[v] += force * answer[v];
-    }
+    const bool at_begin = at == 0;
+    add_response(met_->kernel, at_begin ? level - 1 : level - at, at_begin, share,
+                 std::span(taken_).subspan(index(at) * z, z), memory_);
   }
 }
 
 /// Adds a share of what this substep's reaction moves the surface at a level.
 void SurfaceObstacle::find_give(int level, double share) {
-  const std::size_t z = zone_.size();
   for (int at = 0; at <= level && level > 0; ++at) {
     const double part = share * later_[at];
     if (part == 0.0) continue;
-    for (std::size_t f = 0; f < z; ++f) {
-      const double* answer = response(level, at, f);
-      for (std::size_t v = 0; v < z; ++v) give_[f * z + v] += part * answer[v];
-    }
+    const bool at_begin = at == 0;
+    const std::span<const double> answer =
+        response(met_->kernel, at_begin ? level - 1 : level - at, at_begin);
+    for (std::size_t k = 0; k < give_.size(); ++k) give_[k] += part * answer[k];
   }
 }
 

@@ -80,7 +80,6 @@ class SurfaceObstacle {
   void recall(int level, double share);
   void find_give(int level, double share);
   void lean(int level, double share);
-  const double* response(int level, int after, std::size_t force) const;
 
   std::size_t port_, partner_;
   const PortGeometry& own_;

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 
-#include "base/index.hpp"
+#include "contract/kernel.hpp"
 
 namespace abut {
 
-void TiedNeighbours::begin(const Substeps& grid, const Waveform& balanced) {
+void TiedNeighbours::begin(const PortKernel& kernel, const Substeps& grid,
+                           const Waveform& balanced) {
+  kernel_ = &kernel;
   const std::size_t size = width(), levels = index(grid.count) + 1;
-  acts_ = !balanced.empty() && kernel_.count() >= std::max(1, grid.count);
+  acts_ = !balanced.empty() && kernel.count() >= std::max(1, grid.count);
   if (!acts_) return;
   balanced_.resize(levels * size);
   for (std::size_t i = 0; i < levels; ++i)
@@ -19,14 +21,9 @@ void TiedNeighbours::begin(const Substeps& grid, const Waveform& balanced) {
 }
 
 /// Adds what forces at the end of substep `at` have moved at that of `level`.
-void TiedNeighbours::recall(int level, int at, double sign, const std::vector<double>& forces) {
-  const std::size_t size = width();
-  for (std::size_t k = 0; k < size; ++k) {
-    const double force = sign * forces[index(at) * size + k];
-    if (force == 0.0) continue;
-    const double* to = &kernel_.displacement[(index(level - at) * size + k) * size];
-    for (std::size_t v = 0; v < size; ++v) moved_[v] += force * to[v];
-  }
+void TiedNeighbours::recall(int level, int at, double sign, std::span<const double> forces) {
+  add_response(*kernel_, level - at, false, sign, forces.subspan(index(at) * width(), width()),
+               moved_);
 }
 
 void TiedNeighbours::aim(int i) {
@@ -46,7 +43,7 @@ void TiedNeighbours::settle(std::span<const double> pressing) {
 }
 
 std::span<const double> TiedNeighbours::response(std::size_t value) const {
-  return std::span(kernel_.displacement).subspan(value * width(), width());
+  return std::span(kernel_->displacement).subspan(value * width(), width());
 }
 
 }  // namespace abut

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/index.hpp"
 #include "contract/port.hpp"
 #include "contract/waveform.hpp"
 #include "subdomain_solver/substeps.hpp"
@@ -13,13 +14,12 @@ namespace abut {
 /// the kernel adds the effect of what presses beyond that.
 class TiedNeighbours {
  public:
-  void take(PortKernel kernel) { kernel_ = std::move(kernel); }
   /// Whether they respond in this window.
   bool act() const { return acts_; }
 
-  /// A window begins. `balanced`: f [N] on all points of the surface. Absent, or without a kernel:
-  /// they do not respond.
-  void begin(const Substeps& grid, const Waveform& balanced);
+  /// A window begins. `kernel`, which must live until its end: of the surface, for what the tied
+  /// bodies add. `balanced`: f [N] on all points of the surface. Absent: they do not respond.
+  void begin(const PortKernel& kernel, const Substeps& grid, const Waveform& balanced);
   /// Nothing presses in this window.
   void rest() { acts_ = false; }
   /// The substep i is next.
@@ -33,10 +33,10 @@ class TiedNeighbours {
   std::span<const double> response(std::size_t value) const;
 
  private:
-  std::size_t width() const { return static_cast<std::size_t>(kernel_.width); }
-  void recall(int level, int at, double sign, const std::vector<double>& forces);
+  std::size_t width() const { return index(kernel_->width); }
+  void recall(int level, int at, double sign, std::span<const double> forces);
 
-  PortKernel kernel_;
+  const PortKernel* kernel_ = nullptr;
   bool acts_ = false;
   int substep_ = 0;
   std::vector<double> balanced_, pressed_;  // [N] (substeps + 1, values) at their ends

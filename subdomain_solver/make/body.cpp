@@ -93,11 +93,11 @@ struct SchemeMaker {
   BarInterior::Scheme operator()(const GeneralizedAlphaSpec& s) const {
     return implicit(AlphaWeights::spectral_radius(s.spectral_radius), s.step, "generalised alpha");
   }
-  BarInterior::Scheme operator()(const QuasiStaticSpec&) const {
-    refuse(place, "integrator", "quasi_static is not offered to a bar",
+  template <class Other>
+  BarInterior::Scheme operator()(const Other&) const {
+    refuse(place, "integrator", fmt::format("{} is not offered to a bar", Other::name),
            "Use newmark or another implicit integrator.");
   }
-  BarInterior::Scheme operator()(const RigidMotionSpec&) const { return {}; }  // refused before
   BarInterior::Scheme operator()(const BackwardEulerSpec&) const {
     refuse(place, "integrator", "backward_euler is offered to bar_pair only",
            "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");

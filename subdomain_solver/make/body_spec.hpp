@@ -132,9 +132,7 @@ struct PortSpec {
 };
 
 struct BodySpec {
-  using Integrator =
-      std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec, GeneralizedAlphaSpec,
-                   QuasiStaticSpec, RigidMotionSpec, BackwardEulerSpec>;
+  using Integrator = IntegratorSpec;
 
   std::variant<FeModelSpec, ModalModelSpec, RigidModelSpec, RigidToolSpec, RigidWallSpec,
                BarPairSpec>

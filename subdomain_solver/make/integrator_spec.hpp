@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string_view>
+#include <variant>
 
 #include "base/fields.hpp"
 #include "subdomain_solver/mass_form.hpp"
@@ -55,5 +56,10 @@ struct BackwardEulerSpec {  // of bar pairs only
   MassForm mass = MassForm::averaged;
   void fields(Fields& f);
 };
+
+/// All there are. Makers refuse those for which they have no branch.
+using IntegratorSpec =
+    std::variant<CentralDifferenceSpec, NewmarkSpec, HhtAlphaSpec, GeneralizedAlphaSpec,
+                 QuasiStaticSpec, RigidMotionSpec, BackwardEulerSpec>;
 
 }  // namespace abut

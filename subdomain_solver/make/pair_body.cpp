@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "subdomain_solver/bars/pair_interior.hpp"
+#include "subdomain_solver/compare/pair_interior.hpp"
 #include "subdomain_solver/fe/element_limit.hpp"
 #include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/make/mass_range.hpp"
@@ -51,11 +51,8 @@ struct PairScheme {
     parameters.weights = StepWeights::backward_euler();
     parameters.words += ", backward Euler";
   }
-  void operator()(const HhtAlphaSpec&) const { unknown(); }
-  void operator()(const QuasiStaticSpec&) const { unknown(); }
-  void operator()(const RigidMotionSpec&) const { unknown(); }
-  void operator()(const GeneralizedAlphaSpec&) const { unknown(); }
-  void unknown() const {
+  template <class Other>
+  void operator()(const Other&) const {
     refuse("integrator", "is not offered to bar_pair",
            "Give central_difference, newmark or backward_euler.");
   }

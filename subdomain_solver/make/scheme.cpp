@@ -85,16 +85,21 @@ struct SchemeMaker {
             s.step, std::numeric_limits<double>::infinity(), MassForm::lumped,
             fmt::format("quasi-static, step {:g} s", s.step)};
   }
-  SolidInterior::Scheme operator()(const RigidMotionSpec&) const { return {}; }    // refused before
-  SolidInterior::Scheme operator()(const BackwardEulerSpec&) const { return {}; }  // refused before
+  template <class Other>
+  SolidInterior::Scheme operator()(const Other&) const {
+    throw InputError(fmt::format("{} is not offered to a solid", Other::name),
+                     place.where("integrator"), "Use newmark or central_difference.");
+  }
 
   SolidInterior::Scheme implicit(const AlphaWeights& weights, double step, MassForm mass,
                                  const char* words) const {
+    using Accelerations = ImplicitDynamics::Accelerations;
+    Accelerations accelerations = Accelerations::balanced;
+    if (joined && weights.is_trapezoidal()) accelerations = Accelerations::summed;
+    if (joined && weights.gamma > 0.5 && joined_bodies_step_alike(place.document))
+      accelerations = Accelerations::steady;
     return {std::make_unique<ImplicitDynamics>(
-                problem,
-                ImplicitDynamics::Options{
-                    weights, mass, newton(), joined && weights.is_trapezoidal(),
-                    joined && weights.gamma > 0.5 && joined_bodies_step_alike(place.document)},
+                problem, ImplicitDynamics::Options{weights, mass, newton(), accelerations},
                 linear(Pivots::every)),
             step, std::numeric_limits<double>::infinity(), mass,
             fmt::format("{}, step {:g} s", words, step)};

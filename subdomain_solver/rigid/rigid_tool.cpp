@@ -56,7 +56,7 @@ std::optional<Failed> RigidTool::begin(const Window& window) {
   return move_to(window, window.request.window.begin);
 }
 
-std::optional<Failed> RigidTool::step(const Window& window, int i) {
+std::optional<Failed> RigidTool::step(const Window& window, int i, bool) {
   return move_to(window, window.grid.time(i));
 }
 

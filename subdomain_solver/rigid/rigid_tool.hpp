@@ -24,7 +24,7 @@ class RigidTool final : public Interior {
   void state(Archive& archive) override;
   std::size_t coordinates() const override { return way_.size(); }
   std::optional<Failed> begin(const Window& window) override;
-  std::optional<Failed> step(const Window& window, int i) override;
+  std::optional<Failed> step(const Window& window, int i, bool whole) override;
   const PortValues& see(const Window& window, double time, bool all) override;
   std::optional<Failed> record(BodyRecord& record) override;
   void finish(std::size_t port, PortResponse& reply) const override;

@@ -13,6 +13,7 @@ RigidWall::RigidWall(std::string name, double position, std::string port, double
   description_.conserves = true;
   description_.can = {
       .motion = false, .force = true, .obstacle = false, .impulse = true, .kernel = true};
+  able_.probed = this;
   Port p;
   p.name = std::move(port);
   p.geometry.points = {position};

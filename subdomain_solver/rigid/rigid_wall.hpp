@@ -7,13 +7,13 @@
 namespace abut {
 
 /// An immovable rigid surface: takes any force and never moves. Has no step of its own.
-class RigidWall final : public Interior {
+class RigidWall final : public Interior, private Probed {
  public:
   RigidWall(std::string name, double position, std::string port, double normal);
 
   void state(Archive&) override {}
   std::size_t coordinates() const override { return 0; }
-  std::optional<Failed> step(const Window&, int) override { return std::nullopt; }
+  std::optional<Failed> step(const Window&, int, bool) override { return std::nullopt; }
   const PortValues& see(const Window& window, double time, bool all) override;
   std::optional<Failed> record(BodyRecord& record) override;
   void finish(std::size_t port, PortResponse& reply) const override;
@@ -21,6 +21,11 @@ class RigidWall final : public Interior {
   std::vector<FieldValues> fields() override;
 
  private:
+  double compliance(std::size_t) const override { return 0.0; }
+  double light_force(std::size_t) const override { return 1.0; }
+  bool rest(std::size_t) override { return false; }
+  void wake() override {}
+
   PortValues seen_;
 };
 

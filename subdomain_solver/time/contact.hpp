@@ -27,8 +27,11 @@ class Contact {
   /// The forces [N] (coordinates) at a time, where the coordinates [m] would lie at `free` without
   /// them and give way by `give`; good until the next call. Null: none were found.
   virtual const Vector* solve(double time, const Vector& free, Compliance& give) = 0;
-  /// Why the last call found none, for people; empty: it found some, or was not asked for them.
-  virtual std::string missing() const { return {}; }
+  /// Why the last call found none, for people; empty: it found some, or has nothing to say.
+  const std::string& missing() const { return missing_; }
+
+ protected:
+  std::string missing_;
 };
 
 }  // namespace abut

@@ -9,7 +9,10 @@
 namespace abut {
 
 DriftKickDrift::DriftKickDrift(const Problem& problem, double step)
-    : problem_(problem), step_(step), inverse_mass_(problem.model->lumped_mass().cwiseInverse()) {
+    : Integrator({.inertia = this, .foreseeing = this}),
+      problem_(problem),
+      step_(step),
+      inverse_mass_(problem.model->lumped_mass().cwiseInverse()) {
   ABUT_ASSERT(problem.model->massless().empty());
   for (const Prescribed& p : problem_.supports) inverse_mass_(p.dof) = 0.0;
 }
@@ -67,18 +70,19 @@ bool DriftKickDrift::find_middle(const Motion& motion, double time, double dt) {
   return true;
 }
 
-/// Its force is that of the step that may follow.
-bool DriftKickDrift::peek(const Motion& motion, double time, double dt, std::vector<double>& q) {
+/// Of the first step, whose force is that of the step that may follow.
+bool DriftKickDrift::foresee(const Motion& motion, double time, double dt, Foreseen& ahead) {
   const double half = 0.5 * dt;
-  if (!motion.history.empty() || !find_middle(motion, time, dt)) return false;
+  if (ahead.steps > 0 || !motion.history.empty() || !find_middle(motion, time, dt)) return false;
   const Known* known = respond(motion.history);
   if (known == nullptr) return false;
   find_loads(time + half, known->at);
-  q.resize(motion.q.size());
-  view(q) =
+  ahead.q.resize(motion.q.size());
+  view(ahead.q) =
       view(known->at) +
       half * (view(motion.v) + dt * inverse_mass_.cwiseProduct(loads_ - known->response.force));
-  for (std::size_t k = 0; k < given_.size(); ++k) q[problem_.supports[k].dof] = given_[k];
+  for (std::size_t k = 0; k < given_.size(); ++k) ahead.q[problem_.supports[k].dof] = given_[k];
+  ++ahead.steps;
   return true;
 }
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "subdomain_solver/time/foreseeing.hpp"
+#include "subdomain_solver/time/inertia.hpp"
 #include "subdomain_solver/time/integrator.hpp"
 
 namespace abut {
@@ -16,21 +18,22 @@ namespace abut {
 /// they are of: a window that begins where the trial of the one before began, or is repeated, finds
 /// its first force there, and windows of one step cost one force each. Allocates nothing once
 /// buffers have grown.
-class DriftKickDrift final : public Integrator {
+class DriftKickDrift final : public Integrator, private Inertia, private Foreseeing {
  public:
   /// `step` [s]: the usual one, which the energy of the begin is told for.
   DriftKickDrift(const Problem& problem, double step);
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  void strike(Motion& motion, const Vector& impulse) override;
-  [[nodiscard]] bool peek(const Motion& motion, double time, double dt,
-                          std::vector<double>& q) override;
   /// Means of the last step, as the balance in its middle has them.
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
   double kinetic(const Motion& motion) const override;
 
  private:
+  std::optional<Failed> jump(Motion&, double, const Vector&) override { return std::nullopt; }
+  void strike(Motion& motion, const Vector& impulse) override;
+  bool foresee(const Motion& motion, double time, double dt, Foreseen& ahead) override;
+
   struct Known {
     bool holds = false;
     std::vector<double> at;  // [m] (dofs)

@@ -9,7 +9,9 @@
 namespace abut {
 
 ExplicitDynamics::ExplicitDynamics(const Problem& problem, double step)
-    : problem_(problem),
+    : Integrator(
+          {.inertia = this, .layer = problem.model->massless().empty() ? nullptr : &layer_}),
+      problem_(problem),
       nominal_step_(step),
       layer_(problem),
       inverse_mass_(problem.model->lumped_mass().cwiseInverse()) {
@@ -163,10 +165,6 @@ std::optional<Failed> ExplicitDynamics::jump(Motion& motion, double time, const 
 
 void ExplicitDynamics::strike(Motion& motion, const Vector& impulse) {
   view(motion.v) += inverse_mass_.cwiseProduct(impulse);
-}
-
-double ExplicitDynamics::compliance(const Motion& motion, int dof) {
-  return layer_.compliance(motion.q, motion.history, dof);
 }
 
 /// Steps keep none of prescribed coordinates: they move from value to value.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "subdomain_solver/time/inertia.hpp"
 #include "subdomain_solver/time/integrator.hpp"
 #include "subdomain_solver/time/massless_layer.hpp"
 
@@ -11,21 +12,20 @@ namespace abut {
 /// is 1/2 v(-) M v(+) of the velocities half a step before and after. Coordinates without mass lie
 /// where their forces balance at the end of every step, and take contact there [M.85], [M.86]. A
 /// step is two passes over the motion around the model's force, and allocates nothing.
-class ExplicitDynamics final : public Integrator {
+class ExplicitDynamics final : public Integrator, private Inertia {
  public:
   /// `step` [s]: nominal; the energy at the begin is that of steps of this length.
   explicit ExplicitDynamics(const Problem& problem, double step = 0.0);
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  [[nodiscard]] std::optional<Failed> jump(Motion& motion, double time,
-                                           const Vector& change) override;
-  void strike(Motion& motion, const Vector& impulse) override;
-  double compliance(const Motion& motion, int dof) override;
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
   double kinetic(const Motion& motion) const override;
 
  private:
+  std::optional<Failed> jump(Motion& motion, double time, const Vector& change) override;
+  void strike(Motion& motion, const Vector& impulse) override;
+
   struct Range {  // of coordinates that one thread updates
     std::size_t begin, end;
   };

@@ -21,7 +21,7 @@ class ImplicitDynamics::Balance final : public Equations {
         dt_(dt) {
     const auto q = view(motion.q), v = view(motion.v), a = view(motion.a);
     b_.a = a;
-    if (o_.options_.sums) {  // for no acceleration
+    if (o_.sums()) {  // for no acceleration
       b_.q_start = q + dt * v;
       b_.v_start = v;
       b_.a *= 2.0;
@@ -37,10 +37,10 @@ class ImplicitDynamics::Balance final : public Equations {
 
   /// What the forces of the step's begin add to the balance.
   void see_past(double time) {
-    const double share = o_.options_.sums ? 1.0 : w_.alpha_f;
+    const double share = o_.sums() ? 1.0 : w_.alpha_f;
     o_.times_mass(view(motion_.a), b_.inertia);
     b_.past = w_.alpha_m * b_.inertia;
-    if (w_.is_newmark() && !o_.options_.sums) return;
+    if (w_.is_newmark() && !o_.sums()) return;
     b_.external_start = o_.problem_.external_force(time, motion_.q);
     b_.past += share * (view(motion_.force) - b_.external_start);
     // Without mass there was balance at the begin, contact included.
@@ -139,7 +139,7 @@ class ImplicitDynamics::Balance final : public Equations {
     motion.history = b_.response.history;
     store(b_.q, motion.q);
     store(b_.v, motion.v);
-    if (o_.options_.sums) b_.a *= 0.5;
+    if (o_.sums()) b_.a *= 0.5;
     store(b_.a, motion.a);
     store(b_.response.force, motion.force);
     // Their velocity is that of the step: nothing but traces reads it.
@@ -158,7 +158,7 @@ class ImplicitDynamics::Balance final : public Equations {
     b_.moved = b_.q - view(motion_.q);
     if (w_.is_newmark()) {
       o_.times_mass(b_.a, b_.inner);
-      if (o_.options_.sums) {
+      if (o_.sums()) {
         b_.outer.setZero(b_.inner.size());
       } else {
         o_.times_mass(a, b_.outer);
@@ -184,16 +184,30 @@ class ImplicitDynamics::Balance final : public Equations {
   int guesses_ = 0;  // beside the first
 };
 
+/// A tangent tells how bodies go on that are not linear and keep no accelerations.
+Integrator::Abilities ImplicitDynamics::abilities(const Problem& problem, const Options& options) {
+  const bool layered = !problem.model->massless().empty();
+  const bool sums = options.accelerations == Accelerations::summed;
+  const bool tells = sums && !problem.model->is_linear() && !layered;
+  return {.inertia = this,
+          .layer = layered ? &layer_ : nullptr,
+          .foreseeing = tells ? this : nullptr,
+          .lag = MomentumLag::exists(options.weights) ? &lag_ : nullptr,
+          .accelerates_without_ties = options.accelerations == Accelerations::steady};
+}
+
 ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& options,
                                    std::unique_ptr<LinearSolver> solver)
-    : problem_(problem),
+    : Integrator(abilities(problem, options)),
+      problem_(problem),
       options_(options),
       solver_(std::move(solver)),
       free_(problem.model->dofs(), problem.supports),
       inertial_(problem.model->dofs(), problem.supports, problem.model->massless()),
       layer_(problem),
-      contact_(free_, *solver_) {
-  ABUT_ASSERT(!options.sums || options.weights.is_trapezoidal());
+      contact_(free_, *solver_),
+      lag_(options.weights, mass_, inertial_.list()) {
+  ABUT_ASSERT(options.accelerations != Accelerations::summed || options.weights.is_trapezoidal());
   mass_ = mass_matrix(*problem.model, options.mass);
   if (!layer_.empty()) of_mass_.answer.setZero(problem.model->dofs());
 }
@@ -224,7 +238,7 @@ std::optional<Failed> ImplicitDynamics::jump(Motion& motion, double time, const 
     if (auto failed = layer_.jump(time, motion, change, of_mass_.answer)) return failed;
     rest -= of_mass_.answer;
   }
-  if (options_.sums || options_.steady) return std::nullopt;
+  if (options_.accelerations != Accelerations::balanced) return std::nullopt;
   Vector& a = of_mass_.acceleration;
   a = view(motion.a);
   const bool solved = solve_mass(rest, a);
@@ -241,15 +255,11 @@ void ImplicitDynamics::strike(Motion& motion, const Vector& impulse) {
   view(motion.v) += change;
 }
 
-double ImplicitDynamics::compliance(const Motion& motion, int dof) {
-  return layer_.compliance(motion.q, motion.history, dof);
-}
-
 /// Newmark's are those of the balance at every step's end. With other weights they lag, and sums
 /// tell of none: the balance is solved for them.
 void ImplicitDynamics::acceleration(const Motion& motion, double time, double step,
                                     Vector& out) const {
-  if (options_.weights.is_newmark() && !options_.sums) {
+  if (options_.weights.is_newmark() && !sums()) {
     out = view(motion.a);
     return;
   }
@@ -259,21 +269,6 @@ void ImplicitDynamics::acceleration(const Motion& motion, double time, double st
   of_mass_.rest = problem_.external_force(time, motion.q) - view(motion.force) - of_mass_.rest;
   const bool solved = solve_mass(of_mass_.rest, out);
   ABUT_ASSERT(solved);  // as at the begin
-}
-
-bool ImplicitDynamics::lags() const {
-  return !options_.weights.is_newmark() || options_.weights.gamma != 0.5;
-}
-
-/// Of the sum of all rows of a step: coordinates without mass are in balance at both ends.
-void ImplicitDynamics::find_lag(const Motion& motion, double step, const Vector& external,
-                                Vector& out) const {
-  const AlphaWeights& w = options_.weights;
-  times_mass(view(motion.a), of_mass_.rest);
-  const double inertia = step * (1.0 - w.alpha_m - w.gamma), forces = step * (0.5 - w.alpha_f);
-  out.setZero(external.size());
-  for (const int i : inertial_.list())
-    out(i) = inertia * of_mass_.rest(i) - forces * (external(i) - motion.force[i]);
 }
 
 /// Accelerations from the balance at the begin: M a = f - r on the free coordinates. Those of

@@ -6,8 +6,11 @@
 #include "subdomain_solver/solve/newton.hpp"
 #include "subdomain_solver/time/alpha_weights.hpp"
 #include "subdomain_solver/time/contact_turns.hpp"
+#include "subdomain_solver/time/foreseeing.hpp"
+#include "subdomain_solver/time/inertia.hpp"
 #include "subdomain_solver/time/integrator.hpp"
 #include "subdomain_solver/time/massless_layer.hpp"
+#include "subdomain_solver/time/momentum_lag.hpp"
 
 namespace abut {
 
@@ -16,19 +19,23 @@ namespace abut {
 /// of linear models. Unknowns are accelerations, so that small steps lose nothing to round-off.
 /// Coordinates without mass take part as they are; contact presses with a force of the step's end
 /// [M.87]. A step allocates nothing itself once its buffers have grown.
-class ImplicitDynamics final : public Integrator {
+class ImplicitDynamics final : public Integrator, private Inertia, private Foreseeing {
  public:
+  /// What the scheme does with accelerations between steps, where forces may jump.
+  enum class Accelerations {
+    balanced,  // stored, and corrected by the balance of forces when a force jumps
+    // Of the trapezoidal rule alone: the unknown of a step is the sum of the accelerations at both
+    // ends, and none is stored, so that tie forces may jump from step to step [M.105].
+    summed,
+    // Stored, and not corrected when tie forces jump, which are constant in a step [M.105]. Of
+    // weights with gamma > 1/2 whose tied partners all step alike: unlike pairs would gain energy.
+    steady,
+  };
   struct Options {
     AlphaWeights weights;
     MassForm mass = MassForm::consistent;
     NewtonOptions newton;
-    // Of the trapezoidal rule alone: unknown is the sum of the accelerations at both ends, and none
-    // is kept, so that forces may jump from step to step [M.105].
-    bool sums = false;
-    // Of weights that damp what is infinitely stiff, where all joined bodies step alike (pairs of
-    // unlike ones would gain energy): accelerations are kept, and do not jump where
-    // forces of joined sides do, which are constant in a step [M.105].
-    bool steady = false;
+    Accelerations accelerations = Accelerations::balanced;
   };
 
   ImplicitDynamics(const Problem& problem, const Options& options,
@@ -36,28 +43,17 @@ class ImplicitDynamics final : public Integrator {
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  [[nodiscard]] std::optional<Failed> jump(Motion& motion, double time,
-                                           const Vector& change) override;
-  void strike(Motion& motion, const Vector& impulse) override;
-  bool joins_steadily() const override { return options_.steady; }
-  double compliance(const Motion& motion, int dof) override;
   void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
-  bool lags() const override;
-  void find_lag(const Motion& motion, double step, const Vector& external,
-                Vector& out) const override;
   double kinetic(const Motion& motion) const override;
-  ImplicitDynamics* implicit() override;
-
-  /// A motion beside the present one.
-  struct Beside {
-    Vector u, v;  // [m] from the present coordinates, [m/s] (dofs); empty: where the present one is
-  };
-  /// A step of it under the problem's loads, with the internal force that the tangent of the
-  /// last balance tells: one solve  [M.119]. False: there is no tangent.
-  [[nodiscard]] bool go_on(const Motion& motion, double time, double dt, Beside& beside);
 
  private:
   class Balance;
+  Abilities abilities(const Problem& problem, const Options& options);
+  std::optional<Failed> jump(Motion& motion, double time, const Vector& change) override;
+  void strike(Motion& motion, const Vector& impulse) override;
+  /// With the internal force that the tangent of the last balance tells: one solve  [M.119].
+  bool foresee(const Motion& motion, double time, double dt, Foreseen& ahead) override;
+  bool sums() const { return options_.accelerations == Accelerations::summed; }
   [[nodiscard]] NewtonReport solve(Balance& balance, const Motion& motion);
 
   struct Buffers {  // of one step at a time
@@ -84,6 +80,7 @@ class ImplicitDynamics final : public Integrator {
   MasslessLayer layer_;
   ContactTurns contact_;
   SparseMatrix mass_;
+  MomentumLag lag_;
   MatrixSum whole_;
   SparseMatrix matrix_;  // of the free coordinates
   double factored_dt_ = 0.0;

@@ -8,11 +8,6 @@
 
 namespace abut {
 
-ImplicitDynamics* ImplicitDynamics::implicit() {
-  const bool tells = options_.sums && !problem_.model->is_linear() && layer_.empty();
-  return tells ? this : nullptr;
-}
-
 /// That of the last correction of the step before, or where there was none of the present motion.
 /// Steps of windows differ in their last bits.
 bool ImplicitDynamics::hold_tangent(const Motion& motion, double time, double dt) {
@@ -30,9 +25,9 @@ bool ImplicitDynamics::hold_tangent(const Motion& motion, double time, double dt
   return true;
 }
 
-bool ImplicitDynamics::go_on(const Motion& motion, double time, double dt, Beside& beside) {
+bool ImplicitDynamics::foresee(const Motion& motion, double time, double dt, Foreseen& beside) {
   const auto q = view(motion.q);
-  if (beside.u.size() == 0) {
+  if (beside.steps == 0) {
     beside.u.setZero(q.size());
     beside.v = view(motion.v);
   }
@@ -55,6 +50,9 @@ bool ImplicitDynamics::go_on(const Motion& motion, double time, double dt, Besid
   free_.add(b.free, b.a);
   beside.u += dt * beside.v + 0.25 * dt * dt * b.a;
   beside.v += 0.5 * dt * b.a;
+  beside.q = motion.q;
+  view(beside.q) += beside.u;
+  ++beside.steps;
   return true;
 }
 

@@ -203,7 +203,8 @@ class QuasiStatic::Balance final : public Equations {
 
 QuasiStatic::QuasiStatic(const Problem& problem, const Options& options,
                          std::unique_ptr<LinearSolver> solver)
-    : problem_(problem),
+    : Integrator({.statics = this}),
+      problem_(problem),
       options_(options),
       free_(problem.model->dofs(), problem.supports),
       loose_(options.loose.cols() > 0 ? Eigen::MatrixXd(options.loose(free_.list(), Eigen::all))

@@ -33,8 +33,6 @@ class QuasiStatic final : public Integrator {
   void acceleration(const Motion& motion, double, double, Vector& out) const override {
     out.setZero(static_cast<Eigen::Index>(motion.q.size()));
   }
-  bool has_inertia() const override { return false; }
-  QuasiStatic* statics() override { return this; }
 
   /// [m] (k) where its loose motions are at the end of the next step; empty: where they are.
   void carry_to(std::span<const double> place);

@@ -50,9 +50,19 @@ struct StableSteps::Control {
 
 StableSteps::StableSteps(std::unique_ptr<Integrator> steps, std::unique_ptr<FrequencyWatch> watch,
                          const Options& options)
-    : watch_(std::move(watch)), options_(options), steps_(std::move(steps)) {
+    : Integrator(abilities(*steps)),
+      watch_(std::move(watch)),
+      options_(options),
+      steps_(std::move(steps)) {
   ABUT_ASSERT(steps_ != nullptr && watch_ != nullptr && options.step > 0.0 &&
               options.step <= options.limit);
+}
+
+Integrator::Abilities StableSteps::abilities(const Integrator& steps) {
+  Abilities able = steps.able();
+  if (able.foreseeing != nullptr) able.foreseeing = this;
+  able.held = this;
+  return able;
 }
 
 /// The square of the frequency at which a step of some parts is at its limit.
@@ -76,13 +86,31 @@ std::optional<Failed> StableSteps::begin(Motion& motion, double time) {
   return std::nullopt;
 }
 
+/// Whether a bound is to be found before the next step.
+bool StableSteps::is_due(const Motion& motion, const Control& control) const {
+  const bool stirred = motion.stored > 2.0 * control.stored;
+  return control.since >= control.interval ||
+         (stirred && control.since >= watch_->least_interval());
+}
+
+/// Equal ones, of a step of this length.
+double StableSteps::parts_of(double dt, const Control& control) const {
+  return std::ceil(control.parts * dt / options_.step - 1.0e-6);
+}
+
+bool StableSteps::foresee(const Motion& motion, double time, double dt, Foreseen& ahead) {
+  control_ = motion.control;
+  const Control control(control_);
+  if (ahead.steps > 0 || is_due(motion, control) || parts_of(dt, control) > 1.0) return false;
+  return steps_->able().foreseeing->foresee(motion, time, dt, ahead);
+}
+
 std::optional<Failed> StableSteps::step(Motion& motion, double time, double dt) {
   Control control(motion.control);
-  const bool stirred = motion.stored > 2.0 * control.stored;
-  if (control.since >= control.interval || (stirred && control.since >= watch_->least_interval())) {
+  if (is_due(motion, control)) {
     if (std::optional<Failed> failed = check(motion, time)) return failed;
   }
-  const double needed = std::ceil(control.parts * dt / options_.step - 1.0e-6);
+  const double needed = parts_of(dt, control);
   if (needed > most_parts) {
     return Failed{Failed::Cause::step_too_small, time,
                   fmt::format("the stable limit has fallen so far that a step of {:g} s would take "
@@ -173,7 +201,7 @@ void StableSteps::divide(Control& control, bool whole_is_stable) const {
     control.parts = std::ceil(needed);
 }
 
-std::vector<std::string> StableSteps::measure_names() const {
+std::vector<std::string> StableSteps::measure_names() {
   return {"stable_step.min", "stable_step.parts"};
 }
 

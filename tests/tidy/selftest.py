@@ -13,6 +13,7 @@ import glossary
 import headers
 import layers
 import lengths
+import overriders
 import packages
 import tolerances
 import words
@@ -58,6 +59,11 @@ class Layers(unittest.TestCase):
         text = '#include "subdomain_solver/bars/bar.hpp"\n'
         self.check(0, coordinator__launch_local_dot_cpp=text)
         self.check(1, coordinator__launch_dot_cpp=text)
+
+    def test_only_makers_see_forms_that_exist_for_comparison(self) -> None:
+        text = '#include "subdomain_solver/compare/bar_pair.hpp"\n'
+        self.check(0, subdomain_solver__make__pair_body_dot_cpp=text)
+        self.check(1, subdomain_solver__bars__bar_dot_cpp=text)
 
     def test_programs_see_everything(self) -> None:
         self.check(0, coordinator__main_dot_cpp='#include <CLI/CLI.hpp>\n#include "base/log.hpp"\n')
@@ -147,6 +153,51 @@ class Definitions(unittest.TestCase):
                       "void f() { struct P {}; }", "// struct P {}", "struct P f() { return {}; }"):
             self.check([], a_dot_hpp=one, b_dot_cpp="namespace abut {\n" + other + "\n}\n")
         self.check([], a_dot_hpp=one, tests__b_dot_cpp=one)
+
+
+class Overriders(unittest.TestCase):
+    BASE = ("namespace abut {\nclass B {\n public:\n  virtual ~B() = default;\n"
+            "  [[nodiscard]] virtual std::map<int, X> f(int a, X b = {1, 2}) const = 0;\n"
+            "  virtual void f(int) {}\n  int g() { return h(1); }\n};\n}\n")
+    BOTH = ("  std::map<int, X> f(int, X) const override { return {}; }\n"
+            "  void f(int) override;\n")
+
+    def check(self, expected: list[str], listed: str = "B b.hpp\n", **files: str) -> None:
+        files.setdefault("b_dot_hpp", self.BASE)
+        found = findings(overriders.check, tests__tidy__interfaces_dot_txt=listed, **files)
+        self.assertEqual([f"{finding.path}:{finding.line}" for finding in found], expected)
+
+    def derived(self, name: str, base: str, functions: str) -> str:
+        return (f"namespace abut {{\nclass {name} final : {base} {{\n public:\n"
+                f"{functions}}};\n}}\n")
+
+    def test_two_overriders_are_needed_of_every_function(self) -> None:
+        one, two = (self.derived(name, "public B", self.BOTH) for name in ("C", "D"))
+        self.check([], c_dot_hpp=one, d_dot_cpp=two)
+        self.check(["b.hpp:5", "b.hpp:6"], c_dot_hpp=one)
+        self.check(["b.hpp:5", "b.hpp:6"])
+        for left in self.BOTH.splitlines(keepends=True):
+            line = 6 if "map" in left else 5
+            self.check([f"b.hpp:{line}"], c_dot_hpp=one,
+                       d_dot_cpp=self.derived("D", "public B", left))
+
+    def test_below_counts_and_beside_does_not(self) -> None:
+        one = self.derived("C", "public A, private abut::B", self.BOTH)
+        below = self.derived("D", "public C", self.BOTH)
+        nested = "struct O {\n" + self.BASE + "};\n"
+        self.check([], c_dot_hpp=one, d_dot_cpp=below)
+        for other in (self.derived("D", "public E", self.BOTH), nested,
+                      self.derived("D", "public B", self.BOTH.replace("override", "")),
+                      "// class D : public B {" + self.BOTH.replace("\n", "") + "}\n",
+                      self.derived("D", "public B", "  void g() { c.f(1); }\n")):
+            self.check(["b.hpp:5", "b.hpp:6"], c_dot_hpp=one, d_dot_cpp=other)
+        self.check(["b.hpp:5", "b.hpp:6"], c_dot_hpp=one,
+                   tests__d_dot_cpp=self.derived("D", "public B", self.BOTH))
+
+    def test_list_must_name_interfaces(self) -> None:
+        one, two = (self.derived(name, "public B", self.BOTH) for name in ("C", "D"))
+        self.check(["tests/tidy/interfaces.txt:2", "tests/tidy/interfaces.txt:3"],
+                   "# why\nB c.hpp\nC c.hpp\n", c_dot_hpp=one, d_dot_cpp=two)
 
 
 class Equations(unittest.TestCase):

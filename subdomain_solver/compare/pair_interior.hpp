@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "subdomain_solver/bars/pair_integrator.hpp"
+#include "subdomain_solver/compare/pair_integrator.hpp"
 #include "subdomain_solver/interior.hpp"
 
 namespace abut {
@@ -30,10 +30,9 @@ class PairInterior final : public Interior {
   void state(Archive& archive) override { state_.state(archive); }
   std::size_t coordinates() const override;
   void restored() override { pair_.follow(state_.u); }
-  std::optional<Failed> step(const Window& window, int i) override;
+  std::optional<Failed> step(const Window& window, int i, bool whole) override;
   const PortValues& see(const Window& window, double time, bool all) override;
   std::optional<Failed> record(BodyRecord& record) override;
-  double effort() const override;
   Grid grid() override;
   std::vector<FieldValues> fields() override;
 

@@ -1,4 +1,4 @@
-#include "subdomain_solver/bars/pair_integrator.hpp"
+#include "subdomain_solver/compare/pair_integrator.hpp"
 
 #include <algorithm>
 

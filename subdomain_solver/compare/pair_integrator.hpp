@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/archive.hpp"
-#include "subdomain_solver/bars/bar_pair.hpp"
+#include "subdomain_solver/compare/bar_pair.hpp"
 #include "subdomain_solver/solve/tridiagonal.hpp"
 
 namespace abut {

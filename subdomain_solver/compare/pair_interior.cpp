@@ -1,4 +1,4 @@
-#include "subdomain_solver/bars/pair_interior.hpp"
+#include "subdomain_solver/compare/pair_interior.hpp"
 
 #include <cmath>
 #include <limits>
@@ -38,6 +38,7 @@ PairInterior::PairInterior(std::string name, const Parameters& parameters)
   description_.stable_step = parameters.weights ? std::numeric_limits<double>::infinity()
                                                 : pair_.stable_step(parameters.contact.penalty);
   description_.fields = bar_fields();
+  traits_.effort = static_cast<double>(pair_.nodes()) / usual_work;
   describe_members(parameters);
 }
 
@@ -63,8 +64,6 @@ std::size_t PairInterior::coordinates() const {
   return state_.v.size() == n && state_.a.size() == n ? n : 0;
 }
 
-double PairInterior::effort() const { return static_cast<double>(pair_.nodes()) / usual_work; }
-
 Grid PairInterior::grid() {
   Grid grid;
   for (int m : {0, 1}) add_bar(pair_.bar(m).data(), grid);
@@ -80,7 +79,7 @@ std::vector<FieldValues> PairInterior::fields() {
   return bar_field_values(state_.u, state_.v, stress);
 }
 
-std::optional<Failed> PairInterior::step(const Window& window, int i) {
+std::optional<Failed> PairInterior::step(const Window& window, int i, bool) {
   if (integrator_->substep(state_, window.grid.length(i))) return std::nullopt;
   return Failed{Failed::Cause::inverted_element, window.grid.time(i),
                 fmt::format("an element of body '{}' has no length left; assembled on current "

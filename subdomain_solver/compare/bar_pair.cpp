@@ -1,4 +1,4 @@
-#include "subdomain_solver/bars/bar_pair.hpp"
+#include "subdomain_solver/compare/bar_pair.hpp"
 #include "base/index.hpp"
 
 #include <algorithm>
