@@ -116,6 +116,7 @@ struct Launch::Member {
   std::string name;
   Process* process = nullptr;  // null: somebody else's
   bool external = false;       // no abut-solver can be this body
+  BodyContext context;
   Milliseconds patience{0};
   int peer = 0;
   std::unique_ptr<Liveness> liveness;
@@ -168,6 +169,7 @@ void Launch::add_members(const Scene& scene) {
     member->name = name;
     member->process = process_of[b];
     member->external = entry.external;
+    member->context = entry.context;
     const ConnectLaunch* connect = std::get_if<ConnectLaunch>(&entry.launch);
     member->patience =
         milliseconds(connect != nullptr ? connect->patience : scene.network.startup_deadline);
@@ -259,6 +261,7 @@ void Launch::configure(Member& member, const Specification& scene_text) {
   if (member.process == nullptr || !member.process->has_scene) specification = scene_text;
   if (member.process != nullptr) member.process->has_scene = true;
   specification.path = "bodies." + member.name;
+  specification.context = member.context;
   member.body->start_configure(specification);
 }
 

@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "contract/port_role.hpp"
 #include "messaging/channel.hpp"
 
 namespace abut {
 
 /// Version of the wire protocol (proto/README.md): both ends must speak the same one.
-inline constexpr std::uint32_t protocol_version = 2;
+inline constexpr std::uint32_t protocol_version = 3;
 
 /// Version of this build, for Hello, Welcome and --version.
 const char* build_version();
@@ -37,6 +38,7 @@ struct Specification {
   std::string text;                    // the whole scene, verbatim
   std::vector<std::string> overrides;  // "key.path=value"
   std::string path;                    // "bodies.left"
+  BodyContext context = {};            // what the scene's interfaces make of the body
 };
 
 }  // namespace abut
