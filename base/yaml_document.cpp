@@ -252,23 +252,6 @@ std::vector<std::string> Document::keys(std::string_view path) const {
   return names;
 }
 
-std::vector<std::string> Document::keys_with(std::string_view path, std::string_view key,
-                                             std::string_view word) const {
-  const std::optional<YAML::Node> node = tree_->find(path);
-  const auto is_word = [word](const YAML::Node& item) {
-    return item.IsScalar() && item.Scalar() == word;
-  };
-  std::vector<std::string> names;
-  if (!node || !node->IsMap()) return names;
-  for (const auto& pair : *node) {
-    const std::optional<Found> list = child(pair.second, key);
-    if (list && list->node.IsSequence() &&
-        std::any_of(list->node.begin(), list->node.end(), is_word))
-      names.push_back(pair.first.Scalar());
-  }
-  return names;
-}
-
 bool Document::chooses(std::string_view path, std::string_view name) const {
   const std::optional<YAML::Node> node = tree_->find(path);
   if (!node) return false;

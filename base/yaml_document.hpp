@@ -43,10 +43,6 @@ class Document {
   bool says(std::string_view path) const;
   /// Keys of the map at a path, in the file's order; empty when there is no map.
   std::vector<std::string> keys(std::string_view path) const;
-  /// Those whose map has a list under `key` with this word in it: interfaces with a side. One look
-  /// at each, for scenes of many.
-  std::vector<std::string> keys_with(std::string_view path, std::string_view key,
-                                     std::string_view word) const;
   /// Whether the choice at a path is this one: the bare word, or a map with this key.
   bool chooses(std::string_view path, std::string_view name) const;
   /// For InputError::where: "scene.yaml:12: bodies.left", or "scene.yaml, from --set key=value:

@@ -19,7 +19,6 @@
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/row_margin.hpp"
 #include "coordinator/coupling/unilateral.hpp"
-#include "coordinator/shared_nodes.hpp"
 #include "coordinator/surface_start.hpp"
 #include "coordinator/tied_surfaces.hpp"
 
@@ -64,6 +63,14 @@ void check_shared_node(const InterfaceSpec& spec, const Bodies& bodies, const Jo
   const bool held = std::isinf(a.mass) || std::isinf(b.mass);
   const bool alike = a.step == b.step && std::isinf(a.stable_step) == std::isinf(b.stable_step);
   if (held || (shared[0] && shared[1] && alike)) return;
+  if (shared[0] && shared[1]) {  // of our own bodies the scene has told: they are tied by a force
+    throw InputError(
+        fmt::format("shares a node between '{}' ({}) and '{}' ({}), which step apart", a.name,
+                    a.model, b.name, b.model),
+        "interfaces." + spec.name + ".sides",
+        "Give both bodies one step and one kind of scheme, or take tied off both ports and give "
+        "contact_layer: {massless: {stiffness_factor: 1}}.");
+  }
   throw InputError(
       "joins a port with tied: true to one of another kind of node",
       "interfaces." + spec.name + ".sides",
@@ -306,25 +313,29 @@ InterfaceSpec spec_of(const Scene& scene, const PortPair& pair, const Bodies& bo
   return spec;
 }
 
+/// Bodies that would share a node but do not step alike are joined by a force, as they were told.
+bool step_apart(const Scene& scene, const std::array<Side, 2>& sides, const Bodies& bodies) {
+  return std::ranges::all_of(sides, [&](const Side& side) {
+    const Port& port = bodies.port(side);
+    return port.tied && !scene.bodies[index(side.body)].second.context.role(port.name).alike;
+  });
+}
+
 }  // namespace
 
 std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
   std::vector<Joint> joints;
-  std::vector<std::array<Side, 2>> pairs, tied;
+  std::vector<std::array<Side, 2>> pairs;
   for (const auto& [name, spec] : scene.interfaces) {
     const std::string where = "interfaces." + name + ".sides";
     pairs.push_back(
         {find_side(spec.sides[0], bodies, where), find_side(spec.sides[1], bodies, where)});
-    if (spec.tied) tied.push_back(pairs.back());
   }
-  const std::vector<bool> apart = step_apart(tied, bodies);
-  std::size_t ties = 0;
   for (const auto& [name, spec] : scene.interfaces) {
     const std::array<Side, 2>& sides = pairs[joints.size()];
     const bool surfaces = bodies.port(sides[0]).geometry.dim > 1 && spec.contact;
     const int number = static_cast<int>(joints.size());
-    const bool by_force = spec.tied && apart[ties++];
-    if (spec.tied && (bodies.port(sides[0]).geometry.dim > 1 || by_force)) {
+    if (spec.tied && (bodies.port(sides[0]).geometry.dim > 1 || step_apart(scene, sides, bodies))) {
       joints.push_back(make_tied_joint(spec, sides, bodies));
       joints.back().interface = number;
       continue;

@@ -14,6 +14,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/input_errors.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
 #include "coordinator/solver_processes.hpp"
@@ -115,12 +116,15 @@ struct Launch::Member {
   std::string name;
   Process* process = nullptr;  // null: somebody else's
   bool external = false;       // no abut-solver can be this body
+  BodyContext context;
   Milliseconds patience{0};
   int peer = 0;
   std::unique_ptr<Liveness> liveness;
   std::unique_ptr<Caller> caller;
   std::unique_ptr<RemoteSubdomain> body;  // until it is handed out
   bool welcome = false;
+  bool described = false;  // or has told what is wrong with it
+  InputErrors errors;
 };
 
 Launch::Launch(const Scene& scene, const Specification& scene_text, const LaunchOptions& options)
@@ -135,7 +139,6 @@ Launch::Launch(const Scene& scene, const Specification& scene_text, const Launch
     listen(scene);
     spawn_all();
     greet_all(scene_text);
-    for (const std::unique_ptr<Member>& member : members_) member->body->finish_configure();
   } catch (...) {
     end_processes();
     remove_directory();
@@ -166,6 +169,7 @@ void Launch::add_members(const Scene& scene) {
     member->name = name;
     member->process = process_of[b];
     member->external = entry.external;
+    member->context = entry.context;
     const ConnectLaunch* connect = std::get_if<ConnectLaunch>(&entry.launch);
     member->patience =
         milliseconds(connect != nullptr ? connect->patience : scene.network.startup_deadline);
@@ -217,22 +221,38 @@ void Launch::spawn_all() {
 void Launch::greet_all(const Specification& scene_text) {
   const TimePoint begin = std::chrono::steady_clock::now();
   TimePoint looked = begin;
-  std::size_t missing = members_.size();
-  while (missing > 0) {
+  const auto is_missing = [this](const std::unique_ptr<Member>& member) {
+    return !member->welcome && (member->process != nullptr || !refused_);
+  };
+  while (std::ranges::any_of(members_, is_missing)) {
     hub_->pump(options_.deadlines.slice);
     refuse_strangers();
     const bool look = std::chrono::steady_clock::now() - looked >= options_.deadlines.slice;
     if (look) looked = std::chrono::steady_clock::now();
     for (const std::unique_ptr<Member>& member : members_) {
-      if (member->welcome) continue;
-      if (hub_->has_frame(member->peer) && greet(*member)) {
+      if (member->welcome) {
+        if (!member->described && member->caller->has_reply()) see(*member);
+      } else if (hub_->has_frame(member->peer) && greet(*member)) {
         configure(*member, scene_text);
-        --missing;
       } else if (look) {
         check_startup(*member, begin);
       }
     }
   }
+  InputErrors errors;
+  for (const std::unique_ptr<Member>& member : members_) {
+    if (member->welcome && !member->described) see(*member);
+    errors.gather([&member] { member->errors.raise(); });
+  }
+  errors.raise();
+}
+
+/// What the body is, or what is wrong with it: then those that somebody else starts are not waited
+/// for.
+void Launch::see(Member& member) {
+  member.described = true;
+  member.errors.gather([&member] { member.body->finish_configure(); });
+  refused_ = refused_ || member.errors.count() > 0;
 }
 
 /// It builds itself while the others are still on their way. A process has the scene's text once.
@@ -241,6 +261,7 @@ void Launch::configure(Member& member, const Specification& scene_text) {
   if (member.process == nullptr || !member.process->has_scene) specification = scene_text;
   if (member.process != nullptr) member.process->has_scene = true;
   specification.path = "bodies." + member.name;
+  specification.context = member.context;
   member.body->start_configure(specification);
 }
 

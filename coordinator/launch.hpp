@@ -33,8 +33,8 @@ struct LaunchOptions {
 class Launch {
  public:
   /// Starts and greets all bodies and hands each the scene (`scene_text.path` is filled in per
-  /// body). Throws InputError when a body refuses its keys, RunError when one does not come in
-  /// time.
+  /// body). Throws InputError when bodies refuse their keys, of all that are there; RunError when
+  /// one does not come in time.
   Launch(const Scene& scene, const Specification& scene_text, const LaunchOptions& options);
   ~Launch();
   Launch(const Launch&) = delete;
@@ -56,6 +56,7 @@ class Launch {
   void greet_all(const Specification& scene_text);
   bool greet(Member& member);
   void configure(Member& member, const Specification& scene_text);
+  void see(Member& member);
   bool welcome(Member& member, const v1::Hello& hello);
   void refuse(const Member& member, std::uint64_t session, const std::string& reason);
   void refuse_strangers();
@@ -69,6 +70,7 @@ class Launch {
   std::unique_ptr<ZmqHub> hub_;
   std::vector<std::unique_ptr<Process>> processes_;  // that this object starts
   std::vector<std::unique_ptr<Member>> members_;
+  bool refused_ = false;  // a body has told what is wrong with it
   bool finished_ = false;
 };
 

@@ -1,9 +1,11 @@
 #include "coordinator/launch_local.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <string>
 
 #include <fmt/format.h>
@@ -74,22 +76,11 @@ BarEnd end_of(const Scene& scene, const std::vector<const Description*>& bodies,
                    "Name one of the body's ports.");
 }
 
-Row row_of(const Scene& scene, const Document& document) {
-  for (const auto& [name, entry] : scene.bodies) {
-    if (!entry.external) continue;
-    throw InputError(
-        fmt::format("describes bars and walls, but what the external body {} is, only its own "
-                    "program knows",
-                    name),
-        document.where("meta.closed_form"),
-        "Leave out meta.closed_form and the expectations that need it.");
-  }
-  const std::vector<std::unique_ptr<Subdomain>> built = launch_local(scene, document);
-  std::vector<const Description*> bodies;
-  for (const std::unique_ptr<Subdomain>& body : built) bodies.push_back(&body->describe());
+Row row_of(const Scene& scene, const std::vector<const Description*>& bodies,
+           const Document& document) {
   Row row;
   for (const auto& [name, entry] : scene.bodies) {
-    const BodySpec spec = read_body(document, path_of(name));
+    const BodySpec spec = read_body(document, path_of(name), entry.context);
     if (spec.shape() != nullptr && !spec.is_uniform_bar()) {
       throw InputError(fmt::format("describes bars and walls without loads, initial fields, points "
                                    "and constraints, but the body {} is neither",
@@ -142,9 +133,11 @@ struct ImpactSide {
   bool known = false;     // a bar or a wall
 };
 
-ImpactSide meeting_of(const Document& document, const PortName& name) {
-  if (is_external(document, name.body)) return {};
-  const BodySpec spec = read_body(document, path_of(name.body));
+ImpactSide meeting_of(const Scene& scene, const Document& document, const PortName& name) {
+  const auto named = [&name](const auto& body) { return body.first == name.body; };
+  const BodyEntry& entry = std::ranges::find_if(scene.bodies, named)->second;
+  if (entry.external) return {};
+  const BodySpec spec = read_body(document, path_of(name.body), entry.context);
   if (std::holds_alternative<BarPairSpec>(spec.model)) {
     const std::size_t member = name.port == "left_tip" ? 0 : 1;
     const BarProperties bar = pair_properties(spec)[member];
@@ -189,8 +182,8 @@ void check_speeds(const Scene& scene, const Document& document) {
     if (interface.tied) continue;
     const std::array<PortName, 2> names = {split_port(interface.sides[0]),
                                            split_port(interface.sides[1])};
-    const std::array<ImpactSide, 2> sides = {meeting_of(document, names[0]),
-                                             meeting_of(document, names[1])};
+    const std::array<ImpactSide, 2> sides = {meeting_of(scene, document, names[0]),
+                                          meeting_of(scene, document, names[1])};
     if (!sides[0].known || !sides[1].known) continue;
     for (const std::size_t s : {0u, 1u})
       if (sides[s].bar)
@@ -211,30 +204,37 @@ std::vector<std::unique_ptr<Subdomain>> launch_local(const Scene& scene, const D
     if (entry.external) {
       bodies.push_back(nullptr);
     } else {
-      errors.gather([&] { bodies.push_back(make_body(document, path_of(name), progress)); });
+      errors.gather(
+          [&] { bodies.push_back(make_body(document, path_of(name), entry.context, progress)); });
     }
   }
   errors.raise();
   return bodies;
 }
 
-void check_body_keys(const Document& document) {
+void check_body_keys(const Scene& scene, const Document& document) {
   InputErrors errors;
+  std::map<std::string, const BodyContext*> contexts;
+  for (const auto& [name, entry] : scene.bodies) contexts[name] = &entry.context;
+  const BodyContext alone;
   for (const std::string& name : document.keys("bodies"))
     errors.gather([&] {
       if (is_external(document, name)) {
         read<ExternalBody>(document, path_of(name));
       } else {
-        read_body(document, path_of(name));
+        const auto known = contexts.find(name);
+        read_body(document, path_of(name), known != contexts.end() ? *known->second : alone);
       }
     });
   errors.raise();
 }
 
-std::optional<ClosedForm> make_closed_form(const Scene& scene, const Document& document) {
+std::optional<ClosedForm> make_closed_form(const Scene& scene,
+                                           const std::vector<const Description*>& bodies,
+                                           const Document& document) {
   if (!scene.meta.closed_form) return std::nullopt;
   require_contact(scene, document);
-  const Row row = row_of(scene, document);
+  const Row row = row_of(scene, bodies, document);
   const std::vector<std::string> names = exact_interfaces(scene);
   try {
     if (std::holds_alternative<BarImpactForm>(*scene.meta.closed_form))
@@ -261,7 +261,7 @@ void resolve_body_keys(const Scene& scene, const Document& document, ResolvedYam
       resolved.copy(path_of(name) + ".model", document);
       continue;
     }
-    BodySpec spec = read_body(document, path_of(name));
+    BodySpec spec = read_body(document, path_of(name), entry.context);
     spec.place_files((folder / "").string());
     resolved.add(path_of(name), spec);
   }

@@ -23,15 +23,17 @@ std::vector<std::unique_ptr<Subdomain>> launch_local(
     const Scene& scene, const Document& document, const std::atomic<bool>* interrupted = nullptr);
 
 /// Reads the keys of every body entry that the document has. Throws InputError.
-void check_body_keys(const Document& document);
+void check_body_keys(const Scene& scene, const Document& document);
 
 /// Bars of linear elasticity that meet at the speeds of the begin keep something of their length:
 /// refused is what a wave would compress to nothing. Throws InputError.
 void check_speeds(const Scene& scene, const Document& document);
 
-/// The exact solution that the scene names, if any. Throws InputError when it does not describe
-/// these bodies.
-std::optional<ClosedForm> make_closed_form(const Scene& scene, const Document& document);
+/// The exact solution that the scene names, if any, of bodies in its order. Throws InputError when
+/// it does not describe them.
+std::optional<ClosedForm> make_closed_form(const Scene& scene,
+                                           const std::vector<const Description*>& bodies,
+                                           const Document& document);
 
 /// Adds the keys of a body entry to the reference.
 void document_body_keys(Reference& reference);

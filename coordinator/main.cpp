@@ -40,7 +40,6 @@
 #include "coordinator/record/summary.hpp"
 #include "coordinator/record/vtk_fields.hpp"
 #include "coordinator/run_directory.hpp"
-#include "coordinator/same_body.hpp"
 #include "coordinator/scene.hpp"
 #include "coordinator/solver_processes.hpp"
 #include "coordinator/split/split_scene.hpp"
@@ -141,78 +140,49 @@ std::vector<Estimate::Ties> validate_coupling(const Scene& scene, const Placemen
 /// Scene and bodies are read by readers of their own: what both refuse is told at once.
 Scene read_all_keys(const Document& document) {
   InputErrors errors;
-  Scene scene;
-  errors.gather([&] { scene = read_scene(document); });
-  errors.gather([&] { check_body_keys(document); });
+  Scene scene = read_scene(document, errors);
+  errors.gather([&] { check_body_keys(scene, document); });
   errors.raise();
   return scene;
 }
 
-/// All that can be said of a scene without another process.
-struct Validated {
-  std::optional<ClosedForm> form;
-  Estimate estimate;
-  std::vector<std::optional<Description>> bodies;  // as they are here; empty: external
-};
-
-/// Bodies that made themselves elsewhere are those of this scene and of these files.
-void validate_placed(const Validated& valid, const Placement& placement, const Document& document) {
-  const std::vector<const Description*> theirs = placement.descriptions();
-  for (std::size_t b = 0; b < valid.bodies.size(); ++b) {
-    const std::optional<Description>& own = valid.bodies[b];
-    const std::string difference = own ? difference_of(*own, *theirs[b]) : std::string();
-    if (difference.empty()) continue;
-    throw InputError(fmt::format("its solver has made another body: {}", difference),
-                     document.where("bodies." + own->name),
-                     "Give the solver the files that lie beside the scene, and the same build.");
-  }
-}
-
-/// Bodies of other programs are known now: what could not be said of the scene before is said here.
-void validate_joined(const Scene& scene, const Placement& placement, const Document& document,
-                     Validated& valid) {
-  validate_bodies(scene, placement.descriptions(), document);
-  validate_placed(valid, placement, document);
-  const auto here = [](const std::optional<Description>& body) { return body.has_value(); };
-  if (std::all_of(valid.bodies.begin(), valid.bodies.end(), here)) return;
-  check_frames(scene, placement.descriptions(), {}, Limits{}.frame_bytes, document);
-  std::vector<Estimate::Ties> ties = validate_coupling(scene, placement, document);
-  validate_expectations(scene, placement.descriptions(), document);
-  valid.estimate = estimate(scene, placement.descriptions(), std::nullopt);
-  valid.estimate.ties = std::move(ties);
-}
-
-/// Of the fields that a scene wants, by body; external ones tell it later.
-std::vector<FieldSize> field_sizes(const Scene& scene, const Placement& here) {
-  std::vector<FieldSize> sizes(here.bodies.size());
+/// Of the fields that a scene wants, by body.
+std::vector<FieldSize> field_sizes(const Scene& scene, const Placement& placement) {
+  std::vector<FieldSize> sizes(placement.bodies.size());
   for (std::size_t b = 0; scene.output.field_output && b < sizes.size(); ++b) {
-    if (here.bodies[b] == nullptr || here.bodies[b]->describe().fields.empty()) continue;
-    const Grid grid = here.bodies[b]->grid();
+    Subdomain* body = placement.bodies[b].get();
+    if (body == nullptr || body->describe().fields.empty()) continue;
+    const Grid grid = body->grid();
     sizes[b] = {grid.nodes(), grid.cells()};
   }
   return sizes;
 }
 
-/// `processes`: the bodies will not be here.
-Validated validate_all(const Scene& scene, const Document& document, bool processes) {
-  const Placement here{nullptr, launch_local(scene, document)};
-  validate_bodies(scene, here.descriptions(), document);
+/// What is known of a scene beside its keys.
+struct Validated {
+  std::optional<ClosedForm> form;
+  Estimate estimate;
+};
+
+/// All that can be said of a scene with the bodies that are there. `processes`: what they send goes
+/// in frames.
+Validated validate_all(const Scene& scene, const Document& document, const Placement& placement,
+                       bool processes) {
+  const std::vector<const Description*> bodies = placement.descriptions();
+  validate_bodies(scene, bodies, document);
   if (processes)
-    check_frames(scene, here.descriptions(), field_sizes(scene, here), Limits{}.frame_bytes,
-                 document);
+    check_frames(scene, bodies, field_sizes(scene, placement), Limits{}.frame_bytes, document);
   std::vector<Estimate::Ties> ties;
-  if (here.whole()) {
-    ties = validate_coupling(scene, here, document);
-    validate_expectations(scene, here.descriptions(), document);
+  if (placement.whole()) {
+    ties = validate_coupling(scene, placement, document);
+    validate_expectations(scene, bodies, document);
   }
   check_speeds(scene, document);
-  Validated valid{make_closed_form(scene, document), {}, {}};
+  Validated valid{make_closed_form(scene, bodies, document), {}};
   std::optional<double> contact;
   if (valid.form) contact = valid.form->contact_time();
-  valid.estimate = estimate(scene, here.descriptions(), contact);
+  valid.estimate = estimate(scene, bodies, contact);
   valid.estimate.ties = std::move(ties);
-  for (const Description* body : here.descriptions())
-    valid.bodies.push_back(body != nullptr ? std::optional(*body) : std::nullopt);
   return valid;
 }
 
@@ -284,7 +254,6 @@ int run_verb(const RunCommand& command) {
   const Document document = Document::load(command.scene, command.overrides);
   const Scene scene = read_all_keys(document);
   if (!command.local) check_processes(scene, document);
-  Validated valid = validate_all(scene, document, !command.local);
   // Held until the last file is written.
   RunDirectory held(
       command.out.empty() ? default_run_directory(command.scene) : fs::path(command.out),
@@ -292,9 +261,10 @@ int run_verb(const RunCommand& command) {
   const fs::path& directory = held.path();
 
   Placement placement;
+  Validated valid;
   try {
     placement = place(scene, document, command.local, interrupted);
-    validate_joined(scene, placement, document, valid);
+    valid = validate_all(scene, document, placement, !command.local);
   } catch (...) {  // a run that never begins leaves nothing behind
     held.abandon();
     throw;
@@ -329,7 +299,8 @@ int check_verb(const CheckCommand& command) {
   const Document document = Document::load(command.scene, command.overrides);
   const Scene scene = read_all_keys(document);
   check_processes(scene, document);
-  const Validated valid = validate_all(scene, document, true);
+  const Placement here{nullptr, launch_local(scene, document)};
+  const Validated valid = validate_all(scene, document, here, true);
   fmt::print("{}: valid\n{}", command.scene, to_text(valid.estimate, command.verbose));
   return 0;
 }

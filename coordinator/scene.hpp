@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "base/fields.hpp"
+#include "base/input_errors.hpp"
 #include "base/yaml_document.hpp"
+#include "contract/port_role.hpp"
 #include "contract/subdomain.hpp"
 #include "coordinator/force_filter_spec.hpp"
 #include "coordinator/interface_spec.hpp"
@@ -50,6 +52,7 @@ struct BodyEntry {
   bool external = false;  // of another program, which alone can describe it
   std::string like;       // body that it has the rest from; the document has written it out
   bool adjusts = false;   // its own specification has initial: {adjust: true}
+  BodyContext context;    // what the interfaces make of it
   void fields(Fields& f);
 };
 
@@ -154,6 +157,8 @@ PortName split_port(std::string_view text);
 
 /// Reads the whole scene and validates it. Throws InputError.
 Scene read_scene(const Document& document);
+/// The same, with what is wrong added to the errors: what could be read.
+Scene read_scene(const Document& document, InputErrors& errors);
 
 /// Rules across the keys of different maps, such as that a side's body exists. Throws InputError.
 void validate(const Scene& scene, const Document& document);

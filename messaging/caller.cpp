@@ -62,6 +62,7 @@ void Caller::send_request() {
         "", remedy_of_large_frame(request_));
   }
   under_way_ = true;
+  replied_ = false;
   corrupt_ = 0;
   begun_ = context_.channel.now();
   heard_ = begun_;
@@ -86,7 +87,7 @@ const v1::Reply& Caller::await() {
     ~Over() { flag = false; }
   } over{under_way_};
   Milliseconds wait = std::min(context_.deadlines.slice, pause_);
-  for (;;) {
+  while (!replied_) {
     const std::optional<Bytes> frame = context_.channel.receive(wait);
     if (frame && is_reply(*frame)) break;
     look_around();
@@ -96,6 +97,16 @@ const v1::Reply& Caller::await() {
   }
   if (reply_.has_fault()) rethrow(reply_.fault());
   return reply_;
+}
+
+bool Caller::has_reply() {
+  ABUT_ASSERT(under_way_);
+  while (!replied_) {
+    const std::optional<Bytes> frame = context_.channel.receive(Milliseconds(0));
+    if (!frame) return false;
+    replied_ = is_reply(*frame);
+  }
+  return true;
 }
 
 bool Caller::await_at_most(Milliseconds time) {

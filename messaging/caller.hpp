@@ -39,6 +39,8 @@ class Caller {
   /// Waits for the reply to the request under way. Throws RunError when it will not come, and the
   /// error that the body reports, if it reports one.
   const v1::Reply& await();
+  /// Whether it is there already; without a wait.
+  bool has_reply();
   /// What the reply holds of an Advanced, as it came; valid until the next request.
   Bytes advanced() const { return bulk_; }
   /// post and await.
@@ -80,6 +82,7 @@ class Caller {
   std::uint64_t session_ = 0;  // 0: not greeted yet
   int foreign_ = 0;
   bool under_way_ = false;
+  bool replied_ = false;  // to the request under way
   TimePoint begun_{};     // of the request
   TimePoint heard_{};     // the last sign of its body, or of what its process did meanwhile
   TimePoint deadline_{};  // moves with every sign of progress

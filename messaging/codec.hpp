@@ -10,6 +10,7 @@
 namespace abut {
 
 class WireWriter;
+struct Specification;
 
 /// A message that is well-formed protobuf but not a sound contract value: which field, and why.
 class CodecError : public std::runtime_error {
@@ -46,6 +47,7 @@ struct ReceivedMeeting {
 void encode(const Advance& from, WireWriter& to);
 /// Fields that the request does not want are left out.
 void encode(const Response& from, const Advance& asked, WireWriter& to);
+void encode(const Specification& from, v1::Configure& to);
 void encode(const Failed& from, v1::Failed& to);
 void encode(const Description& from, v1::Description& to);
 /// `first`: the kernel is a part, which begins with this pattern.
@@ -60,6 +62,7 @@ void encode(const std::vector<FieldValues>& from, v1::FieldsReply& to);
 void decode(Bytes advance, const Description& body, const Partners& met, Advance& to);
 /// Held against the request that it answers.
 void decode(Bytes advanced, const Description& body, const Advance& asked, Response& to);
+void decode(const v1::Configure& from, Specification& to);
 void decode(const v1::Failed& from, Failed& to);
 void decode(const v1::Description& from, Description& to);
 void decode(const v1::Meet& from, const Description& body, const Partners& met,

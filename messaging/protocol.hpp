@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/port_role.hpp"
 #include "messaging/channel.hpp"
 
 namespace abut {
@@ -37,6 +38,7 @@ struct Specification {
   std::string text;                    // the whole scene, verbatim
   std::vector<std::string> overrides;  // "key.path=value"
   std::string path;                    // "bodies.left"
+  BodyContext context = {};            // what the scene's interfaces make of the body
 };
 
 }  // namespace abut

@@ -29,12 +29,7 @@ int patterns_at_once(std::size_t patterns, std::size_t each, std::size_t beside,
 }  // namespace
 
 void RemoteSubdomain::start_configure(const Specification& specification) {
-  v1::Configure& configure = *caller_.request().mutable_configure();
-  configure.set_document(specification.document);
-  configure.set_text(specification.text);
-  configure.mutable_overrides()->Assign(specification.overrides.begin(),
-                                        specification.overrides.end());
-  configure.set_path(specification.path);
+  encode(specification, *caller_.request().mutable_configure());
   caller_.post("configure");
 }
 

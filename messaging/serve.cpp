@@ -241,10 +241,7 @@ void Server::dispatch() {
 
 void Server::configure(const v1::Configure& wire) {
   Specification specification;
-  specification.document = wire.document();
-  specification.text = wire.text();
-  specification.overrides.assign(wire.overrides().begin(), wire.overrides().end());
-  specification.path = wire.path();
+  decode(wire, specification);
   // Large meshes and reductions take their time. The channel is this thread's again before it is
   // used here: ZeroMQ allows sockets to change hands.
   LifeSigns life([this] { show_progress(); }, deadlines_.progress);

@@ -34,7 +34,7 @@ class Maker {
       scene_ = abut::Document::from_text(specification.document, specification.text,
                                          specification.overrides);
     }
-    return abut::make_body(*scene_, specification.path, progress);
+    return abut::make_body(*scene_, specification.path, specification.context, progress);
   }
 
  private:

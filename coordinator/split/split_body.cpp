@@ -13,7 +13,6 @@
 #include "subdomain_solver/make/constraints.hpp"
 #include "subdomain_solver/make/mesh.hpp"
 #include "subdomain_solver/make/read_body.hpp"
-#include "subdomain_solver/make/scene_contact.hpp"
 
 namespace abut {
 
@@ -40,14 +39,15 @@ Refusal refusal_of(const BodySpec& spec) {
   return {};
 }
 
-bool can_be_divided(const Document& document, const std::string& path, bool external) {
-  return !external && refusal_of(read_body(document, path)).why.empty();
+bool can_be_divided(const Document& document, const BodyEntry& entry) {
+  return !entry.external &&
+         refusal_of(read_body(document, "bodies." + entry.name, entry.context)).why.empty();
 }
 
 std::string only_body(const Document& document, const Scene& scene) {
   std::vector<std::string> names;
   for (const auto& [name, entry] : scene.bodies)
-    if (can_be_divided(document, "bodies." + name, entry.external)) names.push_back(name);
+    if (can_be_divided(document, entry)) names.push_back(name);
   if (names.size() == 1) return names.front();
   if (names.empty())
     throw InputError("has no body that can be divided", document.where("bodies"),
@@ -78,7 +78,7 @@ void refuse_still_contact(const Document& document, const std::string& name,
                           const BodySpec& spec) {
   if (!spec.integrator || !std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return;
   for (const auto& [port, side] : spec.ports) {
-    if (!touches(document, name, port)) continue;
+    if (!spec.context.role(port).touches) continue;
     throw InputError(
         "may touch another body, and bodies without inertia are not divided then: "
         "contact and ties together are not iterated to what is right",
@@ -103,12 +103,13 @@ WholeBody whole_body(const Document& document, const Scene& scene, const std::st
   WholeBody whole;
   whole.name = chosen(document, scene, name);
   const std::string path = "bodies." + whole.name;
-  whole.spec = read_body(document, path);
+  const auto named = [&whole](const auto& body) { return body.first == whole.name; };
+  const BodyEntry& entry = std::ranges::find_if(scene.bodies, named)->second;
+  whole.spec = placed_body(document, path, entry.context);
   const Refusal refusal = refusal_of(whole.spec);
   if (!refusal.why.empty())
     throw InputError(refusal.why, document.where(path + "." + refusal.key), refusal.remedy);
   refuse_still_contact(document, whole.name, whole.spec);
-  whole.spec.place_files(document.name().substr(0, document.name().rfind('/') + 1));
   const Place place{document, path};
   whole.mesh = make_mesh(std::get<FeModelSpec>(whole.spec.model), whole.spec.initial.position,
                          place, "model.fe");
@@ -116,10 +117,10 @@ WholeBody whole_body(const Document& document, const Scene& scene, const std::st
   return whole;
 }
 
-std::vector<std::int32_t> touched_nodes(const Document& document, const WholeBody& whole) {
+std::vector<std::int32_t> touched_nodes(const WholeBody& whole) {
   std::vector<std::int32_t> nodes;
   for (const auto& [name, port] : whole.spec.ports) {
-    if (!touches(document, whole.name, name) || !whole.mesh.sides.contains(port.side)) continue;
+    if (!whole.spec.context.role(name).touches || !whole.mesh.sides.contains(port.side)) continue;
     const std::vector<std::int32_t> more = whole.mesh.nodes_of(port.side);
     nodes.insert(nodes.end(), more.begin(), more.end());
   }

@@ -29,7 +29,7 @@ WholeBody whole_body(const Document& document, const Scene& scene, const std::st
 
 /// Nodes of the ports that may touch: these stay whole, because what gives way under a contact is
 /// known of its own body alone, and what a cut through it adds, iteration would have to find out.
-std::vector<std::int32_t> touched_nodes(const Document& document, const WholeBody& whole);
+std::vector<std::int32_t> touched_nodes(const WholeBody& whole);
 
 /// A part may have nodes of a side that is held and not the facets around them: there the
 /// constraint is of a node set "held_" + its name, so that it holds the same nodes as in the whole.

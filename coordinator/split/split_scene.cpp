@@ -66,7 +66,7 @@ class Splitter {
   std::vector<MeshPart> divided() const {
     const std::string where = document_.where("bodies." + whole_.name + ".model.fe.mesh");
     const CellGraph graph = cell_graph(whole_.mesh);
-    const std::vector<std::int32_t> touched = touched_nodes(document_, whole_);
+    const std::vector<std::int32_t> touched = touched_nodes(whole_);
     const std::vector<int> part =
         partition(graph, kept_together(whole_.mesh, touched), options_.bodies, where);
     std::vector<MeshPart> parts = divide(whole_.mesh, graph, part, names_, where);
@@ -191,7 +191,7 @@ class Splitter {
       } else if (entry.external) {
         resolved.copy(path + ".model", document_);
       } else {
-        BodySpec spec = read_body(document_, path);
+        BodySpec spec = read_body(document_, path, entry.context);
         spec.place_files(folder);
         resolved.add(path, spec);
       }

@@ -10,10 +10,8 @@
 #include <fmt/format.h>
 
 #include "base/index.hpp"
-#include "base/yaml_fields.hpp"
 #include "subdomain_solver/make/mesh.hpp"
 #include "subdomain_solver/make/read_body.hpp"
-#include "subdomain_solver/make/scene_contact.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/port_geometry.hpp"
 #include "surface/check.hpp"
@@ -95,7 +93,7 @@ class Adjuster {
 
  private:
   void hold(int dof, const std::vector<NodeFrame>& frames);
-  std::optional<Mesh> partner_mesh(const SceneContact& contact, const BodySpec& partner) const;
+  std::optional<Mesh> partner_mesh(const PortPartner& contact, const BodySpec& partner) const;
   void choose_gaps();
   double open_overlaps(bool closing);
   void add(const Meeting& m, const SurfaceRows& rows, bool as_partner, double allowed,
@@ -124,14 +122,15 @@ void Adjuster::hold(int dof, const std::vector<NodeFrame>& frames) {
   way -= along * along.transpose();
 }
 
-/// The mesh of a partner of ours; nothing where another process tells what is wrong with it.
-std::optional<Mesh> Adjuster::partner_mesh(const SceneContact& contact,
+/// The mesh of a partner of ours; nothing where its own process tells what is wrong with it.
+std::optional<Mesh> Adjuster::partner_mesh(const PortPartner& contact,
                                            const BodySpec& partner) const {
   const Place place{place_.document, "bodies." + contact.body};
-  const auto model = [](const auto& kind) { return "model." + std::string(kind.name); };
+  const std::string model =
+      std::visit([](const auto& kind) { return "model." + std::string(kind.name); }, partner.model);
+  require_same_file(*partner.shape(), place, model);
   try {
-    Mesh mesh = make_mesh(*partner.shape(), partner.initial.position, place,
-                          std::visit(model, partner.model));
+    Mesh mesh = make_mesh(*partner.shape(), partner.initial.position, place, model);
     for (const auto& [name, port] : partner.ports)
       if (name == contact.port && mesh.sides.contains(port.side)) return mesh;
   } catch (const InputError&) {
@@ -140,41 +139,35 @@ std::optional<Mesh> Adjuster::partner_mesh(const SceneContact& contact,
 }
 
 void Adjuster::meet(const std::string& port, const std::string& side) {
-  for (const SceneContact& contact : contacts_of(place_.document, place_.name(), port)) {
-    const std::string path = "bodies." + contact.body;
-    if (place_.document.chooses(path + ".model", "external"))
+  const PortRole role = spec_.context.role(port);
+  for (const PortPartner& contact : role.partners) {
+    if (contact.tied) continue;
+    if (contact.external)
       throw InputError(fmt::format("moves nodes onto the surface of {}, which only its own program "
                                    "knows",
                                    contact.body),
                        place_.where(key), "Move the body with initial.position instead.");
-    BodySpec partner;
-    try {
-      partner = read_body(place_.document, path);
-    } catch (const InputError&) {
-      continue;  // told of the partner itself
-    }
-    if (partner.initial.adjust)
+    const std::optional<BodySpec> partner = read_partner(contact, place_.document);
+    if (!partner) continue;  // told of the partner itself
+    if (partner->initial.adjust)
       throw InputError(fmt::format("is true of both sides of the interface {}", contact.interface),
                        place_.where(key), "Let one of them stay where it is.");
-    const std::string& name = place_.document.name();
-    partner.place_files(name.substr(0, name.rfind('/') + 1));
-    if (partner.shape() == nullptr || partner.shape()->dimension != mesh_.dim) continue;
-    const std::optional<Mesh> mesh = partner_mesh(contact, partner);
+    if (partner->shape() == nullptr || partner->shape()->dimension != mesh_.dim) continue;
+    const std::optional<Mesh> mesh = partner_mesh(contact, *partner);
     if (!mesh || !mesh_.sides.contains(side)) continue;
     Meeting m;
     m.interface = contact.interface;
     m.nodes = mesh_.nodes_of(side);
     m.closes.assign(m.nodes.size(), 0);
     m.own = surface_of(*spec_.shape(), mesh_, side);
-    for (const auto& [its, port_spec] : partner.ports)
-      if (its == contact.port) m.partner = surface_of(*partner.shape(), *mesh, port_spec.side);
+    for (const auto& [its, port_spec] : partner->ports)
+      if (its == contact.port) m.partner = surface_of(*partner->shape(), *mesh, port_spec.side);
     if (!is_sound(m.own) || !is_sound(m.partner)) continue;
     // The body that is adjusted finds the contact where it can and the scene does not fix it; with
     // edges on one side alone rows are of that side's nodes [M.93].
-    const bool other_finds = contact.kinematic == contact.body + "." + contact.port;
     const bool edges = has_edges(posed(m.own)), its_edges = has_edges(posed(m.partner));
     m.points = contact.points;
-    m.own_rows = m.points || edges == its_edges ? finds(spec_) && !other_finds : edges;
+    m.own_rows = m.points || edges == its_edges ? finds(spec_) && !contact.finds : edges;
     meetings_.push_back(std::move(m));
   }
 }

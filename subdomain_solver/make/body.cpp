@@ -173,9 +173,9 @@ BarProperties fe_bar_properties(const BodySpec& spec) {
 
 namespace {
 
-std::unique_ptr<Interior> build(const Document& document, const std::string& path) {
-  BodySpec spec = read_body(document, path);
-  spec.place_files(document.name().substr(0, document.name().rfind('/') + 1));
+std::unique_ptr<Interior> build(const Document& document, const std::string& path,
+                                const BodyContext& context) {
+  const BodySpec spec = placed_body(document, path, context);
   const Place place{document, path};
   if (std::holds_alternative<BarPairSpec>(spec.model))
     return make_pair(spec, place);
@@ -207,13 +207,13 @@ std::unique_ptr<Interior> build(const Document& document, const std::string& pat
 }  // namespace
 
 std::unique_ptr<Subdomain> make_body(const Document& document, const std::string& path,
-                                     std::function<void()> progress) {
+                                     const BodyContext& context, std::function<void()> progress) {
   const auto too_large = [&document, &path] {
     return InputError("takes more memory than there is", document.where(path + ".model"),
                       "Make the mesh coarser, or run on a machine with more memory.");
   };
   try {
-    return std::make_unique<Body>(build(document, path), std::move(progress));
+    return std::make_unique<Body>(build(document, path, context), std::move(progress));
   } catch (const std::bad_alloc&) {
     throw too_large();
   } catch (const std::length_error&) {  // more than any container can hold

@@ -193,6 +193,11 @@ void PortSpec::fields(Fields& f) {
 }
 
 void BodySpec::fields(Fields& f) {
+  keys(f);
+  check(f);
+}
+
+void BodySpec::keys(Fields& f) {
   f.ignore("launch");
   f.ignore("like");
   f.ignore("copies");
@@ -215,6 +220,9 @@ void BodySpec::fields(Fields& f) {
         Presence::optional);
   f.map("loads", loads, "forces on the body", Presence::optional);
   f.defaulted("equations", equations, "solution of the equations of an implicit or static solid");
+}
+
+void BodySpec::check(Fields& f) const {
   check_dimensions(f);
   idle_keys(f);
   const bool only_wall = std::holds_alternative<RigidWallSpec>(model);
@@ -250,8 +258,11 @@ void BodySpec::place_files(const std::string& folder) {
       if (!mesh.file.starts_with('/')) mesh.file = folder + mesh.file;
     }
   };
-  auto place_mesh = [&place](auto& kind) {
-    if constexpr (requires { kind.mesh; }) std::visit(place, kind.mesh);
+  auto place_mesh = [this, &place](auto& kind) {
+    if constexpr (requires { kind.mesh; }) {
+      std::visit(place, kind.mesh);
+      kind.digest = context.mesh_digest;
+    }
   };
   std::visit(place_mesh, model);
 }
@@ -279,7 +290,8 @@ bool BodySpec::is_uniform_bar() const {
 }
 
 bool BodySpec::is_bar() const {
-  return is_linear_bar() && constraints.empty() && !has_port_inside() && !steps_apart &&
+  return is_linear_bar() && constraints.empty() && !has_port_inside() &&
+         !shares_with_other_steps() &&
          std::get<BarMeshSpec>(std::get<FeModelSpec>(model).mesh).grading == 1.0;
 }
 
@@ -287,7 +299,7 @@ std::string BodySpec::why_general() const {
   if (!is_linear_bar() || std::get<BarMeshSpec>(std::get<FeModelSpec>(model).mesh).grading != 1.0)
     return "";
   if (!constraints.empty()) return "constraints";
-  if (steps_apart) return "a row of bars with a joint of unlike steps";
+  if (shares_with_other_steps()) return "a row of bars with a joint of unlike steps";
   return has_port_inside() ? "a port inside the bar" : "";
 }
 
@@ -305,6 +317,13 @@ int BodySpec::end_of(const std::string& side) const {
     if (along > 1.0 - near) return 1;
   }
   return -1;
+}
+
+bool BodySpec::shares_with_other_steps() const {
+  return std::ranges::any_of(ports, [this](const auto& port) {
+    const PortRole role = context.role(port.first);
+    return port.second.tied && role.tied && !role.alike;
+  });
 }
 
 bool BodySpec::has_port_inside() const {

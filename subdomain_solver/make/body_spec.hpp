@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,90 +12,17 @@
 
 #include "base/fields.hpp"
 #include "base/yaml_document.hpp"
+#include "contract/port_role.hpp"
 #include "contract/subdomain.hpp"
 #include "subdomain_solver/bars/bar.hpp"
 #include "subdomain_solver/make/integrator_spec.hpp"
+#include "subdomain_solver/make/model_spec.hpp"
 #include "subdomain_solver/make/solid_spec.hpp"
 
 namespace abut {
 
 // What a scene says of one body; each struct lists its keys once (docs/REFERENCE.md is made from
 // them).
-
-struct BarMeshSpec {
-  static constexpr std::string_view name = "bar";
-  double length = 0.0, area = 0.0;  // [m] [m^2]
-  int elements = 0;
-  double grading = 1.0;
-  void fields(Fields& f);
-};
-/// The mesh of a body and how it lies in space: of every rung of the fidelity ladder.
-struct SolidShapeSpec {
-  int dimension = 1;
-  std::variant<BarMeshSpec, RectangleSpec, DiskSpec, BoxSpec, CylinderSpec, SphereSpec, GmshSpec,
-               ExodusSpec>
-      mesh;
-  Plane plane = Plane::strain;
-  double thickness = 1.0;  // [m]
-  std::vector<std::string> map;  // [m] where nodes of the mesh go; empty: they stay
-  void fields(Fields& f);
-  double area() const;  // [m^2] cross section of a bar; 1 of other meshes
-};
-/// Finite elements on it.
-struct FiniteElementsSpec : SolidShapeSpec {
-  Formulation formulation = Formulation::full;
-  double hourglass = 0.05;
-  void fields(Fields& f);
-};
-struct FeModelSpec : FiniteElementsSpec {
-  static constexpr std::string_view name = "fe";
-  int threads = 1;
-  void fields(Fields& f);
-};
-struct ModalModelSpec : FiniteElementsSpec {
-  static constexpr std::string_view name = "modal";
-  std::optional<double> modes, below;  // how many with fixed ports, or all below [Hz]
-  void fields(Fields& f);
-};
-struct RigidModelSpec : SolidShapeSpec {
-  static constexpr std::string_view name = "rigid";
-  void fields(Fields& f);
-};
-/// A shape that goes where it is told.
-struct RigidToolSpec : SolidShapeSpec {
-  static constexpr std::string_view name = "rigid_tool";
-  std::vector<std::string> way;  // [m] one expression per dimension; empty: it stands
-  std::optional<double> step;    // [s]; none: windows
-  void fields(Fields& f);
-};
-struct RigidWallSpec {
-  static constexpr std::string_view name = "rigid_wall";
-  void fields(Fields&) {}
-};
-
-/// Two bars in one body with the contact between them inside: the conventional contact methods.
-struct PairedBarSpec {
-  double length = 0.0, area = 0.0;  // [m] [m^2]
-  int elements = 0;
-  double position = 0.0, velocity = 0.0;  // [m] [m/s]
-  void fields(Fields& f);
-};
-struct PenaltySpec {
-  static constexpr std::string_view name = "penalty";
-  double stiffness = 0.0;  // [N/m]
-  void fields(Fields& f);
-};
-struct MultiplierSpec {
-  static constexpr std::string_view name = "lagrange_multiplier";
-  void fields(Fields&) {}
-};
-struct BarPairSpec {
-  static constexpr std::string_view name = "bar_pair";
-  PairedBarSpec left, right;
-  std::variant<PenaltySpec, MultiplierSpec> contact;
-  bool current_lengths = false;  // "lengths: reference | current"
-  void fields(Fields& f);
-};
 
 struct MasslessSpec {
   static constexpr std::string_view name = "massless";
@@ -148,10 +76,13 @@ struct BodySpec {
   std::vector<std::pair<std::string, ConstraintSpec>> constraints;
   std::vector<std::pair<std::string, LoadSpec>> loads;
   EquationsSpec equations;
-  bool steps_apart = false;  // no key: a node is shared with a body of other steps
+  BodyContext context;  // no key: what the scene makes of the body
   void fields(Fields& f);
+  /// The keys alone, without the rules across them.
+  void keys(Fields& f);
 
-  /// Mesh files that are named relative to the scene file are named with its folder ("" or "a/b/").
+  /// Mesh files that are named relative to the scene file are named with its folder ("" or "a/b/"),
+  /// and are to be those of the context's digest.
   void place_files(const std::string& folder);
 
   /// fe in one dimension, linear_elastic with Young's modulus, integrated in time, without points,
@@ -171,6 +102,8 @@ struct BodySpec {
   const SolidShapeSpec* shape() const;
 
  private:
+  bool shares_with_other_steps() const;
+  void check(Fields& f) const;
   bool is_linear_bar() const;
   bool has_port_inside() const;
   void check_dimensions(Fields& f) const;
@@ -190,9 +123,10 @@ BarProperties fe_bar_properties(const BodySpec& spec);
 std::array<BarProperties, 2> pair_properties(const BodySpec& spec);
 
 /// Reads one body of a scene and builds it. `path` is the body's key path, e.g. "bodies.left"; its
-/// last part is the name. Throws InputError with file, line and key. `progress` is called now and
-/// then during long advances.
+/// last part is the name. Throws InputError with file, line and key. Without a context it is a body
+/// alone: nothing touches its surfaces. `progress` is called now and then during long advances.
 std::unique_ptr<Subdomain> make_body(const Document& document, const std::string& path,
+                                     const BodyContext& context = {},
                                      std::function<void()> progress = {});
 
 }  // namespace abut

@@ -39,6 +39,16 @@ std::array<int, N> counts_of(const std::vector<double>& list) {
 
 Origin origin_of(bool centred) { return centred ? Origin::centre : Origin::corner; }
 
+/// An error of the mesh file, with the scene's key before the file's own place.
+template <class Read>
+auto told_of(const std::string& where, Read read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", error.where, error.what_is_wrong), where, error.remedy);
+  }
+}
+
 struct MeshMaker {
   const Place& place;
   const std::string& model;
@@ -83,24 +93,13 @@ struct MeshMaker {
     return generate(SphereMesh{{}, s.radius, s.core, s.layers, s.element}, where("mesh.sphere"));
   }
   Mesh operator()(const GmshSpec& s) const {
-    return told_of("gmsh", [&s] { return read_gmsh(s.file, s.scale); });
+    return told_of(where("mesh.gmsh.file"), [&s] { return read_gmsh(s.file, s.scale); });
   }
   Mesh operator()(const ExodusSpec& s) const {
-    return told_of("exodus", [&s] { return read_exodus(s.file, s.scale); });
+    return told_of(where("mesh.exodus.file"), [&s] { return read_exodus(s.file, s.scale); });
   }
 
   std::string where(const std::string& key) const { return place.where(model + "." + key); }
-
-  /// An error of the mesh file, with the scene's key before the file's own place.
-  template <class Read>
-  Mesh told_of(const char* kind, Read read) const {
-    try {
-      return read();
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", error.where, error.what_is_wrong),
-                       where(fmt::format("mesh.{}.file", kind)), error.remedy);
-    }
-  }
 };
 
 /// Of the distance between the farthest corners of a mesh: a node this near is meant.
@@ -192,8 +191,26 @@ std::string on_file(const SolidShapeSpec& spec) {
       spec.mesh);
 }
 
+void require_same_file(const SolidShapeSpec& spec, const Place& place, const std::string& model) {
+  if (spec.digest == 0) return;
+  const auto check = [&](const auto& mesh) {
+    if constexpr (requires { mesh.file; }) {
+      const std::string where = place.where(fmt::format("{}.mesh.{}.file", model, mesh.name));
+      const std::uint64_t own = told_of(where, [&mesh] { return digest_of_file(mesh.file); });
+      if (own == spec.digest) return;
+      throw InputError(
+          fmt::format("{}: is another file than the one beside the scene: their digests are "
+                      "{:016x} and {:016x}",
+                      mesh.file, own, spec.digest),
+          where, "Give the solver the files that lie beside the scene.");
+    }
+  };
+  std::visit(check, spec.mesh);
+}
+
 Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,
                const std::string& model) {
+  require_same_file(spec, place, model);
   Mesh mesh = std::visit(MeshMaker{place, model}, spec.mesh);
   map_nodes(spec, place, model, mesh);
   check_mesh(mesh, place.where(model + ".mesh"));

@@ -13,6 +13,10 @@ namespace abut {
 Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,
                const std::string& model);
 
+/// A mesh file on another machine is that of the spec's digest, where one is known. Throws
+/// InputError.
+void require_same_file(const SolidShapeSpec& spec, const Place& place, const std::string& model);
+
 /// For the line that tells people of a body: " on part.msh (digest 0123456789abcdef)", the digest
 /// that of the file's bytes; empty where the mesh is generated. Throws InputError.
 std::string on_file(const SolidShapeSpec& spec);

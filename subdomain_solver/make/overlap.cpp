@@ -9,11 +9,10 @@
 #include <fmt/ranges.h>
 
 #include "base/index.hpp"
-#include "base/yaml_fields.hpp"
 #include "base/yaml_resolved.hpp"
 #include "subdomain_solver/fe/facet_index.hpp"
 #include "subdomain_solver/make/mesh.hpp"
-#include "subdomain_solver/make/scene_contact.hpp"
+#include "subdomain_solver/make/read_body.hpp"
 #include "subdomain_solver/overlap/cell_shares.hpp"
 #include "subdomain_solver/overlap/conforming.hpp"
 #include "subdomain_solver/overlap/embed.hpp"
@@ -39,18 +38,17 @@ struct OtherBody {
   std::string side;  // of its port
 };
 
-/// Nothing where it is no finite elements, or another process tells what is wrong with it.
-std::optional<OtherBody> read_other(const Place& own, const SceneOverlap& overlap) {
-  const Place place{own.document, "bodies." + overlap.body};
+/// Nothing where it is no finite elements, or its own process tells what is wrong with it.
+std::optional<OtherBody> read_other(const Place& own, const PortPartner& partner) {
+  const std::optional<BodySpec> spec = read_partner(partner, own.document);
+  const auto* fe = spec ? std::get_if<FeModelSpec>(&spec->model) : nullptr;
+  if (fe == nullptr) return std::nullopt;
+  const Place place{own.document, "bodies." + partner.body};
+  require_same_file(*fe, place, "model.fe");
   try {
-    OtherBody other{read<BodySpec>(place.document, place.path), {}, {}};
-    const auto* fe = std::get_if<FeModelSpec>(&other.spec.model);
-    if (fe == nullptr) return std::nullopt;
-    const std::string& scene = place.document.name();
-    other.spec.place_files(scene.substr(0, scene.rfind('/') + 1));
-    other.mesh = make_mesh(*fe, other.spec.initial.position, place, "model.fe");
-    for (const auto& [name, port] : other.spec.ports)
-      if (name == overlap.port) other.side = port.side;
+    OtherBody other{*spec, make_mesh(*fe, spec->initial.position, place, "model.fe"), {}};
+    for (const auto& [name, port] : spec->ports)
+      if (name == partner.port) other.side = port.side;
     if (!other.mesh.sides.contains(other.side)) return std::nullopt;
     return other;
   } catch (const InputError&) {
@@ -60,10 +58,11 @@ std::optional<OtherBody> read_other(const Place& own, const SceneOverlap& overla
 
 class Overlap {
  public:
-  Overlap(const Place& place, const SceneOverlap& scene, const OtherBody& other,
+  Overlap(const Place& place, const PortPartner& partner, const OtherBody& other,
           const std::string& side, Mesh& mesh)
       : place_(place),
-        scene_(scene),
+        partner_(partner),
+        role_(*partner.overlap),
         other_(other),
         side_(side),
         mesh_(mesh),
@@ -77,12 +76,12 @@ class Overlap {
  private:
   [[noreturn]] void refuse(const std::string& what, const std::string& remedy) const {
     throw InputError(
-        what, place_.document.where("interfaces." + scene_.interface + ".tied.overlap"), remedy);
+        what, place_.document.where("interfaces." + partner_.interface + ".tied.overlap"), remedy);
   }
   std::string at(const Eigen::Vector3d& x) const {
     return fmt::format("({:.6g}) m", fmt::join(x.data(), x.data() + mesh_.dim, ", "));
   }
-  std::string its_side() const { return scene_.body + "." + scene_.port; }
+  std::string its_side() const { return partner_.body + "." + partner_.port; }
   void share_cells(const CommonParts& common) const;
   void check_other_sides() const;
   void check_loads(const BodySpec& spec) const;
@@ -91,7 +90,8 @@ class Overlap {
   void follow(EmbeddedSurface& inside) const;
 
   const Place& place_;
-  const SceneOverlap& scene_;
+  const PortPartner& partner_;
+  const OverlapRole& role_;
   const OtherBody& other_;
   const std::string& side_;
   Mesh& mesh_;
@@ -102,7 +102,7 @@ class Overlap {
 /// What the two of them can be.
 void Overlap::check(const BodySpec& spec) const {
   const std::pair<const BodySpec*, std::string> both[] = {{&spec, place_.name()},
-                                                          {&other_.spec, scene_.body}};
+                                                          {&other_.spec, partner_.body}};
   for (const auto& [body, name] : both) {
     if (body->initial.adjust) {
       refuse(fmt::format("joins body '{}', which is adjusted: the other body does not see where "
@@ -132,9 +132,9 @@ void Overlap::check(const BodySpec& spec) const {
 EmbeddedSurface Overlap::find(const BodySpec& spec) const {
   const CommonParts common = common_parts(own_, its_);
   if (common.parts.empty()) {
-    const std::string names[] = {place_.name(), scene_.body};
+    const std::string names[] = {place_.name(), partner_.body};
     refuse(fmt::format("joins bodies '{}' and '{}', which do not take the same place anywhere",
-                       names[scene_.first ? 0 : 1], names[scene_.first ? 1 : 0]),
+                       names[role_.first ? 0 : 1], names[role_.first ? 1 : 0]),
            "Move a body with initial.position into the other, or leave overlap out where their "
            "sides meet.");
   }
@@ -148,12 +148,12 @@ EmbeddedSurface Overlap::find(const BodySpec& spec) const {
            "other body.");
   }
   check_other_sides();
-  if (scene_.motions) {
+  if (role_.motions) {
     check_motions(spec, common);
     return inside;
   }
   if (is_wide(common.volume)) follow(inside);
-  if (scene_.halves) {
+  if (role_.halves) {
     share_cells(common);
     check_loads(spec);
   }
@@ -195,7 +195,7 @@ bool Overlap::is_wide(double volume) const {
 /// and not in cells that the finer's side crosses, whose motion the rows of sides tell.
 void Overlap::follow(EmbeddedSurface& inside) const {
   const bool coarser =
-      own_.spacing() > its_.spacing() || (own_.spacing() == its_.spacing() && scene_.first);
+      own_.spacing() > its_.spacing() || (own_.spacing() == its_.spacing() && role_.first);
   const Mesh& coarse = coarser ? mesh_ : other_.mesh;
   std::vector<std::int32_t> told = coarse.nodes_of(coarser ? side_ : other_.side);
   StickingOut out;
@@ -236,7 +236,7 @@ void Overlap::check_other_sides() const {
     const double depth = distance(skin_, middle);
     if (depth <= unlike_meshes_gap * own_.spacing()) continue;
     refuse(fmt::format("body '{}' ends inside body '{}' at {}, {:.3g} m deep, but not with side {}",
-                       scene_.body, place_.name(), at(middle), depth, its_side()),
+                       partner_.body, place_.name(), at(middle), depth, its_side()),
            "Give the port the whole boundary that lies inside the other body.");
   }
 }
@@ -246,7 +246,7 @@ void Overlap::check_motions(const BodySpec& spec, const CommonParts& common) con
   const auto rests = [](const BodySpec& body) {
     return body.integrator && std::holds_alternative<QuasiStaticSpec>(*body.integrator);
   };
-  if (scene_.unstable || (rests(spec) && rests(other_.spec))) return;
+  if (role_.unstable || (rests(spec) && rests(other_.spec))) return;
   constexpr const char* why =
       "the pair would gain energy by itself, up to some thousand times a second";
   const std::string otherwise =
@@ -264,14 +264,14 @@ void Overlap::check_motions(const BodySpec& spec, const CommonParts& common) con
     refuse(fmt::format("exchanges motions alone between bodies of unlike materials: {}", why),
            otherwise);
   }
-  if (!scene_.first) return;  // the other body has told: where all its cells have twins, all have
+  if (!role_.first) return;  // the other body has told: where all its cells have twins, all have
   const std::optional<CellPlace> lone = first_without_twin(common, mesh_, other_.mesh);
   if (!lone) return;
   refuse(
       fmt::format("exchanges motions alone where nodes do not meet ({} of body '{}' is no cell of "
                   "body '{}'): {}",
                   cell_text(mesh_, index(lone->block), index(lone->cell)), place_.name(),
-                  scene_.body, why),
+                  partner_.body, why),
       otherwise);
 }
 
@@ -283,7 +283,7 @@ void Overlap::check_loads(const BodySpec& spec) const {
       if (!is_shared(mesh_.blocks[facet.block], facet.cell)) continue;
       throw InputError(fmt::format("side '{}' reaches into the overlap {}, where body '{}' would "
                                    "carry the load as well",
-                                   load.on, scene_.interface, scene_.body),
+                                   load.on, partner_.interface, partner_.body),
                        place_.where("loads." + name), "Load sides that end before the overlap.");
     }
   }
@@ -294,11 +294,13 @@ void Overlap::check_loads(const BodySpec& spec) const {
 void overlap_partners(const BodySpec& spec, const Place& place, Mesh& mesh,
                       std::vector<SolidInterior::PortNodes>& ports) {
   for (SolidInterior::PortNodes& port : ports) {
-    const std::optional<SceneOverlap> scene = overlap_of(place.document, place.name(), port.name);
-    if (!scene || !mesh.sides.contains(port.side)) continue;
-    const std::optional<OtherBody> other = read_other(place, *scene);
+    const PortRole role = spec.context.role(port.name);
+    const auto partner = std::ranges::find_if(
+        role.partners, [](const PortPartner& other) { return other.overlap.has_value(); });
+    if (partner == role.partners.end() || !mesh.sides.contains(port.side)) continue;
+    const std::optional<OtherBody> other = read_other(place, *partner);
     if (!other || other->mesh.dim != mesh.dim) continue;
-    const Overlap overlap(place, *scene, *other, port.side, mesh);
+    const Overlap overlap(place, *partner, *other, port.side, mesh);
     overlap.check(spec);
     port.inside = overlap.find(spec);
   }

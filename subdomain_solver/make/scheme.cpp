@@ -1,8 +1,5 @@
 #include "subdomain_solver/make/scheme.hpp"
 
-#include "subdomain_solver/make/joined_schemes.hpp"
-#include "subdomain_solver/make/scene_contact.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -28,6 +25,7 @@ struct SchemeMaker {
   const Place& place;
   const Problem& problem;
   bool joined;  // a port is
+  bool alike;   // ... to bodies that integrate alike
   const std::function<double()>& stable_limit;
   const MakeWatch& watch;
   const Eigen::MatrixXd& loose;
@@ -96,7 +94,7 @@ struct SchemeMaker {
     using Accelerations = ImplicitDynamics::Accelerations;
     Accelerations accelerations = Accelerations::balanced;
     if (joined && weights.is_trapezoidal()) accelerations = Accelerations::summed;
-    if (joined && weights.gamma > 0.5 && joined_bodies_step_alike(place.document))
+    if (joined && weights.gamma > 0.5 && alike)
       accelerations = Accelerations::steady;
     return {std::make_unique<ImplicitDynamics>(
                 problem, ImplicitDynamics::Options{weights, mass, newton(), accelerations},
@@ -120,9 +118,9 @@ std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Pla
   for (const auto& [name, port] : spec.ports) {
     named(place, "ports." + name + ".side", [&] { return mesh.nodes_of(port.side); });
     const int end = mesh.dim == 1 ? spec.end_of(port.side) : -1;  // by a point's name too
-    const bool touched = mesh.dim == 1 ? !port.tied : touches(place.document, place.name(), name);
-    const bool joined = mesh.dim > 1 ? joins(place.document, place.name(), name)
-                                     : row_steps_apart(place.document, place.name(), name);
+    const PortRole role = spec.context.role(name);
+    const bool touched = mesh.dim == 1 ? !port.tied : role.touches;
+    const bool joined = role.tied && (mesh.dim > 1 || (port.tied && !role.alike));
     if (joined && touched) {
       throw InputError("is tied to one surface and touches another", place.where("ports." + name),
                        "Give the part that is tied a side and a port of its own.");
@@ -149,7 +147,10 @@ SolidInterior::Scheme make_scheme(const BodySpec& spec, const Place& place, cons
                                   const std::function<double()>& stable_limit,
                                   const MakeWatch& watch, const Eigen::MatrixXd& loose) {
   const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
-  return std::visit(SchemeMaker{spec, place, problem, joined, stable_limit, watch, loose},
+  const bool alike = std::ranges::all_of(ports, [&spec](const SolidInterior::PortNodes& port) {
+    return spec.context.role(port.name).alike;
+  });
+  return std::visit(SchemeMaker{spec, place, problem, joined, alike, stable_limit, watch, loose},
                     *spec.integrator);
 }
 

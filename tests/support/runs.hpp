@@ -152,7 +152,7 @@ inline std::unique_ptr<RunResult> run_document(const Document& document) {
     descriptions.push_back(&body->describe());
   }
   validate_bodies(scene, descriptions, document);
-  const std::optional<ClosedForm> form = make_closed_form(scene, document);
+  const std::optional<ClosedForm> form = make_closed_form(scene, descriptions, document);
   std::unique_ptr<RunResult> result = std::make_unique<RunResult>();
   MeasureRecorder recorder(form ? &*form : nullptr, scene.output.force_filter,
                            scene.output.steady_after);

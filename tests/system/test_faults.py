@@ -450,8 +450,11 @@ class Directories(FaultTest):
             (self.folder / place / "block.msh").write_text(mesh, encoding="utf-8")
         scene = self.folder / "here" / "scene.yaml"
         scene.write_text(text.replace("../meshes/block.msh", "block.msh"), encoding="utf-8")
-        for change, code in (("", 0), ("\n", 2)):
+        # Without a file here there is none to differ from: no body is built in the coordinator.
+        for change, here, code in (("", True, 0), ("\n", True, 2), ("\n", False, 0)):
             (self.folder / "there" / "block.msh").write_text(mesh + change, encoding="utf-8")
+            if not here:
+                (self.folder / "here" / "block.msh").unlink()
             endpoint = f"tcp://127.0.0.1:{free_port()}"
             run = self.start("sh", "-c", f"cd here && exec {ABUT} run scene.yaml --force --out out "
                              f"--set 'bodies.part.launch={{connect: {{}}}}' "
@@ -462,8 +465,8 @@ class Directories(FaultTest):
             self.assertEqual(result.returncode, code, result.stderr)
             self.assertEqual(self.end(solver).returncode, 0 if code == 0 else 3)
             if code != 0:
-                self.assertIn("its solver has made another body", result.stderr)
-                self.assertIn("bodies.part", result.stderr)
+                self.assertIn("is another file than the one beside the scene", result.stderr)
+                self.assertIn("bodies.part.model.fe.mesh.gmsh.file", result.stderr)
 
 
 if __name__ == "__main__":

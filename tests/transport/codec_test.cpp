@@ -11,6 +11,7 @@
 #include "base/index.hpp"
 #include "messaging/codec.hpp"
 #include "messaging/frame.hpp"
+#include "messaging/protocol.hpp"
 #include "tests/support/fakes.hpp"
 #include "tests/transport/wire_bytes.hpp"
 
@@ -357,6 +358,26 @@ TEST(Codec, DescriptionKeepsEveryFieldAndInfinity) {
   EXPECT_EQ(got.members[1].name, "rear");
   EXPECT_EQ(got.members[1].mass, 2.5);
   EXPECT_EQ(got.members[1].ports, std::vector<std::int32_t>{1});
+}
+
+TEST(Codec, ConfigureKeepsEveryField) {
+  Specification from{"scene.yaml", "text", {"a=1", "b=2"}, "bodies.left", {}};
+  for (const int bit : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {
+    const auto is = [bit](int k) { return k == bit; };
+    PortPartner partner{"hit", "right", "tip",        is(0),  is(1),
+                        is(2), is(3),   std::nullopt, "keys", 0xfedcba9876543210u};
+    if (bit % 2 == 0) partner.overlap = OverlapRole{is(4), is(6), is(8), is(10)};
+    from.context = {{{"tip", is(5), is(7), is(9), {partner, {}}}, {}}, is(3), 1u};
+    v1::Configure wire, parsed;
+    encode(from, wire);
+    ASSERT_TRUE(parsed.ParseFromString(wire.SerializeAsString()));
+    Specification to;
+    decode(parsed, to);
+    EXPECT_EQ(to.document + to.text + to.path, from.document + from.text + from.path);
+    EXPECT_EQ(to.overrides, from.overrides);
+    EXPECT_EQ(to.context, from.context) << bit;
+    EXPECT_EQ(to.context.ports.at(1).alike, true);
+  }
 }
 
 TEST(Codec, EveryCauseOfFailureComesBack) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/input_errors.hpp"
 #include "coordinator/launch.hpp"
 #include "messaging/child_process.hpp"
 #include "messaging/zmq_channel.hpp"
@@ -254,6 +255,31 @@ TEST_F(LaunchTest, TheBodysInputErrorComesThroughTheWire) {
     EXPECT_EQ(error.what_is_wrong, "unknown key");
     EXPECT_EQ(error.where, "bodies.left");
   }
+}
+
+TEST_F(LaunchTest, TheErrorsOfAllBodiesComeAtOnceInTheOrderOfTheScene) {
+  text_ = "no such key";
+  for (const char* name : {"left", "middle", "right"}) add_body(name);
+  try {
+    start();
+    FAIL() << "no error";
+  } catch (const InputErrorList& errors) {
+    ASSERT_EQ(errors.all.size(), 3u);
+    EXPECT_EQ(errors.all[0].where, "bodies.left");
+    EXPECT_EQ(errors.all[1].where, "bodies.middle");
+    EXPECT_EQ(errors.all[2].where, "bodies.right");
+  }
+}
+
+TEST_F(LaunchTest, ABodyThatIsRefusedDoesNotWaitForOneThatSomebodyElseStarts) {
+  text_ = "no such key";
+  add_body("right");
+  add_body("left");
+  scene_.bodies[0].second.launch = ConnectLaunch{30.0};
+  const TimePoint begin = std::chrono::steady_clock::now();
+  EXPECT_THROW(start(), InputError);
+  // A process starts and answers; the other is never there.
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
 }
 
 TEST_F(LaunchTest, ASolverWithANameThatTheSceneDoesNotHaveIsRefused) {

@@ -49,11 +49,11 @@ std::unique_ptr<Subdomain> block(const Case& c, const std::string& more = "") {
       "bodies: {{it: {{model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}, material: "
       "{{{}youngs_modulus: "
       "1.0, poissons_ratio: 0.3, density: 1.0}}}}, integrator: {{{}}}, ports: {{face: {{side: "
-      "{}}}}}, constraints: {{floor: {{on: {}, fixed: true}}{}}}}}}}\n"
-      "interfaces: {{touch: {{sides: [it.face, other.face], contact: {{}}}}}}\n",
+      "{}}}}}, constraints: {{floor: {{on: {}, fixed: true}}{}}}}}}}\n",
       c.dim, mesh, c.law, c.integrator, c.dim == 2 ? "top" : "front",
       c.dim == 2 ? "bottom" : "back", more);
-  return make_body(Document::from_text("test", text), "bodies.it");
+  return make_body(Document::from_text("test", text), "bodies.it",
+                   {.ports = {{.port = "face", .touches = true, .partners = {}}}});
 }
 
 /// A plate over the block's face, wider than it, of one facet.

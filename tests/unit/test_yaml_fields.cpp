@@ -427,16 +427,6 @@ TEST(Document, LocatesAPathThatIsNotThereAtItsNearestAncestor) {
   EXPECT_EQ(document.where(""), "s.yaml");
 }
 
-TEST(Document, NamesTheMapsWhoseListHasAWord) {
-  const Document document = Document::from_text(
-      "s.yaml",
-      "joints: {one: {sides: [a.b, c.d]}, two: {sides: a.b}, three: {}, four: 1, five: "
-      "{of: [a.b], sides: [a.bc, [a.b]]}, six: {sides: [e.f, a.b]}}\nlist: [a.b]\n");
-  EXPECT_EQ(document.keys_with("joints", "sides", "a.b"), (std::vector<std::string>{"one", "six"}));
-  EXPECT_TRUE(document.keys_with("list", "sides", "a.b").empty());
-  EXPECT_TRUE(document.keys_with("none", "sides", "a.b").empty());
-}
-
 TEST(Document, AFileThatIsNotThereIsTheUsersError) {
   EXPECT_THROW(Document::load("no/such/file.yaml"), InputError);
 }
