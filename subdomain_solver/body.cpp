@@ -21,11 +21,6 @@ namespace abut {
 namespace {
 
 constexpr std::chrono::milliseconds life_interval{250};
-const Want everything;
-
-const Want& want_of(const Advance& request, std::size_t port) {
-  return request.want.empty() ? everything : request.want[port];
-}
 
 void write(Interior& interior, std::vector<std::byte>& bytes, Archive::Form form) {
   Archive archive = Archive::writer(bytes, form);
@@ -285,45 +280,6 @@ Substeps Body::divide(const Advance& request) const {
   const TimeWindow& window = request.window;
   const std::int64_t records = std::max<std::int64_t>(1, request.records / window.windows);
   return Substeps::divide(window, describe().step, static_cast<int>(records));
-}
-
-void Body::begin_replies(const Advance& request, Response& response) {
-  ABUT_ASSERT(request.boundary.size() == ports_.size());
-  response.records.resize(index(std::max(1, request.records)));
-  response.ports.resize(ports_.size());
-  response.unbalanced.clear();
-  for (std::size_t p = 0; p < ports_.size(); ++p) {
-    const PortGeometry& geometry = *ports_[p].geometry;
-    const std::vector<Obstacle>& obstacles = request.boundary[p].obstacles;
-    PortResponse& port = response.ports[p];
-    ports_[p].want = &want_of(request, p);
-    ports_[p].obstacles = &obstacles;
-    ports_[p].reply = &port;
-    port.trace.clear();
-    port.trace.support = interior_->support(p);
-    port.trace.points = want_of(request, p).points;
-    const int points =
-        port.trace.points.empty() ? geometry.count() : static_cast<int>(port.trace.points.size());
-    port.trace.width = points * geometry.dim;
-    port.reactions.resize(obstacles.size());
-    for (std::size_t k = 0; k < obstacles.size(); ++k) {
-      Waveform& force = port.reactions[k].force;
-      force.clear();
-      force.support = interior_->reaction_support(p);
-      force.width = obstacles[k].motion.width;
-      force.points = obstacles[k].motion.points;
-      port.reactions[k].dissipated = 0.0;
-      port.reactions[k].slid.clear();
-    }
-    port.ahead.clear();
-    port.lower.clear();
-    port.upper.clear();
-    port.slowest.clear();
-    port.fastest.clear();
-    port.speed_bound = std::numeric_limits<double>::infinity();
-    port.acceleration_bound = port.work = 0.0;
-    port.recoil.reset();
-  }
 }
 
 void Body::follow(const Window& window, int substep, double time, bool shown) {

@@ -1,12 +1,19 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/assert.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/body.hpp"
 
 namespace abut {
 
 namespace {
+
+const Want everything;
+
+const Want& want_of(const Advance& request, std::size_t port) {
+  return request.want.empty() ? everything : request.want[port];
+}
 
 /// Of a port's values, those of the points that are listed; all, where none is.
 void append(std::span<const double> port, const std::vector<std::int32_t>& points, std::size_t dim,
@@ -34,6 +41,45 @@ void list(Waveform& force, const std::vector<std::int32_t>& points, int width, i
 }
 
 }  // namespace
+
+void Body::begin_replies(const Advance& request, Response& response) {
+  ABUT_ASSERT(request.boundary.size() == ports_.size());
+  response.records.resize(index(std::max(1, request.records)));
+  response.ports.resize(ports_.size());
+  response.unbalanced.clear();
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    const PortGeometry& geometry = *ports_[p].geometry;
+    const std::vector<Obstacle>& obstacles = request.boundary[p].obstacles;
+    PortResponse& port = response.ports[p];
+    ports_[p].want = &want_of(request, p);
+    ports_[p].obstacles = &obstacles;
+    ports_[p].reply = &port;
+    port.trace.clear();
+    port.trace.support = interior_->support(p);
+    port.trace.points = want_of(request, p).points;
+    const int points =
+        port.trace.points.empty() ? geometry.count() : static_cast<int>(port.trace.points.size());
+    port.trace.width = points * geometry.dim;
+    port.reactions.resize(obstacles.size());
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+      Waveform& force = port.reactions[k].force;
+      force.clear();
+      force.support = interior_->reaction_support(p);
+      force.width = obstacles[k].motion.width;
+      force.points = obstacles[k].motion.points;
+      port.reactions[k].dissipated = 0.0;
+      port.reactions[k].slid.clear();
+    }
+    port.ahead.clear();
+    port.lower.clear();
+    port.upper.clear();
+    port.slowest.clear();
+    port.fastest.clear();
+    port.speed_bound = std::numeric_limits<double>::infinity();
+    port.acceleration_bound = port.work = 0.0;
+    port.recoil.reset();
+  }
+}
 
 void Body::push_trace(const Watched& port, double time) const {
   const Want& want = *port.want;

@@ -46,7 +46,7 @@ std::vector<LatticePoint> cell_corners(int dim, const LatticePoint& lowest) {
 LatticeMesh::LatticeMesh(const Element& element, Mapping mapping)
     : element_(element), mapping_(std::move(mapping)) {
   mesh_.dim = element.dim;
-  mesh_.blocks.push_back({&element, {}, ""});
+  mesh_.blocks.push_back({&element, {}, "", {}});
 }
 
 std::int32_t LatticeMesh::node(const LatticePoint& point) {

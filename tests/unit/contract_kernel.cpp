@@ -49,7 +49,8 @@ TEST(ContractKernel, ForcesThatAreZeroAddNothing) {
   add_response(k, 0, false, 1.0, std::vector<double>{0.0, 0.0}, out);
   EXPECT_EQ(out, (std::vector<double>{1.0, 2.0, 3.0}));
   add_response(k, 0, false, 1.0, std::vector<double>{0.0, 1.0}, out);
-  for (std::size_t v = 0; v < 3; ++v) EXPECT_EQ(out[v], 1.0 + v + k.displacement[3 + v]);
+  for (std::size_t v = 0; v < 3; ++v)
+    EXPECT_EQ(out[v], 1.0 + static_cast<double>(v) + k.displacement[3 + v]);
 }
 
 }  // namespace

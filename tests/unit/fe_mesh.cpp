@@ -104,7 +104,7 @@ TEST(CheckMesh, RefusesAQuadraticCellWhoseMiddleNodeIsPastTheQuarter) {
   mesh.dim = 2;
   const Element& tri6 = element_named("tri6");
   mesh.points = tri6.corners;
-  mesh.blocks.push_back({&tri6, {0, 1, 2, 3, 4, 5}, ""});
+  mesh.blocks.push_back({&tri6, {0, 1, 2, 3, 4, 5}, "", {}});
   EXPECT_NO_THROW(check_mesh(mesh, "m"));
   mesh.points[2 * 3] = 0.26;  // between corners 0 and 1: the map folds below a quarter
   EXPECT_NO_THROW(check_mesh(mesh, "m"));

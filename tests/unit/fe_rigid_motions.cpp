@@ -74,7 +74,9 @@ TEST(LoosePieces, AreFoundWhicheverOfThemIsHeld) {
     std::vector<int> pinned = held(dim, 0, each + 1);
     const std::optional<LoosePiece> turns = find_loose_piece(model, pinned);
     EXPECT_EQ(turns.has_value(), dim > 1) << element;
-    if (turns) EXPECT_EQ(turns->motions, dim == 2 ? 1 : 3) << element;
+    if (turns) {
+      EXPECT_EQ(turns->motions, dim == 2 ? 1 : 3) << element;
+    }
   }
 }
 

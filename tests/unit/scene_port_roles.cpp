@@ -211,7 +211,11 @@ TEST(PortRoles, ThePartnersMeshIsTheFileBesideTheScene) {
       "bodies: {a: {model: {fe: {dimension: 3, mesh: {box: {lengths: [1.0, 1.0, 1.0], "
       "elements: [1, 1, 1]}}}}, " +
           rest + "}}\n");
-  PortPartner partner{.interface = "seam", .body = "b", .port = "cut", .tied = true};
+  PortPartner partner;
+  partner.interface = "seam";
+  partner.body = "b";
+  partner.port = "cut";
+  partner.tied = true;
   partner.overlap.emplace();
   partner.keys = "bodies: {b: {model: {fe: {dimension: 3, mesh: {gmsh: {file: " + file + "}}}}, " +
                  rest + "}}";

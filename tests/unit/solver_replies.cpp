@@ -267,12 +267,12 @@ struct Touched {
           called, dim, mesh, law, scheme, dim == 2 ? "top" : "front", port,
           dim == 2 ? "bottom" : "back");
     };
-    const std::string text = fmt::format(
-        "bodies: {{{}, {}}}\n"
-        "interfaces: {{touch: {{sides: [it.face, plate.face], contact: {{}}}}{}}}\n",
-        block("it", tied ? ", root: {side: left}" : ""), block("beside", ", root: {side: right}"),
-        tied ? ", join: {sides: [it.root, beside.root], tied: {}}" : "");
-    return make_body(Document::from_text("test", text), "bodies.it");
+    const std::string text = fmt::format("bodies: {{{}}}\n",
+                                         block("it", tied ? ", root: {side: left}" : ""));
+    BodyContext context;
+    context.ports.push_back({.port = "face", .touches = true, .partners = {}});
+    if (tied) context.ports.push_back({.port = "root", .tied = true, .partners = {}});
+    return make_body(Document::from_text("test", text), "bodies.it", context);
   }
 
   PortGeometry plate() const {

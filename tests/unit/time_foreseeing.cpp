@@ -102,15 +102,27 @@ TEST(Foreseeing, ToldStepsAreTakenSteps) {
             EXPECT_EQ(block.motion.control, before.control);
             EXPECT_EQ(block.asked, asked);
             ASSERT_FALSE(steps->step(block.motion, k * length, length));
-            if (tells) EXPECT_EQ(ahead.q, block.motion.q) << "step " << k;
+            if (tells) {
+              EXPECT_EQ(ahead.q, block.motion.q) << "step " << k;
+            }
             told += tells ? 1 : 0;
             bound += block.asked > asked ? 1 : 0;
-            if (share <= 1.0) EXPECT_EQ(tells, block.asked == asked) << "step " << k;
+            if (share <= 1.0) {
+              EXPECT_EQ(tells, block.asked == asked) << "step " << k;
+            }
           }
-          if (share == 0.0) EXPECT_EQ(told, 40);
-          if (share > 0.0) EXPECT_GT(bound, 0);
-          if (share == 0.9) EXPECT_EQ(told, 40 - bound);
-          if (share > 1.0) EXPECT_LE(told, 4);  // until the first bound divides steps
+          if (share == 0.0) {
+            EXPECT_EQ(told, 40);
+          }
+          if (share > 0.0) {
+            EXPECT_GT(bound, 0);
+          }
+          if (share == 0.9) {
+            EXPECT_EQ(told, 40 - bound);
+          }
+          if (share > 1.0) {
+            EXPECT_LE(told, 4);  // until the first bound divides steps
+          }
         }
       }
     }
