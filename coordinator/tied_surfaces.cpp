@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.hpp"
+#include "coordinator/coupling/compare/dashpot_rows.hpp"
 #include "coordinator/coupling/tie.hpp"
 #include "coordinator/coupling/tie_watch.hpp"
 #include "surface/unlike_meshes.hpp"

@@ -44,8 +44,4 @@ TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int si
 /// side alone  [M.116].
 TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other, bool motions);
 
-/// Rows of both sides, each a dashpot with the partner's force, of `impedance` [kg/s] in all,
-/// shared by area  [M.117]. No rows: as in make_tie_rows.
-TieRows make_dashpot_rows(const PortGeometry& one, const PortGeometry& other, double impedance);
-
 }  // namespace abut

@@ -11,7 +11,7 @@
 
 #include "coordinator/couple.hpp"
 #include "coordinator/coupling/line_watch.hpp"
-#include "coordinator/coupling/parallel_force.hpp"
+#include "coordinator/coupling/compare/parallel_force.hpp"
 #include "coordinator/coupling/unilateral.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"

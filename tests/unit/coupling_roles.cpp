@@ -11,7 +11,7 @@
 #include "base/error.hpp"
 #include "coordinator/coupling/islands.hpp"
 #include "coordinator/coupling/line_watch.hpp"
-#include "coordinator/coupling/parallel_force.hpp"
+#include "coordinator/coupling/compare/parallel_force.hpp"
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/unilateral.hpp"
 #include "tests/support/scenes.hpp"

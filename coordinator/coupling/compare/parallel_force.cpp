@@ -1,4 +1,4 @@
-#include "coordinator/coupling/parallel_force.hpp"
+#include "coordinator/coupling/compare/parallel_force.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,11 @@
+#include "coordinator/coupling/compare/dashpot_rows.hpp"
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
 
-#include "coordinator/coupling/tie_rows.hpp"
 #include "surface/mortar.hpp"
 
 namespace abut {
@@ -46,8 +47,7 @@ void take_in(const SurfaceRows& to, const SparseRows& seen, double sign, const S
     if (at == from.nodes.end() || *at != seen.columns[e]) continue;
     const std::size_t k = index(at - from.nodes.begin());
     incoming.columns.push_back(first + static_cast<std::int32_t>(k));
-    incoming.values.push_back(sign * seen.values[e] * to.weights[row] /
-                              from.weights[k]);
+    incoming.values.push_back(sign * seen.values[e] * to.weights[row] / from.weights[k]);
   }
 }
 

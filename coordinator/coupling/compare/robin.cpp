@@ -1,4 +1,4 @@
-#include "coordinator/coupling/robin.hpp"
+#include "coordinator/coupling/compare/robin.hpp"
 #include "base/index.hpp"
 
 #include <algorithm>
