@@ -100,6 +100,7 @@ class Controller {
   void look_for_passed();
   void fail(double time, const std::string& text);
   void state(Archive& archive);
+  void memory(Archive& archive);
   void state_of_pairs(Archive& archive);
   RunEnd finish(double wall_seconds);
   void give_up(const std::exception& error, bool interrupted, double wall_seconds);

@@ -12,7 +12,9 @@ namespace abut {
 std::vector<std::byte> Controller::save() {
   std::vector<std::byte> bytes;
   Archive archive = Archive::writer(bytes, Archive::Form::named);
+  state_of_pairs(archive);
   state(archive);
+  memory(archive);
   archive.finish();
   return bytes;
 }
@@ -21,24 +23,32 @@ void Controller::load(std::span<const std::byte> bytes) {
   resumed_ = true;
   introduce();
   Archive archive = Archive::reader(bytes, Archive::Form::named);
+  state_of_pairs(archive);
   state(archive);
+  memory(archive);
   archive.finish();
   narrator_.start(clock_.time(), scene_.time.end,
                   std::span(joints_).first(scene_.interfaces.size()), !broad_phase_.empty());
 }
 
-/// What decides of the windows to come. What a run counts for its end alone is not listed, nor what
-/// the next window fills anew.
+/// What the run has done on this side of the messages, of which the state hash is: the same however
+/// often records and fields are wanted.
 void Controller::state(Archive& archive) {
   clock_.state(archive);
   events_.state(archive);
+  archive.field("halvings", halvings_);
+  for (Joint& joint : joints_) joint.state(archive);
+}
+
+/// What the windows to come depend on beside: how far is flown at once, what the guard saw at the
+/// ends of flights, the latest replies, and what iterations learned. What the next window fills
+/// anew is not listed, nor what a run counts for its end alone.
+void Controller::memory(Archive& archive) {
   guard_.state(archive);
   bodies_.state(archive);
-  archive.field("halvings", halvings_);
   whole(archive, "flight_limit", flight_.limit);
   archive.field("grounded", flight_.grounded);
-  state_of_pairs(archive);
-  for (Joint& joint : joints_) joint.state(archive);
+  for (Joint& joint : joints_) joint.memory(archive);
   roles_.state(archive);
   schwarz_.state(archive);
 }

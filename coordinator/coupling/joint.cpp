@@ -34,6 +34,10 @@ void Joint::state(Archive& archive) {
   role.kinematic = static_cast<int>(side);
   archive.field("role_fixed", role.fixed);
   contact.state(archive);
+  if (ContactAccount* account = watch->account()) account->state(archive);
+}
+
+void Joint::memory(Archive& archive) {
   watch->state(archive);
   if (exchange != nullptr) exchange->state(archive);
 }

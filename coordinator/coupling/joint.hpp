@@ -60,7 +60,10 @@ struct Joint {
   std::unique_ptr<Watch> watch;
   ContactState contact;
 
+  /// What contact has done, whatever is recorded of it.
   void state(Archive& archive);
+  /// What the exchange and the watch remember beside, of how the run came here.
+  void memory(Archive& archive);
 
   // Transitions of contact.
   void engage(double speed);  // the sides met at a speed [m/s]: iterated from now on

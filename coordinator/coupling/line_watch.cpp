@@ -40,10 +40,6 @@ bool LineWatch::passed(const Joint& joint, const Bodies& bodies) const {
   return gap < -spacing;
 }
 
-void LineWatch::state(Archive& archive) {
-  if (account_) account_->state(archive);
-}
-
 // ---- contact ------------------------------------------------------------------------------------
 
 std::optional<Engagement> PointWatch::touch(const Joint& joint, const TimeWindow&,

@@ -21,7 +21,7 @@ class LineWatch : public Watch {
   Shown show(const Joint& joint, const Bodies&) const override { return {joint.closed()}; }
   void see_passing(const Joint&, const Bodies&) override {}
   bool passed(const Joint& joint, const Bodies& bodies) const override;
-  void state(Archive& archive) override;
+  void state(Archive&) override {}
 };
 
 /// Contact of two points: every substep of the kinematic body decides, and an account is kept of

@@ -72,7 +72,7 @@ class Watch {
   /// Whether the sides went past each other and never pressed.
   virtual bool passed(const Joint& joint, const Bodies& bodies) const = 0;
 
-  /// What the watch carries from window to window.
+  /// What the watch carries from window to window beside its account.
   virtual void state(Archive& archive) = 0;
   /// The energy that contact took and owes; null: none is kept.
   ContactAccount* account() { return account_ ? &*account_ : nullptr; }
