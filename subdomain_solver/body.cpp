@@ -135,7 +135,10 @@ Outcome Body::finish(Response& response) {
   begin_replies(request, response);
   recorded_ = 0;
   if (std::optional<Failed> failed = advance(window, response)) return *failed;
-  for (std::size_t p = 0; p < ports_.size(); ++p) interior_->finish(p, response.ports[p]);
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    list_reactions(p);
+    interior_->finish(p, response.ports[p]);
+  }
   if (request.ahead > 0.0) look_ahead(request, response);
   response.steps = window.grid.count;
   response.compute_seconds =

@@ -63,6 +63,7 @@ class Body final : public Subdomain {
   void follow(const Window& window, int substep, double time, bool shown);
   void push_trace(const Watched& port, double time) const;
   void push_reactions(std::size_t port, double time) const;
+  void list_reactions(std::size_t port);
   void begin_sweep();
   void widen_sweep();
   void widen_velocities(double length);
@@ -87,6 +88,7 @@ class Body final : public Subdomain {
   std::vector<std::byte> looked_;  // the state from which
   std::vector<double> at_begin_;   // [m] of the ports that respond() was asked for, at the begin
   std::vector<double> peeked_;     // [m] (steps, values of all ports) told without going there
+  std::vector<std::int32_t> pressed_;  // points of a reaction
   double step_effort_ = 0.0;  // of a substep
   double effort_ = 0.0;       // since the last sign of life
 };

@@ -40,6 +40,31 @@ void list(Waveform& force, const std::vector<std::int32_t>& points, int width, i
   }
 }
 
+/// Lists those points alone that a force acts on, one at least; empty: it acts on all of the
+/// partner's, which are `all`.
+void list_pressed(Waveform& force, std::size_t dim, std::size_t all,
+                  std::vector<std::int32_t>& pressed) {
+  const std::size_t width = index(force.width);
+  pressed.clear();
+  for (std::size_t point = 0; point < width / dim; ++point) {
+    bool acts = false;
+    for (std::size_t v = point * dim; v < force.f.size() && !acts; v += width)
+      for (std::size_t i = 0; i < dim; ++i) acts = acts || force.f[v + i] != 0.0;
+    if (acts) pressed.push_back(static_cast<std::int32_t>(point));
+  }
+  if (pressed.empty()) pressed.push_back(0);
+  std::size_t to = 0;
+  for (std::size_t first = 0; first < force.f.size(); first += width)
+    for (const std::int32_t point : pressed)
+      for (std::size_t i = 0; i < dim; ++i) force.f[to++] = force.f[first + index(point) * dim + i];
+  force.f.resize(to);
+  force.width = static_cast<int>(pressed.size() * dim);
+  if (!force.points.empty())
+    for (std::int32_t& point : pressed) point = force.points[point];
+  force.points.assign(pressed.begin(), pressed.end());
+  if (pressed.size() == all) force.points.clear();
+}
+
 }  // namespace
 
 void Body::begin_replies(const Advance& request, Response& response) {
@@ -114,6 +139,21 @@ void Body::push_reactions(std::size_t p, double time) const {
       list(force, *points, (*port.obstacles)[k].motion.width, port.geometry->dim);
     force.time.push_back(time);
     obstructed->react(p, k, force.f);
+  }
+}
+
+/// Contact looks at more points than are pressed, and at which depends on where it looked before:
+/// no part of a reply.
+void Body::list_reactions(std::size_t p) {
+  const Watched& port = ports_[p];
+  const Obstructed* obstructed = interior_->able().obstructed;
+  const std::size_t dim = index(port.geometry->dim);
+  for (std::size_t k = 0; obstructed != nullptr && k < port.reply->reactions.size(); ++k) {
+    const Waveform& obstacle = (*port.obstacles)[k].motion;
+    Waveform& force = port.reply->reactions[k].force;
+    if (obstructed->reacting(p, k) == nullptr || force.empty() || !obstacle.points.empty())
+      continue;
+    list_pressed(force, dim, index(obstacle.width) / dim, pressed_);
   }
 }
 
