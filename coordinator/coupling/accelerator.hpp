@@ -94,7 +94,8 @@ class Relaxation final : public Forgetful {
 /// Aitken's dynamic relaxation of P (G - x), |factor| limited to 2.
 class Aitken final : public Forgetful {
  public:
-  explicit Aitken(Preconditioner by, double initial = 1.0) : by_(by), initial_(initial) {}
+  explicit Aitken(Preconditioner by, double initial = 1.0)
+      : by_(by), initial_(initial), factor_(initial) {}
   void reset(std::uint64_t) override;
   Eigen::VectorXd next(const Eigen::VectorXd& iterate, const Eigen::VectorXd& image,
                        const Inverses& inverses) override;
@@ -102,7 +103,7 @@ class Aitken final : public Forgetful {
  private:
   Preconditioner by_;
   double initial_;
-  double factor_ = 0.0;
+  double factor_;
   Eigen::VectorXd previous_;  // residual
 };
 
