@@ -22,8 +22,8 @@ namespace {
 /// Bars one after the other from 0 to 1, strained where they are cut; cells of 0.01.
 struct Strained {
   std::string integrator;
-  std::vector<double> cuts;                 // between 0 and 1
-  std::vector<double> modulus, velocities;  // by bar; empty: 1, 0
+  std::vector<double> cuts;                     // between 0 and 1
+  std::vector<double> modulus{}, velocities{};  // by bar; empty: 1, 0
   std::string field = "0.001*exp(-((x-0.45)^2)/0.005)";
 
   std::string text() const {

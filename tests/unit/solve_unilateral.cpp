@@ -61,7 +61,8 @@ TEST(UnilateralForces, OfRowsThatDependOnEachOtherCloseTheirGaps) {
     for (Eigen::Index k = 0; k < b.size(); ++k) b.data()[k] = part(random);
     Vector gap(rows), force;
     const Vector deep = Vector::Constant(moves, -1.0);  // every row can be closed
-    for (Eigen::Index k = 0; k < rows; ++k) gap(k) = b.row(k).dot(deep) + (k % 3) * part(random);
+    for (Eigen::Index k = 0; k < rows; ++k)
+      gap(k) = b.row(k).dot(deep) + static_cast<double>(k % 3) * part(random);
     const Eigen::MatrixXd a = b * b.transpose();
     ASSERT_TRUE(unilateral_forces(a, gap, force, buffers));
     check(a, gap, force, 1.0e-8);  // rows share their force by 1e-11 of the compliance
