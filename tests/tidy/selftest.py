@@ -118,7 +118,7 @@ class Words(unittest.TestCase):
     def test_unfinished_business_and_machine_paths(self) -> None:
         bad = "// TODO later\nopen(\"/home/ann/x\")\nhttp://127.0.0.1:80/\n"
         self.assertEqual(len(findings(words.check, base__a_dot_cpp=bad)), 3)
-        good = "tcp://127.0.0.1:5555\nruns/work/x\n/tmp/x\n"
+        good = "tcp://127.0.0.1:5555\nruns/home/x\n/tmp/x\n"
         self.assertEqual(findings(words.check, base__a_dot_cpp=good), [])
 
     def test_element_named_outside_of_the_table(self) -> None:
