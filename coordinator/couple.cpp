@@ -18,6 +18,7 @@
 #include "coordinator/coupling/loose_motions.hpp"
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/row_margin.hpp"
+#include "coordinator/coupling/surface_watch.hpp"
 #include "coordinator/coupling/unilateral.hpp"
 #include "coordinator/surface_start.hpp"
 #include "coordinator/tied_surfaces.hpp"
@@ -221,9 +222,10 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
             "Leave friction out, or let the other side find contact by "
             "transmission.unilateral.kinematic.");
   }
+  const double margin = row_margin(joint.sides, bodies);
+  joint.watch = std::make_unique<SurfaceWatch>(margin, law.rubs());
   joint.exchange = std::make_unique<CompliantObstacle>(
-      how->kernel_memory.value_or(usual_kernel_memory) * 1048576.0, row_margin(joint.sides, bodies),
-      law);
+      how->kernel_memory.value_or(usual_kernel_memory) * 1048576.0, margin, law);
 }
 
 /// What no contact can start from.
@@ -340,9 +342,8 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
       joints.back().interface = number;
       continue;
     }
-    Joint& joint = joints.emplace_back(
-        surfaces ? make_surface_joint(name, sides, law_of(*spec.contact).rubs(), bodies)
-                 : make_joint(name, sides, bodies));
+    Joint& joint = joints.emplace_back(surfaces ? make_surface_joint(name, sides, bodies)
+                                                : make_joint(name, sides, bodies));
     joint.interface = number;
     see_adjusted(scene, joint);
     if (std::holds_alternative<InternalTransmission>(spec.transmission)) {
@@ -379,7 +380,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
 
 Joint make_pair(const Scene& scene, const PortPair& pair, const Bodies& bodies) {
   const InterfaceSpec spec = spec_of(scene, pair, bodies);
-  Joint joint = make_surface_joint(spec.name, pair, law_of(*spec.contact).rubs(), bodies);
+  Joint joint = make_surface_joint(spec.name, pair, bodies);
   joint.interface = static_cast<int>(scene.interfaces.size());
   see_adjusted(scene, joint);
   const std::string where(everything_path);

@@ -9,8 +9,6 @@
 #include "base/error.hpp"
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/line_watch.hpp"
-#include "coordinator/coupling/row_margin.hpp"
-#include "coordinator/coupling/surface_watch.hpp"
 
 namespace abut {
 
@@ -85,8 +83,7 @@ Joint make_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodi
   return joint;
 }
 
-Joint make_surface_joint(std::string name, std::array<Side, 2> sides, bool rubs,
-                         const Bodies& bodies) {
+Joint make_surface_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodies) {
   Joint joint;
   joint.name = std::move(name);
   joint.sides = sides;
@@ -96,7 +93,6 @@ Joint make_surface_joint(std::string name, std::array<Side, 2> sides, bool rubs,
                                  bodies.port(side).name, bodies.describe(side.body).name),
                      "interfaces." + joint.name, "Put the port on a side of the mesh.");
   }
-  joint.watch = std::make_unique<SurfaceWatch>(row_margin(sides, bodies), rubs);
   return joint;
 }
 

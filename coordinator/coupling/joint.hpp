@@ -99,9 +99,9 @@ constexpr double coincidence = 1.0e-6;
 /// the start, or are not one point each.
 Joint make_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodies);
 
-/// Two surfaces that may touch, and rub on each other. Throws InputError when they cannot.
-Joint make_surface_joint(std::string name, std::array<Side, 2> sides, bool rubs,
-                         const Bodies& bodies);
+/// Two surfaces that may touch; exchange and watch are given by what joins them. Throws InputError
+/// when they cannot.
+Joint make_surface_joint(std::string name, std::array<Side, 2> sides, const Bodies& bodies);
 
 /// Index of the stored time at which a window begins: the last one of the window before, or the
 /// first one of an attempt at the same window.

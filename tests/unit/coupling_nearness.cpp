@@ -8,7 +8,9 @@
 
 #include <cmath>
 
+#include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/horizon.hpp"
+#include "coordinator/coupling/row_margin.hpp"
 #include "tests/support/scripted.hpp"
 #include "tests/support/surfaces.hpp"
 #include "tests/support/tolerance.hpp"
@@ -44,7 +46,8 @@ struct Rings {
 
   void look() { seen = joint.watch->approach(joint, bodies); }
   Rings() : a(shaped()), b(shaped()), bodies({&a, &b}) {
-    joint = make_surface_joint("rings", {Side{0, 0}, Side{1, 0}}, false, bodies);
+    joint = make_surface_joint("rings", {Side{0, 0}, Side{1, 0}}, bodies);
+    joint.watch = std::make_unique<SurfaceWatch>(row_margin(joint.sides, bodies), false);
   }
   static Scripted shaped() {
     Scripted body(0.0, 1.0, 1.0);
