@@ -10,6 +10,7 @@
 #include "contract/field.hpp"
 #include "contract/meeting.hpp"
 #include "contract/outcome.hpp"
+#include "contract/passive.hpp"
 #include "contract/port.hpp"
 #include "contract/time_window.hpp"
 
@@ -27,6 +28,9 @@ struct Capabilities {
   bool friction = false;   // takes laws with friction: ContactLaw::rubs()
   // Takes how bodies that are tied to it respond: Meeting::kernel of its own surface.
   bool neighbours = false;
+  bool passive = false;  // has a passive form: Subdomain::passive()
+  // Its surface has mass: it takes obstacles in its passive form alone.
+  bool only_passive = false;
 };
 
 /// A solid inside a body that tables show as if it were a body: monolithic models hold several.
@@ -131,6 +135,8 @@ class Subdomain {
   /// Description::fields in the present state, in their order; the state is left untouched. Values
   /// that cannot be told (an inadmissible state) are not finite.
   virtual std::vector<FieldValues> fields() { return {}; }
+  /// Null: it has none (Capabilities::passive).
+  virtual PassiveForm* passive() { return nullptr; }
 
   [[nodiscard]] Outcome advance(const Advance& request, Response& response) {
     start(request);
