@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "contract/outcome.hpp"
+
+namespace abut {
+
+// The passive way through a window [M.130]: what a body offers for it, and what it is asked.
+
+/// One step of a body in its passive form: the midpoint rule (theta = 1/2) with all mass on the
+/// nodes, under its own loads and supports, and with impulses on its ports and nothing else
+/// there. Ports go straight from where they are to where they end.
+struct PassiveStep {
+  double begin = 0.0, end = 0.0;               // [s]
+  std::vector<std::vector<double>> impulses;   // [N s] (ports; points x dim); a port's empty: none
+  // (ports) points whose compliance is wanted, ascending
+  std::vector<std::vector<std::int32_t>> pressed;
+
+  double length() const { return end - begin; }
+};
+
+struct PassiveReply {
+  struct Port {
+    std::vector<double> displacement, velocity;  // [m], [m/s] (points x dim) at the step's end
+  };
+  std::vector<Port> ports;
+  // [m/(N s) / s] (values, values), values = pressed points x dim, of all ports in their order:
+  // what an impulse on one value adds to another one's mean velocity over the step, which is its
+  // displacement over its length. Symmetric, positive semidefinite; of a body that is not linear
+  // that of its tangent at the step's end, made definite.
+  std::vector<double> compliance;
+  BodyRecord record;  // at the step's end; energy in the form that the midpoint rule conserves
+  // [m] by which a point of a port leaves the straight way at most: of bodies that turn
+  double bulge = 0.0;
+};
+
+/// A body in its passive form. Whether it is in it belongs to its state: Subdomain::restore takes
+/// enter() and leave() back too. Nothing but the following is asked of a body that is in it, beside
+/// save, restore, fields, measures, hashes and checkpoints.
+class PassiveForm {
+ public:
+  virtual ~PassiveForm() = default;
+  /// Puts all mass on the nodes: those of a massless surface take the velocity of what had theirs.
+  /// Momentum stays; the energy [J] that is lost is returned.
+  virtual double enter() = 0;
+  /// Back to the body's own scheme. When it fails the body is as before.
+  [[nodiscard]] virtual Outcome leave(double time, double& lost) = 0;
+  /// From the present state through a step. start() returns at once; between it and finish()
+  /// nothing else is called, and the step must live. When it fails the state is undefined: restore.
+  virtual void start(const PassiveStep& step) = 0;
+  [[nodiscard]] virtual Outcome finish(PassiveReply& reply) = 0;
+  /// Takes so much energy [J] from the deformation's kinetic part, all of it where that is less;
+  /// momentum and angular momentum stay. Returns what was taken.
+  virtual double damp(double joules) = 0;
+};
+
+}  // namespace abut
