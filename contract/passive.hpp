@@ -7,7 +7,7 @@
 
 namespace abut {
 
-// The passive way through a window [M.130]: what a body offers for it, and what it is asked.
+// The passive way through a window [M.128]: what a body offers for it, and what it is asked.
 
 /// One step of a body in its passive form: the midpoint rule (theta = 1/2) with all mass on the
 /// nodes, under its own loads and supports, and with impulses on its ports and nothing else
