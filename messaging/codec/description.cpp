@@ -8,7 +8,7 @@ namespace abut {
 namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
-static_assert(sizeof(Capabilities) == 9 * sizeof(bool));
+static_assert(sizeof(Capabilities) == 11 * sizeof(bool));
 static_assert(sizeof(Port) == sizeof(std::string) + sizeof(PortGeometry) + sizeof(double));
 static_assert(sizeof(Member) ==
               sizeof(std::string) + sizeof(double) + sizeof(std::vector<std::int32_t>));
@@ -23,6 +23,8 @@ void encode(const Capabilities& from, v1::Capabilities& to) {
   to.set_yielding(from.yielding);
   to.set_friction(from.friction);
   to.set_neighbours(from.neighbours);
+  to.set_passive(from.passive);
+  to.set_only_passive(from.only_passive);
 }
 
 Capabilities decode(const v1::Capabilities& from) {
@@ -34,7 +36,9 @@ Capabilities decode(const v1::Capabilities& from) {
           .impedance = from.impedance(),
           .yielding = from.yielding(),
           .friction = from.friction(),
-          .neighbours = from.neighbours()};
+          .neighbours = from.neighbours(),
+          .passive = from.passive(),
+          .only_passive = from.only_passive()};
 }
 
 void decode_port(const v1::Port& from, const Description& body, const FieldPath& path, Port& to) {
