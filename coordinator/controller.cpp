@@ -52,6 +52,7 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       events_(joints_, bodies_, roles_, narrator_, scene.schwarz.tolerance, scene.time.window),
       guard_(
           make_energy_guard(scene.schwarz.energy_guard, joints_, !broad_phase_.empty(), bodies_)),
+      passive_(touching_pairs(scene, joints_, bodies_), bodies_),
       reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {
   end_.status = "completed";
   flight_.longest = flight_.limit =
@@ -71,7 +72,10 @@ RunEnd Controller::run() {
     while (running()) {
       if (between_windows) between_windows();
       join_near();
-      if (!fly_free()) step_window();
+      if (passive_.active())
+        step_passively();
+      else if (!fly_free())
+        step_window();
     }
     if (interrupted_ != nullptr && interrupted_->load()) end_.status = "interrupted";
     return finish(wall());  // asks the bodies for their states: they may be lost there as well
@@ -173,7 +177,8 @@ bool Controller::fly_free() {
   prepare(flight, windows * scene_.output.records_per_window, Sampling::records);
   if (std::optional<Failed> failed = bodies_.advance_all()) {
     if (windows == 1) {
-      fail(failed->time, failed->detail);
+      bodies_.restore_all();
+      if (!go_passively(flight.begin, failed->detail)) fail(failed->time, failed->detail);
     } else {  // again in shorter flights, so that what was before the failure is told
       bodies_.restore_all();
       flight_.limit = windows / 2;
@@ -199,13 +204,18 @@ bool Controller::fly_free() {
 
 void Controller::step_window() {
   TimeWindow window = clock_.next();
+  if (must_go_passively(window)) return step_passively();
   events_.begin(window);
   bodies_.save_all();
   while (running()) {
     advance(window);
     const Judgement judgement = judge(window);
     if (judgement.verdict == Judgement::Verdict::accept) return accept(window);
-    if (judgement.verdict == Judgement::Verdict::fail) return fail(window.begin, judgement.reason);
+    if (judgement.verdict == Judgement::Verdict::fail) {
+      bodies_.restore_all();
+      if (!go_passively(window.begin, judgement.reason)) fail(window.begin, judgement.reason);
+      return;
+    }
     if (judgement.verdict == Judgement::Verdict::cut) window.end = judgement.end;
     bodies_.restore_all();
   }
@@ -276,6 +286,7 @@ void Controller::accept(const TimeWindow& window) {
   watch_passing(before);
   if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
   halvings_ = 0;
+  ++waiting_.accurate;
   watch_energy(energy);
 }
 
@@ -428,6 +439,11 @@ RunEnd Controller::finish(double wall_seconds) {
     for (const std::string& note : validity_notes(bodies_.describe(b), end_.body_measures.back()))
       narrator_.warning(clock_.time(), bodies_.describe(b).name, note);
   }
+  const PassiveLedger& passive = passive_.ledger();
+  narrator_.given_up(passive, end_);
+  end_.given_up = {passive.windows,  passive.steps,  passive.refused,  passive.rigid,
+                   passive.shortest_step, passive.normal, passive.friction, passive.damped,
+                   passive.switched, passive.push_out, passive.deepest};
   narrator_.end(end_);
   return end_;
 }

@@ -15,6 +15,7 @@
 #include "coordinator/energy_guard.hpp"
 #include "coordinator/narrator.hpp"
 #include "coordinator/overlap_search.hpp"
+#include "coordinator/passive/passive_way.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/scene.hpp"
 #include "coordinator/window_clock.hpp"
@@ -28,6 +29,7 @@ namespace abut {
 ///   fly_free      nothing can touch before the horizon: several windows in one request per body
 ///   step_window   one window: tried, judged, and accepted or tried again
 ///   judge         what becomes of a window that was tried
+///   go_passively  what the iteration cannot take, bodies take passively (controller_passive.cpp)
 ///
 /// When windows are cut and what contact carries on is ContactEvents' affair; the iteration inside
 /// a window is that of Schwarz; what is told of all this, the Narrator's.
@@ -75,6 +77,12 @@ class Controller {
     bool grounded = false;  // came too near: step once
   };
 
+  /// How long bodies stay passive before the accurate method is tried again [windows]: doubly each
+  /// time that it failed soon.
+  struct Waiting {
+    int wait = 2, left = 0, accurate = 0;
+  };
+
   void introduce();
   bool wants_accelerations() const;
   void start();
@@ -98,6 +106,11 @@ class Controller {
   void watch_passing(std::int64_t windows_before);
   void look_for_overlaps();
   void look_for_passed();
+  bool must_go_passively(const TimeWindow& window);
+  bool go_passively(double time, const std::string& reason);
+  void step_passively();
+  void accept_passively(const TimeWindow& window);
+  void go_accurately();
   void fail(double time, const std::string& text);
   void state(Archive& archive);
   void memory(Archive& archive);
@@ -118,6 +131,8 @@ class Controller {
   ContactEvents events_;
   EnergyGuard guard_;
   OverlapSearch overlaps_;
+  PassiveWay passive_;
+  Waiting waiting_;
   Flight flight_;
   std::int64_t halvings_ = 0;
   Attempt attempt_;

@@ -181,6 +181,32 @@ std::string Narrator::words_of(const EnergyGuard& guard, std::span<const Joint> 
                      remedies(joints));
 }
 
+void Narrator::passive(double time, const std::string& reason) {
+  constexpr int most_told = 3;
+  if (++told_passive_ > most_told) return;
+  tell({RunEvent::Kind::warning, time, blamed(reason),
+        fmt::format("the accurate method has no answer ({}): bodies go on passively, which loses "
+                    "energy{}",
+                    reason, told_passive_ == most_told ? "; later times are counted only" : ""),
+        {}});
+}
+
+void Narrator::accurate(double time) {
+  if (told_passive_ == 0 || told_passive_ > 3) return;
+  tell({RunEvent::Kind::warning, time, "", "bodies are apart: the accurate method goes on", {}});
+}
+
+void Narrator::given_up(const PassiveLedger& ledger, const RunEnd& end) {
+  if (ledger.windows == 0) return;
+  tell({RunEvent::Kind::warning, end.time, "",
+        fmt::format("{:.3g} % of the windows were solved passively; {:.3g} J were given up in "
+                    "them, and friction took {:.3g} J",
+                    100.0 * static_cast<double>(ledger.windows) /
+                        static_cast<double>(std::max<std::int64_t>(end.windows, 1)),
+                    ledger.given_up(), ledger.friction),
+        {{"given_up", ledger.given_up()}}});
+}
+
 void Narrator::energy(const EnergyGuard& guard, std::span<const Joint> joints, double time) {
   tell({RunEvent::Kind::warning, time, "", words_of(guard, joints), {{"growth", guard.growth()}}});
 }

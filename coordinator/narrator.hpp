@@ -8,6 +8,7 @@
 #include "coordinator/coupling/contact_account.hpp"
 #include "coordinator/coupling/watch.hpp"
 #include "coordinator/energy_guard.hpp"
+#include "coordinator/passive/passive_ledger.hpp"
 #include "coordinator/record/observer.hpp"
 
 namespace abut {
@@ -38,6 +39,10 @@ class Narrator {
   void overlap(const Overlap& overlap, std::span<const Joint> joints);
   /// An interface whose sides went past each other.
   void never_met(const std::string& name, double time);
+  /// Bodies go on in their passive forms; the first times are told.
+  void passive(double time, const std::string& reason);
+  void accurate(double time);
+  void given_up(const PassiveLedger& ledger, const RunEnd& end);
   void energy(const EnergyGuard& guard, std::span<const Joint> joints, double time);
   void warning(double time, const std::string& subject, const std::string& text);
   void failure(double time, const std::string& text);
@@ -56,6 +61,7 @@ class Narrator {
   const Bodies& bodies_;
   std::vector<Observer*> observers_;
   std::vector<std::string> interfaces_;
+  int told_passive_ = 0;
 };
 
 }  // namespace abut

@@ -125,7 +125,7 @@ void SchwarzSpec::fields(Fields& f) {
   f.optional_section("ties", ties, "kernels of tied surfaces, in two and three dimensions");
   f.idle(!std::holds_alternative<KernelAcceleration>(accelerator), "ties",
          "only the accelerator kernel uses kernels");
-  f.word("on_nonconvergence", on_nonconvergence, {"stop", "halve", "accept"},
+  f.word("on_nonconvergence", on_nonconvergence, {"passive", "stop", "halve", "accept"},
          "answer to a window that does not converge: end the run, halve the window, or go on");
   f.optional("energy_guard", energy_guard, "",
              "growth of the bodies' energy, less external work, that ends the run as failed, as a "

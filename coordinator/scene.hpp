@@ -91,7 +91,7 @@ struct KernelAcceleration {  // port kernels as interface Jacobian, plus secants
   void fields(Fields& f);
 };
 
-enum class OnNonconvergence { stop, halve, accept };
+enum class OnNonconvergence { passive, stop, halve, accept };
 
 struct SchwarzSpec {
   bool parallel = false;      // "form: alternating | parallel"
@@ -101,7 +101,7 @@ struct SchwarzSpec {
                AndersonAcceleration>
       accelerator;
   std::optional<TieKernelSpec> ties;  // absent: its defaults
-  OnNonconvergence on_nonconvergence = OnNonconvergence::stop;
+  OnNonconvergence on_nonconvergence = OnNonconvergence::passive;
   double energy_guard = 0.01;  // of the most energy in motion: growth that ends the run
   void fields(Fields& f);
 };

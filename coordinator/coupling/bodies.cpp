@@ -180,6 +180,12 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
   return failed;
 }
 
+void Bodies::see_anew() {
+  taken_back_ = false;
+  for (const auto& poses : poses_)
+    for (const auto& pose : poses) pose->forget();
+}
+
 std::optional<Failed> Bodies::advance_all() { return advance(everybody_); }
 
 void Bodies::strike_record(const Side& side, double impulse) {

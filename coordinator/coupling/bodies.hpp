@@ -37,6 +37,9 @@ class Bodies {
   Advance& request(int body) { return requests_[body]; }
   const Advance& request(int body) const { return requests_[body]; }
   const Response& response(int body) const { return responses_[body]; }
+  /// For who advances bodies without requests; see_anew() afterwards.
+  Response& response(int body) { return responses_[body]; }
+  void see_anew();
   std::span<const Response> responses() const { return responses_; }
 
   /// What the next request imposes on one end of a joint.

@@ -79,6 +79,15 @@ struct Overlap {
   double time = 0.0;                              // [s] at which it was found
 };
 
+/// What passive windows cost.
+struct GivenUp {
+  std::int64_t windows = 0, steps = 0, refused = 0, rigid = 0;
+  double shortest_step = 0.0;  // [s]
+  // [J] lost in normal contact, by friction, by damping, at changes of form; given to part bodies
+  double normal = 0.0, friction = 0.0, damped = 0.0, switched = 0.0, push_out = 0.0;
+  double deepest = 0.0;  // [m] behind a partner's surface
+};
+
 struct RunEnd {
   std::string status;  // completed | failed | interrupted
   std::string reason;  // why it failed, in words; else empty
@@ -96,6 +105,7 @@ struct RunEnd {
   double overhead_median_seconds = 0.0;  // per exchange: wall minus compute
   std::vector<Overlap> overlaps;         // that were found, each pair once
   std::vector<std::string> never_met;    // interfaces that never closed where they should have
+  GivenUp given_up;
 };
 
 /// A customer of a run: log, table, summary, monitor. Never changes what the run computes.

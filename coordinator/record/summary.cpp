@@ -190,6 +190,21 @@ Json overlaps_array(const RunEnd& end, const RunStart& start) {
   return array;
 }
 
+Json given_up_object(const RunEnd& end) {
+  const GivenUp& up = end.given_up;
+  return {{"passive_windows", up.windows},
+          {"passive_steps", up.steps},
+          {"refused_steps", up.refused},
+          {"held_rigid", up.rigid},
+          {"shortest_step", number(up.shortest_step)},
+          {"normal", number(up.normal)},
+          {"friction", number(up.friction)},
+          {"damped", number(up.damped)},
+          {"changes_of_form", number(up.switched)},
+          {"push_out", number(up.push_out)},
+          {"deepest", number(up.deepest)}};
+}
+
 }  // namespace
 
 Summary::Summary(std::filesystem::path directory, Heading heading, const MeasureRecorder& recorder,
@@ -227,6 +242,7 @@ std::string Summary::text(const RunEnd& end) const {
   summary["exchanges"] = end.exchanges;
   summary["overlaps"] = overlaps_array(end, start_);
   summary["never_closed"] = end.never_met;
+  summary["accuracy"]["given_up"] = given_up_object(end);
   summary["timing"] = timing_object(end, start_);
   if (heading_.program_began) summary["timing"]["startup_s"] = number(startup_seconds_);
   if (heading_.estimate) summary["estimate"] = estimate_object(*heading_.estimate);

@@ -1,0 +1,100 @@
+// The way through windows that the iteration cannot take: bodies in their passive forms.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "coordinator/controller.hpp"
+#include "coordinator/coupling/exchange.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Ways that surfaces can come in a window: those that only meet passively do so from there on, and
+/// the accurate method takes over where all are farther apart than that.
+constexpr double near_ways = 1.5, far_ways = 4.0;
+/// Windows: the accurate method that fails sooner is tried again later, at most after so many.
+constexpr int soon = 10, longest_wait = 64;
+
+}  // namespace
+
+/// Where surfaces come near of which neither side finds contact in another form.
+bool Controller::must_go_passively(const TimeWindow& window) {
+  const bool near = std::ranges::any_of(joints_, [&](Joint& joint) {
+    if (!only_passive(joint, bodies_)) return false;
+    const auto [apart, speed] = joint.watch->approach(joint, bodies_);
+    return apart <= near_ways * speed * window.length();
+  });
+  if (near && !go_passively(window.begin, {}))
+    fail(window.begin, "surfaces meet that find contact in passive forms alone, but " +
+                           passive_.hindrance());
+  return near;
+}
+
+/// All bodies stand at the begin of a window. `reason`: why the accurate method has failed; empty:
+/// it was not tried. False: the scene cannot go on so, or does not want to.
+bool Controller::go_passively(double time, const std::string& reason) {
+  if (!passive_.hindrance().empty()) return false;
+  if (!reason.empty() && scene_.schwarz.on_nonconvergence != OnNonconvergence::passive)
+    return false;
+  if (std::optional<Failed> failed = passive_.enter(time)) {
+    fail(failed->time, failed->detail);
+    return true;
+  }
+  if (!reason.empty()) {
+    if (waiting_.accurate < soon) waiting_.wait = std::min(2 * waiting_.wait, longest_wait);
+    waiting_.left = waiting_.wait;
+    narrator_.passive(time, reason);
+  }
+  return true;
+}
+
+void Controller::step_passively() {
+  if (!running()) return;
+  const TimeWindow window = clock_.next();
+  for (Joint& joint : joints_)  // some came near since
+    if (joint.exchange != nullptr && !joint.exchange->met())
+      joint.exchange->introduce(joint, bodies_);
+  if (std::optional<Failed> failed = passive_.window(window, records_in(window), joints_))
+    return fail(failed->time, failed->detail);
+  accept_passively(window);
+  go_accurately();
+}
+
+void Controller::accept_passively(const TimeWindow& window) {
+  attempt_.reports.clear();
+  for (Joint& joint : joints_) {
+    if (joint.tied() || joint.exchange == nullptr || joint.closed() || !passive_.pressed(joint))
+      continue;
+    joint.engage(joint.watch->approach(joint, bodies_).speed);
+  }
+  fill_reports(false);
+  events_.settle(window, guard_.most());
+  const EnergyGuard::Verdict energy = guard_.look(bodies_.responses());
+  const std::int64_t before = clock_.windows();
+  clock_.accept(window);
+  narrator_.window({window, bodies_.responses(), reports_, clock_.windows(), pairs_});
+  watch_passing(before);
+  if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
+  watch_energy(energy);
+}
+
+/// Back to the accurate method where nothing pressed and all surfaces are well apart: a return in
+/// the midst of contact costs a part of the energy.
+void Controller::go_accurately() {
+  if (waiting_.left > 0) --waiting_.left;
+  if (!passive_.quiet() || waiting_.left > 0 || !running()) return;
+  const bool apart = std::ranges::all_of(joints_, [&](Joint& joint) {
+    if (joint.exchange == nullptr || joint.tied()) return true;
+    const auto [distance, speed] = joint.watch->approach(joint, bodies_);
+    return distance > far_ways * speed * scene_.time.window;
+  });
+  if (!apart || !passive_.leave(clock_.time())) return;
+  waiting_.accurate = 0;
+  narrator_.accurate(clock_.time());
+  for (Joint& joint : joints_)
+    if (!joint.tied() && joint.exchange != nullptr) joint.disengage();
+}
+
+}  // namespace abut

@@ -1,0 +1,315 @@
+#include "coordinator/passive/common_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+namespace abut {
+
+namespace {
+
+constexpr int most_rounds = 14;  // of impulses and bodies' answers in a step
+constexpr int most_checks = 6;   // of the ways
+/// Of the thickness: rows that are missed by less fit.
+constexpr double fits = 0.05;
+/// [1/(thickness/step)] of velocities of rows: less is no change.
+constexpr double negligible = 1.0e-3;
+/// Of the largest energy: the rounding of work, and what a step's account may gain before the step
+/// is refused.
+constexpr double rounding_of_work = 1.0e-9, most_gain = 1.0e-3;
+/// What parts surfaces that are too near: this share of what they miss in a step, at most so many
+/// edges in a nominal step, for at most this share of half of what normal contact has lost.
+constexpr double push_share = 0.1, push_edges = 0.05, paid_share = 0.2;
+/// From this solve of the same rows on bodies count as softer, doubly each time: a model that is
+/// too stiff throws impulses too far, one that is too soft comes slowly and surely.
+constexpr int softer_from = 3, softest = 3;
+/// Impulses below this share of those on a point are none.
+constexpr double no_impulse = 1.0e-9;
+
+double own_energy(const BodyRecord& record) {
+  const Energy& e = record.energy;
+  return e.kinetic + e.stored + e.dissipated - e.external_work;
+}
+
+}  // namespace
+
+CommonStep::CommonStep(const TouchingSurfaces& surfaces, NearRows& near, Bodies& bodies,
+                       double nominal)
+    : surfaces_(surfaces),
+      near_(near),
+      bodies_(bodies),
+      nominal_(nominal),
+      points_(surfaces, bodies.count()),
+      asked_(index(bodies.count())),
+      tried_(index(bodies.count())),
+      replies_(index(bodies.count())),
+      advanced_(index(bodies.count())),
+      energies_(index(bodies.count())),
+      accounts_(index(bodies.count())),
+      port_work_(index(bodies.count())) {}
+
+std::optional<Failed> CommonStep::begin(double time) {
+  step_.begin = step_.end = time;
+  rows_.clear();
+  warm_.clear();
+  points_.clear();
+  std::ranges::fill(advanced_, 0);
+  if (std::optional<Failed> failed = advance(true)) return failed;
+  std::swap(replies_, tried_);
+  surfaces_.place(replies_, from_);
+  near_.begin(from_);
+  for (int b = 0; b < bodies_.count(); ++b) {
+    const BodyRecord& record = replies_[index(b)].record;
+    energies_[index(b)] = own_energy(record);
+    port_work_[index(b)].assign(bodies_.describe(b).ports.size(), 0.0);
+  }
+  return std::nullopt;
+}
+
+double CommonStep::energy_of(int body) const { return own_energy(tried_[index(body)].record); }
+
+void CommonStep::lower(int body, double joules) { energies_[index(body)] -= joules; }
+
+std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bool lenient,
+                                                    PassiveLedger& ledger) {
+  step_.begin = begin;
+  step_.end = end;
+  rows_.clear();
+  points_.clear();
+  prepared_ = 0;
+  softer_ = 0;
+  std::ranges::fill(advanced_, 0);
+  surfaces_.place(replies_, from_);
+  const double budget = 0.5 * ledger.normal - ledger.push_out;
+  pushing_ = budget > 0.0;
+  allowed_ = paid_share * std::max(0.0, budget);
+  if (std::optional<Failed> failed = advance(true)) {
+    why_ = failed->detail;
+    return Refusal::body;
+  }
+  see_velocities();
+  near_.find(from_, to_, rows_);
+  if (std::optional<Refusal> refused = iterate(ledger)) return refused;
+  return accept(lenient, ledger);
+}
+
+/// Impulses, the bodies' answers, and again, until rows fit and the ways are free.
+std::optional<CommonStep::Refusal> CommonStep::iterate(PassiveLedger& ledger) {
+  int checks = 0;
+  if (rows_.empty() && near_.check(from_, to_, rows_).pairs == 0) return std::nullopt;
+  for (int round = 0; round < most_rounds; ++round) {
+    const bool last = round + 1 == most_rounds;
+    prepare_rows();
+    if (std::optional<Failed> failed = advance(false)) {
+      why_ = failed->detail;
+      return Refusal::body;
+    }
+    see_velocities();
+    double unfit = 0.0, work = 0.0;
+    rows_ask(unfit, work);
+    const std::size_t known = rows_.size();
+    if (round > 0 && (unfit < fits * near_.thickness() || last)) {
+      if (work <= allowed_ + rounding_of_work * most_) {
+        const NearRows::Crossed crossed = near_.check(from_, to_, rows_);
+        if (crossed.pairs == 0) return std::nullopt;
+        if (last || ++checks > most_checks) {
+          why_ = fmt::format("{} pairs of features come too near", crossed.pairs);
+          return last ? Refusal::rows : Refusal::path;
+        }
+        if (crossed.added > 0) softer_ = 0;
+      } else if (last) {
+        why_ = fmt::format("contact would do {:.3g} J", work);
+        return Refusal::work;
+      }
+    }
+    if (rows_.size() > known) continue;  // the bodies have not told of their points
+    solve_rows();
+  }
+  why_ = "no impulses were found that fit";
+  return Refusal::rows;
+}
+
+void CommonStep::prepare_rows() {
+  const double h = length(), least = push_edges * surfaces_.shortest_edge() / nominal_;
+  for (; prepared_ < rows_.size(); ++prepared_) {
+    DistanceRow& row = rows_[prepared_];
+    const double missing = near_.thickness() - row.gap;
+    row.push = pushing_ && missing > 0.0 ? std::min(push_share * missing / h, least) : 0.0;
+    row.closing = missing < 0.0 ? -missing / h : -row.push;
+    warm(row);
+    points_.add(row);
+  }
+}
+
+/// From the impulse of the same features in the step before.
+void CommonStep::warm(DistanceRow& row) {
+  const auto found = warm_.find(row.key());
+  if (found == warm_.end()) return;
+  const Eigen::Vector3d before = found->second;
+  row.normal_impulse = std::max(0.0, before.dot(row.normal));
+  if (row.friction > 0.0) {
+    for (const std::size_t t : {0u, 1u}) row.tangential_impulse[t] = before.dot(row.tangents[t]);
+    const double length = std::hypot(row.tangential_impulse[0], row.tangential_impulse[1]);
+    const double most = row.friction * row.normal_impulse;
+    if (length > most)
+      for (double& value : row.tangential_impulse) value *= most / length;
+  }
+}
+
+/// Bodies that rows press on, from where the step begins; all of them, without impulses, first.
+std::optional<Failed> CommonStep::advance(bool all) {
+  find_impulses();
+  std::vector<int> moved;
+  for (int b = 0; b < bodies_.count(); ++b) {
+    PassiveStep& asked = asked_[index(b)];
+    const bool touched = std::ranges::any_of(
+        asked.impulses, [](const std::vector<double>& port) { return !port.empty(); });
+    if (!all && !touched && !points_.any(b)) continue;
+    if (advanced_[index(b)] != 0) bodies_[b].restore();
+    advanced_[index(b)] = 1;
+    asked.begin = step_.begin;
+    asked.end = step_.end;
+    asked.pressed = points_.list(b, bodies_.describe(b).ports.size());
+    bodies_[b].passive()->start(asked);
+    moved.push_back(b);
+  }
+  std::optional<Failed> first;
+  for (const int b : moved) {
+    Outcome outcome = bodies_[b].passive()->finish(tried_[index(b)]);
+    if (Failed* failed = std::get_if<Failed>(&outcome); failed != nullptr && !first)
+      first = Failed{failed->cause, failed->time,
+                     fmt::format("body '{}': {}", bodies_.describe(b).name, failed->detail)};
+  }
+  return first;
+}
+
+/// Of all rows, by body, port and point.
+void CommonStep::find_impulses() {
+  const int dim = surfaces_.skin().dim;
+  for (int b = 0; b < bodies_.count(); ++b) {
+    asked_[index(b)].impulses.resize(bodies_.describe(b).ports.size());
+    for (std::vector<double>& port : asked_[index(b)].impulses) port.clear();
+  }
+  for (const DistanceRow& row : rows_) {
+    const Eigen::Vector3d impulse = row.impulse();
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (row.weights[i] == 0.0) continue;
+      const TouchingSurfaces::Point& at = surfaces_[row.features.points[i]];
+      std::vector<double>& port = asked_[index(at.body)].impulses[index(at.port)];
+      if (port.empty())
+        port.assign(bodies_.describe(at.body).ports[at.port].geometry.points.size(), 0.0);
+      for (int k = 0; k < dim; ++k)
+        port[index(at.point) * index(dim) + index(k)] += row.weights[i] * impulse(k);
+    }
+  }
+}
+
+void CommonStep::see_velocities() {
+  surfaces_.place(tried_, to_);
+  velocities_.resize(to_.size());
+  for (std::size_t k = 0; k < to_.size(); ++k) velocities_[k] = (to_[k] - from_[k]) / length();
+}
+
+/// By how much rows are missed at most [m], those that press and need not a tenth; and what their
+/// impulses do [J].
+void CommonStep::rows_ask(double& unfit, double& work) const {
+  double largest = 0.0;
+  for (const DistanceRow& row : rows_) largest = std::max(largest, row.normal_impulse);
+  for (const DistanceRow& row : rows_) {
+    const double w = row_velocity(row, velocities_, row.normal);
+    work += row.normal_impulse * w;
+    for (const std::size_t t : {0u, 1u})
+      if (row.tangential_impulse[t] != 0.0)
+        work += row.tangential_impulse[t] * row_velocity(row, velocities_, row.tangents[t]);
+    const double over = (w + row.closing) * length();
+    unfit = std::max(unfit, -over);
+    if (row.normal_impulse > no_impulse * largest) unfit = std::max(unfit, 0.1 * std::abs(over));
+  }
+}
+
+void CommonStep::solve_rows() {
+  const int doubled = std::clamp(softer_ - softer_from, 0, softest);
+  for (int b = 0; b < bodies_.count(); ++b)
+    if (points_.any(b))
+      points_.take(b, tried_[index(b)].compliance, std::ldexp(1.0, doubled), velocities_);
+  const double still = negligible * near_.thickness() / length();
+  const double rounding = 1.0e-3 * rounding_of_work * most_;
+  RowImpulses solver(rows_, points_, surfaces_, velocities_);
+  solver.solve(still);
+  if (pushing_ && solver.work() > allowed_ + rounding) {  // too dear: without it
+    pushing_ = false;
+    for (DistanceRow& row : rows_) row.closing = std::max(row.closing, 0.0), row.push = 0.0;
+    solver.solve(still);
+  }
+  if (solver.work() > (pushing_ ? allowed_ : 0.0) + rounding) solver.limit();
+  ++softer_;
+}
+
+/// The account of every body: what its energy gained beside what its ports did.
+std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedger& ledger) {
+  share_out_work();
+  double motion = 0.0;
+  for (const PassiveReply& reply : tried_) motion += reply.record.energy.total();
+  const double scale = std::max(most_, motion);
+  std::vector<double> gained(accounts_.size());
+  for (int b = 0; b < bodies_.count(); ++b) {
+    double done = 0.0;
+    for (const double work : port_work_[index(b)]) done += work;
+    gained[index(b)] = energy_of(b) - energies_[index(b)] - done;
+    if (!std::isfinite(gained[index(b)]) || (!lenient && gained[index(b)] > most_gain * scale)) {
+      why_ = fmt::format("body '{}' would gain {:.3g} J", bodies_.describe(b).name,
+                         gained[index(b)]);
+      return Refusal::energy;
+    }
+  }
+  most_ = scale;
+  std::swap(replies_, tried_);
+  surfaces_.place(replies_, to_);
+  near_.accept(to_);
+  for (int b = 0; b < bodies_.count(); ++b) {
+    double& account = accounts_[index(b)];
+    account += gained[index(b)];
+    double taken = 0.0;
+    if (account > 0.0 && gained[index(b)] > 0.0 && std::isfinite(bodies_.describe(b).mass))
+      taken = bodies_[b].passive()->damp(account);
+    account -= taken;
+    ledger.damped += taken;
+    energies_[index(b)] = own_energy(replies_[index(b)].record) - taken;
+  }
+  warm_.clear();
+  for (const DistanceRow& row : rows_) {
+    const double normal = row.normal_impulse * row_velocity(row, velocities_, row.normal);
+    (normal < 0.0 ? ledger.normal : ledger.push_out) += std::abs(normal);
+    for (const std::size_t t : {0u, 1u})
+      ledger.friction -=
+          row.tangential_impulse[t] * row_velocity(row, velocities_, row.tangents[t]);
+    if (row.normal_impulse > 0.0) warm_[row.key()] = row.impulse();
+    ledger.deepest = std::max(ledger.deepest, row.behind ? -row.gap : 0.0);
+  }
+  return std::nullopt;
+}
+
+/// [J] of impulses at the mean velocities of the points that they push.
+void CommonStep::share_out_work() {
+  for (std::vector<double>& ports : port_work_) std::ranges::fill(ports, 0.0);
+  for (const DistanceRow& row : rows_) {
+    const Eigen::Vector3d impulse = row.impulse();
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (row.weights[i] == 0.0) continue;
+      const std::int32_t point = row.features.points[i];
+      const TouchingSurfaces::Point& at = surfaces_[point];
+      port_work_[index(at.body)][index(at.port)] +=
+          row.weights[i] * impulse.dot(velocities_[index(point)]);
+    }
+  }
+}
+
+void CommonStep::state(Archive& archive) {
+  archive.field("accounts", accounts_);
+  archive.field("most", most_);
+}
+
+}  // namespace abut

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "coordinator/passive/near_rows.hpp"
+#include "coordinator/passive/passive_ledger.hpp"
+#include "coordinator/passive/row_impulses.hpp"
+
+namespace abut {
+
+/// A step that all bodies take together in their passive forms: impulses on what is near, so that
+/// surfaces stay apart and energy does not grow (docs/METHOD.md, section 16).
+///
+///   take      free ways, rows, impulses until they fit, and the check of the ways
+///   rows_fit  whether the impulses that were tried do what rows ask
+///   accept    accounts of all bodies
+class CommonStep {
+ public:
+  /// Why a step was not taken. Every reason goes away with shorter steps.
+  enum class Refusal {
+    body,    // one has no answer
+    rows,    // no impulses that fit
+    work,    // what contact did is not passive
+    energy,  // a body gained
+    path,    // surfaces would come too near on their way
+  };
+
+  /// `nominal` [s]: the longest step. All must outlive it.
+  CommonStep(const TouchingSurfaces& surfaces, NearRows& near, Bodies& bodies, double nominal);
+
+  /// What the bodies are in when the passive way begins.
+  [[nodiscard]] std::optional<Failed> begin(double time);
+  /// From where the bodies are and were saved. Afterwards they are at the end or, refused, anywhere:
+  /// restore them. `lenient`: bodies may gain, it is taken from them.
+  std::optional<Refusal> take(double begin, double end, bool lenient, PassiveLedger& ledger);
+  /// Of the last step that was refused, for people.
+  const std::string& why() const { return why_; }
+
+  // Of the last step that was taken:
+
+  std::span<const PassiveReply> replies() const { return replies_; }
+  std::span<const DistanceRow> rows() const { return rows_; }
+  /// [J] done by contact on a body's port.
+  double work(int body, int port) const { return port_work_[index(body)][index(port)]; }
+  /// What was damped or forgiven outside of steps.
+  void lower(int body, double joules);
+
+  void state(Archive& archive);
+
+ private:
+  using Places = std::vector<Eigen::Vector3d>;
+
+  std::optional<Refusal> iterate(PassiveLedger& ledger);
+  void prepare_rows();
+  void warm(DistanceRow& row);
+  std::optional<Failed> advance(bool all);
+  void see_velocities();
+  void find_impulses();
+  void rows_ask(double& unfit, double& work) const;
+  void solve_rows();
+  std::optional<Refusal> accept(bool lenient, PassiveLedger& ledger);
+  void share_out_work();
+  double energy_of(int body) const;
+  double length() const { return step_.end - step_.begin; }
+
+  const TouchingSurfaces& surfaces_;
+  NearRows& near_;
+  Bodies& bodies_;
+  double nominal_;
+  PressedPoints points_;
+  PassiveStep step_;                           // what all share
+  std::vector<PassiveStep> asked_;             // by body
+  std::vector<PassiveReply> tried_, replies_;  // by body
+  std::vector<char> advanced_;                 // (bodies) since they were saved
+  Places from_, to_, velocities_;              // (points)
+  std::vector<DistanceRow> rows_;
+  std::size_t prepared_ = 0;  // rows that were given their targets
+  bool pushing_ = false;
+  double allowed_ = 0.0;  // [J] that contact may do in the step
+  int softer_ = 0;        // solves of these rows so far
+  std::map<DistanceRow::Key, Eigen::Vector3d> warm_;  // impulses of the last step [N s]
+  std::vector<double> energies_;                      // [J] by body
+  std::vector<double> accounts_;                      // [J] by body that nothing explains
+  std::vector<std::vector<double>> port_work_;        // [J] by body and port
+  double most_ = 0.0;                                 // [J] largest kinetic and stored energy
+  double credit_ = 0.0;                               // [J] half of what normal contact has lost
+  std::string why_;
+};
+
+}  // namespace abut

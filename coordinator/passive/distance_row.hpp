@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include "surface/feature_distance.hpp"
+
+namespace abut {
+
+/// Place of the second feature's first point in a pair.
+constexpr std::size_t second_feature(FeatureKind kind) {
+  return kind == FeatureKind::node_facet ? 1 : 2;
+}
+
+/// What keeps two features of surfaces apart in a step [M.131]: their difference vector along a
+/// fixed normal, sum of weights x places, and the impulse [N s] that acts along it. The first
+/// feature's weights are positive and sum to 1, the other one's negative.
+struct DistanceRow {
+  FeaturePair features;
+  std::array<double, 4> weights{};
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  std::array<Eigen::Vector3d, 2> tangents{};  // in the plane one
+  double gap = 0.0;                           // [m] along the normal at the step's begin
+  double friction = 0.0;
+  bool behind = false;  // its node begins behind the other surface
+
+  double closing = 0.0;  // [m/s] c: the row's velocity w must be at least -c
+  double push = 0.0;     // [m/s] of it, that parts what is too near
+  double normal_impulse = 0.0;
+  std::array<double, 2> tangential_impulse{};
+
+  Eigen::Vector3d impulse() const {
+    return normal_impulse * normal + tangential_impulse[0] * tangents[0] +
+           tangential_impulse[1] * tangents[1];
+  }
+  /// Makes tangents of the normal; in the plane the first one alone.
+  void find_tangents(int dim);
+  /// What tells it from other rows, from step to step: its kind and the points that count.
+  using Key = std::array<std::int32_t, 5>;
+  Key key() const;
+};
+
+}  // namespace abut

@@ -1,0 +1,137 @@
+#include "coordinator/passive/near_rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "surface/feature_path.hpp"
+#include "surface/intersections.hpp"
+#include "surface/signed_side.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Rows are made of what is nearer than so many thicknesses.
+constexpr double near_thicknesses = 1.5;
+/// On its way a pair keeps so much of its distance, or of the thickness where it has more: a step
+/// that takes more is not accepted. Of pairs that have used up most of the thickness nearly all:
+/// what is left would shrink from step to step without end.
+constexpr double kept = 0.3, kept_when_close = 0.9, close = 0.1;
+/// Conservative advancement comes as near as this share of the distance it looks for.
+constexpr double resolved = 0.02;
+/// An edge whose closest point is an end: a row of a node and a facet says the same.
+constexpr double at_end = 1.0e-7;
+/// Rows along one normal whose weights differ by less say the same.
+constexpr double same_normal = 1.0e-8, same_weights = 1.0e-3;
+
+FeaturePoints at(const FeaturePair& pair, const NearRows::Places& from, const NearRows::Places& to,
+        double part) {
+  FeaturePoints out;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::int32_t p = pair.points[i];
+    out[i] = p < 0 ? Eigen::Vector3d::Zero() : Eigen::Vector3d(from[p] + part * (to[p] - from[p]));
+  }
+  return out;
+}
+
+}  // namespace
+
+NearRows::NearRows(const TouchingSurfaces& surfaces, double thickness)
+    : surfaces_(surfaces), thickness_(thickness), trees_(surfaces.skin(), surfaces.reference()) {
+  for (int a = 0; a < surfaces.groups(); ++a)
+    for (int b = 0; b < surfaces.groups(); ++b)
+      choice_.allowed.push_back(surfaces.touch(a, b) ? 1 : 0);
+  choice_.prescribed = surfaces.standing();
+}
+
+void NearRows::begin(const Places& places) {
+  behind_.assign(surfaces_.count(), 0);
+  mark_behind(places, true);
+}
+
+void NearRows::accept(const Places& places) {
+  if (behind_count_ > 0) mark_behind(places, false);
+}
+
+bool NearRows::leaves_out(const FeaturePair& pair) const {
+  return behind_count_ > 0 && std::ranges::any_of(pair.points, [this](std::int32_t point) {
+           return point >= 0 && behind_[point] != 0;
+         });
+}
+
+void NearRows::find(const Places& from, const Places& to, std::vector<DistanceRow>& rows) {
+  const int dim = surfaces_.skin().dim;
+  const double reach = near_thicknesses * thickness_;
+  near_features(trees_, from, from, reach, choice_, pairs_);
+  for (const FeaturePair& pair : pairs_) {
+    if (leaves_out(pair)) continue;
+    if (feature_distance(pair.kind, dim, at(pair, from, from, 0.0)).distance < reach)
+      add(pair, from, from, 0.0, rows);
+  }
+  near_features(trees_, from, to, thickness_, choice_, pairs_);
+  for (const FeaturePair& pair : pairs_) {
+    if (leaves_out(pair)) continue;
+    const FeaturePoints before = at(pair, from, to, 0.0), after = at(pair, from, to, 1.0);
+    if (feature_distance(pair.kind, dim, before).distance <= thickness_) continue;
+    const double part =
+        first_time_within(pair.kind, dim, before, after, thickness_, resolved * thickness_);
+    if (part < 1.0) add(pair, from, to, part, rows);
+  }
+  if (behind_count_ > 0) add_behind(from, rows);
+}
+
+NearRows::Crossed NearRows::check(const Places& from, const Places& to,
+                                  std::vector<DistanceRow>& rows) {
+  const int dim = surfaces_.skin().dim;
+  Crossed crossed;
+  near_features(trees_, from, to, thickness_, choice_, pairs_);
+  for (const FeaturePair& pair : pairs_) {
+    if (leaves_out(pair)) continue;
+    const FeaturePoints before = at(pair, from, to, 0.0), after = at(pair, from, to, 1.0);
+    const double distance = feature_distance(pair.kind, dim, before).distance;
+    const double share = distance < close * thickness_ ? kept_when_close : kept;
+    const double least = share * std::min(distance, thickness_);
+    const double part =
+        first_time_within(pair.kind, dim, before, after, least, resolved * least);
+    if (part >= 1.0) continue;
+    ++crossed.pairs;
+    if (add(pair, from, to, part, rows)) ++crossed.added;
+  }
+  return crossed;
+}
+
+bool NearRows::add(const FeaturePair& pair, const Places& from, const Places& to, double part,
+                   std::vector<DistanceRow>& rows) const {
+  const int dim = surfaces_.skin().dim;
+  const FeaturePoints x = at(pair, from, to, part), x0 = at(pair, from, to, 0.0);
+  const FeatureDistance found = feature_distance(pair.kind, dim, x);
+  if (!(found.distance > 0.0)) return false;
+  DistanceRow row;
+  row.features = pair;
+  row.weights = found.weights;
+  if (pair.kind == FeatureKind::edge_edge &&
+      std::ranges::any_of(row.weights, [](double w) { return std::abs(w) < at_end; }))
+    return false;
+  row.normal = found.difference(x) / found.distance;
+  for (std::size_t i = 0; i < 4; ++i) row.gap += row.weights[i] * row.normal.dot(x0[i]);
+  row.friction = surfaces_.friction(pair.points[0], pair.points[second_feature(pair.kind)]);
+  row.find_tangents(dim);
+  if (known(row, rows)) return false;
+  rows.push_back(row);
+  return true;
+}
+
+bool NearRows::known(const DistanceRow& row, const std::vector<DistanceRow>& rows) const {
+  const DistanceRow::Key key = row.key();
+  return std::ranges::any_of(rows, [&](const DistanceRow& other) {
+    if (other.key() != key || other.normal.dot(row.normal) < 1.0 - same_normal) return false;
+    double apart = 0.0;
+    if (other.features.points == row.features.points)
+      for (std::size_t i = 0; i < 4; ++i)
+        apart = std::max(apart, std::abs(other.weights[i] - row.weights[i]));
+    return apart < same_weights;
+  });
+}
+
+}  // namespace abut

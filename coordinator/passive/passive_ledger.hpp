@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/archive.hpp"
+
+namespace abut {
+
+/// What passive steps have taken from the bodies, and what they had to do for it.
+struct PassiveLedger {
+  double normal = 0.0;    // [J] lost in normal contact
+  double friction = 0.0;  // [J] by friction, which is physics
+  double push_out = 0.0;  // [J] given to part what was too near, out of what normal contact lost
+  double damped = 0.0;    // [J] taken back from bodies that gained, or held rigid for an instant
+  double switched = 0.0;  // [J] lost where bodies changed their form
+  std::int64_t steps = 0, refused = 0, windows = 0, rigid = 0;
+  double deepest = 0.0;       // [m] behind a partner's surface
+  double shortest_step = 0.0;  // [s]; 0: none was taken
+
+  /// [J] what accuracy was given up; friction would be there anyway.
+  double given_up() const { return normal - push_out + damped + switched; }
+  void state(Archive& archive) {
+    archive.field("normal", normal);
+    archive.field("friction", friction);
+    archive.field("push_out", push_out);
+    archive.field("damped", damped);
+    archive.field("switched", switched);
+    archive.field("steps", steps);
+    archive.field("refused", refused);
+    archive.field("windows", windows);
+    archive.field("rigid", rigid);
+    archive.field("deepest", deepest);
+    archive.field("shortest_step", shortest_step);
+  }
+};
+
+}  // namespace abut

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "coordinator/passive/common_step.hpp"
+
+namespace abut {
+
+/// Puts passive steps into the bodies' responses, so that everybody who reads those of a window
+/// finds what they always find: motion and forces of ports, reactions on partners, records.
+class PassiveRecord {
+ public:
+  /// Who is told of forces between two ports: the kinematic side of their joint.
+  struct Told {
+    Side kinematic, partner;
+  };
+
+  PassiveRecord(const TouchingSurfaces& surfaces, Bodies& bodies)
+      : surfaces_(surfaces), bodies_(bodies) {}
+
+  /// Before the first step of a window: how it begins.
+  void begin(double time, std::span<const PassiveReply> replies, std::vector<Told> told);
+  void add(const CommonStep& step, double begin, double end);
+  /// The state at the end of the last step is a record.
+  void record(std::span<const PassiveReply> replies);
+  /// After the last step.
+  void finish();
+
+ private:
+  void append(double time, std::span<const PassiveReply> replies);
+  void widen(std::span<const PassiveReply> replies);
+  void add_forces(const CommonStep& step, double length);
+
+  const TouchingSurfaces& surfaces_;
+  Bodies& bodies_;
+  std::vector<Told> told_;
+  std::vector<std::vector<double>> lower_, upper_;  // [m] (ports of all bodies) since the record
+};
+
+}  // namespace abut

@@ -1,0 +1,174 @@
+#include "coordinator/passive/passive_way.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+namespace abut {
+
+namespace {
+
+/// Of the shortest edge: how near surfaces press [M.134].
+constexpr double thickness_share = 1.0e-3;
+constexpr int most_halvings = 14;
+/// Steps that must succeed before they are doubled again, fewer where they are very short.
+constexpr int steps_to_double = 8, short_level = 6, short_steps_to_double = 3;
+constexpr int most_holds = 4;
+/// Of a step: ends that are nearer are the same.
+constexpr double same_time = 1.0e-9;
+
+}  // namespace
+
+PassiveWay::PassiveWay(std::vector<TouchingPair> pairs, Bodies& bodies)
+    : pairs_(std::move(pairs)), bodies_(bodies), hindrance_(find_hindrance()) {}
+
+PassiveWay::~PassiveWay() = default;
+
+std::string PassiveWay::find_hindrance() const {
+  if (pairs_.empty()) return "no surfaces touch";
+  for (int b = 0; b < bodies_.count(); ++b)
+    if (!bodies_.describe(b).can.passive)
+      return fmt::format("body '{}' ({}) has no passive form", bodies_.describe(b).name,
+                         bodies_.describe(b).model);
+  return {};
+}
+
+std::optional<Failed> PassiveWay::enter(double time) {
+  if (step_ == nullptr) {
+    nominal_ = bodies_.shortest_step();
+    surfaces_ = std::make_unique<TouchingSurfaces>(pairs_, bodies_);
+    near_ = std::make_unique<NearRows>(*surfaces_, thickness_share * surfaces_->shortest_edge());
+    step_ = std::make_unique<CommonStep>(*surfaces_, *near_, bodies_, nominal_);
+  }
+  for (int b = 0; b < bodies_.count(); ++b) ledger_.switched += bodies_[b].passive()->enter();
+  active_ = true;
+  level_ = good_ = held_ = 0;
+  return step_->begin(time);
+}
+
+std::optional<Failed> PassiveWay::window(const TimeWindow& window, int records,
+                                         std::span<const Joint> joints) {
+  std::vector<PassiveRecord::Told> told;
+  for (const Joint& joint : joints)
+    if (joint.exchange != nullptr && !joint.tied())
+      told.push_back({joint.kinematic_side(), joint.neumann_side()});
+  PassiveRecord record(*surfaces_, bodies_);
+  record.begin(window.begin, step_->replies(), std::move(told));
+  quiet_ = true;
+  pressed_.clear();
+  double time = window.begin;
+  for (int r = 1; r <= records; ++r) {
+    const double end =
+        r == records ? window.end : window.begin + window.length() * r / double(records);
+    if (std::optional<Failed> failed = advance_to(end, time, record)) return failed;
+    record.record(step_->replies());
+  }
+  record.finish();
+  ++ledger_.windows;
+  return std::nullopt;
+}
+
+/// Whole parts of the nominal step, halved where a step is refused.
+std::optional<Failed> PassiveWay::advance_to(double end, double& time, PassiveRecord& record) {
+  while (time < end) {
+    const double left = end - time;
+    const double parts = std::ceil(left / nominal_ - same_time);
+    const double length = left / parts / std::ldexp(1.0, level_);
+    const double next = left - length < same_time * length ? end : time + length;
+    if (step(time, next, record, level_ >= most_halvings - 4)) {
+      time = next;
+      if (++good_ >= (level_ > short_level ? short_steps_to_double : steps_to_double) &&
+          level_ > 0) {
+        --level_;
+        good_ = 0;
+        held_ = 0;
+      }
+      continue;
+    }
+    good_ = 0;
+    if (++level_ <= most_halvings) continue;
+    if (!hold_rigid())
+      return Failed{Failed::Cause::step_too_small, time,
+                    "no passive step was found: " + step_->why()};
+  }
+  return std::nullopt;
+}
+
+bool PassiveWay::step(double begin, double end, PassiveRecord& record, bool lenient) {
+  bodies_.save_all();
+  ++ledger_.steps;
+  if (step_->take(begin, end, lenient, ledger_)) {
+    bodies_.restore_all();
+    ++ledger_.refused;
+    return false;
+  }
+  const double length = end - begin;
+  if (ledger_.shortest_step == 0.0 || length < ledger_.shortest_step)
+    ledger_.shortest_step = length;
+  record.add(*step_, begin, end);
+  note_pressed();
+  return true;
+}
+
+/// Which surfaces press on each other.
+void PassiveWay::note_pressed() {
+  for (const DistanceRow& row : step_->rows()) {
+    if (row.normal_impulse <= 0.0) continue;
+    quiet_ = false;
+    const TouchingSurfaces::Point& one = (*surfaces_)[row.features.points[0]];
+    const TouchingSurfaces::Point& other =
+        (*surfaces_)[row.features.points[second_feature(row.features.kind)]];
+    const std::array<int, 4> pair = {one.body, one.port, other.body, other.port};
+    if (std::ranges::find(pressed_, pair) == pressed_.end()) pressed_.push_back(pair);
+  }
+}
+
+bool PassiveWay::pressed(const Joint& joint) const {
+  const auto& [a, b] = joint.sides;
+  return std::ranges::any_of(pressed_, [&](const std::array<int, 4>& pair) {
+    return pair == std::array{a.body, a.port, b.body, b.port} ||
+           pair == std::array{b.body, b.port, a.body, a.port};
+  });
+}
+
+/// Takes all of the deformation's kinetic energy away: what the last rung costs.
+bool PassiveWay::hold_rigid() {
+  if (++held_ > most_holds) return false;
+  ++ledger_.rigid;
+  level_ = most_halvings / 2;
+  for (int b = 0; b < bodies_.count(); ++b) {
+    if (!std::isfinite(bodies_.describe(b).mass)) continue;
+    const double taken = bodies_[b].passive()->damp(std::numeric_limits<double>::infinity());
+    ledger_.damped += taken;
+    step_->lower(b, taken);
+  }
+  return true;
+}
+
+bool PassiveWay::leave(double time) {
+  bodies_.save_all();
+  double all = 0.0;
+  for (int b = 0; b < bodies_.count(); ++b) {
+    double lost = 0.0;
+    const Outcome outcome = bodies_[b].passive()->leave(time, lost);
+    if (std::holds_alternative<Failed>(outcome)) {
+      bodies_.restore_all();
+      return false;
+    }
+    all += lost;
+  }
+  ledger_.switched += all;
+  active_ = false;
+  return true;
+}
+
+void PassiveWay::state(Archive& archive) {
+  archive.field("active", active_);
+  ledger_.state(archive);
+}
+
+}  // namespace abut

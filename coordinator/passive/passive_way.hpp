@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "coordinator/coupling/joint.hpp"
+#include "coordinator/passive/common_step.hpp"
+#include "coordinator/passive/passive_record.hpp"
+
+namespace abut {
+
+/// The passive way through windows: all bodies in their passive forms, steps that are halved as
+/// often as it takes, and bodies held rigid for an instant as the last resort. It always ends.
+///
+///   enter    bodies change to their passive forms
+///   window   steps from its begin to its end
+///   leave    back to the bodies' own schemes
+class PassiveWay {
+ public:
+  /// `pairs`: of surfaces that may touch. Bodies must outlive it.
+  PassiveWay(std::vector<TouchingPair> pairs, Bodies& bodies);
+  ~PassiveWay();
+
+  /// Why the scene cannot take this way, for people; empty: it can.
+  const std::string& hindrance() const { return hindrance_; }
+  bool active() const { return active_; }
+  const PassiveLedger& ledger() const { return ledger_; }
+
+  /// The bodies stand at a time at which they may be saved.
+  [[nodiscard]] std::optional<Failed> enter(double time);
+  /// Advances all bodies and fills their responses, with so many records.
+  [[nodiscard]] std::optional<Failed> window(const TimeWindow& window, int records,
+                                             std::span<const Joint> joints);
+  /// False: a body cannot, and all stay as they are.
+  bool leave(double time);
+  /// Whether nothing pressed in the last window.
+  bool quiet() const { return quiet_; }
+  /// Whether surfaces pressed in the last window, of a joint.
+  bool pressed(const Joint& joint) const;
+
+  void state(Archive& archive);
+
+ private:
+  std::string find_hindrance() const;
+  bool step(double begin, double end, PassiveRecord& record, bool lenient);
+  std::optional<Failed> advance_to(double end, double& time, PassiveRecord& record);
+  bool hold_rigid();
+  void note_pressed();
+
+  std::vector<TouchingPair> pairs_;
+  Bodies& bodies_;
+  std::string hindrance_;
+  bool active_ = false, quiet_ = true;
+  PassiveLedger ledger_;
+  double nominal_ = 0.0;  // [s]
+  int level_ = 0;         // steps are nominal / 2^level
+  int good_ = 0;          // steps since the level changed
+  int held_ = 0;          // times in a row that bodies were held rigid
+  std::vector<std::array<int, 4>> pressed_;  // body, port, body, port
+  std::unique_ptr<TouchingSurfaces> surfaces_;
+  std::unique_ptr<NearRows> near_;
+  std::unique_ptr<CommonStep> step_;
+};
+
+}  // namespace abut

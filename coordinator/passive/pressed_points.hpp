@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "coordinator/passive/distance_row.hpp"
+#include "coordinator/passive/touching_surfaces.hpp"
+
+namespace abut {
+
+/// The points that rows press on, by body, and how they answer: around the impulses that were
+/// tried, w = w_tried + C (J - J_tried) [M.129].
+class PressedPoints {
+ public:
+  explicit PressedPoints(const TouchingSurfaces& surfaces, int bodies)
+      : surfaces_(surfaces), bodies_(index(bodies)) {}
+
+  void clear();
+  /// Takes the points of a row; true: some are new, and the bodies have not told of them.
+  bool add(const DistanceRow& row);
+  /// Whether anything is pressed on a body that could move it.
+  bool any(int body) const { return !bodies_[index(body)].slots.empty(); }
+  /// The points of a body's ports, for PassiveStep::pressed.
+  std::vector<std::vector<std::int32_t>> list(int body, std::size_t ports) const;
+  /// Takes the compliance that a body told, times `softer`, and the mean velocities [m/s] (points)
+  /// under the impulses that were tried.
+  void take(int body, const std::vector<double>& compliance, double softer,
+            std::span<const Eigen::Vector3d> velocities);
+
+  /// First value of a point among those of its body; -1: it is not pressed, or stands.
+  int slot(std::int32_t point) const { return slots_.empty() ? -1 : slots_[point]; }
+  Eigen::VectorXd& velocity(int body) { return bodies_[index(body)].velocity; }
+  const Eigen::VectorXd& velocity(int body) const { return bodies_[index(body)].velocity; }
+  const Eigen::MatrixXd& compliance(int body) const { return bodies_[index(body)].compliance; }
+
+ private:
+  struct Body {
+    std::vector<std::int32_t> slots;  // points of the skin, in the order of values
+    Eigen::MatrixXd compliance;       // [1/kg] (values, values)
+    Eigen::VectorXd velocity;         // [m/s] (values)
+  };
+
+  const TouchingSurfaces& surfaces_;
+  std::vector<Body> bodies_;
+  std::vector<int> slots_;  // by point
+};
+
+}  // namespace abut

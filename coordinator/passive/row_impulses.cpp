@@ -1,0 +1,181 @@
+#include "coordinator/passive/row_impulses.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace abut {
+
+namespace {
+
+/// Rows that say the same have no unique impulses; this share of a row's own compliance picks some.
+constexpr double regularised = 1.0e-6;
+/// Sweeps over all rows. More do not change penetration or losses: the next step's gaps do.
+constexpr int most_sweeps = 100;
+
+const Eigen::Vector3d& direction_of(const DistanceRow& row, int direction) {
+  return direction == 0 ? row.normal : row.tangents[index(direction - 1)];
+}
+
+}  // namespace
+
+double row_velocity(const DistanceRow& row, std::span<const Eigen::Vector3d> velocities,
+                    const Eigen::Vector3d& along) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 4; ++i)
+    if (row.weights[i] != 0.0)
+      sum += row.weights[i] * along.dot(velocities[index(row.features.points[i])]);
+  return sum;
+}
+
+RowImpulses::RowImpulses(std::vector<DistanceRow>& rows, PressedPoints& points,
+                         const TouchingSurfaces& surfaces,
+                         std::span<const Eigen::Vector3d> velocities)
+    : rows_(rows),
+      points_(points),
+      surfaces_(surfaces),
+      velocities_(velocities),
+      dim_(surfaces.skin().dim) {
+  for (const DistanceRow& row : rows_) answers_.push_back(answer_of(row));
+}
+
+RowImpulses::Answer RowImpulses::answer_of(const DistanceRow& row) const {
+  Answer answer;
+  const std::int32_t points[] = {row.features.points[0], row.features.points[second_feature(row.features.kind)]};
+  for (const std::size_t s : {0u, 1u}) {
+    const int body = surfaces_[points[s]].body;
+    if (points_.any(body) && answer.body[0] != body) answer.body[s] = body;
+  }
+  const int directions = row.friction > 0.0 ? dim_ : 1;
+  Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
+  for (int d = 0; d < directions; ++d) {
+    for (const std::size_t s : {0u, 1u}) {
+      if (answer.body[s] < 0) continue;
+      const Eigen::VectorXd pressed = spread(row, answer.body[s], direction_of(row, d));
+      Eigen::VectorXd& change = answer.change[index(d)][s];
+      change.noalias() = points_.compliance(answer.body[s]) * pressed;
+      for (int e = 0; e < directions; ++e)
+        own(e, d) += spread(row, answer.body[s], direction_of(row, e)).dot(change);
+    }
+  }
+  answer.normal = own(0, 0);
+  const double trace = own(1, 1) + own(2, 2);
+  const double apart = std::hypot(own(1, 1) - own(2, 2), own(1, 2) + own(2, 1));
+  answer.tangential = dim_ == 2 ? own(1, 1) : 0.5 * (trace + apart);
+  return answer;
+}
+
+/// The row along a direction, as values of a body.
+Eigen::VectorXd RowImpulses::spread(const DistanceRow& row, int body,
+                                    const Eigen::Vector3d& along) const {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(points_.velocity(body).size());
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (row.weights[i] == 0.0) continue;
+    const std::int32_t point = row.features.points[i];
+    const int slot = points_.slot(point);
+    if (slot < 0 || surfaces_[point].body != body) continue;
+    out.segment(slot, dim_) += row.weights[i] * along.head(dim_);
+  }
+  return out;
+}
+
+double RowImpulses::velocity(const DistanceRow& row, const Eigen::Vector3d& along) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (row.weights[i] == 0.0) continue;
+    const std::int32_t point = row.features.points[i];
+    const int slot = points_.slot(point);
+    const Eigen::VectorXd* pressed =
+        slot < 0 ? nullptr : &points_.velocity(surfaces_[point].body);
+    for (int k = 0; k < dim_; ++k)
+      sum += row.weights[i] * along(k) *
+             (pressed != nullptr ? (*pressed)(slot + k) : velocities_[index(point)](k));
+  }
+  return sum;
+}
+
+void RowImpulses::press(std::size_t row, int direction, double impulse) {
+  const Answer& answer = answers_[row];
+  for (const std::size_t s : {0u, 1u})
+    if (answer.body[s] >= 0)
+      points_.velocity(answer.body[s]) += impulse * answer.change[index(direction)][s];
+}
+
+/// By the midpoint rule what an impulse works on is the velocity that closes the gap, so the
+/// impulse that closes it, to c >= -push, is the smaller one wherever push is paid for.
+double RowImpulses::solve_normal(std::size_t k) {
+  DistanceRow& row = rows_[k];
+  const double own = answers_[k].normal;
+  if (!(own > 0.0)) return 0.0;
+  const double some = regularised * own;
+  const double w = velocity(row, row.normal) + row.closing + some * row.normal_impulse;
+  const double now = std::max(0.0, row.normal_impulse - w / (own + some));
+  const double change = now - row.normal_impulse;
+  if (change != 0.0) press(k, 0, change);
+  row.normal_impulse = now;
+  return std::abs(change) * own;
+}
+
+/// Towards sticking, held on Coulomb's disc: by the larger compliance of the tangents, so that it
+/// stays between nothing and what does no work.
+double RowImpulses::solve_friction(std::size_t k) {
+  DistanceRow& row = rows_[k];
+  const double own = answers_[k].tangential;
+  if (!(row.friction > 0.0) || !(own > 0.0)) return 0.0;
+  std::array<double, 2> now = row.tangential_impulse;
+  for (int t = 0; t + 1 < dim_; ++t)
+    now[index(t)] -= velocity(row, row.tangents[index(t)]) / own;
+  const double length = std::hypot(now[0], now[1]), most = row.friction * row.normal_impulse;
+  if (length > most)
+    for (double& value : now) value *= most / length;
+  double largest = 0.0;
+  for (int t = 0; t + 1 < dim_; ++t) {
+    const double change = now[index(t)] - row.tangential_impulse[index(t)];
+    if (change != 0.0) press(k, 1 + t, change);
+    largest = std::max(largest, std::abs(change) * own);
+  }
+  row.tangential_impulse = now;
+  return largest;
+}
+
+void RowImpulses::solve(double negligible) {
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    double change = 0.0;
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      change = std::max({change, solve_normal(k), solve_friction(k)});
+    if (change < negligible) return;
+  }
+}
+
+double RowImpulses::work() const {
+  double sum = 0.0;
+  for (const DistanceRow& row : rows_) {
+    sum += row.normal_impulse * velocity(row, row.normal);
+    for (int t = 0; t + 1 < dim_; ++t)
+      if (row.tangential_impulse[index(t)] != 0.0)
+        sum += row.tangential_impulse[index(t)] * velocity(row, row.tangents[index(t)]);
+  }
+  return sum;
+}
+
+double RowImpulses::limit() {
+  const double with = work();
+  if (with <= 0.0) return 1.0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    press(k, 0, -rows_[k].normal_impulse);
+    for (int t = 0; t + 1 < dim_ && rows_[k].friction > 0.0; ++t)
+      press(k, 1 + t, -rows_[k].tangential_impulse[index(t)]);
+  }
+  const double free = work();  // of the same impulses, at the velocities without them
+  const double curved = with - free;
+  const double factor = curved > 0.0 ? std::clamp(-free / curved, 0.0, 1.0) : 0.0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    rows_[k].normal_impulse *= factor;
+    for (double& value : rows_[k].tangential_impulse) value *= factor;
+    press(k, 0, rows_[k].normal_impulse);
+    for (int t = 0; t + 1 < dim_ && rows_[k].friction > 0.0; ++t)
+      press(k, 1 + t, rows_[k].tangential_impulse[index(t)]);
+  }
+  return factor;
+}
+
+}  // namespace abut

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "coordinator/passive/pressed_points.hpp"
+
+namespace abut {
+
+/// The impulses of all rows of a step, for a linear answer of the bodies: each the smaller of what
+/// closes the gap and what does no work, row by row until nothing changes [M.131], [M.132]; then
+/// all by one factor where that was not enough to do no work together [M.133].
+class RowImpulses {
+ public:
+  /// The lists must outlive it. `velocities`: mean ones of all points [m/s], of those that stand
+  /// the only ones.
+  RowImpulses(std::vector<DistanceRow>& rows, PressedPoints& points,
+              const TouchingSurfaces& surfaces, std::span<const Eigen::Vector3d> velocities);
+
+  /// `negligible` [m/s]: less change of a velocity is none.
+  void solve(double negligible);
+  /// [J] sum of J.w
+  double work() const;
+  /// Makes the work at most 0; the factor that it took.
+  double limit();
+
+ private:
+  struct Answer {  // of one row
+    std::array<int, 2> body = {-1, -1};
+    // [1/kg] (directions; sides; values of the body) change of its velocities by a unit impulse
+    std::array<std::array<Eigen::VectorXd, 2>, 3> change;
+    double normal = 0.0, tangential = 0.0;  // [1/kg] of its own; the larger one of tangents
+  };
+
+  Answer answer_of(const DistanceRow& row) const;
+  Eigen::VectorXd spread(const DistanceRow& row, int body, const Eigen::Vector3d& along) const;
+  double velocity(const DistanceRow& row, const Eigen::Vector3d& along) const;
+  void press(std::size_t row, int direction, double impulse);
+  double solve_normal(std::size_t row);
+  double solve_friction(std::size_t row);
+
+  std::vector<DistanceRow>& rows_;
+  PressedPoints& points_;
+  const TouchingSurfaces& surfaces_;
+  std::span<const Eigen::Vector3d> velocities_;
+  int dim_;
+  std::vector<Answer> answers_;
+};
+
+/// [m/s] w of a row along a direction, of mean velocities of all points.
+double row_velocity(const DistanceRow& row, std::span<const Eigen::Vector3d> velocities,
+                    const Eigen::Vector3d& along);
+
+}  // namespace abut

@@ -1,0 +1,77 @@
+#include "coordinator/passive/touching_surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace abut {
+
+namespace {
+
+Eigen::Vector3d vector_at(const std::vector<double>& values, std::size_t point, int dim) {
+  Eigen::Vector3d out = Eigen::Vector3d::Zero();
+  for (int i = 0; i < dim; ++i) out(i) = values[point * index(dim) + index(i)];
+  return out;
+}
+
+}  // namespace
+
+TouchingSurfaces::TouchingSurfaces(std::span<const TouchingPair> pairs, const Bodies& bodies) {
+  if (!pairs.empty()) dim_ = bodies.port(pairs.front().sides[0]).geometry.dim;
+  std::vector<std::array<int, 2>> groups;
+  for (const TouchingPair& pair : pairs)
+    groups.push_back({group_of(pair.sides[0], bodies), group_of(pair.sides[1], bodies)});
+  std::vector<PosedSurface> surfaces;
+  for (const Side& side : ports_) surfaces.push_back(posed(bodies.port(side).geometry));
+  skin_ = skin_of(surfaces);
+  skin_.dim = dim_;
+  pair_friction_.assign(ports_.size() * ports_.size(), -1.0);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const std::size_t one = index(groups[k][0]), other = index(groups[k][1]);
+    pair_friction_[one * ports_.size() + other] = pairs[k].friction;
+    pair_friction_[other * ports_.size() + one] = pairs[k].friction;
+  }
+  find_shortest_edge(bodies);
+}
+
+/// Of a port; it is added when it is asked for first.
+int TouchingSurfaces::group_of(const Side& side, const Bodies& bodies) {
+  for (std::size_t g = 0; g < ports_.size(); ++g)
+    if (ports_[g].body == side.body && ports_[g].port == side.port) return static_cast<int>(g);
+  const int group = static_cast<int>(ports_.size());
+  ports_.push_back(side);
+  const PortGeometry& geometry = bodies.port(side).geometry;
+  const bool stands = std::isinf(bodies.describe(side.body).mass);
+  for (int p = 0; p < geometry.count(); ++p) {
+    points_.push_back({side.body, side.port, p});
+    reference_.push_back(vector_at(geometry.points, index(p), dim_));
+    stands_.push_back(stands ? 1 : 0);
+  }
+  return group;
+}
+
+void TouchingSurfaces::find_shortest_edge(const Bodies& bodies) {
+  double soft = std::numeric_limits<double>::infinity(), any = soft;
+  const auto see = [&](std::int32_t a, std::int32_t b) {
+    const double length = (reference_[a] - reference_[b]).norm();
+    any = std::min(any, length);
+    if (bodies.port({points_[a].body, points_[a].port, 0}).geometry.spacing > 0.0)
+      soft = std::min(soft, length);
+  };
+  for (const auto& edge : skin_.edges) see(edge[0], edge[1]);
+  if (dim_ == 2)
+    for (const auto& facet : skin_.facets) see(facet[0], facet[1]);
+  shortest_edge_ = std::isfinite(soft) ? soft : std::isfinite(any) ? any : 0.0;
+}
+
+void TouchingSurfaces::place(std::span<const PassiveReply> replies,
+                             std::vector<Eigen::Vector3d>& places) const {
+  places.resize(points_.size());
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const Point& at = points_[k];
+    const PassiveReply::Port& port = replies[index(at.body)].ports[index(at.port)];
+    places[k] = reference_[k] + vector_at(port.displacement, index(at.point), dim_);
+  }
+}
+
+}  // namespace abut

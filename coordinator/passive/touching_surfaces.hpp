@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "contract/passive.hpp"
+#include "coordinator/coupling/bodies.hpp"
+#include "surface/skin.hpp"
+
+namespace abut {
+
+/// Two surfaces that may touch, and Coulomb's coefficient between them.
+struct TouchingPair {
+  std::array<Side, 2> sides;
+  double friction = 0.0;
+};
+
+/// All surfaces of a run that may touch, as one skin: points of all ports, one group per port.
+class TouchingSurfaces {
+ public:
+  struct Point {
+    int body = 0, port = 0;
+    std::int32_t point = 0;  // of the port
+  };
+
+  /// The bodies' descriptions must outlive it.
+  TouchingSurfaces(std::span<const TouchingPair> pairs, const Bodies& bodies);
+
+  const Skin& skin() const { return skin_; }
+  std::size_t count() const { return points_.size(); }
+  const Point& operator[](std::int32_t point) const { return points_[point]; }
+  /// [m] the places of all points by the displacements of their bodies' ports.
+  void place(std::span<const PassiveReply> replies, std::vector<Eigen::Vector3d>& places) const;
+  const std::vector<Eigen::Vector3d>& reference() const { return reference_; }
+  /// Whether two groups may touch.
+  bool touch(int one, int other) const { return friction_of(one, other) >= 0.0; }
+  /// Coulomb's coefficient between the groups of two points.
+  double friction(std::int32_t one, std::int32_t other) const {
+    return friction_of(skin_.group[one], skin_.group[other]);
+  }
+  /// Whether nothing that presses on a point moves it.
+  bool stands(std::int32_t point) const { return stands_[point] != 0; }
+  const std::vector<std::uint8_t>& standing() const { return stands_; }
+  int groups() const { return static_cast<int>(ports_.size()); }
+  const Side& port(int group) const { return ports_[group]; }
+  /// [m] the shortest edge of surfaces that deform; of all where none does.
+  double shortest_edge() const { return shortest_edge_; }
+
+ private:
+  double friction_of(int one, int other) const {
+    return pair_friction_[index(one) * ports_.size() + index(other)];
+  }
+  int group_of(const Side& side, const Bodies& bodies);
+  void find_shortest_edge(const Bodies& bodies);
+
+  int dim_ = 3;
+  Skin skin_;
+  std::vector<Point> points_;
+  std::vector<Side> ports_;                 // by group
+  std::vector<double> pair_friction_;       // (groups, groups); negative: they may not touch
+  std::vector<std::uint8_t> stands_;                // (points)
+  std::vector<Eigen::Vector3d> reference_;  // [m]
+  double shortest_edge_ = 0.0;
+};
+
+}  // namespace abut
