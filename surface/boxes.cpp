@@ -4,8 +4,8 @@
 #include <numeric>
 #include <span>
 
-#include "base/assert.hpp"
 #include "base/index.hpp"
+#include "surface/box_pairs.hpp"
 
 namespace abut {
 namespace {
@@ -54,14 +54,14 @@ void refit_by(BoxTree& tree, const LeafBox& leaf_box) {
 
 class Builder {
  public:
-  Builder(BoxTree& tree, const PosedSurface& surface) : tree_(tree) {
-    const int count = surface.facet_count();
+  Builder(BoxTree& tree, std::span<const Eigen::Vector3d> centres)
+      : tree_(tree), centres_(centres) {
     tree_.second.clear();
-    tree_.second.reserve(index(std::max(0, 2 * count - 1)));
-    for (int f = 0; f < count; ++f) centres_.push_back(centre(corners(surface, f)));
-    std::vector<std::int32_t> order(index(count));
+    if (centres.empty()) return;
+    tree_.second.reserve(2 * centres.size() - 1);
+    std::vector<std::int32_t> order(centres.size());
     std::iota(order.begin(), order.end(), 0);
-    if (count > 0) add(order);
+    add(order);
   }
 
  private:
@@ -94,12 +94,8 @@ class Builder {
   }
 
   BoxTree& tree_;
-  std::vector<Eigen::Vector3d> centres_;
+  std::span<const Eigen::Vector3d> centres_;
 };
-
-double size(const Box& box) {
-  return (box.high[0] - box.low[0]) + (box.high[1] - box.low[1]) + (box.high[2] - box.low[2]);
-}
 
 }  // namespace
 
@@ -108,9 +104,20 @@ Box facet_box(const PosedSurface& surface, int facet, double margin) {
 }
 
 void build(BoxTree& tree, const PosedSurface& surface, double margin) {
-  Builder(tree, surface);
+  std::vector<Eigen::Vector3d> centres;
+  for (int f = 0; f < surface.facet_count(); ++f) centres.push_back(centre(corners(surface, f)));
+  Builder(tree, centres);
   tree.boxes.resize(tree.second.size());
   refit(tree, surface, margin);
+}
+
+void build(BoxTree& tree, std::span<const Box> leaves) {
+  std::vector<Eigen::Vector3d> centres;
+  for (const Box& box : leaves)
+    centres.push_back(0.5 * (Eigen::Vector3d(box.low.data()) + Eigen::Vector3d(box.high.data())));
+  Builder(tree, centres);
+  tree.boxes.resize(tree.second.size());
+  refit(tree, leaves);
 }
 
 void refit(BoxTree& tree, const PosedSurface& surface, double margin) {
@@ -126,34 +133,14 @@ void refit(BoxTree& tree, const PosedSurface& from, const PosedSurface& to, doub
   });
 }
 
+void refit(BoxTree& tree, std::span<const Box> leaves) {
+  refit_by(tree, [leaves](int leaf) { return leaves[leaf]; });
+}
+
 void overlapping_pairs(const BoxTree& first, const BoxTree& second, std::vector<FacetPair>& pairs) {
   pairs.clear();
-  if (first.empty() || second.empty()) return;
-  // Each step goes one level down in one tree and leaves one node more behind; a tree of less than
-  // 2^31 facets has at most 31 levels.
-  constexpr int capacity = 80;
-  std::array<FacetPair, capacity> stack;
-  int count = 0;
-  stack[count++] = {0, 0};
-  while (count > 0) {
-    const auto [a, b] = stack[--count];
-    const Box& box_a = first.boxes[a];
-    const Box& box_b = second.boxes[b];
-    if (!overlap(box_a, box_b)) continue;
-    const bool leaf_a = first.is_leaf(a), leaf_b = second.is_leaf(b);
-    if (leaf_a && leaf_b) {
-      pairs.push_back({first.facet(a), second.facet(b)});
-      continue;
-    }
-    ABUT_ASSERT(count + 2 <= capacity);
-    if (leaf_b || (!leaf_a && size(box_a) >= size(box_b))) {
-      stack[count++] = {first.second[a], b};
-      stack[count++] = {a + 1, b};
-    } else {
-      stack[count++] = {a, second.second[b]};
-      stack[count++] = {a, b + 1};
-    }
-  }
+  visit_pairs(first, second, [](const Box& a, const Box& b) { return overlap(a, b); },
+              [&pairs](std::int32_t k, std::int32_t n) { pairs.push_back({k, n}); });
   const auto key = [](const FacetPair& pair) {  // two comparisons in one
     return static_cast<std::uint64_t>(pair.k) << 32 | static_cast<std::uint32_t>(pair.n);
   };

@@ -3,6 +3,7 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/index.hpp"
@@ -22,10 +23,15 @@ inline bool overlap(const Box& a, const Box& b) {
          b.low[1] <= a.high[1] && a.low[2] <= b.high[2] && b.low[2] <= a.high[2];
 }
 
+/// [m] the sum of a box's sides.
+inline double size(const Box& box) {
+  return (box.high[0] - box.low[0]) + (box.high[1] - box.low[1]) + (box.high[2] - box.low[2]);
+}
+
 /// The box of a facet, larger by `margin` [m] on every side.
 Box facet_box(const PosedSurface& surface, int facet, double margin);
 
-/// A binary tree of boxes over the facets of a surface. Its structure is made once and kept while
+/// A binary tree of boxes over the facets of a surface, or over other boxes by their numbers. Its structure is made once and kept while
 /// the surface moves; only the boxes follow. Nodes lie in preorder: the first child follows its
 /// parent, so a pass from the end meets children before parents.
 struct BoxTree {
@@ -46,6 +52,11 @@ void refit(BoxTree& tree, const PosedSurface& surface, double margin);
 
 /// The same over two poses: every box holds its facet on straight ways from one to the other.
 void refit(BoxTree& tree, const PosedSurface& from, const PosedSurface& to, double margin);
+
+/// The same over given boxes, of which a tree's facets are the numbers: structure and boxes, or
+/// boxes alone.
+void build(BoxTree& tree, std::span<const Box> leaves);
+void refit(BoxTree& tree, std::span<const Box> leaves);
 
 struct FacetPair {
   std::int32_t k = 0, n = 0;  // facets of the first and of the second surface

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surface/feature_distance.hpp"
+#include "surface/skin.hpp"
+
+namespace abut {
+
+/// On which side of a surface a place is.
+struct SignedSide {
+  std::int32_t facet = -1;          // the closest one; -1: none was given
+  double gap = 0.0;                 // [m] distance, negative inside of the body
+  std::array<double, 4> weights{};  // of the pair of the place and that facet
+  Eigen::Vector3d normal;           // unit, out of the body at the closest point
+  bool border = false;              // the surface ends there
+
+  bool inside() const { return gap < 0.0; }
+};
+
+/// Sides of a skin's surfaces, whose facets look out of their bodies. The sign is that of the
+/// normal at the closest point: on an edge the sum of the facets' unit normals, on a node that sum
+/// by their angles there, which is right whatever the corner's shape (Baerentzen and Aanaes 2005).
+/// The skin must live; queries allocate nothing.
+class SkinSides {
+ public:
+  explicit SkinSides(const Skin& skin);
+
+  /// Unit normal at a point of a facet, told by its shares of the facet's points (those that are 0
+  /// say which feature it is on); zero where all facets there have no area.
+  Eigen::Vector3d normal(std::span<const Eigen::Vector3d> points, std::int32_t facet,
+                         const std::array<double, 3>& shares) const;
+  /// The side of the closest of the given facets. Where the surface ends, inside is what is behind
+  /// the normal rather than beside it.
+  SignedSide side(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& x,
+                  std::span<const std::int32_t> facets) const;
+  /// Unit normal from the second side to the first of a pair whose distance is too small to have a
+  /// direction of its own: of a node on a facet the facet's, of two edges the normal of both, in
+  /// either case the way that the surfaces look; where they do not tell, as of the edge or the node
+  /// of a facet, the difference of both surfaces' normals. Zero: none can be told.
+  Eigen::Vector3d touching_normal(std::span<const Eigen::Vector3d> points,
+                                  const FeaturePair& pair) const;
+
+ private:
+  struct Place {  // features of a facet: its points with a share
+    int count = 0;
+    std::array<std::int32_t, 3> points{-1, -1, -1};
+  };
+  Place place(std::int32_t facet, const std::array<double, 3>& shares) const;
+  std::span<const std::int32_t> around(std::int32_t point) const;
+  bool has(std::int32_t facet, std::int32_t point) const;
+  bool ends_at(const Place& place) const;
+  /// Unit; zero without an area.
+  Eigen::Vector3d facet_normal(std::span<const Eigen::Vector3d> points, std::int32_t facet) const;
+  Eigen::Vector3d normal_at(std::span<const Eigen::Vector3d> points, const Place& place,
+                            std::int32_t facet) const;
+  double angle(std::span<const Eigen::Vector3d> points, std::int32_t facet,
+               std::int32_t point) const;
+
+  const Skin& skin_;
+  std::vector<std::int32_t> offsets_, facets_;  // of each point, ascending
+};
+
+}  // namespace abut
