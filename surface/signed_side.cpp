@@ -86,6 +86,12 @@ Vector SkinSides::normal_at(Points points, const Place& at, std::int32_t facet) 
   return unit(sum);
 }
 
+Vector SkinSides::point_normal(Points points, std::int32_t point) const {
+  const std::span<const std::int32_t> fan = around(point);
+  if (fan.empty()) return Vector::Zero();
+  return normal_at(points, {1, {point, -1, -1}}, fan.front());
+}
+
 Vector SkinSides::normal(Points points, std::int32_t facet,
                          const std::array<double, 3>& shares) const {
   return normal_at(points, place(facet, shares), facet);

@@ -30,6 +30,10 @@ class SkinSides {
  public:
   explicit SkinSides(const Skin& skin);
 
+  /// Unit normal of a facet; zero without an area.
+  Eigen::Vector3d facet_normal(std::span<const Eigen::Vector3d> points, std::int32_t facet) const;
+  /// Unit normal at a point, of its facets by their angles there; zero where there is none.
+  Eigen::Vector3d point_normal(std::span<const Eigen::Vector3d> points, std::int32_t point) const;
   /// Unit normal at a point of a facet, told by its shares of the facet's points (those that are 0
   /// say which feature it is on); zero where all facets there have no area.
   Eigen::Vector3d normal(std::span<const Eigen::Vector3d> points, std::int32_t facet,
@@ -54,8 +58,6 @@ class SkinSides {
   std::span<const std::int32_t> around(std::int32_t point) const;
   bool has(std::int32_t facet, std::int32_t point) const;
   bool ends_at(const Place& place) const;
-  /// Unit; zero without an area.
-  Eigen::Vector3d facet_normal(std::span<const Eigen::Vector3d> points, std::int32_t facet) const;
   Eigen::Vector3d normal_at(std::span<const Eigen::Vector3d> points, const Place& place,
                             std::int32_t facet) const;
   double angle(std::span<const Eigen::Vector3d> points, std::int32_t facet,

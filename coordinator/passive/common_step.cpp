@@ -92,12 +92,12 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   }
   see_velocities();
   near_.find(from_, to_, rows_);
-  if (std::optional<Refusal> refused = iterate(ledger)) return refused;
+  if (std::optional<Refusal> refused = iterate()) return refused;
   return accept(lenient, ledger);
 }
 
 /// Impulses, the bodies' answers, and again, until rows fit and the ways are free.
-std::optional<CommonStep::Refusal> CommonStep::iterate(PassiveLedger& ledger) {
+std::optional<CommonStep::Refusal> CommonStep::iterate() {
   int checks = 0;
   if (rows_.empty() && near_.check(from_, to_, rows_).pairs == 0) return std::nullopt;
   for (int round = 0; round < most_rounds; ++round) {

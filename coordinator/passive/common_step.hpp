@@ -54,7 +54,7 @@ class CommonStep {
  private:
   using Places = std::vector<Eigen::Vector3d>;
 
-  std::optional<Refusal> iterate(PassiveLedger& ledger);
+  std::optional<Refusal> iterate();
   void prepare_rows();
   void warm(DistanceRow& row);
   std::optional<Failed> advance(bool all);

@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include "surface/feature_path.hpp"
-#include "surface/intersections.hpp"
-#include "surface/signed_side.hpp"
 
 namespace abut {
 
@@ -38,20 +36,14 @@ FeaturePoints at(const FeaturePair& pair, const NearRows::Places& from, const Ne
 }  // namespace
 
 NearRows::NearRows(const TouchingSurfaces& surfaces, double thickness)
-    : surfaces_(surfaces), thickness_(thickness), trees_(surfaces.skin(), surfaces.reference()) {
+    : surfaces_(surfaces),
+      thickness_(thickness),
+      trees_(surfaces.skin(), surfaces.reference()),
+      sides_(surfaces.skin()) {
   for (int a = 0; a < surfaces.groups(); ++a)
     for (int b = 0; b < surfaces.groups(); ++b)
       choice_.allowed.push_back(surfaces.touch(a, b) ? 1 : 0);
   choice_.prescribed = surfaces.standing();
-}
-
-void NearRows::begin(const Places& places) {
-  behind_.assign(surfaces_.count(), 0);
-  mark_behind(places, true);
-}
-
-void NearRows::accept(const Places& places) {
-  if (behind_count_ > 0) mark_behind(places, false);
 }
 
 bool NearRows::leaves_out(const FeaturePair& pair) const {

@@ -5,7 +5,9 @@
 
 #include "coordinator/passive/distance_row.hpp"
 #include "coordinator/passive/touching_surfaces.hpp"
+#include "surface/intersections.hpp"
 #include "surface/near_features.hpp"
+#include "surface/signed_side.hpp"
 
 namespace abut {
 
@@ -39,17 +41,21 @@ class NearRows {
   /// Of a pair at a part of the way, as the features are there.
   bool add(const FeaturePair& pair, const Places& from, const Places& to, double part,
            std::vector<DistanceRow>& rows) const;
-  void add_behind(const Places& from, std::vector<DistanceRow>& rows) const;
+  void add_behind(const Places& from, std::vector<DistanceRow>& rows);
+  void add_facing(std::int32_t node, const Places& from, std::vector<DistanceRow>& rows) const;
   bool leaves_out(const FeaturePair& pair) const;
   bool known(const DistanceRow& row, const std::vector<DistanceRow>& rows) const;
-  void mark_behind(const Places& places, bool may_grow);
+  void mark_behind(const Places& places, const std::vector<std::uint8_t>& may_be);
 
   const TouchingSurfaces& surfaces_;
   double thickness_;
   SkinTrees trees_;
   FeatureChoice choice_;
+  SkinSides sides_;
+  std::vector<Intersection> crossing_;
+  std::vector<std::vector<std::int32_t>> around_;  // (points) facets that a behind node is near
   std::vector<FeaturePair> pairs_;
-  std::vector<char> behind_;  // (points) begins behind a partner's surface
+  std::vector<std::uint8_t> behind_;  // (points) begins behind a partner's surface
   int behind_count_ = 0;
 };
 
