@@ -20,6 +20,7 @@
 #include "coordinator/energy_account.hpp"
 #include "coordinator/flight_work.hpp"
 #include "coordinator/record/validity_notes.hpp"
+#include "coordinator/touching_pairs.hpp"
 
 namespace abut {
 
@@ -441,9 +442,9 @@ RunEnd Controller::finish(double wall_seconds) {
   }
   const PassiveLedger& passive = passive_.ledger();
   narrator_.given_up(passive, end_);
-  end_.given_up = {passive.windows,  passive.steps,  passive.refused,  passive.rigid,
-                   passive.shortest_step, passive.normal, passive.friction, passive.damped,
-                   passive.switched, passive.push_out, passive.deepest};
+  end_.given_up = {passive.windows,       passive.steps,    passive.refused,  passive.rigid,
+                   passive.shortest_step, passive.normal,   passive.friction, passive.damped,
+                   passive.switched,      passive.push_out, passive.deepest};
   narrator_.end(end_);
   return end_;
 }

@@ -6,6 +6,7 @@
 
 #include "coordinator/controller.hpp"
 #include "coordinator/coupling/exchange.hpp"
+#include "coordinator/touching_pairs.hpp"
 
 namespace abut {
 
@@ -27,8 +28,8 @@ bool Controller::must_go_passively(const TimeWindow& window) {
     return apart <= near_ways * speed * window.length();
   });
   if (near && !go_passively(window.begin, {}))
-    fail(window.begin, "surfaces meet that find contact in passive forms alone, but " +
-                           passive_.hindrance());
+    fail(window.begin,
+         "surfaces meet that find contact in passive forms alone, but " + passive_.hindrance());
   return near;
 }
 

@@ -22,6 +22,7 @@
 #include "coordinator/coupling/unilateral.hpp"
 #include "coordinator/surface_start.hpp"
 #include "coordinator/tied_surfaces.hpp"
+#include "coordinator/touching_pairs.hpp"
 
 namespace abut {
 
@@ -402,58 +403,6 @@ BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
     throw InputError(error.what_is_wrong, std::string(everything_path), error.remedy);
   }
   return all;
-}
-
-bool only_passive(const Joint& joint, const Bodies& bodies) {
-  return joint.exchange != nullptr && !joint.tied() &&
-         bodies.port(joint.sides[0]).geometry.dim > 1 &&
-         std::ranges::none_of(joint.sides, [&bodies](const Side& side) {
-           return bodies.describe(side.body).can.obstacle;
-         });
-}
-
-namespace {
-
-/// Surfaces of all bodies, where everything may touch everything.
-void add_everything(const ContactSpec& law, const Bodies& bodies,
-                    std::vector<TouchingPair>& pairs) {
-  std::vector<Side> sides;
-  for (int b = 0; b < bodies.count(); ++b)
-    for (std::size_t p = 0; p < bodies.describe(b).ports.size(); ++p) {
-      const Port& port = bodies.describe(b).ports[p];
-      if (!port.tied && !port.geometry.facets.empty()) sides.push_back({b, static_cast<int>(p)});
-    }
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    for (std::size_t j = i + 1; j < sides.size(); ++j) {
-      const Side &one = sides[i], &other = sides[j];
-      const bool stand = std::isinf(bodies.describe(one.body).mass) &&
-                         std::isinf(bodies.describe(other.body).mass);
-      const bool written = std::ranges::any_of(pairs, [&](const TouchingPair& pair) {
-        const auto is = [](const Side& a, const Side& b) {
-          return a.body == b.body && a.port == b.port;
-        };
-        return (is(pair.sides[0], one) && is(pair.sides[1], other)) ||
-               (is(pair.sides[1], one) && is(pair.sides[0], other));
-      });
-      if (one.body != other.body && !stand && !written)
-        pairs.push_back({{one, other}, law.friction});
-    }
-  }
-}
-
-}  // namespace
-
-std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joint> joints,
-                                         const Bodies& bodies) {
-  std::vector<TouchingPair> pairs;
-  for (const Joint& joint : joints) {
-    if (joint.exchange == nullptr || joint.tied()) continue;
-    if (bodies.port(joint.sides[0]).geometry.dim == 1) continue;
-    const InterfaceSpec& spec = scene.interfaces[index(joint.interface)].second;
-    pairs.push_back({joint.sides, spec.contact ? spec.contact->friction : 0.0});
-  }
-  if (scene.everything() != nullptr) add_everything(*scene.everything(), bodies, pairs);
-  return pairs;
 }
 
 TieKernelOptions tie_kernel_options(const SchwarzSpec& spec) {

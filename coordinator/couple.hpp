@@ -4,7 +4,6 @@
 
 #include "coordinator/coupling/broad_phase.hpp"
 #include "coordinator/coupling/schwarz.hpp"
-#include "coordinator/passive/touching_surfaces.hpp"
 #include "coordinator/scene.hpp"
 
 namespace abut {
@@ -24,12 +23,6 @@ BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
 
 /// What a scene says of the kernels of ties.
 TieKernelOptions tie_kernel_options(const SchwarzSpec& spec);
-
-/// All pairs of surfaces of a run that may touch.
-std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joint> joints,
-                                         const Bodies& bodies);
-/// Whether neither side can find the contact of two surfaces but in its passive form.
-bool only_passive(const Joint& joint, const Bodies& bodies);
 
 Schwarz make_schwarz(const SchwarzSpec& spec);
 

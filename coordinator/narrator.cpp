@@ -184,7 +184,9 @@ std::string Narrator::words_of(const EnergyGuard& guard, std::span<const Joint> 
 void Narrator::passive(double time, const std::string& reason) {
   constexpr int most_told = 3;
   if (++told_passive_ > most_told) return;
-  tell({RunEvent::Kind::warning, time, blamed(reason),
+  tell({RunEvent::Kind::warning,
+        time,
+        blamed(reason),
         fmt::format("the accurate method has no answer ({}): bodies go on passively, which loses "
                     "energy{}",
                     reason, told_passive_ == most_told ? "; later times are counted only" : ""),
@@ -198,7 +200,9 @@ void Narrator::accurate(double time) {
 
 void Narrator::given_up(const PassiveLedger& ledger, const RunEnd& end) {
   if (ledger.windows == 0) return;
-  tell({RunEvent::Kind::warning, end.time, "",
+  tell({RunEvent::Kind::warning,
+        end.time,
+        "",
         fmt::format("{:.3g} % of the windows were solved passively; {:.3g} J were given up in "
                     "them, and friction took {:.3g} J",
                     100.0 * static_cast<double>(ledger.windows) /

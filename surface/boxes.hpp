@@ -31,9 +31,10 @@ inline double size(const Box& box) {
 /// The box of a facet, larger by `margin` [m] on every side.
 Box facet_box(const PosedSurface& surface, int facet, double margin);
 
-/// A binary tree of boxes over the facets of a surface, or over other boxes by their numbers. Its structure is made once and kept while
-/// the surface moves; only the boxes follow. Nodes lie in preorder: the first child follows its
-/// parent, so a pass from the end meets children before parents.
+/// A binary tree of boxes over the facets of a surface, or over other boxes by their numbers. Its
+/// structure is made once and kept while the surface moves; only the boxes follow. Nodes lie in
+/// preorder: the first child follows its parent, so a pass from the end meets children before
+/// parents.
 struct BoxTree {
   std::vector<Box> boxes;            // (2 m - 1)
   std::vector<std::int32_t> second;  // (2 m - 1) the second child; of a leaf -1 - its facet

@@ -260,8 +260,8 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
     for (const double work : port_work_[index(b)]) done += work;
     gained[index(b)] = energy_of(b) - energies_[index(b)] - done;
     if (!std::isfinite(gained[index(b)]) || (!lenient && gained[index(b)] > most_gain * scale)) {
-      why_ = fmt::format("body '{}' would gain {:.3g} J", bodies_.describe(b).name,
-                         gained[index(b)]);
+      why_ =
+          fmt::format("body '{}' would gain {:.3g} J", bodies_.describe(b).name, gained[index(b)]);
       return Refusal::energy;
     }
   }

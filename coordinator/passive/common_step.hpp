@@ -34,8 +34,8 @@ class CommonStep {
 
   /// What the bodies are in when the passive way begins.
   [[nodiscard]] std::optional<Failed> begin(double time);
-  /// From where the bodies are and were saved. Afterwards they are at the end or, refused, anywhere:
-  /// restore them. `lenient`: bodies may gain, it is taken from them.
+  /// From where the bodies are and were saved. Afterwards they are at the end or, refused,
+  /// anywhere: restore them. `lenient`: bodies may gain, it is taken from them.
   std::optional<Refusal> take(double begin, double end, bool lenient, PassiveLedger& ledger);
   /// Of the last step that was refused, for people.
   const std::string& why() const { return why_; }
@@ -80,8 +80,8 @@ class CommonStep {
   std::vector<DistanceRow> rows_;
   std::size_t prepared_ = 0;  // rows that were given their targets
   bool pushing_ = false;
-  double allowed_ = 0.0;  // [J] that contact may do in the step
-  int softer_ = 0;        // solves of these rows so far
+  double allowed_ = 0.0;                              // [J] that contact may do in the step
+  int softer_ = 0;                                    // solves of these rows so far
   std::map<DistanceRow::Key, Eigen::Vector3d> warm_;  // impulses of the last step [N s]
   std::vector<double> energies_;                      // [J] by body
   std::vector<double> accounts_;                      // [J] by body that nothing explains

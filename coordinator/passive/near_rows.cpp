@@ -24,7 +24,7 @@ constexpr double at_end = 1.0e-7;
 constexpr double same_normal = 1.0e-8, same_weights = 1.0e-3;
 
 FeaturePoints at(const FeaturePair& pair, const NearRows::Places& from, const NearRows::Places& to,
-        double part) {
+                 double part) {
   FeaturePoints out;
   for (std::size_t i = 0; i < 4; ++i) {
     const std::int32_t p = pair.points[i];
@@ -84,8 +84,7 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
     const double distance = feature_distance(pair.kind, dim, before).distance;
     const double share = distance < close * thickness_ ? kept_when_close : kept;
     const double least = share * std::min(distance, thickness_);
-    const double part =
-        first_time_within(pair.kind, dim, before, after, least, resolved * least);
+    const double part = first_time_within(pair.kind, dim, before, after, least, resolved * least);
     if (part >= 1.0) continue;
     ++crossed.pairs;
     if (add(pair, from, to, part, rows)) ++crossed.added;

@@ -14,7 +14,7 @@ struct PassiveLedger {
   double damped = 0.0;    // [J] taken back from bodies that gained, or held rigid for an instant
   double switched = 0.0;  // [J] lost where bodies changed their form
   std::int64_t steps = 0, refused = 0, windows = 0, rigid = 0;
-  double deepest = 0.0;       // [m] behind a partner's surface
+  double deepest = 0.0;        // [m] behind a partner's surface
   double shortest_step = 0.0;  // [s]; 0: none was taken
 
   /// [J] what accuracy was given up; friction would be there anyway.

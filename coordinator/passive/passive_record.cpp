@@ -140,9 +140,8 @@ void PassiveRecord::add_forces(const CommonStep& step, double length) {
       put(trace.f, index(trace.width), i);
       for (const Told& pair : told_) {
         if (at.body != pair.partner.body || at.port != pair.partner.port) continue;
-        const std::size_t other = i < index(row.features.first_side())
-                                      ? second_feature(row.features.kind)
-                                      : 0;
+        const std::size_t other =
+            i < index(row.features.first_side()) ? second_feature(row.features.kind) : 0;
         const TouchingSurfaces::Point& from = surfaces_[row.features.points[other]];
         if (from.body != pair.kinematic.body || from.port != pair.kinematic.port) continue;
         Waveform& reaction = bodies_.response(pair.kinematic.body)

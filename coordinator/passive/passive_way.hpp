@@ -55,10 +55,10 @@ class PassiveWay {
   std::string hindrance_;
   bool active_ = false, quiet_ = true;
   PassiveLedger ledger_;
-  double nominal_ = 0.0;  // [s]
-  int level_ = 0;         // steps are nominal / 2^level
-  int good_ = 0;          // steps since the level changed
-  int held_ = 0;          // times in a row that bodies were held rigid
+  double nominal_ = 0.0;                     // [s]
+  int level_ = 0;                            // steps are nominal / 2^level
+  int good_ = 0;                             // steps since the level changed
+  int held_ = 0;                             // times in a row that bodies were held rigid
   std::vector<std::array<int, 4>> pressed_;  // body, port, body, port
   std::unique_ptr<TouchingSurfaces> surfaces_;
   std::unique_ptr<NearRows> near_;

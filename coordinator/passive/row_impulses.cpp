@@ -9,7 +9,7 @@ namespace {
 
 /// Rows that say the same have no unique impulses; this share of a row's own compliance picks some.
 constexpr double regularised = 1.0e-6;
-/// Sweeps over all rows. More do not change penetration or losses: the next step's gaps do.
+/// Sweeps over all rows. More do not change overlaps or losses: the next step's gaps do.
 constexpr int most_sweeps = 100;
 
 const Eigen::Vector3d& direction_of(const DistanceRow& row, int direction) {
@@ -40,7 +40,8 @@ RowImpulses::RowImpulses(std::vector<DistanceRow>& rows, PressedPoints& points,
 
 RowImpulses::Answer RowImpulses::answer_of(const DistanceRow& row) const {
   Answer answer;
-  const std::int32_t points[] = {row.features.points[0], row.features.points[second_feature(row.features.kind)]};
+  const std::int32_t points[] = {row.features.points[0],
+                                 row.features.points[second_feature(row.features.kind)]};
   for (const std::size_t s : {0u, 1u}) {
     const int body = surfaces_[points[s]].body;
     if (points_.any(body) && answer.body[0] != body) answer.body[s] = body;
@@ -84,8 +85,7 @@ double RowImpulses::velocity(const DistanceRow& row, const Eigen::Vector3d& alon
     if (row.weights[i] == 0.0) continue;
     const std::int32_t point = row.features.points[i];
     const int slot = points_.slot(point);
-    const Eigen::VectorXd* pressed =
-        slot < 0 ? nullptr : &points_.velocity(surfaces_[point].body);
+    const Eigen::VectorXd* pressed = slot < 0 ? nullptr : &points_.velocity(surfaces_[point].body);
     for (int k = 0; k < dim_; ++k)
       sum += row.weights[i] * along(k) *
              (pressed != nullptr ? (*pressed)(slot + k) : velocities_[index(point)](k));
@@ -122,8 +122,7 @@ double RowImpulses::solve_friction(std::size_t k) {
   const double own = answers_[k].tangential;
   if (!(row.friction > 0.0) || !(own > 0.0)) return 0.0;
   std::array<double, 2> now = row.tangential_impulse;
-  for (int t = 0; t + 1 < dim_; ++t)
-    now[index(t)] -= velocity(row, row.tangents[index(t)]) / own;
+  for (int t = 0; t + 1 < dim_; ++t) now[index(t)] -= velocity(row, row.tangents[index(t)]) / own;
   const double length = std::hypot(now[0], now[1]), most = row.friction * row.normal_impulse;
   if (length > most)
     for (double& value : now) value *= most / length;

@@ -61,7 +61,7 @@ class TouchingSurfaces {
   std::vector<Point> points_;
   std::vector<Side> ports_;                 // by group
   std::vector<double> pair_friction_;       // (groups, groups); negative: they may not touch
-  std::vector<std::uint8_t> stands_;                // (points)
+  std::vector<std::uint8_t> stands_;        // (points)
   std::vector<Eigen::Vector3d> reference_;  // [m]
   double shortest_edge_ = 0.0;
 };

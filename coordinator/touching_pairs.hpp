@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "coordinator/coupling/joint.hpp"
+#include "coordinator/passive/touching_surfaces.hpp"
+#include "coordinator/scene.hpp"
+
+namespace abut {
+
+/// All pairs of surfaces of a run that may touch.
+std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joint> joints,
+                                         const Bodies& bodies);
+/// Whether neither side can find the contact of two surfaces but in its passive form.
+bool only_passive(const Joint& joint, const Bodies& bodies);
+
+}  // namespace abut
