@@ -39,17 +39,30 @@ void Caller::post(const char* verb) {
   send_request();
 }
 
-void Caller::post(const Advance& advance) {
-  number_request("advance");
-  request_.mutable_advance();  // the mark of its kind
+/// The request with what goes straight into the frame as its body.
+template <class Bulk>
+void Caller::seal_around(const Bulk& bulk, int field) {
   WireWriter& out = frame_.open();
-  encode(advance, out);
-  out.close(v1::Request::kAdvanceFieldNumber, 0);
+  encode(bulk, out);
+  out.close(field, 0);
   out.integer(v1::Request::kSessionFieldNumber, static_cast<std::int64_t>(session_));
   out.integer(v1::Request::kSaveFirstFieldNumber, request_.save_first());
   out.integer(v1::Request::kRestoreFirstFieldNumber, request_.restore_first());
   out.integer(v1::Request::kNumberFieldNumber, static_cast<std::int64_t>(number_));
   frame_.seal();
+}
+
+void Caller::post(const Advance& advance) {
+  number_request("advance");
+  request_.mutable_advance();  // the mark of its kind
+  seal_around(advance, v1::Request::kAdvanceFieldNumber);
+  send_request();
+}
+
+void Caller::post(const PassiveStep& step) {
+  number_request("passive step");
+  request_.mutable_passive_step();
+  seal_around(step, v1::Request::kPassiveStepFieldNumber);
   send_request();
 }
 

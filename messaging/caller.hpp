@@ -36,13 +36,15 @@ class Caller {
   void post(const char* verb);
   /// The same of an Advance, with the flags of request(): its waveforms go straight into the frame.
   void post(const Advance& advance);
+  void post(const PassiveStep& step);
   /// Waits for the reply to the request under way. Throws RunError when it will not come, and the
   /// error that the body reports, if it reports one.
   const v1::Reply& await();
   /// Whether it is there already; without a wait.
   bool has_reply();
-  /// What the reply holds of an Advanced, as it came; valid until the next request.
-  Bytes advanced() const { return bulk_; }
+  /// What the reply holds of an Advanced or PassiveStepped, as it came; valid until the next
+  /// request.
+  Bytes bulk() const { return bulk_; }
   /// post and await.
   const v1::Reply& call(const char* verb);
   /// Like await, but gives up silently after `time`; false when no sound reply came.
@@ -62,6 +64,8 @@ class Caller {
 
  private:
   void number_request(const char* verb);
+  template <class Bulk>
+  void seal_around(const Bulk& bulk, int field);
   void send_request();
   bool is_reply(Bytes frame);
   void greeted_again(const v1::Hello& hello);

@@ -18,8 +18,9 @@ class CodecError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Parses a message that is used again and again. What it carries of an Advance or Advanced is left
-/// where it is, in `bulk`, and only marked: whoever decodes it takes the arrays from there, once.
+/// Parses a message that is used again and again. What it carries of an Advance, a PassiveStep or
+/// the reply to one is left where it is, in `bulk`, and only marked: whoever decodes it takes the
+/// arrays from there, once.
 /// False when the bytes are no such message.
 bool parse_into(v1::Request& message, Bytes payload, Bytes& bulk);
 bool parse_into(v1::Reply& message, Bytes payload, Bytes& bulk);
@@ -47,6 +48,8 @@ struct ReceivedMeeting {
 void encode(const Advance& from, WireWriter& to);
 /// Fields that the request does not want are left out.
 void encode(const Response& from, const Advance& asked, WireWriter& to);
+void encode(const PassiveStep& from, WireWriter& to);
+void encode(const PassiveReply& from, WireWriter& to);
 void encode(const Specification& from, v1::Configure& to);
 void encode(const Failed& from, v1::Failed& to);
 void encode(const Description& from, v1::Description& to);
@@ -62,6 +65,10 @@ void encode(const std::vector<FieldValues>& from, v1::FieldsReply& to);
 void decode(Bytes advance, const Description& body, const Partners& met, Advance& to);
 /// Held against the request that it answers.
 void decode(Bytes advanced, const Description& body, const Advance& asked, Response& to);
+void decode(Bytes passive_step, const Description& body, PassiveStep& to);
+/// Held against the step that it answers.
+void decode(Bytes passive_stepped, const Description& body, const PassiveStep& asked,
+            PassiveReply& to);
 void decode(const v1::Configure& from, Specification& to);
 void decode(const v1::Failed& from, Failed& to);
 void decode(const v1::Description& from, Description& to);
@@ -74,6 +81,9 @@ void decode(const v1::GridReply& from, Grid& to);
 /// Values may be other than finite: whoever writes fields says at which node or cell.
 void decode(const v1::FieldsReply& from, const Description& body, std::size_t nodes,
             std::size_t cells, std::vector<FieldValues>& to);
+
+/// Of all points whose compliance is wanted: rows of PassiveReply::compliance.
+std::size_t pressed_values(const PassiveStep& asked, const Description& body);
 
 /// What to do about a frame above the limit that carries this request or its reply.
 const char* remedy_of_large_frame(const v1::Request& request);

@@ -11,7 +11,7 @@
 namespace abut {
 
 /// Version of the wire protocol (proto/README.md): both ends must speak the same one.
-inline constexpr std::uint32_t protocol_version = 3;
+inline constexpr std::uint32_t protocol_version = 4;
 
 /// Version of this build, for Hello, Welcome and --version.
 const char* build_version();

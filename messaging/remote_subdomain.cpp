@@ -72,19 +72,7 @@ void RemoteSubdomain::meet_part(const Meeting& meeting, std::optional<int> first
   if (!caller_.call("meet").has_met()) caller_.refuse_reply("not a meeting");
 }
 
-void RemoteSubdomain::save() { save_first_ = true; }
-
-void RemoteSubdomain::restore() {
-  // What is about to be saved is the present state, so there is nothing to return from.
-  if (!save_first_) restore_first_ = true;
-}
-
-void RemoteSubdomain::carry_flags() {
-  caller_.request().set_restore_first(restore_first_);
-  caller_.request().set_save_first(save_first_);
-  restore_first_ = false;
-  save_first_ = false;
-}
+void RemoteSubdomain::carry_flags() { flags_.ride(caller_.request()); }
 
 void RemoteSubdomain::start(const Advance& request) {
   asked_ = &request;
@@ -96,7 +84,7 @@ Outcome RemoteSubdomain::finish(Response& response) {
   const v1::Reply& reply = caller_.await();
   try {
     if (reply.has_advanced()) {
-      decode(caller_.advanced(), description_, *asked_, response);
+      decode(caller_.bulk(), description_, *asked_, response);
       require_sound(response, description_, *asked_);
       return Advanced{};
     }

@@ -10,6 +10,8 @@
 #include "contract/subdomain.hpp"
 #include "messaging/caller.hpp"
 #include "messaging/codec.hpp"
+#include "messaging/remote_passive.hpp"
+#include "messaging/riding_flags.hpp"
 
 namespace abut {
 
@@ -29,8 +31,8 @@ class RemoteSubdomain : public Subdomain {
 
   const Description& describe() const override { return description_; }
   void meet(const Meeting& meeting) override;
-  void save() override;
-  void restore() override;
+  void save() override { flags_.save(); }
+  void restore() override { flags_.restore(); }
   void start(const Advance& request) override;
   [[nodiscard]] Outcome finish(Response& response) override;
   PortKernel probe(const Probing& asked) override;
@@ -41,6 +43,7 @@ class RemoteSubdomain : public Subdomain {
   Grid grid() override;
   /// Asks for the grid first where that has not been done: the reply is held against it.
   std::vector<FieldValues> fields() override;
+  PassiveForm* passive() override { return description_.can.passive ? &passive_ : nullptr; }
 
  private:
   void carry_flags();
@@ -50,8 +53,8 @@ class RemoteSubdomain : public Subdomain {
   Caller& caller_;
   Description description_;
   const Advance* asked_ = nullptr;  // between start() and finish()
-  bool save_first_ = false;         // wanted, not yet sent
-  bool restore_first_ = false;      // before the save
+  RidingFlags flags_;
+  RemotePassive passive_{caller_, description_, flags_};
   struct GridSize {
     std::size_t nodes = 0, cells = 0;
   };

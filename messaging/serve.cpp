@@ -162,7 +162,8 @@ void Server::execute() {
 }
 
 void Server::seal_reply() {
-  if (!reply_.has_advanced()) reply_frame_.seal(reply_);
+  const bool sealed = reply_.has_advanced() || reply_.has_passive_stepped();
+  if (!sealed) reply_frame_.seal(reply_);
   const std::size_t size = reply_frame_.bytes().size();
   if (size <= reply_limit_) return;
   fault(v1::FAULT_KIND_RUN,
@@ -205,6 +206,21 @@ void Server::dispatch() {
     case v1::Request::kAdvance:
       advance();
       return;
+    case v1::Request::kPassiveStep:
+      passive_step();
+      return;
+    case v1::Request::kPassiveEnter:
+      reply_.mutable_passive_entered()->set_lost(passive().enter());
+      return;
+    case v1::Request::kPassiveLeave:
+      passive_leave(request_.passive_leave().time());
+      return;
+    case v1::Request::kPassiveDamp: {
+      const double joules = number(request_.passive_damp().joules(),
+                                   FieldPath{nullptr, "passive_damp.joules"}, Allow::not_negative);
+      reply_.mutable_passive_damped()->set_taken(passive().damp(joules));
+      return;
+    }
     case v1::Request::kMeet:
       meet(request_.meet());
       return;
@@ -289,15 +305,21 @@ bool Server::gather(const ReceivedMeeting& part) {
 void Server::probe(const v1::Probe& request) {
   Probing probing;
   decode(request, body_->describe(), probing);
-  // Looked at first: a body would use up its memory on what cannot be sent.
-  const std::size_t least = sizeof(double) * probing.patterns.size() * index(probing.count);
-  if (least > reply_limit_) {
-    throw RunError(fmt::format("a kernel of {} substeps for {} values is a frame of more than {} "
-                               "bytes, above the limit of {}",
-                               probing.count, probing.patterns.size(), least, reply_limit_),
-                   name_, remedy_of_large_frame(request_));
-  }
+  refuse_large(sizeof(double) * probing.patterns.size() * index(probing.count),
+               fmt::format("a kernel of {} substeps for {} values", probing.count,
+                           probing.patterns.size()));
   encode(body_->probe(probing), *reply_.mutable_kernel());
+}
+
+/// The reply with what goes straight into the frame as its body.
+template <class... From>
+void Server::seal_around(int field, const From&... from) {
+  WireWriter& out = reply_frame_.open();
+  encode(from..., out);
+  out.close(field, 0);
+  out.integer(v1::Reply::kSessionFieldNumber, static_cast<std::int64_t>(session_));
+  out.integer(v1::Reply::kNumberFieldNumber, static_cast<std::int64_t>(request_.number()));
+  reply_frame_.seal();
 }
 
 void Server::advance() {
@@ -308,12 +330,50 @@ void Server::advance() {
     return;
   }
   reply_.mutable_advanced();  // the mark of its kind: the frame is written here
-  WireWriter& out = reply_frame_.open();
-  encode(response_, advance_, out);
-  out.close(v1::Reply::kAdvancedFieldNumber, 0);
-  out.integer(v1::Reply::kSessionFieldNumber, static_cast<std::int64_t>(session_));
-  out.integer(v1::Reply::kNumberFieldNumber, static_cast<std::int64_t>(request_.number()));
-  reply_frame_.seal();
+  seal_around(v1::Reply::kAdvancedFieldNumber, response_, advance_);
+}
+
+PassiveForm& Server::passive() {
+  PassiveForm* const form = body_->passive();
+  if (form == nullptr)
+    throw RunError("the body has no passive form", name_,
+                   "this is a fault of the coordinator, or of a description that says it has one");
+  return *form;
+}
+
+void Server::passive_step() {
+  PassiveForm& form = passive();
+  decode(bulk_, body_->describe(), passive_step_);
+  const std::size_t values = pressed_values(passive_step_, body_->describe());
+  refuse_large(sizeof(double) * values * values,
+               fmt::format("the compliance of {} pressed values", values));
+  form.start(passive_step_);
+  const Outcome outcome = form.finish(passive_reply_);
+  if (const Failed* failed = std::get_if<Failed>(&outcome)) {
+    encode(*failed, *reply_.mutable_failed());
+    return;
+  }
+  reply_.mutable_passive_stepped();
+  seal_around(v1::Reply::kPassiveSteppedFieldNumber, passive_reply_);
+}
+
+void Server::passive_leave(double time) {
+  double lost = 0.0;
+  const Outcome outcome =
+      passive().leave(number(time, FieldPath{nullptr, "passive_leave.time"}), lost);
+  if (const Failed* failed = std::get_if<Failed>(&outcome)) {
+    encode(*failed, *reply_.mutable_failed());
+  } else {
+    reply_.mutable_passive_left()->set_lost(lost);
+  }
+}
+
+/// Looked at before it is made: a body would use up its memory on what cannot be sent.
+void Server::refuse_large(std::size_t least, const std::string& what) const {
+  if (least <= reply_limit_) return;
+  throw RunError(fmt::format("{} is a frame of more than {} bytes, above the limit of {}", what,
+                             least, reply_limit_),
+                 name_, remedy_of_large_frame(request_));
 }
 
 void Server::show_progress() {

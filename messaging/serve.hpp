@@ -71,6 +71,12 @@ class Server {
   bool gather(const ReceivedMeeting& part);
   void probe(const v1::Probe& request);
   void advance();
+  PassiveForm& passive();
+  void passive_step();
+  void passive_leave(double time);
+  void refuse_large(std::size_t least, const std::string& what) const;
+  template <class... From>
+  void seal_around(int field, const From&... from);
   void fault(v1::FaultKind kind, const std::string& what, const std::string& where,
              const std::string& remedy);
   void seal_reply();
@@ -87,11 +93,13 @@ class Server {
   std::optional<ReceivedMeeting> gathered_;  // of a kernel in parts, as far as they have come
   bool saved_ = false;  // there is a state to restore
   v1::Request request_;
-  Bytes bulk_;  // the Advance of the request, in the channel's memory
+  Bytes bulk_;  // the Advance or PassiveStep of the request, in the channel's memory
   v1::Reply reply_;
   Frame reply_frame_, progress_frame_;
   Advance advance_;
   Response response_;
+  PassiveStep passive_step_;
+  PassiveReply passive_reply_;
   std::uint64_t session_;
   int foreign_ = 0;
   std::uint64_t executed_ = 0;  // number of the last request executed

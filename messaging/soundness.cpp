@@ -151,6 +151,32 @@ void require_record(const BodyRecord& record, const Description& body, double ti
   if (record.momentum.empty()) FieldPath{&path, "momentum"}.fail("is missing");
 }
 
+/// Symmetric and positive semidefinite, as far as single values and pairs tell. Rounding in bodies
+/// of very unlike stiffness is far below what is let through, a wrong sign or a wrong order of
+/// values far above.
+void require_compliance(const std::vector<double>& compliance, std::size_t values,
+                        const FieldPath& path) {
+  constexpr double rounding = 1.0e-3;  // of the largest value
+  double largest = 0.0;
+  for (std::size_t i = 0; i < values; ++i)
+    largest = std::max(largest, std::abs(compliance[i * values + i]));
+  const double slack = rounding * largest, most = largest + slack;
+  for (std::size_t i = 0; i < values; ++i) {
+    const double own = compliance[i * values + i];
+    if (own < -slack) path.fail(fmt::format("moves against an impulse on value {}: {}", i, own));
+    for (std::size_t j = 0; j < i; ++j) {
+      const double one = compliance[i * values + j], other = compliance[j * values + i];
+      if (std::abs(one - other) > slack)
+        path.fail(fmt::format("is not symmetric: {} of value {} by value {}, {} the other way", one,
+                              i, j, other));
+      if (std::abs(one) > most)
+        path.fail(fmt::format("is not definite: {} of value {} by value {}, where values have {} "
+                              "of their own at most",
+                              one, i, j, largest));
+    }
+  }
+}
+
 }  // namespace
 
 void require_sound(const PortGeometry& surface, const FieldPath& path) {
@@ -176,6 +202,8 @@ void require_sound(const Description& body) {
   if (loose_motions(body) > most)
     FieldPath{&path, "loose"}.fail(
         fmt::format("has {} motions, a rigid body has {}", loose_motions(body), most));
+  if (body.can.only_passive && !body.can.passive)
+    FieldPath{&path, "can.only_passive"}.fail("is told of a body without a passive form");
   require_line(body.model, 1000, FieldPath{&path, "model"});
   require_names(body.measures, path, "measures");
   require_names(body.columns, path, "columns");
@@ -212,6 +240,14 @@ void require_sound(const Response& reply, const Description& body, const Advance
     require_record(reply.records[r], body, time, asked.window,
                    FieldPath{&path, "records", r});
   }
+}
+
+void require_sound(const PassiveReply& reply, const Description& body, const PassiveStep& asked) {
+  const FieldPath path{nullptr, "passive_stepped"};
+  require_record(reply.record, body, asked.end, {0, asked.begin, asked.end},
+                 FieldPath{&path, "record"});
+  require_compliance(reply.compliance, pressed_values(asked, body),
+                     FieldPath{&path, "compliance"});
 }
 
 void require_sound(const PortKernel& kernel, const Description& body, const Probing& asked) {

@@ -19,6 +19,8 @@ void require_sound(const Description& body);
 /// A reply to a window: every part is there that what the body can do entails, boxes hold what they
 /// are of, and no bound of speed is below the speed.
 void require_sound(const Response& reply, const Description& body, const Advance& asked);
+/// A reply to a passive step: of its end, with a compliance that can be one.
+void require_sound(const PassiveReply& reply, const Description& body, const PassiveStep& asked);
 /// Responses of a port: all that were asked for, none against its force.
 void require_sound(const PortKernel& kernel, const Description& body, const Probing& asked);
 

@@ -58,7 +58,7 @@ def serve(make):
 
     session = random.SystemRandom().getrandbits(63) | 1  # tells this process from an earlier one
     hello = sealed(pb.Reply(session=session, hello=pb.Hello(
-        protocol=3, build="python", body=options.body, session=session)))
+        protocol=4, build="python", body=options.body, session=session)))
     body, executed, answer = None, 0, b""
     greeted, until = False, time.monotonic() + 60.0
     while True:

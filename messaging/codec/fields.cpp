@@ -78,6 +78,8 @@ void decode(const v1::FieldsReply& from, const Description& body, std::size_t no
 const char* remedy_of_large_frame(const v1::Request& request) {
   if (request.has_grid() || request.has_fields())
     return "leave out output.fields, take a coarser mesh, or run with --local, which has no frames";
+  if (request.has_passive_step())
+    return "take a coarser mesh where bodies touch, or run with --local, which has no frames";
   return "use shorter windows or fewer records per window";
 }
 

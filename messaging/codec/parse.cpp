@@ -12,16 +12,46 @@ bool merge(google::protobuf::MessageLite& message, Bytes payload) {
   return message.MergePartialFromCodedStream(&stream) && stream.ConsumedEntireMessage();
 }
 
-/// All fields but one, which stays where it is; whether it was there.
-bool parse_around(google::protobuf::MessageLite& message, Bytes payload, int field, Bytes& bulk,
-                  bool& there) {
+// Kinds whose arrays stay where they are; a case of the oneof is the number of its field.
+
+bool is_bulk(v1::Request::BodyCase kind) {
+  return kind == v1::Request::kAdvance || kind == v1::Request::kPassiveStep;
+}
+bool is_bulk(v1::Reply::BodyCase kind) {
+  return kind == v1::Reply::kAdvanced || kind == v1::Reply::kPassiveStepped;
+}
+
+void mark(v1::Request& message, v1::Request::BodyCase kind) {
+  if (kind == v1::Request::kAdvance) message.mutable_advance();
+  if (kind == v1::Request::kPassiveStep) message.mutable_passive_step();
+}
+void mark(v1::Reply& message, v1::Reply::BodyCase kind) {
+  if (kind == v1::Reply::kAdvanced) message.mutable_advanced();
+  if (kind == v1::Reply::kPassiveStepped) message.mutable_passive_stepped();
+}
+
+void clear_beside_body(v1::Request& message) {
+  message.set_number(0);
+  message.set_session(0);
+  message.set_restore_first(false);
+  message.set_save_first(false);
+}
+void clear_beside_body(v1::Reply& message) {
+  message.set_number(0);
+  message.set_session(0);
+}
+
+/// All fields but those of a bulk kind, the last of which stays where it is and is told by `kind`.
+template <class Message>
+bool parse_around(Message& message, Bytes payload, Bytes& bulk, typename Message::BodyCase& kind) {
   const FieldPath path{nullptr, "message"};
   try {
     for (WireReader from(payload, path); from.next();) {
       const Bytes here = from.from_here();
-      if (from.field() == field) {
+      const auto field = static_cast<typename Message::BodyCase>(from.field());
+      if (is_bulk(field)) {
         bulk = from.message();
-        there = true;
+        kind = field;
         continue;
       }
       from.skip();
@@ -33,45 +63,34 @@ bool parse_around(google::protobuf::MessageLite& message, Bytes payload, int fie
   return true;
 }
 
-}  // namespace
-
 // Clear() of a oneof would free what it holds; the mark of a kind that comes again and again stays.
-bool parse_into(v1::Request& message, Bytes payload, Bytes& bulk) {
-  if (message.has_advance()) {
-    message.set_number(0);
-    message.set_session(0);
-    message.set_restore_first(false);
-    message.set_save_first(false);
+template <class Message>
+bool parse(Message& message, Bytes payload, Bytes& bulk) {
+  const typename Message::BodyCase before = message.body_case();
+  if (is_bulk(before)) {
+    clear_beside_body(message);
   } else {
     message.Clear();
   }
-  bool there = false;
+  typename Message::BodyCase kind = Message::BODY_NOT_SET;
   bulk = {};
-  if (!parse_around(message, payload, v1::Request::kAdvanceFieldNumber, bulk, there)) return false;
-  if (there) {
-    message.mutable_advance();
-  } else if (message.has_advance()) {
+  if (!parse_around(message, payload, bulk, kind)) return false;
+  if (is_bulk(kind)) {
+    mark(message, kind);
+  } else if (is_bulk(message.body_case())) {
     message.clear_body();
   }
   return true;
 }
 
+}  // namespace
+
+bool parse_into(v1::Request& message, Bytes payload, Bytes& bulk) {
+  return parse(message, payload, bulk);
+}
+
 bool parse_into(v1::Reply& message, Bytes payload, Bytes& bulk) {
-  if (message.has_advanced()) {
-    message.set_number(0);
-    message.set_session(0);
-  } else {
-    message.Clear();
-  }
-  bool there = false;
-  bulk = {};
-  if (!parse_around(message, payload, v1::Reply::kAdvancedFieldNumber, bulk, there)) return false;
-  if (there) {
-    message.mutable_advanced();
-  } else if (message.has_advanced()) {
-    message.clear_body();
-  }
-  return true;
+  return parse(message, payload, bulk);
 }
 
 }  // namespace abut

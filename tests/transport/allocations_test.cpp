@@ -89,5 +89,48 @@ TEST(Allocations, AWindowThatIsWrittenAndReadTakesNoMemory) {
   EXPECT_EQ(got_response.ports[0].trace.u, response.ports[0].trace.u);
 }
 
+TEST(Allocations, APassiveStepThatIsWrittenAndReadTakesNoMemory) {
+  Description body;
+  body.dim = 2;
+  body.ports.resize(2);
+  PassiveStep step;
+  step.end = 1.0;
+  PassiveReply reply;
+  for (Port& port : body.ports) {
+    port.geometry.dim = 2;
+    port.geometry.points.assign(40, 0.0);
+    step.impulses.emplace_back(40, 0.5);
+    step.pressed.push_back({1, 2, 5, 19});
+    reply.ports.push_back({std::vector<double>(40, 0.5), std::vector<double>(40, 0.25)});
+  }
+  reply.compliance.assign(16 * 16, 0.5);
+  reply.record.momentum = {1.0, 2.0};
+
+  Frame request, answer;
+  v1::Request asked;
+  v1::Reply answered;
+  PassiveStep got_step;
+  PassiveReply got_reply;
+  long before = 0;
+  for (int k = 0; k < 10; ++k) {
+    if (k == 3) before = allocations;
+    Bytes bulk;
+    WireWriter& there = request.open();
+    encode(step, there);
+    there.close(v1::Request::kPassiveStepFieldNumber, 0);
+    request.seal();
+    ASSERT_TRUE(parse_into(asked, *open_frame(request.bytes()), bulk));
+    decode(bulk, body, got_step);
+    WireWriter& back = answer.open();
+    encode(reply, back);
+    back.close(v1::Reply::kPassiveSteppedFieldNumber, 0);
+    answer.seal();
+    ASSERT_TRUE(parse_into(answered, *open_frame(answer.bytes()), bulk));
+    decode(bulk, body, got_step, got_reply);
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(got_reply.compliance, reply.compliance);
+}
+
 }  // namespace
 }  // namespace abut

@@ -324,6 +324,7 @@ TEST(Codec, DescriptionKeepsEveryFieldAndInfinity) {
   sent.mass = infinity;
   sent.step = 1.0e-7;
   sent.can.yielding = sent.can.neighbours = true;
+  sent.can.passive = sent.can.only_passive = true;
   sent.ports[1].geometry.spacing = 0.00125;
   sent.ports[1].geometry.transit = 1.25e-6;
   Description got;
@@ -342,7 +343,7 @@ TEST(Codec, DescriptionKeepsEveryFieldAndInfinity) {
   EXPECT_EQ(got.ports[1].geometry.spacing, 0.00125);
   EXPECT_EQ(got.ports[1].geometry.transit, 1.25e-6);
   EXPECT_TRUE(got.can.force && got.can.impulse && got.can.kernel && got.can.yielding);
-  EXPECT_TRUE(got.can.neighbours);
+  EXPECT_TRUE(got.can.neighbours && got.can.passive && got.can.only_passive);
   EXPECT_FALSE(got.can.motion || got.can.obstacle);
   EXPECT_EQ(got.measures, (std::vector<std::string>{"displacement.x.max", "energy.stored"}));
   EXPECT_EQ(got.columns, std::vector<std::string>{"clamp.reaction [N]"});

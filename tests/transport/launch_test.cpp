@@ -108,9 +108,9 @@ TEST_F(LaunchTest, AProgramThatDoesNotExistIsNamed) {
 TEST_F(LaunchTest, AnotherProtocolVersionIsRefusedWithBothVersions) {
   add_body("left", "old_version");
   const std::string error = error_within(2.0, [this] { start(); });
-  EXPECT_TRUE(contains(error, "the solver of body 'left' (build 9.9.9) speaks protocol 2"))
+  EXPECT_TRUE(contains(error, "the solver of body 'left' (build 9.9.9) speaks protocol 3"))
       << error;
-  EXPECT_TRUE(contains(error, "speaks protocol 3")) << error;
+  EXPECT_TRUE(contains(error, "speaks protocol 4")) << error;
 }
 
 TEST_F(LaunchTest, AStrangeFirstFrameIsNamedWithItsSize) {

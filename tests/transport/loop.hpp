@@ -15,9 +15,10 @@ namespace abut {
 
 /// Coordinator's and solver's side of the wire in one thread, on a clock that moves only while the
 /// coordinator waits in vain: minutes of deadlines pass in no time, and a seed says it all.
-struct Loop {
-  explicit Loop(const FaultyChannel::Chances& there = {}, const FaultyChannel::Chances& back = {},
-                std::uint64_t seed = 0, const Limits& limits = {})
+template <class Body>
+struct LoopOf {
+  explicit LoopOf(const FaultyChannel::Chances& there = {}, const FaultyChannel::Chances& back = {},
+                  std::uint64_t seed = 0, const Limits& limits = {})
       : to_solver(link.near(), there, seed),
         to_coordinator(link.far(), back, seed + 1),
         server(
@@ -25,7 +26,7 @@ struct Loop {
             [this](const Specification& got, const ProgressHook& hook) {
               specification = got;
               progress = hook;
-              std::unique_ptr<FakeSubdomain> made = std::make_unique<FakeSubdomain>();
+              std::unique_ptr<Body> made = std::make_unique<Body>();
               fake = made.get();
               return std::unique_ptr<Subdomain>(std::move(made));
             },
@@ -46,7 +47,7 @@ struct Loop {
   AlwaysAlive alive;
   MemoryLink link;
   FaultyChannel to_solver, to_coordinator;
-  FakeSubdomain* fake = nullptr;  // made by Configure
+  Body* fake = nullptr;  // made by Configure
   Specification specification;    // as the solver got it
   ProgressHook progress;
   bool deaf = false;  // the solver lives, but never looks at its messages
@@ -54,6 +55,7 @@ struct Loop {
   Caller caller;
   RemoteSubdomain body;
 };
+using Loop = LoopOf<FakeSubdomain>;
 
 /// A request with a force that depends on the window, so that no two windows are alike.
 inline Advance request_for(int window) {

@@ -27,6 +27,7 @@ struct Talk {
     body.stable_step = infinity;
     body.can = {dice.coin(), dice.coin(), dice.coin(), dice.coin(),
                 dice.coin(), dice.coin(), dice.coin()};
+    body.can.passive = dice.coin();
     body.columns = {"clamp [N]"};
     for (int p = dice.upto(2); p >= 0; --p)
       body.ports.push_back({"port" + std::to_string(p), dice.surface(body.dim), dice.coin()});

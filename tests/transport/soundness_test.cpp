@@ -69,6 +69,9 @@ TEST(Soundness, DescriptionsAreHeldAgainstWhatABodyCanBe) {
             "description.mass is 0; of a body that nothing moves it is infinity");
   EXPECT_EQ(told([](Description& d) { d.loose.assign(42, 1.0); }),
             "description.loose has 7 motions, a rigid body has 6");
+  EXPECT_EQ(told([](Description& d) { d.can.only_passive = true; }),
+            "description.can.only_passive is told of a body without a passive form");
+  EXPECT_EQ(told([](Description& d) { d.can.only_passive = d.can.passive = true; }), "accepted");
   EXPECT_EQ(told([](Description& d) { d.columns = {"heat\n[J]"}; }),
             "description.columns[0] has a control character");
   EXPECT_EQ(told([](Description& d) { d.columns = {"heat,[J]"}; }),

@@ -39,6 +39,17 @@ inline void decode(const v1::Advanced& from, const Description& body, const Adva
   const std::string text = from.SerializeAsString();
   decode(as_bytes(text), body, asked, to);
 }
+inline void encode(const PassiveStep& from, v1::PassiveStep& to) { through_writer(to, from); }
+inline void encode(const PassiveReply& from, v1::PassiveStepped& to) { through_writer(to, from); }
+inline void decode(const v1::PassiveStep& from, const Description& body, PassiveStep& to) {
+  const std::string text = from.SerializeAsString();
+  decode(as_bytes(text), body, to);
+}
+inline void decode(const v1::PassiveStepped& from, const Description& body,
+                   const PassiveStep& asked, PassiveReply& to) {
+  const std::string text = from.SerializeAsString();
+  decode(as_bytes(text), body, asked, to);
+}
 inline bool parse_into(v1::Request& message, Bytes payload) {
   return message.ParseFromArray(payload.data(), static_cast<int>(payload.size()));
 }
