@@ -54,6 +54,7 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       guard_(
           make_energy_guard(scene.schwarz.energy_guard, joints_, !broad_phase_.empty(), bodies_)),
       passive_(touching_pairs(scene, joints_, bodies_), bodies_),
+      crossing_(touching_pairs(scene, joints_, bodies_), bodies_),
       reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {
   end_.status = "completed";
   flight_.longest = flight_.limit =
@@ -248,9 +249,18 @@ Controller::Judgement Controller::judge(const TimeWindow& window) {
   if (const std::optional<double> touch = events_.engage_touching(window))
     return {Verdict::cut, events_.common_end(window, *touch), {}};
   const std::optional<double> event = events_.first_event(window, guard_.most());
-  if (!event || *event >= window.end) return {};
+  if (!event || *event >= window.end) return judge_ways(window);
   if (*event > window.begin) return {Verdict::cut, *event, {}};
   return {events_.release_kicks(window) ? Verdict::again : Verdict::accept, window.end, {}};
+}
+
+/// Surfaces may have passed through each other, where bodies could go another way.
+Controller::Judgement Controller::judge_ways(const TimeWindow& window) {
+  const bool near = std::ranges::any_of(joints_, [](const Joint& j) { return j.closed(); });
+  if (!near || !may_go_passively()) return {};
+  if (std::string crossed = crossing_.look(); !crossed.empty())
+    return {Judgement::Verdict::fail, window.end, std::move(crossed)};
+  return {};
 }
 
 Controller::Judgement Controller::judge_trouble(const TimeWindow& window) {

@@ -15,6 +15,7 @@
 #include "coordinator/energy_guard.hpp"
 #include "coordinator/narrator.hpp"
 #include "coordinator/overlap_search.hpp"
+#include "coordinator/passive/crossing_watch.hpp"
 #include "coordinator/passive/passive_way.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/scene.hpp"
@@ -95,6 +96,7 @@ class Controller {
   void step_window();
   void advance(const TimeWindow& window);
   Judgement judge(const TimeWindow& window);
+  Judgement judge_ways(const TimeWindow& window);
   Judgement judge_trouble(const TimeWindow& window);
   void accept(const TimeWindow& window);
 
@@ -106,6 +108,7 @@ class Controller {
   void watch_passing(std::int64_t windows_before);
   void look_for_overlaps();
   void look_for_passed();
+  bool may_go_passively() const;
   bool must_go_passively(const TimeWindow& window);
   bool go_passively(double time, const std::string& reason);
   void step_passively();
@@ -132,6 +135,7 @@ class Controller {
   EnergyGuard guard_;
   OverlapSearch overlaps_;
   PassiveWay passive_;
+  CrossingWatch crossing_;
   Waiting waiting_;
   Flight flight_;
   std::int64_t halvings_ = 0;

@@ -20,6 +20,11 @@ constexpr int soon = 10, longest_wait = 64;
 
 }  // namespace
 
+bool Controller::may_go_passively() const {
+  return passive_.hindrance().empty() &&
+         scene_.schwarz.on_nonconvergence == OnNonconvergence::passive;
+}
+
 /// Where surfaces come near of which neither side finds contact in another form.
 bool Controller::must_go_passively(const TimeWindow& window) {
   const bool near = std::ranges::any_of(joints_, [&](Joint& joint) {
@@ -36,9 +41,7 @@ bool Controller::must_go_passively(const TimeWindow& window) {
 /// All bodies stand at the begin of a window. `reason`: why the accurate method has failed; empty:
 /// it was not tried. False: the scene cannot go on so, or does not want to.
 bool Controller::go_passively(double time, const std::string& reason) {
-  if (!passive_.hindrance().empty()) return false;
-  if (!reason.empty() && scene_.schwarz.on_nonconvergence != OnNonconvergence::passive)
-    return false;
+  if (!passive_.hindrance().empty() || (!reason.empty() && !may_go_passively())) return false;
   if (std::optional<Failed> failed = passive_.enter(time)) {
     fail(failed->time, failed->detail);
     return true;

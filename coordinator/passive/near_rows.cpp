@@ -39,12 +39,8 @@ NearRows::NearRows(const TouchingSurfaces& surfaces, double thickness)
     : surfaces_(surfaces),
       thickness_(thickness),
       trees_(surfaces.skin(), surfaces.reference()),
-      sides_(surfaces.skin()) {
-  for (int a = 0; a < surfaces.groups(); ++a)
-    for (int b = 0; b < surfaces.groups(); ++b)
-      choice_.allowed.push_back(surfaces.touch(a, b) ? 1 : 0);
-  choice_.prescribed = surfaces.standing();
-}
+      choice_(surfaces.choice()),
+      sides_(surfaces.skin()) {}
 
 bool NearRows::leaves_out(const FeaturePair& pair) const {
   return behind_count_ > 0 && std::ranges::any_of(pair.points, [this](std::int32_t point) {

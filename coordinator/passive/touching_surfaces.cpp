@@ -74,4 +74,23 @@ void TouchingSurfaces::place(std::span<const PassiveReply> replies,
   }
 }
 
+void TouchingSurfaces::place(std::span<const Response> responses,
+                             std::vector<Eigen::Vector3d>& places) const {
+  places.resize(points_.size());
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const Point& at = points_[k];
+    const Waveform& trace = responses[index(at.body)].ports[index(at.port)].trace;
+    const std::size_t values = trace.u.size() - index(trace.width);
+    places[k] = reference_[k] + vector_at(trace.u, values / index(dim_) + index(at.point), dim_);
+  }
+}
+
+FeatureChoice TouchingSurfaces::choice() const {
+  FeatureChoice choice;
+  for (int a = 0; a < groups(); ++a)
+    for (int b = 0; b < groups(); ++b) choice.allowed.push_back(touch(a, b) ? 1 : 0);
+  choice.prescribed = stands_;
+  return choice;
+}
+
 }  // namespace abut

@@ -9,6 +9,7 @@
 #include "contract/passive.hpp"
 #include "coordinator/coupling/bodies.hpp"
 #include "surface/skin.hpp"
+#include "surface/skin_trees.hpp"
 
 namespace abut {
 
@@ -34,7 +35,11 @@ class TouchingSurfaces {
   const Point& operator[](std::int32_t point) const { return points_[point]; }
   /// [m] the places of all points by the displacements of their bodies' ports.
   void place(std::span<const PassiveReply> replies, std::vector<Eigen::Vector3d>& places) const;
+  /// The same, at the end of their latest responses.
+  void place(std::span<const Response> responses, std::vector<Eigen::Vector3d>& places) const;
   const std::vector<Eigen::Vector3d>& reference() const { return reference_; }
+  /// Pairs of features that may touch.
+  FeatureChoice choice() const;
   /// Whether two groups may touch.
   bool touch(int one, int other) const { return friction_of(one, other) >= 0.0; }
   /// Coulomb's coefficient between the groups of two points.
@@ -43,7 +48,6 @@ class TouchingSurfaces {
   }
   /// Whether nothing that presses on a point moves it.
   bool stands(std::int32_t point) const { return stands_[point] != 0; }
-  const std::vector<std::uint8_t>& standing() const { return stands_; }
   int groups() const { return static_cast<int>(ports_.size()); }
   const Side& port(int group) const { return ports_[group]; }
   /// [m] the shortest edge of surfaces that deform; of all where none does.

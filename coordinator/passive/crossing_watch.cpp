@@ -1,0 +1,46 @@
+#include "coordinator/passive/crossing_watch.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace abut {
+
+namespace {
+
+/// Of the shortest edge. Rows that hold on average let single nodes of curved or unlike meshes in
+/// by parts of a cell.
+constexpr double deep = 0.25;
+
+}  // namespace
+
+CrossingWatch::~CrossingWatch() = default;
+
+std::string CrossingWatch::look() {
+  if (pairs_.empty()) return {};
+  if (surfaces_ == nullptr) {
+    surfaces_ = std::make_unique<TouchingSurfaces>(pairs_, bodies_);
+    trees_ = std::make_unique<SkinTrees>(surfaces_->skin(), surfaces_->reference());
+    choice_ = surfaces_->choice();
+  }
+  surfaces_->place(bodies_.responses(), places_);
+  intersections(*trees_, places_, deep * surfaces_->shortest_edge(), choice_, found_);
+  const auto is_new = [this](const Intersection& found) {
+    return !std::ranges::binary_search(known_, found);
+  };
+  const auto first = std::ranges::find_if(found_, is_new);
+  std::string text;
+  if (first != found_.end()) {
+    const Skin& skin = surfaces_->skin();
+    const std::int32_t edge =
+        skin.dim == 2 ? skin.facets[first->edge][0] : skin.edges[first->edge][0];
+    text = fmt::format("an edge of body '{}' passes through the surface of body '{}'",
+                       bodies_.describe((*surfaces_)[edge].body).name,
+                       bodies_.describe((*surfaces_)[skin.facets[first->facet][0]].body).name);
+  }
+  if (text.empty()) known_ = found_;
+  return text;
+}
+
+}  // namespace abut
