@@ -42,7 +42,11 @@ FeatureDistance node_triangle(const FeaturePoints& x) {
   Best best;
   const double square = n.squaredNorm();
   if (square > 0.0) {
-    const double b = p.cross(v).dot(n) / square, c = u.cross(p).dot(n) / square;
+    double b = p.cross(v).dot(n) / square, c = u.cross(p).dot(n) / square;
+    // In a sliver the normal's rounding moves the point along it: brought back by its long side.
+    const bool along_u = u.squaredNorm() > v.squaredNorm();
+    const Vector& side = along_u ? u : v;
+    (along_u ? b : c) += (p - b * u - c * v).dot(side) / side.squaredNorm();
     if (b > 0.0 && c > 0.0 && b + c < 1.0) best.take(p - b * u - c * v, {1.0, b + c - 1.0, -b, -c});
   }
   const double on_u = part_of(u, p), on_v = part_of(v, p), on_w = part_of(v - u, p - u);
@@ -52,8 +56,9 @@ FeatureDistance node_triangle(const FeaturePoints& x) {
   return best.result();
 }
 
-/// The solution inside by the edges' common normal: of nearly parallel edges it loses digits along
-/// them, which costs no distance, while the determinant of the normal equations loses all of them.
+/// The solution inside by the edges' common normal; of nearly parallel edges it loses digits along
+/// the first of them, which cost no distance as the other point is then looked for, while the
+/// determinant of the normal equations loses all of them.
 FeatureDistance edge_edge(const FeaturePoints& x) {
   const Vector u = x[1] - x[0], v = x[3] - x[2], r = x[2] - x[0], n = u.cross(v);
   Best best;
@@ -63,7 +68,7 @@ FeatureDistance edge_edge(const FeaturePoints& x) {
   const double square = n.squaredNorm();
   if (square > 0.0) {
     const double s = r.cross(v).dot(n) / square, t = r.cross(u).dot(n) / square;
-    if (s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0) take(s, t);
+    if (s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0) take(s, part_of(v, s * u - r));
   }
   take(0.0, part_of(v, -r));
   take(1.0, part_of(v, u - r));

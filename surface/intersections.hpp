@@ -22,8 +22,9 @@ struct Intersection {
 /// without a common point: those that no shift of the edge by `depth` frees from the facet and its
 /// neighbours, seen by signs of volumes, whatever distances say. Surfaces that touch, also along
 /// edges and faces, do not intersect; an edge that goes exactly through a node or an edge between
-/// facets does. `depth` must be above the rounding of places. What `found` held is dropped. Renews
-/// the trees' boxes.
+/// facets does. Of bodies that overlap with flush sides no edge does; there the nodes' sides tell
+/// (signed_side.hpp). `depth` must be above the rounding of places. What `found` held is dropped.
+/// Renews the trees' boxes.
 void intersections(SkinTrees& trees, std::span<const Eigen::Vector3d> points, double depth,
                    const FeatureChoice& choice, std::vector<Intersection>& found);
 

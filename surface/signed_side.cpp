@@ -75,26 +75,29 @@ double SkinSides::angle(Points points, std::int32_t facet, std::int32_t point) c
   return std::atan2(u.cross(v).norm(), u.dot(v));
 }
 
-Vector SkinSides::normal_at(Points points, const Place& at, std::int32_t facet) const {
-  if (at.count == skin_.facet_points()) return facet_normal(points, facet);
+template <class Visit>
+void SkinSides::visit_facets(const Place& at, const Visit& visit) const {
+  const auto is_here = [this](std::int32_t f, std::int32_t p) { return p < 0 || has(f, p); };
+  for (const std::int32_t f : around(at.points[0]))
+    if (is_here(f, at.points[1]) && is_here(f, at.points[2])) visit(f);
+}
+
+Vector SkinSides::normal_at(Points points, const Place& at) const {
   Vector sum = Vector::Zero();
-  for (const std::int32_t f : around(at.points[0])) {
-    if (at.count == 2 && !has(f, at.points[1])) continue;
-    const bool by_angle = skin_.dim == 3 && at.count == 1;
+  const bool by_angle = skin_.dim == 3 && at.count == 1;
+  visit_facets(at, [&](std::int32_t f) {
     sum += (by_angle ? angle(points, f, at.points[0]) : 1.0) * facet_normal(points, f);
-  }
+  });
   return unit(sum);
 }
 
 Vector SkinSides::point_normal(Points points, std::int32_t point) const {
-  const std::span<const std::int32_t> fan = around(point);
-  if (fan.empty()) return Vector::Zero();
-  return normal_at(points, {1, {point, -1, -1}}, fan.front());
+  return normal_at(points, {1, {point, -1, -1}});
 }
 
 Vector SkinSides::normal(Points points, std::int32_t facet,
                          const std::array<double, 3>& shares) const {
-  return normal_at(points, place(facet, shares), facet);
+  return normal_at(points, place(facet, shares));
 }
 
 SignedSide SkinSides::side(Points points, const Vector& x,
@@ -115,7 +118,7 @@ SignedSide SkinSides::side(Points points, const Vector& x,
   }
   if (found.facet < 0) return found;
   const Place at = place(found.facet, {found.weights[1], found.weights[2], found.weights[3]});
-  found.normal = normal_at(points, at, found.facet);
+  found.normal = normal_at(points, at);
   found.border = ends_at(at);
   const double behind = -found.normal.dot(difference);
   const double least = found.border ? std::sqrt(0.5) * found.gap : 0.0;
@@ -123,35 +126,52 @@ SignedSide SkinSides::side(Points points, const Vector& x,
   return found;
 }
 
+double SkinSides::least_sine(Points points, const Place& at, const Vector& x,
+                             const Vector& normal) const {
+  double least = 1.0;
+  visit_facets(at, [&](std::int32_t f) {
+    for (int i = 0; i < skin_.facet_points(); ++i) {
+      const Vector way = points[index(skin_.facets[index(f)][i])] - x;
+      const double length = way.norm();
+      if (length > 0.0) least = std::min(least, normal.dot(way) / length);
+    }
+  });
+  return least;
+}
+
 Vector SkinSides::touching_normal(Points points, const FeaturePair& pair) const {
   const FeatureDistance d = feature_distance(pair.kind, skin_.dim, places(pair, points));
-  // A facet that has all the points of one side, and their shares of it.
-  const auto surface_normal = [&](std::size_t begin, std::size_t end) -> Vector {
-    Place at;
-    for (std::size_t i = begin; i < end; ++i)
-      if (pair.points[i] >= 0 && d.weights[i] != 0.0) at.points[at.count++] = pair.points[i];
-    for (const std::int32_t f : around(at.points[0])) {
-      const auto its = [this, f](std::int32_t p) { return p < 0 || has(f, p); };
-      if (std::ranges::all_of(at.points, its)) return normal_at(points, at, f);
-    }
-    return Vector::Zero();
-  };
-  const std::size_t first = index(pair.first_side());
-  const Vector second = surface_normal(first, 4);
-  if (pair.kind == FeatureKind::node_facet) {
-    const auto on =
-        std::count_if(d.weights.begin() + 1, d.weights.end(), [](double w) { return w != 0.0; });
-    if (on == skin_.facet_points()) return second;
-    return unit(second - surface_normal(0, 1));
+  std::array<Place, 2> sides;
+  std::array<Vector, 2> closest{Vector::Zero(), Vector::Zero()};
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (d.weights[i] == 0.0) continue;
+    const std::size_t side = i < index(pair.first_side()) ? 0 : 1;
+    sides[side].points[index(sides[side].count++)] = pair.points[i];
+    closest[side] += std::abs(d.weights[i]) * points[index(pair.points[i])];
   }
-  const Vector between = second - surface_normal(0, 2);
-  const auto& p = pair.points;
-  const Vector u = unit(points[index(p[1])] - points[index(p[0])]);
-  const Vector v = unit(points[index(p[3])] - points[index(p[2])]), n = u.cross(v);
-  const bool inside = std::ranges::all_of(d.weights, [](double w) { return w != 0.0; });
-  // Less turned than this, round-off of the places turns the normal by more than a millionth.
-  if (!inside || !(n.norm() > 1.0e-9)) return unit(between);
-  return n.dot(between) < 0.0 ? -n.normalized() : n.normalized();
+  Vector best = Vector::Zero();
+  double most = -2.0;
+  const auto consider = [&](const Vector& n) {
+    constexpr double same = 1.0e-9;  // of directions: the first of several stays
+    if (n.isZero()) return;
+    const double least = std::min(least_sine(points, sides[0], closest[0], n),
+                                  least_sine(points, sides[1], closest[1], -n));
+    if (!(least > most + same)) return;
+    most = least;
+    best = n;
+  };
+  visit_facets(sides[1], [&](std::int32_t f) { consider(facet_normal(points, f)); });
+  visit_facets(sides[0], [&](std::int32_t f) { consider(-facet_normal(points, f)); });
+  consider(unit(normal_at(points, sides[1]) - normal_at(points, sides[0])));
+  if (pair.kind == FeatureKind::edge_edge) {
+    const auto edge = [&](std::size_t i) -> Vector {
+      return points[index(pair.points[i + 1])] - points[index(pair.points[i])];
+    };
+    const Vector n = unit(edge(0).cross(edge(2)));
+    consider(n);
+    consider(-n);
+  }
+  return best;
 }
 
 }  // namespace abut

@@ -43,14 +43,14 @@ class SkinSides {
   SignedSide side(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& x,
                   std::span<const std::int32_t> facets) const;
   /// Unit normal from the second side to the first of a pair whose distance is too small to have a
-  /// direction of its own: of a node on a facet the facet's, of two edges the normal of both, in
-  /// either case the way that the surfaces look; where they do not tell, as of the edge or the node
-  /// of a facet, the difference of both surfaces' normals. Zero: none can be told.
+  /// direction of its own: of the normals of the facets that are there and of both edges, or the
+  /// difference of both sides' normals, the one that parts those facets best. Zero: all of them
+  /// have no area.
   Eigen::Vector3d touching_normal(std::span<const Eigen::Vector3d> points,
                                   const FeaturePair& pair) const;
 
  private:
-  struct Place {  // features of a facet: its points with a share
+  struct Place {  // a feature, by the points of it that have a share
     int count = 0;
     std::array<std::int32_t, 3> points{-1, -1, -1};
   };
@@ -58,8 +58,12 @@ class SkinSides {
   std::span<const std::int32_t> around(std::int32_t point) const;
   bool has(std::int32_t facet, std::int32_t point) const;
   bool ends_at(const Place& place) const;
-  Eigen::Vector3d normal_at(std::span<const Eigen::Vector3d> points, const Place& place,
-                            std::int32_t facet) const;
+  Eigen::Vector3d normal_at(std::span<const Eigen::Vector3d> points, const Place& place) const;
+  /// How far facets at a place are from beyond a plane through x: the least sine of their points.
+  double least_sine(std::span<const Eigen::Vector3d> points, const Place& place,
+                    const Eigen::Vector3d& x, const Eigen::Vector3d& normal) const;
+  template <class Visit>
+  void visit_facets(const Place& place, const Visit& visit) const;
   double angle(std::span<const Eigen::Vector3d> points, std::int32_t facet,
                std::int32_t point) const;
 

@@ -1,6 +1,8 @@
 #include "surface/skin_trees.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/assert.hpp"
 #include "surface/feature_distance.hpp"
@@ -28,13 +30,13 @@ std::vector<std::int32_t> begins(int groups, std::size_t count, const GroupOf& g
   return begin;
 }
 
-double square_distance(const Box& box, const Eigen::Vector3d& x) {
+double box_distance(const Box& box, const Eigen::Vector3d& x) {
   double square = 0.0;
   for (int d = 0; d < 3; ++d) {
     const double apart = std::max({0.0, box.low[d] - x[d], x[d] - box.high[d]});
     square += apart * apart;
   }
-  return square;
+  return std::sqrt(square);
 }
 
 }  // namespace
@@ -93,13 +95,16 @@ std::int32_t SkinTrees::closest_facet(int group, Points points, const Eigen::Vec
   if (tree.empty()) return -1;
   std::int32_t closest = -1;
   double best = reach;
+  // A box that holds the closest facet may seem a little farther off than that.
+  constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
+  const double size = x.cwiseAbs().maxCoeff();
   // Each step goes one level down and leaves one node behind: 31 levels, as in box_pairs.hpp.
   std::array<std::int32_t, 40> stack;
   int count = 0;
   stack[count++] = 0;
   while (count > 0) {
     const std::int32_t node = stack[--count];
-    if (square_distance(tree.boxes[node], x) > best * best) continue;
+    if (box_distance(tree.boxes[node], x) > best + rounding * (size + best)) continue;
     if (tree.is_leaf(node)) {
       const std::int32_t facet = first + tree.facet(node);
       const auto& p = skin_.facets[index(facet)];
@@ -114,7 +119,7 @@ std::int32_t SkinTrees::closest_facet(int group, Points points, const Eigen::Vec
     }
     const std::int32_t one = node + 1, other = tree.second[node];
     const bool one_is_nearer =
-        square_distance(tree.boxes[one], x) <= square_distance(tree.boxes[other], x);
+        box_distance(tree.boxes[one], x) <= box_distance(tree.boxes[other], x);
     stack[count++] = one_is_nearer ? other : one;
     stack[count++] = one_is_nearer ? one : other;
   }

@@ -1,0 +1,219 @@
+// Goal: a place is told to be inside of a body's surface or outside of it, whatever edge or corner
+// is closest, and how deep; surfaces that touch tell the way that parts them.
+// Oracles: the distance of a block in closed form; rays (surface/inside.hpp) for bodies with sharp
+// corners outward and inward; normals of touching blocks.
+
+#include "surface/signed_side.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "surface/inside.hpp"
+#include "tests/support/feature_cases.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace abut {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+std::vector<std::int32_t> all_facets(const Skin& skin) {
+  std::vector<std::int32_t> all(skin.facets.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// Of a block from 0 to 1: outside the norm of what is beyond, inside the nearest face.
+double block_gap(const Vector& x, int dim) {
+  double square = 0.0, deepest = -10.0;
+  for (int d = 0; d < dim; ++d) {
+    const double beyond = std::max(-x[d], x[d] - 1.0);
+    square += std::pow(std::max(0.0, beyond), 2);
+    deepest = std::max(deepest, beyond);
+  }
+  return deepest > 0.0 ? std::sqrt(square) : deepest;
+}
+
+TEST(SignedSide, OfABlockIsItsGap) {
+  Draw draw(1);
+  for (const int dim : {2, 3}) {
+    const Eigen::Matrix3d turn =
+        dim == 3 ? some_rotation() : Eigen::AngleAxisd(0.7, Vector::UnitZ()).toRotationMatrix();
+    const Vector by(0.1, 0.2, dim == 3 ? 0.3 : 0.0);
+    const std::vector<SurfaceMesh> meshes{
+        moved(block(dim, Vector::Zero(), Vector::Ones()), turn, by)};
+    const Skin skin = skin_of(meshes);
+    const std::vector<Vector> points = points_of(meshes);
+    const SkinSides sides(skin);
+    for (int k = 0; k < 3000; ++k) {
+      Vector x = 0.5 * (dim == 3 ? Vector(1, 1, 1) : Vector(1, 1, 0)) + drawn_point(draw, dim, 1.0);
+      if (k % 3 == 0)  // beside an edge or a corner
+        for (int d = 0; d < dim; ++d)
+          x[d] = draw(0, 1) < 0.7 ? std::round(x[d]) + draw(-1e-3, 1e-3) : x[d];
+      const SignedSide side = sides.side(points, turn * x + by, all_facets(skin));
+      EXPECT_NEAR(side.gap, block_gap(x, dim), roundoff(100.0, 1.0));
+      EXPECT_EQ(side.inside(), block_gap(x, dim) < 0.0);
+      EXPECT_FALSE(side.border);
+      EXPECT_NEAR(side.normal.norm(), 1.0, roundoff(10.0, 1.0));
+    }
+  }
+}
+
+/// A sphere whose nodes are thrown in and out: corners of all shapes, some sharper than a right
+/// angle, and fans of unlike facets.
+SurfaceMesh urchin(Draw& draw, double low) {
+  // a block whose faces are divided, blown up
+  SurfaceMesh mesh;
+  const SurfaceMesh cube = block(3, {-1, -1, -1}, {1, 1, 1});
+  constexpr int n = 3;
+  std::vector<Vector> nodes;
+  const auto node_at = [&nodes](const Vector& x) {
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if ((nodes[i] - x).norm() < 1e-9) return static_cast<std::int32_t>(i);
+    nodes.push_back(x);
+    return static_cast<std::int32_t>(nodes.size() - 1);
+  };
+  for (int f = 0; f < 6; ++f) {
+    const Corners c = corners(cube.pose(), f);
+    const auto at = [&c](int i, int j) -> Vector {
+      return c.x[0] + (c.x[1] - c.x[0]) * (double(i) / n) + (c.x[3] - c.x[0]) * (double(j) / n);
+    };
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const std::int32_t a = node_at(at(i, j)), b = node_at(at(i + 1, j)),
+                           d = node_at(at(i, j + 1)), e = node_at(at(i + 1, j + 1));
+        mesh.add_facet({a, b, e}, false);
+        mesh.add_facet({a, e, d}, false);
+      }
+  }
+  for (const Vector& x : nodes) {
+    const Vector y = draw(low, 1.0) * x.normalized();
+    mesh.points.insert(mesh.points.end(), y.data(), y.data() + 3);
+  }
+  return mesh;
+}
+
+SurfaceMesh star(Draw& draw, double low) {
+  SurfaceMesh mesh;
+  mesh.dim = 2;
+  constexpr int n = 20;
+  for (int i = 0; i < n; ++i) {
+    const double r = draw(low, 1.0), a = 2.0 * M_PI * i / n;
+    mesh.points.insert(mesh.points.end(), {r * std::cos(a), r * std::sin(a)});
+    mesh.add_facet({i, (i + 1) % n}, false);
+  }
+  return mesh;
+}
+
+TEST(SignedSide, IsThatOfRaysWhateverTheCorners) {
+  Draw draw(2);
+  for (const int dim : {2, 3}) {
+    for (const double low : {0.9, 0.5, 0.1}) {
+      const std::vector<SurfaceMesh> meshes{dim == 2 ? star(draw, low) : urchin(draw, low)};
+      ASSERT_TRUE(is_closed(meshes[0].pose()));
+      const Skin skin = skin_of(meshes);
+      const std::vector<Vector> points = points_of(meshes);
+      BoxTree tree;
+      build(tree, meshes[0].pose(), 0.0);
+      const SkinSides sides(skin);
+      int in = 0;
+      for (int k = 0; k < 2000; ++k) {
+        // all over, and about nodes, where the closest feature is any
+        const Vector x = k % 2 == 0 ? drawn_point(draw, dim, 1.2)
+                                    : points[k / 2 % points.size()] +
+                                          drawn_point(draw, dim, k % 4 == 1 ? 0.1 : 1e-6);
+        const SignedSide side = sides.side(points, x, all_facets(skin));
+        EXPECT_EQ(side.inside(), inside(meshes[0].pose(), tree, x)) << dim << " " << low;
+        in += side.inside();
+      }
+      EXPECT_GT(in, 100);
+    }
+  }
+}
+
+TEST(SignedSide, WhereASurfaceEnds) {
+  const std::vector<SurfaceMesh> meshes{grid(
+      2, 2, [](double u, double v) { return Vector(u, v, 0); }, false, false)};
+  const Skin skin = skin_of(meshes);
+  const std::vector<Vector> points = points_of(meshes);
+  const SkinSides sides(skin);
+  const auto side = [&](double x, double z) {
+    return sides.side(points, Vector(x, 0.4, z), all_facets(skin));
+  };
+  EXPECT_EQ(side(0.6, -0.2).gap, -0.2);
+  EXPECT_FALSE(side(0.6, -0.2).border);
+  EXPECT_LT(side(1.01, -0.2).gap, 0.0);  // hardly beside it, behind it
+  EXPECT_TRUE(side(1.01, -0.2).border);
+  EXPECT_GT(side(1.3, -0.2).gap, 0.0);  // rather beside it
+  EXPECT_GT(side(1.3, 0.2).gap, 0.0);
+}
+
+/// All pairs at distance 0 of two blocks, the second first.
+template <class Look>
+void look_at_touching(int dim, const Vector& low, const Look& look) {
+  const std::vector<SurfaceMesh> meshes{
+      block(dim, Vector::Zero(), Vector::Ones()),
+      block(dim, low, low + (dim == 2 ? Vector(1, 1, 0) : Vector(1, 1, 1)))};
+  const Skin skin = skin_of(meshes);
+  const std::vector<Vector> points = points_of(meshes);
+  const SkinSides sides(skin);
+  std::vector<FeaturePair> pairs;
+  for (const std::int32_t node : skin.nodes)
+    for (const auto& f : skin.facets)
+      pairs.push_back({FeatureKind::node_facet, {node, f[0], f[1], f[2]}});
+  for (const auto& e : skin.edges)
+    for (const auto& f : skin.edges)
+      pairs.push_back({FeatureKind::edge_edge, {e[0], e[1], f[0], f[1]}});
+  int found = 0;
+  for (const FeaturePair& pair : pairs) {
+    const int first = skin.group[pair.points[0]];
+    if (first == skin.group[pair.points[2]]) continue;
+    if (feature_distance(pair.kind, dim, places(pair, points)).distance > 0.0) continue;
+    look((first == 1 ? 1.0 : -1.0) * sides.touching_normal(points, pair));
+    ++found;
+  }
+  EXPECT_GT(found, dim == 2 ? 1 : 5);
+}
+
+/// However a block stands on another one, flush, shifted or over an edge, each node, edge and facet
+/// of both tells that up parts them.
+TEST(SignedSide, TouchingBlocksTellTheirNormal) {
+  for (const int dim : {2, 3}) {
+    for (const double x : {-0.5, 0.0, 0.3}) {
+      for (const double y : {-0.25, 0.0, 0.3}) {
+        look_at_touching(dim, dim == 2 ? Vector(x, 1, 0) : Vector(x, y, 1), [&](const Vector& n) {
+          const Vector up = dim == 2 ? Vector::UnitY() : Vector::UnitZ();
+          EXPECT_LE((n - up).norm(), roundoff(10.0, 1.0)) << dim << " " << x << " " << y;
+        });
+      }
+    }
+  }
+}
+
+/// Where only edges or corners touch, whatever parts the blocks will do.
+TEST(SignedSide, TouchingEdgesAndCornersArePartedToo) {
+  for (const int dim : {2, 3}) {
+    for (const double x : {-1.0, 1.0}) {
+      for (const double y : {-1.0, 0.0, 0.3}) {
+        const Vector low = dim == 2 ? Vector(x, 1, 0) : Vector(x, y, 1);
+        look_at_touching(dim, low, [&](const Vector& n) {
+          EXPECT_NEAR(n.norm(), 1.0, roundoff(10.0, 1.0));
+          double highest = -10.0, lowest = 10.0;  // of the first block and of the second
+          for (int corner = 0; corner < (dim == 2 ? 4 : 8); ++corner) {
+            const Vector c(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+            highest = std::max(highest, n.dot(c));
+            lowest = std::min(lowest, n.dot(low + c));
+          }
+          EXPECT_GE(lowest, highest - roundoff(10.0, 1.0));
+        });
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace abut
