@@ -135,6 +135,43 @@ TEST(SignedSide, IsThatOfRaysWhateverTheCorners) {
   }
 }
 
+/// A needle of which one side is cut into many facets at the tip: their number must not matter.
+SurfaceMesh needle(int parts) {
+  SurfaceMesh mesh;
+  const auto add = [&mesh](const Vector& x) {
+    mesh.points.insert(mesh.points.end(), x.data(), x.data() + 3);
+    return static_cast<std::int32_t>(mesh.nodes() - 1);
+  };
+  const std::int32_t tip = add({0, 0, 2}), behind = add({-0.3, 0, 0}), first = add({0.3, -0.4, 0});
+  for (int i = 1; i <= parts; ++i) add({0.3, -0.4 + 0.8 * i / parts, 0});
+  const std::int32_t last = first + parts;
+  for (std::int32_t i = first; i < last; ++i) {
+    mesh.add_facet({tip, i, i + 1}, false);
+    mesh.add_facet({behind, i + 1, i}, false);
+  }
+  mesh.add_facet({tip, last, behind}, false);
+  mesh.add_facet({tip, behind, first}, false);
+  return mesh;
+}
+
+TEST(SignedSide, OfATipDoesNotDependOnTheNumberOfItsFacets) {
+  Draw draw(3);
+  for (const int parts : {1, 3, 30}) {
+    const std::vector<SurfaceMesh> meshes{needle(parts)};
+    ASSERT_TRUE(is_closed(meshes[0].pose()));
+    const Skin skin = skin_of(meshes);
+    const std::vector<Vector> points = points_of(meshes);
+    BoxTree tree;
+    build(tree, meshes[0].pose(), 0.0);
+    const SkinSides sides(skin);
+    for (int k = 0; k < 1000; ++k) {
+      const Vector x = points[0] + drawn_point(draw, 3, 0.1);
+      EXPECT_EQ(sides.side(points, x, all_facets(skin)).inside(),
+                inside(meshes[0].pose(), tree, x));
+    }
+  }
+}
+
 TEST(SignedSide, WhereASurfaceEnds) {
   const std::vector<SurfaceMesh> meshes{grid(
       2, 2, [](double u, double v) { return Vector(u, v, 0); }, false, false)};
