@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
 namespace abut {
 namespace {
@@ -88,29 +89,37 @@ class Search {
   }
 
  private:
-  /// By which shifts of its edge a candidate is passed through, a bit for each.
-  unsigned passed_by(const Intersection& pair) const {
+  /// Whether a candidate's edge passes through its facet when it is shifted.
+  bool passes_shifted(const Intersection& pair, std::size_t shift) const {
     const std::span<const std::int32_t> e = edge(pair.edge);
     const Facet& f = skin_.facets[pair.facet];
-    unsigned bits = 0;
-    for (std::size_t s = first_shift(); s < shift_count; ++s) {
-      Vector by = shifts()[s];
-      if (skin_.dim == 2) by = Vector(by.x(), by.y(), 0.0).normalized();
-      const Vector p = points_[e[0]] + depth_ * by, q = points_[e[1]] + depth_ * by;
-      const Vector &a = points_[f[0]], &b = points_[f[1]];
-      if (skin_.dim == 2 ? cross(p, q, a, b) : passes(p, q, a, b, points_[f[2]])) bits |= 1U << s;
-    }
-    return bits;
+    Vector by = shifts()[shift];
+    if (skin_.dim == 2) by = Vector(by.x(), by.y(), 0.0).normalized();
+    const Vector p = points_[e[0]] + depth_ * by, q = points_[e[1]] + depth_ * by;
+    const Vector &a = points_[f[0]], &b = points_[f[1]];
+    return skin_.dim == 2 ? cross(p, q, a, b) : passes(p, q, a, b, points_[f[2]]);
   }
   std::size_t first_shift() const { return skin_.dim == 2 ? 6 : 0; }
 
   std::size_t keep_of_one(std::size_t begin, std::size_t end, std::size_t kept) {
+    const std::span<const Intersection> candidates =
+        std::span(std::as_const(found_)).subspan(begin, end - begin);
     unsigned all = 0;
-    for (std::size_t s = first_shift(); s < shift_count; ++s) all |= 1U << s;
+    for (std::size_t s = first_shift(); s < shift_count; ++s) {  // most edges end with the first
+      const auto passes_it = [this, s](const Intersection& pair) {
+        return passes_shifted(pair, s);
+      };
+      if (std::ranges::none_of(candidates, passes_it)) return kept;
+      all |= 1U << s;
+    }
     passed_.clear();
-    for (std::size_t i = begin; i < end; ++i) passed_.push_back(passed_by(found_[i]));
-    pairs_.assign(found_.begin() + static_cast<std::ptrdiff_t>(begin),
-                  found_.begin() + static_cast<std::ptrdiff_t>(end));
+    for (const Intersection& pair : candidates) {
+      unsigned bits = 0;
+      for (std::size_t s = first_shift(); s < shift_count; ++s)
+        if (passes_shifted(pair, s)) bits |= 1U << s;
+      passed_.push_back(bits);
+    }
+    pairs_.assign(candidates.begin(), candidates.end());
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       if (passed_[i] == 0) continue;
       const Facet& facet = skin_.facets[pairs_[i].facet];
