@@ -206,21 +206,6 @@ void Server::dispatch() {
     case v1::Request::kAdvance:
       advance();
       return;
-    case v1::Request::kPassiveStep:
-      passive_step();
-      return;
-    case v1::Request::kPassiveEnter:
-      reply_.mutable_passive_entered()->set_lost(passive().enter());
-      return;
-    case v1::Request::kPassiveLeave:
-      passive_leave(request_.passive_leave().time());
-      return;
-    case v1::Request::kPassiveDamp: {
-      const double joules = number(request_.passive_damp().joules(),
-                                   FieldPath{nullptr, "passive_damp.joules"}, Allow::not_negative);
-      reply_.mutable_passive_damped()->set_taken(passive().damp(joules));
-      return;
-    }
     case v1::Request::kMeet:
       meet(request_.meet());
       return;
@@ -251,7 +236,30 @@ void Server::dispatch() {
       encode(body_->fields(), *reply_.mutable_fields());
       return;
     default:
-      throw CodecError("the request is empty or unknown");
+      if (!answer_passive()) throw CodecError("the request is empty or unknown");
+  }
+}
+
+/// False where the request is not about the passive form.
+bool Server::answer_passive() {
+  switch (request_.body_case()) {
+    case v1::Request::kPassiveStep:
+      passive_step();
+      return true;
+    case v1::Request::kPassiveEnter:
+      reply_.mutable_passive_entered()->set_lost(passive().enter());
+      return true;
+    case v1::Request::kPassiveLeave:
+      passive_leave(request_.passive_leave().time());
+      return true;
+    case v1::Request::kPassiveDamp: {
+      const double joules = number(request_.passive_damp().joules(),
+                                   FieldPath{nullptr, "passive_damp.joules"}, Allow::not_negative);
+      reply_.mutable_passive_damped()->set_taken(passive().damp(joules));
+      return true;
+    }
+    default:
+      return false;
   }
 }
 

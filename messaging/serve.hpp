@@ -71,6 +71,7 @@ class Server {
   bool gather(const ReceivedMeeting& part);
   void probe(const v1::Probe& request);
   void advance();
+  bool answer_passive();
   PassiveForm& passive();
   void passive_step();
   void passive_leave(double time);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A mass on a spring as a body of abut. It needs abut/v1/subdomain.proto and nothing else of abut.
+"""A mass on a spring as a body of abut. It needs the messages of abut/v1 and nothing else of abut.
 usage: mass_on_spring.py --connect ENDPOINT --body NAME      (README.md beside this file)"""
 
 import math

@@ -55,7 +55,7 @@ class PythonTest(SystemTest):
         made = self.folder / "made"
         made.mkdir()
         subprocess.run([PROTOC, f"-I{ROOT / 'proto'}", f"--python_out={made}",
-                        "abut/v1/subdomain.proto"], check=True)
+                        *sorted((ROOT / "proto/abut/v1").glob("*.proto"))], check=True)
         self.environment["PYTHONPATH"] = str(made)
         self.environment["PYTHONDONTWRITEBYTECODE"] = "1"
         self.endpoint = f"tcp://127.0.0.1:{free_port()}"

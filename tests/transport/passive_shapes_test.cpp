@@ -41,8 +41,8 @@ struct Talk {
     reply.record.momentum = dice.values(index(body.dim));
     reply.record.columns = {dice.value()};
     for (std::size_t m = 0; m < body.members.size(); ++m)
-      reply.record.members.push_back({{dice.value(), dice.value(), dice.value(), dice.value()},
-                                      dice.values(index(body.dim))});
+      reply.record.members.push_back(
+          {{dice.value(), dice.value(), dice.value(), dice.value()}, dice.values(index(body.dim))});
     reply.bulge = dice.coin() ? 0.0 : 0.5 + dice.value();
   }
 
@@ -190,7 +190,9 @@ TEST(PassiveShapes, StepsThatDoNotFitTheBodyAreRefused) {
             "passive_step.ports[0].impulse is not finite: entry 3 is nan");
   EXPECT_EQ(asked([](PassiveStep& s) { s.pressed[1] = {1}; }),
             "passive_step.ports[1].pressed names point 1, but the surface has 1");
-  EXPECT_EQ(asked([](PassiveStep& s) { s.pressed[0] = {4, 1}; }),
+  EXPECT_EQ(asked([](PassiveStep& s) {
+              s.pressed[0] = {4, 1};
+            }),
             "passive_step.ports[0].pressed does not ascend at entry 1");
   EXPECT_EQ(asked([](PassiveStep& s) { s.pressed.pop_back(), s.impulses.pop_back(); }),
             "passive_step.ports has 1 entries for 2 ports");

@@ -331,5 +331,43 @@ TEST(Soundness, ADescriptionOrKernelChangedAtRandomIsRefusedOrSound) {
   EXPECT_GT(refused, 5'000);
 }
 
+TEST(Soundness, APassiveReplyChangedAtRandomIsRefusedOrWhole) {
+  const Description block = body();
+  const PassiveStep step{1.0, 1.2, {std::vector<double>(18, 0.5)}, {{1, 4}}};
+  PassiveReply reply;
+  reply.ports = {{std::vector<double>(18, 0.1), std::vector<double>(18, 0.5)}};
+  reply.compliance.assign(36, 0.0);
+  for (std::size_t k = 0; k < 6; ++k) reply.compliance[7 * k] = 1.0;
+  reply.record = {1.2, Energy{1.0, 0.0, 0.0, 0.0}, {0, 0, 2}, {}, {}, {293.0}};
+  reply.bulge = 0.001;
+  v1::PassiveStepped sound;
+  encode(reply, sound);
+  int refused = 0;
+  PassiveReply got;
+  for (std::uint64_t seed = 0; seed < 20'000; ++seed) {
+    SCOPED_TRACE(seed);
+    v1::PassiveStepped wire = sound;
+    Mutator mutate(seed);
+    for (std::uint64_t k = 0; k <= seed % 3; ++k) mutate.change(wire);
+    const std::string why = refusal([&] {
+      decode(wire, block, step, got);
+      require_sound(got, block, step);
+    });
+    if (why != "accepted") {
+      EXPECT_EQ(why.rfind("passive_stepped", 0), 0u) << why;
+      ++refused;
+      continue;
+    }
+    ASSERT_EQ(got.ports.size(), 1u);
+    EXPECT_EQ(got.ports[0].displacement.size() + got.ports[0].velocity.size(), 36u);
+    EXPECT_EQ(got.compliance.size(), 36u);
+    EXPECT_EQ(got.record.momentum.size(), 3u);
+    EXPECT_TRUE(std::isfinite(got.record.energy.total() * got.record.energy.total()));
+    EXPECT_GE(got.bulge, 0.0);
+    if (testing::Test::HasFailure()) return;
+  }
+  EXPECT_GT(refused, 5'000);  // the changes are not all harmless
+}
+
 }  // namespace
 }  // namespace abut::stranger
