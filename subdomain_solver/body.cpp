@@ -11,7 +11,6 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/life_signs.hpp"
 #include "contract/force_means.hpp"
 #include "subdomain_solver/port_forecast.hpp"
 #include "subdomain_solver/port_statics.hpp"
@@ -19,8 +18,6 @@
 namespace abut {
 
 namespace {
-
-constexpr std::chrono::milliseconds life_interval{250};
 
 void write(Interior& interior, std::vector<std::byte>& bytes, Archive::Form form) {
   Archive archive = Archive::writer(bytes, form);
@@ -303,7 +300,10 @@ std::optional<Failed> Body::record(double time, Response& response) {
     reply.upper.insert(reply.upper.end(), port.upper.begin(), port.upper.end());
   }
   begin_sweep();
-  BodyRecord& r = response.records[recorded_++];
+  return tell(response.records[recorded_++], time);
+}
+
+std::optional<Failed> Body::tell(BodyRecord& r, double time) {
   r.time = time;
   if (std::optional<Failed> failed = interior_->record(r)) return failed;
   if (finite(r)) return std::nullopt;
@@ -441,16 +441,6 @@ std::optional<Failed> Body::respond(const Advance& request, const Substeps& grid
       to.insert(to.end(), from, from + static_cast<std::ptrdiff_t>(ports_[port].width));
     }
   });
-}
-
-/// With signs of life meanwhile, where a single call may take long.
-template <class Call>
-std::optional<Failed> Body::patiently(const Call& call) const {
-  if (!progress_ || !interior_->traits().slow) return call();
-  LifeSigns life(progress_, life_interval);
-  std::optional<Failed> outcome = call();
-  life.end();
-  return outcome;
 }
 
 void Body::report_progress() {

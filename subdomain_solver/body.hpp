@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "base/life_signs.hpp"
 #include "subdomain_solver/interior.hpp"
 
 namespace abut {
@@ -31,8 +32,23 @@ class Body final : public Subdomain {
   std::vector<double> measure() override { return interior_->measure(); }
   Grid grid() override { return interior_->grid(); }
   std::vector<FieldValues> fields() override { return interior_->fields(); }
+  PassiveForm* passive() override;
 
  private:
+  class Passive final : public PassiveForm {
+   public:
+    explicit Passive(Body& body) : body_(body) {}
+    double enter() override;
+    [[nodiscard]] Outcome leave(double time, double& lost) override;
+    void start(const PassiveStep& step) override { step_ = &step; }
+    [[nodiscard]] Outcome finish(PassiveReply& reply) override;
+    double damp(double joules) override;
+
+   private:
+    Body& body_;
+    const PassiveStep* step_ = nullptr;
+  };
+
   PortKernel probe_dynamics(const Probing& asked, std::span<const int> seen);
   PortKernel probe_statics(const Probing& asked, std::span<const int> seen);
   /// A port as substeps see it.
@@ -68,13 +84,24 @@ class Body final : public Subdomain {
   void widen_sweep();
   void widen_velocities(double length);
   std::optional<Failed> record(double time, Response& response);
+  std::optional<Failed> tell(BodyRecord& record, double time);
   std::optional<Failed> respond(const Advance& request, const Substeps& grid,
                                 std::span<const int> ports, std::vector<double>& displacement);
+  /// With signs of life meanwhile, where a single call may take long.
   template <class Call>
-  std::optional<Failed> patiently(const Call& call) const;
+  std::optional<Failed> patiently(const Call& call) const {
+    if (!progress_ || !interior_->traits().slow) return call();
+    LifeSigns life(progress_, life_interval);
+    std::optional<Failed> outcome = call();
+    life.end();
+    return outcome;
+  }
   void report_progress();
 
+  static constexpr std::chrono::milliseconds life_interval{250};
+
   std::unique_ptr<Interior> interior_;
+  Passive passive_{*this};
   std::function<void()> progress_;
   std::vector<Watched> ports_;
   std::vector<std::deque<Partner>> partners_;  // by port; contact holds on to them

@@ -12,6 +12,7 @@
 
 namespace abut {
 
+class PassiveBody;
 class PortForecast;
 class PortStatics;
 
@@ -77,6 +78,7 @@ class Interior {
     Obstructed* obstructed = nullptr;
     PortForecast* forecast = nullptr;  // tells where ports go without going there
     PortStatics* statics = nullptr;    // answers of a body without inertia
+    PassiveBody* passive = nullptr;    // it has a passive form
   };
   /// What never changes, beside the description.
   struct Traits {

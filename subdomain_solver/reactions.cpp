@@ -53,11 +53,16 @@ void NodalReactions::forces(const Motion& motion, double time, const Vector& on_
 void NodalReactions::sums(const Motion& motion, double time, const Vector& on_ports,
                           std::vector<double>& out) {
   forces(motion, time, on_ports, forces_);
+  sum_reactions(model_, constraints_, forces_, out);
+}
+
+void sum_reactions(const FeModel& model, const std::vector<HeldCoordinates>& constraints,
+                   const Eigen::Ref<const Vector>& forces, std::vector<double>& out) {
   out.clear();
-  for (const HeldCoordinates& constraint : constraints_) {
+  for (const HeldCoordinates& constraint : constraints) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const int dof : constraint.dofs) sum += forces_(dof) * direction_of(model_, dof);
-    out.insert(out.end(), sum.data(), sum.data() + model_.mesh().dim);
+    for (const int dof : constraint.dofs) sum += forces(dof) * direction_of(model, dof);
+    out.insert(out.end(), sum.data(), sum.data() + model.mesh().dim);
   }
 }
 

@@ -54,6 +54,10 @@ class NodalReactions final : public Reactions {
 /// Direction in space of a coordinate of the mesh's model.
 Eigen::Vector3d direction_of(const FeModel& model, int dof);
 
+/// Sums of [N] (dofs) for every constraint, [N] (constraints, dim) along the axes of space.
+void sum_reactions(const FeModel& model, const std::vector<HeldCoordinates>& constraints,
+                   const Eigen::Ref<const Vector>& forces, std::vector<double>& out);
+
 /// Names of the sums as columns of a history, with their unit: "clamp.reaction_x [N]".
 std::vector<std::string> reaction_columns(int dim, const std::vector<HeldCoordinates>& constraints);
 /// Names as measures, and at last of the sum over all constraints: "clamp.reaction.x",

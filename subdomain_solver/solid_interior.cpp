@@ -84,7 +84,7 @@ void SolidInterior::find_abilities() {
                                                *port_forces_);
     able_.forecast = forecast_.get();
   }
-  if (scheme.statics == nullptr) return;
+  if (scheme.statics == nullptr) return find_passive();
   statics_ =
       std::make_unique<PortStatics>(state_.motion, state_.time, *scheme.statics, *port_map_);
   able_.statics = statics_.get();
@@ -120,7 +120,7 @@ void SolidInterior::find_surfaces() {
     const PortGeometry& geometry = description_.ports[p].geometry;
     const FeModel& model = *parts_.model;
     const bool reduced = parts_.problem->model != &model;  // whose ports have mass
-    if (geometry.facets.empty() || !may_touch_[p] || reduced) continue;
+    if (geometry.facets.empty() || !may_touch_[p] || reduced || parts_.massive_surface) continue;
     const PortSurface port{p, port_map_->first(p), &geometry, nodes};
     touched_.push_back({port, ports_[p].name, model.options().thickness});
     SurfaceContact::Surface& surface = surfaces.emplace_back(port);
@@ -276,7 +276,7 @@ void SolidInterior::see_nodes() {
   v_.resize(nodal_values());
   parts_.map->displacement(state_.motion.q, u_);
   parts_.map->velocity(state_.motion.q, state_.motion.v, v_);
-  momentum_.noalias() = mass_ * view(v_);
+  momentum_.noalias() = mass_of_form() * view(v_);
   parts_.model->to_space(u_);
   parts_.model->to_space(v_);
   parts_.model->to_space({momentum_.data(), nodal_values()});
@@ -395,38 +395,6 @@ std::optional<Failed> SolidInterior::record(BodyRecord& r) {
   return std::nullopt;
 }
 
-/// Forces on ports now, as those of nodes (nodes, dim) in their own frames [N].
-const Vector& SolidInterior::forces_on_ports() {
-  Vector& all = on_ports_;
-  all.setZero(static_cast<Eigen::Index>(nodal_values()));
-  if (port_forces_ == nullptr) return all;
-  std::size_t k = 0;
-  const std::size_t dim = index(description_.dim);
-  for (const NamedNodes& port : ports_) {
-    for (std::int32_t node : port.nodes) {
-      for (int i = 0; i < description_.dim; ++i)
-        all(node * description_.dim + i) += state_.port_force[k++];
-    }
-    const std::size_t inside = index(port.inside.count()) * dim;
-    add_transposed(port.inside, description_.dim, 1.0,
-                   std::span(state_.port_force).subspan(k, inside), {all.data(), nodal_values()});
-    k += inside;
-  }
-  parts_.model->to_frames({all.data(), nodal_values()});
-  return all;
-}
-
-/// [N] (constraints, dim) along the axes of space; none before the begin.
-void SolidInterior::reactions(std::vector<double>& out) {
-  if (!parts_.reactions) {
-    out.clear();
-  } else if (!state_.begun) {
-    out.assign(description_.columns.size(), 0.0);
-  } else {
-    parts_.reactions->sums(state_.motion, state_.time, forces_on_ports(), out);
-  }
-}
-
 std::vector<double> SolidInterior::measure() {
   see_nodes();
   std::vector<double> q(nodal_values());
@@ -463,18 +431,12 @@ std::vector<FieldValues> SolidInterior::fields() {
   return values;
 }
 
-FieldValues SolidInterior::nodal_reactions() {
-  Vector forces = Vector::Zero(static_cast<Eigen::Index>(nodal_values()));
-  if (state_.begun) parts_.reactions->forces(state_.motion, state_.time, forces_on_ports(), forces);
-  parts_.model->to_space({forces.data(), nodal_values()});
-  return in_space(span_of(forces), description_.dim);
-}
-
 Energy SolidInterior::energy() const {
   const Motion& motion = state_.motion;
   const double rubbed = surfaces_ != nullptr ? surfaces_->dissipated() : 0.0;
-  return {parts_.scheme.integrator->kinetic(motion), motion.stored, motion.dissipated + rubbed,
-          motion.external_work - state_.port_work};  // partners account for what ports exchange
+  const double kinetic =
+      is_passive() ? moving_energy() : parts_.scheme.integrator->kinetic(motion);
+  return {kinetic, motion.stored, motion.dissipated + rubbed, motion.external_work - state_.port_work};  // partners account for what ports exchange
 }
 
 /// A hint, which the horizon's flight verifies: waves inside may yet throw the surface faster.

@@ -14,6 +14,9 @@
 #include "subdomain_solver/linearised_model.hpp"
 #include "subdomain_solver/nodal_map.hpp"
 #include "subdomain_solver/overlap/embedded_surface.hpp"
+#include "subdomain_solver/passive/midpoint_step.hpp"
+#include "subdomain_solver/passive/passive_body.hpp"
+#include "subdomain_solver/passive/rigid_step.hpp"
 #include "subdomain_solver/port_forecast.hpp"
 #include "subdomain_solver/port_forces.hpp"
 #include "subdomain_solver/port_statics.hpp"
@@ -27,7 +30,10 @@ namespace abut {
 /// coordinates move it, what acts on it, an integrator, and ports, which are sides or node sets of
 /// the mesh. Ports take forces; linear bodies answer for their port kernels too. Ports without mass
 /// meet obstacles: ends of bars, surfaces in the plane and in space.
-class SolidInterior final : public Interior, private Probed, private Obstructed {
+class SolidInterior final : public Interior,
+                            private Probed,
+                            private Obstructed,
+                            private PassiveBody {
  public:
   struct PortNodes {
     std::string name, side;
@@ -57,6 +63,10 @@ class SolidInterior final : public Interior, private Probed, private Obstructed 
     std::string rung = "fe";               // for people
     bool deforms = true;                   // there is stress to tell of
     std::vector<double> loose;             // Description::loose
+    // The body's own loads where all mass is on the nodes; empty: those of the problem.
+    std::vector<std::unique_ptr<Load>> whole_loads;
+    const RigidModel* rigid = nullptr;  // the problem's model, of a rigid body
+    bool massive_surface = false;       // it has no layer, and takes obstacles when passive alone
   };
 
   SolidInterior(std::string name, Parts parts, const std::vector<PortNodes>& ports);
@@ -85,6 +95,25 @@ class SolidInterior final : public Interior, private Probed, private Obstructed 
   const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override {
     return surfaces_ != nullptr ? surfaces_->reacting(port, partner) : nullptr;
   }
+
+  double enter() override;
+  std::optional<Failed> leave(double time, double& lost) override;
+  double damp(double joules) override;
+  std::optional<Failed> pass(const PassiveStep& step, PassiveReply& reply) override;
+
+  /// In its passive form a body has no accelerations, and motion.force is that of its supports.
+  bool is_passive() const { return state_.begun && state_.motion.a.empty(); }
+  void find_passive();
+  void start_passive();
+  void take_impulses(const PassiveStep& step);
+  std::optional<Failed> restart(double time, double& work);
+  void spread_velocities();
+  void gather_velocities();
+  void keep_momentum(const std::vector<double>& momentum);
+  std::vector<double> momentum_now();
+  const SparseMatrix& mass_of_form() const { return is_passive() ? whole_mass_ : mass_; }
+  double take_from_deformation(double joules);
+  double moving_energy() const;
 
   struct State {
     double time = 0.0;  // [s]
@@ -145,6 +174,10 @@ class SolidInterior final : public Interior, private Probed, private Obstructed 
   Vector on_ports_;                   // [N] (nodes, dim)
   std::unique_ptr<PortForecast> forecast_;  // null: only walks tell where ports go
   std::unique_ptr<PortStatics> statics_;    // null: the body has inertia, or no ports
+  // Of the passive form; null: it has none, or another one.
+  std::unique_ptr<MidpointStep> midpoint_;
+  std::unique_ptr<RigidStep> rigid_step_;
+  SparseMatrix whole_mass_, given_mass_;  // [kg] (nodal values) of the nodes, when first asked for
 };
 
 }  // namespace abut

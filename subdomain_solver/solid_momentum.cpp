@@ -28,7 +28,7 @@ std::array<bool, 3> held_axes(const FeModel& model, const std::vector<HeldCoordi
 /// To the momenta of the nodes, along the axes of space  [M.24].
 void SolidInterior::add_lag() {
   const MomentumLag* lag = parts_.scheme.integrator->able().lag;
-  if (!state_.begun || lag == nullptr) return;
+  if (!state_.begun || is_passive() || lag == nullptr) return;
   const Motion& motion = state_.motion;
   lag->find(motion, parts_.scheme.step, forces_now(), behind_);
   Vector& nodes = parts_.reduced ? nodes_behind_ : behind_;

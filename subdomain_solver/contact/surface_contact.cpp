@@ -54,6 +54,12 @@ void SurfaceContact::state(Archive& archive) {
   archive.field("dissipated", dissipated_);
 }
 
+void SurfaceContact::let_go() {
+  for (std::vector<double>* list :
+       {&pressed_, &reactions_, &turned_, &slid_, &shears_, &anchored_})
+    std::ranges::fill(*list, 0.0);
+}
+
 std::span<double> SurfaceContact::pressed(const Meeting& m) {
   return std::span(pressed_).subspan(m.pressed, surfaces_[m.own].at.size());
 }

@@ -30,6 +30,8 @@ class SurfaceContact final : public PortContact {
 
   /// What changes during a step beside the forces on ports.
   void state(Archive& archive);
+  /// What partners pressed and where they stuck is forgotten; what friction took stays.
+  void let_go();
   /// Throws RunError for what surfaces cannot take.
   void impose(const Window& window) override;
   bool acts() const override;

@@ -49,8 +49,14 @@ class FeModel final : public Model {
   /// Moves the mass of these dofs (sorted) to those of the others of their cells, direction by
   /// direction (the surface layer, [M.85]), once, before anything asks for a mass; cells that have
   /// no others give theirs to the nearest nodes that have some. `held`: dofs (sorted) whose motion
-  /// is prescribed, which are no coordinates of the layer. Throws InputError where no node is left.
+  /// is prescribed, which are no coordinates of the layer. Throws InputError where no node is left;
+  /// all masses are as before then.
   void make_massless(std::vector<int> bare, const std::vector<int>& held);
+
+  /// [kg] (dofs) lumped, as if no coordinate were massless.
+  const Vector& whole_mass() const { return whole_.size() > 0 ? whole_ : lumped_; }
+  /// [kg] (dofs, dofs) that coordinates without mass, the rows, gave to others.
+  SparseMatrix given_mass() const;
 
   const Mesh& mesh() const { return mesh_; }
   const Material& material() const { return *material_; }
@@ -68,6 +74,11 @@ class FeModel final : public Model {
   /// turns it into the nodes' frames.
   void add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::MatrixXd& local,
                       SparseMatrix& tangent) const;
+
+  /// The tangent, where cells that are indefinite even together with `inertia` [1/s^2] times their
+  /// own lumped mass have that of their definite part. False: q is inadmissible.
+  [[nodiscard]] bool definite_tangent(std::span<const double> q, std::span<const double> history,
+                                      double inertia, SparseMatrix& tangent);
 
   /// Tangent of one cell at q (nodes x dim), in the axes of space. False: inadmissible.
   [[nodiscard]] bool cell_tangent(int block, int cell, std::span<const double> q,
@@ -106,6 +117,7 @@ class FeModel final : public Model {
     SparseMatrix stiffness;                           // of linear models, which need no other
     std::vector<double> springs;                      // [N/m] (cells) of linear bars
     SparseMatrix mass;
+    std::vector<Vector> cell_masses;  // [kg] (cells; nodes), when first asked for
     double force_unit = 0.0;     // [N] largest force of a cell at unit strain
     double gradient_unit = 0.0;  // [1/m] largest gradient of a shape function
   };
@@ -121,11 +133,13 @@ class FeModel final : public Model {
   int layer_place(int dof) const;  // among the massless; -1: it is none
   bool is_bare(std::int32_t node, int direction) const;  // it has no mass in it
   bool takes_mass(std::int32_t node, int direction) const;  // of bare ones: it is free
+  void find_layer();
   void find_heirs(int direction);
   void hand_over(std::span<const std::int32_t> nodes, int direction, Eigen::MatrixXd& nodal) const;
   template <class Whole, class Take>
   void inherit(const Whole& whole, const Take& take) const;
   void inherit(Vector& lumped) const;
+  const std::vector<Vector>& cell_masses() const;
   void inherit(SparseMatrix& mass) const;
   const SparseMatrix& linear_stiffness();
   const Vector& strain_displacement(std::span<const double> q);
@@ -173,6 +187,7 @@ class FeModel final : public Model {
   mutable std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<BatchedCells> batched_;  // null: cell by cell
   Vector lumped_;
+  Vector whole_;  // as lumped_ was before make_massless(); empty: the same
   CellKernel kernel_;
   CellResponse local_;
   std::vector<double> u_;

@@ -33,6 +33,22 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
   bare_ = std::move(bare);
   held_ = held;
   std::ranges::set_difference(bare_, held, std::back_inserter(massless_));
+  try {
+    find_layer();
+  } catch (const InputError&) {
+    bare_.clear();
+    massless_.clear();
+    held_.clear();
+    layer_cells_.clear();
+    heirs_ = {};
+    throw;
+  }
+  whole_ = lumped_;
+  lump_mass();
+}
+
+/// Cells with bare nodes, and who takes the mass of those that have no other nodes.
+void FeModel::find_layer() {
   const auto bare_anywhere = [this](std::int32_t node) {
     const auto first = std::ranges::lower_bound(bare_, node * mesh_.dim);
     return first != bare_.end() && *first < (node + 1) * mesh_.dim;
@@ -45,7 +61,6 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
     }
   }
   for (int i = 0; i < mesh_.dim; ++i) find_heirs(i);
-  lump_mass();
 }
 
 /// Cells all of whose nodes are in the layer or held, tetrahedra in corners for instance, have no

@@ -80,6 +80,13 @@ double SidePoints::area() const {
 BodyForce::BodyForce(const FeModel& model, VectorField acceleration, MassForm mass)
     : model_(model), acceleration_(std::move(acceleration)), mass_(mass) {}
 
+std::unique_ptr<BodyForce> BodyForce::of_whole_mass(const FeModel& model,
+                                                    VectorField acceleration) {
+  auto load = std::make_unique<BodyForce>(model, std::move(acceleration), MassForm::lumped);
+  load->whole_ = true;
+  return load;
+}
+
 /// The acceleration is interpolated between the nodes: f = M b, exact where b is uniform.
 void BodyForce::add(double time, std::span<const double>, Vector& force) const {
   const Mesh& mesh = model_.mesh();
@@ -94,7 +101,8 @@ void BodyForce::add(double time, std::span<const double>, Vector& force) const {
   }
   model_.to_frames({b.data(), index(b.size())});
   const double share = mass_ == MassForm::averaged ? 0.5 : 1.0;  // as mass_matrix() does
-  if (mass_ != MassForm::consistent) force += share * model_.lumped_mass().cwiseProduct(b);
+  const Vector& lumped = whole_ ? model_.whole_mass() : model_.lumped_mass();
+  if (mass_ != MassForm::consistent) force += share * lumped.cwiseProduct(b);
   if (mass_ != MassForm::lumped) force.noalias() += share * (model_.mass() * b);
 }
 

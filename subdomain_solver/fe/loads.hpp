@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "subdomain_solver/fe/fe_model.hpp"
@@ -39,6 +40,8 @@ struct SidePoints {
 class BodyForce final : public Load {
  public:
   BodyForce(const FeModel& model, VectorField acceleration, MassForm mass = MassForm::consistent);
+  /// With the mass of a body in its passive form, FeModel::whole_mass().
+  static std::unique_ptr<BodyForce> of_whole_mass(const FeModel& model, VectorField acceleration);
   void add(double time, std::span<const double> q, Vector& force) const override;
   bool follows() const override { return false; }
 
@@ -46,6 +49,7 @@ class BodyForce final : public Load {
   const FeModel& model_;
   VectorField acceleration_;
   MassForm mass_;
+  bool whole_ = false;
   mutable Vector nodal_;  // [m/s^2] (dofs)
 };
 

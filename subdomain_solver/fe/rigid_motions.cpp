@@ -36,13 +36,17 @@ std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t node) {
 }  // namespace
 
 Eigen::MatrixXd rigid_motions(const FeModel& model) {
+  return rigid_motions(model, model.mesh().points);
+}
+
+Eigen::MatrixXd rigid_motions(const FeModel& model, std::span<const double> at) {
   const Mesh& mesh = model.mesh();
   const int dim = mesh.dim, nodes = mesh.node_count();
   const int first = model.round() ? 1 : 0;  // an axisymmetric body cannot move along its radius
   const int translations = dim - first;
   const int rotations = model.round() ? 0 : dim * (dim - 1) / 2;
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(model.dofs(), translations + rotations);
-  const Eigen::Map<const Eigen::MatrixXd> points(mesh.points.data(), dim, nodes);
+  const Eigen::Map<const Eigen::MatrixXd> points(at.data(), dim, nodes);
   const Eigen::MatrixXd arms = points.colwise() - points.rowwise().mean().eval();
   const double size = arms.cwiseAbs().maxCoeff();
   for (int node = 0; node < nodes; ++node) {

@@ -11,6 +11,8 @@ namespace abut {
 /// rotations about the mean of the nodes, scaled to a largest component of 1; the axial one alone
 /// of an axisymmetric body. (dofs, motions), in the nodes' own frames.
 Eigen::MatrixXd rigid_motions(const FeModel& model);
+/// The same of the mesh with its nodes at other points [m] (nodes, dim).
+Eigen::MatrixXd rigid_motions(const FeModel& model, std::span<const double> at);
 
 /// Combinations of motions (n, k) that vanish on some rows: (n, at most k). Sizes are relative to
 /// the largest component of each motion.

@@ -38,13 +38,12 @@ MassForm load_mass(const BodySpec& spec) {
   return moves_nodes || lumped ? mass_form(*spec.integrator) : MassForm::consistent;
 }
 
-}  // namespace
-
-std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place& place,
-                                              const FeModel& model) {
+/// `body_force` makes those that are proportional to mass.
+template <class Make>
+std::vector<std::unique_ptr<Load>> all_loads(const BodySpec& spec, const Place& place,
+                                             const FeModel& model, const Make& body_force) {
   std::vector<std::unique_ptr<Load>> loads;
   const int dim = model.mesh().dim;
-  const MassForm mass = load_mass(spec);
   for (const auto& [name, load] : spec.loads) {
     const std::string key = "loads." + name;
     named(place, key + ".on", [&] {
@@ -60,8 +59,8 @@ std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place&
         return std::make_unique<Pressure>(model, load.on, pressure, load.follows);
       }));
     } else {
-      loads.push_back(std::make_unique<BodyForce>(
-          model, field_of(load.acceleration, dim, place.where(key + ".acceleration")), mass));
+      loads.push_back(
+          body_force(field_of(load.acceleration, dim, place.where(key + ".acceleration"))));
     }
   }
   const bool weightless = std::all_of(spec.body_force.begin(), spec.body_force.end(),
@@ -72,8 +71,24 @@ std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place&
     uniform[i] = [b = spec.body_force[i]](const std::array<double, 3>&, double) {
       return b;
     };
-  loads.push_back(std::make_unique<BodyForce>(model, std::move(uniform), mass));
+  loads.push_back(body_force(std::move(uniform)));
   return loads;
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place& place,
+                                              const FeModel& model) {
+  return all_loads(spec, place, model, [&](VectorField acceleration) {
+    return std::make_unique<BodyForce>(model, std::move(acceleration), load_mass(spec));
+  });
+}
+
+std::vector<std::unique_ptr<Load>> make_whole_loads(const BodySpec& spec, const Place& place,
+                                                    const FeModel& model) {
+  return all_loads(spec, place, model, [&](VectorField acceleration) {
+    return BodyForce::of_whole_mass(model, std::move(acceleration));
+  });
 }
 
 double body_acceleration(const BodySpec& spec) {

@@ -21,6 +21,9 @@ std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node);
 /// The loads on a mesh, body forces last. They refer to the model. Throws InputError.
 std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place& place,
                                               const FeModel& model);
+/// The same of a body in its passive form.
+std::vector<std::unique_ptr<Load>> make_whole_loads(const BodySpec& spec, const Place& place,
+                                                    const FeModel& model);
 
 /// [m/s^2] of the body force that is the same everywhere and always.
 double body_acceleration(const BodySpec& spec);

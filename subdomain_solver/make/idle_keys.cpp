@@ -68,12 +68,15 @@ void BodySpec::idle_of_bars(Fields& f) const {
   const bool still = integrator && std::holds_alternative<QuasiStaticSpec>(*integrator);
   const bool fe_bar = solid && !flat && !modal && !rigid && !still;
   const bool layered = solid && !modal && !rigid && !still;
-  f.idle(solid && (!layered || contact_layer.index() != 0), "contact_layer",
+  const bool massive = flat && layered && std::holds_alternative<MassiveSpec>(contact_layer);
+  f.idle(solid && (!layered || (contact_layer.index() != 0 && !massive)), "contact_layer",
          layered ? "finite elements have a massless layer, at tied ports none"
                  : "contact of this body has no layer");
   f.idle(layered, "contact_layer.massless.stiffness_factor",
          "it is for bars of equal elements of linear_elastic material");
   f.idle(!flat, "contact_layer.massless.directions", "one dimension has one direction");
+  for (const char* key : {"stabilised", "reaction"})
+    f.idle(flat, std::string("contact_layer.massive.") + key, "it is for ends of bars");
   all_idle(
       f, solid,
       {"integrator.central_difference.dispersion_terms",

@@ -89,6 +89,7 @@ std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Place& place) {
   parts.scheme = {std::make_unique<RigidMotion>(*parts.problem, *body), integrator.step,
                   std::numeric_limits<double>::infinity(), integrator.mass,
                   fmt::format("exact free motion, step {:g} s", integrator.step)};
+  parts.rigid = body.get();
   parts.reduced = std::move(body);
   parts.rung = "rigid" + on_file(model) + adjusted;
   parts.deforms = false;

@@ -76,6 +76,20 @@ std::vector<int> layer_coordinates(const FeModel& model, const BodySpec& spec,
   return dofs;
 }
 
+/// Whether the surface is free of mass now. One that cannot be, of a body one element across for
+/// instance, keeps it, unless the scene asks for its layer.
+bool give_layer(FeModel& model, std::vector<int> layer, const std::vector<int>& held,
+                const BodySpec& spec, const Place& place) {
+  if (std::holds_alternative<MassiveSpec>(spec.contact_layer)) return false;
+  try {
+    model.make_massless(std::move(layer), held);
+    return true;
+  } catch (const InputError& error) {
+    if (!place.document.has(place.path + ".contact_layer")) return false;
+    throw InputError(error.what_is_wrong, place.where("model.fe.mesh"), error.remedy);
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
@@ -106,12 +120,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   std::vector<int> layer = layer_coordinates(model, spec, ports, constraints, place);
   std::vector<int> held;  // coordinates, ascending
   for (const Prescribed& p : constraints.supports) held.push_back(p.dof);
-  if (!layer.empty()) {
-    named(place, "model.fe.mesh", [&] {
-      model.make_massless(std::move(layer), held);
-      return 0;
-    });
-  }
+  if (!layer.empty()) parts.massive_surface = !give_layer(model, std::move(layer), held, spec, place);
   const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
   const Eigen::MatrixXd loose = check_statics(spec, place, model, constraints.supports, joined);
   if (loose.cols() > 0) parts.loose = translations_and_rotations(model, loose);
@@ -121,11 +130,13 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   parts.problem->model = &model;
   parts.problem->supports = std::move(constraints.supports);
   parts.problem->loads = make_loads(spec, place, model);
+  parts.whole_loads = make_whole_loads(spec, place, model);
   parts.motion = initial_motion(spec, place, model);
   const auto limit = [&] {
     return stable_step(model, parts.motion.q, std::vector<double>(model.history_size(), 0.0));
   };
   parts.rung += on_file(fe) + adjusted;
+  if (parts.massive_surface) parts.rung += ", its surface has mass: contact in its passive form";
   if (const std::string why = spec.why_general(); !why.empty())
     parts.rung += " in place of the bars' own core, for " + why;
   MakeWatch watch;  // the tangent of linear bodies stays

@@ -24,7 +24,8 @@ RigidTool::RigidTool(std::string name, std::unique_ptr<FeModel> shape, std::vect
   description_.step = step;
   description_.stable_step = std::numeric_limits<double>::infinity();
   description_.linear = true;
-  description_.can.force = true;
+  description_.can.force = description_.can.passive = true;
+  able_.passive = this;
   std::size_t values = 0;
   for (const SolidInterior::PortNodes& p : ports) {
     Port port{p.name, port_geometry(*shape_, p.side, mesh.nodes_of(p.side)), p.tied};
@@ -84,6 +85,13 @@ std::optional<Failed> RigidTool::move_to(const Window& window, double time) {
   for (std::size_t k = 0; pushed_ && k < seen_.f.size(); k += way_.size())
     for (std::size_t i = 0; i < way_.size(); ++i) force[i] += seen_.f[k + i];
   mean_force(window, time, mean);
+  if (std::optional<Failed> failed = go_to(time, mean)) return failed;
+  state_.force = force;
+  return std::nullopt;
+}
+
+/// Against a mean force [N] (dim) on the way.
+std::optional<Failed> RigidTool::go_to(double time, const std::vector<double>& mean) {
   const double length = time - state_.time;
   for (std::size_t i = 0; i < way_.size(); ++i) {
     const double place = way_[i](time);
@@ -95,9 +103,45 @@ std::optional<Failed> RigidTool::move_to(const Window& window, double time) {
     state_.work -= mean[i] * moved;
     if (length > 0.0) state_.velocity[i] = moved / length;
     state_.place[i] = place;
-    state_.force[i] = force[i];
   }
   state_.time = time;
+  return std::nullopt;
+}
+
+/// A tool that has not begun yet goes to where its way begins; one that cannot tells so in a step.
+double RigidTool::enter() {
+  (void)go_to(state_.time, std::vector<double>(way_.size(), 0.0));
+  return 0.0;
+}
+
+std::optional<Failed> RigidTool::leave(double, double& lost) {
+  lost = 0.0;
+  return std::nullopt;
+}
+
+std::optional<Failed> RigidTool::pass(const PassiveStep& step, PassiveReply& reply) {
+  const std::size_t dim = way_.size();
+  std::vector<double> mean(dim, 0.0);
+  for (const std::vector<double>& impulse : step.impulses)
+    for (std::size_t k = 0; k < impulse.size(); ++k) mean[k % dim] += impulse[k] / step.length();
+  state_.time = step.begin;
+  const std::vector<double> from = state_.place;
+  if (std::optional<Failed> failed = go_to(step.end, mean)) return failed;
+  state_.force = mean;
+  std::size_t pressed = 0;
+  for (const std::vector<std::int32_t>& points : step.pressed) pressed += points.size() * dim;
+  reply.compliance.assign(pressed * pressed, 0.0);
+  reply.bulge = 0.0;
+  reply.ports.resize(description_.ports.size());
+  for (std::size_t p = 0; p < reply.ports.size(); ++p) {
+    const std::size_t count = description_.ports[p].geometry.points.size();
+    reply.ports[p].displacement.resize(count);
+    reply.ports[p].velocity.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      reply.ports[p].displacement[k] = state_.place[k % dim] - from[k % dim];
+      reply.ports[p].velocity[k] = state_.velocity[k % dim];
+    }
+  }
   return std::nullopt;
 }
 

@@ -7,13 +7,14 @@
 
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/interior.hpp"
+#include "subdomain_solver/passive/passive_body.hpp"
 #include "subdomain_solver/solid_interior.hpp"
 
 namespace abut {
 
 /// A rigid shape in two or three dimensions on a given way: a wall where it stands, a die, a punch.
 /// Takes any force and goes where it is told; its energy and momentum are nobody's.
-class RigidTool final : public Interior {
+class RigidTool final : public Interior, private PassiveBody {
  public:
   /// Displacement [m] along an axis, of time [s].
   using Way = std::function<double(double)>;
@@ -33,6 +34,13 @@ class RigidTool final : public Interior {
   std::vector<FieldValues> fields() override;
 
  private:
+  // Nothing it has is other in its passive form.
+  double enter() override;
+  std::optional<Failed> leave(double, double& lost) override;
+  double damp(double) override { return 0.0; }
+  std::optional<Failed> pass(const PassiveStep& step, PassiveReply& reply) override;
+
+  std::optional<Failed> go_to(double time, const std::vector<double>& mean);
   void mean_force(const Window& window, double time, std::vector<double>& mean);
   std::optional<Failed> move_to(const Window& window, double time);
 

@@ -1,0 +1,32 @@
+// The passive form of a body, as others see it.
+
+#include <utility>
+
+#include "base/assert.hpp"
+#include "subdomain_solver/body.hpp"
+#include "subdomain_solver/passive/passive_body.hpp"
+
+namespace abut {
+
+PassiveForm* Body::passive() { return interior_->able().passive != nullptr ? &passive_ : nullptr; }
+
+double Body::Passive::enter() { return body_.interior_->able().passive->enter(); }
+
+Outcome Body::Passive::leave(double time, double& lost) {
+  PassiveBody& own = *body_.interior_->able().passive;
+  if (auto failed = body_.patiently([&] { return own.leave(time, lost); })) return *failed;
+  return Advanced{};
+}
+
+Outcome Body::Passive::finish(PassiveReply& reply) {
+  ABUT_ASSERT(step_ != nullptr);
+  const PassiveStep& step = *std::exchange(step_, nullptr);
+  PassiveBody& own = *body_.interior_->able().passive;
+  if (auto failed = body_.patiently([&] { return own.pass(step, reply); })) return *failed;
+  if (auto failed = body_.tell(reply.record, step.end)) return *failed;
+  return Advanced{};
+}
+
+double Body::Passive::damp(double joules) { return body_.interior_->able().passive->damp(joules); }
+
+}  // namespace abut

@@ -1,0 +1,309 @@
+#include "subdomain_solver/passive/midpoint_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/index.hpp"
+#include "subdomain_solver/time/motion_views.hpp"
+
+namespace abut {
+
+namespace {
+
+constexpr int most_iterations = 100, most_halvings = 40;
+/// Corrections of a linear body: factors are of a length that differs by 1e-7 at most, and each of
+/// them gains as many digits.
+constexpr int most_corrections = 6;
+/// Steps whose potential falls by less than so many roundings of the energy are at its bottom; one
+/// or two more of them may yet gain digits of the balance.
+constexpr double at_bottom = 100.0;
+constexpr int last_steps = 2;
+constexpr std::size_t most_factors = 3;
+/// Right-hand sides that are solved for at once.
+constexpr std::size_t together = 64;
+
+/// Lengths of windows' parts differ in their last bits: those of one length share factors. A
+/// function of the length alone, so that a reply does not depend on what came before.
+double shared_length(double length) {
+  constexpr int bits = 24;
+  int exponent = 0;
+  const double mantissa = std::frexp(length, &exponent);
+  return std::ldexp(std::round(std::ldexp(mantissa, bits)), exponent - bits);
+}
+
+SparseMatrix diagonal(const Vector& values) {
+  SparseMatrix out(values.size(), values.size());
+  out.reserve(Eigen::VectorXi::Constant(values.size(), 1));
+  for (int i = 0; i < values.size(); ++i) out.insert(i, i) = values(i);
+  out.makeCompressed();
+  return out;
+}
+
+}  // namespace
+
+MidpointStep::MidpointStep(Body body)
+    : body_(std::move(body)),
+      free_(body_.problem->model->dofs(), body_.problem->supports),
+      inertia_(diagonal(body_.mass)) {}
+
+std::optional<Failed> MidpointStep::step(Motion& motion, double start, double end,
+                                         const Vector& impulse) {
+  start_ = start;
+  end_ = end;
+  length_ = end - start;
+  begin(motion, start, impulse);
+  if (!given_.allFinite() || !std::ranges::all_of(held_, [](double u) { return std::isfinite(u); }))
+    return not_finite(end);
+  auto failed = body_.cells == nullptr ? solve_linear(motion) : solve(motion);
+  if (!failed) failed = finish(motion, impulse);
+  return failed;
+}
+
+/// The first guess is the free motion. Supports' mean velocity is that of their way.
+void MidpointStep::begin(const Motion& motion, double start, const Vector& impulse) {
+  change_.setZero(body_.mass.size());
+  held_.clear();
+  for (const Prescribed& p : body_.problem->supports) {
+    held_.push_back(p.value(end_) - motion.q[p.dof]);
+    change_(p.dof) = 2.0 * (held_.back() / length_ - motion.v[p.dof]);
+  }
+  follow(motion);
+  loads_.setZero(body_.mass.size());
+  for (const Load* load : body_.loads) load->add(start + 0.5 * length_, middle_, loads_);
+  given_ = impulse + length_ * loads_;
+}
+
+/// The middle of the step.
+void MidpointStep::follow(const Motion& motion) {
+  middle_.resize(motion.q.size());
+  view(middle_) = view(motion.q) + 0.5 * length_ * (view(motion.v) + 0.5 * change_);
+}
+
+bool MidpointStep::respond(const Motion& motion) {
+  follow(motion);
+  return body_.problem->model->evaluate(middle_, motion.history, Model::Want::force, response_) &&
+         std::isfinite(response_.stored);
+}
+
+/// Whose derivative by the change of velocity is a quarter of the balance.
+double MidpointStep::potential() const {
+  double sum = 0.0;
+  for (const int i : free_.list())
+    sum += (0.125 * body_.mass(i) * change_(i) - 0.25 * given_(i)) * change_(i);
+  return sum + response_.stored + response_.dissipation;
+}
+
+/// Of the balance of momentum on the free coordinates. Returns its size.
+double MidpointStep::residual() {
+  left_.resize(free_.count());
+  for (int k = 0; k < free_.count(); ++k) {
+    const int i = free_.list()[k];
+    left_(k) = given_(i) - length_ * response_.force(i) - body_.mass(i) * change_(i);
+  }
+  return left_.norm();
+}
+
+/// [kg m/s] below which the balance cannot be improved.
+double MidpointStep::roundoff() {
+  double sum = 0.0;
+  for (const int i : free_.list()) {
+    const double part = std::abs(given_(i)) + std::abs(body_.mass(i) * change_(i));
+    sum += part * part;
+  }
+  return length_ * body_.problem->model->roundoff(middle_) +
+         std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+}
+
+/// Corrections with one factor until the balance no longer improves.
+std::optional<Failed> MidpointStep::solve_linear(const Motion& motion) {
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < most_corrections; ++i) {
+    if (!respond(motion)) return failed_newton({NewtonReport::End::inadmissible}, end_);
+    const double now = residual();
+    if (!std::isfinite(now)) return not_finite(end_);
+    if (now == 0.0 || now > 0.5 * before) break;
+    before = now;
+    Factors* factors = this->factors();
+    if (factors == nullptr || !factors->solver->solve(left_, correction_))
+      return failed_newton({NewtonReport::End::singular}, end_);
+    free_.add(correction_, change_);
+  }
+  return respond(motion) ? std::nullopt
+                         : std::optional(failed_newton({NewtonReport::End::inadmissible}, end_));
+}
+
+std::optional<Failed> MidpointStep::solve(const Motion& motion) {
+  if (!respond(motion)) {  // free motion inverts cells: from where the step began
+    for (const int i : free_.list()) change_(i) = -2.0 * motion.v[i];
+    if (!respond(motion)) return failed_newton({NewtonReport::End::inadmissible}, end_);
+  }
+  reached_ = potential();
+  NewtonReport report{NewtonReport::End::not_converged};
+  for (int small = 0; report.iterations < most_iterations; ++report.iterations) {
+    const double size = residual();
+    if (!std::isfinite(size)) return not_finite(end_);
+    if (size <= roundoff()) return std::nullopt;
+    if (!correct(motion)) return failed_newton({NewtonReport::End::singular}, end_);
+    const double slope = 0.25 * left_.dot(correction_);  // by which the potential falls
+    if (slope < at_bottom * body_.noise && ++small > last_steps) return std::nullopt;
+    switch (search(motion, slope)) {
+      case Search::moved: break;
+      case Search::ended: return std::nullopt;
+      case Search::stuck:
+        report.residual = size / std::max(given_.norm(), body_.mass.maxCoeff());
+        return failed_newton(report, end_);
+    }
+  }
+  report.residual = residual() / std::max(given_.norm(), body_.mass.maxCoeff());
+  return failed_newton(report, end_);
+}
+
+/// Halves the correction until the potential has fallen, but for the rounding of its energy.
+MidpointStep::Search MidpointStep::search(const Motion& motion, double slope) {
+  constexpr double enough = 1.0e-4;   // of the fall that the slope foretells
+  constexpr double digits = 1.0e-13;  // of the potential
+  before_ = change_;
+  double part = 1.0;
+  for (int k = 0; k <= most_halvings; ++k, part *= 0.5) {
+    change_ = before_;
+    for (int i = 0; i < free_.count(); ++i) change_(free_.list()[i]) += part * correction_(i);
+    if (!respond(motion)) continue;
+    const double now = potential();
+    if (!(now <= reached_ - enough * part * slope + digits * std::abs(reached_) + body_.noise))
+      continue;
+    reached_ = now;
+    return Search::moved;
+  }
+  change_ = before_;
+  const bool back = respond(motion);
+  constexpr double near = 1.0e4;  // roundings of the energy, at which the search may end
+  return back && slope < near * body_.noise ? Search::ended : Search::stuck;
+}
+
+/// Of the middle of the step, from the history at its begin.
+bool MidpointStep::factor(std::span<const double> history) {
+  const double inertia = 4.0 / (length_ * length_);
+  if (!body_.cells->definite_tangent(middle_, history, inertia, tangent_)) return false;
+  free_.extract(inertia_ + 0.25 * length_ * length_ * tangent_, matrix_);
+  if (solver_ == nullptr) solver_ = make_direct_solver(Pivots::every);
+  return solver_->factor(matrix_);
+}
+
+bool MidpointStep::correct(const Motion& motion) {
+  return factor(motion.history) && solver_->solve(left_, correction_);
+}
+
+/// Of a linear body at the step's length. Null: there are none.
+MidpointStep::Factors* MidpointStep::factors() {
+  const double length = shared_length(length_);
+  const auto found = std::ranges::find(factors_, length, &Factors::length);
+  if (found != factors_.end()) {
+    std::rotate(found, found + 1, factors_.end());
+    return &factors_.back();
+  }
+  if (tangent_.size() == 0) {
+    ModelResponse rest;
+    const std::vector<double> still(index(body_.mass.size()), 0.0);
+    if (!body_.problem->model->evaluate(still, {}, Model::Want::tangent, rest)) return nullptr;
+    tangent_ = rest.tangent;
+  }
+  SparseMatrix whole = inertia_ + 0.25 * length * length * tangent_, reduced;
+  FreeCoordinates(static_cast<int>(body_.mass.size()), body_.problem->supports)
+      .extract(whole, reduced);
+  Factors made{length, make_direct_solver(Pivots::every), {}};
+  if (!made.solver->factor(reduced)) return nullptr;
+  if (factors_.size() == most_factors) factors_.erase(factors_.begin());
+  factors_.push_back(std::move(made));
+  return &factors_.back();
+}
+
+/// Energies at the step's end. What acts on free coordinates works by the mean force of the step;
+/// a support does what the body answers there, and carries its own mass.
+std::optional<Failed> MidpointStep::finish(Motion& motion, const Vector& impulse) {
+  Model& model = *body_.problem->model;
+  const auto v = view(std::as_const(motion).v);
+  moved_.resize(motion.q.size());
+  view(moved_) = length_ * (v + 0.5 * change_);
+  std::size_t k = 0;
+  for (const Prescribed& p : body_.problem->supports) moved_[p.dof] = held_[k++];
+  last_.resize(motion.q.size());
+  view(last_) = view(motion.q) + view(moved_);
+  const Vector mean = response_.force;  // [N]
+  if (!model.evaluate(last_, motion.history, Model::Want::force, response_))
+    return failed_newton({NewtonReport::End::inadmissible}, end_);
+  double work = 0.0;
+  for (const int i : free_.list()) work += loads_(i) * moved_[i];
+  motion.force.assign(motion.q.size(), 0.0);
+  for (const Prescribed& p : body_.problem->supports) {
+    const std::size_t i = index(p.dof);
+    const double before = motion.v[i], after = moved_[i] / length_, mass = body_.mass(p.dof);
+    const double answer = mean(p.dof) - impulse(p.dof) / length_;
+    work += answer * moved_[i] + 0.5 * mass * (after * after - before * before);
+    motion.force[i] = answer - loads_(p.dof) + mass * (after - before) / length_;
+    change_(p.dof) = after - before;
+  }
+  view(motion.v) += change_;
+  motion.q.swap(last_);
+  motion.external_work += work;
+  motion.dissipated += response_.dissipation;
+  motion.stored = response_.stored;
+  motion.history.swap(response_.history);  // compliance() needs that of the begin
+  return std::nullopt;
+}
+
+bool MidpointStep::find_columns(const Motion& motion, const PortMap& ports, LinearSolver& solver,
+                                std::span<const std::size_t> values,
+                                std::vector<std::vector<double>>& columns) {
+  std::vector<double> unit(ports.values(), 0.0), whole(motion.v.size(), 0.0);
+  Vector lifted, picked;
+  Eigen::MatrixXd right(free_.count(), static_cast<Eigen::Index>(values.size())), answer;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    unit[values[k]] = 1.0;
+    lifted.setZero(body_.mass.size());
+    ports.lift(motion.q, unit, lifted);
+    unit[values[k]] = 0.0;
+    free_.pick(lifted, picked);
+    right.col(static_cast<Eigen::Index>(k)) = picked;
+  }
+  if (!solver.solve_columns(right, answer)) return false;
+  for (Eigen::Index k = 0; k < answer.cols(); ++k) {
+    for (int i = 0; i < free_.count(); ++i) whole[free_.list()[i]] = 0.5 * answer(i, k);
+    ports.velocity(motion.q, whole, columns.emplace_back());
+  }
+  return true;
+}
+
+bool MidpointStep::compliance(const Motion& motion, const PortMap& ports,
+                              const std::vector<std::size_t>& values, std::vector<double>& out) {
+  out.assign(values.size() * values.size(), 0.0);
+  if (values.empty()) return true;
+  Factors* kept = body_.cells == nullptr ? factors() : nullptr;
+  if (body_.cells == nullptr ? kept == nullptr : !factor(response_.history)) return false;
+  LinearSolver& solver = kept != nullptr ? *kept->solver : *solver_;
+  std::map<std::size_t, std::vector<double>> fresh;
+  std::map<std::size_t, std::vector<double>>& known = kept != nullptr ? kept->columns : fresh;
+  std::vector<std::size_t> wanted;
+  std::ranges::copy_if(values, std::back_inserter(wanted),
+                       [&](std::size_t value) { return !known.contains(value); });
+  // Those that are kept one by one: their bits must not depend on who else was asked for.
+  const std::size_t each = kept != nullptr ? 1 : together;
+  for (std::size_t first = 0; first < wanted.size(); first += each) {
+    const std::span<const std::size_t> some =
+        std::span(wanted).subspan(first, std::min(each, wanted.size() - first));
+    std::vector<std::vector<double>> columns;
+    if (!find_columns(motion, ports, solver, some, columns)) return false;
+    for (std::size_t k = 0; k < some.size(); ++k) known[some[k]] = std::move(columns[k]);
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::vector<double>& column = known[values[i]];
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      out[i * values.size() + j] += 0.5 * column[values[j]];
+      out[j * values.size() + i] += 0.5 * column[values[j]];
+    }
+  }
+  return true;
+}
+
+}  // namespace abut

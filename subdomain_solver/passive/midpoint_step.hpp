@@ -1,0 +1,88 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "contract/outcome.hpp"
+#include "subdomain_solver/fe/fe_model.hpp"
+#include "subdomain_solver/port_map.hpp"
+#include "subdomain_solver/solve/linear_solver.hpp"
+#include "subdomain_solver/time/problem.hpp"
+
+namespace abut {
+
+/// The midpoint rule with a diagonal mass, under impulses [M.128]: the minimum of an incremental
+/// potential, by Newton's method with definite tangents and a line search, so that a step has an
+/// answer wherever the law has one. The unknown is the change of velocity: small steps lose nothing
+/// to round-off, and momentum is that of the impulses. A linear body is solved with one
+/// factorisation per length of step. Loads that follow the body are those of the place to which it
+/// would go freely.
+class MidpointStep {
+ public:
+  struct Body {
+    const Problem* problem = nullptr;
+    FeModel* cells = nullptr;         // whose tangents are made definite; null: the model is linear
+    Vector mass;                      // [kg] (dofs)
+    std::vector<const Load*> loads;   // its own, with this mass
+    double noise = 0.0;               // [J] of rounding in its stored energy
+  };
+
+  /// What is referred to must outlive it.
+  explicit MidpointStep(Body body);
+
+  const Vector& mass() const { return body_.mass; }
+  /// From `begin` to `end`. Forces of supports [N], means over the step, are left in motion.force.
+  /// When it fails the motion is as before.
+  [[nodiscard]] std::optional<Failed> step(Motion& motion, double begin, double end,
+                                           const Vector& impulse);
+  /// [m] (dofs) by which the last step moved the coordinates.
+  const std::vector<double>& moved() const { return moved_; }
+  /// Compliance [M.129] of some values of the ports after a step, (values, values) row by row.
+  /// False: there is none.
+  [[nodiscard]] bool compliance(const Motion& motion, const PortMap& ports,
+                                const std::vector<std::size_t>& values, std::vector<double>& out);
+
+ private:
+  struct Factors {  // of a linear body
+    double length = 0.0;  // [s]
+    std::unique_ptr<LinearSolver> solver;
+    std::map<std::size_t, std::vector<double>> columns;  // by value of the ports: (port values)
+  };
+
+  void begin(const Motion& motion, double start, const Vector& impulse);
+  void follow(const Motion& motion);
+  [[nodiscard]] bool respond(const Motion& motion);
+  double potential() const;
+  double residual();
+  double roundoff();
+  [[nodiscard]] std::optional<Failed> solve_linear(const Motion& motion);
+  [[nodiscard]] std::optional<Failed> solve(const Motion& motion);
+  [[nodiscard]] bool correct(const Motion& motion);
+  enum class Search { moved, ended, stuck };
+  [[nodiscard]] Search search(const Motion& motion, double slope);
+  [[nodiscard]] bool factor(std::span<const double> history);
+  Factors* factors();
+  [[nodiscard]] std::optional<Failed> finish(Motion& motion, const Vector& impulse);
+  [[nodiscard]] bool find_columns(const Motion& motion, const PortMap& ports, LinearSolver& solver,
+                                  std::span<const std::size_t> values,
+                                  std::vector<std::vector<double>>& columns);
+
+  Body body_;
+  FreeCoordinates free_;
+  std::vector<Factors> factors_;  // of the last lengths, the last one used at the end
+  std::unique_ptr<LinearSolver> solver_;
+  SparseMatrix inertia_, tangent_, matrix_;
+  ModelResponse response_;
+  // Of one step:
+  double start_ = 0.0, end_ = 0.0, length_ = 0.0;  // [s]
+  Vector change_, given_;                          // [m/s], [kg m/s] (dofs)
+  Vector loads_;                                   // [N] (dofs)
+  std::vector<double> held_;                       // [m] (supports) by which they move
+  std::vector<double> middle_, last_, moved_;      // [m] (dofs)
+  Vector left_, correction_, before_;              // [kg m/s], [m/s] (free), [m/s] (dofs)
+  double reached_ = 0.0;                           // [J] potential
+};
+
+}  // namespace abut

@@ -1,0 +1,291 @@
+// The passive form of a solid [M.128]: all mass on the nodes, and the way to and from its own
+// scheme [M.130].
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "subdomain_solver/fe/rigid_motions.hpp"
+#include "subdomain_solver/solid_interior.hpp"
+#include "subdomain_solver/time/motion_views.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Roundings of the energy of a strain of one, relative: below them a fall is no fall.
+constexpr double energy_rounding = 2.0e-15;
+
+SparseMatrix diagonal(const Vector& values) {
+  SparseMatrix out(values.size(), values.size());
+  out.reserve(Eigen::VectorXi::Constant(values.size(), 1));
+  for (int i = 0; i < values.size(); ++i) out.insert(i, i) = values(i);
+  out.makeCompressed();
+  return out;
+}
+
+double energy_of(const SparseMatrix& mass, const Vector& v) { return 0.5 * v.dot(mass * v); }
+
+}  // namespace
+
+/// Of solids in the plane and in space, with inertia and without joined ports. Reactions of modes
+/// are told by their schemes alone.
+void SolidInterior::find_passive() {
+  const bool modal = parts_.reduced != nullptr && parts_.rigid == nullptr;
+  if (description_.dim == 1 || joins_ || (modal && parts_.reactions)) return;
+  able_.passive = this;
+  description_.can.passive = true;
+  description_.can.only_passive = parts_.massive_surface;
+}
+
+/// What only passive bodies need is made when the first of them needs it.
+void SolidInterior::start_passive() {
+  if (midpoint_ || rigid_step_) return;
+  std::vector<const Load*> loads;
+  const bool own = parts_.reduced != nullptr || parts_.whole_loads.empty();
+  for (const auto& load : own ? parts_.problem->loads : parts_.whole_loads)
+    if (load.get() != port_forces_) loads.push_back(load.get());
+  if (parts_.rigid != nullptr) {
+    const Mesh& mesh = parts_.model->mesh();
+    std::vector<Eigen::Vector3d> arms;
+    for (const NamedNodes& port : ports_) {
+      for (const std::int32_t node : port.nodes) {
+        Eigen::Vector3d& arm = arms.emplace_back(-parts_.rigid->centre());
+        for (int i = 0; i < mesh.dim; ++i) arm(i) += mesh.points[node * mesh.dim + i];
+      }
+    }
+    rigid_step_ = std::make_unique<RigidStep>(*parts_.rigid, std::move(arms), std::move(loads));
+    whole_mass_ = mass_;
+    return;
+  }
+  const FeModel& nodes = *parts_.model;
+  const bool reduced = parts_.reduced != nullptr, linear = parts_.problem->model->is_linear();
+  whole_mass_ = reduced ? mass_ : diagonal(nodes.whole_mass());
+  if (!reduced && !nodes.massless().empty()) given_mass_ = nodes.given_mass();
+  midpoint_ = std::make_unique<MidpointStep>(MidpointStep::Body{
+      parts_.problem.get(), linear ? nullptr : parts_.model.get(),
+      reduced ? parts_.problem->model->lumped_mass() : nodes.whole_mass(), std::move(loads),
+      energy_rounding * nodes.material().moduli().p_wave() * nodes.volume()});
+}
+
+/// [J] kinetic, in the passive form.
+double SolidInterior::moving_energy() const {
+  const Motion& motion = state_.motion;
+  if (parts_.rigid != nullptr) return parts_.rigid->kinetic(motion.q, motion.v);
+  return 0.5 * view(motion.v).dot(midpoint_->mass().cwiseProduct(view(motion.v)));
+}
+
+std::vector<double> SolidInterior::momentum_now() {
+  see_nodes();
+  std::vector<double> sum(index(description_.dim), 0.0);
+  for (Eigen::Index k = 0; k < momentum_.size(); ++k)
+    sum[index(k) % sum.size()] += momentum_(k);
+  return sum;
+}
+
+double SolidInterior::enter() {
+  if (is_passive()) return 0.0;
+  start_passive();
+  Motion& motion = state_.motion;
+  parts_.problem->contact = nullptr;
+  if (!state_.begun) {  // velocities of the start are those of all nodes
+    motion.history.resize(parts_.problem->model->history_size(), 0.0);
+    for (const Prescribed& p : parts_.problem->supports) motion.q[p.dof] = p.value(state_.time);
+    parts_.problem->set_rates(state_.time, parts_.scheme.step, motion);
+    ModelResponse response;
+    if (parts_.problem->model->evaluate(motion.q, motion.history, Model::Want::force, response))
+      motion.stored = response.stored;
+    state_.begun = true;
+    motion.a.clear();
+    motion.force.assign(motion.v.size(), 0.0);
+    return 0.0;
+  }
+  const std::vector<double> momentum = momentum_now();
+  const double before = parts_.scheme.integrator->kinetic(motion);
+  spread_velocities();
+  motion.a.clear();
+  motion.force.assign(motion.v.size(), 0.0);
+  std::ranges::fill(state_.port_force, 0.0);
+  if (surfaces_ != nullptr) surfaces_->let_go();
+  keep_momentum(momentum);
+  for (int k = 0; k < 3 && moving_energy() > before; ++k)
+    take_from_deformation(moving_energy() - before);
+  return before - moving_energy();
+}
+
+/// To nodes of the layer, which take that of what had their mass.
+void SolidInterior::spread_velocities() {
+  if (given_mass_.size() == 0) return;
+  std::vector<double>& v = state_.motion.v;
+  const Vector momentum = given_mass_ * view(v), mass = given_mass_ * Vector::Ones(momentum.size());
+  for (const int dof : parts_.model->massless()) v[dof] = momentum(dof) / mass(dof);
+}
+
+/// From nodes of the layer, to what takes their mass: nothing that is held.
+void SolidInterior::gather_velocities() {
+  if (given_mass_.size() == 0) return;
+  std::vector<double>& v = state_.motion.v;
+  const Vector momentum = given_mass_.transpose() * view(v);
+  const Vector taken = given_mass_.transpose() * Vector::Ones(momentum.size());
+  for (Eigen::Index i = 0; i < taken.size(); ++i) {
+    if (!(taken(i) > 0.0)) continue;
+    const double own = midpoint_->mass()(i);
+    v[i] = (own * v[i] + momentum(i)) / (own + taken(i));
+  }
+}
+
+/// Uniform velocities along the axes that no support holds make momentum what it was: mass matrices
+/// that are not those of the nodes alone have other ones.
+void SolidInterior::keep_momentum(const std::vector<double>& momentum) {
+  if (parts_.reduced) return;
+  const FeModel& model = *parts_.model;
+  const std::vector<double> now = momentum_now();
+  const int dim = description_.dim;
+  std::vector<double> change(nodal_values(), 0.0);
+  for (int i = model.round() ? 1 : 0; i < dim; ++i) {
+    if (std::ranges::any_of(parts_.problem->supports, [&](const Prescribed& p) {
+          return model.frame(p.dof / dim) != nullptr || p.dof % dim == i;
+        }))
+      continue;
+    for (std::size_t k = index(i); k < change.size(); k += index(dim))
+      change[k] = (momentum[i] - now[i]) / description_.mass;
+  }
+  model.to_frames(change);
+  view(state_.motion.v) += view(change);
+}
+
+/// What is left of velocities beside the rigid motions that supports leave is scaled down.
+double SolidInterior::take_from_deformation(double joules) {
+  Motion& motion = state_.motion;
+  const double before = energy().kinetic;
+  if (parts_.rigid != nullptr || !(joules > 0.0)) return 0.0;
+  Vector rest = view(motion.v);
+  Vector mass = Vector::Ones(rest.size());
+  if (parts_.reduced) {
+    for (Eigen::Index k = 0; k < rest.size(); ++k)
+      if (parts_.frequencies[k] == 0.0) rest(k) = 0.0;
+  } else {
+    const SparseMatrix& whole = mass_of_form();
+    mass = whole.diagonal();
+    see_nodes();
+    std::vector<double> at = parts_.model->mesh().points;
+    for (std::size_t k = 0; k < at.size(); ++k) at[k] += u_[k];
+    std::vector<int> held;
+    for (const Prescribed& p : parts_.problem->supports) held.push_back(p.dof);
+    const Eigen::MatrixXd rigid = vanishing_on(held, rigid_motions(*parts_.model, at));
+    if (rigid.cols() > 0) {
+      const Eigen::MatrixXd heavy = whole * rigid;
+      rest -= rigid * (rigid.transpose() * heavy).ldlt().solve(heavy.transpose() * rest);
+    }
+    for (const int dof : held) rest(dof) = 0.0;
+    for (const int dof : is_passive() ? std::vector<int>{} : parts_.model->massless())
+      rest(dof) = 0.0;
+    const double most = energy_of(whole, rest);
+    if (!(most > 0.0)) return 0.0;
+    const double kept = std::sqrt(std::max(0.0, 1.0 - joules / most));
+    view(motion.v) -= (1.0 - kept) * rest;
+    return before - energy().kinetic;
+  }
+  const double most = 0.5 * rest.squaredNorm();  // modes have a mass of one
+  if (!(most > 0.0)) return 0.0;
+  view(motion.v) -= (1.0 - std::sqrt(std::max(0.0, 1.0 - joules / most))) * rest;
+  return before - energy().kinetic;
+}
+
+double SolidInterior::damp(double joules) { return take_from_deformation(joules); }
+
+std::optional<Failed> SolidInterior::leave(double time, double& lost) {
+  lost = 0.0;
+  if (!is_passive()) return std::nullopt;
+  const State before = state_;
+  const std::vector<double> momentum = momentum_now();
+  double present = moving_energy() + state_.motion.stored;
+  double work = 0.0;
+  if (std::optional<Failed> failed = restart(time, work)) {
+    state_ = before;
+    return failed;
+  }
+  present += work;
+  state_.motion.external_work += work;
+  const auto total = [this] {
+    return parts_.scheme.integrator->kinetic(state_.motion) + state_.motion.stored;
+  };
+  keep_momentum(momentum);
+  for (int k = 0; k < 3 && total() > present; ++k) take_from_deformation(total() - present);
+  lost = present - total();
+  if (port_map_) port_map_->displacement(state_.motion.q, places_);
+  return std::nullopt;
+}
+
+/// The body's own scheme begins, under its own loads. Returns what these and the supports do
+/// meanwhile.
+std::optional<Failed> SolidInterior::restart(double time, double& work) {
+  Motion& motion = state_.motion;
+  const std::vector<double> q = motion.q, v = motion.v;
+  if (!parts_.reduced) gather_velocities();
+  parts_.problem->contact = nullptr;
+  if (port_forces_ != nullptr) port_forces_->impose({}, {});
+  parts_.problem->set_rates(time, parts_.scheme.step, motion);
+  if (auto failed = parts_.scheme.integrator->begin(motion, time)) return failed;
+  std::ranges::fill(state_.port_force, 0.0);
+  state_.time = time;
+  if (parts_.reduced) return std::nullopt;
+  for (const Prescribed& p : parts_.problem->supports) {
+    const double now = motion.v[p.dof], then = v[p.dof];
+    work += 0.5 * midpoint_->mass()(p.dof) * (now * now - then * then);
+  }
+  if (parts_.model->massless().empty()) return std::nullopt;
+  const Vector& loads = parts_.problem->external_force(time, motion.q);
+  for (const int dof : parts_.model->massless()) work += loads(dof) * (motion.q[dof] - q[dof]);
+  return std::nullopt;
+}
+
+void SolidInterior::take_impulses(const PassiveStep& step) {
+  now_.assign(port_map_->values(), 0.0);
+  for (std::size_t p = 0; p < step.impulses.size(); ++p)
+    std::ranges::copy(step.impulses[p],
+                      now_.begin() + static_cast<std::ptrdiff_t>(port_map_->first(p)));
+}
+
+std::optional<Failed> SolidInterior::pass(const PassiveStep& step, PassiveReply& reply) {
+  Motion& motion = state_.motion;
+  take_impulses(step);
+  if (rigid_step_) {
+    if (auto failed = rigid_step_->step(motion, step.begin, step.end, now_)) return failed;
+    before_ = rigid_step_->moved();
+    reply.bulge = rigid_step_->bulge();
+  } else {
+    change_.setZero(parts_.problem->model->dofs());
+    port_map_->lift(motion.q, now_, change_);
+    if (auto failed = midpoint_->step(motion, step.begin, step.end, change_)) return failed;
+    port_map_->velocity(motion.q, midpoint_->moved(), before_);  // a linear map
+    reply.bulge = 0.0;
+  }
+  state_.time = step.end;
+  state_.port_force = now_;
+  for (double& force : state_.port_force) force /= step.length();
+  port_map_->displacement(motion.q, places_);
+  port_map_->velocity(motion.q, motion.v, seen_.v);
+  reply.ports.resize(ports_.size());
+  std::vector<std::size_t> pressed;
+  const std::size_t dim = index(description_.dim);
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    const std::size_t first = port_map_->first(p), count = port_map_->width(p);
+    const auto from = static_cast<std::ptrdiff_t>(first);
+    const auto until = static_cast<std::ptrdiff_t>(first + count);
+    reply.ports[p].displacement.assign(before_.begin() + from, before_.begin() + until);
+    reply.ports[p].velocity.assign(seen_.v.begin() + from, seen_.v.begin() + until);
+    if (p >= step.pressed.size()) continue;
+    for (const std::int32_t point : step.pressed[p])
+      for (std::size_t i = 0; i < dim; ++i) pressed.push_back(first + index(point) * dim + i);
+  }
+  if (rigid_step_) {
+    rigid_step_->compliance(pressed, reply.compliance);
+  } else if (!midpoint_->compliance(motion, *port_map_, pressed, reply.compliance)) {
+    return failed_newton({NewtonReport::End::singular}, step.end);
+  }
+  return std::nullopt;
+}
+
+}  // namespace abut
