@@ -23,7 +23,10 @@ struct PassiveStep {
 
 struct PassiveReply {
   struct Port {
-    std::vector<double> displacement, velocity;  // [m], [m/s] (points x dim) at the step's end
+    // [m] (points x dim) by which the step moved the points; of a step of no length, which moves
+    // nothing: where they are, from the reference configuration
+    std::vector<double> displacement;
+    std::vector<double> velocity;  // [m/s] (points x dim) at the step's end
   };
   std::vector<Port> ports;
   // [m/(N s) / s] (values, values), values = pressed points x dim, of all ports in their order:

@@ -397,8 +397,10 @@ BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
   if (scene.everything() == nullptr) return {};
   BroadPhase all(bodies, joints);
   try {
-    for (const PortPair& pair : all.near_at_start(bodies))
-      check_start(spec_of(scene, pair, bodies), "", make_pair(scene, pair, bodies), bodies);
+    for (const PortPair& pair : all.near_at_start(bodies)) {
+      const Joint joint = make_pair(scene, pair, bodies);
+      if (!only_passive(joint, bodies)) check_start(spec_of(scene, pair, bodies), "", joint, bodies);
+    }
   } catch (const InputError& error) {
     throw InputError(error.what_is_wrong, std::string(everything_path), error.remedy);
   }

@@ -67,11 +67,11 @@ void validate_body(const Description& body, const Document& document) {
   require_single_facets(body, document);
 }
 
-/// One of two that touch has to find out where.
+/// One of two that touch has to find out where, or both have passive forms.
 void require_finders(std::span<const Description* const> bodies, const Document& document) {
   const Description *moved = nullptr, *other = nullptr;
   for (const Description* body : bodies) {
-    if (body == nullptr || body->can.obstacle) continue;
+    if (body == nullptr || body->can.obstacle || body->can.passive) continue;
     const Description*& place = moved == nullptr && std::isfinite(body->mass) ? moved : other;
     place = body;
   }

@@ -9,10 +9,10 @@
 namespace abut {
 
 bool only_passive(const Joint& joint, const Bodies& bodies) {
-  return joint.exchange != nullptr && !joint.tied() &&
-         bodies.port(joint.sides[0]).geometry.dim > 1 &&
-         std::ranges::none_of(joint.sides, [&bodies](const Side& side) {
-           return bodies.describe(side.body).can.obstacle;
+  return bodies.port(joint.sides[0]).geometry.dim > 1 &&
+         std::ranges::all_of(joint.sides, [&bodies](const Side& side) {
+           const Capabilities& can = bodies.describe(side.body).can;
+           return can.passive && !can.obstacle && !bodies.port(side).tied;
          });
 }
 

@@ -251,7 +251,10 @@ void SolidInterior::take_impulses(const PassiveStep& step) {
 std::optional<Failed> SolidInterior::pass(const PassiveStep& step, PassiveReply& reply) {
   Motion& motion = state_.motion;
   take_impulses(step);
-  if (rigid_step_) {
+  if (step.length() == 0.0) {
+    port_map_->displacement(motion.q, before_);
+    reply.bulge = 0.0;
+  } else if (rigid_step_) {
     if (auto failed = rigid_step_->step(motion, step.begin, step.end, now_)) return failed;
     before_ = rigid_step_->moved();
     reply.bulge = rigid_step_->bulge();
@@ -264,7 +267,7 @@ std::optional<Failed> SolidInterior::pass(const PassiveStep& step, PassiveReply&
   }
   state_.time = step.end;
   state_.port_force = now_;
-  for (double& force : state_.port_force) force /= step.length();
+  for (double& force : state_.port_force) force /= step.length() > 0.0 ? step.length() : 1.0;
   port_map_->displacement(motion.q, places_);
   port_map_->velocity(motion.q, motion.v, seen_.v);
   reply.ports.resize(ports_.size());
@@ -280,7 +283,9 @@ std::optional<Failed> SolidInterior::pass(const PassiveStep& step, PassiveReply&
     for (const std::int32_t point : step.pressed[p])
       for (std::size_t i = 0; i < dim; ++i) pressed.push_back(first + index(point) * dim + i);
   }
-  if (rigid_step_) {
+  if (pressed.empty()) {
+    reply.compliance.clear();
+  } else if (rigid_step_) {
     rigid_step_->compliance(pressed, reply.compliance);
   } else if (!midpoint_->compliance(motion, *port_map_, pressed, reply.compliance)) {
     return failed_newton({NewtonReport::End::singular}, step.end);

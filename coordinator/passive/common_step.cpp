@@ -46,6 +46,7 @@ CommonStep::CommonStep(const TouchingSurfaces& surfaces, NearRows& near, Bodies&
       asked_(index(bodies.count())),
       tried_(index(bodies.count())),
       replies_(index(bodies.count())),
+      displacements_(index(bodies.count())),
       advanced_(index(bodies.count())),
       energies_(index(bodies.count())),
       accounts_(index(bodies.count())),
@@ -59,11 +60,15 @@ std::optional<Failed> CommonStep::begin(double time) {
   std::ranges::fill(advanced_, 0);
   if (std::optional<Failed> failed = advance(true)) return failed;
   std::swap(replies_, tried_);
-  surfaces_.place(replies_, from_);
+  surfaces_.move(replies_, surfaces_.reference(), from_);
+  to_ = from_;
   near_.begin(from_);
   for (int b = 0; b < bodies_.count(); ++b) {
-    const BodyRecord& record = replies_[index(b)].record;
-    energies_[index(b)] = own_energy(record);
+    const PassiveReply& reply = replies_[index(b)];
+    energies_[index(b)] = own_energy(reply.record);
+    displacements_[index(b)].clear();
+    for (const PassiveReply::Port& port : reply.ports)
+      displacements_[index(b)].push_back(port.displacement);
     port_work_[index(b)].assign(bodies_.describe(b).ports.size(), 0.0);
   }
   return std::nullopt;
@@ -82,7 +87,6 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   prepared_ = 0;
   softer_ = 0;
   std::ranges::fill(advanced_, 0);
-  surfaces_.place(replies_, from_);
   const double budget = 0.5 * ledger.normal - ledger.push_out;
   pushing_ = budget > 0.0;
   allowed_ = paid_share * std::max(0.0, budget);
@@ -208,9 +212,10 @@ void CommonStep::find_impulses() {
 }
 
 void CommonStep::see_velocities() {
-  surfaces_.place(tried_, to_);
-  velocities_.resize(to_.size());
-  for (std::size_t k = 0; k < to_.size(); ++k) velocities_[k] = (to_[k] - from_[k]) / length();
+  surfaces_.move(tried_, from_, to_);
+  velocities_.assign(to_.size(), Eigen::Vector3d::Zero());
+  surfaces_.move(tried_, velocities_, velocities_);
+  for (Eigen::Vector3d& velocity : velocities_) velocity /= length();
 }
 
 /// By how much rows are missed at most [m], those that press and need not a tenth; and what their
@@ -267,8 +272,12 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
   }
   most_ = scale;
   std::swap(replies_, tried_);
-  surfaces_.place(replies_, to_);
-  near_.accept(to_);
+  from_ = to_;
+  near_.accept(from_);
+  for (int b = 0; b < bodies_.count(); ++b)
+    for (std::size_t p = 0; p < displacements_[index(b)].size(); ++p)
+      for (std::size_t k = 0; k < displacements_[index(b)][p].size(); ++k)
+        displacements_[index(b)][p][k] += replies_[index(b)].ports[p].displacement[k];
   for (int b = 0; b < bodies_.count(); ++b) {
     double& account = accounts_[index(b)];
     account += gained[index(b)];
@@ -277,7 +286,8 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
       taken = bodies_[b].passive()->damp(account);
     account -= taken;
     ledger.damped += taken;
-    energies_[index(b)] = own_energy(replies_[index(b)].record) - taken;
+    replies_[index(b)].record.energy.kinetic -= taken;
+    energies_[index(b)] = own_energy(replies_[index(b)].record);
   }
   warm_.clear();
   for (const DistanceRow& row : rows_) {

@@ -42,7 +42,14 @@ class CommonStep {
 
   // Of the last step that was taken:
 
-  std::span<const PassiveReply> replies() const { return replies_; }
+  const BodyRecord& record(int body) const { return replies_[index(body)].record; }
+  /// [m], [m/s] of a port's points, from the reference configuration.
+  const std::vector<double>& displacement(int body, int port) const {
+    return displacements_[index(body)][index(port)];
+  }
+  const std::vector<double>& velocity(int body, int port) const {
+    return replies_[index(body)].ports[index(port)].velocity;
+  }
   std::span<const DistanceRow> rows() const { return rows_; }
   /// [J] done by contact on a body's port.
   double work(int body, int port) const { return port_work_[index(body)][index(port)]; }
@@ -72,11 +79,12 @@ class CommonStep {
   Bodies& bodies_;
   double nominal_;
   PressedPoints points_;
-  PassiveStep step_;                           // what all share
-  std::vector<PassiveStep> asked_;             // by body
-  std::vector<PassiveReply> tried_, replies_;  // by body
-  std::vector<char> advanced_;                 // (bodies) since they were saved
-  Places from_, to_, velocities_;              // (points)
+  PassiveStep step_;                                             // what all share
+  std::vector<PassiveStep> asked_;                               // by body
+  std::vector<PassiveReply> tried_, replies_;                    // by body
+  std::vector<std::vector<std::vector<double>>> displacements_;  // [m] by body and port
+  std::vector<char> advanced_;                                   // (bodies) since they were saved
+  Places from_, to_, velocities_;                                // (points)
   std::vector<DistanceRow> rows_;
   std::size_t prepared_ = 0;  // rows that were given their targets
   bool pushing_ = false;

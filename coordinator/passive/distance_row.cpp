@@ -26,11 +26,9 @@ void DistanceRow::find_tangents(int dim) {
 
 DistanceRow::Key DistanceRow::key() const {
   Key key = {static_cast<std::int32_t>(features.kind), -1, -1, -1, -1};
-  std::size_t count = 1;
   for (std::size_t i = 0; i < 4; ++i)
-    if (std::abs(weights[i]) > no_weight) key[count++] = features.points[i];
-  if (features.kind == FeatureKind::node_facet)
-    std::sort(key.begin() + 2, key.begin() + std::ptrdiff_t(count));
+    if (std::abs(weights[i]) > no_weight) key[i + 1] = features.points[i];
+  if (features.kind == FeatureKind::node_facet) std::sort(key.begin() + 2, key.end());
   return key;
 }
 

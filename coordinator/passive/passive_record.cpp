@@ -21,8 +21,7 @@ void each_port(Bodies& bodies, const Visit& visit) {
 
 }  // namespace
 
-void PassiveRecord::begin(double time, std::span<const PassiveReply> replies,
-                          std::vector<Told> told) {
+void PassiveRecord::begin(double time, const CommonStep& state, std::vector<Told> told) {
   told_ = std::move(told);
   std::size_t ports = 0;
   each_port(bodies_, [&](int b, std::size_t p, std::size_t) {
@@ -52,7 +51,7 @@ void PassiveRecord::begin(double time, std::span<const PassiveReply> replies,
     bodies_.response(b).records.clear();
     bodies_.response(b).steps = 0;
   }
-  append(time, replies);
+  append(time, state);
   each_port(bodies_, [&](int b, std::size_t p, std::size_t) {
     std::vector<double>& f = bodies_.response(b).ports[p].trace.f;
     f.assign(bodies_.describe(b).ports[p].geometry.points.size(), 0.0);
@@ -67,23 +66,24 @@ void PassiveRecord::begin(double time, std::span<const PassiveReply> replies,
   }
 }
 
-void PassiveRecord::append(double time, std::span<const PassiveReply> replies) {
+void PassiveRecord::append(double time, const CommonStep& state) {
   each_port(bodies_, [&](int b, std::size_t p, std::size_t) {
     Waveform& trace = bodies_.response(b).ports[p].trace;
-    const PassiveReply::Port& port = replies[index(b)].ports[p];
+    const std::vector<double>& u = state.displacement(b, static_cast<int>(p));
+    const std::vector<double>& v = state.velocity(b, static_cast<int>(p));
     trace.time.push_back(time);
-    trace.u.insert(trace.u.end(), port.displacement.begin(), port.displacement.end());
-    trace.v.insert(trace.v.end(), port.velocity.begin(), port.velocity.end());
+    trace.u.insert(trace.u.end(), u.begin(), u.end());
+    trace.v.insert(trace.v.end(), v.begin(), v.end());
   });
-  widen(replies);
+  widen(state);
 }
 
 /// Boxes of places since the last record.
-void PassiveRecord::widen(std::span<const PassiveReply> replies) {
+void PassiveRecord::widen(const CommonStep& state) {
   each_port(bodies_, [&](int b, std::size_t p, std::size_t k) {
     const PortGeometry& geometry = bodies_.describe(b).ports[p].geometry;
     const std::size_t dim = index(geometry.dim);
-    const std::vector<double>& u = replies[index(b)].ports[p].displacement;
+    const std::vector<double>& u = state.displacement(b, static_cast<int>(p));
     if (lower_[k].empty()) {
       lower_[k].assign(dim, infinity);
       upper_[k].assign(dim, -infinity);
@@ -98,7 +98,7 @@ void PassiveRecord::widen(std::span<const PassiveReply> replies) {
 
 void PassiveRecord::add(const CommonStep& step, double begin, double end) {
   const double length = end - begin;
-  append(end, step.replies());
+  append(end, step);
   each_port(bodies_, [&](int b, std::size_t p, std::size_t) {
     PortResponse& reply = bodies_.response(b).ports[p];
     const std::size_t width = index(reply.trace.width), dim = reply.slowest.size();
@@ -154,9 +154,8 @@ void PassiveRecord::add_forces(const CommonStep& step, double length) {
   }
 }
 
-void PassiveRecord::record(std::span<const PassiveReply> replies) {
-  for (int b = 0; b < bodies_.count(); ++b)
-    bodies_.response(b).records.push_back(replies[index(b)].record);
+void PassiveRecord::record(const CommonStep& state) {
+  for (int b = 0; b < bodies_.count(); ++b) bodies_.response(b).records.push_back(state.record(b));
   each_port(bodies_, [&](int b, std::size_t p, std::size_t k) {
     PortResponse& reply = bodies_.response(b).ports[p];
     reply.lower.insert(reply.lower.end(), lower_[k].begin(), lower_[k].end());
@@ -164,7 +163,7 @@ void PassiveRecord::record(std::span<const PassiveReply> replies) {
     lower_[k].clear();
     upper_[k].clear();
   });
-  widen(replies);
+  widen(state);
 }
 
 void PassiveRecord::finish() {

@@ -20,16 +20,16 @@ class PassiveRecord {
       : surfaces_(surfaces), bodies_(bodies) {}
 
   /// Before the first step of a window: how it begins.
-  void begin(double time, std::span<const PassiveReply> replies, std::vector<Told> told);
+  void begin(double time, const CommonStep& state, std::vector<Told> told);
   void add(const CommonStep& step, double begin, double end);
   /// The state at the end of the last step is a record.
-  void record(std::span<const PassiveReply> replies);
+  void record(const CommonStep& state);
   /// After the last step.
   void finish();
 
  private:
-  void append(double time, std::span<const PassiveReply> replies);
-  void widen(std::span<const PassiveReply> replies);
+  void append(double time, const CommonStep& state);
+  void widen(const CommonStep& state);
   void add_forces(const CommonStep& step, double length);
 
   const TouchingSurfaces& surfaces_;

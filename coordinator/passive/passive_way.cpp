@@ -57,7 +57,7 @@ std::optional<Failed> PassiveWay::window(const TimeWindow& window, int records,
     if (joint.exchange != nullptr && !joint.tied())
       told.push_back({joint.kinematic_side(), joint.neumann_side()});
   PassiveRecord record(*surfaces_, bodies_);
-  record.begin(window.begin, step_->replies(), std::move(told));
+  record.begin(window.begin, *step_, std::move(told));
   quiet_ = true;
   pressed_.clear();
   double time = window.begin;
@@ -65,7 +65,7 @@ std::optional<Failed> PassiveWay::window(const TimeWindow& window, int records,
     const double end =
         r == records ? window.end : window.begin + window.length() * r / double(records);
     if (std::optional<Failed> failed = advance_to(end, time, record)) return failed;
-    record.record(step_->replies());
+    record.record(*step_);
   }
   record.finish();
   ++ledger_.windows;

@@ -64,13 +64,14 @@ void TouchingSurfaces::find_shortest_edge(const Bodies& bodies) {
   shortest_edge_ = std::isfinite(soft) ? soft : std::isfinite(any) ? any : 0.0;
 }
 
-void TouchingSurfaces::place(std::span<const PassiveReply> replies,
-                             std::vector<Eigen::Vector3d>& places) const {
-  places.resize(points_.size());
+void TouchingSurfaces::move(std::span<const PassiveReply> replies,
+                            std::span<const Eigen::Vector3d> from,
+                            std::vector<Eigen::Vector3d>& to) const {
+  to.resize(points_.size());
   for (std::size_t k = 0; k < points_.size(); ++k) {
     const Point& at = points_[k];
     const PassiveReply::Port& port = replies[index(at.body)].ports[index(at.port)];
-    places[k] = reference_[k] + vector_at(port.displacement, index(at.point), dim_);
+    to[k] = from[k] + vector_at(port.displacement, index(at.point), dim_);
   }
 }
 

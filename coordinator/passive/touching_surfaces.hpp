@@ -33,9 +33,10 @@ class TouchingSurfaces {
   const Skin& skin() const { return skin_; }
   std::size_t count() const { return points_.size(); }
   const Point& operator[](std::int32_t point) const { return points_[point]; }
-  /// [m] the places of all points by the displacements of their bodies' ports.
-  void place(std::span<const PassiveReply> replies, std::vector<Eigen::Vector3d>& places) const;
-  /// The same, at the end of their latest responses.
+  /// Adds what a step moved its points by [m] to where they were.
+  void move(std::span<const PassiveReply> replies, std::span<const Eigen::Vector3d> from,
+            std::vector<Eigen::Vector3d>& to) const;
+  /// [m] the places of all points at the end of their bodies' latest responses.
   void place(std::span<const Response> responses, std::vector<Eigen::Vector3d>& places) const;
   const std::vector<Eigen::Vector3d>& reference() const { return reference_; }
   /// Pairs of features that may touch.

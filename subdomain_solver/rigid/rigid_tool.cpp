@@ -123,10 +123,14 @@ std::optional<Failed> RigidTool::pass(const PassiveStep& step, PassiveReply& rep
   const std::size_t dim = way_.size();
   std::vector<double> mean(dim, 0.0);
   for (const std::vector<double>& impulse : step.impulses)
-    for (std::size_t k = 0; k < impulse.size(); ++k) mean[k % dim] += impulse[k] / step.length();
+    for (std::size_t k = 0; k < impulse.size() && step.length() > 0.0; ++k)
+      mean[k % dim] += impulse[k] / step.length();
   state_.time = step.begin;
-  const std::vector<double> from = state_.place;
-  if (std::optional<Failed> failed = go_to(step.end, mean)) return failed;
+  std::vector<double> from(dim, 0.0);
+  if (step.length() > 0.0) {
+    from = state_.place;
+    if (std::optional<Failed> failed = go_to(step.end, mean)) return failed;
+  }
   state_.force = mean;
   std::size_t pressed = 0;
   for (const std::vector<std::int32_t>& points : step.pressed) pressed += points.size() * dim;
