@@ -198,6 +198,7 @@ TEST(RemotePassive, StartSendsAndFinishWaits) {
   PassiveReply reply;
   EXPECT_TRUE(advanced(form.finish(reply)));
   EXPECT_EQ(loop.fake->counts.steps, 1);
+  EXPECT_EQ(loop.fake->counts.saves, 1);
   EXPECT_EQ(loop.to_solver.counts().sent - before, 1);
 }
 
