@@ -258,6 +258,8 @@ Controller::Judgement Controller::judge(const TimeWindow& window) {
 Controller::Judgement Controller::judge_ways(const TimeWindow& window) {
   const bool near = std::ranges::any_of(joints_, [](const Joint& j) { return j.closed(); });
   if (!near || !may_go_passively()) return {};
+  if (guard_.refuses(bodies_.responses(), bodies_.struck()))
+    return {Judgement::Verdict::fail, window.end, "contact would make energy"};
   if (std::string crossed = crossing_.look(); !crossed.empty())
     return {Judgement::Verdict::fail, window.end, std::move(crossed)};
   return {};
