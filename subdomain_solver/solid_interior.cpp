@@ -246,6 +246,7 @@ void SolidInterior::set_off(const Window& window) {
 }
 
 void SolidInterior::restored() {
+  if (is_passive()) start_passive();  // its energy asks for it
   if (port_map_) port_map_->displacement(state_.motion.q, places_);
 }
 
