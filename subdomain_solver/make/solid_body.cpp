@@ -120,7 +120,8 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   std::vector<int> layer = layer_coordinates(model, spec, ports, constraints, place);
   std::vector<int> held;  // coordinates, ascending
   for (const Prescribed& p : constraints.supports) held.push_back(p.dof);
-  if (!layer.empty()) parts.massive_surface = !give_layer(model, std::move(layer), held, spec, place);
+  if (!layer.empty())
+    parts.massive_surface = !give_layer(model, std::move(layer), held, spec, place);
   const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
   const Eigen::MatrixXd loose = check_statics(spec, place, model, constraints.supports, joined);
   if (loose.cols() > 0) parts.loose = translations_and_rotations(model, loose);

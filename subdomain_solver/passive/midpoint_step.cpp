@@ -185,8 +185,8 @@ MidpointStep::Search MidpointStep::search(const Motion& motion, double slope) {
   return back && slope < near * rounding_ ? Search::ended : Search::stuck;
 }
 
-/// Of the middle of the step, from the history at its begin. The tangent itself where it is definite
-/// with the inertia, so that Newton's method stays one; else cell by cell what is definite of it.
+/// Of the middle of the step, from the history at its begin. The tangent itself, so that Newton's
+/// method stays one, where it is definite with the inertia; else cell by cell what is of it.
 bool MidpointStep::factor(std::span<const double> history) {
   if (solver_ == nullptr) solver_ = make_direct_solver(Pivots::definite);
   const double share = 0.25 * length_ * length_;

@@ -81,7 +81,8 @@ class PassiveRun {
                     const std::vector<std::int32_t>& pressed = {}) {
     PassiveReply reply;
     const Outcome outcome = attempt(length, impulses, pressed, reply);
-    if (const Failed* failed = std::get_if<Failed>(&outcome)) throw std::runtime_error(failed->detail);
+    if (const Failed* failed = std::get_if<Failed>(&outcome))
+      throw std::runtime_error(failed->detail);
     time += length;
     return reply;
   }

@@ -87,6 +87,7 @@ TEST(PassiveFinite, ComplianceIsThatOfTheTangent) {
       }
       for (std::size_t i = 0; i < dim; ++i) {
         const double change = (ends[1][dim + i] - ends[0][dim + i]) / (2.0 * size * length);
+        // By impulses of 1e-5 N s velocities change by 1e-3 m/s, strains over a step by 1e-4.
         EXPECT_NEAR(none.compliance[i * dim + j], change, 1.0e-4 * none.compliance[j * dim + j]);
       }
     }
@@ -106,8 +107,12 @@ TEST(PassiveFinite, CrushedBodiesHaveAnAnswerOrAReason) {
       const Outcome outcome = run.attempt(length, impulses, {0}, reply);
       done = std::holds_alternative<Advanced>(outcome);
       if (done) break;
-      // Cells that the impulses invert by the step's end, not a search without an end.
-      EXPECT_EQ(std::get<Failed>(outcome).cause, Failed::Cause::inverted_element);
+      // Cells that the impulses invert by the step's end, not a search without an end; but the
+      // energy of saint_venant_kirchhoff falls where it is crushed, down to where it has none.
+      const bool falls = text.law == "saint_venant_kirchhoff";
+      const Failed::Cause cause = std::get<Failed>(outcome).cause;
+      EXPECT_TRUE(cause == Failed::Cause::inverted_element ||
+                  (falls && cause == Failed::Cause::no_convergence));
       run.body().restore();
     }
     ASSERT_TRUE(done);

@@ -98,8 +98,8 @@ TEST(PassiveRigid, ComplianceIsWhatSmallImpulsesAddAtRest) {
       std::vector<double> unit(run.values(), 0.0);
       unit[j] = 1.0e-4;
       const PassiveReply reply = run.step(0.01, unit);
-      // The turn is 1e-6 rad, which bends ways by as much.
       for (std::size_t i = 0; i < count; ++i)
+        // The turn of 1e-6 rad bends ways by as much of compliances of a few 1/kg.
         EXPECT_NEAR(reply.ports[0].displacement[i] / 0.01 / 1.0e-4,
                     none.compliance[i * count + j], 1.0e-5);
     }
@@ -130,8 +130,8 @@ TEST(PassiveTool, GoesItsWayAndGivesWayToNothing) {
       const std::string way = dim == 2 ? "['0.3 * t * t', '-0.2 * t']"
                                        : "['0.3 * t * t', '-0.2 * t', '0']";
       const std::string text = fmt::format(
-          "bodies: {{it: {{model: {{rigid_tool: {{dimension: {}, mesh: {{{}}}{}}}}}, ports: {{face: "
-          "{{side: right}}}}}}}}",
+          "bodies: {{it: {{model: {{rigid_tool: {{dimension: {}, mesh: {{{}}}{}}}}}, ports: "
+          "{{face: {{side: right}}}}}}}}",
           dim, block_mesh(std::vector<double>(index(dim), 1.0), std::vector<int>(index(dim), 2)),
           moves ? ", way: " + way : "");
       PassiveRun run(make_body(Document::from_text("test", text), "bodies.it"));
