@@ -48,6 +48,33 @@ TEST(PassiveFinite, EnergyDriftsByTheSquareOfTheStep) {
   }
 }
 
+TEST(PassiveFinite, PlasticWorkIsAccountedFor) {
+  for (PassiveText text : every_element()) {
+    if (text.element == "tet10" || text.element == "hex20") text.cells = 1;
+    text.material = "j2_plasticity: {youngs_modulus: 100.0, poissons_ratio: 0.3, density: 2.0, "
+                    "yield_stress: 2.0, hardening: 5.0}";
+    text.more = text.dim == 2
+                    ? "initial: {velocity_field: ['1.0 - 2.0 * y + 0.5 * x', '2.0 * x']}"
+                    : "initial: {velocity_field: ['1.0 - 2.0 * y + 0.5 * x', '2.0 * x', '1.0']}";
+    SCOPED_TRACE(text.label());
+    double drift[2] = {};
+    for (const int fine : {0, 1}) {
+      PassiveRun run(text.build());
+      const int steps = fine == 0 ? 80 : 160;
+      double before = 0.0;
+      for (int k = 0; k < steps; ++k) {
+        const Energy energy = run.step(0.4 / steps).record.energy;
+        const double now = energy.total() + energy.dissipated;
+        if (k == 0) before = now;
+        drift[fine] = std::max(drift[fine], std::abs(now - before) / before);
+        if (k == steps - 1) EXPECT_GT(energy.dissipated, 0.003 * before);
+      }
+    }
+    EXPECT_LT(drift[0], 2.0e-2);
+    EXPECT_LT(drift[1], 0.6 * drift[0]);  // points begin to yield within steps: of order one
+  }
+}
+
 TEST(PassiveFinite, MomentumIsThatOfTheImpulses) {
   for (PassiveText text : finite_cases()) {
     SCOPED_TRACE(text.label());
