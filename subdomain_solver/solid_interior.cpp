@@ -246,6 +246,7 @@ void SolidInterior::set_off(const Window& window) {
 }
 
 void SolidInterior::restored() {
+  if (is_passive()) start_passive();  // its energy asks for it
   if (port_map_) port_map_->displacement(state_.motion.q, places_);
 }
 
@@ -436,7 +437,8 @@ Energy SolidInterior::energy() const {
   const double rubbed = surfaces_ != nullptr ? surfaces_->dissipated() : 0.0;
   const double kinetic =
       is_passive() ? moving_energy() : parts_.scheme.integrator->kinetic(motion);
-  return {kinetic, motion.stored, motion.dissipated + rubbed, motion.external_work - state_.port_work};  // partners account for what ports exchange
+  return {kinetic, motion.stored, motion.dissipated + rubbed,
+          motion.external_work - state_.port_work};  // partners account for what ports exchange
 }
 
 /// A hint, which the horizon's flight verifies: waves inside may yet throw the surface faster.

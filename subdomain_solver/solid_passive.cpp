@@ -266,8 +266,10 @@ std::optional<Failed> SolidInterior::pass(const PassiveStep& step, PassiveReply&
     reply.bulge = 0.0;
   }
   state_.time = step.end;
-  state_.port_force = now_;
-  for (double& force : state_.port_force) force /= step.length() > 0.0 ? step.length() : 1.0;
+  if (step.length() > 0.0) {  // one of none leaves those of the last
+    state_.port_force = now_;
+    for (double& force : state_.port_force) force /= step.length();
+  }
   port_map_->displacement(motion.q, places_);
   port_map_->velocity(motion.q, motion.v, seen_.v);
   reply.ports.resize(ports_.size());

@@ -77,7 +77,7 @@ std::vector<int> layer_coordinates(const FeModel& model, const BodySpec& spec,
 }
 
 /// Whether the surface is free of mass now. One that cannot be, of a body one element across for
-/// instance, keeps it, unless the scene asks for its layer.
+/// instance, keeps it, unless the scene asks for its layer. Bars have no passive form.
 bool give_layer(FeModel& model, std::vector<int> layer, const std::vector<int>& held,
                 const BodySpec& spec, const Place& place) {
   if (std::holds_alternative<MassiveSpec>(spec.contact_layer)) return false;
@@ -85,7 +85,8 @@ bool give_layer(FeModel& model, std::vector<int> layer, const std::vector<int>& 
     model.make_massless(std::move(layer), held);
     return true;
   } catch (const InputError& error) {
-    if (!place.document.has(place.path + ".contact_layer")) return false;
+    const bool asked = place.document.has(place.path + ".contact_layer");
+    if (model.mesh().dim > 1 && !asked) return false;
     throw InputError(error.what_is_wrong, place.where("model.fe.mesh"), error.remedy);
   }
 }
@@ -120,7 +121,8 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   std::vector<int> layer = layer_coordinates(model, spec, ports, constraints, place);
   std::vector<int> held;  // coordinates, ascending
   for (const Prescribed& p : constraints.supports) held.push_back(p.dof);
-  if (!layer.empty()) parts.massive_surface = !give_layer(model, std::move(layer), held, spec, place);
+  if (!layer.empty())
+    parts.massive_surface = !give_layer(model, std::move(layer), held, spec, place);
   const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
   const Eigen::MatrixXd loose = check_statics(spec, place, model, constraints.supports, joined);
   if (loose.cols() > 0) parts.loose = translations_and_rotations(model, loose);

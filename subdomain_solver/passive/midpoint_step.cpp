@@ -88,11 +88,16 @@ bool MidpointStep::respond(const Motion& motion) {
 }
 
 /// Whose derivative by the change of velocity is a quarter of the balance.
-double MidpointStep::potential() const {
-  double sum = 0.0;
-  for (const int i : free_.list())
-    sum += (0.125 * body_.mass(i) * change_(i) - 0.25 * given_(i)) * change_(i);
-  return sum + response_.stored + response_.dissipation;
+double MidpointStep::potential() {
+  constexpr double digits = 2.0e-15;  // of sums over many coordinates
+  double moving = 0.0, given = 0.0;
+  for (const int i : free_.list()) {
+    moving += 0.125 * body_.mass(i) * change_(i) * change_(i);
+    given += 0.25 * given_(i) * change_(i);
+  }
+  const double inner = response_.stored + response_.dissipation;
+  rounding_ = body_.noise + digits * (moving + std::abs(given) + std::abs(inner));
+  return moving - given + inner;
 }
 
 /// Of the balance of momentum on the free coordinates. Returns its size.
@@ -147,7 +152,7 @@ std::optional<Failed> MidpointStep::solve(const Motion& motion) {
     if (size <= roundoff()) return std::nullopt;
     if (!correct(motion)) return failed_newton({NewtonReport::End::singular}, end_);
     const double slope = 0.25 * left_.dot(correction_);  // by which the potential falls
-    if (slope < at_bottom * body_.noise && ++small > last_steps) return std::nullopt;
+    if (slope < at_bottom * rounding_ && ++small > last_steps) return std::nullopt;
     switch (search(motion, slope)) {
       case Search::moved: break;
       case Search::ended: return std::nullopt;
@@ -160,10 +165,9 @@ std::optional<Failed> MidpointStep::solve(const Motion& motion) {
   return failed_newton(report, end_);
 }
 
-/// Halves the correction until the potential has fallen, but for the rounding of its energy.
+/// Halves the correction until the potential has fallen, but for its rounding.
 MidpointStep::Search MidpointStep::search(const Motion& motion, double slope) {
-  constexpr double enough = 1.0e-4;   // of the fall that the slope foretells
-  constexpr double digits = 1.0e-13;  // of the potential
+  constexpr double enough = 1.0e-4;  // of the fall that the slope foretells
   before_ = change_;
   double part = 1.0;
   for (int k = 0; k <= most_halvings; ++k, part *= 0.5) {
@@ -171,23 +175,26 @@ MidpointStep::Search MidpointStep::search(const Motion& motion, double slope) {
     for (int i = 0; i < free_.count(); ++i) change_(free_.list()[i]) += part * correction_(i);
     if (!respond(motion)) continue;
     const double now = potential();
-    if (!(now <= reached_ - enough * part * slope + digits * std::abs(reached_) + body_.noise))
-      continue;
+    if (!(now <= reached_ - enough * part * slope + rounding_)) continue;
     reached_ = now;
     return Search::moved;
   }
   change_ = before_;
   const bool back = respond(motion);
   constexpr double near = 1.0e4;  // roundings of the energy, at which the search may end
-  return back && slope < near * body_.noise ? Search::ended : Search::stuck;
+  return back && slope < near * rounding_ ? Search::ended : Search::stuck;
 }
 
-/// Of the middle of the step, from the history at its begin.
+/// Of the middle of the step, from the history at its begin. The tangent itself, so that Newton's
+/// method stays one, where it is definite with the inertia; else cell by cell what is of it.
 bool MidpointStep::factor(std::span<const double> history) {
-  const double inertia = 4.0 / (length_ * length_);
-  if (!body_.cells->definite_tangent(middle_, history, inertia, tangent_)) return false;
-  free_.extract(inertia_ + 0.25 * length_ * length_ * tangent_, matrix_);
-  if (solver_ == nullptr) solver_ = make_direct_solver(Pivots::every);
+  if (solver_ == nullptr) solver_ = make_direct_solver(Pivots::definite);
+  const double share = 0.25 * length_ * length_;
+  if (!body_.cells->evaluate(middle_, history, Model::Want::tangent, curved_)) return false;
+  free_.extract(inertia_ + share * curved_.tangent, matrix_);
+  if (solver_->factor(matrix_)) return true;
+  if (!body_.cells->definite_tangent(middle_, history, 1.0 / share, tangent_)) return false;
+  free_.extract(inertia_ + share * tangent_, matrix_);
   return solver_->factor(matrix_);
 }
 

@@ -54,7 +54,7 @@ class MidpointStep {
   void begin(const Motion& motion, double start, const Vector& impulse);
   void follow(const Motion& motion);
   [[nodiscard]] bool respond(const Motion& motion);
-  double potential() const;
+  double potential();
   double residual();
   double roundoff();
   [[nodiscard]] std::optional<Failed> solve_linear(const Motion& motion);
@@ -74,7 +74,7 @@ class MidpointStep {
   std::vector<Factors> factors_;  // of the last lengths, the last one used at the end
   std::unique_ptr<LinearSolver> solver_;
   SparseMatrix inertia_, tangent_, matrix_;
-  ModelResponse response_;
+  ModelResponse response_, curved_;
   // Of one step:
   double start_ = 0.0, end_ = 0.0, length_ = 0.0;  // [s]
   Vector change_, given_;                          // [m/s], [kg m/s] (dofs)
@@ -82,7 +82,7 @@ class MidpointStep {
   std::vector<double> held_;                       // [m] (supports) by which they move
   std::vector<double> middle_, last_, moved_;      // [m] (dofs)
   Vector left_, correction_, before_;              // [kg m/s], [m/s] (free), [m/s] (dofs)
-  double reached_ = 0.0;                           // [J] potential
+  double reached_ = 0.0, rounding_ = 0.0;          // [J] potential, and its rounding
 };
 
 }  // namespace abut

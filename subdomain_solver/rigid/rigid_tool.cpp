@@ -130,8 +130,8 @@ std::optional<Failed> RigidTool::pass(const PassiveStep& step, PassiveReply& rep
   if (step.length() > 0.0) {
     from = state_.place;
     if (std::optional<Failed> failed = go_to(step.end, mean)) return failed;
+    state_.force = mean;
   }
-  state_.force = mean;
   std::size_t pressed = 0;
   for (const std::vector<std::int32_t>& points : step.pressed) pressed += points.size() * dim;
   reply.compliance.assign(pressed * pressed, 0.0);

@@ -44,6 +44,7 @@ class Cholmod final : public EigenSolver<Supernodal> {
 
  private:
   bool pivots_hold(const Vector& diagonal) const override {
+    if (pivots_ == Pivots::definite) return true;  // as there are factors
     bool all = true;
     solver_.visit_pivots([&all, &diagonal](double pivot, Eigen::Index row) {
       all = all && pivot_holds(pivot, diagonal(row), diagonal.size());

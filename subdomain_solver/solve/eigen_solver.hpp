@@ -42,13 +42,13 @@ class EigenSolver : public LinearSolver {
   }
 
  protected:
-  /// Whether pivot_holds for all pivots of the last factorisation.
+  /// Whether the pivots of the last factorisation are those that are taken, which are not all.
   virtual bool pivots_hold(const Vector& diagonal) const = 0;
 
   Solver solver_;
+  Pivots pivots_;
 
  private:
-  Pivots pivots_;
   Vector diagonal_;
   bool analysed_ = false;
 };

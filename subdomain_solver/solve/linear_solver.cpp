@@ -59,6 +59,7 @@ class Ldlt final : public EigenSolver<KeptLdlt> {
 
  private:
   bool pivots_hold(const Vector& diagonal) const override {
+    if (pivots_ == Pivots::definite) return solver_.pivots().minCoeff() > 0.0;
     const auto& place = solver_.permutationP().indices();
     for (Eigen::Index i = 0; i < diagonal.size(); ++i)
       if (!pivot_holds(solver_.pivots()(place(i)), diagonal(i), diagonal.size())) return false;

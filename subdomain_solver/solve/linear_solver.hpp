@@ -21,8 +21,9 @@ class LinearSolver {
 
 /// Which pivots a direct solver takes: of stiffness alone those that are more than round-off, as a
 /// body that nothing holds would move without bounds; with inertia any, as it may be many digits
-/// less than the stiffness and yet holds the body.
-enum class Pivots { with_digits, every };
+/// less than the stiffness and yet holds the body; or any that are positive, of definite matrices
+/// alone.
+enum class Pivots { with_digits, every, definite };
 
 /// Direct: CHOLMOD when the build has it (docs/adr/0007), Eigen's own LDL^T otherwise and for
 /// matrices that are not positive definite.

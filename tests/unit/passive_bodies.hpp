@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -54,30 +55,35 @@ struct PassiveText {
 /// A body in its passive form, and its time.
 class PassiveRun {
  public:
-  explicit PassiveRun(std::unique_ptr<Subdomain> body) : body_(std::move(body)) {
+  explicit PassiveRun(std::unique_ptr<Subdomain> body) : own_(std::move(body)), body_(own_.get()) {
     EXPECT_TRUE(body_->describe().can.passive);
-    EXPECT_NE(body_->passive(), nullptr);
     lost = body_->passive()->enter();
   }
+  /// Of a body that is in its passive form, at a time.
+  PassiveRun(std::nullptr_t, Subdomain& body, double now) : time(now), body_(&body) {}
 
   Subdomain& body() { return *body_; }
   std::size_t values() const { return body_->describe().ports[0].geometry.points.size(); }
   std::size_t dim() const { return index(body_->describe().dim); }
 
-  /// Under impulses (values) on the port; empty: none.
-  PassiveReply step(double length, const std::vector<double>& impulses = {},
-                    const std::vector<std::int32_t>& pressed = {}) {
+  Outcome attempt(double length, const std::vector<double>& impulses,
+                  const std::vector<std::int32_t>& pressed, PassiveReply& reply) {
     PassiveStep request;
     request.begin = time;
     request.end = time + length;
     request.impulses = {impulses};
     request.pressed = {pressed};
-    PassiveReply reply;
     body_->passive()->start(request);
-    const Outcome outcome = body_->passive()->finish(reply);
-    const Failed* failed = std::get_if<Failed>(&outcome);
-    EXPECT_EQ(failed, nullptr) << (failed != nullptr ? failed->detail : "");
-    time = request.end;
+    return body_->passive()->finish(reply);
+  }
+  /// Under impulses (values) on the port; empty: none.
+  PassiveReply step(double length, const std::vector<double>& impulses = {},
+                    const std::vector<std::int32_t>& pressed = {}) {
+    PassiveReply reply;
+    const Outcome outcome = attempt(length, impulses, pressed, reply);
+    if (const Failed* failed = std::get_if<Failed>(&outcome))
+      throw std::runtime_error(failed->detail);
+    time += length;
     return reply;
   }
   std::vector<double> random_impulses(double size) {
@@ -90,7 +96,8 @@ class PassiveRun {
   double time = 0.0, lost = 0.0;
 
  private:
-  std::unique_ptr<Subdomain> body_;
+  std::unique_ptr<Subdomain> own_;
+  Subdomain* body_;
   std::mt19937_64 engine_{11};
 };
 

@@ -1,0 +1,191 @@
+// Goal: bodies go into their passive form and back without a jump of what is inside, keep momentum,
+// gain no energy, and are restored in either form; bodies whose surface cannot be free of mass are
+// built for their passive form alone. Oracles: balance of momentum and energy, equality.
+
+#include "base/error.hpp"
+#include "tests/unit/passive_bodies.hpp"
+
+namespace abut {
+namespace {
+
+Advance free_window(const Subdomain& body, double begin, double end) {
+  Advance request;
+  request.window = {0, begin, end};
+  request.boundary.resize(body.describe().ports.size());
+  return request;
+}
+
+BodyRecord advance(Subdomain& body, double begin, double end) {
+  const Advance request = free_window(body, begin, end);
+  Response response;
+  const Outcome outcome = body.advance(request, response);
+  const Failed* failed = std::get_if<Failed>(&outcome);
+  EXPECT_EQ(failed, nullptr) << (failed != nullptr ? failed->detail : "");
+  return response.records.at(0);
+}
+
+/// Displacements of all nodes, in space.
+std::vector<double> places(Subdomain& body) {
+  const std::vector<FieldInfo>& told = body.describe().fields;
+  const auto at = std::ranges::find(told, std::string("displacement"), &FieldInfo::name);
+  return body.fields()[index(at - told.begin())];
+}
+
+std::vector<PassiveText> switched() {
+  std::vector<PassiveText> all;
+  for (PassiveText text : every_element()) {
+    text.cells = 4;
+    for (const char* law : {"linear_elastic", "neo_hookean"}) {
+      text.law = law;
+      for (const char* scheme :
+           {"central_difference: {step: 1.0e-3}", "newmark: {step: 0.01}",
+            "newmark: {step: 0.01, mass: lumped}", "newmark: {step: 0.01, mass: consistent}",
+            "hht_alpha: {step: 0.01}", "generalized_alpha: {step: 0.01, mass: lumped}"}) {
+        text.scheme = scheme;
+        const bool large = text.element == "tet10" || text.element == "hex20";
+        if (large && (text.law != "linear_elastic" || text.scheme.starts_with("hht"))) continue;
+        for (const bool touched : {false, true}) {
+          text.touched = touched;
+          all.push_back(text);
+        }
+      }
+    }
+  }
+  return all;
+}
+
+double kept(const BodyRecord& r) { return r.energy.total() - r.energy.external_work; }
+
+TEST(PassiveSwitch, KeepsMomentumAndPlacesAndGainsNoEnergy) {
+  for (PassiveText text : switched()) {
+    for (const bool held : {false, true}) {
+      text.more = text.dim == 2
+                      ? "initial: {velocity_field: ['0.3 + 0.2 * y', '0.1 * sin(3 * x)']}"
+                      : "initial: {velocity_field: ['0.3 + 0.2 * y', '0.1 * sin(3 * x)', '0.1']}";
+      if (held) text.more += ", constraints: {base: {on: left, fixed: true}}";
+      SCOPED_TRACE(text.label() + text.more);
+      const std::unique_ptr<Subdomain> body = text.build();
+      const BodyRecord own = advance(*body, 0.0, 0.05);
+      const std::vector<double> before = places(*body);
+      const double lost = body->passive()->enter();
+      EXPECT_GE(lost, -roundoff(1.0e3, own.energy.total()));
+      EXPECT_EQ(largest_difference(before, places(*body)), 0.0);
+      PassiveRun run(nullptr, *body, 0.05);
+      const BodyRecord passive = run.step(1.0e-12).record;  // as good as none
+      EXPECT_NEAR(kept(passive), kept(own) - lost, roundoff(1.0e4, own.energy.total()));
+      for (std::size_t i = 0; !held && i < run.dim(); ++i)
+        EXPECT_NEAR(passive.momentum[i], own.momentum[i], roundoff(1.0e4, 1.0));
+      for (int k = 0; k < 5; ++k) run.step(0.01);
+      const BodyRecord last = run.step(0.01).record;
+      const std::vector<double> there = places(*body);
+      double left = 0.0;
+      const Outcome outcome = body->passive()->leave(run.time, left);
+      ASSERT_TRUE(std::holds_alternative<Advanced>(outcome));
+      EXPECT_GE(left, -roundoff(1.0e4, last.energy.total()));
+      const BodyRecord back = advance(*body, run.time, run.time);
+      EXPECT_NEAR(kept(back), kept(last) - left, roundoff(1.0e4, last.energy.total()));
+      for (std::size_t i = 0; !held && i < run.dim(); ++i)
+        EXPECT_NEAR(back.momentum[i], last.momentum[i], roundoff(1.0e4, 1.0));
+      // Inside nothing moves: nodes on the port alone.
+      const std::vector<double> now = places(*body);
+      const Grid grid = body->grid();
+      for (std::size_t k = 0; k < now.size(); ++k) {
+        if (text.touched && grid.points[k - k % 3] > 1.0 - 1.0e-9) continue;
+        EXPECT_EQ(now[k], there[k]);
+      }
+      const BodyRecord on = advance(*body, run.time, run.time + 0.05);  // and on it goes
+      // Schemes of finite strain keep their energy to the square of their step.
+      EXPECT_LT(kept(on), kept(own) * (1.0 + 1.0e-3));
+    }
+  }
+}
+
+TEST(PassiveSwitch, RestoreTakesStepsAndSwitchesBack) {
+  for (const PassiveText& text : switched()) {
+    SCOPED_TRACE(text.label());
+    PassiveRun run(text.build());
+    run.step(0.01, run.random_impulses(0.01));
+    run.body().save();
+    const std::uint64_t hash = run.body().state_hash();
+    const std::vector<double> impulses = run.random_impulses(0.01);
+    const PassiveReply first = run.step(0.01, impulses, {1});
+    run.body().restore();
+    EXPECT_EQ(run.body().state_hash(), hash);
+    run.time -= 0.01;
+    const PassiveReply again = run.step(0.01, impulses, {1});
+    EXPECT_EQ(first.ports[0].displacement, again.ports[0].displacement);
+    EXPECT_EQ(first.compliance, again.compliance);
+    EXPECT_EQ(first.record.energy.total(), again.record.energy.total());
+    double lost = 0.0;
+    ASSERT_TRUE(std::holds_alternative<Advanced>(run.body().passive()->leave(run.time, lost)));
+    run.body().restore();
+    EXPECT_EQ(run.body().state_hash(), hash);
+    run.time -= 0.01;
+    EXPECT_EQ(run.step(0.01, impulses, {1}).ports[0].displacement, first.ports[0].displacement);
+    const std::vector<std::byte> kept = run.body().checkpoint();
+    const std::unique_ptr<Subdomain> other = text.build();
+    other->resume(kept);
+    EXPECT_EQ(other->state_hash(), run.body().state_hash());
+    ASSERT_NE(other->passive(), nullptr);
+    PassiveRun resumed(nullptr, *other, run.time);
+    EXPECT_EQ(run.step(0.01, impulses, {1}).ports[0].displacement,
+              resumed.step(0.01, impulses, {1}).ports[0].displacement);
+  }
+}
+
+TEST(PassiveSwitch, ABodyOneCellAcrossIsBuiltForItsPassiveFormAlone) {
+  const auto all_sides = [](const std::string& more) {
+    const std::string text =
+        "bodies: {it: {model: {fe: {dimension: 2, mesh: {rectangle: {lengths: [1.0, 1.0], "
+        "elements: [1, 1]}}}}, material: {linear_elastic: {youngs_modulus: 1.0, poissons_ratio: "
+        "0.3, density: 1.0}}, integrator: {newmark: {step: 0.1}}, ports: {right: {side: right}, "
+        "left: {side: left}}" + more + "}}";
+    BodyContext context;
+    for (const char* port : {"right", "left"})
+      context.ports.push_back({.port = port, .touches = true, .partners = {}});
+    return make_body(Document::from_text("test", text), "bodies.it", context);
+  };
+  for (const char* more : {"", ", contact_layer: {massive: {}}"}) {
+    const std::unique_ptr<Subdomain> body = all_sides(more);
+    const Capabilities& can = body->describe().can;
+    EXPECT_TRUE(can.passive && can.only_passive && can.force);
+    EXPECT_FALSE(can.obstacle);
+    EXPECT_NE(body->describe().model.find("its surface has mass"), std::string::npos);
+  }
+  EXPECT_THROW(all_sides(", contact_layer: {massless: {}}"), InputError);
+}
+
+TEST(PassiveSwitch, AMassiveLayerIsChosenForSurfaces) {
+  PassiveText text;
+  text.cells = 4;
+  text.more = "contact_layer: {massive: {}}";
+  const Capabilities with = text.build()->describe().can;
+  EXPECT_TRUE(with.only_passive);
+  EXPECT_FALSE(with.obstacle);
+  text.more.clear();
+  const Capabilities without = text.build()->describe().can;
+  EXPECT_FALSE(without.only_passive);
+  EXPECT_TRUE(without.obstacle);
+}
+
+TEST(PassiveSwitch, WhatHasNoInertiaOrOneDimensionHasNoPassiveForm) {
+  PassiveText still;
+  still.scheme = "quasi_static: {step: 0.1}";
+  still.more = "constraints: {base: {on: left, fixed: true}}";
+  const std::unique_ptr<Subdomain> statics = still.build();
+  EXPECT_FALSE(statics->describe().can.passive);
+  EXPECT_EQ(statics->passive(), nullptr);
+  for (const char* scheme : {"newmark: {step: 0.01}", "central_difference: {step: 1.0e-3}"}) {
+    const std::string text = fmt::format(
+        "bodies: {{it: {{model: {{fe: {{dimension: 1, mesh: {{bar: {{length: 1.0, elements: 4, "
+        "area: 1.0}}}}}}}}, material: {{linear_elastic: {{youngs_modulus: 1.0, density: 1.0}}}}, "
+        "integrator: {{{}}}, ports: {{face: {{side: right}}}}}}}}",
+        scheme);
+    const auto bar = make_body(Document::from_text("test", text), "bodies.it");
+    EXPECT_FALSE(bar->describe().can.passive);
+    EXPECT_EQ(bar->passive(), nullptr);
+  }
+}
+
+}  // namespace
+}  // namespace abut
