@@ -79,8 +79,7 @@ double SolidInterior::moving_energy() const {
 std::vector<double> SolidInterior::momentum_now() {
   see_nodes();
   std::vector<double> sum(index(description_.dim), 0.0);
-  for (Eigen::Index k = 0; k < momentum_.size(); ++k)
-    sum[index(k) % sum.size()] += momentum_(k);
+  for (Eigen::Index k = 0; k < momentum_.size(); ++k) sum[index(k) % sum.size()] += momentum_(k);
   return sum;
 }
 

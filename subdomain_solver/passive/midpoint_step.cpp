@@ -154,8 +154,10 @@ std::optional<Failed> MidpointStep::solve(const Motion& motion) {
     const double slope = 0.25 * left_.dot(correction_);  // by which the potential falls
     if (slope < at_bottom * rounding_ && ++small > last_steps) return std::nullopt;
     switch (search(motion, slope)) {
-      case Search::moved: break;
-      case Search::ended: return std::nullopt;
+      case Search::moved:
+        break;
+      case Search::ended:
+        return std::nullopt;
       case Search::stuck:
         report.residual = size / std::max(given_.norm(), body_.mass.maxCoeff());
         return failed_newton(report, end_);

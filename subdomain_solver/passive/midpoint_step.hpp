@@ -23,10 +23,10 @@ class MidpointStep {
  public:
   struct Body {
     const Problem* problem = nullptr;
-    FeModel* cells = nullptr;         // whose tangents are made definite; null: the model is linear
-    Vector mass;                      // [kg] (dofs)
-    std::vector<const Load*> loads;   // its own, with this mass
-    double noise = 0.0;               // [J] of rounding in its stored energy
+    FeModel* cells = nullptr;        // whose tangents are made definite; null: the model is linear
+    Vector mass;                     // [kg] (dofs)
+    std::vector<const Load*> loads;  // its own, with this mass
+    double noise = 0.0;              // [J] of rounding in its stored energy
   };
 
   /// What is referred to must outlive it.
@@ -45,7 +45,7 @@ class MidpointStep {
                                 const std::vector<std::size_t>& values, std::vector<double>& out);
 
  private:
-  struct Factors {  // of a linear body
+  struct Factors {        // of a linear body
     double length = 0.0;  // [s]
     std::unique_ptr<LinearSolver> solver;
     std::map<std::size_t, std::vector<double>> columns;  // by value of the ports: (port values)

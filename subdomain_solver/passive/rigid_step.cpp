@@ -122,8 +122,7 @@ std::optional<Failed> RigidStep::step(Motion& motion, double begin, double end,
     last = change;
   }
   now = turn(motion, given, moment);
-  const Eigen::Vector3d travel =
-      length_ * (at(motion.v, 0) + 0.5 / body_.total_mass() * given);
+  const Eigen::Vector3d travel = length_ * (at(motion.v, 0) + 0.5 / body_.total_mass() * given);
   motion.external_work += loaded.dot(travel) / length_ + loading.dot(now.mean);
   see(now, travel);
   motion.q = now.q;
@@ -152,8 +151,7 @@ void RigidStep::see(const Turn& turn, const Eigen::Vector3d& travel) {
     mobility_.col(k) = body_.angular_velocity(middle, Eigen::Vector3d::Unit(k));
 }
 
-void RigidStep::compliance(const std::vector<std::size_t>& values,
-                           std::vector<double>& out) const {
+void RigidStep::compliance(const std::vector<std::size_t>& values, std::vector<double>& out) const {
   const std::size_t dim = index(body_.dim()), count = values.size();
   out.assign(count * count, 0.0);
   for (std::size_t i = 0; i < count; ++i) {

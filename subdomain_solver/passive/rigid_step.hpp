@@ -31,16 +31,15 @@ class RigidStep {
   void compliance(const std::vector<std::size_t>& values, std::vector<double>& out) const;
 
  private:
-  struct Turn {  // of the whole step
-    std::vector<double> q, v;                    // at its end
-    Eigen::Quaterniond begin, end;               // attitudes
-    Eigen::Vector3d mean = {0.0, 0.0, 0.0};      // [rad/s] that moments work on
-    double most = 0.0;                           // [rad] that it turns at most
+  struct Turn {                              // of the whole step
+    std::vector<double> q, v;                // at its end
+    Eigen::Quaterniond begin, end;           // attitudes
+    Eigen::Vector3d mean = {0.0, 0.0, 0.0};  // [rad/s] that moments work on
+    double most = 0.0;                       // [rad] that it turns at most
   };
   Turn turn(const Motion& motion, const Eigen::Vector3d& impulse,
             const Eigen::Vector3d& moment) const;
-  Eigen::Vector3d moment_of(const Turn& turn, std::span<const double> impulses,
-                            double& size) const;
+  Eigen::Vector3d moment_of(const Turn& turn, std::span<const double> impulses, double& size) const;
   void see(const Turn& turn, const Eigen::Vector3d& travel);
   Eigen::Vector3d at(std::span<const double> values, std::size_t point) const;
 
@@ -49,7 +48,7 @@ class RigidStep {
   std::vector<const Load*> loads_;
   double length_ = 0.0;  // [s]
   std::vector<double> moved_;
-  std::vector<Eigen::Vector3d> mean_arms_;                      // [m] (points)
+  std::vector<Eigen::Vector3d> mean_arms_;              // [m] (points)
   Eigen::Matrix3d mobility_ = Eigen::Matrix3d::Zero();  // [1/(kg m^2)] at the mean attitude
   double bulge_ = 0.0;
 };

@@ -10,10 +10,9 @@ namespace {
 std::vector<PassiveText> linear_cases() {
   std::vector<PassiveText> all;
   for (PassiveText text : every_element()) {
-    for (const char* scheme :
-         {"central_difference: {step: 1.0e-3}", "newmark: {step: 0.01}",
-          "newmark: {step: 0.01, mass: consistent}", "hht_alpha: {step: 0.01}",
-          "generalized_alpha: {step: 0.01, mass: lumped}"}) {
+    for (const char* scheme : {"central_difference: {step: 1.0e-3}", "newmark: {step: 0.01}",
+                               "newmark: {step: 0.01, mass: consistent}", "hht_alpha: {step: 0.01}",
+                               "generalized_alpha: {step: 0.01, mass: lumped}"}) {
       for (const bool touched : {false, true}) {
         text.scheme = scheme;
         text.touched = touched;
@@ -68,8 +67,7 @@ TEST(PassiveLinear, EnergyChangesByTheWorkOfImpulsesLoadsAndSupports) {
         const std::vector<double> given = sum_of(impulses, run.dim());
         const double gravity[3] = {0.1, -0.3, 0.2};
         for (std::size_t i = 0; i < run.dim(); ++i)
-          EXPECT_NEAR(r.momentum[i],
-                      momentum[i] + given[i] + 2.0 * gravity[i] * length,
+          EXPECT_NEAR(r.momentum[i], momentum[i] + given[i] + 2.0 * gravity[i] * length,
                       roundoff(1.0e3, 10.0 + 100.0 * length));  // of forces of 100 N
       }
     }
@@ -108,8 +106,9 @@ TEST(PassiveLinear, LoadsThatFollowAndBodiesOfRevolutionKeepTheAccount) {
       text.keys = plane;
       text.law = law;
       text.cells = 4;
-      text.more = "loads: {push: {on: top, pressure: '20 * t', follows: true}}, initial: "
-                  "{position: [1.0, 0.0]}, constraints: {base: {on: bottom, y: '0.05 * t'}}";
+      text.more =
+          "loads: {push: {on: top, pressure: '20 * t', follows: true}}, initial: "
+          "{position: [1.0, 0.0]}, constraints: {base: {on: bottom, y: '0.05 * t'}}";
       SCOPED_TRACE(text.label());
       double drift[3] = {};
       for (const int fine : {0, 1, 2}) {
@@ -148,8 +147,7 @@ TEST(PassiveLinear, AStepOfNoLengthTellsWhereTheBodyIs) {
     const PassiveReply none = run.step(0.0);
     EXPECT_EQ(run.body().state_hash(), hash);
     for (std::size_t k = 0; k < run.values(); ++k) {
-      EXPECT_NEAR(none.ports[0].displacement[k], reply.ports[0].displacement[k],
-                  roundoff(10, 1.0));
+      EXPECT_NEAR(none.ports[0].displacement[k], reply.ports[0].displacement[k], roundoff(10, 1.0));
       EXPECT_EQ(none.ports[0].velocity[k], reply.ports[0].velocity[k]);
     }
   }
@@ -159,10 +157,9 @@ TEST(PassiveLinear, ComplianceIsWhatImpulsesAddToTheMeanVelocity) {
   for (PassiveText text : linear_cases()) {
     for (const bool inclined : {false, true}) {
       if (inclined && text.model == "modal") continue;
-      text.more = !inclined ? ""
-                  : text.dim == 2
-                      ? "constraints: {roll: {on: left, direction: [3.0, 4.0]}}"
-                      : "constraints: {roll: {on: left, direction: [3.0, 4.0, 1.0]}}";
+      text.more = !inclined       ? ""
+                  : text.dim == 2 ? "constraints: {roll: {on: left, direction: [3.0, 4.0]}}"
+                                  : "constraints: {roll: {on: left, direction: [3.0, 4.0, 1.0]}}";
       if (inclined && text.touched && text.scheme.find("newmark") == std::string::npos) continue;
       SCOPED_TRACE(text.label() + text.more);
       PassiveRun run(text.build());
@@ -181,9 +178,9 @@ TEST(PassiveLinear, ComplianceIsWhatImpulsesAddToTheMeanVelocity) {
         unit[value(j)] = 1.0;
         const PassiveReply reply = run.step(length, unit);
         for (std::size_t i = 0; i < count; ++i) {
-          const double change = (reply.ports[0].displacement[value(i)] -
-                                 none.ports[0].displacement[value(i)]) /
-                                length;
+          const double change =
+              (reply.ports[0].displacement[value(i)] - none.ports[0].displacement[value(i)]) /
+              length;
           const double told = none.compliance[i * count + j];
           // Compliances are about 1/(2 m) of a node, 100, solved to the factors' length.
           EXPECT_NEAR(change, told, 1.0e-7 * none.compliance[j * count + j]);

@@ -51,8 +51,9 @@ TEST(PassiveFinite, EnergyDriftsByTheSquareOfTheStep) {
 TEST(PassiveFinite, PlasticWorkIsAccountedFor) {
   for (PassiveText text : every_element()) {
     if (text.element == "tet10" || text.element == "hex20") text.cells = 1;
-    text.material = "j2_plasticity: {youngs_modulus: 100.0, poissons_ratio: 0.3, density: 2.0, "
-                    "yield_stress: 2.0, hardening: 5.0}";
+    text.material =
+        "j2_plasticity: {youngs_modulus: 100.0, poissons_ratio: 0.3, density: 2.0, "
+        "yield_stress: 2.0, hardening: 5.0}";
     text.more = text.dim == 2
                     ? "initial: {velocity_field: ['1.0 - 2.0 * y + 0.5 * x', '2.0 * x']}"
                     : "initial: {velocity_field: ['1.0 - 2.0 * y + 0.5 * x', '2.0 * x', '1.0']}";
@@ -144,18 +145,16 @@ TEST(PassiveFinite, CrushedBodiesHaveAnAnswerOrAReason) {
     }
     ASSERT_TRUE(done);
     EXPECT_GT(reply.record.energy.total(), 0.0);
-    for (std::size_t k = 0; k < run.dim(); ++k)
-      EXPECT_GT(reply.compliance[k * run.dim() + k], 0.0);
+    for (std::size_t k = 0; k < run.dim(); ++k) EXPECT_GT(reply.compliance[k * run.dim() + k], 0.0);
   }
 }
 
 TEST(PassiveFinite, DampingTakesWhatDeformsAndLeavesTheMomenta) {
   for (PassiveText text : finite_cases()) {
     for (const bool held : {false, true}) {
-      text.more =
-          text.dim == 2
-              ? "initial: {velocity_field: ['1.0 - 2.0 * y + 0.5 * x', '2.0 * x']}"
-              : "initial: {velocity_field: ['1.0 - 2.0 * y + 0.5 * x', '2.0 * x', '1.0']}";
+      text.more = text.dim == 2
+                      ? "initial: {velocity_field: ['1.0 - 2.0 * y + 0.5 * x', '2.0 * x']}"
+                      : "initial: {velocity_field: ['1.0 - 2.0 * y + 0.5 * x', '2.0 * x', '1.0']}";
       if (held) text.more += ", constraints: {base: {on: left, y: '0'}}";
       SCOPED_TRACE(text.label() + text.more);
       PassiveRun run(text.build());

@@ -73,10 +73,10 @@ TEST(PassiveRigid, EnergyChangesByTheWorkOnStraightWays) {
           const std::vector<double> given = sum_of(impulses, run.dim());
           const double gravity[3] = {0.3, -1.0, 0.1};
           for (std::size_t i = 0; i < run.dim(); ++i)
-            EXPECT_NEAR(reply.record.momentum[i],
-                        before.momentum[i] + given[i] +
-                            (*load != '\0' ? 2.0 * gravity[i] * length : 0.0),
-                        roundoff(1.0e3, 1.0));
+            EXPECT_NEAR(
+                reply.record.momentum[i],
+                before.momentum[i] + given[i] + (*load != '\0' ? 2.0 * gravity[i] * length : 0.0),
+                roundoff(1.0e3, 1.0));
         }
       }
     }
@@ -100,8 +100,8 @@ TEST(PassiveRigid, ComplianceIsWhatSmallImpulsesAddAtRest) {
       const PassiveReply reply = run.step(0.01, unit);
       for (std::size_t i = 0; i < count; ++i)
         // The turn of 1e-6 rad bends ways by as much of compliances of a few 1/kg.
-        EXPECT_NEAR(reply.ports[0].displacement[i] / 0.01 / 1.0e-4,
-                    none.compliance[i * count + j], 1.0e-5);
+        EXPECT_NEAR(reply.ports[0].displacement[i] / 0.01 / 1.0e-4, none.compliance[i * count + j],
+                    1.0e-5);
     }
   }
 }
@@ -127,8 +127,8 @@ TEST(PassiveRigid, SwitchesLoseNothing) {
 TEST(PassiveTool, GoesItsWayAndGivesWayToNothing) {
   for (const int dim : {2, 3}) {
     for (const bool moves : {false, true}) {
-      const std::string way = dim == 2 ? "['0.3 * t * t', '-0.2 * t']"
-                                       : "['0.3 * t * t', '-0.2 * t', '0']";
+      const std::string way =
+          dim == 2 ? "['0.3 * t * t', '-0.2 * t']" : "['0.3 * t * t', '-0.2 * t', '0']";
       const std::string text = fmt::format(
           "bodies: {{it: {{model: {{rigid_tool: {{dimension: {}, mesh: {{{}}}{}}}}}, ports: "
           "{{face: {{side: right}}}}}}}}",

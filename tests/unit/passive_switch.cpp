@@ -139,7 +139,8 @@ TEST(PassiveSwitch, ABodyOneCellAcrossIsBuiltForItsPassiveFormAlone) {
         "bodies: {it: {model: {fe: {dimension: 2, mesh: {rectangle: {lengths: [1.0, 1.0], "
         "elements: [1, 1]}}}}, material: {linear_elastic: {youngs_modulus: 1.0, poissons_ratio: "
         "0.3, density: 1.0}}, integrator: {newmark: {step: 0.1}}, ports: {right: {side: right}, "
-        "left: {side: left}}" + more + "}}";
+        "left: {side: left}}" +
+        more + "}}";
     BodyContext context;
     for (const char* port : {"right", "left"})
       context.ports.push_back({.port = port, .touches = true, .partners = {}});
