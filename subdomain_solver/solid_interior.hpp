@@ -17,8 +17,8 @@
 #include "subdomain_solver/passive/midpoint_step.hpp"
 #include "subdomain_solver/passive/passive_body.hpp"
 #include "subdomain_solver/passive/rigid_step.hpp"
-#include "subdomain_solver/port_forecast.hpp"
 #include "subdomain_solver/port_forces.hpp"
+#include "subdomain_solver/port_forecast.hpp"
 #include "subdomain_solver/port_statics.hpp"
 #include "subdomain_solver/reactions.hpp"
 #include "subdomain_solver/solid_measures.hpp"
@@ -38,8 +38,8 @@ class SolidInterior final : public Interior,
   struct PortNodes {
     std::string name, side;
     bool tied = false;
-    bool touched = false;  // something may touch it
-    bool joined = false;   // tied to another surface: forces are constant in a step
+    bool touched = false;         // something may touch it
+    bool joined = false;          // tied to another surface: forces are constant in a step
     EmbeddedSurface inside = {};  // of a body that overlaps this one
   };
   struct Scheme {
@@ -109,8 +109,9 @@ class SolidInterior final : public Interior,
   std::optional<Failed> restart(double time, double& work);
   void spread_velocities();
   void gather_velocities();
-  void keep_momentum(const std::vector<double>& momentum);
-  std::vector<double> momentum_now();
+  void keep_momentum(const Eigen::MatrixXd& motions, const Vector& momentum);
+  Vector momentum_along(const Eigen::MatrixXd& motions);
+  Eigen::MatrixXd free_motions();
   const SparseMatrix& mass_of_form() const { return is_passive() ? whole_mass_ : mass_; }
   double take_from_deformation(double joules);
   double moving_energy() const;
@@ -149,14 +150,14 @@ class SolidInterior final : public Interior,
   Parts parts_;
   SparseMatrix mass_;  // [kg] of the nodes, in the form of the scheme
   std::vector<NamedNodes> ports_;
-  std::vector<char> may_touch_, joined_;  // (ports)
-  bool joins_ = false;                    // one of them is joined
-  std::unique_ptr<PortMap> port_map_;  // null: no ports
-  std::unique_ptr<PortContact> contact_;  // null: no port meets obstacles
-  SurfaceContact* surfaces_ = nullptr;    // the same of ports that are surfaces; null: points
-  std::vector<TouchedSurface> touched_;   // its ports, where they are surfaces
+  std::vector<char> may_touch_, joined_;      // (ports)
+  bool joins_ = false;                        // one of them is joined
+  std::unique_ptr<PortMap> port_map_;         // null: no ports
+  std::unique_ptr<PortContact> contact_;      // null: no port meets obstacles
+  SurfaceContact* surfaces_ = nullptr;        // the same of ports that are surfaces; null: points
+  std::vector<TouchedSurface> touched_;       // its ports, where they are surfaces
   std::unique_ptr<SelfCrossings> crossings_;  // null: strains are small
-  PortForces* port_forces_ = nullptr;  // owned by the problem, the last of its loads
+  PortForces* port_forces_ = nullptr;         // owned by the problem, the last of its loads
   State state_;
   std::vector<double> places_;  // [m] (port values)
   PortValues seen_;

@@ -76,11 +76,22 @@ double SolidInterior::moving_energy() const {
   return 0.5 * view(motion.v).dot(midpoint_->mass().cwiseProduct(view(motion.v)));
 }
 
-std::vector<double> SolidInterior::momentum_now() {
+/// Rigid motions of the body where it is, that no support holds: (coordinates, k).
+Eigen::MatrixXd SolidInterior::free_motions() {
   see_nodes();
-  std::vector<double> sum(index(description_.dim), 0.0);
-  for (Eigen::Index k = 0; k < momentum_.size(); ++k) sum[index(k) % sum.size()] += momentum_(k);
-  return sum;
+  std::vector<double> at = parts_.model->mesh().points;
+  for (std::size_t k = 0; k < at.size(); ++k) at[k] += u_[k];
+  std::vector<int> held;
+  for (const Prescribed& p : parts_.problem->supports) held.push_back(p.dof);
+  return vanishing_on(held, rigid_motions(*parts_.model, at));
+}
+
+/// [kg m/s], [kg m^2/s] along rigid motions.
+Vector SolidInterior::momentum_along(const Eigen::MatrixXd& motions) {
+  see_nodes();
+  Vector momentum = momentum_;
+  parts_.model->to_frames({momentum.data(), nodal_values()});
+  return motions.transpose() * momentum;
 }
 
 double SolidInterior::enter() {
@@ -100,14 +111,15 @@ double SolidInterior::enter() {
     motion.force.assign(motion.v.size(), 0.0);
     return 0.0;
   }
-  const std::vector<double> momentum = momentum_now();
+  const Eigen::MatrixXd motions = parts_.reduced ? Eigen::MatrixXd() : free_motions();
+  const Vector momentum = parts_.reduced ? Vector() : momentum_along(motions);
   const double before = parts_.scheme.integrator->kinetic(motion);
   spread_velocities();
   motion.a.clear();
   motion.force.assign(motion.v.size(), 0.0);
   std::ranges::fill(state_.port_force, 0.0);
   if (surfaces_ != nullptr) surfaces_->let_go();
-  keep_momentum(momentum);
+  keep_momentum(motions, momentum);
   for (int k = 0; k < 3 && moving_energy() > before; ++k)
     take_from_deformation(moving_energy() - before);
   return before - moving_energy();
@@ -134,24 +146,12 @@ void SolidInterior::gather_velocities() {
   }
 }
 
-/// Uniform velocities along the axes that no support holds make momentum what it was: mass matrices
-/// that are not those of the nodes alone have other ones.
-void SolidInterior::keep_momentum(const std::vector<double>& momentum) {
-  if (parts_.reduced) return;
-  const FeModel& model = *parts_.model;
-  const std::vector<double> now = momentum_now();
-  const int dim = description_.dim;
-  std::vector<double> change(nodal_values(), 0.0);
-  for (int i = model.round() ? 1 : 0; i < dim; ++i) {
-    if (std::ranges::any_of(parts_.problem->supports, [&](const Prescribed& p) {
-          return model.frame(p.dof / dim) != nullptr || p.dof % dim == i;
-        }))
-      continue;
-    for (std::size_t k = index(i); k < change.size(); k += index(dim))
-      change[k] = (momentum[i] - now[i]) / description_.mass;
-  }
-  model.to_frames(change);
-  view(state_.motion.v) += view(change);
+/// Rigid motions that no support holds make momentum and angular momentum what they were: mass
+/// matrices that are not those of the nodes alone have other ones.
+void SolidInterior::keep_momentum(const Eigen::MatrixXd& motions, const Vector& momentum) {
+  if (motions.cols() == 0) return;
+  const Eigen::MatrixXd heavy = motions.transpose() * (mass_of_form() * motions);
+  view(state_.motion.v) += motions * heavy.ldlt().solve(momentum - momentum_along(motions)).eval();
 }
 
 /// What is left of velocities beside the rigid motions that supports leave is scaled down.
@@ -167,17 +167,12 @@ double SolidInterior::take_from_deformation(double joules) {
   } else {
     const SparseMatrix& whole = mass_of_form();
     mass = whole.diagonal();
-    see_nodes();
-    std::vector<double> at = parts_.model->mesh().points;
-    for (std::size_t k = 0; k < at.size(); ++k) at[k] += u_[k];
-    std::vector<int> held;
-    for (const Prescribed& p : parts_.problem->supports) held.push_back(p.dof);
-    const Eigen::MatrixXd rigid = vanishing_on(held, rigid_motions(*parts_.model, at));
+    const Eigen::MatrixXd rigid = free_motions();
     if (rigid.cols() > 0) {
       const Eigen::MatrixXd heavy = whole * rigid;
       rest -= rigid * (rigid.transpose() * heavy).ldlt().solve(heavy.transpose() * rest);
     }
-    for (const int dof : held) rest(dof) = 0.0;
+    for (const Prescribed& p : parts_.problem->supports) rest(p.dof) = 0.0;
     for (const int dof : is_passive() ? std::vector<int>{} : parts_.model->massless())
       rest(dof) = 0.0;
     const double most = energy_of(whole, rest);
@@ -198,7 +193,8 @@ std::optional<Failed> SolidInterior::leave(double time, double& lost) {
   lost = 0.0;
   if (!is_passive()) return std::nullopt;
   const State before = state_;
-  const std::vector<double> momentum = momentum_now();
+  const Eigen::MatrixXd motions = parts_.reduced ? Eigen::MatrixXd() : free_motions();
+  const Vector momentum = parts_.reduced ? Vector() : momentum_along(motions);
   double present = moving_energy() + state_.motion.stored;
   double work = 0.0;
   if (std::optional<Failed> failed = restart(time, work)) {
@@ -210,7 +206,7 @@ std::optional<Failed> SolidInterior::leave(double time, double& lost) {
   const auto total = [this] {
     return parts_.scheme.integrator->kinetic(state_.motion) + state_.motion.stored;
   };
-  keep_momentum(momentum);
+  keep_momentum(motions, momentum);
   for (int k = 0; k < 3 && total() > present; ++k) take_from_deformation(total() - present);
   lost = present - total();
   if (port_map_) port_map_->displacement(state_.motion.q, places_);

@@ -252,6 +252,13 @@ void BodySpec::check(Fields& f) const {
           "Add ports: {face: {side: left}}, where the side tells to which side the wall faces.");
 }
 
+void BodySpec::lump_mass() {
+  const auto lump = [](auto& scheme) {
+    if constexpr (requires { scheme.mass; }) scheme.mass = MassForm::lumped;
+  };
+  if (integrator) std::visit(lump, *integrator);
+}
+
 void BodySpec::place_files(const std::string& folder) {
   auto place = [&folder](auto& mesh) {
     if constexpr (requires { mesh.file; }) {

@@ -138,12 +138,14 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
     return stable_step(model, parts.motion.q, std::vector<double>(model.history_size(), 0.0));
   };
   parts.rung += on_file(fe) + adjusted;
-  if (parts.massive_surface) parts.rung += ", its surface has mass: contact in its passive form";
+  if (parts.massive_surface) parts.rung += ", its surface has mass, lumped: contact in its passive form";
   if (const std::string why = spec.why_general(); !why.empty())
     parts.rung += " in place of the bars' own core, for " + why;
   MakeWatch watch;  // the tangent of linear bodies stays
   if (!model.is_linear()) watch = [&] { return std::make_unique<HighestFrequency>(model); };
-  parts.scheme = make_scheme(spec, place, *parts.problem, ports, limit, watch, loose);
+  BodySpec stepped = spec;
+  if (parts.massive_surface) stepped.lump_mass();
+  parts.scheme = make_scheme(stepped, place, *parts.problem, ports, limit, watch, loose);
   if (!constraints.held.empty()) {
     parts.reactions = std::make_unique<NodalReactions>(
         model, *parts.problem, *parts.scheme.integrator, mass_matrix(model, parts.scheme.mass),
