@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "coordinator/coupling/compare/alternating_net.hpp"
 #include "coordinator/coupling/compare/parallel_force.hpp"
 #include "coordinator/coupling/compare/robin.hpp"
 #include "coordinator/coupling/compliant_obstacle.hpp"
@@ -413,7 +414,17 @@ TieKernelOptions tie_kernel_options(const SchwarzSpec& spec) {
   return options;
 }
 
-Schwarz make_schwarz(const SchwarzSpec& spec) {
+/// Interfaces have the first joints, one each.
+std::vector<int> alternating_joints(const Scene& scene) {
+  std::vector<int> joints;
+  for (std::size_t j = 0; j < scene.interfaces.size(); ++j) {
+    const std::optional<TiedSpec>& tied = scene.interfaces[j].second.tied;
+    if (tied && tied->overlap && tied->overlap->alternating) joints.push_back(static_cast<int>(j));
+  }
+  return joints;
+}
+
+Schwarz make_schwarz(const SchwarzSpec& spec, std::vector<int> alternating) {
   struct Maker {
     static Preconditioner by(const RelaxationFactor& factor) {
       return factor.probed() ? Preconditioner::relaxed() : Preconditioner::number(factor.value);
@@ -442,11 +453,16 @@ Schwarz make_schwarz(const SchwarzSpec& spec) {
     bool operator()(const AndersonAcceleration& s) const { return s.initial.probed(); }
     bool operator()(const KernelAcceleration&) const { return true; }
   };
-  const Schwarz::Options options{{spec.max_iterations, spec.tolerance},
-                                 std::visit(UsesKernels{}, spec.accelerator),
-                                 tie_kernel_options(spec)};
-  return Schwarz(options,
-                 [accelerator = spec.accelerator] { return std::visit(Maker{}, accelerator); });
+  const auto make = [accelerator = spec.accelerator, ties = tie_kernel_options(spec),
+                     alternating = std::move(alternating)](std::span<const int> joints) {
+    std::unique_ptr<Net> net;
+    if (std::ranges::find_first_of(joints, alternating) == joints.end())
+      net = std::make_unique<Net>(ties, std::visit(UsesKernels{}, accelerator));
+    else
+      net = std::make_unique<AlternatingNet>(ties);
+    return Schwarz::Memory{std::visit(Maker{}, accelerator), std::move(net)};
+  };
+  return Schwarz({spec.max_iterations, spec.tolerance}, make);
 }
 
 }  // namespace abut
