@@ -7,8 +7,8 @@
 namespace abut {
 
 /// Rows of both sides, each a dashpot with the partner's force  [M.117]: in a window the sides part
-/// by what dashpots give way to the impulses of the window. For comparisons, since it loses what one
-/// side's mesh or steps cannot follow of the other's.
+/// by what dashpots give way to the impulses of the window. For comparisons, since it loses what
+/// one side's mesh or steps cannot follow of the other's.
 class DashpotTie final : public Tie {
  public:
   /// `give`: [m/(N s)] (rows over rows) by which rows part under impulses.
