@@ -98,7 +98,7 @@ void Controller::introduce() {
 /// The published form exchanges them.
 bool Controller::wants_accelerations() const {
   return std::ranges::any_of(scene_.interfaces, [](const auto& entry) {
-    return std::holds_alternative<DirichletNeumannTransmission>(entry.second.transmission);
+    return is_published(entry.second.transmission);
   });
 }
 
