@@ -91,8 +91,7 @@ class Translator {
   }
 
   bool is_static() const {
-    const auto& scheme = division_.whole.spec.integrator;
-    return scheme && std::holds_alternative<QuasiStaticSpec>(*scheme);
+    return division_.whole.spec.integrates(SchemeKind::statics);
   }
 
   const Division& division_;
