@@ -90,9 +90,7 @@ class Translator {
                                   : "it is the sum or the mean over several parts");
   }
 
-  bool is_static() const {
-    return division_.whole.spec.integrates(SchemeKind::statics);
-  }
+  bool is_static() const { return division_.whole.spec.integrates(SchemeKind::statics); }
 
   const Division& division_;
 };

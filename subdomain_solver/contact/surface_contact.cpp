@@ -262,9 +262,8 @@ void SurfaceContact::add_components(Meeting& m) {
       tangents(rows.dim, normal, std::span(directions_).subspan(at + dim));
     }
     const FrictionLaw& law = m.law.friction;
-    rows_.push_back(
-        {static_cast<Eigen::Index>(at / dim), m.parts,
-         law.rubs() ? law.coefficient(slid_[m.slid + index(rows.nodes[r])]) : 0.0});
+    rows_.push_back({static_cast<Eigen::Index>(at / dim), m.parts,
+                     law.rubs() ? law.coefficient(slid_[m.slid + index(rows.nodes[r])]) : 0.0});
     for (int p = 0; p < m.parts; ++p)
       find_terms(surfaces_[m.own], rows, r, directions_.data() + at + index(p) * dim);
   }

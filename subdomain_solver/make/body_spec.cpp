@@ -394,8 +394,8 @@ void BodySpec::check_rigid(Fields& f) const {
   f.check(constraints.empty(), "constraints",
           "prescribe displacements of single nodes, which a rigid body does not have",
           "Leave constraints out, or use model fe.");
-  f.check(!integrator || integrates(SchemeKind::exact), "integrator",
-          "is for bodies that deform", "Use rigid_motion: {step: ...} with model rigid.");
+  f.check(!integrator || integrates(SchemeKind::exact), "integrator", "is for bodies that deform",
+          "Use rigid_motion: {step: ...} with model rigid.");
 }
 
 }  // namespace abut

@@ -52,10 +52,9 @@ struct CentralDifferenceSpec {
                "parameter phi of Tchamwa and Wielgosz, which damps short waves most; 1 dissipates "
                "nothing; lowers the stable step",
                between(1.0, 2.0));
-    f.word(
-        "above_limit", clamp, {"refuse", "clamp"},
-        "answer to a step of a solid above its stable limit, at the begin or once strain has "
-        "lowered it: refuse, or take equal parts of it of at most 0.95 of the limit");
+    f.word("above_limit", clamp, {"refuse", "clamp"},
+           "answer to a step of a solid above its stable limit, at the begin or once strain has "
+           "lowered it: refuse, or take equal parts of it of at most 0.95 of the limit");
     f.check(tchamwa == 1.0 || (dispersion_terms == 1 && bulk_viscosity == 0.0), "tchamwa",
             fmt::format("is {:g} beside dispersion terms or bulk viscosity", tchamwa),
             "Choose one of them: what they do together has no known stable step.");

@@ -333,12 +333,7 @@ std::vector<Touched> touched() {
           for (const bool kernels : {false, true})
             for (const auto& [sticks, slides] : {std::pair(0.0, 0.0), {0.3, 0.3}, {0.4, 0.1}})
               if (dim == 2 || (kernels && sticks != slides) || (tied && kernels && sticks == 0.0))
-                all.push_back({dim,
-                               law,
-                               scheme,
-                               tied,
-                               kernels,
-                               {.friction = {sticks, slides}}});
+                all.push_back({dim, law, scheme, tied, kernels, {.friction = {sticks, slides}}});
   return all;
 }
 
@@ -350,9 +345,7 @@ TEST(Replies, OfBodiesThatTouchDependOnStateAndRequestAlone) {
 
 /// What the fields are for: without them the reply is another one.
 TEST(Replies, DependOnTheForceThatIsBalancedAndOnWhatSlid) {
-  Touched t{2,         "linear_elastic",
-            "newmark", true,
-            true,      {.friction = {0.4, 0.1}}};
+  Touched t{2, "linear_elastic", "newmark", true, true, {.friction = {0.4, 0.1}}};
   ASSERT_TRUE(t.make()->describe().can.neighbours);
   Player p = t.player();
   Dice dice(3);
