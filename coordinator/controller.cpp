@@ -97,9 +97,8 @@ void Controller::introduce() {
 
 /// The published form exchanges them.
 bool Controller::wants_accelerations() const {
-  return std::ranges::any_of(scene_.interfaces, [](const auto& entry) {
-    return std::holds_alternative<DirichletNeumannTransmission>(entry.second.transmission);
-  });
+  return std::ranges::any_of(
+      scene_.interfaces, [](const auto& entry) { return is_published(entry.second.transmission); });
 }
 
 void Controller::start() {

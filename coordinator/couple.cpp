@@ -170,12 +170,6 @@ void refuse_flat_beside_round(const Joint& joint, const Bodies& bodies, const st
   }
 }
 
-ContactLaw law_of(const ContactSpec& spec) {
-  return {.points = spec.points,
-          .static_friction = spec.static_friction.value_or(spec.friction),
-          .kinetic_friction = spec.friction};
-}
-
 /// Bodies that are surfaces to each other.
 void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Scene& scene,
                   const Bodies& bodies, Joint& joint) {
@@ -208,7 +202,7 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
             "takes forces only and cannot be the kinematic side", "Name the other side, or auto.");
   }
   const int finder = contact_finder(joint, bodies);
-  const ContactLaw law = law_of(*spec.contact);
+  const ContactLaw law{.points = spec.contact->points, .friction = spec.contact->friction};
   if (law.points && scene.bodies[joint.sides[finder].body].second.external) {
     throw InputError(
         fmt::format("is point_to_surface, but {} finds the contact, and has rows of its "
@@ -216,7 +210,7 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
                     spec.sides[finder]),
         where + ".contact.rows", "Leave rows out.");
   }
-  if (law.rubs()) {
+  if (law.friction.rubs()) {
     const Description& body = bodies.describe(joint.sides[finder].body);
     require(body.can.friction, body, where + ".contact.friction",
             "finds the contact and takes no friction",
@@ -224,7 +218,7 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
             "transmission.unilateral.kinematic.");
   }
   const double margin = row_margin(joint.sides, bodies);
-  joint.watch = std::make_unique<SurfaceWatch>(margin, law.rubs());
+  joint.watch = std::make_unique<SurfaceWatch>(margin, law.friction.rubs());
   joint.exchange = std::make_unique<CompliantObstacle>(
       how->kernel_memory.value_or(usual_kernel_memory) * 1048576.0, margin, law);
 }
@@ -347,7 +341,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
                                                 : make_joint(name, sides, bodies));
     joint.interface = number;
     see_adjusted(scene, joint);
-    if (std::holds_alternative<InternalTransmission>(spec.transmission)) {
+    if (is_inside(spec.transmission)) {
       joint.watch = std::make_unique<InsideWatch>();
       continue;
     }
