@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
