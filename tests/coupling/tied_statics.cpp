@@ -134,7 +134,7 @@ TEST(TiedStatics, UniformStressPasses) {
   const auto check = [](SolidText left, SolidText right, const char* cell) {
     const std::size_t dim = left.block.cells.size();
     SCOPED_TRACE(fmt::format("{}d {} {}", dim, cell, fmt::join(right.block.cells, "x")));
-    right.element = cell;
+    right.block.element = cell;
     left.more = dim == 2 ? "    constraints: {end: {on: left, x: 0}, floor: {on: bottom, y: 0}}\n"
                          : "    constraints: {end: {on: left, x: 0}, floor: {on: bottom, y: 0}, "
                            "back: {on: back, z: 0}}\n";
