@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contract/friction_law.hpp"
 #include "contract/waveform.hpp"
 
 namespace abut {
@@ -13,10 +14,7 @@ struct ContactLaw {
   bool tied = false;  // holds in tension too, and any gap of the references counts as none
   // Of surfaces: each node of the body that finds contact for itself, instead of averages [M.95].
   bool points = false;
-  // Coulomb's coefficients of surfaces: of what sticks, and of what slides; 0: without friction.
-  double static_friction = 0.0, kinetic_friction = 0.0;
-
-  bool rubs() const { return static_friction > 0.0; }
+  FrictionLaw friction;  // of surfaces
 };
 
 /// The partner's moving surface, on the partner's own points: what the body must not penetrate, or,

@@ -25,7 +25,7 @@ struct Capabilities {
   bool kernel = false;     // answers probe()
   bool impedance = false;  // accepts BoundaryData::impedance
   bool yielding = false;   // takes obstacles that give way: Meeting::kernel
-  bool friction = false;   // takes laws with friction: ContactLaw::rubs()
+  bool friction = false;   // takes laws with friction: FrictionLaw::rubs()
   // Takes how bodies that are tied to it respond: Meeting::kernel of its own surface.
   bool neighbours = false;
   bool passive = false;  // has a passive form: Subdomain::passive()

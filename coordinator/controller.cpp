@@ -47,7 +47,7 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       narrator_(bodies_, std::move(observers)),
       joints_(make_joints(scene, bodies_)),
       broad_phase_(make_broad_phase(scene, joints_, bodies_)),
-      schwarz_(make_schwarz(scene.schwarz)),
+      schwarz_(make_schwarz(scene.schwarz, alternating_joints(scene))),
       clock_(scene.time.begin, scene.time.end, scene.time.window),
       roles_(bodies_, scene.time.window, scene.schwarz.parallel),
       events_(joints_, bodies_, roles_, narrator_, scene.schwarz.tolerance, scene.time.window),
@@ -103,9 +103,8 @@ void Controller::introduce() {
 
 /// The published form exchanges them.
 bool Controller::wants_accelerations() const {
-  return std::ranges::any_of(scene_.interfaces, [](const auto& entry) {
-    return std::holds_alternative<DirichletNeumannTransmission>(entry.second.transmission);
-  });
+  return std::ranges::any_of(
+      scene_.interfaces, [](const auto& entry) { return is_published(entry.second.transmission); });
 }
 
 void Controller::start() {

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "coordinator/coupling/compare/alternating_net.hpp"
 #include "coordinator/coupling/compare/parallel_force.hpp"
 #include "coordinator/coupling/compare/robin.hpp"
 #include "coordinator/coupling/compliant_obstacle.hpp"
@@ -170,12 +171,6 @@ void refuse_flat_beside_round(const Joint& joint, const Bodies& bodies, const st
   }
 }
 
-ContactLaw law_of(const ContactSpec& spec) {
-  return {.points = spec.points,
-          .static_friction = spec.static_friction.value_or(spec.friction),
-          .kinetic_friction = spec.friction};
-}
-
 /// Bodies that are surfaces to each other.
 void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Scene& scene,
                   const Bodies& bodies, Joint& joint) {
@@ -209,7 +204,7 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
             "takes forces only and cannot be the kinematic side", "Name the other side, or auto.");
   }
   const int finder = contact_finder(joint, bodies);
-  const ContactLaw law = law_of(*spec.contact);
+  const ContactLaw law{.points = spec.contact->points, .friction = spec.contact->friction};
   if (law.points && scene.bodies[joint.sides[finder].body].second.external) {
     throw InputError(
         fmt::format("is point_to_surface, but {} finds the contact, and has rows of its "
@@ -217,7 +212,7 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
                     spec.sides[finder]),
         where + ".contact.rows", "Leave rows out.");
   }
-  if (law.rubs() && !only_passive(joint, bodies)) {
+  if (law.friction.rubs() && !only_passive(joint, bodies)) {
     const Description& body = bodies.describe(joint.sides[finder].body);
     require(body.can.friction, body, where + ".contact.friction",
             "finds the contact and takes no friction",
@@ -225,7 +220,7 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
             "transmission.unilateral.kinematic.");
   }
   const double margin = row_margin(joint.sides, bodies);
-  joint.watch = std::make_unique<SurfaceWatch>(margin, law.rubs());
+  joint.watch = std::make_unique<SurfaceWatch>(margin, law.friction.rubs());
   joint.exchange = std::make_unique<CompliantObstacle>(
       how->kernel_memory.value_or(usual_kernel_memory) * 1048576.0, margin, law);
 }
@@ -348,7 +343,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
                                                 : make_joint(name, sides, bodies));
     joint.interface = number;
     see_adjusted(scene, joint);
-    if (std::holds_alternative<InternalTransmission>(spec.transmission)) {
+    if (is_inside(spec.transmission)) {
       joint.watch = std::make_unique<InsideWatch>();
       continue;
     }
@@ -417,7 +412,17 @@ TieKernelOptions tie_kernel_options(const SchwarzSpec& spec) {
   return options;
 }
 
-Schwarz make_schwarz(const SchwarzSpec& spec) {
+/// Interfaces have the first joints, one each.
+std::vector<int> alternating_joints(const Scene& scene) {
+  std::vector<int> joints;
+  for (std::size_t j = 0; j < scene.interfaces.size(); ++j) {
+    const std::optional<TiedSpec>& tied = scene.interfaces[j].second.tied;
+    if (tied && tied->overlap && tied->overlap->alternating) joints.push_back(static_cast<int>(j));
+  }
+  return joints;
+}
+
+Schwarz make_schwarz(const SchwarzSpec& spec, std::vector<int> alternating) {
   struct Maker {
     static Preconditioner by(const RelaxationFactor& factor) {
       return factor.probed() ? Preconditioner::relaxed() : Preconditioner::number(factor.value);
@@ -446,11 +451,16 @@ Schwarz make_schwarz(const SchwarzSpec& spec) {
     bool operator()(const AndersonAcceleration& s) const { return s.initial.probed(); }
     bool operator()(const KernelAcceleration&) const { return true; }
   };
-  const Schwarz::Options options{{spec.max_iterations, spec.tolerance},
-                                 std::visit(UsesKernels{}, spec.accelerator),
-                                 tie_kernel_options(spec)};
-  return Schwarz(options,
-                 [accelerator = spec.accelerator] { return std::visit(Maker{}, accelerator); });
+  const auto make = [accelerator = spec.accelerator, ties = tie_kernel_options(spec),
+                     alternating = std::move(alternating)](std::span<const int> joints) {
+    std::unique_ptr<Net> net;
+    if (std::ranges::find_first_of(joints, alternating) == joints.end())
+      net = std::make_unique<Net>(ties, std::visit(UsesKernels{}, accelerator));
+    else
+      net = std::make_unique<AlternatingNet>(ties);
+    return Schwarz::Memory{std::visit(Maker{}, accelerator), std::move(net)};
+  };
+  return Schwarz({spec.max_iterations, spec.tolerance}, make);
 }
 
 }  // namespace abut

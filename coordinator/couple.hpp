@@ -24,6 +24,8 @@ BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
 /// What a scene says of the kernels of ties.
 TieKernelOptions tie_kernel_options(const SchwarzSpec& spec);
 
-Schwarz make_schwarz(const SchwarzSpec& spec);
+/// `alternating`: joints in whose islands bodies answer as if the others stood still.
+Schwarz make_schwarz(const SchwarzSpec& spec, std::vector<int> alternating = {});
+std::vector<int> alternating_joints(const Scene& scene);
 
 }  // namespace abut

@@ -35,8 +35,8 @@ void list_features(const Scene& scene, Estimate& e) {
   for (const auto& [name, interface] : scene.interfaces) {
     const auto& how = interface.transmission;
     unilateral = unilateral || std::holds_alternative<UnilateralTransmission>(how);
-    published = published || std::holds_alternative<DirichletNeumannTransmission>(how);
-    internal = internal || std::holds_alternative<InternalTransmission>(how);
+    published = published || is_published(how);
+    internal = internal || is_inside(how);
     tied = tied || interface.tied.has_value();
   }
   for (const auto& [name, body] : scene.bodies) {
@@ -63,9 +63,8 @@ void list_features(const Scene& scene, Estimate& e) {
 /// Contact inside bodies alone: nothing is iterated, and nothing flies free.
 bool watched_only(const Scene& scene) {
   return !scene.interfaces.empty() &&
-         std::all_of(scene.interfaces.begin(), scene.interfaces.end(), [](const auto& entry) {
-           return std::holds_alternative<InternalTransmission>(entry.second.transmission);
-         });
+         std::all_of(scene.interfaces.begin(), scene.interfaces.end(),
+                     [](const auto& entry) { return is_inside(entry.second.transmission); });
 }
 
 double memory_mib(const Description& body) {
@@ -124,9 +123,8 @@ std::vector<Estimate::Kernel> kernels_of(const Scene& scene,
 /// Iterations of a window in contact, at most.
 std::int64_t most_sweeps(const Scene& scene, std::span<const Description* const> known) {
   const bool published =
-      std::any_of(scene.interfaces.begin(), scene.interfaces.end(), [](const auto& entry) {
-        return std::holds_alternative<DirichletNeumannTransmission>(entry.second.transmission);
-      });
+      std::any_of(scene.interfaces.begin(), scene.interfaces.end(),
+                  [](const auto& entry) { return is_published(entry.second.transmission); });
   const bool linear = std::ranges::all_of(
       known, [](const Description* body) { return body->linear || std::isinf(body->mass); });
   const bool kernels = std::holds_alternative<KernelAcceleration>(scene.schwarz.accelerator);

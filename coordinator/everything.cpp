@@ -85,7 +85,7 @@ void require_finders(std::span<const Description* const> bodies, const Document&
 
 void require_friction(const ContactSpec& law, std::span<const Description* const> bodies,
                       const Document& document) {
-  if (law.static_friction.value_or(law.friction) == 0.0) return;
+  if (!law.friction.rubs()) return;
   for (const Description* body : bodies) {
     if (body == nullptr || !body->can.obstacle || body->can.friction) continue;
     throw InputError(fmt::format("has friction, but {} ({}) finds contact without", body->name,

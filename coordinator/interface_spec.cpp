@@ -1,19 +1,25 @@
 #include "coordinator/interface_spec.hpp"
 
 #include <charconv>
-#include <cmath>
+#include <optional>
+#include <string>
 #include <system_error>
 
 #include <fmt/format.h>
 
 namespace abut {
 
-void ContactSpec::fields(Fields& f) {
-  f.word(
-      "rows", points, {"mortar", "point_to_surface"},
-      "of surfaces, where their gaps are held: on the average over a node's surroundings, or, for "
-      "comparisons, at each node of the side that finds contact, which no constant pressure "
-      "passes");
+namespace {
+
+/// Coulomb's coefficient of what is called rough, and the largest: with more, what friction lifts
+/// may lift what presses, and there are no forces that fit.
+constexpr double rough_friction = 10.0;
+
+/// The keys of a friction law.
+void friction_keys(Fields& f, FrictionLaw& law) {
+  double& friction = law.kinetic_friction;
+  std::optional<double> static_friction;  // absent: the same
+  if (law.jumps()) static_friction = law.static_friction;
   std::string text = friction == rough_friction ? "rough" : fmt::format("{}", friction);
   f.optional(
       "friction", text, "",
@@ -34,6 +40,18 @@ void ContactSpec::fields(Fields& f) {
           fmt::format("is {}, below friction, {}, or above {:g}", static_friction.value_or(0.0),
                       friction, rough_friction),
           "What sticks holds at least as much as what slides: give both, or leave it out.");
+  law.static_friction = static_friction.value_or(friction);
+}
+
+}  // namespace
+
+void ContactSpec::fields(Fields& f) {
+  f.word(
+      "rows", points, {"mortar", "point_to_surface"},
+      "of surfaces, where their gaps are held: on the average over a node's surroundings, or, for "
+      "comparisons, at each node of the side that finds contact, which no constant pressure "
+      "passes");
+  friction_keys(f, friction);
 }
 
 void OverlapSpec::fields(Fields& f) {
@@ -71,38 +89,6 @@ void SceneContactSpec::fields(Fields& f) {
   f.section("everything", everything,
             "law of contact between all surfaces (ports) of different bodies, but for pairs that "
             "have an interface; measures name it contact.everything");
-}
-
-void UnilateralTransmission::fields(Fields& f) {
-  f.optional("kinematic", kinematic, "",
-             "side that solves the one-body contact problem, as body.port; auto: the softer side");
-  f.optional("kernel_memory", kernel_memory, "MiB",
-             "largest memory of the port kernel by which a surface gives way; a contact that needs "
-             "more takes more iterations; usual: 512",
-             positive);
-}
-
-void DirichletNeumannTransmission::fields(Fields& f) {
-  f.required("dirichlet", dirichlet, "", "side on which motion is imposed first, as body.port");
-  f.optional("swap_every_window", swap_every_window, "",
-             "exchange of the roles in every window, as published");
-  f.optional("impact_projection", impact_projection, "",
-             "common velocity of both contact nodes at first touch, of the same momentum");
-}
-
-void RobinTransmission::fields(Fields& f) {
-  f.optional(
-      "impedance", impedance, "kg/s",
-      "impedance that each side sees: matched to the partner's by probe, kernel (step over "
-      "the kernel's first coefficient), or a number; of tied surfaces a number, shared out by "
-      "area: for comparisons, since unlike meshes lose energy over dashpots");
-  if (f.purpose() != Fields::Purpose::read || impedance == "matched" || impedance == "kernel")
-    return;
-  const char* end = impedance.data() + impedance.size();
-  const std::from_chars_result parsed = std::from_chars(impedance.data(), end, number);
-  f.check(parsed.ec == std::errc() && parsed.ptr == end && number > 0.0 && std::isfinite(number),
-          "impedance", fmt::format("is {}, which is no impedance", impedance),
-          "Give matched, kernel, or a number above 0 in kg/s.");
 }
 
 void InterfaceSpec::fields(Fields& f) {

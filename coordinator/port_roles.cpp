@@ -31,10 +31,12 @@ std::optional<Stepping> stepping_of(const BodySpec& spec) {
   if (!spec.integrator) return std::nullopt;
   Stepping out;
   out.step = std::visit([](const auto& scheme) { return scheme.step; }, *spec.integrator);
-  if (const auto* kicks = std::get_if<CentralDifferenceSpec>(&*spec.integrator)) {
-    out.in_kicks = true;
-    out.own = kicks->clamp && !spec.is_bar();
-  }
+  out.in_kicks = spec.integrates(SchemeKind::explicit_steps);
+  const auto clamps = [](const auto& scheme) {
+    if constexpr (requires { scheme.clamp; }) return scheme.clamp;
+    return false;
+  };
+  out.own = std::visit(clamps, *spec.integrator) && !spec.is_bar();
   return out;
 }
 

@@ -184,7 +184,7 @@ void Scene::fields(Fields& f) {
 void Scene::idle_keys(Fields& f) const {
   const bool iterated =
       contact || std::any_of(interfaces.begin(), interfaces.end(), [](const auto& entry) {
-        return !std::holds_alternative<InternalTransmission>(entry.second.transmission);
+        return !is_inside(entry.second.transmission);
       });
   for (const char* key : {"form", "tolerance", "max_iterations", "accelerator"})
     f.idle(!iterated, std::string("schwarz.") + key, "no two bodies of the scene meet");
@@ -251,7 +251,7 @@ void validate_interface(const Scene& scene, const InterfaceSpec& interface,
       throw InputError(fmt::format("is {}, but there is no body {}", side, name.body), where,
                        fmt::format("Choose one of the bodies: {}.", names_of(scene.bodies)));
   }
-  const bool inside = std::holds_alternative<InternalTransmission>(interface.transmission);
+  const bool inside = is_inside(interface.transmission);
   const bool same = split_port(interface.sides[0]).body == split_port(interface.sides[1]).body;
   if (inside && interface.tied)
     throw InputError("is tied, but transmission internal is contact inside a body",

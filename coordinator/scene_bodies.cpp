@@ -63,13 +63,16 @@ void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
     throw InputError("has no effect: ends of bars are points",
                      document.where(fmt::format("interfaces.{}.contact.rows", interface.name)),
                      "Leave it out.");
-  if (interface.contact &&
-      interface.contact->static_friction.value_or(interface.contact->friction) > 0.0)
-    throw InputError("has no effect: ends of bars do not slide",
-                     document.where(fmt::format(
-                         "interfaces.{}.contact.{}", interface.name,
-                         interface.contact->friction > 0.0 ? "friction" : "static_friction")),
+  if (interface.contact && interface.contact->friction.rubs()) {
+    std::string law = fmt::format("interfaces.{}.contact", interface.name);
+    for (const std::string& key : document.keys(law)) {
+      if (key == "rows") continue;
+      law += "." + key;
+      break;
+    }
+    throw InputError("has no effect: ends of bars do not slide", document.where(law),
                      "Leave it out, or model the bodies in two or three dimensions.");
+  }
   const double normal = ports[0]->normals.at(0);
   if (normal + ports[1]->normals.at(0) != 0.0)
     throw InputError("look the same way and cannot touch", document.where(path),

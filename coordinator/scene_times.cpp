@@ -51,7 +51,7 @@ struct Rules {
   bool coupled(std::size_t body) const {
     const std::string prefix = scene.bodies[body].first + ".";
     for (const auto& [name, interface] : scene.interfaces) {
-      if (std::holds_alternative<InternalTransmission>(interface.transmission)) continue;
+      if (is_inside(interface.transmission)) continue;
       for (const std::string& side : interface.sides)
         if (side.starts_with(prefix)) return true;
     }

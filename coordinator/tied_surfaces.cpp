@@ -7,8 +7,9 @@
 #include <fmt/ranges.h>
 
 #include "base/error.hpp"
-#include "coordinator/coupling/compare/dashpot_rows.hpp"
-#include "coordinator/coupling/tie.hpp"
+#include "coordinator/coupling/compare/alternating_tie.hpp"
+#include "coordinator/coupling/compare/dashpot_tie.hpp"
+#include "coordinator/coupling/compare/motion_rows.hpp"
 #include "coordinator/coupling/tie_watch.hpp"
 #include "surface/unlike_meshes.hpp"
 
@@ -93,6 +94,21 @@ void check_robin(const InterfaceSpec& spec, const RobinTransmission& robin,
   }
 }
 
+std::unique_ptr<Tie> make_tie(const InterfaceSpec& spec, const std::array<Side, 2>& sides,
+                              const Bodies& bodies) {
+  const PortGeometry& one = bodies.port(sides[0]).geometry;
+  const PortGeometry& other = bodies.port(sides[1]).geometry;
+  if (const auto* robin = std::get_if<RobinTransmission>(&spec.transmission))
+    return make_dashpot_tie(one, other, robin->number);
+  const std::optional<OverlapSpec>& overlap = spec.tied->overlap;
+  if (!overlap)
+    return std::make_unique<Tie>(make_tie_rows(one, other, side_of_rows(sides, bodies)));
+  if (!overlap->motions) return std::make_unique<Tie>(make_overlap_rows(one, other));
+  TieRows rows = make_motion_rows(one, other);
+  if (overlap->alternating) return std::make_unique<AlternatingTie>(std::move(rows));
+  return std::make_unique<Tie>(std::move(rows), EnergyAccount::doubled);
+}
+
 }  // namespace
 
 Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, const Bodies& bodies) {
@@ -119,11 +135,8 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, cons
                      "Give both bodies plane: axisymmetric, or none.");
   }
   if (spec.tied->overlap) check_overlap(spec, faces);
-  TieRows rows = spec.tied->overlap
-                     ? make_overlap_rows(*faces[0], *faces[1], spec.tied->overlap->motions)
-                     : make_tie_rows(*faces[0], *faces[1], side_of_rows(sides, bodies));
-  if (robin != nullptr) rows = make_dashpot_rows(*faces[0], *faces[1], robin->number);
-  rows.alternating = spec.tied->overlap && spec.tied->overlap->alternating;
+  std::unique_ptr<Tie> tie = make_tie(spec, sides, bodies);
+  const TieRows& rows = tie->rows();
   const double most = unlike_meshes_gap * std::max(faces[0]->spacing, faces[1]->spacing);
   if (rows.count() == 0) {
     throw InputError(fmt::format("joins {} and {}, which do not face each other anywhere",
@@ -144,7 +157,6 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, cons
   joint.role.kinematic = spec.tied->finer ? 1 - coarser : coarser;
   joint.role.fixed = true;
   joint.line.normal = {1.0, -1.0};
-  auto tie = std::make_unique<Tie>(std::move(rows));
   joint.watch = std::make_unique<TieWatch>(*tie);
   joint.exchange = std::move(tie);
   return joint;

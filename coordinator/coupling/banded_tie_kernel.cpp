@@ -18,7 +18,6 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-constexpr double entry_bytes = 12.0;  // of a sparse matrix: value and row
 /// Entries so small beside those of their row and column on the diagonal are round-off.
 constexpr double roundoff = 1.0e-14;
 /// Of the first block's equations, relative. What is left is for the next call of the bodies.
@@ -114,7 +113,6 @@ class BandedTieKernel final : public TieKernel {
   Eigen::VectorXd diagonal() const override { return blocks_[0].diagonal(); }
   Eigen::Index size() const override { return blocks_[0].rows(); }
   int lags() const override { return static_cast<int>(blocks_.size()); }
-  double bytes() const override;
   bool renew(const TieLayout&, Bodies&) override { return false; }
   void turn(const TieLayout&) override {}
   std::vector<double> answers() const override { return {}; }
@@ -151,6 +149,9 @@ BandedTieKernel::BandedTieKernel(const TieLayout& layout, const TieBandWidth& wi
         for (const TieLayout::End& by : part.ends)
           add(layout, part, responses[p], of, by, lag, entries);
     }
+    layout.give_way(lag, [&entries](Eigen::Index of, Eigen::Index by, double value) {
+      entries.emplace_back(static_cast<int>(of), static_cast<int>(by), value);
+    });
     Sparse& block = blocks_.emplace_back(layout.size, layout.size);
     block.setFromTriplets(entries.begin(), entries.end());
     if (lag == 0) scale = block.diagonal().cwiseAbs().cwiseSqrt();
@@ -180,12 +181,6 @@ Eigen::VectorXd BandedTieKernel::invert(const Eigen::VectorXd& jump) const {
       return force;
   }
   return jump.cwiseQuotient(softened_[1].diagonal());
-}
-
-double BandedTieKernel::bytes() const {
-  double entries = 0.0;
-  for (const Sparse& block : blocks_) entries += static_cast<double>(block.nonZeros());
-  return entry_bytes * entries;
 }
 
 }  // namespace

@@ -121,10 +121,8 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
 /// body without a kernel, or whose kernel is that of another state, flies under what presses,
 /// carried on.
 void CompliantObstacle::release(const Joint& joint, Bodies& bodies) {
-  guess_.clear();
-  guess_.width = iterate_.width;
+  lay_times(iterate_.steps, iterate_.width, guess_);
   guess_.support = ForceSupport::linear;
-  guess_.time = levels_of(iterate_.steps);
   for (int i = 0; i <= iterate_.steps.count; ++i) {
     const double ahead = guess_.time[std::min(i, most_rising)] - guess_.time[0];
     for (std::size_t c = 0; c < f_begin_.size(); ++c) {
@@ -167,9 +165,7 @@ void CompliantObstacle::impose(int side, const Eigen::Ref<const Eigen::VectorXd>
     bodies.request(here.body).ahead = looks_;
     return;
   }
-  given_.clear();
-  given_.width = iterate_.width;
-  given_.time = levels_of(iterate_.steps);
+  lay_times(iterate_.steps, iterate_.width, given_);
   given_.u = u_begin_;
   given_.u.insert(given_.u.end(), x.begin(), x.end());
   if (kernel_ != nullptr) {  // what pressed at the begin is in d
@@ -242,9 +238,7 @@ void CompliantObstacle::balance_begin(const Side& k, const Bodies& bodies) {
   const Waveform& trace = trace_of(bodies, k);
   const std::span<const double> begin =
       row(trace, trace.f, index_at_begin(trace, kinematic_grid_.begin));
-  balanced_.clear();
-  balanced_.width = trace.width;
-  balanced_.time = levels_of(kinematic_grid_);
+  lay_times(kinematic_grid_, trace.width, balanced_);
   for (std::size_t i = 0; i < balanced_.time.size(); ++i)
     balanced_.f.insert(balanced_.f.end(), begin.begin(), begin.end());
 }

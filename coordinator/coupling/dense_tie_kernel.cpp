@@ -37,9 +37,6 @@ class DenseTieKernel final : public TieKernel {
   Eigen::VectorXd diagonal() const override { return blocks_[0].diagonal(); }
   Eigen::Index size() const override { return blocks_[0].rows(); }
   int lags() const override { return static_cast<int>(blocks_.size()); }
-  double bytes() const override {
-    return 8.0 * static_cast<double>(blocks_.size() + 1) * static_cast<double>(blocks_[0].size());
-  }
   bool renew(const TieLayout& layout, Bodies& bodies) override;
   void turn(const TieLayout& layout) override;
   std::vector<double> answers() const override;
@@ -53,7 +50,6 @@ class DenseTieKernel final : public TieKernel {
   Eigen::VectorXd invert(const Eigen::VectorXd& jump) const override;
   void find_blocks(const TieLayout& layout, int lags);
   void find_scale(const TieLayout& layout);
-  void damp(const TieLayout& layout);
   bool redundant() const override { return inverse_.size() > 0; }
 
   std::vector<Responses> responses_;     // by part; kept where bodies bend or turn
@@ -72,17 +68,17 @@ Responses responses_of(const TieLayout& layout, const TieLayout::Part& part, int
   Responses responses(index(steps), Eigen::MatrixXd::Zero(part.width, part.width));
   const auto loose = std::ranges::find_if(
       part.ends, [&layout](const TieLayout::End& end) { return layout.carries(end); });
-  // What a loose motion does to rows, forces of these that act on the body leave over along it: the
-  // transpose.
+  const auto list = [](std::span<const double> moved) {
+    return Eigen::Map<const Eigen::VectorXd>(moved.data(), static_cast<Eigen::Index>(moved.size()));
+  };
   TakeLoose carried;
   carried.motion = [&](int k, int, const TieLayout::End& of, std::span<const double> moved) {
-    const auto count = static_cast<Eigen::Index>(moved.size());
-    const Eigen::Map<const Eigen::VectorXd> rows(moved.data(), count);
-    responses[0].col(loose->first + k).segment(of.first, count) = rows;
-    const TieRows& tied = layout.rows(of);
-    for (Eigen::Index i = 0; i < count; ++i)
-      if (tied.acts(static_cast<int>(i) / tied.dim, of.side))
-        responses[0](loose->first + k, of.first + i) = rows[i];
+    responses[0].col(loose->first + k).segment(of.first, list(moved).size()) = list(moved);
+  };
+  // What a loose motion does where forces of rows act, these leave over along it: the transpose.
+  carried.acted_on = [&](int k, int, const TieLayout::End& of, std::span<const double> moved) {
+    responses[0].row(loose->first + k).segment(of.first, list(moved).size()) =
+        list(moved).transpose();
   };
   carried.left = [&](int k, std::span<const double> left) {
     for (std::size_t l = 0; l < left.size(); ++l)
@@ -93,9 +89,7 @@ Responses responses_of(const TieLayout& layout, const TieLayout::Part& part, int
     const auto unit = [](int k, std::span<double> forces) { forces[k] = 1.0; };
     const auto take = [&](int k, int later, const TieLayout::End& of,
                           std::span<const double> moved) {
-      const auto count = static_cast<Eigen::Index>(moved.size());
-      responses[later].col(by.first + k).segment(of.first, count) =
-          Eigen::Map<const Eigen::VectorXd>(moved.data(), count);
+      responses[later].col(by.first + k).segment(of.first, list(moved).size()) = list(moved);
     };
     press(layout, part, by, layout.members[by.member].width, steps, unit, take, bodies, carried);
   }
@@ -237,32 +231,6 @@ void DenseTieKernel::find_scale(const TieLayout& layout) {
   }
 }
 
-/// Of dashpots: what parts in a step, and how much of it their forces are worth  [M.117].
-void DenseTieKernel::damp(const TieLayout& layout) {
-  for (const TieLayout::Member& member : layout.members) {
-    const TieRows& rows = member.tie->rows();
-    if (rows.dashpots.empty()) continue;
-    const auto of = [&member](Eigen::MatrixXd& block, int step) {
-      return block.middleRows(member.inner + Eigen::Index{step} * member.width, member.width);
-    };
-    for (int lag = lags() - 1; lag >= 0; --lag) {
-      for (int step = member.steps - 1; step >= 0; --step) {
-        if (step > 0) of(blocks_[lag], step) -= of(blocks_[lag], step - 1);
-        if (step == 0 && lag > 0) of(blocks_[lag], 0) -= of(blocks_[lag - 1], member.steps - 1);
-      }
-    }
-    const double length = member.tie->grid(member.joint->role.kinematic).step;
-    for (int k = 0; k < member.width * member.steps; ++k) {
-      const int row = k % member.width / rows.dim;
-      const double worth = length / rows.dashpots[row];
-      const Eigen::Index at = member.inner + k, first = at - row * rows.dim - k % rows.dim;
-      for (auto e = rows.incoming.offsets[row]; e < rows.incoming.offsets[index(row) + 1]; ++e)
-        blocks_[0](at, first + rows.incoming.columns[e] * rows.dim + k % rows.dim) +=
-            worth * rows.incoming.values[e];
-    }
-  }
-}
-
 void DenseTieKernel::find_blocks(const TieLayout& layout, int lags) {
   blocks_.assign(index(lags), Eigen::MatrixXd::Zero(layout.size, layout.size));
   std::span<const Eigen::MatrixXd> turns = turns_;
@@ -280,7 +248,10 @@ void DenseTieKernel::find_blocks(const TieLayout& layout, int lags) {
         for (const TieLayout::End& by : part.ends)
           add(layout, part, responses, of, by, lag, blocks_[lag]);
   }
-  damp(layout);
+  for (int lag = 0; lag < lags; ++lag)
+    layout.give_way(lag, [&](Eigen::Index of, Eigen::Index by, double value) {
+      blocks_[lag](of, by) += value;
+    });
   find_scale(layout);
   inverse_.resize(0, 0);
   const Eigen::MatrixXd first = scale_.asDiagonal() * blocks_[0] * scale_.asDiagonal();

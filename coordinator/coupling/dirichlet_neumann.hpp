@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "coordinator/coupling/exchange.hpp"
 
 namespace abut {
@@ -14,7 +12,7 @@ class DirichletNeumann final : public Exchange {
   explicit DirichletNeumann(bool roles_swap) : roles_swap_(roles_swap) {}
 
   void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
-  int values() const override { return static_cast<int>(3 * iterate_.size()); }
+  int values() const override { return 3 * grid_.count; }
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
@@ -23,17 +21,15 @@ class DirichletNeumann final : public Exchange {
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
-  Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override { return r; }
   EnergyAccount energy_account() const override { return EnergyAccount::unknown; }
   bool ordered() const override { return true; }
   void state(Archive& archive) override;
 
  private:
   bool roles_swap_;
-  IterateGrid iterate_;                              // of each of u, v and a
-  std::vector<double> u_begin_, v_begin_, a_begin_;  // (width)
-  // [N] (width) on the Neumann side, as exchanged at the end of the last window
-  std::vector<double> f_begin_;
+  Substeps grid_;  // of each of u, v and a
+  double u_begin_ = 0.0, v_begin_ = 0.0, a_begin_ = 0.0;
+  double f_begin_ = 0.0;  // [N] on the Neumann side, as exchanged at the end of the last window
   ReferenceScales scale_;
 };
 

@@ -64,8 +64,8 @@ class Exchange {
                                  const Eigen::Ref<const Eigen::VectorXd>& g) const = 0;
   /// Factors that make all entries of the iterate comparable: 1 / unit of each entry.
   virtual void scales(Eigen::Ref<Eigen::VectorXd> s) const = 0;
-  /// Approximate J^-1 r, J = -d(G - x)/dx, from the port kernels.
-  virtual Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const = 0;
+  /// Approximate J^-1 r, J = -d(G - x)/dx, from the port kernels, where it knows more than r.
+  virtual Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const { return r; }
   /// Relaxation factor of a first correction, by impedance probe: stiffness of the Neumann side
   /// over that of both, each the inverse of its port kernel's first coefficient. 1 where one is not
   /// needed: what is iterated is scaled by the probe already, or the form is the published one.

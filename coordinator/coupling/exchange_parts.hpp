@@ -34,6 +34,20 @@ inline void keep_row(const Waveform& wave, const std::vector<double>& field, std
   to.assign(from.begin(), from.end());
 }
 
+/// One field of a point at a time.
+inline double value_at(const Waveform& wave, const std::vector<double>& field, double time) {
+  double value;
+  wave.interpolate(field, time, {&value, 1});
+  return value;
+}
+
+/// Begins a waveform anew, with the times of these substeps.
+inline void lay_times(const Substeps& steps, int width, Waveform& wave) {
+  wave.clear();
+  wave.width = width;
+  for (int i = 0; i <= steps.count; ++i) wave.time.push_back(steps.time(i));
+}
+
 inline double largest(std::span<const double> values) {
   double most = 0.0;
   for (double value : values) most = std::max(most, std::abs(value));

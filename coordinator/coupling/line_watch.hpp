@@ -8,15 +8,7 @@ namespace abut {
 class LineWatch : public Watch {
  public:
   Approach approach(const Joint& joint, const Bodies& bodies) override;
-  std::optional<Engagement> begin(Joint&, const TimeWindow&, const Bodies&,
-                                  ContactChanges&) override {
-    return std::nullopt;
-  }
   bool stayed_apart(const Joint& joint, const Bodies& bodies, double length) const override;
-  std::optional<Engagement> touch(const Joint&, const TimeWindow&, const Bodies&,
-                                  double) const override {
-    return std::nullopt;
-  }
   double peak_force(const Joint& joint, const Bodies& bodies) const override;
   Shown show(const Joint& joint, const Bodies&) const override { return {joint.closed()}; }
   void see_passing(const Joint&, const Bodies&) override {}

@@ -26,7 +26,7 @@ void Net::begin(const TimeWindow& window, const Island& island, std::span<const 
     exchange(i).begin(window, joint(i), bodies);
     first_.push_back(first_.back() + exchange(i).values());
   }
-  tie_net_.begin(known_, first_, bodies);
+  begin_ties(known_, first_, bodies);
 }
 
 /// In single precision, because ends of equal windows are rounded differently.

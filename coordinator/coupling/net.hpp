@@ -21,6 +21,7 @@ class Net {
  public:
   /// `kernels`: port kernels answer contact that comes and goes.
   Net(const TieKernelOptions& ties, bool kernels) : tie_net_(ties), kernels_(kernels) {}
+  virtual ~Net() = default;
 
   /// A window begins; island and joints must live as long as it does. The latest responses hold the
   /// state at its begin.
@@ -28,7 +29,7 @@ class Net {
              Bodies& bodies);
   const Island& island() const { return *island_; }
   /// What it carries from window to window.
-  void state(Archive& archive) { tie_net_.state(archive); }
+  virtual void state(Archive& archive) { tie_net_.state(archive); }
   Eigen::Index size() const { return first_.back(); }
   /// Tells window lengths and layouts of the iterate apart.
   std::uint64_t layout_key() const;
@@ -77,12 +78,16 @@ class Net {
   bool ease(Bodies& bodies);
   void withdraw(Bodies& bodies);
   /// After a sweep: bodies without inertia that are not linear tell anew how they give way. True:
-  /// the inverse is the derivative at this sweep.
-  bool renew(Bodies& bodies) { return tie_net_.renew(bodies); }
-  /// Where bodies answer as if the others stood still: images of what each makes of the others'
-  /// motions.
-  void answer_alone(const Eigen::VectorXd& x, Eigen::VectorXd& g) const {
-    tie_net_.answer_alone(x, g);
+  /// the inverse is the derivative at this sweep. False: `g` is the image that is iterated.
+  virtual bool renew(const Eigen::VectorXd& /*x*/, Eigen::VectorXd& /*g*/, Bodies& bodies) {
+    return tie_net_.renew(bodies);
+  }
+
+ protected:
+  /// A window begins: all know where their parts of a stacked vector begin.
+  virtual void begin_ties(const KnownExchanges& known, std::span<const Eigen::Index> first,
+                          Bodies& bodies) {
+    tie_net_.begin(known, first, bodies);
   }
 
  private:

@@ -27,7 +27,7 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   const auto& [accelerator, net] = memory_of(island.joints);
   net->begin(window, island, joints, bodies);
   for (Eigen::VectorXd* v : {&it_.x, &it_.g, &it_.s}) v->resize(net->size());
-  Steps steps(*net, *accelerator, options_.steps, bodies);
+  Steps steps(*net, *accelerator, steps_, bodies);
   if (std::optional<Failed> failed = net->predict(it_.x, bodies)) return *failed;
   for (it_.sweep = 1;; ++it_.sweep) {
     if (std::optional<Failed> failed = sweep(*net, bodies)) {
@@ -55,16 +55,14 @@ void Schwarz::see(Net& net, const Bodies& bodies) {
   net.image(it_.x, bodies, it_.g, it_.s);
   it_.mismatch = net.distance(it_.x, it_.g);
   bool stays_open = false;
-  it_.contradiction =
-      net.contradiction(it_.g - it_.x, options_.steps.tolerance, bodies, stays_open);
+  it_.contradiction = net.contradiction(it_.g - it_.x, steps_.tolerance, bodies, stays_open);
   it_.residual = net.residual(it_.x, it_.g);
-  it_.converged = it_.contradiction.empty() && it_.residual.largest() <= options_.steps.tolerance;
+  it_.converged = it_.contradiction.empty() && it_.residual.largest() <= steps_.tolerance;
 }
 
 Schwarz::Memory& Schwarz::memory_of(const std::vector<int>& joints) {
   Memory& memory = memories_[joints];
-  if (memory.net == nullptr)
-    memory = {make_(), std::make_unique<Net>(options_.ties, options_.kernels)};
+  if (memory.net == nullptr) memory = make_(joints);
   return memory;
 }
 

@@ -28,16 +28,14 @@ struct SchwarzReport {
 /// The alternating Schwarz iteration of one window.
 class Schwarz {
  public:
-  struct Options {
-    Steps::Options steps = {};
-    bool kernels =
-        true;  // the accelerator uses port kernels: they answer contact that comes and goes
-    TieKernelOptions ties = {};
+  struct Memory {  // of an island, from window to window
+    std::unique_ptr<Accelerator> accelerator;
+    std::unique_ptr<Net> net;
   };
-  using MakeAccelerator = std::function<std::unique_ptr<Accelerator>()>;
+  /// For the joints of an island, by their numbers in the run.
+  using Make = std::function<Memory(std::span<const int> joints)>;
 
-  Schwarz(const Options& options, MakeAccelerator make)
-      : options_(options), make_(std::move(make)) {}
+  Schwarz(const Steps::Options& steps, Make make) : steps_(steps), make_(std::move(make)) {}
 
   /// Iterates an island over a window until its sides agree. Before, its bodies are saved at the
   /// window's begin and the requests are prepared; afterwards they stand at its end, all of the
@@ -54,18 +52,14 @@ class Schwarz {
   void state(Archive& archive);
 
  private:
-  struct Memory {  // of an island, from window to window
-    std::unique_ptr<Accelerator> accelerator;
-    std::unique_ptr<Net> net;
-  };
   Memory& memory_of(const std::vector<int>& joints);
   /// Every body of the island advances once, level by level.
   std::optional<Failed> sweep(Net& net, Bodies& bodies);
   /// What the sweep made of the iterate.
   void see(Net& net, const Bodies& bodies);
 
-  Options options_;
-  MakeAccelerator make_;
+  Steps::Options steps_;
+  Make make_;
   Iterate it_;  // kept, so that windows allocate nothing
   std::map<std::vector<int>, Memory> memories_;
 };

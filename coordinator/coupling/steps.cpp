@@ -41,11 +41,10 @@ void Steps::next(Iterate& it, Bodies& bodies) {
     eased_ = false;
     net_.withdraw(bodies);
   }
-  if (net_.renew(bodies) || net_.projects() || eased_) {
+  if (net_.renew(it.x, it.g, bodies) || net_.projects() || eased_) {
     it.x += net_.inverse(it.g - it.x);
     return;
   }
-  net_.answer_alone(it.x, it.g);
   if (beside_ties_ && best_.left(it.x, it.g, it.mismatch)) {
     accelerator_.forget();
     it.x = accelerator_.next(best_.iterate(), best_.image(), inverses_);

@@ -12,13 +12,8 @@
 
 namespace abut {
 
-EnergyAccount Tie::energy_account() const {
-  if (!rows_.dashpots.empty()) return EnergyAccount::unknown;
-  return rows_.moves.empty() ? EnergyAccount::exact : EnergyAccount::doubled;
-}
-
 void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
-  if (start_.empty()) keep_start(joint, bodies);
+  if (start_.empty()) keep_start(window.begin, joint, bodies);
   remember(window);
   straight_ = !looks(joint, bodies);
   for (const int s : {0, 1}) grids_[s] = substeps_of(bodies, joint.sides[s], window);
@@ -26,7 +21,6 @@ void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
   iterate_ = {grids_[joint.role.kinematic], rows_.width()};
   window_ = window;
   first_speed_ = -1.0;
-  way_.begin();
   scale_.step = std::min(grids_[0].step, grids_[1].step);
   trial_.resize(0);
   std::array<const Waveform*, 2> looks;
@@ -34,79 +28,33 @@ void Tie::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
   if (looks[0] != nullptr && looks[1] != nullptr) part(joint, looks, trial_);
 }
 
-/// Of motions of both sides, by how much they part at a time.
-void Tie::part_at(double time, const Joint& joint, const std::array<const Waveform*, 2>& motions,
-                  Eigen::Ref<Eigen::VectorXd> out) const {
-  std::vector<double> u, seen(index(rows_.width()));
-  for (const std::size_t s : {0u, 1u}) {
-    const Waveform& motion = *motions[s];
-    u.resize(index(motion.width));
-    motion.interpolate(motion.u, time, u);
-    apply(rows_.of[s], rows_.dim, u, seen);
-    const bool kinematic = s == index(joint.role.kinematic);
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      double& to = out[static_cast<Eigen::Index>(k)];
-      if (s == 0) to = -start_[k] * (joint.role.kinematic == 0 ? 1.0 : -1.0);
-      to += kinematic ? seen[k] : -seen[k];
-    }
-  }
-}
-
-/// At the ends of the kinematic side's steps; of dashpots, in each of these steps.
+/// By how much motions of both sides part, at the ends of the kinematic side's steps.
 void Tie::part(const Joint& joint, const std::array<const Waveform*, 2>& motions,
                Eigen::VectorXd& out) const {
   out.resize(iterate_.size());
-  const Eigen::Index width = iterate_.width;
-  for (int i = 1; i <= iterate_.steps.count; ++i)
-    part_at(iterate_.steps.time(i), joint, motions, out.segment(iterate_.at(i), width));
-  if (rows_.dashpots.empty()) return;
-  for (int i = iterate_.steps.count; i > 1; --i)
-    out.segment(iterate_.at(i), width) -= out.segment(iterate_.at(i - 1), width);
-  Eigen::VectorXd begin(width);
-  part_at(iterate_.steps.begin, joint, motions, begin);
-  out.segment(iterate_.at(1), width) -= begin;
-}
-
-/// A body follows where the other one was, so that sides may nearly meet far from where they will:
-/// how each row's own side moved, and by how much it is to move now.
-void Tie::see_way(const Joint& joint, const std::array<const Waveform*, 2>& motions) {
-  Eigen::VectorXd own(iterate_.size()), step(jump_);
-  std::vector<double> u, seen(index(iterate_.width));
+  std::vector<double> u, seen(index(rows_.width()));
   for (int i = 1; i <= iterate_.steps.count; ++i) {
-    for (const int s : {0, 1}) {
+    for (const std::size_t s : {0u, 1u}) {
       const Waveform& motion = *motions[s];
       u.resize(index(motion.width));
       motion.interpolate(motion.u, iterate_.steps.time(i), u);
       apply(rows_.of[s], rows_.dim, u, seen);
-      for (int k = 0; k < iterate_.width; ++k) {
-        if (!rows_.acts(k / rows_.dim, s)) continue;
-        own[iterate_.at(i) + k] = seen[k];
-        if (s == joint.role.kinematic) step[iterate_.at(i) + k] *= -1.0;
+      const bool kinematic = s == index(joint.role.kinematic);
+      for (std::size_t k = 0; k < seen.size(); ++k) {
+        double& to = out[iterate_.at(i) + static_cast<Eigen::Index>(k)];
+        if (s == 0) to = -start_[k] * (joint.role.kinematic == 0 ? 1.0 : -1.0);
+        to += kinematic ? seen[k] : -seen[k];
       }
     }
   }
-  if (step.lpNorm<Eigen::Infinity>() <= scale_.roundoff) step.setZero();
-  way_.see(own, step);
 }
 
-/// What forces leave open of dashpots, as if it were motion.
-void Tie::damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump) const {
-  if (rows_.dashpots.empty()) return;
-  std::vector<double> open(index(iterate_.width));
-  for (int i = 1; i <= iterate_.steps.count; ++i) {
-    const Eigen::Index at = iterate_.at(i);
-    apply(rows_.incoming, rows_.dim, std::span(x.data() + at, open.size()), open);
-    for (int k = 0; k < iterate_.width; ++k)
-      jump[at + k] += iterate_.steps.step / rows_.dashpots[k / rows_.dim] * open[k];
-  }
-}
-
-void Tie::keep_start(const Joint& joint, const Bodies& bodies) {
+void Tie::keep_start(double time, const Joint& joint, const Bodies& bodies) {
   std::vector<double> seen(index(rows_.width()));
   start_.assign(seen.size(), 0.0);
   for (const std::size_t s : {0u, 1u}) {
     const Waveform& trace = trace_of(bodies, joint.sides[s]);
-    apply(rows_.of[s], rows_.dim, row(trace, trace.u, trace.size() - 1), seen);
+    apply(rows_.of[s], rows_.dim, row(trace, trace.u, index_at_begin(trace, time)), seen);
     for (std::size_t k = 0; k < seen.size(); ++k) start_[k] += s == 0 ? seen[k] : -seen[k];
   }
 }
@@ -162,11 +110,8 @@ void Tie::predict(Eigen::Ref<Eigen::VectorXd> x) const {
 
 void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                  Bodies& bodies) {
-  force_.clear();
-  force_.width = iterate_.width;
+  lay_times(iterate_.steps, iterate_.width, force_);
   force_.support = ForceSupport::step;
-  for (int i = 0; i <= iterate_.steps.count; ++i)
-    force_.time.push_back(i == 0 ? iterate_.steps.begin : iterate_.steps.time(i));
   force_.f.assign(index(iterate_.width), 0.0);
   force_.f.insert(force_.f.end(), x.begin(), x.begin() + iterate_.size());
   last_.time = window_.end;
@@ -174,11 +119,8 @@ void Tie::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joi
   const Side& end = joint.sides[side];
   Waveform& on_body = bodies.force(end);
   const std::size_t width = bodies.port(end).geometry.points.size();
-  on_body.clear();
-  on_body.width = static_cast<int>(width);
+  lay_times(iterate_.steps, static_cast<int>(width), on_body);
   on_body.support = ForceSupport::step;
-  on_body.points.clear();
-  on_body.time = force_.time;
   on_body.f.assign(on_body.time.size() * width, 0.0);
   const double sign = side == joint.role.kinematic ? 1.0 : -1.0;
   for (std::size_t i = 1; i < on_body.time.size(); ++i)
@@ -217,7 +159,6 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   if (first) first_speed_ = speed_;
   part(joint, motions, jump_);
   open_.resize(0);
-  damp(x, jump_);
   g.head(iterate_.size()) = x.head(iterate_.size()) - jump_ / compliance_;
   unbalanced_ = 0.0;
   for (const int s : {0, 1}) {
@@ -237,7 +178,6 @@ void Tie::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
   // Laws of finite strain know strains to the round-off of 1: ends that no wave has reached yet
   // answer a force with noise.
   scale_.roundoff = roundoff_of(travelled, spacing);
-  if (rows_.alternating) see_way(joint, motions);
   if (!first) return;
   const double unit = scale_.velocity * scale_.step / compliance_;
   unit_ = unit > 0.0 ? 1.0 / unit : 1.0;
@@ -263,7 +203,6 @@ FieldResiduals Tie::measure(const Eigen::Ref<const Eigen::VectorXd>&,
   FieldResiduals r;
   const bool open = open_.size() == jump_.size();
   r.displacement = seen(open ? (jump_ - open_).lpNorm<Eigen::Infinity>() : missed());
-  if (rows_.alternating) r.displacement = std::max(r.displacement, seen_by_motion(way_.left()));
   r.force = seen(unbalanced_ * compliance_);
   return r;
 }

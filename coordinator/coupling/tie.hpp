@@ -1,10 +1,10 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "coordinator/coupling/exchange.hpp"
-#include "coordinator/coupling/remaining_way.hpp"
 #include "coordinator/coupling/tie_rows.hpp"
 
 namespace abut {
@@ -13,9 +13,10 @@ namespace abut {
 /// in the rows that join them, constant in every step of the kinematic side, and advance at once;
 /// iterated is this force until both sides move alike at those steps' ends  [M.107], [M.108]. What
 /// answers it knows all joints of a net at once (TieNet).
-class Tie final : public Exchange {
+class Tie : public Exchange {
  public:
-  explicit Tie(TieRows rows) : rows_(std::move(rows)) {}
+  explicit Tie(TieRows rows, EnergyAccount account = EnergyAccount::exact)
+      : rows_(std::move(rows)), account_(account) {}
 
   void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
   int values() const override { return static_cast<int>(iterate_.size() + places(0) + places(1)); }
@@ -27,9 +28,8 @@ class Tie final : public Exchange {
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
-  Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override { return r; }
   bool ordered() const override { return false; }
-  EnergyAccount energy_account() const override;
+  EnergyAccount energy_account() const override { return account_; }
   void enter(const Joint& joint, std::size_t part, KnownExchanges& known) override {
     known.ties.push_back({&joint, this, part});
   }
@@ -44,6 +44,13 @@ class Tie final : public Exchange {
   Eigen::Index first_place(int side) const { return iterate_.size() + (side == 1 ? places(0) : 0); }
 
   const TieRows& rows() const { return rows_; }
+  /// By which kernels read how a side moves: they answer mismatches of these.
+  virtual const SparseRows& kernel_rows(int side) const { return rows_.of[side]; }
+  /// [m/N] of a value of the force's steps by another one.
+  using AddEntry = std::function<void(Eigen::Index of, Eigen::Index by, double value)>;
+  /// Adds how the joint itself gives way to its forces of a block's `steps`, at the ends of these
+  /// so many blocks later: a tie does not.
+  virtual void give_way(int /*lag*/, int /*steps*/, const AddEntry&) const {}
   /// (dim, dim) by which a side of a body in motion that is not linear had turned when the window
   /// began; else empty.
   const Eigen::MatrixXd& turn(int side) const { return turns_[side]; }
@@ -70,14 +77,18 @@ class Tie final : public Exchange {
   double largest_force() const;
   double row_force() const { return row_force_; }  // [N] the largest of a row
 
+ protected:
+  TieRows rows_;
+  // [m] (rows, dim) by which displacements of the sides differ for good: as they stood at the start
+  std::vector<double> start_;
+  IterateGrid iterate_;   // of the force
+  Eigen::VectorXd jump_;  // [m] of the latest sweep
+  ReferenceScales scale_;
+
  private:
-  void keep_start(const Joint& joint, const Bodies& bodies);
+  void keep_start(double time, const Joint& joint, const Bodies& bodies);
   void part(const Joint& joint, const std::array<const Waveform*, 2>& motions,
             Eigen::VectorXd& out) const;
-  void part_at(double time, const Joint& joint, const std::array<const Waveform*, 2>& motions,
-               Eigen::Ref<Eigen::VectorXd> out) const;
-  void see_way(const Joint& joint, const std::array<const Waveform*, 2>& motions);
-  void damp(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& jump) const;
 
   Eigen::Index places(int side) const { return Eigen::Index{loose_[side]} * grids_[side].count; }
   bool looks(const Joint& joint, const Bodies& bodies) const;
@@ -85,9 +96,7 @@ class Tie final : public Exchange {
   void see_turns(const Joint& joint, const Bodies& bodies);
   void go_straight_on(Eigen::Ref<Eigen::VectorXd> x) const;
 
-  TieRows rows_;
-  // [m] (rows, dim) by which displacements of the sides differ for good: as they stood at the start
-  std::vector<double> start_;
+  EnergyAccount account_;
   std::array<int, 2> loose_ = {0, 0};
   /// At the end of a window: of the last sweep, and of windows that went before.
   struct Past {
@@ -101,11 +110,9 @@ class Tie final : public Exchange {
   bool straight_ = false;   // guesses go on as the past went
   std::array<Substeps, 2> grids_;
   std::array<Eigen::MatrixXd, 2> turns_;
-  IterateGrid iterate_;  // of the force
-  Waveform force_;       // of the last sweep, the first guess of the next window
+  Waveform force_;  // of the last sweep, the first guess of the next window
   TimeWindow window_;
-  Eigen::VectorXd trial_, jump_, open_;
-  RemainingWay way_;  // [m] of an alternating answer: how each row's own side moves
+  Eigen::VectorXd trial_, open_;
   double compliance_ = 1.0;
   double unit_ = 1.0;  // [1/N] of a window's first sweep: secants compare sweeps
   double row_force_ = 0.0;
@@ -113,7 +120,6 @@ class Tie final : public Exchange {
   double speed_ = 0.0;         // [m/s] of the latest sweep
   double moved_ = 0.0;         // [m] by the sides in a step, of the latest sweep
   double first_speed_ = -1.0;  // and of the first one; below 0: none yet
-  ReferenceScales scale_;
 };
 
 }  // namespace abut

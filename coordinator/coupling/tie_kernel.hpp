@@ -24,7 +24,6 @@ class TieKernel {
   virtual Eigen::VectorXd diagonal() const = 0;
   virtual Eigen::Index size() const = 0;  // of a block
   virtual int lags() const = 0;           // blocks
-  virtual double bytes() const = 0;       // with its factors
   /// Asks bodies that bend (TieLayout::Part) anew. True: what it says of this sweep is better than
   /// secants, of such bodies and of those that turn.
   virtual bool renew(const TieLayout& layout, Bodies& bodies) = 0;

@@ -99,11 +99,7 @@ TieKernelPlan plan_tie_kernel(const TieLayout& layout, const TieKernelOptions& o
   const auto at_once = [&bodies](const TieLayout::Part& part) {
     return bodies.describe(part.body).quasi_static;
   };
-  const auto damped = [](const TieLayout::Member& member) {
-    return !member.tie->rows().dashpots.empty();
-  };
-  if (std::ranges::any_of(layout.parts, at_once) || std::ranges::any_of(layout.members, damped))
-    return plan;
+  if (std::ranges::any_of(layout.parts, at_once)) return plan;
   const double most = std::min(options.memory, largest_dense);
   if (plan.bytes <= most && !options.banded) return plan;
   plan = banded(layout, {options.rows, usual_cones}, layout.blocks, bodies);

@@ -23,8 +23,7 @@ struct TieKernelPlan {
 };
 
 /// Every row on every other one where that fits, else bands, as wide as fit. What has no inertia is
-/// felt everywhere at once: beside such bodies every row on every other one, whatever it takes, and
-/// beside dashpots, which are for comparisons.
+/// felt everywhere at once: beside such bodies every row on every other one, whatever it takes.
 TieKernelPlan plan_tie_kernel(const TieLayout& layout, const TieKernelOptions& options,
                               const Bodies& bodies);
 

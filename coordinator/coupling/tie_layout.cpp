@@ -105,6 +105,13 @@ std::vector<TieLayout::Share> TieLayout::shares(const Part& part, const End& of,
   return all;
 }
 
+void TieLayout::give_way(int lag, const Tie::AddEntry& add) const {
+  for (const Member& member : members)
+    member.tie->give_way(lag, member.steps, [&](Eigen::Index of, Eigen::Index by, double value) {
+      add(member.inner + of, member.inner + by, value);
+    });
+}
+
 void TieLayout::spread(const Member& member, const Eigen::VectorXd& own,
                        Eigen::VectorXd& all) const {
   const Eigen::Index length = Eigen::Index{member.width} * member.steps;

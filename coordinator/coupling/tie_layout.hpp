@@ -71,6 +71,8 @@ struct TieLayout {
   /// [M.107], [M.108]. `known`: steps of the kernel.
   std::vector<Share> shares(const Part& part, const End& of, const End& by, int lag,
                             int known) const;
+  /// What the joints themselves give way to forces in the first block, as entries of a later one.
+  void give_way(int lag, const Tie::AddEntry& add) const;
   /// From a joint's own list (steps, rows) to that of blocks, and back.
   void spread(const Member& member, const Eigen::VectorXd& own, Eigen::VectorXd& all) const;
   void gather(const Member& member, const Eigen::VectorXd& all,

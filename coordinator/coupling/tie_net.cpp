@@ -26,9 +26,6 @@ void TieNet::begin(const KnownExchanges& known, std::span<const Eigen::Index> fi
     layout_.add(*joint, *tie, {tie->grid(0).count, tie->grid(1).count}, first[part]);
   if (empty()) return;
   layout_.arrange(bodies);
-  alternating_ = std::ranges::any_of(layout_.members, [](const TieLayout::Member& member) {
-    return member.tie->rows().alternating;
-  });
   find_kernel(bodies);
   kernel_->turn(layout_);
   const Eigen::VectorXd own = kernel_->diagonal();
@@ -48,9 +45,7 @@ void TieNet::find_kernel(Bodies& bodies) {
   blocks_ = layout_.blocks;
   kernel_.reset();  // its memory is wanted
   touching_.clear();
-  TieKernelOptions options = options_;
-  options.used = options_.used || alternating_;
-  const TieKernelPlan plan = plan_tie_kernel(layout_, options, bodies);
+  const TieKernelPlan plan = plan_tie_kernel(layout_, options_, bodies);
   kernel_ = plan.banded ? make_banded_tie_kernel(layout_, plan.width, plan.lags, bodies)
                         : make_dense_tie_kernel(layout_, plan.lags, bodies);
   if (!restored_.empty()) kernel_->take(layout_, restored_);
@@ -64,13 +59,12 @@ bool TieNet::joins(int body) const {
 const TiedPort* TieNet::touching(const Side& side, const std::vector<std::int32_t>& points,
                                  double most, Bodies& bodies) {
   const auto part = std::ranges::find(layout_.parts, side.body, &TieLayout::Part::body);
-  if (empty() || !options_.used || alternating_) return nullptr;
+  if (empty() || !options_.used) return nullptr;
   if (part == layout_.parts.end() || part->stands) return nullptr;
   const bool alike =
       std::ranges::all_of(layout_.parts, [](const TieLayout::Part& p) { return p.steps == 1; }) &&
-      std::ranges::all_of(layout_.members, [](const TieLayout::Member& m) {
-        return m.steps == 1 && m.carried < 0 && m.tie->rows().moves.empty();
-      });
+      std::ranges::all_of(layout_.members,
+                          [](const TieLayout::Member& m) { return m.steps == 1 && m.carried < 0; });
   const PortGeometry& surface = bodies.port(side).geometry;
   const double values = points.empty() ? static_cast<double>(surface.points.size())
                                        : static_cast<double>(points.size()) * surface.dim;
@@ -89,12 +83,11 @@ const TiedPort* TieNet::touching(const Side& side, const std::vector<std::int32_
 }
 
 bool TieNet::renew(Bodies& bodies) {
-  if (empty() || !(options_.used || alternating_)) return false;
-  return kernel_->renew(layout_, bodies) && !alternating_;
+  return !empty() && options_.used && kernel_->renew(layout_, bodies);
 }
 
 void TieNet::predict(Eigen::VectorXd& x) const {
-  if (empty() || !options_.used || alternating_) return;
+  if (empty() || !options_.used) return;
   Eigen::VectorXd jump(layout_.blocks * layout_.size);
   for (const TieLayout::Member& member : layout_.members) {
     if (member.carried >= 0 || member.tie->trial().size() == 0) return;
@@ -115,17 +108,7 @@ Eigen::VectorXd TieNet::jumps(const Eigen::VectorXd& r) const {
 }
 
 void TieNet::apply_inverse(Eigen::VectorXd& r) const {
-  if (!empty() && options_.used && !alternating_) solve(r);
-}
-
-void TieNet::answer_alone(const Eigen::VectorXd& x, Eigen::VectorXd& g) const {
-  if (empty() || !alternating_) return;
-  Eigen::VectorXd r = g - x;
-  solve(r);
-  g = x + r;
-}
-
-void TieNet::solve(Eigen::VectorXd& r) const {
+  if (empty() || !options_.used) return;
   const Eigen::VectorXd force = kernel_->solve(jumps(r));
   for (const TieLayout::Member& member : layout_.members)
     layout_.gather(member, force, r.segment(member.first, layout_.values_of(member)));
@@ -134,7 +117,7 @@ void TieNet::solve(Eigen::VectorXd& r) const {
 std::string TieNet::contradiction(const Eigen::VectorXd& r, double tolerance, double time,
                                   const Bodies& bodies, bool& stays_open) const {
   stays_open = false;
-  if (empty() || !options_.used || alternating_) return {};
+  if (empty() || !options_.used) return {};
   const Eigen::VectorXd jump = jumps(r);
   const bool meet = std::ranges::all_of(layout_.members, [&](const TieLayout::Member& member) {
     if (member.carried >= 0) return true;

@@ -37,9 +37,6 @@ class TieNet {
   bool empty() const { return layout_.empty(); }
   /// First guesses, where all bodies have told how they would part.
   void predict(Eigen::VectorXd& x) const;
-  /// Where bodies answer as if the others stood still, images are what each of them makes of the
-  /// others' motions: alternating Schwarz, in its parallel form.
-  void answer_alone(const Eigen::VectorXd& x, Eigen::VectorXd& g) const;
   /// What the net answers to forces on some points of a port that touches, over all of a window;
   /// null: its body is not tied, or where bodies of the net step unlike. Good until the next window
   /// begins. `most`: [B] that it may take.
@@ -54,7 +51,6 @@ class TieNet {
 
  private:
   void find_kernel(Bodies& bodies);
-  void solve(Eigen::VectorXd& r) const;
   Eigen::VectorXd jumps(const Eigen::VectorXd& r) const;
 
   TieKernelOptions options_;
@@ -62,7 +58,6 @@ class TieNet {
   std::vector<int> pattern_;      // of the layout for which the kernel holds
   int blocks_ = 0;                // the same
   std::vector<double> restored_;  // of the kernel that is found next; empty: nothing
-  bool alternating_ = false;
   std::unique_ptr<TieKernel> kernel_;
   struct Touching {
     int body = 0, port = 0;

@@ -25,10 +25,18 @@ std::size_t width_of(const Bodies& bodies, int body, int port) {
   return bodies.port({body, port}).geometry.points.size();
 }
 
+const SparseRows& rows_read(const TieLayout& layout, const TieLayout::End& end) {
+  return layout.members[end.member].tie->kernel_rows(end.side);
+}
+
+const SparseRows& rows_pressed(const TieLayout& layout, const TieLayout::End& end) {
+  return layout.rows(end).force[end.side];
+}
+
 /// Motions (steps, patterns) of the ports that were seen, one after the other, as those of rows.
-void read(const TieLayout& layout, const TieLayout::Part& part, int from, int patterns,
-          std::span<const double> motions, std::span<const int> seen, const TakeMotion& take,
-          const Bodies& bodies) {
+void read(const TieLayout& layout, const TieLayout::Part& part, decltype(rows_read)& rows_of,
+          int from, int patterns, std::span<const double> motions, std::span<const int> seen,
+          const TakeMotion& take, const Bodies& bodies) {
   std::vector<double> moved;
   const double* values = motions.data();
   for (int k = 0; values < motions.data() + motions.size(); ++k) {
@@ -38,9 +46,7 @@ void read(const TieLayout& layout, const TieLayout::Part& part, int from, int pa
         if (layout.carries(end) || layout.side(end).port != port) continue;
         const TieRows& rows = layout.rows(end);
         moved.resize(index(rows.width()));
-        apply(rows.of[end.side], rows.dim, std::span(values, width), moved);
-        for (std::size_t i = 0; rows.alternating && i < moved.size(); ++i)
-          if (!rows.acts(static_cast<int>(i) / rows.dim, end.side)) moved[i] = 0.0;
+        apply(rows_of(layout, end), rows.dim, std::span(values, width), moved);
         take(from + k % patterns, k / patterns, end, moved);
       }
       values += width;
@@ -51,7 +57,8 @@ void read(const TieLayout& layout, const TieLayout::Part& part, int from, int pa
 void read(const TieLayout& layout, const TieLayout::Part& part, const PortKernel& kernel,
           std::span<const int> seen, const TakeLoose& take, const Bodies& bodies) {
   const int motions = loose_motions(bodies.describe(part.body));
-  read(layout, part, 0, motions, kernel.carried, seen, take.motion, bodies);
+  read(layout, part, rows_read, 0, motions, kernel.carried, seen, take.motion, bodies);
+  read(layout, part, rows_pressed, 0, motions, kernel.carried, seen, take.acted_on, bodies);
   for (int k = 0; k < motions; ++k)
     take.left(k, std::span(kernel.left).subspan(index(k * motions), index(motions)));
 }
@@ -79,7 +86,7 @@ void press(const TieLayout& layout, const TieLayout::Part& part, const TieLayout
     }
     const PortKernel kernel = bodies.probe(part.body, pressed, forces, steps, seen);
     require_for_substeps(kernel, layout.side(by), layout.other_side(by), bodies);
-    read(layout, part, from, kernel.patterns, kernel.displacement, seen, take, bodies);
+    read(layout, part, rows_read, from, kernel.patterns, kernel.displacement, seen, take, bodies);
     if (from == 0 && !kernel.left.empty()) read(layout, part, kernel, seen, loose, bodies);
   }
 }

@@ -14,9 +14,10 @@ using FillForces = std::function<void(int pattern, std::span<double> forces)>;
 using TakeMotion = std::function<void(int pattern, int later, const TieLayout::End& of,
                                       std::span<const double> moved)>;
 
-/// What loose motions of a body do: a unit of each moves rows, and leaves over [N/m] (motions).
+/// What loose motions of a body do: a unit of each moves rows, moves what their forces act on, and
+/// leaves over [N/m] (motions).
 struct TakeLoose {
-  TakeMotion motion;
+  TakeMotion motion, acted_on;
   std::function<void(int motion, std::span<const double> left)> left;
 };
 

@@ -146,9 +146,7 @@ void add_lone_points(const PortGeometry& one, const PortGeometry& other, TieRows
   }
 }
 
-}  // namespace
-
-TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int side) {
+TieRows compared(const PortGeometry& one, const PortGeometry& other, int side) {
   if (one.dim == 1) return of_points(one, other);
   const bool first = side == 0;  // has the rows
   const PortGeometry &own = first ? one : other, &partner = first ? other : one;
@@ -171,16 +169,15 @@ TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int si
   return rows;
 }
 
-void TieRows::press(int side, double factor, std::span<const double> forces,
-                    std::span<double> out) const {
-  if (moves.empty()) return add_transposed(of[side], dim, factor, forces, out);
-  std::vector<double> own(forces.begin(), forces.end());
-  for (int k = 0; k < width(); ++k)
-    if (!acts(k / dim, side)) own[k] = 0.0;
-  add_transposed(of[side], dim, factor, own, out);
+}  // namespace
+
+TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int side) {
+  TieRows rows = compared(one, other, side);
+  rows.force = rows.of;
+  return rows;
 }
 
-TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other, bool motions) {
+TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other) {
   const double far = reach * std::max(one.spacing, other.spacing);
   const PortGeometry cut = part_of(one, false), in_other = part_of(other, true);
   TieRows rows = of_surfaces(posed(cut), posed(in_other), far);
@@ -188,15 +185,11 @@ TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other, bo
   TieRows more = of_surfaces(posed(its_cut), posed(in_one), far);
   const bool paired = one.count() - first_lone(one) == other.count() - first_lone(other);
   if (rows.count() == 0 || more.count() == 0 || !paired) return {};
-  const int of_one = rows.count();
   append(more.of[1], rows.of[0]);
   append(more.of[0], rows.of[1]);
   rows.area.insert(rows.area.end(), more.area.begin(), more.area.end());
-  if (motions) {
-    rows.moves.assign(index(rows.count()), 1);
-    std::fill_n(rows.moves.begin(), of_one, std::int8_t{0});
-  }
   add_lone_points(one, other, rows);
+  rows.force = rows.of;
   if (more.apart > rows.apart) {
     rows.apart = more.apart;
     rows.place = more.place;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,22 +14,17 @@ namespace abut {
 /// of either side, so that a force of a row acts on both alike.
 struct TieRows {
   int dim = 1;
-  std::array<SparseRows, 2> of;  // by side: over its nodes
-  std::vector<double> area;      // [m^(dim-1)] (rows) of the joint
-  double apart = 0.0;            // [m] between the surfaces, at the place where it is most
-  std::vector<double> place;     // [m] (dim) there
-  // Where motions alone pass: (rows) the side that a force of a row acts on  [M.116]; empty: both.
-  std::vector<std::int8_t> moves;
-  // Where each side sees the other as a dashpot  [M.117]: (rows) [kg/s] of it, and (rows over rows)
-  // what forces leave open of it: those of the own side less those of the other.
-  std::vector<double> dashpots;
-  SparseRows incoming;
-  bool alternating = false;  // of these: a body's rows are answered as if the other one stood still
+  std::array<SparseRows, 2> of;     // by side: over its nodes
+  std::array<SparseRows, 2> force;  // the same, where a force of a row acts: of ties as `of`
+  std::vector<double> area;         // [m^(dim-1)] (rows) of the joint
+  double apart = 0.0;               // [m] between the surfaces, at the place where it is most
+  std::vector<double> place;        // [m] (dim) there
   int count() const { return of[0].count(); }
   int width() const { return count() * dim; }
-  bool acts(int row, int side) const { return moves.empty() || moves[row] == side; }
   /// out += factor x forces [N] (rows, dim) of those rows that act on a side, at its nodes.
-  void press(int side, double factor, std::span<const double> forces, std::span<double> out) const;
+  void press(int side, double factor, std::span<const double> forces, std::span<double> out) const {
+    add_transposed(force[side], dim, factor, forces, out);
+  }
 };
 
 /// Of the reference configuration: the dual mortar rows of one side, 0 or 1  [M.108]; of second
@@ -40,8 +34,7 @@ struct TieRows {
 TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int side);
 
 /// Of bodies that overlap, whose ports tell where the other one's side is inside them: rows of both
-/// sides, each against the inside of the other body  [M.113]. `motions`: forces act on a row's own
-/// side alone  [M.116].
-TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other, bool motions);
+/// sides, each against the inside of the other body  [M.113].
+TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other);
 
 }  // namespace abut

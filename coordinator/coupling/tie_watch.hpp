@@ -13,15 +13,7 @@ class TieWatch final : public Watch {
 
   Decision decision() const override { return Decision::never; }
   Approach approach(const Joint&, const Bodies&) override { return {}; }
-  std::optional<Engagement> begin(Joint&, const TimeWindow&, const Bodies&,
-                                  ContactChanges&) override {
-    return std::nullopt;
-  }
   bool stayed_apart(const Joint&, const Bodies&, double) const override { return true; }
-  std::optional<Engagement> touch(const Joint&, const TimeWindow&, const Bodies&,
-                                  double) const override {
-    return std::nullopt;
-  }
   double peak_force(const Joint&, const Bodies&) const override { return tie_.largest_force(); }
   Shown show(const Joint& joint, const Bodies&) const override {
     return {joint.closed(), tie_.missed(), tie_.largest_force()};

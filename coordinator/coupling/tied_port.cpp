@@ -49,8 +49,8 @@ void TiedPort::probe(const TieLayout& layout, const TieLayout::Part& part, int p
     for (int k = 0; k < rows.width(); ++k) {
       std::vector<double> unit(index(rows.width()), 0.0);
       unit[k] = 1.0;
-      add_transposed(side, rows.dim, 1.0, unit,
-                     std::span(forces).subspan(index(k) * tied_width, tied_width));
+      rows.press(end.side, 1.0, unit,
+                 std::span(forces).subspan(index(k) * tied_width, tied_width));
     }
     const int touching[] = {port};
     const PortKernel in = bodies.probe(part.body, tied, forces, steps_, touching);

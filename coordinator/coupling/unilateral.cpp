@@ -22,27 +22,26 @@ void Unilateral::begin(const TimeWindow& window, const Joint& joint, Bodies& bod
   const Side& n = joint.neumann_side();
   kinematic_grid_ = substeps_of(bodies, k, window);
   window_ = window;
-  iterate_ = {substeps_of(bodies, n, window), 1};
-  const Substeps& neumann = iterate_.steps;
+  neumann_grid_ = substeps_of(bodies, n, window);
   const Waveform& trace = trace_of(bodies, n);
   const std::size_t now = index_at_begin(trace, window.begin);
-  keep_row(trace, trace.u, now, u_begin_);
-  keep_row(trace, trace.v, now, v_begin_);
   ABUT_ASSERT(trace.width == 1);
+  u_begin_ = trace.u[now];
+  v_begin_ = trace.v[now];
   kernel_k_ = &bodies.kernel(k.body, k.port, kinematic_grid_.count);
-  kernel_n_ = &bodies.kernel(n.body, n.port, neumann.count);
+  kernel_n_ = &bodies.kernel(n.body, n.port, neumann_grid_.count);
   kinematic_compliance_ = kernel_k_->displacement.front();
   neumann_compliance_ = kernel_n_->displacement.front();
   const double moved = *std::max_element(kernel_n_->displacement.begin(),
-                                         kernel_n_->displacement.begin() + neumann.count);
+                                         kernel_n_->displacement.begin() + neumann_grid_.count);
   // The reaction is known to the round-off of a displacement over the compliance, and moves the
   // Neumann side by that much.
   roundoff_gain_ = 1.0 + moved / kinematic_compliance_;
-  scale_.step = bodies.describe(n.body).step > 0.0 ? neumann.step : kinematic_grid_.step;
+  scale_.step = bodies.describe(n.body).step > 0.0 ? neumann_grid_.step : kinematic_grid_.step;
   scale_.velocity = reference_velocity(joint, kinematic_compliance_, scale_.step);
   scale_.force = joint.contact.force_scale;
   first_factor_ = 1.0 / (1.0 + neumann_compliance_ / kinematic_compliance_);
-  alike_ = kinematic_grid_.same_as(neumann) && kernel_k_->support == kernel_n_->support;
+  alike_ = kinematic_grid_.same_as(neumann_grid_) && kernel_k_->support == kernel_n_->support;
   projects_ = false;
   unilateral_ = !joint.tied();
   outward_n_ = joint.normal_of(1 - joint.role.kinematic);
@@ -63,13 +62,13 @@ void Unilateral::see_trial(const TimeWindow& window, const Joint& joint, Bodies&
   if (!unilateral_ || inverse_ == nullptr) return;
   std::array<Substeps, 2> grids;
   grids[joint.role.kinematic] = kinematic_grid_;
-  grids[1 - joint.role.kinematic] = iterate_.steps;
+  grids[1 - joint.role.kinematic] = neumann_grid_;
   if (!trial_.see(window, grids, joint, bodies)) return;
   const Waveform& n = trial_.motion(1 - joint.role.kinematic);
   force_.setZero(kinematic_grid_.count);
   see_overlap(joint, trial_.motion(joint.role.kinematic), n);
-  predicted_ = Eigen::Map<const Eigen::VectorXd>(n.u.data() + 1, iterate_.size());
-  predicted_ += apply_inverse(Eigen::VectorXd::Zero(iterate_.size()));
+  predicted_ = Eigen::Map<const Eigen::VectorXd>(n.u.data() + 1, values());
+  predicted_ += apply_inverse(Eigen::VectorXd::Zero(values()));
 }
 
 void Unilateral::find_inverse(const Joint& joint, double length, const Bodies& bodies) {
@@ -96,9 +95,9 @@ void Unilateral::predict(Eigen::Ref<Eigen::VectorXd> x) const {
     return;
   }
   x = straight();
-  if (!covers(guess_, iterate_.steps)) return;
-  for (int i = 1; i <= iterate_.steps.count; ++i)
-    guess_.interpolate(guess_.u, iterate_.steps.time(i), {&x[iterate_.at(i)], u_begin_.size()});
+  if (!covers(guess_, neumann_grid_)) return;
+  for (int i = 1; i <= neumann_grid_.count; ++i)
+    x[i - 1] = value_at(guess_, guess_.u, neumann_grid_.time(i));
 }
 
 void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
@@ -109,11 +108,8 @@ void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, co
     bodies.force(here) = bodies.reaction(joint.kinematic_side());
     return;
   }
-  guess_.clear();
-  guess_.width = iterate_.width;
-  guess_.time.push_back(iterate_.steps.begin);
-  guess_.u = u_begin_;
-  for (int i = 1; i <= iterate_.steps.count; ++i) guess_.time.push_back(iterate_.steps.time(i));
+  lay_times(neumann_grid_, 1, guess_);
+  guess_.u.push_back(u_begin_);
   guess_.u.insert(guess_.u.end(), x.begin(), x.end());
   bodies.obstacle(here).motion = guess_;
 }
@@ -121,31 +117,22 @@ void Unilateral::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, co
 void Unilateral::image(const Eigen::Ref<const Eigen::VectorXd>&, const Joint& joint,
                        const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
   const Waveform& trace = trace_of(bodies, joint.neumann_side());
-  const bool same = static_cast<int>(trace.size()) == iterate_.steps.count + 1;
-  for (int i = 1; i <= iterate_.steps.count; ++i) {
-    const std::span<double> to(&g[iterate_.at(i)], index(iterate_.width));
-    if (same) {
-      std::ranges::copy(row(trace, trace.u, index(i)), to.begin());
-    } else {
-      trace.interpolate(trace.u, iterate_.steps.time(i), to);
-    }
-  }
+  const bool same = static_cast<int>(trace.size()) == neumann_grid_.count + 1;
+  for (int i = 1; i <= neumann_grid_.count; ++i)
+    g[i - 1] = same ? trace.u[i] : value_at(trace, trace.u, neumann_grid_.time(i));
   if (unilateral_ && inverse_ != nullptr) see_contact(joint, bodies);
   scale_.force =
       std::max(joint.contact.force_scale, largest(trace_of(bodies, joint.kinematic_side()).f));
   balance(scale_, kinematic_compliance_);
-  const double travelled = g.tail(iterate_.width).lpNorm<Eigen::Infinity>();
-  scale_.roundoff = roundoff_gain_ * roundoff_of(largest(u_begin_), travelled);
+  scale_.roundoff = roundoff_gain_ * roundoff_of(u_begin_, g[g.size() - 1]);
   if (inverse_ != nullptr) straight_residual_ = measure(straight(), g).largest();
 }
 
 /// Motion at the velocity of the window's begin.
 Eigen::VectorXd Unilateral::straight() const {
-  Eigen::VectorXd x(iterate_.size());
-  for (int i = 1; i <= iterate_.steps.count; ++i)
-    for (std::size_t c = 0; c < u_begin_.size(); ++c)
-      x[iterate_.at(i) + static_cast<Eigen::Index>(c)] =
-          u_begin_[c] + v_begin_[c] * (iterate_.steps.time(i) - iterate_.steps.begin);
+  Eigen::VectorXd x(values());
+  for (int i = 1; i <= neumann_grid_.count; ++i)
+    x[i - 1] = u_begin_ + v_begin_ * (neumann_grid_.time(i) - neumann_grid_.begin);
   return x;
 }
 
@@ -165,7 +152,7 @@ void Unilateral::see_overlap(const Joint& joint, const Waveform& k, const Wavefo
   for (int i = 1; i <= kinematic_grid_.count; ++i) {
     double u[2];
     u[joint.role.kinematic] = k.u[i];
-    n.interpolate(n.u, kinematic_grid_.time(i), {&u[1 - joint.role.kinematic], 1});
+    u[1 - joint.role.kinematic] = value_at(n, n.u, kinematic_grid_.time(i));
     overlap_[i - 1] = -joint.gap(u[0], u[1]);
   }
 }

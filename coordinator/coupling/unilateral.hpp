@@ -1,7 +1,6 @@
 #pragma once
 
 #include <limits>
-#include <vector>
 
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/kernel_inverse.hpp"
@@ -18,7 +17,7 @@ class Unilateral final : public Exchange {
   explicit Unilateral(double tolerance = 0.0) : tolerance_(tolerance) {}
 
   void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
-  int values() const override { return static_cast<int>(iterate_.size()); }
+  int values() const override { return neumann_grid_.count; }
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
@@ -34,9 +33,8 @@ class Unilateral final : public Exchange {
   void state(Archive& archive) override;
 
  private:
-  Substeps kinematic_grid_;
-  IterateGrid iterate_;                    // of the Neumann port
-  std::vector<double> u_begin_, v_begin_;  // (width) of the Neumann port
+  Substeps kinematic_grid_, neumann_grid_;  // iterated is u at the ends of the Neumann side's
+  double u_begin_ = 0.0, v_begin_ = 0.0;    // of the Neumann port
   Waveform guess_;  // last iterate: a window that is cut short starts from it
   ReferenceScales scale_;
   double kinematic_compliance_ = 0.0, neumann_compliance_ = 0.0;  // [m/N] over one substep

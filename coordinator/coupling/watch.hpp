@@ -49,16 +49,20 @@ class Watch {
 
   virtual Approach approach(const Joint& joint, const Bodies& bodies) = 0;
   /// What begins or ends with a window; a joint that is to be iterated from now on.
-  virtual std::optional<Engagement> begin(Joint& joint, const TimeWindow& window,
-                                          const Bodies& bodies, ContactChanges& changes) = 0;
+  virtual std::optional<Engagement> begin(Joint&, const TimeWindow&, const Bodies&,
+                                          ContactChanges&) {
+    return std::nullopt;
+  }
 
   // Of a window or a flight that was tried:
 
   /// Whether the sides of a joint that is not iterated stayed apart over `length` [s].
   virtual bool stayed_apart(const Joint& joint, const Bodies& bodies, double length) const = 0;
   /// Sides that were free and met. `negligible` [m]: less is no overlap.
-  virtual std::optional<Engagement> touch(const Joint& joint, const TimeWindow& window,
-                                          const Bodies& bodies, double negligible) const = 0;
+  virtual std::optional<Engagement> touch(const Joint&, const TimeWindow&, const Bodies&,
+                                          double /*negligible*/) const {
+    return std::nullopt;
+  }
   virtual double peak_force(const Joint& joint, const Bodies& bodies) const = 0;  // [N]
   virtual Shown show(const Joint& joint, const Bodies& bodies) const = 0;
 

@@ -76,7 +76,7 @@ std::string chosen(const Document& document, const Scene& scene, const std::stri
 /// off (a sleeve in a tube: by 40 % of the pressure).
 void refuse_still_contact(const Document& document, const std::string& name,
                           const BodySpec& spec) {
-  if (!spec.integrator || !std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return;
+  if (!spec.integrates(SchemeKind::statics)) return;
   for (const auto& [port, side] : spec.ports) {
     if (!spec.context.role(port).touches) continue;
     throw InputError(

@@ -90,10 +90,7 @@ class Translator {
                                   : "it is the sum or the mean over several parts");
   }
 
-  bool is_static() const {
-    const auto& scheme = division_.whole.spec.integrator;
-    return scheme && std::holds_alternative<QuasiStaticSpec>(*scheme);
-  }
+  bool is_static() const { return division_.whole.spec.integrates(SchemeKind::statics); }
 
   const Division& division_;
 };

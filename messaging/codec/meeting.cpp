@@ -8,12 +8,16 @@ namespace abut {
 namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
-static_assert(sizeof(ContactLaw) == 3 * sizeof(double));  // the first are two flags
+static_assert(sizeof(FrictionLaw) == 2 * sizeof(double));
+static_assert(sizeof(ContactLaw) == sizeof(double) + sizeof(FrictionLaw));  // and two flags
 static_assert(sizeof(Meeting) == 3 * sizeof(double) + sizeof(ContactLaw));
 
-void decode_law(const v1::Meet& from, const FieldPath& path, ContactLaw& to) {
-  to.tied = from.tied();
-  to.points = from.points();
+void encode(const FrictionLaw& from, v1::Meet& to) {
+  to.set_static_friction(from.static_friction);
+  to.set_kinetic_friction(from.kinetic_friction);
+}
+
+void decode(const v1::Meet& from, const FieldPath& path, FrictionLaw& to) {
   const FieldPath sticks{&path, "static_friction"}, slides{&path, "kinetic_friction"};
   to.static_friction = number(from.static_friction(), sticks, Allow::not_negative);
   to.kinetic_friction = number(from.kinetic_friction(), slides, Allow::not_negative);
@@ -52,8 +56,7 @@ void encode(const Meeting& from, std::optional<int> first, v1::Meet& to) {
     encode(*from.surface, *to.mutable_surface());
     to.set_tied(from.law.tied);
     to.set_points(from.law.points);
-    to.set_static_friction(from.law.static_friction);
-    to.set_kinetic_friction(from.law.kinetic_friction);
+    encode(from.law.friction, to);
   }
   if (from.kernel != nullptr) encode(*from.kernel, *to.mutable_kernel());
   if (first) to.set_first(*first);
@@ -76,7 +79,9 @@ void decode(const v1::Meet& from, const Description& body, const Partners& met,
       partner.fail(fmt::format("is {}, where {} is next", to.meeting.partner, partners.size()));
     if (from.has_first()) FieldPath{&path, "first"}.fail("is of a part, which has no surface");
     decode_surface(from.surface(), port.dim, surface, to.surface);
-    decode_law(from, path, to.meeting.law);
+    to.meeting.law.tied = from.tied();
+    to.meeting.law.points = from.points();
+    decode(from, path, to.meeting.law.friction);
     to.meeting.surface = &to.surface;
   } else if (!own) {
     position(to.meeting.partner, partners.size(), partner);

@@ -69,7 +69,7 @@ std::span<double> SurfaceContact::reacted(const Meeting& m) {
 }
 
 std::span<double> SurfaceContact::anchor(const Meeting& m) {
-  return std::span(anchors_).subspan(m.anchor, m.law.rubs() ? m.obstacle->width() : 0);
+  return std::span(anchors_).subspan(m.anchor, m.law.friction.rubs() ? m.obstacle->width() : 0);
 }
 
 /// Partners that the ports have not met yet: any window may bring some.
@@ -90,7 +90,7 @@ void SurfaceContact::meet(const Window& window) {
       m.reacted = sizes_.reacted;
       m.slid = sizes_.slid;
       m.anchor = sizes_.anchor;
-      if (met.law.rubs()) {
+      if (met.law.friction.rubs()) {
         m.parts = own.geometry->dim;
         sizes_.slid += own.nodes.size();
         sizes_.shears += surfaces_[s].at.size();
@@ -126,7 +126,7 @@ void SurfaceContact::impose(const Window& window) {
                        window.grid, surfaces_[m.own].pose, reacted(m));
     if (m.obstacle->acts()) continue;
     anchored_[k] = 0.0;
-    if (m.law.rubs()) forget_shears(m);
+    if (m.law.friction.rubs()) forget_shears(m);
     std::ranges::fill(pressed(m), 0.0);
     std::ranges::fill(reacted(m), 0.0);
   }
@@ -160,7 +160,7 @@ void SurfaceContact::settle(std::vector<double>& forces) {
   for (Own& own : surfaces_)
     if (own.neighbours.act()) own.neighbours.settle(pressing(own));
   for (std::size_t k = 0; k < meetings_.size(); ++k)
-    if (meetings_[k].law.rubs() && meetings_[k].obstacle->acts()) settle_friction(k);
+    if (meetings_[k].law.friction.rubs() && meetings_[k].obstacle->acts()) settle_friction(k);
 }
 
 void SurfaceContact::react(std::size_t port, std::size_t partner, const std::vector<double>&,
@@ -214,7 +214,7 @@ void SurfaceContact::aim(int i, const std::vector<double>&, const std::vector<do
     Meeting& m = meetings_[k];
     if (!m.obstacle->acts()) continue;
     m.obstacle->aim(i, reacted(m), turned_[k] != 0.0);
-    if (m.law.rubs())
+    if (m.law.friction.rubs())
       m.obstacle->begin_slip(i, anchored_[k] != 0.0 ? anchor(m) : std::span<double>());
   }
 }
@@ -267,9 +267,9 @@ void SurfaceContact::add_components(Meeting& m) {
       directions_.resize(at + index(m.parts) * dim);
       tangents(rows.dim, normal, std::span(directions_).subspan(at + dim));
     }
-    const bool slid = m.law.rubs() && slid_[m.slid + index(rows.nodes[r])] != 0.0;
-    rows_.push_back({static_cast<Eigen::Index>(at / dim), m.parts,  // [M.126]
-                     slid ? m.law.kinetic_friction : m.law.static_friction});
+    const FrictionLaw& law = m.law.friction;
+    rows_.push_back({static_cast<Eigen::Index>(at / dim), m.parts,
+                     law.rubs() ? law.coefficient(slid_[m.slid + index(rows.nodes[r])]) : 0.0});
     for (int p = 0; p < m.parts; ++p)
       find_terms(surfaces_[m.own], rows, r, directions_.data() + at + index(p) * dim);
   }

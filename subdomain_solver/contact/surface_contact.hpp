@@ -122,11 +122,12 @@ class SurfaceContact final : public PortContact {
   std::vector<double> pressed_;    // [N] (meetings, values of the port) on the body: state
   std::vector<double> reactions_;  // [N] (meetings, values of the partner) on partners: state
   std::vector<double> turned_;     // (meetings) 1: rows of the partner's nodes: state
-  std::vector<double> slid_;       // (meetings that rub, points) 1: slid in the last substep: state
+  // (meetings that rub, points) what the friction law remembers of the last substep: state
+  std::vector<double> slid_;
   // [N] (meetings that rub, values of the port) along the surface, on the body: state
   std::vector<double> shears_;
   std::vector<double> shears_before_;
-  int substeps_ = 0;  // of the window
+  Substeps grid_;  // of the window
   int substep_ = 0;
   std::vector<double> anchors_;     // [m] (meetings that rub, values of the partner): state
   std::vector<double> anchored_;    // (meetings) 1: anchors are those of now: state

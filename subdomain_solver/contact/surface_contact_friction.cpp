@@ -37,7 +37,8 @@ void SurfaceContact::settle_friction(std::size_t meeting) {
   for (int r = 0; r < m.rows; ++r) {
     const FrictionRow& row = rows_[m.first_row + r];
     const std::size_t point = index(m.obstacle->rows().nodes[r]);
-    if (row_state(row, row_force_) == RowState::slips) slid[point] = 1.0;
+    const bool slips = row_state(row, row_force_) == RowState::slips;
+    slid[point] = std::max(slid[point], m.law.friction.remember(slips));
     for (int p = 1; p < row.parts; ++p) {
       const double* tangent = along.data() + index(row.first - m.first + p) * dim;
       const double now = row_force_(row.first + p);
@@ -51,13 +52,13 @@ void SurfaceContact::settle_friction(std::size_t meeting) {
   }
   m.obstacle->end_slip(reacted(m), anchor(m));
   anchored_[meeting] = 1.0;
-  if (m.law.static_friction != m.law.kinetic_friction) settle_slid(m);
+  if (m.law.friction.jumps()) settle_slid(m);
 }
 
 void SurfaceContact::begin_slid(Meeting& m, const BoundaryData& boundary, const Substeps& grid) {
   m.slid_now.clear();
   m.told_slid.clear();
-  substeps_ = grid.count;
+  grid_ = grid;
   const std::size_t partner = m.obstacle->partner();
   if (partner >= boundary.obstacles.size()) return;
   m.told_slid = boundary.obstacles[partner].slid;
@@ -72,7 +73,7 @@ void SurfaceContact::begin_slid(Meeting& m, const BoundaryData& boundary, const 
 /// substep depends on that. So points that slid in earlier sweeps count as sliding, but not at the
 /// window's end: what is handed on is what happened [M.126].
 void SurfaceContact::settle_slid(Meeting& m) {
-  if (substep_ < 1 || substep_ >= substeps_) return;
+  if (substep_ < 1 || substep_ >= grid_.count) return;
   const std::size_t points = surfaces_[m.own].surface.nodes.size();
   const std::span<double> slid = std::span(slid_).subspan(m.slid, points);
   const auto first = static_cast<std::int32_t>(index(substep_ - 1) * points);

@@ -146,6 +146,9 @@ Element made(const Entry& entry, std::span<const Element> above) {
   if (corners.facets.empty()) return element;
   const auto facet = std::ranges::find(above, entry.facet_name, &Element::name);
   ABUT_ASSERT(facet != above.end());
+  // Surfaces know the functions of facets without nodes inside: contract/whole_facets.cpp has their
+  // straight parts and surface/whole_facet.cpp their functions.
+  ABUT_ASSERT(std::ranges::all_of(facet->between, [](const auto& of) { return of.size() == 2; }));
   for (const std::vector<int>& own : corners.facets)
     element.facets.push_back(facet_nodes(element, own, *facet));
   return element;

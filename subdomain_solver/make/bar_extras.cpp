@@ -47,7 +47,7 @@ BarLoads::OfTime force_on(int end, const LoadSpec& load, const std::string& key,
 
 std::unique_ptr<BarLoads> make_bar_loads(const BodySpec& spec, const Place& place, const Bar& bar) {
   if (spec.loads.empty()) return nullptr;
-  const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+  const bool explicit_in_time = spec.integrates(SchemeKind::explicit_steps);
   std::unique_ptr<BarLoads> loads = std::make_unique<BarLoads>(bar, explicit_in_time);
   for (const auto& [name, load] : spec.loads) {
     const std::string key = "loads." + name;

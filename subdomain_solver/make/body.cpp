@@ -51,7 +51,7 @@ std::vector<BarInterior::End> ports_of(const BodySpec& spec, const Place& place)
 
 ContactLayer layer_of(const BodySpec& spec, const PortSpec& port) {
   if (port.tied) {
-    const bool kicked = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+    const bool kicked = spec.integrates(SchemeKind::explicit_steps);
     return kicked ? ContactLayer::kick : ContactLayer::shared;
   }
   constexpr ContactLayer layers[] = {ContactLayer::massless, ContactLayer::kick,
@@ -110,7 +110,7 @@ struct SchemeMaker {
 };
 
 void check_layers(const BodySpec& spec, const BarProperties& bar, const Place& place) {
-  const bool explicit_scheme = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+  const bool explicit_scheme = spec.integrates(SchemeKind::explicit_steps);
   if (bar.complete_reaction && !explicit_scheme) {
     refuse(place, "contact_layer.massive.reaction",
            "complete is not offered by implicit integrators",

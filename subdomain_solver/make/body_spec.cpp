@@ -243,8 +243,8 @@ void BodySpec::check(Fields& f) const {
           rigid ? "Add integrator: {rigid_motion: {step: ...}} to the body."
                 : "Add integrator: {central_difference: {step: ...}} or an implicit one to the "
                   "body.");
-  f.check(rigid || !integrator || !std::holds_alternative<RigidMotionSpec>(*integrator),
-          "integrator", "rigid_motion is offered to model rigid only",
+  f.check(rigid || !integrates(SchemeKind::exact), "integrator",
+          "rigid_motion is offered to model rigid only",
           "Use newmark: {step: ...} or another integrator of bodies that deform.");
   f.check(!pair || ports.empty(), "ports", "do not belong to a bar_pair",
           "Leave ports out: the pair has left_tip and right_tip.");
@@ -282,13 +282,17 @@ const SolidShapeSpec* BodySpec::shape() const {
   return std::visit(find, model);
 }
 
+bool BodySpec::integrates(SchemeKind kind) const {
+  const auto kind_of = [](const auto& scheme) { return scheme.kind; };
+  return integrator && std::visit(kind_of, *integrator) == kind;
+}
+
 bool BodySpec::is_linear_bar() const {
   const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
   const LinearElasticSpec* elastic =
       material ? std::get_if<LinearElasticSpec>(&*material) : nullptr;
   return fe != nullptr && std::holds_alternative<BarMeshSpec>(fe->mesh) && elastic != nullptr &&
-         elastic->youngs_modulus && integrator &&
-         !std::holds_alternative<QuasiStaticSpec>(*integrator);
+         elastic->youngs_modulus && integrator && !integrates(SchemeKind::statics);
 }
 
 bool BodySpec::is_uniform_bar() const {
@@ -397,8 +401,8 @@ void BodySpec::check_rigid(Fields& f) const {
   f.check(constraints.empty(), "constraints",
           "prescribe displacements of single nodes, which a rigid body does not have",
           "Leave constraints out, or use model fe.");
-  f.check(!integrator || std::holds_alternative<RigidMotionSpec>(*integrator), "integrator",
-          "is for bodies that deform", "Use rigid_motion: {step: ...} with model rigid.");
+  f.check(!integrator || integrates(SchemeKind::exact), "integrator", "is for bodies that deform",
+          "Use rigid_motion: {step: ...} with model rigid.");
 }
 
 }  // namespace abut

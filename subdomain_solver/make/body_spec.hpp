@@ -102,6 +102,8 @@ struct BodySpec {
   std::string why_general() const;
   /// Any other body with a mesh: fe in one to three dimensions, other rungs of the fidelity ladder.
   bool is_solid() const;
+  /// False where the body has no integrator.
+  bool integrates(SchemeKind kind) const;
   /// Of the rungs of the fidelity ladder; null: the body is something else.
   const SolidShapeSpec* shape() const;
 
@@ -114,7 +116,6 @@ struct BodySpec {
   void check_solid(Fields& f) const;
   void check_modal(Fields& f) const;
   void check_rigid(Fields& f) const;
-  bool is_implicit() const;
   void idle_keys(Fields& f) const;  // idle_keys.cpp
   void idle_of_walls_and_pairs(Fields& f) const;
   void idle_of_bars(Fields& f) const;

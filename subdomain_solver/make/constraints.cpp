@@ -244,7 +244,7 @@ void check_hourglasses(const FeModel& model, const Place& place) {
 
 Eigen::MatrixXd check_statics(const BodySpec& spec, const Place& place, const FeModel& model,
                               const std::vector<Prescribed>& supports, bool joined) {
-  if (!spec.integrator || !std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return {};
+  if (!spec.integrates(SchemeKind::statics)) return {};
   std::vector<int> held;
   for (const Prescribed& p : supports) held.push_back(p.dof);
   const std::optional<LoosePiece> loose = find_loose_piece(model, held);

@@ -32,9 +32,9 @@ namespace {
 /// Of body forces: that of the scheme, where it moves nodes. Modes and rigid motions take the
 /// resultants of consistent ones, and statics has none of its own.
 MassForm load_mass(const BodySpec& spec) {
-  const bool moves_nodes = std::holds_alternative<FeModelSpec>(spec.model) &&
-                           !std::holds_alternative<QuasiStaticSpec>(*spec.integrator);
-  const bool lumped = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+  const bool moves_nodes =
+      std::holds_alternative<FeModelSpec>(spec.model) && !spec.integrates(SchemeKind::statics);
+  const bool lumped = spec.integrates(SchemeKind::explicit_steps);
   return moves_nodes || lumped ? mass_form(*spec.integrator) : MassForm::consistent;
 }
 

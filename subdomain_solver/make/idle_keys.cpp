@@ -65,7 +65,8 @@ void BodySpec::idle_of_bars(Fields& f) const {
   const bool rigid = std::holds_alternative<RigidModelSpec>(model);
   all_idle(f, is_bar(), {"integrator.central_difference.above_limit", "equations"},
            "it is for solids");
-  const bool still = integrator && std::holds_alternative<QuasiStaticSpec>(*integrator);
+  const bool still = integrates(SchemeKind::statics);
+  const bool solves_equations = still || integrates(SchemeKind::implicit_steps);
   const bool fe_bar = solid && !flat && !modal && !rigid && !still;
   const bool layered = solid && !modal && !rigid && !still;
   const bool massive = flat && layered && std::holds_alternative<MassiveSpec>(contact_layer);
@@ -92,25 +93,19 @@ void BodySpec::idle_of_bars(Fields& f) const {
   for (const auto& [name, port] : ports)
     contact = contact || (!port.tied && (is_bar() || flat || end_of(port.side) >= 0));
   f.idle((is_bar() || layered) && !contact, "contact_layer", "the body has no port for contact");
-  f.idle(rigid || (modal && !is_implicit()), "equations",
+  f.idle(rigid || (modal && !solves_equations), "equations",
          "nothing of the body is solved by iteration");
 }
 
 void BodySpec::idle_of_integrators(Fields& f) const {
   const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
-  const bool explicit_in_time =
-      integrator && std::holds_alternative<CentralDifferenceSpec>(*integrator);
+  const bool explicit_in_time = integrates(SchemeKind::explicit_steps);
   f.idle(fe != nullptr && integrator && (!explicit_in_time || !is_solid() || fe->dimension == 1),
          "model.fe.threads", "it is for explicit bodies in two and three dimensions");
   f.idle(fe != nullptr && explicit_in_time, "equations", "an explicit body solves none");
-  const bool still = integrator && std::holds_alternative<QuasiStaticSpec>(*integrator);
+  const bool still = integrates(SchemeKind::statics);
   all_idle(f, still, {"initial.velocity", "initial.velocity_field"},
            "a quasi_static body has no inertia");
-}
-
-bool BodySpec::is_implicit() const {
-  return integrator && !std::holds_alternative<CentralDifferenceSpec>(*integrator) &&
-         !std::holds_alternative<RigidMotionSpec>(*integrator);
 }
 
 }  // namespace abut

@@ -243,9 +243,7 @@ void Overlap::check_other_sides() const {
 
 /// With inertia, motions that are told in turn gain energy, but where both bodies are the same.
 void Overlap::check_motions(const BodySpec& spec, const CommonParts& common) const {
-  const auto rests = [](const BodySpec& body) {
-    return body.integrator && std::holds_alternative<QuasiStaticSpec>(*body.integrator);
-  };
+  const auto rests = [](const BodySpec& body) { return body.integrates(SchemeKind::statics); };
   if (role_.unstable || (rests(spec) && rests(other_.spec))) return;
   constexpr const char* why =
       "the pair would gain energy by itself, up to some thousand times a second";

@@ -54,7 +54,7 @@ std::vector<int> layer_coordinates(const FeModel& model, const BodySpec& spec,
                                    const Constraints& constraints, const Place& place) {
   std::vector<int> dofs;
   const Mesh& mesh = model.mesh();
-  if (std::holds_alternative<QuasiStaticSpec>(*spec.integrator)) return dofs;
+  if (spec.integrates(SchemeKind::statics)) return dofs;
   const auto* layer = std::get_if<MasslessSpec>(&spec.contact_layer);
   const bool normal_alone = layer != nullptr && layer->normal_alone;
   if (normal_alone && !constraints.frames.empty()) {
@@ -102,7 +102,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   const std::string adjusted = adjust_ports(spec, place, ports, constraints, mesh);
   overlap_partners(spec, place, mesh, ports);
   check_formulation(fe, mesh, place, "model.fe");
-  const bool explicit_in_time = std::holds_alternative<CentralDifferenceSpec>(*spec.integrator);
+  const bool explicit_in_time = spec.integrates(SchemeKind::explicit_steps);
   SolidInterior::Parts parts;
   parts.model = std::make_unique<FeModel>(
       std::move(mesh), make_material(*spec.material, place, fe.dimension),

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/refusal.hpp"
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -39,12 +39,10 @@ SolidText body(const Start& start, const std::string& name, const std::string& m
       .model = model,
       .keys = fmt::format("{}map: [x, y + 0.1 * sin(3.141592653589793 * x){}], ",
                           model == "modal" ? "modes: 4, " : "", start.dim == 3 ? ", z" : ""),
-      .lengths = {1.0, 0.25},
-      .cells = {across, 2},
-      .element = start.element};
+      .block = {{1.0, 0.25}, {across, 2}, start.element}};
   if (start.dim == 3) {
-    out.lengths.push_back(0.5);
-    out.cells.push_back(across / 2);
+    out.block.lengths.push_back(0.5);
+    out.block.cells.push_back(across / 2);
   }
   if (model != "rigid_tool") {
     out.material = unit_law("linear_elastic", 0.3);
@@ -68,12 +66,10 @@ std::string text(const Start& start, bool adjusts = true) {
           start.rows));
 }
 
-std::unique_ptr<RunResult> run(const Start& start) {
-  return run_document(Document::from_text("test", text(start)));
-}
+ResultPtr run(const Start& start) { return run_text(text(start)); }
 
 std::string refused(const std::string& scene) {
-  return refusal([&scene] { run_document(Document::from_text("test", scene)); });
+  return refusal([&scene] { run_text(scene); });
 }
 
 std::vector<Start> starts() {

@@ -37,7 +37,7 @@ std::string slow_bolted_joint() {
 }
 
 TEST(AstraySweeps, LetNoLaterOnePass) {
-  const auto result = run_document(Document::from_text("test", slow_bolted_joint()));
+  const auto result = run_text(slow_bolted_joint());
   EXPECT_LT(result->measure("contact.joint.force_peak"), 2.0e6);
 }
 

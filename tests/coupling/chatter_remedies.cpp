@@ -13,8 +13,6 @@
 namespace abut {
 namespace {
 
-using ResultPtr = std::unique_ptr<RunResult>;
-
 constexpr double published_digits = 0.1;  // relative: two digits are given, and single contacts
 
 const std::string explicit_bar = "central_difference: {step: 1.0e-7}";
@@ -34,9 +32,8 @@ ResultPtr run_published(const Remedy& remedy) {
     bar.integrator = remedy.integrator;
     bar.layer = remedy.layer;
   }
-  scene.transmission =
-      fmt::format("dirichlet_neumann: {{dirichlet: left.right, impact_projection: {}}}",
-                  remedy.projection);
+  scene.transmission = fmt::format(
+      "dirichlet_neumann: {{dirichlet: left.right, impact_projection: {}}}", remedy.projection);
   scene.schwarz = fmt::format("accelerator: {{{}}}, max_iterations: 60", remedy.accelerator);
   return run(scene);
 }
@@ -79,8 +76,7 @@ TEST(CompleteReaction, WithProjectionIsQuietAndExactInMomentum) {
 }
 
 TEST(CompleteReaction, OfEqualBarsDoesNotConvergeWithoutRelaxation) {
-  const ResultPtr r =
-      run_published({.layer = "massive: {reaction: complete}", .projection = true});
+  const ResultPtr r = run_published({.layer = "massive: {reaction: complete}", .projection = true});
   EXPECT_FALSE(r->completed());  // the sweep factor is -1
 }
 
@@ -89,8 +85,8 @@ TEST(BulkViscosity, TradesNoiseForEnergy) {
   double last_energy = -1.0e-3;
   for (const char* coefficient : {"0.01", "0.03", "0.06"}) {
     const ResultPtr r = run_published(
-        {.integrator = fmt::format("central_difference: {{step: 1.0e-7, bulk_viscosity: {}}}",
-                                   coefficient)});
+        {.integrator =
+             fmt::format("central_difference: {{step: 1.0e-7, bulk_viscosity: {}}}", coefficient)});
     EXPECT_LT(noise(*r), 0.5 * last_noise) << coefficient;
     EXPECT_LT(r->energy_error(), last_energy) << coefficient;
     EXPECT_GT(r->energy_error(), -0.05) << coefficient;

@@ -10,7 +10,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
@@ -118,10 +119,10 @@ TEST(EdgesThatCross, CarryAStaticLoad) {
   const auto result = run_solids(1.0, 0.5, {low, up}, touching("press", "low.skin", "up.skin"));
   ASSERT_TRUE(result->completed());
   const double force = result->measure("body.up.grip.reaction.z");
-  EXPECT_LT(force, -5.0e-5);  // pressed by half of 0.008
-  for (const std::string axis : {"x", "y", "z"})
+  EXPECT_LT(force, -5.0e-5);                      // pressed by half of 0.008
+  for (const std::string axis : {"x", "y", "z"})  // sums over some hundred nodes
     EXPECT_NEAR(result->measure("body.low.base.reaction." + axis),
-                -result->measure("body.up.grip.reaction." + axis), 1.0e-6 * std::abs(force));
+                -result->measure("body.up.grip.reaction." + axis), roundoff(1.0e4, force));
 }
 
 TEST(EdgesAlongEachOther, Press) {
@@ -139,7 +140,7 @@ struct Corners2D {
 };
 
 /// Squares of 0.4, corner over corner.
-std::unique_ptr<RunResult> corner_on_corner(const Corners2D& c, const std::string& integrator) {
+ResultPtr corner_on_corner(const Corners2D& c, const std::string& integrator) {
   const auto extreme = [](double degrees, double way) {
     Eigen::Vector2d most(0.0, 0.0);
     const Eigen::Matrix3d turned = turn(degrees, Eigen::Vector3d::UnitZ());
@@ -263,9 +264,9 @@ TEST(OneNodeBetweenTwo, LiesAcrossAJoint) {
           expect_balanced(*result, integrator, 1.0e-3);
           EXPECT_LE(result->measure("schwarz.iterations_max"), 2.0);
           if (beside != 0.0 || lower != 0.0) continue;
-          EXPECT_NEAR(result->measure("mean_velocity.up.end_x"), 0.0, 1.0e-12 * speed);
+          EXPECT_NEAR(result->measure("mean_velocity.up.end_x"), 0.0, roundoff(1000.0, speed));
           EXPECT_NEAR(result->measure("contact.r.impulse") / result->measure("contact.l.impulse"),
-                      1.0, 1.0e-9);
+                      1.0, roundoff(1000.0, 1.0));
         }
 }
 

@@ -8,7 +8,6 @@
 
 #include "coordinator/energy_guard.hpp"
 #include "tests/support/runs.hpp"
-#include "tests/support/solid_scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -139,7 +138,7 @@ SceneText gaining() {
 }
 
 TEST(EnergyGuard, FailsARunThatGains) {
-  const std::unique_ptr<RunResult> r = run(gaining());
+  const ResultPtr r = run(gaining());
   EXPECT_EQ(r->end.status, "failed");
   ASSERT_FALSE(r->events.empty());
   EXPECT_EQ(r->events.back().kind, RunEvent::Kind::failure);
@@ -151,7 +150,7 @@ TEST(EnergyGuard, FailsARunThatGains) {
 /// What helps is what is not so already: round surfaces where there are some, another layer to
 /// those that have another one.
 TEST(EnergyGuard, NamesTheRemedyOfWhatGains) {
-  const auto words = [](const std::unique_ptr<RunResult>& r) {
+  const auto words = [](const ResultPtr& r) {
     EXPECT_EQ(r->end.status, "failed");
     const std::string text = r->events.empty() ? std::string() : r->events.back().text;
     const std::size_t from = text.find("; give ");

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -70,7 +70,7 @@ std::string row(const Kind& k) {
   return text;
 }
 
-std::unique_ptr<RunResult> run(const std::string& bodies, const std::string& rest, double end) {
+ResultPtr run(const std::string& bodies, const std::string& rest, double end) {
   return run_scene(end, 0.025, bodies, rest);
 }
 

@@ -44,9 +44,15 @@ std::ostream& operator<<(std::ostream& out, const Flight& f) {
              f.law, f.scheme, f.youngs, f.size, f.crossings, f.away, f.flown, f.fallen);
 }
 
-std::string text(const Flight& f) {
-  const bool space = element_named(f.element).dim == 3;
-  const std::string law =
+/// A block of three cells each way.
+SolidText block(const std::string& element, const std::vector<double>& lengths) {
+  return {.name = "it", .block = block_in(element_named(element).dim, lengths, {3, 3, 3}, element)};
+}
+
+ResultPtr run(const Flight& f) {
+  SolidText it = block(f.element, {f.size, 0.93 * f.size, f.size});
+  const int dim = element_named(f.element).dim;
+  it.material =
       f.law == "mooney_rivlin"
           ? fmt::format("mooney_rivlin: {{c10: {}, c01: {}, bulk_modulus: {}, density: {}}}",
                         number(0.15 * f.youngs), number(0.05 * f.youngs), number(f.youngs),
@@ -57,28 +63,15 @@ std::string text(const Flight& f) {
                             ? fmt::format(", yield_stress: {}, hardening: {}",
                                           number(1.0e-3 * f.youngs), number(1.0e-2 * f.youngs))
                             : "");
-  const double third = f.size * 0.93;
-  const std::string mesh =
-      space ? fmt::format("box: {{lengths: [{0}, {1}, {0}], elements: [3, 3, 3], element: {2}}}",
-                          number(f.size), number(third), f.element)
-            : fmt::format("rectangle: {{lengths: [{}, {}], elements: [3, 3], element: {}}}",
-                          number(f.size), number(third), f.element);
-  const std::string back = space ? ", 0.0" : "";
-  const double dt = f.step();
-  return fmt::format(
-      "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n"
-      "  it: {{model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}, material: {{{}}}, integrator: "
-      "{{{}: {{step: {}}}}}, body_force: [0.0, {}{}], initial: {{position: [{}, {}{}], velocity: "
-      "[{}, 0.0{}]}}, ports: {{skin: {{side: boundary}}}}}}\n"
-      "  far: {{model: {{rigid_tool: {{dimension: {}, mesh: {}}}}}, initial: {{position: [0.0, "
-      "{}{}]}}, ports: {{top: {{side: top}}}}}}\n"
-      "interfaces: {{never: {{sides: [it.skin, far.top], contact: {{}}}}}}\n",
-      number(f.time()), number(5 * dt), space ? 3 : 2, mesh, law, f.scheme, number(dt),
-      number(-f.weight()), back, number(f.away * f.size), number(0.1 * f.away * f.size), back,
-      number(f.speed()), back, space ? 3 : 2,
-      space ? "{box: {lengths: [1.0, 1.0, 1.0], elements: [1, 1, 1]}}"
-            : "{rectangle: {lengths: [1.0, 1.0], elements: [1, 1]}}",
-      number(-1.0e7 * f.size), back);
+  it.integrator = implicit_scheme(f.scheme, f.step());
+  it.position = {f.away * f.size, 0.1 * f.away * f.size};
+  it.velocity = {f.speed()};
+  it.port = "skin";
+  it.side = "boundary";
+  it.more = fmt::format("    body_force: {}\n", components({0.0, -f.weight()}, dim));
+  const SolidText far =
+      tool("far", block_in(dim, {1.0, 1.0, 1.0}, {1, 1, 1}), {0.0, -1.0e7 * f.size}, "top");
+  return run_solids(f.time(), 5 * f.step(), {it, far}, touching("never", "it.skin", "far.face"));
 }
 
 std::vector<Flight> flights() {
@@ -118,7 +111,7 @@ std::vector<Flight> flights() {
 TEST(Flights, NeverFailByTheirRounding) {
   for (const Flight& f : flights()) {
     SCOPED_TRACE(testing::PrintToString(f));
-    const auto end = run_document(Document::from_text("test", text(f)));
+    const auto end = run(f);
     EXPECT_EQ(end->end.status, "completed");
     for (const RunEvent& event : end->events)
       EXPECT_TRUE(event.kind != RunEvent::Kind::failure && event.kind != RunEvent::Kind::warning)
@@ -143,18 +136,12 @@ TEST(FreeFall, StrainsNothingWhateverTheMass) {
          {"newmark: {mass: lumped, step", "newmark: {mass: averaged, step",
           "newmark: {mass: consistent, step", "hht_alpha: {step", "central_difference: {step"}) {
       SCOPED_TRACE(element + " " + scheme);
-      const bool space = element_named(element).dim == 3;
-      const std::string back = space ? ", 0.0" : "";
-      const std::string mesh =
-          space ? "box: {lengths: [1.0, 0.9, 1.0], elements: [3, 3, 3], element: " + element + "}"
-                : "rectangle: {lengths: [1.0, 0.9], elements: [3, 3], element: " + element + "}";
-      const auto end = run_document(Document::from_text(
-          "test",
-          fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: 1.0, window: 0.1}}\n"
-                      "bodies: {{it: {{model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}, material: "
-                      "{{linear_elastic: {{youngs_modulus: 1.0, poissons_ratio: 0.3, density: "
-                      "1.0}}}}, integrator: {{{}: 0.02}}}}, body_force: [0.0, -1.0{}]}}}}\n",
-                      space ? 3 : 2, mesh, scheme, back)));
+      SolidText it = block(element, {1.0, 0.9, 1.0});
+      it.material = unit_law("linear_elastic", 0.3);
+      it.integrator = fmt::format("{}: 0.02}}", scheme);
+      it.more =
+          fmt::format("    body_force: {}\n", components({0.0, -1.0}, element_named(element).dim));
+      const auto end = run_solids(1.0, 0.1, {it});
       ASSERT_TRUE(end->completed());
       // Strains of 1e-10: what solving leaves of forces of the body's stiffness.
       EXPECT_LT(std::abs(end->measure("body.it.energy.stored")), 1.0e-20);
@@ -172,22 +159,20 @@ TEST(Flights, OfTiedBodiesNeverFailByTheirRounding) {
     for (const double ratio : {1.0, 2.0, 10.0}) {
       for (const double speed : {0.0, 1.0e-3, 1.0, 1.0e3}) {
         SCOPED_TRACE(fmt::format("{} {} {}", both, ratio, speed));
-        const std::string law = "material: {linear_elastic: {youngs_modulus: 1.0, density: 1.0}}";
         const auto bar = [&](const char* name, const std::string& scheme, double step, double place,
                              const char* side) {
-          return fmt::format(
-              "  {}: {{model: {{fe: {{dimension: 1, mesh: {{bar: {{length: 0.5, elements: 50, "
-              "area: 1.0}}}}}}}}, {}, integrator: {{{}: {{step: {}}}}}, initial: {{position: [{}], "
-              "velocity: [{}]}}, ports: {{joint: {{side: {}, tied: true}}}}}}\n",
-              name, law, scheme, number(step), number(place), number(speed), side);
+          BarText out = unit_bar(name, 0.5, 50, implicit_scheme(scheme, step), place, speed);
+          out.sides = {side};
+          out.tied = side;
+          return out.text();
         };
-        const auto end = run_document(Document::from_text(
-            "test", "meta: {title: test}\ntime: {begin: 0.0, end: 4.0, window: 0.01}\nbodies:\n" +
-                        bar("a", first, 0.005 / ratio, 0.0, "right") +
-                        bar("b", second, 0.005, 0.5, "left") +
-                        "interfaces: {j: {sides: [a.joint, b.joint], tied: {}}}\n"));
+        const auto end = run_scene(
+            4.0, 0.01,
+            bar("a", first, 0.005 / ratio, 0.0, "right") + bar("b", second, 0.005, 0.5, "left"),
+            "interfaces:\n" + joined("j", "a.right", "b.left"));
         EXPECT_EQ(end->end.status, "completed");
         for (const std::size_t b : {0, 1})
+          // A rounding of a place, of 1 m and of the way of 4 s, over the shortest step, 5e-4 s.
           EXPECT_NEAR(end->velocity(b), speed, 1.0e-9 * std::max(speed, 1.0e-3));
       }
     }
@@ -200,26 +185,23 @@ TEST(ToolWork, IsTheEnergyOfWhatItPressesInAnyWindows) {
   for (const double window : {1.0e-5, 2.0e-6}) {
     for (const char* way : {"-1.0 * t", "-1000 * t^2", "-4.0e-4 * sin(4000 * t)"}) {
       SCOPED_TRACE(fmt::format("{} {}", window, way));
-      const auto end = run_document(Document::from_text(
-          "test",
-          fmt::format(
-              "meta: {{title: test}}\ntime: {{begin: 0.0, end: 1.0e-3, window: {}}}\n"
-              "bodies:\n  block: {{model: {{fe: {{dimension: 2, mesh: {{rectangle: {{lengths: "
-              "[0.1, "
-              "0.1], elements: [8, 8]}}}}}}}}, material: {{linear_elastic: {{youngs_modulus: "
-              "2.1e11, poissons_ratio: 0.3, density: 7800.0}}}}, integrator: {{central_difference: "
-              "{{step: 5.0e-7}}}}, constraints: {{base: {{on: bottom, fixed: true}}}}, ports: "
-              "{{top: {{side: top}}}}}}\n"
-              "  press: {{model: {{rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [0.2, "
-              "0.02], elements: [1, 1]}}}}, way: [\"0\", \"{}\"]}}}}, initial: {{position: "
-              "[-0.05, 0.1003]}}, ports: {{face: {{side: bottom}}}}}}\n"
-              "interfaces: {{pressed: {{sides: [block.top, press.face], contact: {{}}}}}}\n",
-              number(window), way)));
+      const SolidText block{.name = "block",
+                            .material =
+                                "linear_elastic: {youngs_modulus: 2.1e11, poissons_ratio: "
+                                "0.3, density: 7800.0}",
+                            .integrator = "central_difference: {step: 5.0e-7}",
+                            .sides = {"top"},
+                            .more = "    constraints: {base: {on: bottom, fixed: true}}\n",
+                            .block = {{0.1, 0.1}, {8, 8}}};
+      const SolidText press = tool("press", {{0.2, 0.02}, {1, 1}}, {-0.05, 0.1003}, "bottom",
+                                   fmt::format("way: [\"0\", \"{}\"], ", way));
+      const auto end = run_solids(1.0e-3, window, {block, press},
+                                  touching("pressed", "block.top", "press.face"));
       EXPECT_EQ(end->end.status, "completed");
       EXPECT_GT(end->measure("contact.pressed.closings"), 0.0);
+      const bool on_time = std::string(way) == "-1.0 * t";
       // Sums of some thousand steps of forces and ways; where the tool does not arrive on the end
       // of a step, half of the first force over the part of that step's way that was gone before.
-      const bool on_time = std::string(way) == "-1.0 * t";
       EXPECT_LT(std::abs(end->measure("energy.total.relative_drift_end")),
                 on_time ? 1.0e-10 : 1.0e-4);
     }

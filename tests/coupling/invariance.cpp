@@ -12,8 +12,6 @@
 namespace abut {
 namespace {
 
-using ResultPtr = std::unique_ptr<RunResult>;
-
 const RunResult& reference() {
   static const ResultPtr result = run(two_bars());
   return *result;

@@ -16,8 +16,6 @@
 namespace abut {
 namespace {
 
-using ResultPtr = std::unique_ptr<RunResult>;
-
 constexpr double two_substeps = 4.0e-7;  // [s]
 
 struct Layer {

@@ -15,8 +15,6 @@
 namespace abut {
 namespace {
 
-using ResultPtr = std::unique_ptr<RunResult>;
-
 /// A bar of unit length, wave speed and impedance with one side in contact, or both.
 struct Bouncer {
   int elements = 50;
@@ -34,32 +32,26 @@ struct Bouncer {
   double step() const { return cfl * length / elements / std::sqrt(modulus); }
 
   std::string text(double end) const {
-    const double whole = std::round(end / (window * step())) * window * step();
-    std::string ports, bodies, interfaces;
+    BarText bar =
+        unit_bar("bar", length, elements,
+                 fmt::format("{}: {{step: {}{}}}", scheme, number(step()), keys), position, speed);
+    bar.modulus = modulus;
+    bar.layer = layer;
+    bar.body_force = -weight;
+    bar.fixed = support;
+    bar.sides.clear();
+    std::string bodies, interfaces;
     for (const auto& [place, side] : walls) {
-      const std::string other = side == "left" ? "right" : "left";
-      ports += fmt::format("{0}: {{side: {0}}}, ", side);
-      bodies += fmt::format(
-          "  {0}_wall: {{model: {{rigid_wall: {{}}}}, initial: {{position: [{1}]}}, "
-          "ports: {{face: {{side: {2}}}}}}}\n",
-          side, number(place), other);
-      interfaces +=
-          fmt::format("  {0}: {{sides: [bar.{0}, {0}_wall.face], contact: {{}}}}\n", side);
+      const std::string face = side == "left" ? "right" : "left", wall = side + "_wall";
+      bar.sides.push_back(side);
+      bodies += wall_text(place, face, wall);
+      interfaces += touching(side, "bar." + side, wall + "." + face);
     }
-    std::string out = fmt::format(
-        "meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\nbodies:\n  bar:\n"
-        "    model: {{fe: {{dimension: 1, mesh: {{bar: {{length: {}, elements: {}, area: "
-        "1.0}}}}}}}}\n"
-        "    material: {{linear_elastic: {{youngs_modulus: {}, density: 1.0}}}}\n"
-        "    integrator: {{{}: {{step: {}{}}}}}\n    contact_layer: {{{}}}\n"
-        "    initial: {{position: [{}], velocity: [{}]}}\n    ports: {{{}}}\n",
-        number(whole), number(window * step()), number(length), elements, number(modulus), scheme,
-        number(step()), keys, layer, number(position), number(speed), ports);
-    if (weight != 0.0) out += fmt::format("    body_force: [{}]\n", number(-weight));
-    if (!support.empty()) out += fmt::format("    supports: {{{}: fixed}}\n", support);
-    return out + bodies + "interfaces:\n" + interfaces + "schwarz: {energy_guard: 0.5}\n";
+    return scene_text(std::round(end / (window * step())) * window * step(), window * step(),
+                      bar.text() + bodies,
+                      "interfaces:\n" + interfaces + "schwarz: {energy_guard: 0.5}\n");
   }
-  ResultPtr run(double end) const { return run_document(Document::from_text("test", text(end))); }
+  ResultPtr run(double end) const { return run_text(text(end)); }
 };
 
 /// Largest change of energy less external work, over the most there was in motion; and at the end.
@@ -122,7 +114,7 @@ TEST(ManyImpacts, AreExactWhereNumbersAre) {
     EXPECT_EQ(r->measure("contact.right.closings"), 50.0) << window;
     const auto [most, end] = energy_errors(*r);
     EXPECT_LE(most, (1.0 + 1e-12) / (2.0 * 64)) << window;  // half an element's, while it touches
-    EXPECT_LT(end, 1e-12) << window;
+    EXPECT_LT(end, roundoff(1000.0, 1.0)) << window;
   }
 }
 
@@ -183,7 +175,7 @@ TEST(ManyImpacts, OfAClampedBarWithAnObstacleKeepTheEnergy) {  // catalogue A8, 
       ASSERT_TRUE(r->completed()) << keys << cfl;
       // 0.2 % is the goal; at CFL 0.9 with six terms what is owed at a time comes to 0.22 %.
       EXPECT_LT(energy_errors(*r).first, 2.5e-3) << keys << cfl;
-      EXPECT_LT(energy_errors(*r).second, 1.0e-6) << keys << cfl;
+      EXPECT_LT(energy_errors(*r).second, iteration(1.0e-6)) << keys << cfl;
     }
   }
 }
@@ -198,13 +190,9 @@ ResultPtr cradle(int elements, int window, const std::string& form) {
   scene.window = window * step;
   scene.form = "bars: {}";
   for (int b = 0; b < 5; ++b) {
-    BarText bar;
-    bar.name = names[b];
-    bar.length = bar.area = bar.modulus = bar.density = 1.0;
-    bar.elements = elements;
-    bar.integrator = explicit_scheme(step, 6);
-    bar.position = b;
-    bar.velocity = b == 0 ? 1.0 : 0.0;
+    BarText bar =
+        unit_bar(names[b], 1.0, elements, explicit_scheme(step, 6), b, b == 0 ? 1.0 : 0.0);
+    bar.layer = BarText().layer;
     bar.sides.clear();
     if (b > 0) bar.sides.push_back("left");
     if (b < 4) bar.sides.push_back("right");
@@ -231,7 +219,8 @@ TEST(TouchingBars, PassTheBlowOnForAnyMeshWindowAndForm) {  // catalogue A6
         // It leaves at 5, 2 after it was hit; the release is early by dispersion, about a cell.
         EXPECT_NEAR(r->measure("contact.fourth.release_error"), 0.0, 0.6 / elements) << what;
         EXPECT_NEAR(r->velocity(4), 1.0, 0.3 / elements) << what;
-        EXPECT_LT(energy_errors(*r).first, 1.0e-5) << what;
+        // Four contacts, closed in one window and opened in another.
+        EXPECT_LT(energy_errors(*r).first, iteration(1.0e-6, 8.0)) << what;
         EXPECT_LE(r->measure("schwarz.iterations_max"), 3.0) << what;
       }
     }

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -39,15 +39,18 @@ std::string body(const std::string& name, int dim, int across, const std::string
   const std::string mesh = dim == 1   ? "bar: {length: 1.0, elements: 6, area: 0.25}"
                            : dim == 2 ? block_mesh({1.0, 0.25}, {6, across})
                                       : block_mesh({1.0, 0.25, 0.25}, {6, across, across});
-  return fmt::format(
-      "  {}:\n    model: {{fe: {{dimension: {}, mesh: {{{}}}}}}}\n"
-      "    material: {{linear_elastic: {{youngs_modulus: 1.0, {}density: 1.0}}}}\n"
-      "    integrator: {{{}}}\n    initial: {{{}}}\n    ports: {{{}}}\n",
-      name, dim, mesh, dim == 1 ? "" : "poissons_ratio: 0.3, ", scheme, start, ports);
+  SolidText out{.name = name,
+                .dim = dim,
+                .mesh = mesh,
+                .material = law_in(dim, unit_law("linear_elastic", 0.3)),
+                .integrator = scheme,
+                .start = start};
+  out.more = "    ports: {" + ports + "}\n";
+  return out.text();
 }
 
-std::unique_ptr<RunResult> run(int dim, bool tied, const Steps& steps, const std::string& one,
-                               const std::string& other) {
+ResultPtr run(int dim, bool tied, const Steps& steps, const std::string& one,
+              const std::string& other) {
   const std::string tie = tied && dim == 1 ? ", tied: true" : "";
   const double windows = std::round(3.0 / steps.window);
   const auto start = [dim](double place, double v) {

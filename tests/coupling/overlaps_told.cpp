@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -35,12 +35,10 @@ std::string body(const Flight& f, const std::string& name, const std::string& mo
                 .side = side,
                 .model = model,
                 .keys = model == "modal" ? "modes: 6, " : "",
-                .lengths = {1.0, 0.5},
-                .cells = {4, 2},
-                .element = f.element};
+                .block = {{1.0, 0.5}, {4, 2}, f.element}};
   if (space) {
-    out.lengths.push_back(1.0);
-    out.cells.push_back(4);
+    out.block.lengths.push_back(1.0);
+    out.block.cells.push_back(4);
   }
   if (!tool) {
     out.velocity = {0.0, speed};
@@ -50,7 +48,7 @@ std::string body(const Flight& f, const std::string& name, const std::string& mo
   return out.text();
 }
 
-std::unique_ptr<RunResult> fly(const Flight& f, const std::string& output = "") {
+ResultPtr fly(const Flight& f, const std::string& output = "") {
   return run_scene(
       f.end, 1.0e-3,
       body(f, "striker", f.striker, f.port, 0.6, -1.0) + body(f, "plate", f.plate, "top", 0.0, 0.0),

@@ -12,8 +12,6 @@
 namespace abut {
 namespace {
 
-using ResultPtr = std::unique_ptr<RunResult>;
-
 SceneText unequal(const std::string& layer, double window) {
   SceneText scene = two_bars();
   for (BarText& bar : scene.bars) {
@@ -35,8 +33,8 @@ TEST_P(RobinForm, GivesTheContactOfTheUnilateralForm) {
     SceneText scene = unequal(layer, 1.0e-6);
     const ResultPtr kernel = run(scene);
     scene.transmission = "robin: {}";
-    scene.schwarz = fmt::format("form: {}, accelerator: {{anderson: {{}}}}, max_iterations: 100",
-                                GetParam());
+    scene.schwarz =
+        fmt::format("form: {}, accelerator: {{anderson: {{}}}}, max_iterations: 100", GetParam());
     const ResultPtr robin = run(scene);
     ASSERT_TRUE(robin->completed()) << layer;
     // tolerance 1e-6 of a step's motion in each of 500 windows

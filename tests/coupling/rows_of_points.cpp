@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/refusal.hpp"
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -20,8 +20,8 @@ SolidText block(int dim, const std::string& name, int across, double height, dou
   return {.name = name,
           .material = unit_law("linear_elastic", 0.3),
           .position = plane ? std::vector{0.0, place} : std::vector{0.0, 0.0, place},
-          .lengths = plane ? std::vector{1.0, height} : std::vector{1.0, 1.0, height},
-          .cells = plane ? std::vector{across, 2} : std::vector{across, across, 2}};
+          .block = {plane ? std::vector{1.0, height} : std::vector{1.0, 1.0, height},
+                    plane ? std::vector{across, 2} : std::vector{across, across, 2}}};
 }
 
 /// Two blocks under a strain of 1e-4 across their joint.
@@ -50,8 +50,8 @@ TEST(RowsOfPoints, PassNoConstantPressure) {
   for (const int dim : {2, 3}) {
     for (const auto& [upper, lower] : {std::pair(4, 6), std::pair(6, 4), std::pair(3, 7)}) {
       for (const bool points : {false, true}) {
-        const auto result = run_document(Document::from_text(
-            "test", patch(dim, upper, lower, points ? "point_to_surface" : "mortar")));
+        const auto result =
+            run_text(patch(dim, upper, lower, points ? "point_to_surface" : "mortar"));
         ASSERT_TRUE(result->completed());
         const char* component = dim == 2 ? "yy" : "zz";
         const double exact = dim == 2 ? -1.0e-4 / 0.91 : -1.0e-4;  // plane strain; uniaxial
@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(Combinations, PointImpact, testing::ValuesIn(impacts())
 
 TEST_P(PointImpact, BalancesMomentumAndEnergy) {
   const Impact& impact = GetParam();
-  const auto result = run_document(Document::from_text("test", text(impact)));
+  const auto result = run_text(text(impact));
   ASSERT_TRUE(result->completed());
   EXPECT_GE(result->times(RunEvent::Kind::contact_closed, "touch").size(), 1u);
   EXPECT_GT(result->measure("contact.touch.impulse"), 0.0);
@@ -142,7 +142,7 @@ TEST_P(PointImpact, BalancesMomentumAndEnergy) {
 }
 
 std::string refused(const std::string& scene) {
-  return refusal([&scene] { run_document(Document::from_text("test", scene)); });
+  return refusal([&scene] { run_text(scene); });
 }
 
 TEST(RowsOfPoints, AreRefusedWhereTheyWouldMissOrDoNothing) {

@@ -29,55 +29,39 @@ struct Press {
 
 void PrintTo(const Press& press, std::ostream* out) { *out << press.name; }
 
-std::string mesh(int dim, double length, double height, int cells) {
-  if (dim == 2)
-    return fmt::format("mesh: {{rectangle: {{lengths: [{}, {}], elements: [{}, {}]}}}}", length,
-                       height, cells, cells);
-  return fmt::format("mesh: {{box: {{lengths: [{0}, {1}, {0}], elements: [{2}, {2}, {2}]}}}}",
-                     length, height, cells);
-}
-
-std::string text(const Press& p) {
-  const std::string law =
-      "material: {linear_elastic: {youngs_modulus: 2.1e10, poissons_ratio: 0.3, density: 7800.0}}";
-  const bool space = p.dim == 3;
-  std::string out =
-      fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: {}, window: {}}}\n", number(end),
-                  number(window));
-  out += fmt::format(
-      "bodies:\n  block: {{model: {{fe: {{dimension: {}, {}}}}}, {}, integrator: "
-      "{{{}}}, constraints: {{base: {{on: bottom, fixed: true}}}}, ports: {{top: "
-      "{{side: top}}}}}}\n",
-      p.dim, mesh(p.dim, 0.1, 0.1, 2), law, p.scheme);
-  const std::string where = fmt::format(
-      "initial: {{position: [-0.05, {}{}]}}, ports: {{face: "
-      "{{side: bottom}}}}",
-      number(0.1 + p.gap), space ? ", -0.05" : "");
+/// `more`: sections beside those of bodies and contact.
+ResultPtr run(const Press& p, const std::string& more = "") {
+  const SolidText block{.name = "block",
+                        .material =
+                            "linear_elastic: {youngs_modulus: 2.1e10, poissons_ratio: 0.3, "
+                            "density: 7800.0}",
+                        .integrator = p.scheme,
+                        .sides = {"top"},
+                        .more = "    constraints: {base: {on: bottom, fixed: true}}\n",
+                        .block = block_in(p.dim, {0.1, 0.1, 0.1}, {2, 2, 2})};
+  SolidText press = tool("press", block_in(p.dim, {0.2, 0.02, 0.2}, {1, 1, 1}),
+                         {-0.05, 0.1 + p.gap, -0.05}, "bottom");
   if (p.mover == "tool") {
-    out += fmt::format(
-        "  press: {{model: {{rigid_tool: {{dimension: {}, {}, way: [\"{}\", \"{}\"{}]"
-        "{}}}}}, {}}}\n",
-        p.dim, mesh(p.dim, 0.2, 0.02, 1), p.across, p.way, space ? ", \"0\"" : "",
-        p.step > 0.0 ? ", step: " + number(p.step) : "", where);
+    press.keys =
+        fmt::format("way: [\"{}\", \"{}\"{}], {}", p.across, p.way, p.dim == 3 ? ", \"0\"" : "",
+                    p.step > 0.0 ? fmt::format("step: {}, ", number(p.step)) : "");
   } else {
-    out += fmt::format(
-        "  press: {{model: {{fe: {{dimension: {}, {}}}}}, {}, integrator: {{newmark: "
-        "{{step: 5.0e-6}}}}, constraints: {{drive: {{on: top, x: \"{}\", y: \"{}\"{}"
-        "}}}}, {}}}\n",
-        p.dim, mesh(p.dim, 0.2, 0.02, 2), law, p.across, p.way, space ? ", z: \"0\"" : "", where);
+    press.model = "fe";
+    press.material = block.material;
+    press.integrator = "newmark: {step: 5.0e-6}";
+    press.more = fmt::format("    constraints: {{drive: {{on: top, x: \"{}\", y: \"{}\"{}}}}}\n",
+                             p.across, p.way, p.dim == 3 ? ", z: \"0\"" : "");
+    press.block.cells = block.block.cells;
   }
-  return out +
-         "interfaces: {pressed: {sides: [block.top, press.face], contact: {}}}\n"
-         "schwarz: {energy_guard: 1.0e9}\n";  // coarse steps gain some, which is not asked
+  return run_solids(end, window, {block, press}, touching("pressed", "block.top", "press.face"),
+                    "schwarz: {energy_guard: 1.0e9}\n" + more);  // coarse steps gain some
 }
 
 class Pressed : public testing::TestWithParam<Press> {};
 
 TEST_P(Pressed, IsSeenWithAndWithoutFields) {
-  const std::string scene = text(GetParam());
-  const auto freely = run_document(Document::from_text("test", scene));
-  const auto stopped =
-      run_document(Document::from_text("test", scene + "output: {fields: {every: 1}}\n"));
+  const auto freely = run(GetParam());
+  const auto stopped = run(GetParam(), "output: {fields: {every: 1}}\n");
   ASSERT_TRUE(freely->completed() && stopped->completed());
   const double impulse = freely->measure("contact.pressed.impulse");
   const double there = stopped->measure("contact.pressed.impulse");
@@ -111,11 +95,10 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// What is prescribed to stay away stays unseen: a way that ends short of the block.
 TEST(PressedNot, AWayThatEndsShortOfTheBlockPressesNothing) {
-  const auto run = run_document(Document::from_text(
-      "test", text({.name = "short", .way = "-2.99e-4 * sin(_pi * t / 2.0e-3)"})));
-  EXPECT_TRUE(run->completed());
-  EXPECT_EQ(run->measure("contact.pressed.impulse"), 0.0);
-  EXPECT_EQ(run->measure("contact.pressed.closings"), 0.0);
+  const auto still = run({.name = "short", .way = "-2.99e-4 * sin(_pi * t / 2.0e-3)"});
+  EXPECT_TRUE(still->completed());
+  EXPECT_EQ(still->measure("contact.pressed.impulse"), 0.0);
+  EXPECT_EQ(still->measure("contact.pressed.closings"), 0.0);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -35,7 +35,7 @@ struct Chain {
             .port = "skin",
             .side = "boundary"};
   }
-  std::unique_ptr<RunResult> run() const {
+  ResultPtr run() const {
     const auto role = [](const std::string& side) {
       return fmt::format(", transmission: {{unilateral: {{kinematic: {}}}}}", side);
     };
@@ -51,8 +51,8 @@ struct Chain {
 /// blocks, and once more at the second contact.
 void expect_handed_on(const RunResult& result, const std::string& what) {
   ASSERT_TRUE(result.completed()) << what;
-  EXPECT_LE(result.momentum_error(), 1.0e-11) << what;  // forces balance point by point
-  EXPECT_NEAR(result.energy_error(), 0.0, 0.01) << what;
+  EXPECT_LE(result.momentum_error(), 1.0e-11) << what;      // forces balance point by point
+  EXPECT_NEAR(result.energy_error(), 0.0, 1.0e-3) << what;  // measured 6e-5, coarse as they are
   EXPECT_NEAR(result.velocity(0), 0.0, 0.1 * speed) << what;
   EXPECT_NEAR(result.velocity(1), 0.0, 0.1 * speed) << what;
   EXPECT_NEAR(result.velocity(2), speed, 0.15 * speed) << what;
@@ -60,12 +60,12 @@ void expect_handed_on(const RunResult& result, const std::string& what) {
     EXPECT_EQ(result.times(RunEvent::Kind::contact_closed, joint).size(), 1u) << what;
     EXPECT_EQ(result.times(RunEvent::Kind::contact_opened, joint).size(), 1u) << what;
   }
-  // Each interface tells its own force, not that of the whole port.
+  // Each interface tells its own force, not that of the whole port. Bodies solve their equations to
+  // 1e-9 of the forces.
+  const double solved = 1.0e-9 * result.masses[2] * speed;
   const double mass = result.masses[2], after = result.velocity(2);
-  EXPECT_NEAR(result.measure("contact.second.impulse"), mass * after, 1.0e-9 * mass * speed)
-      << what;
-  EXPECT_NEAR(result.measure("contact.first.impulse"), mass * (speed - result.velocity(0)),
-              1.0e-9 * mass * speed)
+  EXPECT_NEAR(result.measure("contact.second.impulse"), mass * after, solved) << what;
+  EXPECT_NEAR(result.measure("contact.first.impulse"), mass * (speed - result.velocity(0)), solved)
       << what;
 }
 
@@ -78,7 +78,7 @@ TEST(SeveralPartners, RolesMayBeMixedOnOneSkin) {
           chain.scheme = scheme;
           chain.window = window;
           chain.kinematic = {first, second};
-          const std::unique_ptr<RunResult> result = chain.run();
+          const ResultPtr result = chain.run();
           const std::string what = fmt::format("{}, windows of {} s, kinematic {} and {}", scheme,
                                                window, first, second);
           expect_handed_on(*result, what);
@@ -96,15 +96,14 @@ TEST(SeveralPartners, OfRubberAndInSpace) {
     Chain chain;
     chain.dim = dim;
     chain.law = dim == 2 ? "neo_hookean" : "linear_elastic";
-    const std::unique_ptr<RunResult> result = chain.run();
+    const ResultPtr result = chain.run();
     expect_handed_on(*result, fmt::format("{} dimensions", dim));
     EXPECT_LE(result->measure("schwarz.iterations_mean"), dim == 2 ? 3.0 : 1.0);
   }
 }
 
 TEST(SeveralPartners, AMirrorAlongTheDiagonalChangesNothing) {
-  const std::unique_ptr<RunResult> result =
-      run_file(ABUT_SOURCE_DIR "/configs/contact/ball_in_corner.yaml");
+  const ResultPtr result = run_file(ABUT_SOURCE_DIR "/configs/contact/ball_in_corner.yaml");
   ASSERT_TRUE(result->completed());
   // Sums in another order, over 160 windows.
   const double rounding = 1.0e-12;

@@ -18,7 +18,7 @@
 #include "coordinator/record/expectations.hpp"
 #include "coordinator/split/split_scene.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -39,33 +39,37 @@ class Folder {
   fs::path path_;
 };
 
+/// Held at one end, pushed on a side, with a start that is no field of one part alone.
 struct Plate {
-  std::string element = "quad4", scheme = "newmark";
+  std::string element = "quad4", integrator = implicit_scheme("newmark", 0.02);
   std::string law = "linear_elastic";
-  std::string more = {};  // keys of the body
-  std::string rest = {};  // of the scene
+  bool still = false;                       // no field of velocity
+  double end = 2.0, window = 0.2;           // [s]
+  std::string port = "corner", start = {};  // the side of its name; other keys of initial
+  std::string others = {}, rest = {};       // bodies before it; what comes after it
 
-  int dim() const { return element.starts_with("hex") || element.starts_with("tet") ? 3 : 2; }
-
-  /// Held at one end, pushed on a side, with a start that is no field of one part alone.
   std::string text() const {
-    const bool space = dim() == 3;
-    const std::string mesh = space ? block_mesh({2.0, 0.9, 0.8}, {6, 3, 3}, element)
-                                   : block_mesh({2.0, 0.9}, {10, 5}, element);
-    return fmt::format(
-        "meta: {{title: test}}\ntime: {{begin: 0.0, end: 2.0, window: 0.2}}\nbodies:\n  plate:\n"
-        "    model: {{fe: {{dimension: {}, mesh: {{{}}}, map: [{}]}}}}\n    material: {{{}}}\n"
-        "    integrator: {{{}: {{step: {}}}}}\n"
-        "    initial: {{position: {}, velocity_field: [{}]}}\n"
+    const bool space = element_named(element).dim == 3;
+    SolidText plate{.name = "plate",
+                    .material = unit_law(law, 0.25),
+                    .integrator = integrator,
+                    .position = {0.3, 0.0, 0.1},
+                    .start = start,
+                    .sides = {port},
+                    .block = space ? SolidText::Block{{2.0, 0.9, 0.8}, {6, 3, 3}, element}
+                                   : SolidText::Block{{2.0, 0.9}, {10, 5}, element}};
+    plate.keys =
+        space ? "map: [\"x\", \"y\", \"z + 0.1*x*z\"], " : "map: [\"x\", \"y + 0.1*x*y\"], ";
+    if (!still)
+      plate.field =
+          space ? "\"0.1*sin(2*x)*y\", \"0.02*z\", \"0.03*x*y\"" : "\"0.1*sin(2*x)\", \"0.03*x*y\"";
+    plate.more = fmt::format(
         "    constraints: {{wall: {{on: left, fixed: true}}, ground: {{on: bottom, symmetry: "
         "true}}}}\n    loads: {{push: {{on: top, traction: [{}]}}}}\n"
-        "    points: {{corner: {{at: {}}}}}\n    ports: {{corner: {{side: corner}}}}\n{}{}",
-        dim(), mesh, space ? "\"x\", \"y\", \"z + 0.1*x*z\"" : "\"x\", \"y + 0.1*x*y\"",
-        unit_law(law, 0.25), scheme, scheme == "newmark" ? 0.02 : 0.01,
-        space ? "[0.3, 0.0, 0.1]" : "[0.3, 0.0]",
-        space ? "\"0.1*sin(2*x)*y\", \"0.02*z\", \"0.03*x*y\"" : "\"0.1*sin(2*x)\", \"0.03*x*y\"",
+        "    points: {{corner: {{at: {}}}}}\n",
         space ? "\"0\", \"0.001\", \"0.002\"" : "\"0.002\", \"0.001\"",
-        space ? "[2.3, 0.9, 1.06]" : "[2.3, 1.08]", more, rest);
+        space ? "[2.3, 0.9, 1.06]" : "[2.3, 1.08]");
+    return scene_text(end, window, others + plate.text() + rest);
   }
 };
 
@@ -79,13 +83,17 @@ SplitScene split(const Document& document, int bodies, const fs::path& out,
   return split_scene(document, read_scene(document), {bodies, body, out});
 }
 
-std::unique_ptr<RunResult> run_split(const Folder& folder, const std::string& text, int bodies) {
-  const fs::path out = folder.path() / std::to_string(bodies);
-  const SplitScene parts = split(written(folder.path(), text), bodies, out);
+/// The file of the parts' scene, which is written with their meshes.
+std::string put(const SplitScene& parts, const fs::path& out) {
   fs::create_directory(out);
   for (const auto& [name, mesh] : parts.meshes) std::ofstream(out / name) << mesh;
   std::ofstream(out / "plate.yaml") << parts.scene;
-  return run_file((out / "plate.yaml").string());
+  return out / "plate.yaml";
+}
+
+ResultPtr run_split(const Folder& folder, const std::string& text, int bodies) {
+  const fs::path out = folder.path() / std::to_string(bodies);
+  return run_file(put(split(written(folder.path(), text), bodies, out), out));
 }
 
 /// The sum over the parts.
@@ -135,15 +143,11 @@ TEST(SplitBodies, MoveAsTheWholeOne) {
 /// Schemes that damp keep accelerations, in which forces between parts have no share.
 TEST(SplitBodies, DampedOnesToo) {
   const Folder folder;
-  for (const char* scheme : {"generalized_alpha", "hht_alpha"}) {
-    SCOPED_TRACE(scheme);
-    Plate plate{.scheme = scheme};
-    std::string text = plate.text();
-    const std::string step = "step: 0.01}";
-    const bool hht = plate.scheme == "hht_alpha";
-    // Of ten steps to a window and more than a transit of a cell, which is where it shows.
-    text.replace(text.find(step), step.size(),
-                 hht ? "step: 0.2, alpha: -0.2}" : "step: 0.2, spectral_radius: 0.5}");
+  // Of a step to a window and more than a transit of a cell, which is where it shows.
+  for (const char* integrator : {"generalized_alpha: {step: 0.2, spectral_radius: 0.5}",
+                                 "hht_alpha: {step: 0.2, alpha: -0.2}"}) {
+    SCOPED_TRACE(integrator);
+    const std::string text = Plate{.integrator = integrator}.text();
     const auto whole = run_document(written(folder.path(), text));
     const auto parts = run_split(folder, text, 3);
     // Momenta have other parts of what the scheme holds back: it is told where no node is held
@@ -171,7 +175,7 @@ TEST(SplitBodies, NonlinearOnesToo) {
 TEST(SplitBodies, ExplicitOnesMoveAlikeHoweverManyTheyAre) {
   for (const char* element : {"quad4", "tet4"}) {
     const Folder folder;
-    const Plate plate{.element = element, .scheme = "central_difference"};
+    const Plate plate{.element = element, .integrator = explicit_scheme(0.01)};
     const auto two = run_split(folder, plate.text(), 2);
     for (const int bodies : {3, 4, 6}) {
       SCOPED_TRACE(fmt::format("{} {}", element, bodies));
@@ -188,12 +192,9 @@ TEST(SplitBodies, ExplicitOnesMoveAlikeHoweverManyTheyAre) {
 TEST(SplitBodies, WithoutInertiaToo) {
   for (const char* element : {"quad4", "tri6", "hex8"}) {
     const Folder folder;
-    Plate plate{.element = element, .scheme = "quasi_static"};
-    std::string text = plate.text();
-    const std::size_t start = text.find(", velocity_field");
-    text.erase(start, text.find('}', start) - start);
-    text.replace(text.find("step: 0.01"), 10, "step: 0.2");
-    text.replace(text.find("end: 2.0"), 8, "end: 0.4");
+    const Plate plate{
+        .element = element, .integrator = "quasi_static: {step: 0.2}", .still = true, .end = 0.4};
+    const std::string text = plate.text();
     const auto whole = run_document(written(folder.path(), text));
     for (const int bodies : {2, 3, 5}) {
       SCOPED_TRACE(fmt::format("{} {}", element, bodies));
@@ -217,18 +218,16 @@ TEST(SplitBodies, HaveKeysThatBelongThereAlone) {
   const Folder folder;
   for (const char* scheme : {"central_difference", "newmark", "hht_alpha"}) {
     SCOPED_TRACE(scheme);
-    const Plate plate{.scheme = scheme};
+    const Plate plate{.integrator = implicit_scheme(scheme, scheme[0] == 'n' ? 0.02 : 0.01)};
     const fs::path out = folder.path() / scheme;
     const SplitScene parts = split(written(folder.path(), plate.text()), 2, out);
-    fs::create_directory(out);
-    for (const auto& [name, mesh] : parts.meshes) std::ofstream(out / name) << mesh;
-    std::ofstream(out / "plate.yaml") << parts.scene;
+    const std::string file = put(parts, out);
     for (const char* key : {"equations:", "threads:", "contact_layer:", "formulation:"})
       EXPECT_EQ(parts.scene.find(key), std::string::npos) << key;
     for (const char* edit : {"time.end=0.2", "bodies.plate_1.ports.corner=null",
                              "bodies.*.integrator={newmark: {step: 0.02}}",
                              "bodies.*.integrator={hht_alpha: {step: 0.02, alpha: -0.1}}"}) {
-      const Document document = Document::load((out / "plate.yaml").string(), {edit});
+      const Document document = Document::load(file, {edit});
       EXPECT_EQ(refusal([&] { check_body_keys(read_scene(document), document); }), "not refused")
           << edit;
     }
@@ -253,10 +252,7 @@ TEST(SplitBodies, AreDividedAgain) {
   const fs::path once = folder.path() / "2", twice = folder.path() / "again";
   const Document document = Document::load((once / "plate.yaml").string());
   const SplitScene parts = split(document, 2, twice, "plate_1");
-  fs::create_directory(twice);
-  for (const auto& [name, mesh] : parts.meshes) std::ofstream(twice / name) << mesh;
-  std::ofstream(twice / "plate.yaml") << parts.scene;
-  const auto again = run_file((twice / "plate.yaml").string());
+  const auto again = run_file(put(parts, twice));
   ASSERT_EQ(again->masses.size(), 3u);
   EXPECT_NEAR(corner(*again, "displacement.y"), corner(*whole, "displacement.y"), same_motion);
 }
@@ -264,22 +260,21 @@ TEST(SplitBodies, AreDividedAgain) {
 /// What touched the whole touches the part that has the face: a block that strikes the plate.
 TEST(SplitBodies, TouchWithFacesThatStayWhole) {
   const Folder folder;
+  const SolidText block{.name = "block",
+                        .material = unit_law("linear_elastic", 0.25),
+                        .integrator = explicit_scheme(0.01),
+                        .position = {2.31, 0.2},
+                        .velocity = {-0.1},
+                        .sides = {"left"},
+                        .block = {{1.0, 0.4}, {8, 3}}};
+  // A window of one step: what lies behind a cut is not known to a contact before it is over.
   const Plate plate{
-      .scheme = "central_difference",
-      .rest =
-          "  block:\n    model: {fe: {dimension: 2, mesh: {rectangle: {lengths: [1.0, 0.4], "
-          "elements: [8, 3]}}}}\n    material: {linear_elastic: {youngs_modulus: 1.0, "
-          "poissons_ratio: 0.25, density: 1.0}}\n    integrator: {central_difference: {step: "
-          "0.01}}\n    initial: {position: [2.31, 0.2], velocity: [-0.1, 0.0]}\n"
-          "    ports: {sole: {side: left}}\n"
-          "interfaces:\n  hit: {sides: [plate.face, block.sole], contact: {}}\n"};
-  std::string text = plate.text();
-  const std::string ports = "ports: {corner: {side: corner}", field = ", velocity_field";
-  text.replace(text.find(ports), ports.size(), "ports: {face: {side: right}");
-  // Of one step: what lies behind a cut is not known to a contact before the window is over.
-  text.replace(text.find("window: 0.2"), 11, "window: 0.01");
-  const std::size_t start = text.find(field);
-  text.erase(start, text.find('}', start) - start);
+      .integrator = explicit_scheme(0.01),
+      .still = true,
+      .window = 0.01,
+      .port = "right",
+      .rest = block.text() + "interfaces:\n" + touching("hit", "plate.right", "block.left")};
+  const std::string text = plate.text();
   const auto whole = run_document(written(folder.path(), text));
   const double after = whole->measure("body.block.momentum.x");
   EXPECT_GT(after, 0.0);  // it springs back
@@ -317,10 +312,7 @@ TEST(SplitBodies, KeepTheExpectationsThatMakeSense) {
     SCOPED_TRACE(bodies);
     const fs::path out = folder.path() / fmt::format("expect_{}", bodies);
     const SplitScene parts = split(written(folder.path(), text), bodies, out);
-    fs::create_directory(out);
-    for (const auto& [name, mesh] : parts.meshes) std::ofstream(out / name) << mesh;
-    std::ofstream(out / "plate.yaml") << parts.scene;
-    const Document divided = Document::load((out / "plate.yaml").string());
+    const Document divided = Document::load(put(parts, out));
     const auto run = run_document(divided);
     const std::vector<Expectation> kept = read_scene(divided).meta.expect;
     EXPECT_GT(kept.size(), 20u);
@@ -340,38 +332,25 @@ TEST(SplitBodies, KeepTheExpectationsThatMakeSense) {
 
 TEST(SplitBodies, WhatCannotBeDividedIsRefusedByName) {
   const Folder folder;
-  const std::string text = Plate{}.text();
-  const auto said = [&](const std::string& from, const std::string& to,
-                        const std::string& body = "plate") {
-    std::string other = text;
-    if (!from.empty()) other.replace(other.find(from), from.size(), to);
-    const Document document = written(folder.path(), other);
+  const auto said = [&](const Plate& plate, const std::string& body = "plate") {
+    const Document document = written(folder.path(), plate.text());
     return refusal([&] { split(document, 2, folder.path() / "out", body); });
   };
-  const auto expect = [](const std::string& told, const char* words) {
-    EXPECT_NE(told.find(words), std::string::npos) << told;
+  const auto tool = [](const char* name) {
+    return SolidText{.name = name,
+                     .mesh = "disk: {radius: 1.0, core: 2, layers: 1}",
+                     .side = "mantle",
+                     .model = "rigid_tool"}
+        .text();
   };
-  expect(said("", "", "disk"), "has no body disk. Choose one of plate.");
-  expect(said("initial: {", "initial: {adjust: true, "), "moves nodes of the whole body");
-  std::string still = text;
-  const std::size_t start = still.find(", velocity_field");
-  still.erase(start, still.find('}', start) - start);
-  still.replace(still.find("newmark"), 7, "quasi_static");
-  still += "contact: {everything: {}}\n";
-  const Document touching = written(folder.path(), still);
-  expect(refusal([&] { split(touching, 2, folder.path() / "out"); }),
-         "bodies.plate.ports.corner: may touch another body");
-  expect(said("  plate:",
-              "  plate_1:\n    model: {rigid_tool: {dimension: 2, mesh: {disk: "
-              "{radius: 1.0, core: 2, layers: 1}}}}\n    ports: {a: {side: mantle}}\n"
-              "  plate:"),
-         "is the name that a part would have");
-  expect(said("  plate:",
-              "  tool:\n    model: {rigid_tool: {dimension: 2, mesh: {disk: "
-              "{radius: 1.0, core: 2, layers: 1}}}}\n    ports: {a: {side: mantle}}\n"
-              "  plate:",
-              "tool"),
-         "rigid_tool has no cells to deal out");
+  expect_words(said({}, "disk"), {"has no body disk. Choose one of plate."});
+  expect_words(said({.start = "adjust: true"}), {"moves nodes of the whole body"});
+  expect_words(said({.integrator = implicit_scheme("quasi_static", 0.02),
+                     .still = true,
+                     .rest = "contact: {everything: {}}\n"}),
+               {"bodies.plate.ports.corner: may touch another body"});
+  expect_words(said({.others = tool("plate_1")}), {"is the name that a part would have"});
+  expect_words(said({.others = tool("tool")}, "tool"), {"rigid_tool has no cells to deal out"});
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -79,8 +79,7 @@ TEST(StacksAtRest, BearTheirWeight) {
       // What sweeps leave of forces is some ten times their tolerance; rounding lets them reach no
       // less than 1e-7 where masses differ by a million. Of five that grow to it that is 3e-6.
       const bool hard = grow && r > 1.0e5;
-      const auto result =
-          run_document(Document::from_text("test", stack(masses, r, r > 1.0e5 ? 1.0e-7 : 1.0e-8)));
+      const auto result = run_text(stack(masses, r, r > 1.0e5 ? 1.0e-7 : 1.0e-8));
       ASSERT_TRUE(result->completed());
       const double heaviest = std::ranges::max(masses);
       double above = 0.0;

@@ -152,22 +152,25 @@ class Stranger final : public Subdomain {
   const Advance* request_ = nullptr;
 };
 
-std::string text(const std::string& joined) {
-  return fmt::format(
-      "meta: {{title: test}}\ntime: {{begin: 0.0, end: 3.0e-4, window: 6.0e-6}}\nbodies:\n"
-      "  block: {{model: {{fe: {{dimension: 2, mesh: {{rectangle: {{lengths: [0.1, 0.1], elements: "
-      "[4, 4]}}}}}}}}, initial: {{position: [-0.1, 0.0]}}, material: {{linear_elastic: "
-      "{{youngs_modulus: 2.1e10, poissons_ratio: 0.0, density: 7800.0}}}}, integrator: {{newmark: "
-      "{{step: {}}}}}, ports: {{right: {{side: right}}}}}}\n"
-      "  stranger: {{model: {{external: {{}}}}, launch: {{connect: {{}}}}}}\n"
-      "network: {{endpoint: \"tcp://127.0.0.1:5555\"}}\n"
-      "interfaces: {{hit: {{sides: [block.right, stranger.face], {}: {{}}}}}}\n"
-      "schwarz: {{tolerance: 1.0e-8, max_iterations: 100}}\n",
-      number(step), joined);
+std::string text(const std::string& way) {
+  const SolidText block{.name = "block",
+                        .material =
+                            "linear_elastic: {youngs_modulus: 2.1e10, poissons_ratio: 0.0, "
+                            "density: 7800.0}",
+                        .integrator = implicit_scheme("newmark", step),
+                        .position = {-0.1},
+                        .sides = {"right"},
+                        .block = {{0.1, 0.1}, {4, 4}}};
+  return scene_text(
+      3.0e-4, 6.0e-6, block.text() + "  stranger: {model: {external: {}}, launch: {connect: {}}}\n",
+      fmt::format("network: {{endpoint: \"tcp://127.0.0.1:5555\"}}\n"
+                  "interfaces: {{hit: {{sides: [block.right, stranger.face], {}: {{}}}}}}\n"
+                  "schwarz: {{tolerance: 1.0e-8, max_iterations: 100}}\n",
+                  way));
 }
 
-std::unique_ptr<RunResult> run_with(Stranger& stranger, const std::string& joined = "contact") {
-  const Document document = Document::from_text("test", text(joined));
+ResultPtr run_with(Stranger& stranger, const std::string& way = "contact") {
+  const Document document = Document::from_text("test", text(way));
   const Scene scene = read_scene(document);
   const std::vector<std::unique_ptr<Subdomain>> here = launch_local(scene, document);
   auto result = std::make_unique<RunResult>();

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -69,7 +69,7 @@ std::vector<Pair> pairs() {
 }
 
 /// Bars of a length of 1 hit each other with their ends, which slide past each other.
-std::unique_ptr<RunResult> impact(const Pair& pair, double along, const std::string& friction) {
+ResultPtr impact(const Pair& pair, double along, const std::string& friction) {
   // In space as few cells across as do not match; a face that yields leans by its cells.
   const int less = pair.dim == 3 && !pair.material.starts_with("j2") ? 1 : 0;
   const auto bar = [&pair, along, less](const std::string& name, int across, double way) {

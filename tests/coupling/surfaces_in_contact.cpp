@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -45,7 +45,7 @@ SolidText block(const std::string& name, const Block& b, int dim, double place, 
           .side = side};
 }
 
-std::unique_ptr<RunResult> run(const Impact& impact) {
+ResultPtr run(const Impact& impact) {
   return run_solids(impact.end, impact.window,
                     {block("left", impact.left, impact.dim, -1.0, speed, "right"),
                      block("right", impact.right, impact.dim, 0.002, -speed, "left")},
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(Pairs, SurfaceImpact, testing::ValuesIn(impacts()),
 
 TEST_P(SurfaceImpact, ExchangesVelocities) {
   const Impact& impact = GetParam();
-  const std::unique_ptr<RunResult> result = run(impact);
+  const ResultPtr result = run(impact);
   ASSERT_TRUE(result->completed());
   const bool both_explicit = is_explicit(impact.left) && is_explicit(impact.right);
   // Newton's method leaves 1e-9 of the forces, which 240 windows add up.
@@ -136,7 +136,7 @@ TEST(SurfaceSteps, OneSweepWhateverStepsAndWindowsAre) {
                       {"quad4", "linear_elastic", scheme(n, unit * b), 3}};
         impact.window = windows * common;
         impact.end = std::ceil(2.6 / impact.window) * impact.window;
-        const std::unique_ptr<RunResult> result = run(impact);
+        const ResultPtr result = run(impact);
         const std::string what = fmt::format("{} {} on {} {}, {} windows", k, a, n, b, windows);
         ASSERT_TRUE(result->completed()) << what;
         EXPECT_EQ(result->measure("schwarz.iterations_max"), 1.0) << what;

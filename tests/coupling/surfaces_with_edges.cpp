@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -28,7 +28,7 @@ void PrintTo(const Fall& fall, std::ostream* out) { *out << fall.name; }
 constexpr double speed = 0.01;  // of that of sound
 
 /// A brick of 0.4 x 0.3, its lowest corner 0.004 above a block of 1 x 0.4, which is free.
-std::unique_ptr<RunResult> run(const Fall& fall) {
+ResultPtr run(const Fall& fall) {
   const bool plane = fall.dim == 2;
   const double c = std::cos(fall.tilt), s = std::sin(fall.tilt);
   const std::string up = plane ? "y" : "z";
@@ -105,7 +105,7 @@ TEST_P(SharpCorner, PressesOnAFace) {
 
 /// A brick of rubber of 0.2 x 0.1 falls spinning at `rate`, and lands on a corner wherever that is
 /// then: facets on both sides of it come and go while it turns.
-std::unique_ptr<RunResult> spin(int dim, double rate, bool rigid) {
+ResultPtr spin(int dim, double rate, bool rigid) {
   const bool plane = dim == 2;
   const double height = 0.14, fall = 0.015;
   const std::string up = plane ? "y" : "z";

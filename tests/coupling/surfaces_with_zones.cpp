@@ -7,14 +7,13 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
 
 /// A disk that falls on a plate, along it too.
-std::unique_ptr<RunResult> run(double width, const std::string& of_disk,
-                               const std::string& of_plate, double along) {
+ResultPtr run(double width, const std::string& of_disk, const std::string& of_plate, double along) {
   const SolidText disk{.name = "disk",
                        .mesh = "disk: {radius: 0.25, core: 4, layers: 3}",
                        .material = unit_law("linear_elastic", 0.3),
@@ -34,8 +33,8 @@ std::unique_ptr<RunResult> run(double width, const std::string& of_disk,
 
 TEST(ContactZone, HoldsWhatContactReaches) {
   const std::string leapfrog = "central_difference: {step: 0.01}", slow = "newmark: {step: 0.02}";
-  for (const auto& [disk, plate] : {std::pair(leapfrog, leapfrog), std::pair(leapfrog, slow),
-                                    std::pair(slow, leapfrog)}) {
+  for (const auto& [disk, plate] :
+       {std::pair(leapfrog, leapfrog), std::pair(leapfrog, slow), std::pair(slow, leapfrog)}) {
     for (const double along : {0.0, 0.2}) {  // 0.4 in all, five facets
       const auto narrow = run(3.0, disk, plate, along);
       const auto wide = run(12.0, disk, plate, along);

@@ -15,7 +15,8 @@
 
 #include "coordinator/couple.hpp"
 #include "coordinator/tied_estimate.hpp"
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
@@ -38,15 +39,15 @@ struct Slabs {
 
   SolidText body(std::size_t k) const {
     const double thick = 5.0 / across[0];
-    SolidText out{.name = k == 0 ? "one" : "two",
-                  .material = unit_law("linear_elastic", 0.25),
-                  .integrator = scheme_named(schemes[k], k == 0 ? step() : step() / ratio),
-                  .position = {k == 0 ? 0.0 : thick},
-                  .side = k == 0 ? "right" : "left",
-                  .lengths = std::vector<double>(index(dim), 1.0),
-                  .cells = std::vector<int>(index(dim), across[k])};
-    out.lengths[0] = thick;
-    out.cells[0] = (5 * across[k] + across[0] - 1) / across[0];
+    SolidText out{
+        .name = k == 0 ? "one" : "two",
+        .material = unit_law("linear_elastic", 0.25),
+        .integrator = scheme_named(schemes[k], k == 0 ? step() : step() / ratio),
+        .position = {k == 0 ? 0.0 : thick},
+        .side = k == 0 ? "right" : "left",
+        .block = {std::vector<double>(index(dim), 1.0), std::vector<int>(index(dim), across[k])}};
+    out.block.lengths[0] = thick;
+    out.block.cells[0] = (5 * across[k] + across[0] - 1) / across[0];
     if (k == 1 && partner != "fe") {  // stands at the start
       out.model = partner;
       out.velocity = {0.0};
@@ -66,7 +67,7 @@ struct Slabs {
                                fmt::format("schwarz: {{tolerance: {}, {}}}\n", number(tolerance),
                                            schwarz)));
   }
-  std::unique_ptr<RunResult> run() const { return run_document(document()); }
+  ResultPtr run() const { return run_document(document()); }
   Estimate::Ties estimate() const {
     const Document text = document();
     const Scene scene = read_scene(text);
@@ -201,7 +202,7 @@ TEST(TiedBands, NetsWithRedundantRowsConverge) {
                             {"schwarz.ties.band=waves", "time.end=2.0"});
   ASSERT_TRUE(run->completed());
   EXPECT_LE(run->measure("schwarz.iterations_mean"), 3.0);
-  EXPECT_NEAR(run->measure("energy.total.relative_drift_max"), 0.0, 1.0e-8);
+  EXPECT_NEAR(run->measure("energy.total.relative_drift_max"), 0.0, roundoff(1.0e5, 1.0));
 }
 
 /// Without kernels, for comparison: the force is relaxed, and the longer windows are, the worse.
@@ -214,7 +215,8 @@ TEST(TiedBands, AitkenTakesMoreCalls) {
     ASSERT_TRUE(relaxed->completed());
     EXPECT_GT(relaxed->measure("schwarz.iterations_mean"), last);
     last = relaxed->measure("schwarz.iterations_mean");
-    EXPECT_NEAR(relaxed->measure("energy.total.relative_drift_max"), 0.0, 1.0e-5);
+    EXPECT_NEAR(relaxed->measure("energy.total.relative_drift_max"), 0.0,
+                1.0e-6);  // windows end at 1e-4, squared and summed
   }
 }
 

@@ -23,7 +23,7 @@ namespace {
 /// Displacements of all nodes at the end, left to right, a joint's node once.
 struct Field {
   std::vector<double> place, u;
-  std::unique_ptr<RunResult> run;
+  ResultPtr run;
 };
 
 using Pulse = double (*)(double);
@@ -259,6 +259,7 @@ TEST(TiedBars, OfUnequalStepsNeitherGainNorLose) {
   for (const char* name : {"central_difference", "newmark"}) {
     const Field two = run_displaced(ringing(name, 10, false, 10000), at_rest);
     ASSERT_TRUE(two.run->completed());
+    // Of second order in the coarse step.
     EXPECT_LT(std::abs(two.run->energy_error()), 1.0e-3) << name;
     EXPECT_LE(two.run->measure("schwarz.iterations_max"), 3.0);
   }
@@ -289,7 +290,7 @@ TEST(TiedBars, OfAnyStepsShareANode) {
           bar.body_force = 0.0;
         }
         scene.end = 2.0e-2;
-        const std::unique_ptr<RunResult> r = run(scene);
+        const ResultPtr r = run(scene);
         ASSERT_TRUE(r->completed());
         EXPECT_LT(std::abs(r->energy_error()), roundoff(2.0e5 * 100, 1.0));
         EXPECT_LE(r->measure("schwarz.iterations_mean"), 1.01);
@@ -325,7 +326,7 @@ TEST(TiedBars, OfDifferentVelocitiesStartWithTheOneOfTheirNode) {
   for (BarText& bar : scene.bars) bar.integrator = scheme("newmark", 1.0e-6);
   scene.bars[0].fixed = "";
   scene.bars[1].velocity = -1.0;
-  const std::unique_ptr<RunResult> r = run(scene);
+  const ResultPtr r = run(scene);
   ASSERT_TRUE(r->completed());
   EXPECT_LT(r->momentum_error(), roundoff(1.0e4 * 10, 1.0));
   // the two half nodes at the joint lose their kinetic energy: one of 80 cells
@@ -342,7 +343,7 @@ TEST(TiedBars, OfThePublishedFormAreOneBar) {
   scene.end = 1.0e-3;
   scene.transmission = "dirichlet_neumann: {dirichlet: a.right}";
   scene.schwarz = "accelerator: {anderson: {}}, tolerance: 1.0e-5";
-  const std::unique_ptr<RunResult> r = run(scene);
+  const ResultPtr r = run(scene);
   ASSERT_TRUE(r->completed()) << r->events.back().text;
   // what is handed over lacks the inertia of half a node (docs/METHOD.md, 6)
   EXPECT_LT(std::abs(r->energy_error()), 0.02);
@@ -356,7 +357,7 @@ TEST(TiedBars, ToAWallAreFixedThere) {
   scene.interfaces.push_back({"b.right", "wall.left"});
   scene.bars[0].velocity = scene.bars[1].velocity = 0.0;
   for (BarText& bar : scene.bars) bar.body_force = 10.0;
-  const std::unique_ptr<RunResult> tied = run(scene);
+  const ResultPtr tied = run(scene);
   ASSERT_TRUE(tied->completed());
   EXPECT_LT(std::abs(tied->rows.back().u[2]), 1.0e-30);  // the wall
   // each half hangs between its ends: the tips' mean force is half the weight

@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -57,19 +57,17 @@ struct Bar {
             .field = field(),
             .sides = sides,
             .more = more,
-            .lengths = space ? std::vector{to - from, 0.5, 0.5} : std::vector{to - from, 0.5},
-            .cells = space ? std::vector{along, 2, 2} : std::vector{along, 3}};
+            .block = {space ? std::vector{to - from, 0.5, 0.5} : std::vector{to - from, 0.5},
+                      space ? std::vector{along, 2, 2} : std::vector{along, 3}}};
   }
 };
 
 const std::string tie = joined("tie", "a.right", "b.left");
 const std::string sharp = "schwarz: {tolerance: 1.0e-9}\n";
 
-std::unique_ptr<RunResult> whole(const Bar& bar) {
-  return run_solids(1.0, 0.1, {bar.piece("a", 0.0, 2.0, {})});
-}
+ResultPtr whole(const Bar& bar) { return run_solids(1.0, 0.1, {bar.piece("a", 0.0, 2.0, {})}); }
 
-std::unique_ptr<RunResult> divided(const Bar& bar, double at = 1.0) {
+ResultPtr divided(const Bar& bar, double at = 1.0) {
   return run_solids(1.0, 0.1,
                     {bar.piece("a", 0.0, at, {"right"}), bar.piece("b", at, 2.0, {"left"})}, tie,
                     sharp);
@@ -161,6 +159,7 @@ TEST(TiedCombinations, DampingIntegratorsGoOnAsInWholeBodies) {
             100.0, 2.0,
             {coarse.piece("a", 0.0, 1.0, {"right"}), fine.piece("b", 1.0, 2.0, {"left"})}, tie);
         ASSERT_TRUE(result->completed());
+        // Rounding of a thousand steps at most.
         EXPECT_LE(result->measure("energy.total.relative_drift_end"), 1.0e-10);
       }
     }
@@ -176,8 +175,7 @@ TEST(TiedCombinations, CallsStayFewWhereNothingIsLinear) {
       return SolidText{.material = fmt::format("{}: {{{}}}", law, elastic),
                        .integrator = implicit_scheme(scheme, step),
                        .start = "displacement_field: [\"0\", \"0.393701*x^2\"]",
-                       .lengths = {0.127, 0.0254},
-                       .cells = {5 * cells, cells}};
+                       .block = {{0.127, 0.0254}, {5 * cells, cells}}};
     };
     SolidText a = body(k, 1.0e-6, 4), b = body(n, 1.0e-6 / ratio, 6);
     a.name = "a";
@@ -217,8 +215,7 @@ TEST(TiedCombinations, CallsDoNotGrowAsBodiesTurn) {
             .position = {at, -0.25},
             .field = "\"-y\", \"x\"",
             .sides = {side},
-            .lengths = {1.0, 0.5},
-            .cells = {2 * cells, cells}};
+            .block = {{1.0, 0.5}, {2 * cells, cells}}};
       };
       const auto result = run_solids(end, scheme[0] == 'c' ? 0.05 : 0.1,
                                      {half("a", -1.0, 4, "right"), half("b", 0.0, 6, "left")}, tie,

@@ -16,7 +16,7 @@
 #include <Eigen/LU>
 
 #include "subdomain_solver/fe/element.hpp"
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -32,13 +32,10 @@ SolidText half(const std::vector<double>& lengths, const std::vector<int>& cells
           .position = {0.0},
           .port = "joint",
           .side = joint,
-          .lengths = lengths,
-          .cells = cells,
-          .element = element};
+          .block = {lengths, cells, element}};
 }
 
-std::unique_ptr<RunResult> run(std::array<SolidText, 2> halves, double end = 1.0,
-                               double window = 1.0) {
+ResultPtr run(std::array<SolidText, 2> halves, double end = 1.0, double window = 1.0) {
   halves[0].name = "one";
   halves[1].name = "other";
   return run_solids(end, window, {halves[0], halves[1]}, joined("tie", "one.joint", "other.joint"));
@@ -63,8 +60,8 @@ std::string held(const Words& sides, const Field& field) {
 }
 
 /// Blocks of side 1, one beside the other; of rings one upon the other, from radius 1 on.
-std::unique_ptr<RunResult> pass(const Words& elements, const std::array<int, 2>& across,
-                                const std::string& plane, const Field& field) {
+ResultPtr pass(const Words& elements, const std::array<int, 2>& across, const std::string& plane,
+               const Field& field) {
   const std::size_t dim = field.u.size();
   const bool rings = plane == "axisymmetric";
   std::array<SolidText, 2> halves;
@@ -180,8 +177,8 @@ TEST(TiedSecondOrder, BendingPasses) {
 }
 
 /// Two halves of a bar that shake in all directions, the other one in finer steps.
-std::unique_ptr<RunResult> shaken(const Words& elements, const std::array<int, 2>& across,
-                                  const std::string& schemes, double ratio, std::size_t dim) {
+ResultPtr shaken(const Words& elements, const std::array<int, 2>& across,
+                 const std::string& schemes, double ratio, std::size_t dim) {
   std::array<SolidText, 2> halves;
   for (const std::size_t k : {0u, 1u}) {
     std::vector<double> lengths(dim, 0.5);
@@ -252,9 +249,7 @@ TEST(TiedSecondOrder, ToolsHoldEveryNode) {
                          .model = "rigid_tool",
                          .keys = "way: [\"0\", \"0\"], ",
                          .sides = {"right"},
-                         .lengths = {1.0, 1.0},
-                         .cells = {2, 2},
-                         .element = "quad8"};
+                         .block = {{1.0, 1.0}, {2, 2}, "quad8"}};
     const auto tied = run_solids(1.0, 1.0, {body, tool}, joined("tie", "one.joint", "tool.right"));
     body.more += "    constraints: {clamp: {on: left, fixed: true}}\n";
     const auto held = run_solids(1.0, 1.0, {body});

@@ -16,7 +16,7 @@
 #include <Eigen/Dense>
 
 #include "coordinator/coupling/tie_rows.hpp"
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -73,8 +73,7 @@ struct Strips {
             .start = starts[k],
             .sides = {lower ? "top" : "bottom"},
             .more = support.empty() ? "" : "    constraints: {end: {on: left, " + support + "}}\n",
-            .lengths = {1.0, 0.1},
-            .cells = {along[k], 1}};
+            .block = {{1.0, 0.1}, {along[k], 1}}};
   }
   std::string text() const {
     return scene_text(end, step, texts_of({body(0), body(1)}),

@@ -13,7 +13,9 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/runs.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
@@ -31,15 +33,13 @@ SolidText piece(const std::vector<int>& cells = {4, 4}, const std::string& law =
   return {.material = law,
           .integrator = "quasi_static: {step: 0.25}",
           .sides = {"left", "right"},
-          .lengths = std::vector<double>(cells.size(), 1.0),
-          .cells = cells};
+          .block = {std::vector<double>(cells.size(), 1.0), cells}};
 }
 
 const std::string clamp = "    constraints: {clamp: {on: left, fixed: true}}\n";
 
 /// Pieces in a row, tied, over 4 windows (or as many as `windows`) to time 1.
-std::unique_ptr<RunResult> row(std::vector<SolidText> pieces, int windows = 4,
-                               double tolerance = 1.0e-6) {
+ResultPtr row(std::vector<SolidText> pieces, int windows = 4, double tolerance = 1.0e-6) {
   std::string ties;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     pieces[k].name = fmt::format("b{}", k);
@@ -114,8 +114,8 @@ TEST(TiedStatics, CutBodyIsAsTheWholeOne) {
       ASSERT_TRUE(divided->completed());
       EXPECT_LE(divided->measure("schwarz.iterations_max"), c.most_calls);
       part.name = "whole";
-      part.lengths[0] = 1.0 * count;
-      part.cells[0] = 4 * count;
+      part.block.lengths[0] = 1.0 * count;
+      part.block.cells[0] = 4 * count;
       part.more = clamp + pull(c.x, c.y);
       const auto whole = run_solids(1.0, 0.25, {part});
       const double size = std::abs(whole->measure("body.whole.right.displacement.y"));
@@ -132,9 +132,9 @@ TEST(TiedStatics, CutBodyIsAsTheWholeOne) {
 /// Uniform stress passes joints of any meshes; the one body keeps a motion, the other one all.
 TEST(TiedStatics, UniformStressPasses) {
   const auto check = [](SolidText left, SolidText right, const char* cell) {
-    const std::size_t dim = left.cells.size();
-    SCOPED_TRACE(fmt::format("{}d {} {}", dim, cell, fmt::join(right.cells, "x")));
-    right.element = cell;
+    const std::size_t dim = left.block.cells.size();
+    SCOPED_TRACE(fmt::format("{}d {} {}", dim, cell, fmt::join(right.block.cells, "x")));
+    right.block.element = cell;
     left.more = dim == 2 ? "    constraints: {end: {on: left, x: 0}, floor: {on: bottom, y: 0}}\n"
                          : "    constraints: {end: {on: left, x: 0}, floor: {on: bottom, y: 0}, "
                            "back: {on: back, z: 0}}\n";
@@ -190,7 +190,7 @@ TEST(TiedStatics, PlasticBodiesTakeFewCalls) {
     held.keys = "formulation: mean_dilatation, ";
     held.integrator = fmt::format("quasi_static: {{step: {}}}", number(1.0 / 6.0));
     SolidText loaded = held;
-    loaded.cells = {5, 4};
+    loaded.block.cells = {5, 4};
     loaded.material = law(second);
     loaded.more = pull("1.224e-3*t", "-2.0e-5*t");
     const auto result = row({held, loaded}, 6, 1.0e-5);
@@ -215,17 +215,12 @@ TEST(TiedStatics, BodiesWithInertiaHoldThem) {
   // Without forces on it, it is carried without strain.
   EXPECT_NEAR(result->measure("body.b1.energy.stored"), 0.0, 1.0e-15);
   EXPECT_NEAR(result->measure("body.b1.right.displacement.x"),
-              result->measure("body.b0.right.displacement.x"), 1.0e-10);
+              result->measure("body.b0.right.displacement.x"), roundoff(100.0, 0.1));
 }
 
 TEST(TiedStatics, NetThatNothingHoldsIsRefused) {
-  const auto message = [](const std::vector<SolidText>& pieces) -> std::string {
-    try {
-      row(pieces);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+  const auto message = [](const std::vector<SolidText>& pieces) {
+    return refusal([&pieces] { row(pieces); });
   };
   const SolidText floats = piece();
   SolidText held = floats, slides = floats;
@@ -233,7 +228,7 @@ TEST(TiedStatics, NetThatNothingHoldsIsRefused) {
   slides.more = "    constraints: {end: {on: bottom, y: 0}}\n";
   EXPECT_NE(message({floats, floats}).find("'b0', 'b1'"), std::string::npos);
   EXPECT_NE(message({slides, floats}).find("free to move or turn"), std::string::npos);
-  EXPECT_EQ(message({held, floats, floats}), "");
+  EXPECT_EQ(message({held, floats, floats}), "not refused");
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -22,9 +22,8 @@ namespace {
 
 using Ties = std::vector<std::pair<std::string, std::string>>;
 
-std::unique_ptr<RunResult> run(double end, double window, const std::vector<SolidText>& blocks,
-                               const Ties& ties, const std::string& rest = "",
-                               const std::string& keys = "") {
+ResultPtr run(double end, double window, const std::vector<SolidText>& blocks, const Ties& ties,
+              const std::string& rest = "", const std::string& keys = "") {
   std::string joints;
   for (std::size_t k = 0; k < ties.size(); ++k)
     joints += joined(fmt::format("tie{}", k), ties[k].first, ties[k].second, keys);
@@ -51,14 +50,13 @@ std::vector<SolidText> halves(const std::string& schemes, const std::vector<int>
                  .position = {0.0},
                  .start = start,
                  .sides = {"right"},
-                 .lengths = of({1.0, 0.5}),
-                 .cells = cells(across[0])};
+                 .block = {of({1.0, 0.5}), cells(across[0])}};
   SolidText right = left;
   right.name = "right";
   right.integrator = scheme_named(schemes[1], fine);
   right.position = {1.0};
   right.sides = {"left"};
-  right.cells = cells(across[1]);
+  right.block.cells = cells(across[1]);
   return {left, right};
 }
 
@@ -152,8 +150,8 @@ TEST(TiedSurfaces, CutBodyMovesAsTheWholeOne) {
   std::vector<SolidText> blocks = halves("II", {3, 3}, 0.02);
   SolidText whole = blocks[0];
   whole.name = "whole";
-  whole.lengths[0] = 2.0;
-  whole.cells[0] *= 2;
+  whole.block.lengths[0] = 2.0;
+  whole.block.cells[0] *= 2;
   const auto undivided = run_solids(20.0, 0.2, {whole});
   const auto divided = run(20.0, 0.2, blocks, middle);
   const double momentum =
@@ -168,11 +166,11 @@ TEST(TiedSurfaces, CutBodyMovesAsTheWholeOne) {
 TEST(TiedSurfaces, PlaceOfTheCutMakesNoDifference) {
   const auto cut = [](double at) {
     std::vector<SolidText> blocks = halves("EE", {3, 3}, 0.02);
-    blocks[0].lengths[0] = at;
-    blocks[1].lengths[0] = 2.0 - at;
+    blocks[0].block.lengths[0] = at;
+    blocks[1].block.lengths[0] = 2.0 - at;
     blocks[1].position[0] = at;
-    blocks[0].cells[0] = static_cast<int>(std::lround(6 * at));
-    blocks[1].cells[0] = 12 - blocks[0].cells[0];
+    blocks[0].block.cells[0] = static_cast<int>(std::lround(6 * at));
+    blocks[1].block.cells[0] = 12 - blocks[0].block.cells[0];
     return run(20.0, 0.2, blocks, middle);
   };
   const auto one = cut(1.0), other = cut(0.5);
@@ -240,7 +238,7 @@ TEST(TiedSurfaces, LinearFieldsPass) {
     for (std::size_t k : {0u, 1u}) {
       blocks[k].start = dim == 2 ? "displacement_field: [\"0.01*x\", \"0\"]"
                                  : "displacement_field: [\"0.01*x\", \"0\", \"0\"]";
-      blocks[k].element = cells[k];
+      blocks[k].block.element = cells[k];
       blocks[k].material = unit_law("linear_elastic", 0.0);
     }
     blocks[0].more = "    constraints: {end: {on: left, x: 0}}\n";
@@ -283,8 +281,7 @@ TEST(TiedSurfaces, NetsTakeOneCall) {
                      .position = {x, y},
                      .start = start,
                      .sides = sides,
-                     .lengths = {1.0, 0.5},
-                     .cells = {2 * n, n}};
+                     .block = {{1.0, 0.5}, {2 * n, n}}};
   };
   const auto check = [](const RunResult& result) {
     ASSERT_TRUE(result.completed());
@@ -344,8 +341,7 @@ TEST(TiedSurfaces, FollowTools) {
                          .model = "rigid_tool",
                          .keys = "way: [\"0.1*(1 - cos(t))\", \"0\"], ",
                          .sides = {"left"},
-                         .lengths = {1.0, 0.5},
-                         .cells = {2, 1}};
+                         .block = {{1.0, 0.5}, {2, 1}}};
     const auto result = run(4.0, 0.02, {blocks[0], tool}, {{"left.right", "tool.left"}});
     ASSERT_TRUE(result->completed());
     // What the tool does, in straight lines over windows of a body's step, is told exactly.

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "coordinator/couple.hpp"
-#include "coordinator/coupling/line_watch.hpp"
 #include "coordinator/coupling/compare/parallel_force.hpp"
+#include "coordinator/coupling/line_watch.hpp"
 #include "coordinator/coupling/unilateral.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
@@ -23,14 +23,8 @@ constexpr int elements = 40;   // of each bar, 1 m and 1 kg each; wave speed 1 m
 constexpr double blow = 0.01;  // [N s] on the left end
 
 BarText piece(const std::string& name, int first, int bars, double step) {
-  BarText bar;
-  bar.name = name;
-  bar.elements = elements * bars;
-  bar.length = bar.elements;
-  bar.area = bar.modulus = bar.density = 1.0;
-  bar.position = first * elements;
-  bar.velocity = 0.0;
-  bar.integrator = explicit_scheme(step);
+  BarText bar =
+      unit_bar(name, elements * bars, elements * bars, explicit_scheme(step), first * elements);
   bar.layer = "kick: {}";
   bar.sides = {"left", "right"};
   return bar;

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 namespace {
@@ -28,8 +28,7 @@ struct Facing {
 };
 
 /// The first bar flies at the second one, of unit length and modulus like itself.
-std::unique_ptr<RunResult> run(const Facing& m, const std::string& finder,
-                               const std::string& more = "") {
+ResultPtr run(const Facing& m, const std::string& finder, const std::string& more = "") {
   const auto bar = [&m](const std::string& name, int k, double place, double v,
                         const std::string& side) {
     const std::size_t at = index(k);

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/index.hpp"
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/runs.hpp"
 
 namespace abut {
 
@@ -45,19 +45,17 @@ struct OverlappingPair {
                      .side = k == 0 ? "right" : "left",
                      .start = start,
                      .more = more[k],
-                     .lengths = lengths,
-                     .cells = count,
-                     .element = cells[k]}
+                     .block = {lengths, count, cells[k]}}
         .text();
   }
-  std::unique_ptr<RunResult> run(double end, double window) const {
+  ResultPtr run(double end, double window) const {
     return run_scene(end, window, body(0) + body(1),
                      fmt::format("interfaces:\n  seam: {{sides: [left.cut, right.cut], tied: "
                                  "{{{}}}{}}}\nschwarz: {{{}}}\n",
                                  tied, seam, schwarz));
   }
   /// The undivided body, of the left one's cells and keys and the right one's more.
-  std::unique_ptr<RunResult> run_whole(double end, double window) const {
+  ResultPtr run_whole(double end, double window) const {
     OverlappingPair one = *this;
     one.overlap = length;
     one.shift = 0.0;

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "base/error.hpp"
 
@@ -15,6 +18,10 @@ inline std::string refusal(const std::function<void()>& run) {
     return error.what();
   }
   return "not refused";
+}
+
+inline void expect_words(const std::string& text, std::initializer_list<const char*> words) {
+  for (const char* word : words) EXPECT_NE(text.find(word), std::string::npos) << text;
 }
 
 }  // namespace abut

@@ -11,7 +11,7 @@
 #include "coordinator/controller.hpp"
 #include "coordinator/launch_local.hpp"
 #include "coordinator/record/measure_recorder.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solid_texts.hpp"
 
 namespace abut {
 
@@ -38,12 +38,7 @@ struct SceneText {
     out += fmt::format("}}\ntime: {{begin: {}, end: {}, window: {}}}\nbodies:\n", number(begin),
                        number(end), number(window));
     for (const BarText& bar : bars) out += bar.text();
-    if (wall) {
-      out += fmt::format(
-          "  wall: {{model: {{rigid_wall: {{}}}}, initial: {{position: [{0}]}}, "
-          "ports: {{{1}: {{side: {1}}}}}}}\n",
-          number(wall->position), wall->side);
-    }
+    if (wall) out += wall_text(wall->position, wall->side);
     if (!interfaces.empty()) out += "interfaces:\n";
     constexpr const char* names[] = {"first", "second", "third", "fourth"};
     for (std::size_t i = 0; i < interfaces.size(); ++i) {
@@ -142,7 +137,9 @@ struct RunResult : Observer {
   }
 };
 
-inline std::unique_ptr<RunResult> run_document(const Document& document) {
+using ResultPtr = std::unique_ptr<RunResult>;
+
+inline ResultPtr run_document(const Document& document) {
   const Scene scene = read_scene(document);
   const std::vector<std::unique_ptr<Subdomain>> bodies = launch_local(scene, document);
   std::vector<Subdomain*> pointers;
@@ -161,20 +158,29 @@ inline std::unique_ptr<RunResult> run_document(const Document& document) {
   return result;
 }
 
+/// Runs a scene as a file would say it.
+inline ResultPtr run_text(const std::string& text) {
+  return run_document(Document::from_text("test", text));
+}
+
 /// Runs a scene that begins at time 0 (scene_text).
-inline std::unique_ptr<RunResult> run_scene(double end, double window, const std::string& bodies,
-                                            const std::string& rest = "") {
-  return run_document(Document::from_text("test", scene_text(end, window, bodies, rest)));
+inline ResultPtr run_scene(double end, double window, const std::string& bodies,
+                           const std::string& rest = "") {
+  return run_text(scene_text(end, window, bodies, rest));
+}
+
+/// A run of such bodies from time 0 in windows of one length; `rest`: other sections.
+inline ResultPtr run_solids(double end, double window, const std::vector<SolidText>& bodies,
+                            const std::string& interfaces = "", const std::string& rest = "") {
+  return run_scene(end, window, texts_of(bodies),
+                   (interfaces.empty() ? "" : "interfaces:\n" + interfaces) + rest);
 }
 
 /// Runs a scene in this process. Throws what the scene's reader throws.
-inline std::unique_ptr<RunResult> run(const SceneText& scene) {
-  return run_document(Document::from_text("test", scene.text()));
-}
+inline ResultPtr run(const SceneText& scene) { return run_text(scene.text()); }
 
 /// Runs a shipped scene with values put in place of its own.
-inline std::unique_ptr<RunResult> run_file(const std::string& path,
-                                           std::vector<std::string> overrides = {}) {
+inline ResultPtr run_file(const std::string& path, std::vector<std::string> overrides = {}) {
   return run_document(Document::load(path, std::move(overrides)));
 }
 

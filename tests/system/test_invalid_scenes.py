@@ -115,7 +115,7 @@ class InvalidScenes(RefusalTest):
 
     def test_every_scene_is_refused_with_its_message_and_writes_nothing(self):
         scenes = sorted(INVALID.glob("*.yaml"))
-        self.assertGreater(len(scenes), 30, "the scenes are found")
+        self.assertGreater(len(scenes), 10, "the scenes are found")
         for scene in scenes:
             with self.subTest(scene=scene.name):
                 name, messages = scene.relative_to(ROOT), expected_messages(scene)
@@ -124,7 +124,7 @@ class InvalidScenes(RefusalTest):
 
     def test_every_row_is_refused_with_its_message_and_writes_nothing(self):
         table = rows()
-        self.assertGreater(len(table), 100, "the rows are found")
+        self.assertGreater(len(table), 150, "the rows are found")
         self.assertEqual(len({row.name for row in table}), len(table), "each has a name of its own")
         for row in table:
             with self.subTest(row=row.name):

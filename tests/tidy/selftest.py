@@ -7,7 +7,6 @@ from typing import Callable
 
 import definitions
 import docs
-import elements
 import equations
 import glossary
 import headers
@@ -15,6 +14,7 @@ import layers
 import lengths
 import overriders
 import packages
+import places
 import tolerances
 import words
 from findings import Finding
@@ -121,14 +121,40 @@ class Words(unittest.TestCase):
         good = "tcp://127.0.0.1:5555\nruns/home/x\n/tmp/x\n"
         self.assertEqual(findings(words.check, base__a_dot_cpp=good), [])
 
+
+class Places(unittest.TestCase):
+    LAW = "struct FrictionLaw {\n  double sticks = 0.0, slides = 0.0;\n  double x() const;\n};\n"
+    SCHEMES = "".join(f"struct S{number}Spec {{\n" for number in range(7))
+
+    def check(self, expected: list[int], **files: str) -> None:
+        self.assertEqual([found.line for found in findings(places.check, **files)], expected)
+
     def test_element_named_outside_of_the_table(self) -> None:
         table = "".join(f'{{"bar{number}", line}},\n' for number in range(11))
         lines = '// a "bar3"\nstd::string element = "bar3";\nif (name == "bar3") f();\n'
-        found = findings(elements.check, subdomain_solver__fe__elements_dot_cpp=table,
-                         subdomain_solver__fe__a_dot_cpp=lines)
-        self.assertEqual([finding.line for finding in found], [3])
-        found = findings(elements.check, subdomain_solver__fe__elements_dot_cpp="none\n")
-        self.assertEqual(len(found), 1)
+        self.check([3], subdomain_solver__fe__elements_dot_cpp=table,
+                   subdomain_solver__fe__a_dot_cpp=lines)
+        self.check([1], subdomain_solver__fe__elements_dot_cpp="none\n")
+
+    def test_number_of_a_friction_law_passed_on_by_hand(self) -> None:
+        lines = "a.slides = 1.0;\nslides_ = b;\n// slides\nif (c.sticks > 0.0) {}\n"
+        self.check([1, 4], contract__friction_law_dot_hpp=self.LAW, coordinator__a_dot_cpp=lines)
+        self.check([], contract__friction_law_dot_hpp=self.LAW,
+                   messaging__codec__meeting_dot_cpp=lines)
+        self.check([1], contract__friction_law_dot_hpp="struct FrictionLaw {};\n")
+
+    def test_integrator_by_which_others_decide(self) -> None:
+        lines = "if (std::holds_alternative<S3Spec>(x)) f();\nS3Speck y;\n"
+        make = "subdomain_solver__make__"
+        self.check([1], **{make + "integrator_spec_dot_hpp": self.SCHEMES,
+                           make + "fields_dot_cpp": lines})
+        self.check([], **{make + "integrator_spec_dot_hpp": self.SCHEMES,
+                          make + "scheme_dot_cpp": lines})
+
+    def test_guide_names_files_that_exist(self) -> None:
+        row = "| law | `fe/x.*`, `fe/a.*` | `fe/a.cpp`, `a.cpp` |\n`fe/b.cpp`\n"
+        self.check([], CONTRIBUTING_dot_md=row, subdomain_solver__fe__a_dot_cpp="")
+        self.check([1, 1, 1, 1], CONTRIBUTING_dot_md=row, base__b_dot_cpp="")
 
 
 class Definitions(unittest.TestCase):

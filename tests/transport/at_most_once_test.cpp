@@ -70,8 +70,7 @@ TEST(Transport, SurvivesTheLossOfEachSingleMessage) {
 }
 
 TEST(Transport, ASaveAndARestoreCostNoMessage) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   const int before = loop.to_solver.counts().sent;
   play(loop.body, 5);
   EXPECT_EQ(loop.to_solver.counts().sent - before, 10);
@@ -80,8 +79,7 @@ TEST(Transport, ASaveAndARestoreCostNoMessage) {
 }
 
 TEST(Transport, APendingRestoreIsDoneBeforeTheHashIsTaken) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   const std::uint64_t begin = loop.body.state_hash();
   Response response;
   const Advance advance = request_for(0);
@@ -93,8 +91,7 @@ TEST(Transport, APendingRestoreIsDoneBeforeTheHashIsTaken) {
 }
 
 TEST(Transport, ARestoreAfterAPendingSaveKeepsThePresentState) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   Response response;
   const Advance advance = request_for(0);
   loop.body.save();
@@ -116,8 +113,7 @@ TEST(Transport, ACheckpointResumesInAnotherBody) {
 }
 
 TEST(Transport, AKernelComesBackAsTheBodyMadeIt) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   const std::vector<double> patterns{1.0, -2.5};
   const PortKernel got = loop.body.probe({0, patterns, 0.01, 5});
   EXPECT_EQ(got.displacement, loop.fake->probe({0, patterns, 0.01, 5}).displacement);

@@ -14,23 +14,10 @@
 namespace abut {
 namespace {
 
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const RunError& error) {
-    return error.what_is_wrong + " | " + error.remedy;
-  }
-  return "no error";
-}
-
-void advance_once(Loop& loop) {
-  Response response;
-  EXPECT_TRUE(std::holds_alternative<Advanced>(loop.body.advance(request_for(0), response)));
-}
+std::string error_of(const std::function<void()>& act) { return run_error(act, true); }
 
 TEST(RemoteFields, AreThoseOfTheBody) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   advance_once(loop);
   const Grid grid = loop.body.grid(), local = loop.fake->grid();
   EXPECT_EQ(grid.points, local.points);
@@ -43,16 +30,14 @@ TEST(RemoteFields, AreThoseOfTheBody) {
 }
 
 TEST(RemoteFields, TheGridIsAskedForOnceAndFieldsEveryTime) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   for (int i = 0; i < 3; ++i) loop.body.fields();
   EXPECT_EQ(loop.fake->counts.grids, 1);
   EXPECT_EQ(loop.fake->counts.fields, 3);
 }
 
 TEST(RemoteFields, APendingRestoreIsDoneFirst) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   const std::vector<FieldValues> begin = loop.body.fields();
   loop.body.save();
   advance_once(loop);
@@ -62,8 +47,7 @@ TEST(RemoteFields, APendingRestoreIsDoneFirst) {
 }
 
 TEST(RemoteFields, WhatDoesNotFitIsRefusedByName) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   const std::string fault = " | this is a fault of the solver, not of the scene";
   loop.fake->spoil_grid = [](Grid& grid) { grid.connectivity[0] = 1; };
   EXPECT_EQ(error_of([&] { loop.body.grid(); }),
@@ -84,8 +68,7 @@ TEST(RemoteFields, WhatDoesNotFitIsRefusedByName) {
 }
 
 TEST(RemoteFields, ValuesThatAreNotFinitePassToWhoeverNamesTheNode) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   loop.fake->spoil_fields = [](std::vector<FieldValues>& values) {
     values[0][1] = std::numeric_limits<double>::quiet_NaN();
   };
@@ -93,10 +76,7 @@ TEST(RemoteFields, ValuesThatAreNotFinitePassToWhoeverNamesTheNode) {
 }
 
 TEST(RemoteFields, AReplyAboveTheFrameLimitSaysWhatHelps) {
-  Limits limits;
-  limits.frame_bytes = 1000;
-  Loop loop({}, {}, 0, limits);
-  loop.configure();
+  ConfiguredLoop loop(1000);
   loop.fake->spoil_grid = [](Grid& grid) { grid.points.resize(300, 0.0); };
   const std::string error = error_of([&] { loop.body.grid(); });
   EXPECT_NE(error.find("above the limit of 1000"), std::string::npos) << error;

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
 
 #include "messaging/codec.hpp"
 #include "messaging/faulty_channel.hpp"
@@ -57,6 +61,19 @@ struct LoopOf {
 };
 using Loop = LoopOf<FakeSubdomain>;
 
+/// One whose body is there; frames hold so many bytes.
+struct ConfiguredLoop : Loop {
+  explicit ConfiguredLoop(std::size_t frame_bytes = Limits().frame_bytes)
+      : Loop({}, {}, 0, limits_of(frame_bytes)) {
+    configure();
+  }
+  static Limits limits_of(std::size_t frame_bytes) {
+    Limits limits;
+    limits.frame_bytes = frame_bytes;
+    return limits;
+  }
+};
+
 /// A request with a force that depends on the window, so that no two windows are alike.
 inline Advance request_for(int window) {
   Advance advance;
@@ -68,6 +85,21 @@ inline Advance request_for(int window) {
   force.time = {advance.window.begin, advance.window.end};
   force.f = {1.0 + window, -0.5 * window};
   return advance;
+}
+
+inline void advance_once(Loop& loop) {
+  Response response;
+  EXPECT_TRUE(std::holds_alternative<Advanced>(loop.body.advance(request_for(0), response)));
+}
+
+/// What is wrong, and the remedy behind a bar where `remedy` asks for it.
+inline std::string run_error(const std::function<void()>& act, bool remedy = false) {
+  try {
+    act();
+  } catch (const RunError& error) {
+    return error.what_is_wrong + (remedy ? " | " + error.remedy : "");
+  }
+  return "no error";
 }
 
 }  // namespace abut

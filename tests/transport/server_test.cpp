@@ -16,27 +16,12 @@
 namespace abut {
 namespace {
 
-std::string run_error(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const RunError& error) {
-    return error.what_is_wrong;
-  }
-  return "no error";
-}
-
-void advance_once(Loop& loop) {
-  Response response;
-  EXPECT_TRUE(std::holds_alternative<Advanced>(loop.body.advance(request_for(0), response)));
-}
-
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
 TEST(Serve, TheBodyIsMadeFromTheSpecificationThatWasSent) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   EXPECT_EQ(loop.specification.document, "scene.yaml");
   EXPECT_EQ(loop.specification.text, "text");
   EXPECT_EQ(loop.specification.overrides, std::vector<std::string>{"a.b=1"});
@@ -78,8 +63,7 @@ TEST(Serve, TheMakingOfABodyShowsThatItGoesOn) {
 }
 
 TEST(Serve, RepeatedRequestRunsOnce) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   v1::Request request;
   request.set_number(2);
   request.set_session(loop.server.session());
@@ -99,8 +83,7 @@ TEST(Serve, RepeatedRequestRunsOnce) {
 }
 
 TEST(Serve, AGapInTheNumbersIsAFault) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   v1::Request request;
   request.set_number(9);
   request.set_session(loop.server.session());
@@ -119,8 +102,7 @@ TEST(Serve, AGapInTheNumbersIsAFault) {
 // Goal: a stranger's request cannot end the solver: what comes before any save is a fault, and the
 // body serves on. Oracle: the kind of the reply.
 TEST(Serve, ARestoreBeforeAnySaveIsAFault) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   const auto answer_to = [&loop](std::uint64_t number, bool restore) {
     v1::Request request;
     request.set_number(number);
@@ -142,8 +124,7 @@ TEST(Serve, ARestoreBeforeAnySaveIsAFault) {
 }
 
 TEST(Serve, AFailedSolveIsAValueAndTheBodyServesOn) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   loop.body.save();
   Advance hopeless = request_for(0);
   hopeless.boundary[0].impulse = {1.0e149};
@@ -157,8 +138,7 @@ TEST(Serve, AFailedSolveIsAValueAndTheBodyServesOn) {
 }
 
 TEST(Serve, TheBodysInputErrorArrivesWithItsThreeParts) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   loop.fake->during_substep = [] { throw InputError("wrong", "scene.yaml:3", "mend it"); };
   try {
     advance_once(loop);
@@ -171,18 +151,14 @@ TEST(Serve, TheBodysInputErrorArrivesWithItsThreeParts) {
 }
 
 TEST(Serve, AnExceptionInTheBodyNamesBodyAndRequest) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   loop.fake->during_substep = [] { throw std::out_of_range("index 7"); };
   EXPECT_EQ(run_error([&loop] { advance_once(loop); }),
             "body 'fake' failed at advance (request 2): index 7");
 }
 
 TEST(Serve, AReplyAboveTheLimitIsNamedWithItsSize) {
-  Limits limits;
-  limits.frame_bytes = 1000;
-  Loop loop({}, {}, 0, limits);
-  loop.configure();
+  ConfiguredLoop loop(1000);
   Advance many = request_for(0);
   many.records = 1000;  // of some 40 bytes each
   Response response;
@@ -192,10 +168,7 @@ TEST(Serve, AReplyAboveTheLimitIsNamedWithItsSize) {
 }
 
 TEST(Caller, ARequestAboveTheLimitIsNamedWithItsSize) {
-  Limits limits;
-  limits.frame_bytes = 1000;
-  Loop loop({}, {}, 0, limits);
-  loop.configure();
+  ConfiguredLoop loop(1000);
   Advance large = request_for(0);
   Waveform& force = large.boundary[0].forces[0];
   force.clear();
@@ -211,8 +184,7 @@ TEST(Caller, ARequestAboveTheLimitIsNamedWithItsSize) {
 }
 
 TEST(Caller, NaNInAReplyIsRefusedByName) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   v1::Reply reply;
   reply.set_number(2);
   reply.set_session(loop.server.session());
@@ -234,8 +206,7 @@ TEST(Caller, NaNInAReplyIsRefusedByName) {
 }
 
 TEST(Caller, APeerThatLivesButDoesNotAnswerIsGivenUpAtTheDeadline) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   loop.deaf = true;
   const TimePoint begin = loop.link.near().now();
   EXPECT_EQ(run_error([&loop] { advance_once(loop); }),
@@ -247,8 +218,7 @@ TEST(Caller, APeerThatLivesButDoesNotAnswerIsGivenUpAtTheDeadline) {
 
 TEST(Caller, ProgressExtendsTheDeadline) {
   // The far end shows progress every 50 s of the hand-run clock and answers after 200 s.
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   loop.deaf = true;
   Channel& near = loop.link.near();
   const TimePoint begin = near.now();
@@ -274,8 +244,7 @@ TEST(Caller, ProgressExtendsTheDeadline) {
 
 TEST(Caller, ARequestIsNotRepeatedToABodyThatShowsProgress) {
   // A sign every second for an hour: repeats would fill the queue of a body that cannot look at it.
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   Channel& near = loop.link.near();
   const TimePoint begin = near.now();
   TimePoint next = begin + Deadlines{}.progress;
@@ -301,8 +270,7 @@ TEST(Caller, ARequestIsNotRepeatedToABodyThatShowsProgress) {
 
 TEST(Serve, TheHookShowsProgressAtMostFourTimesASecond) {
   // 10 substeps of 0.1 s: signs are due at 0.25, 0.5 and 0.75 s.
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   int signs = 0;
   loop.fake->during_substep = [&loop] {
     loop.link.on_idle([] {});
@@ -325,8 +293,7 @@ TEST(Serve, TheHookShowsProgressAtMostFourTimesASecond) {
 }
 
 TEST(Caller, APeerThatSendsOnlyCorruptFramesIsGivenUpWithSizeAndLimit) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   loop.deaf = true;
   const std::vector<std::byte> noise(77, std::byte{0x5a});
   loop.link.on_idle([&] { loop.link.far().send(noise); });
@@ -337,8 +304,7 @@ TEST(Caller, APeerThatSendsOnlyCorruptFramesIsGivenUpWithSizeAndLimit) {
 }
 
 TEST(Caller, ASecondSolverOfTheSameNameIsAnError) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   loop.caller.accept_session(1);
   loop.deaf = true;
   v1::Reply hello;
@@ -351,8 +317,7 @@ TEST(Caller, ASecondSolverOfTheSameNameIsAnError) {
 }
 
 TEST(Caller, AnInterruptEndsTheWaitAtOnce) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   loop.deaf = true;
   const std::atomic<bool> interrupted{true};
   Caller caller("fake",

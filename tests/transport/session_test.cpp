@@ -31,8 +31,7 @@ v1::Reply reply_of(std::uint64_t session, int steps) {
 }
 
 TEST(Session, AStaleReplyOfAnEarlierSessionWithTheRightNumberIsNotTaken) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   const Advance advance = request_for(0);
   Response response;
   // They lie in the channel before the request is sent: one of another session, one of none.
@@ -62,8 +61,7 @@ TEST(Session, RepliesOfAnEarlierSessionAmongFaultsAreNeverTaken) {
 }
 
 TEST(Session, ProgressOfAnEarlierSessionDoesNotExtendTheDeadline) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   loop.deaf = true;
   v1::Reply progress;
   progress.set_number(2);
@@ -78,19 +76,13 @@ TEST(Session, ProgressOfAnEarlierSessionDoesNotExtendTheDeadline) {
   });
   Response response;
   const Advance advance = request_for(0);
-  try {
-    (void)loop.body.advance(advance, response);
-    FAIL() << "no error";
-  } catch (const RunError& error) {
-    EXPECT_EQ(error.what_is_wrong,
-              "body 'fake' has not answered advance (request 2) within 60 s, nor shown progress; "
-              "6 replies of another session came");
-  }
+  EXPECT_EQ(run_error([&] { (void)loop.body.advance(advance, response); }),
+            "body 'fake' has not answered advance (request 2) within 60 s, nor shown progress; "
+            "6 replies of another session came");
 }
 
 TEST(Session, ARequestToAnEarlierSolverOfThisNameIsNotExecuted) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   v1::Request request;
   request.set_number(2);
   encode(request_for(0), *request.mutable_advance());
@@ -121,8 +113,7 @@ TEST(Session, AWelcomeOrARefusalToAnEarlierSolverOfThisNameIsNotHeard) {
 }
 
 TEST(Session, ASolverThatWasRestartedIsNamedAndItsRepliesAreNotTaken) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   loop.deaf = true;  // it is gone; another of its name greets, and answers what it never did
   v1::Reply hello;
   hello.set_session(loop.server.session() + 2);
@@ -131,12 +122,8 @@ TEST(Session, ASolverThatWasRestartedIsNamedAndItsRepliesAreNotTaken) {
   loop.to_coordinator.send(sealed(hello).bytes());
   Response response;
   const Advance advance = request_for(0);
-  try {
-    (void)loop.body.advance(advance, response);
-    FAIL() << "no error";
-  } catch (const RunError& error) {
-    EXPECT_EQ(error.what_is_wrong, "a second solver with the name of body 'fake' has connected");
-  }
+  EXPECT_EQ(run_error([&] { (void)loop.body.advance(advance, response); }),
+            "a second solver with the name of body 'fake' has connected");
   EXPECT_EQ(loop.caller.foreign(), 1);
 }
 
@@ -147,8 +134,7 @@ TEST(Session, EveryServerDrawsItsOwn) {
 }
 
 TEST(Remote, PartnersAndHowTheyYieldReachTheBody) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   PortGeometry wall;
   wall.points = {0.5};
   wall.normals = {-1.0};
@@ -170,34 +156,23 @@ TEST(Remote, PartnersAndHowTheyYieldReachTheBody) {
 }
 
 TEST(Remote, AnObstacleThatWasNeverMetIsAFaultThatNamesTheField) {
-  Loop loop;
-  loop.configure();
+  ConfiguredLoop loop;
   Advance advance = request_for(0);
   advance.boundary[0].obstacles.resize(1);
   advance.boundary[0].obstacles[0].motion.time = {0.0, 0.1};
   advance.boundary[0].obstacles[0].motion.u = {0.0, 0.0};
   Response response;
-  try {
-    (void)loop.body.advance(advance, response);
-    FAIL() << "no error";
-  } catch (const RunError& error) {
-    EXPECT_EQ(error.what_is_wrong,
-              "body 'fake' failed at advance (request 2): unsound request: "
-              "advance.boundary[0].obstacles[0] is of nobody: the port has met 0 partners");
-  }
+  EXPECT_EQ(run_error([&] { (void)loop.body.advance(advance, response); }),
+            "body 'fake' failed at advance (request 2): unsound request: "
+            "advance.boundary[0].obstacles[0] is of nobody: the port has met 0 partners");
 }
 
 TEST(Remote, AKernelThatNoFrameHoldsIsRefusedBeforeItIsMade) {
-  Limits limits;
-  limits.frame_bytes = 1000;
-  Loop loop({}, {}, 0, limits);
-  loop.configure();
-  try {
-    loop.body.probe({0, {1.0}, 0.1, 1000});
-    FAIL() << "no error";
-  } catch (const RunError& error) {
-    EXPECT_NE(error.what_is_wrong.find("above the limit of 1000"), std::string::npos);
-  }
+  ConfiguredLoop loop(1000);
+  EXPECT_NE(run_error([&] {
+              loop.body.probe({0, {1.0}, 0.1, 1000});
+            }).find("above the limit of 1000"),
+            std::string::npos);
   EXPECT_EQ(loop.fake->counts.kernels, 0);
 }
 

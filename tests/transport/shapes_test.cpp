@@ -3,6 +3,9 @@
 #include <google/protobuf/stubs/logging.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -16,6 +19,9 @@ namespace abut {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// All that a friction law is, whatever is added to it.
+using FrictionNumbers = std::array<double, sizeof(FrictionLaw) / sizeof(double)>;
 
 /// A body with some ports, the surfaces that they have met, and one exchange between them.
 struct Talk {
@@ -34,7 +40,11 @@ struct Talk {
     met.resize(body.ports.size());
     for (std::size_t p = 0; p < met.size(); ++p)
       for (int k = dice.upto(3); k > 0; --k) {
-        surfaces.push_back({static_cast<int>(p), dice.surface(body.dim), {dice.coin()}});
+        FrictionNumbers friction;
+        for (double& number : friction) number = std::abs(dice.value());
+        surfaces.push_back({static_cast<int>(p),
+                            dice.surface(body.dim),
+                            {dice.coin(), dice.coin(), std::bit_cast<FrictionLaw>(friction)}});
         met[p].push_back(size_of(surfaces.back().surface));
       }
     make_request();
@@ -162,6 +172,11 @@ TEST(Shapes, EveryMessageComesBackAsItWasSent) {
       ReceivedMeeting got;
       decode(parsed<v1::Meet>(sent), body, met, got);
       EXPECT_TRUE(bytes_of<v1::Meet>(got.meeting, got.first) == sent);
+      // A number that the codec forgets would be absent from both.
+      EXPECT_EQ(got.meeting.law.tied, law.tied);
+      EXPECT_EQ(got.meeting.law.points, law.points);
+      EXPECT_EQ(std::bit_cast<FrictionNumbers>(got.meeting.law.friction),
+                std::bit_cast<FrictionNumbers>(law.friction));
       met[port].push_back(size_of(surface));
     }
 

@@ -33,10 +33,6 @@ std::string bytes_of(const std::string& file) {
   return bytes.str();
 }
 
-void expect_words(const std::string& text, std::initializer_list<const char*> words) {
-  for (const char* word : words) EXPECT_NE(text.find(word), std::string::npos) << text;
-}
-
 /// Whole numbers as NetCDF's classic format has them.
 std::string big_endian(std::initializer_list<int> numbers) {
   std::string bytes;

@@ -41,10 +41,6 @@ std::string refusal_of(const std::string& bytes) {
   return refusal([&bytes]() { gmsh_mesh(bytes, "part.msh"); });
 }
 
-void expect_words(const std::string& text, std::initializer_list<const char*> words) {
-  for (const char* word : words) EXPECT_NE(text.find(word), std::string::npos) << text;
-}
-
 class GmshBlocks : public testing::TestWithParam<const char*> {};
 
 TEST_P(GmshBlocks, HaveTheirVolumesSidesAndSets) {

@@ -32,10 +32,6 @@ std::string refusal_of(const Mesh& mesh) {
   return refusal([&mesh]() { check_mesh(mesh, "part.msh"); });
 }
 
-void expect_words(const std::string& text, std::initializer_list<const char*> words) {
-  for (const char* word : words) EXPECT_NE(text.find(word), std::string::npos) << text;
-}
-
 TEST(Mesh, AnswersForItsNames) {
   const Mesh mesh = two_squares();
   EXPECT_EQ(mesh.node_count(), 6);

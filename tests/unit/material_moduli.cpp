@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/mooney_rivlin.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -27,15 +28,6 @@ constexpr std::optional<double> ElasticConstants::*const constants[] = {
 std::vector<double> constants_of(double e, double nu) {
   return {e, nu, e / (3.0 * (1.0 - 2.0 * nu)), e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
           e / (2.0 * (1.0 + nu))};
-}
-
-std::string refusal(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Moduli, AnyTwoConstantsGiveTheSameSolid) {

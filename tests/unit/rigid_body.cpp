@@ -13,7 +13,7 @@
 #include "base/yaml_document.hpp"
 #include "subdomain_solver/make/body_spec.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solid_texts.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -23,16 +23,16 @@ constexpr double begin = 0.0, middle = 0.05, end = 0.1;
 
 /// A box of 2 x 1 x 0.5 m about the origin, 1000 kg, or a square plate of 1 x 1 x 1 m and as heavy.
 std::unique_ptr<Subdomain> build_rigid(int dim, const std::string& more, double length = 3.0e-3) {
-  const std::string mesh =
-      dim == 3 ? "box: {lengths: [2.0, 1.0, 0.5], elements: [2, 1, 1], origin: centre}"
-               : "rectangle: {lengths: [1.0, 1.0], elements: [2, 2], origin: centre}";
-  const std::string text = fmt::format(
-      "bodies:\n  block:\n    model: {{rigid: {{dimension: {}, mesh: {{{}}}}}}}\n"
-      "    material: {{linear_elastic: {{youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: "
-      "1000.0}}}}\n    integrator: {{rigid_motion: {{step: {}}}}}\n"
-      "    ports: {{face: {{side: right}}}}\n{}",
-      dim, mesh, number(length), more);
-  return make_body(Document::from_text("test", text), "bodies.block");
+  return build(SolidText{
+      .name = "block",
+      .dim = dim,
+      .mesh = dim == 3 ? "box: {lengths: [2.0, 1.0, 0.5], elements: [2, 1, 1], origin: centre}"
+                       : "rectangle: {lengths: [1.0, 1.0], elements: [2, 2], origin: centre}",
+      .material = "linear_elastic: {youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000.0}",
+      .integrator = fmt::format("rigid_motion: {{step: {}}}", length),
+      .side = "right",
+      .model = "rigid",
+      .more = more});
 }
 
 const std::string weight = "    body_force: [0.0, 0.0, -9.81]\n";

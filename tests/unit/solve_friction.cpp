@@ -98,7 +98,7 @@ TEST(FrictionForces, WithoutFrictionAreTheUnilateralOnes) {
   UnilateralBuffers others;
   ASSERT_TRUE(friction_forces(p.a, p.b, p.rows, z, buffers));
   ASSERT_TRUE(unilateral_forces(p.a, p.b, f, others));
-  EXPECT_LE((z - f).norm(), 1.0e-10 * f.norm());
+  EXPECT_LE((z - f).norm(), 1.0e-10 * f.norm());  // a row by a row; cond A is some 1e2
 }
 
 TEST(FrictionForces, OfMixedRowsSolveTheirProblemToo) {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/shared_schemes.hpp"
 #include "tests/unit/solver_cases.hpp"
@@ -289,13 +290,7 @@ TEST(BarPoints, APortInsideMakesASolidThatSaysSo) {
 }
 
 std::string refusal(const std::string& body) {
-  try {
-    build_text(body);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "was accepted:\n" << body;
-  return "";
+  return abut::refusal([&body] { build_text(body); });
 }
 
 TEST(BarPoints, AndLoadsAreRefusedWhereNothingIs) {

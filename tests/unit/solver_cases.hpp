@@ -28,14 +28,7 @@ constexpr double case_step = 0.6;
 
 /// The cases' bar: length 40 m, wave speed and impedance 1, at rest unless told otherwise.
 inline BarText case_bar(const SolverCase& c, double velocity = 0.0) {
-  BarText bar;
-  bar.name = "bar";
-  bar.length = case_elements;
-  bar.elements = case_elements;
-  bar.area = bar.modulus = bar.density = 1.0;
-  bar.position = 0.0;
-  bar.velocity = velocity;
-  bar.integrator = c.integrator;
+  BarText bar = unit_bar("bar", case_elements, case_elements, c.integrator, 0.0, velocity);
   bar.layer = c.layer;
   bar.sides = c.sides;
   return bar;

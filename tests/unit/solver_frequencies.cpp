@@ -9,23 +9,23 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/solid_texts.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
 
-std::unique_ptr<Subdomain> bar(const std::string& model, const std::string& constraints) {
-  return make_body(
-      Document::from_text(
-          "test",
-          fmt::format("bodies:\n  bar:\n    model: {{{}dimension: 1, mesh: {{bar: {{length: 2.0, "
-                      "elements: 20, area: 0.5}}}}}}}}\n"
-                      "    material: {{linear_elastic: {{youngs_modulus: 9.0, density: 1.0}}}}\n"
-                      "    integrator: {{newmark: {{step: 0.01, mass: consistent}}}}\n"
-                      "    loads: {{end: {{on: right, traction: [\"0\"]}}}}\n{}",
-                      model, constraints)),
-      "bodies.bar");
+std::unique_ptr<Subdomain> bar(const std::string& model, const std::string& keys,
+                               const std::string& constraints = "") {
+  return build(
+      SolidText{.name = "bar",
+                .dim = 1,
+                .mesh = "bar: {length: 2.0, elements: 20, area: 0.5}",
+                .material = bar_law(9.0, 1.0),
+                .integrator = "newmark: {step: 0.01, mass: consistent}",
+                .model = model,
+                .keys = keys,
+                .more = "    loads: {end: {on: right, traction: [\"0\"]}}\n" + constraints});
 }
 
 /// [Hz] of the wave that turns by this angle from node to node; wave speed 3 m/s, cells of 0.1 m.
@@ -36,14 +36,14 @@ double hertz(double angle) {
 
 TEST(ModalBody, TellsItsFrequenciesInHertz) {
   const std::unique_ptr<Subdomain> clamped =
-      bar("modal: {modes: 5, ", "    constraints: {wall: {on: left, fixed: true}}\n");
+      bar("modal", "modes: 5, ", "    constraints: {wall: {on: left, fixed: true}}\n");
   const std::vector<double>& found = clamped->describe().frequencies;
   ASSERT_EQ(found.size(), 5U);
   for (std::size_t k = 0; k < 5; ++k) {
     const double exact = hertz((static_cast<double>(k) + 0.5) * std::numbers::pi / 20.0);
     EXPECT_NEAR(found[k], exact, roundoff(1.0e5, exact)) << k;  // squares are 1e3 apart
   }
-  const std::unique_ptr<Subdomain> loose = bar("modal: {modes: 3, ", "");
+  const std::unique_ptr<Subdomain> loose = bar("modal", "modes: 3, ");
   const std::vector<double>& of_free = loose->describe().frequencies;
   ASSERT_EQ(of_free.size(), 4U);
   EXPECT_EQ(of_free[0], 0.0);  // it moves as a whole
@@ -54,7 +54,7 @@ TEST(ModalBody, TellsItsFrequenciesInHertz) {
 }
 
 TEST(ModalBody, AloneTellsFrequencies) {
-  EXPECT_TRUE(bar("fe: {", "")->describe().frequencies.empty());
+  EXPECT_TRUE(bar("fe", "")->describe().frequencies.empty());
 }
 
 }  // namespace

@@ -62,14 +62,8 @@ std::unique_ptr<Subdomain> build_pair(const std::string& text) {
 
 /// The single bar of the pair, as a body that takes forces at a massive contact node.
 BarText single(const Method& m, int side) {
-  BarText bar;
-  bar.name = "bar";
-  bar.length = side == 0 ? 20.0 : 30.0;
-  bar.elements = side == 0 ? 20 : 30;
-  bar.area = bar.modulus = bar.density = 1.0;
-  bar.position = side == 0 ? -20.0 : pair_gap;
-  bar.velocity = side == 0 ? pair_speed : -pair_speed;
-  bar.integrator = m.integrator;
+  BarText bar = side == 0 ? unit_bar("bar", 20.0, 20, m.integrator, -20.0, pair_speed)
+                          : unit_bar("bar", 30.0, 30, m.integrator, pair_gap, -pair_speed);
   bar.layer = "massive: {}";
   bar.sides = {side == 0 ? "right" : "left"};
   return bar;

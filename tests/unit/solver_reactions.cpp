@@ -339,7 +339,7 @@ TEST(ReactionsInMotion, OfBodiesInModesBalanceHoweverFewModes) {
         Part part = driven(element, "", false);
         part.model = "modal";
         part.options = modes;
-        EXPECT_LT(imbalance(part, integrator, 64), 1.0e-9);
+        EXPECT_LT(imbalance(part, integrator, 64), 1.0e-9);  // as of finite elements
       }
     }
   }
@@ -378,8 +378,9 @@ TEST(ReactionsInMotion, OfAllModesAreThoseOfFiniteElements) {
     const std::unique_ptr<Subdomain> a = fe.build(), b = modal.build();
     const BodyRecord one = advance(*a, 0.0, 1.0), other = advance(*b, 0.0, 1.0);
     EXPECT_GT(largest_size(one.columns), 0.01);
-    EXPECT_LT(largest_difference(one.columns, other.columns), 1.0e-10) << integrator;
-    EXPECT_LT(largest_difference(field(*a, "reaction"), field(*b, "reaction")), 1.0e-10);
+    const double steps = 1.0e-12 * 50.0;  // each as in statics
+    EXPECT_LT(largest_difference(one.columns, other.columns), steps) << integrator;
+    EXPECT_LT(largest_difference(field(*a, "reaction"), field(*b, "reaction")), steps);
   }
 }
 
@@ -389,7 +390,7 @@ TEST(ReactionsInMotion, OfARollerInModesBalanceWhileTheBodySlides) {
   part.options = "modes: 2, ";
   part.constraints = "floor: {on: bottom, y: \"0\"}";
   part.loads = "top: {on: top, traction: [\"0.05\", \"0.1 * sin(3 * t)\"]}";
-  EXPECT_LT(imbalance(part, "newmark: {{step: {}}}", 64), 1.0e-9);
+  EXPECT_LT(imbalance(part, "newmark: {{step: {}}}", 64), 1.0e-9);  // as of finite elements
 }
 
 TEST(ReactionsInMotion, OfAPortUnderForceHoldAgainstIt) {
@@ -407,8 +408,9 @@ TEST(ReactionsInMotion, OfAPortUnderForceHoldAgainstIt) {
     push.f = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.1, 0.0, -0.2, 0.0, -0.1};
     Response response;
     ASSERT_TRUE(std::holds_alternative<Advanced>(body->advance(request, response)));
-    EXPECT_NEAR(response.records[0].columns[1], 0.4, 1.0e-12) << model;
-    EXPECT_NEAR(response.records[0].columns[0], 0.0, 1.0e-12);
+    const double solved = roundoff(1000.0, 0.4);  // a solve of some coordinates
+    EXPECT_NEAR(response.records[0].columns[1], 0.4, solved) << model;
+    EXPECT_NEAR(response.records[0].columns[0], 0.0, solved);
   }
 }
 

@@ -6,25 +6,14 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/unit/solver_cases.hpp"
 
 namespace abut {
 namespace {
 
-/// Message of the refusal; fails the test when there is none.
 std::string refusal(const BarText& bar) {
-  try {
-    build(bar);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "was accepted:\n" << bar.text();
-  return "";
-}
-
-void expect_words(const std::string& message, const std::vector<std::string>& words) {
-  for (const std::string& word : words)
-    EXPECT_NE(message.find(word), std::string::npos) << "no '" << word << "' in: " << message;
+  return abut::refusal([&bar] { build(bar); });
 }
 
 BarText plain() { return case_bar({"plain", explicit_scheme(0.6), "massless: {}", {"right"}}); }

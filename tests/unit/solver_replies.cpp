@@ -73,7 +73,7 @@ void obstruct(const Player& p, std::size_t port, const Advance& request, Dice& d
     Obstacle& obstacle = data.obstacles.emplace_back();
     obstacle.motion = moves(partner, window.begin, window.end, dice);
     if (p.kernels) obstacle.motion.f = dice.values(obstacle.motion.u.size(), 1.0e-3);
-    if (p.law.static_friction == p.law.kinetic_friction) continue;
+    if (!p.law.friction.jumps()) continue;
     for (std::size_t k = 0; k < points * index(std::max(0, grid.count - 1)); ++k)
       if (dice.upto(9) == 0) obstacle.slid.push_back(static_cast<std::int32_t>(k));
   }
@@ -251,8 +251,8 @@ struct Touched {
 
   std::string name() const {
     return fmt::format("{}D {} {}{}{} friction {} {}", dim, law, scheme, tied ? " tied" : "",
-                       kernels ? " kernels" : "", contact.static_friction,
-                       contact.kinetic_friction);
+                       kernels ? " kernels" : "", contact.friction.static_friction,
+                       contact.friction.kinetic_friction);
   }
 
   std::unique_ptr<Subdomain> make() const {
@@ -333,12 +333,7 @@ std::vector<Touched> touched() {
           for (const bool kernels : {false, true})
             for (const auto& [sticks, slides] : {std::pair(0.0, 0.0), {0.3, 0.3}, {0.4, 0.1}})
               if (dim == 2 || (kernels && sticks != slides) || (tied && kernels && sticks == 0.0))
-                all.push_back({dim,
-                               law,
-                               scheme,
-                               tied,
-                               kernels,
-                               {.static_friction = sticks, .kinetic_friction = slides}});
+                all.push_back({dim, law, scheme, tied, kernels, {.friction = {sticks, slides}}});
   return all;
 }
 
@@ -350,9 +345,7 @@ TEST(Replies, OfBodiesThatTouchDependOnStateAndRequestAlone) {
 
 /// What the fields are for: without them the reply is another one.
 TEST(Replies, DependOnTheForceThatIsBalancedAndOnWhatSlid) {
-  Touched t{2,         "linear_elastic",
-            "newmark", true,
-            true,      {.static_friction = 0.4, .kinetic_friction = 0.1}};
+  Touched t{2, "linear_elastic", "newmark", true, true, {.friction = {0.4, 0.1}}};
   ASSERT_TRUE(t.make()->describe().can.neighbours);
   Player p = t.player();
   Dice dice(3);

@@ -9,9 +9,9 @@
 #include <numeric>
 #include <vector>
 
+#include "base/index.hpp"
 #include "surface/point_rows.hpp"
 #include "tests/support/surfaces.hpp"
-#include "base/index.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
@@ -244,7 +244,7 @@ TEST(PointRows, KeepTotalAndMomentExactlyWithFacetNormals) {
       EXPECT_LE(total, exact);
       EXPECT_LE(moment, lever + exact);
     }
-    EXPECT_LT(lever, 1e-3);
+    EXPECT_LT(lever, 2.0e-5);  // regression: measured 1.3e-5
   }
 }
 

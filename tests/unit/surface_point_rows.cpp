@@ -8,17 +8,17 @@
 #include <numeric>
 #include <vector>
 
+#include "base/index.hpp"
 #include "surface/point_rows.hpp"
 #include "surface/sharp_nodes.hpp"
 #include "tests/support/surfaces.hpp"
-#include "base/index.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double exact = 1.0e-12;
+constexpr double exact = 1.0e-12;  // some thousand roundings of lengths of 1 to 3
 
 SurfaceRows rows_at(const SurfaceMesh& k, const std::vector<std::int32_t>& nodes,
                     const SurfaceMesh& n, const PointRowOptions& options) {

@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/yaml_resolved.hpp"
 #include "coordinator/scene.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace abut {
 namespace {
@@ -40,12 +41,7 @@ Document document(std::vector<std::string> overrides = {}) {
 }
 
 std::string refusal(std::vector<std::string> overrides) {
-  try {
-    read_scene(document(std::move(overrides)));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return abut::refusal([&] { read_scene(document(overrides)); });
 }
 
 TEST(Scene, ReadsWhatIsGivenAndKeepsDefaults) {
@@ -182,12 +178,7 @@ class BodiesOfAScene : public testing::Test {
     const Document text = document(std::move(overrides));
     const Scene scene = read_scene(text);
     const std::array<const Description*, 3> pointers{&bodies[0], &bodies[1], &bodies[2]};
-    try {
-      validate_bodies(scene, pointers, text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return abut::refusal([&] { validate_bodies(scene, pointers, text); });
   }
   std::array<Description, 3> bodies;
 };
@@ -195,7 +186,7 @@ class BodiesOfAScene : public testing::Test {
 TEST_F(BodiesOfAScene, WindowsOfWholeStepsAreAccepted) {
   bodies[1].step = 1.0e-5 / 3.0;  // inexact in binary: round-off does not count
   bodies[2].step = 0.0;           // any window is one step
-  EXPECT_EQ(refusal(), "accepted");
+  EXPECT_EQ(refusal(), "not refused");
 }
 
 TEST_F(BodiesOfAScene, AStepThatDoesNotDivideTheWindowIsRefused) {
@@ -234,14 +225,14 @@ TEST_F(BodiesOfAScene, EveryProposalIsAccepted) {
         const std::string recording = fmt::format("output={{records_per_window: {}}}", records);
         const std::string message = refusal({recording});
         for (const std::string& window : proposed(message, "a window of ")) {
-          EXPECT_EQ(refusal({recording, "time.window=" + window}), "accepted") << message;
+          EXPECT_EQ(refusal({recording, "time.window=" + window}), "not refused") << message;
           ++windows;
         }
         const std::size_t of = message.find("steps of body ");
         Description& blamed = bodies[message.compare(of, 18, "steps of body left") == 0 ? 0 : 1];
         for (const std::string& better : proposed(message, "the body a step of ")) {
           const double kept = std::exchange(blamed.step, std::stod(better));
-          EXPECT_EQ(refusal({recording}), "accepted") << message;
+          EXPECT_EQ(refusal({recording}), "not refused") << message;
           blamed.step = kept;
           ++steps;
         }
@@ -276,7 +267,7 @@ TEST_F(BodiesOfAScene, AStepLongerThanTheWindowIsRefused) {
 
 TEST_F(BodiesOfAScene, AStepOffByMoreThanRoundOffIsRefused) {
   bodies[1].step = 1.0e-5 / 3.0 * (1.0 + 2.0e-9);  // the rule's tolerance is 1e-9
-  EXPECT_NE(refusal(), "accepted");
+  EXPECT_NE(refusal(), "not refused");
 }
 
 TEST_F(BodiesOfAScene, APortThatTheBodyLacksIsRefused) {
@@ -302,7 +293,7 @@ TEST_F(BodiesOfAScene, SidesThatLookTheSameWayAreRefused) {
 
 TEST_F(BodiesOfAScene, SidesThatOverlapAtTheStartAreRefusedAndThoseThatTouchAreNot) {
   bodies[1].ports[0].geometry.points = {0.0};
-  EXPECT_EQ(refusal(), "accepted");
+  EXPECT_EQ(refusal(), "not refused");
   bodies[1].ports[0].geometry.points = {-0.5};
   EXPECT_EQ(refusal(),
             "s.yaml:13: interfaces.impact.sides: overlap by 0.5 m at the start. Move a body with "

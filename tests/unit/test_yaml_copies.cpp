@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/yaml_document.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace abut {
 namespace {
@@ -42,12 +43,7 @@ std::string value(const Document& text, const std::string& body, const std::stri
 }
 
 std::string refusal(const std::string& text, Overrides overrides = {}) {
-  try {
-    document(text, std::move(overrides));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return abut::refusal([&] { document(text, overrides); });
 }
 
 constexpr const char* grid = "{grid: {count: [2, 3], spacing: [0.5, -0.25]}}";
@@ -255,7 +251,7 @@ TEST(Copies, RefusesMoreThanAnySceneHolds) {
             "s.yaml:3: bodies.ball.copies: makes too many values, written out. Give fewer copies.");
   std::string places;  // a list is read once, whatever its length
   for (int i = 0; i < 2000; ++i) places += "{position: [1, 2], velocity: [3, 4]},";
-  EXPECT_EQ(refusal(scene("{list: [" + places + "]}")), "accepted");
+  EXPECT_EQ(refusal(scene("{list: [" + places + "]}")), "not refused");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "base/synonyms.hpp"
 #include "base/yaml_fields.hpp"
 #include "base/yaml_resolved.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace abut {
 namespace {
@@ -85,12 +86,7 @@ All parsed(const std::string& text, std::vector<std::string> overrides = {}) {
 }
 
 std::string refusal(const std::string& text, std::vector<std::string> overrides = {}) {
-  try {
-    parsed(text, std::move(overrides));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return abut::refusal([&] { parsed(text, overrides); });
 }
 
 TEST(YamlFields, AbsentKeysKeepTheirDefaults) {
@@ -348,7 +344,7 @@ TEST(YamlFields, TagsAreRefused) {
               std::string::npos)
         << tag;
   }
-  EXPECT_EQ(refusal("length: 2\nmaterial: void\ntext: \"quoted\"\n"), "accepted");
+  EXPECT_EQ(refusal("length: 2\nmaterial: void\ntext: \"quoted\"\n"), "not refused");
 }
 
 TEST(YamlFields, SyntaxErrorNamesItsLine) {

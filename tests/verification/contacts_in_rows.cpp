@@ -16,32 +16,27 @@
 namespace abut {
 namespace {
 
-struct RowBarText {
-  double length = 1.0, density = 1.0, step = 0.001, position = 0.0, velocity = 0.0;
-  int elements = 100;
-  std::string scheme;
-};
-
 /// 3 to 5 bars of unlike steps, some of them touching, of which the first strikes.
-std::vector<RowBarText> row_of(unsigned seed) {
+std::vector<BarText> row_of(unsigned seed) {
   std::mt19937 dice(seed);
   const auto one_of = [&dice](const std::vector<double>& values) {
     return values[dice() % values.size()];
   };
-  std::vector<RowBarText> bars(3 + dice() % 3);
+  std::vector<BarText> bars(3 + dice() % 3);
   // Alike and touching, they come to rest beside each other; others hit each other again and again.
   const bool alike = seed % 2 == 0;
   double end = 0.0;
   for (std::size_t k = 0; k < bars.size(); ++k) {
-    RowBarText& bar = bars[k];
+    BarText& bar = bars[k] = unit_bar(fmt::format("b{}", k), 1.0, 1, "", end);
+    bar.layer.clear();
+    bar.sides = {"left", "right"};
     bar.length = alike ? one_of({1.0, 1.0, 0.5}) : one_of({1.0, 0.5, 0.7});
     bar.density = alike ? one_of({1.0, 1.0, 1.0, 2.0}) : one_of({1.0, 1.0, 2.0});
-    bar.step = one_of({0.004, 0.002, 0.001, 0.0004});
+    const double step = one_of({0.004, 0.002, 0.001, 0.0004});
     bar.elements = static_cast<int>(bar.length * one_of({50.0, 100.0, 200.0}));
     const bool implicit = !alike && one_of({0.0, 1.0}) > 0.0;
-    bar.scheme = implicit ? "newmark" : "central_difference";
+    bar.integrator = implicit_scheme(implicit ? "newmark" : "central_difference", step);
     bar.velocity = k == 0 ? 1.0 : one_of({0.0, 0.0, 0.0, -0.5});
-    bar.position = end;
     end += bar.length + (alike ? one_of({0.0, 0.0, 0.0, 0.02}) : one_of({0.0, 0.02, 0.1}));
   }
   return bars;
@@ -49,44 +44,32 @@ std::vector<RowBarText> row_of(unsigned seed) {
 
 enum class Roles { open, left, right };
 
-std::string scene(const std::vector<RowBarText>& bars, bool reversed, Roles roles) {
-  std::vector<std::size_t> order(bars.size());
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  if (reversed) std::reverse(order.begin(), order.end());
-  std::string text = "meta: {title: row}\ntime: {begin: 0.0, end: 3.0, window: 0.04}\nbodies:\n";
-  for (const std::size_t k : order) {
-    const RowBarText& bar = bars[k];
-    text += fmt::format(
-        "  b{}:\n    model: {{fe: {{dimension: 1, mesh: {{bar: {{length: {}, elements: {}, area: "
-        "1.0}}}}}}}}\n    material: {{linear_elastic: {{youngs_modulus: 1.0, density: {}}}}}\n"
-        "    integrator: {{{}: {{step: {}}}}}\n    initial: {{position: [{}], velocity: [{}]}}\n"
-        "    ports: {{l: {{side: left}}, r: {{side: right}}}}\n",
-        k, bar.length, bar.elements, bar.density, bar.scheme, bar.step, bar.position, bar.velocity);
-  }
-  text += "interfaces:\n";
+std::string scene(const std::vector<BarText>& bars, bool reversed, Roles roles) {
+  std::string bodies, interfaces = "interfaces:\n";
+  for (std::size_t k = 0; k < bars.size(); ++k)
+    bodies += bars[reversed ? bars.size() - 1 - k : k].text();
   for (std::size_t k = 0; k + 1 < bars.size(); ++k) {
-    const std::string left = fmt::format("b{}.r", k), right = fmt::format("b{}.l", k + 1);
+    const std::string left = bars[k].name + ".right", right = bars[k + 1].name + ".left";
     const std::string kinematic = roles == Roles::open   ? "auto"
                                   : roles == Roles::left ? left
                                                          : right;
-    text += fmt::format(
-        "  i{}: {{sides: [{}, {}], contact: {{}}, transmission: {{unilateral: {{kinematic: "
-        "{}}}}}}}\n",
-        k, reversed ? right : left, reversed ? left : right, kinematic);
+    interfaces +=
+        touching(fmt::format("i{}", k), reversed ? right : left, reversed ? left : right,
+                 fmt::format(", transmission: {{unilateral: {{kinematic: {}}}}}", kinematic));
   }
-  return text;
+  return scene_text(3.0, 0.04, bodies, interfaces);
 }
 
 TEST(ContactsInRows, AreAsManyInAnyOrderAndRole) {
   int pushes = 0, stopped = 0;
   for (unsigned seed = 0; seed < 80; ++seed) {
-    const std::vector<RowBarText> bars = row_of(seed);
+    const std::vector<BarText> bars = row_of(seed);
     std::vector<double> counts, impulses;
     for (const bool reversed : {false, true}) {
       for (const Roles roles : {Roles::open, Roles::left, Roles::right}) {
         SCOPED_TRACE(
             fmt::format("row {} order {} roles {}", seed, reversed, static_cast<int>(roles)));
-        const auto run = run_document(Document::from_text("row", scene(bars, reversed, roles)));
+        const auto run = run_text(scene(bars, reversed, roles));
         if (!run->completed()) {  // the guard stops what unlike steps make of some coarse meshes
           ++stopped;
           continue;

@@ -18,18 +18,16 @@ std::string path_of(const std::string& scene) {
 }
 
 class Conventional : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, Conventional,
-                         testing::Values("penalty_explicit", "penalty_implicit",
-                                         "lagrange_explicit", "lagrange_implicit",
-                                         "lagrange_implicit_backward_euler",
-                                         "lagrange_implicit_trapezoidal",
-                                         "penalty_explicit_current_lengths",
-                                         "lagrange_explicit_current_lengths",
-                                         "lagrange_implicit_current_lengths"));
+INSTANTIATE_TEST_SUITE_P(
+    Methods, Conventional,
+    testing::Values("penalty_explicit", "penalty_implicit", "lagrange_explicit",
+                    "lagrange_implicit", "lagrange_implicit_backward_euler",
+                    "lagrange_implicit_trapezoidal", "penalty_explicit_current_lengths",
+                    "lagrange_explicit_current_lengths", "lagrange_implicit_current_lengths"));
 
 TEST_P(Conventional, DoesNotDependOnTheWindow) {
-  const std::unique_ptr<RunResult> one = run_file(path_of(GetParam()), {"time.window=1.0e-7"});
-  const std::unique_ptr<RunResult> many = run_file(path_of(GetParam()), {"time.window=1.0e-5"});
+  const ResultPtr one = run_file(path_of(GetParam()), {"time.window=1.0e-7"});
+  const ResultPtr many = run_file(path_of(GetParam()), {"time.window=1.0e-5"});
   EXPECT_EQ(one->rows.back().total, many->rows.back().total);
   EXPECT_EQ(one->rows.back().u, many->rows.back().u);
   EXPECT_EQ(one->measure("contact.impact.count"), many->measure("contact.impact.count"));
@@ -44,7 +42,7 @@ TEST(ConventionalMethods, PenaltyOverlapFollowsTheSpringAndVanishesWithIt) {
   for (double stiffness : {7.5e4, 7.5e5}) {
     const std::string spring =
         fmt::format("bodies.pair.model.bar_pair.contact.penalty.stiffness={}", stiffness);
-    const std::unique_ptr<RunResult> r = run_file(path_of("penalty_explicit"), {spring});
+    const ResultPtr r = run_file(path_of("penalty_explicit"), {spring});
     // gaps are known at the ends of windows only, every tenth step: the peak is flat to 2 % there
     const double overlap = r->measure("contact.impact.force_peak") / stiffness;
     EXPECT_NEAR(-r->measure("contact.impact.gap_min"), overlap, 0.02 * overlap);
@@ -55,7 +53,7 @@ TEST(ConventionalMethods, PenaltyOverlapFollowsTheSpringAndVanishesWithIt) {
 TEST(ConventionalMethods, ExplicitMultiplierLosesTheEnergyOfTheContactCells) {
   for (int elements : {50, 100}) {
     const std::string n = std::to_string(elements);
-    const std::unique_ptr<RunResult> r =
+    const ResultPtr r =
         run_file(path_of("lagrange_explicit"), {"bodies.pair.model.bar_pair.left.elements=" + n,
                                                 "bodies.pair.model.bar_pair.right.elements=" + n});
     const double expected = -1.0 / (2.0 * elements);
@@ -66,8 +64,7 @@ TEST(ConventionalMethods, ExplicitMultiplierLosesTheEnergyOfTheContactCells) {
 
 TEST(ConventionalMethods, APairIsWatchedAndItsPortsTakeNoOtherTransmission) {
   try {
-    run_file(path_of("penalty_explicit"),
-             {"interfaces.impact.transmission={unilateral: {}}"});
+    run_file(path_of("penalty_explicit"), {"interfaces.impact.transmission={unilateral: {}}"});
     FAIL() << "accepted";
   } catch (const InputError& refused) {
     EXPECT_NE(std::string(refused.what()).find("two different bodies"), std::string::npos);

@@ -13,19 +13,16 @@ namespace abut {
 namespace {
 
 /// A square turns freely, by 2 rad where nothing slows it.
-std::unique_ptr<RunResult> turned(const std::string& model, const std::string& law,
-                                  const std::string& integrator) {
-  return run_document(Document::from_text(
-      "test",
-      "meta: {title: test}\ntime: {begin: 0.0, end: 2.0e-3, window: 2.0e-4}\nbodies:\n  square:\n"
-      "    model: {" +
-          model +
-          "mesh: {rectangle: {lengths: [0.2, 0.2], elements: [4, 4], origin: centre}}}}\n"
-          "    material: {" +
-          law +
-          ": {youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000.0}}\n"
-          "    integrator: {" +
-          integrator + "}\n    initial: {velocity_field: [\"-1000 * y\", \"1000 * x\"]}\n"));
+ResultPtr turned(const std::string& model, const std::string& law, const std::string& integrator) {
+  return run_solids(
+      2.0e-3, 2.0e-4,
+      {{.name = "square",
+        .mesh = "rectangle: {lengths: [0.2, 0.2], elements: [4, 4], origin: centre}",
+        .material = law + ": {youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000.0}",
+        .integrator = integrator,
+        .model = model,
+        .keys = model == "modal" ? "modes: 4, " : "",
+        .field = "\"-1000 * y\", \"1000 * x\""}});
 }
 
 std::vector<std::string> warnings(const RunResult& run) {
@@ -39,11 +36,9 @@ TEST(ModelWarnings, TellOfALinearLawThatHasTurned) {
   const std::string explicit_steps = "central_difference: {step: 2.0e-6}";
   const std::string implicit_steps = "newmark: {step: 1.0e-5}";
   const std::pair<std::string, std::string> cases[] = {
-      {"fe: {dimension: 2, ", explicit_steps},
-      {"fe: {dimension: 2, ", implicit_steps},
-      {"modal: {dimension: 2, modes: 4, ", implicit_steps}};
+      {"fe", explicit_steps}, {"fe", implicit_steps}, {"modal", implicit_steps}};
   for (const auto& [model, integrator] : cases) {
-    const std::unique_ptr<RunResult> run = turned(model, "linear_elastic", integrator);
+    const ResultPtr run = turned(model, "linear_elastic", integrator);
     ASSERT_TRUE(run->completed()) << model;
     // Nodes fly straight: u = w t x X, without strain; sums of a thousand steps.
     EXPECT_NEAR(run->measure("body.square.rotation.max"), 2.0, roundoff(1.0e5, 2.0)) << model;
@@ -55,33 +50,30 @@ TEST(ModelWarnings, TellOfALinearLawThatHasTurned) {
 }
 
 TEST(ModelWarnings, AreNoneOfModelsThatMayTurn) {
-  const std::unique_ptr<RunResult> finite =
-      turned("fe: {dimension: 2, ", "saint_venant_kirchhoff", "central_difference: {step: 2.0e-6}");
+  const ResultPtr finite =
+      turned("fe", "saint_venant_kirchhoff", "central_difference: {step: 2.0e-6}");
   ASSERT_TRUE(finite->completed());
   EXPECT_TRUE(warnings(*finite).empty()) << warnings(*finite)[0];
-  const std::unique_ptr<RunResult> rigid =
-      turned("rigid: {dimension: 2, ", "linear_elastic", "rigid_motion: {step: 1.0e-5}");
+  const ResultPtr rigid = turned("rigid", "linear_elastic", "rigid_motion: {step: 1.0e-5}");
   ASSERT_TRUE(rigid->completed());
   EXPECT_TRUE(warnings(*rigid).empty()) << warnings(*rigid)[0];
 }
 
 /// A beam of n cells of one point over its height, bent by a pull across its end.
-std::unique_ptr<RunResult> bent(int n) {
-  return run_document(Document::from_text(
-      "test", fmt::format("meta: {{title: test}}\ntime: {{begin: 0.0, end: 1.0, window: 1.0}}\n"
-                          "bodies:\n  beam:\n    model: {{fe: {{dimension: 2, plane: strain, "
-                          "formulation: one_point, mesh: {{rectangle: {{lengths: [1.0, 0.1], "
-                          "elements: [{}, {}]}}}}}}}}\n"
-                          "    material: {{linear_elastic: {{youngs_modulus: 1.0e9, "
-                          "poissons_ratio: 0.3, density: 1000.0}}}}\n"
-                          "    integrator: {{quasi_static: {{step: 1.0}}}}\n"
-                          "    constraints: {{wall: {{on: left, fixed: true}}}}\n"
-                          "    loads: {{pull: {{on: right, traction: [\"0\", \"1.0e3 * t\"]}}}}\n",
-                          10 * n, n)));
+ResultPtr bent(int n) {
+  return run_solids(
+      1.0, 1.0,
+      {{.name = "beam",
+        .material = "linear_elastic: {youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000.0}",
+        .integrator = "quasi_static: {step: 1.0}",
+        .keys = "plane: strain, formulation: one_point, ",
+        .more = "    constraints: {wall: {on: left, fixed: true}}\n"
+                "    loads: {pull: {on: right, traction: [\"0\", \"1.0e3 * t\"]}}\n",
+        .block = {{1.0, 0.1}, {10 * n, n}}}});
 }
 
 TEST(ModelWarnings, TellOfBendingByHourglasses) {
-  const std::unique_ptr<RunResult> coarse = bent(1), fine = bent(8);
+  const ResultPtr coarse = bent(1), fine = bent(8);
   ASSERT_TRUE(coarse->completed() && fine->completed());
   // What one mean gradient over the height does not see is the moment: only shear is left.
   EXPECT_GT(coarse->measure("body.beam.energy.hourglass_share"), 0.9);

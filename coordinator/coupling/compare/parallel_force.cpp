@@ -20,14 +20,14 @@ void ParallelForce::begin(const TimeWindow& window, const Joint& joint, Bodies& 
     compliance_ += kernels.back()->displacement.front();
   }
   const std::size_t source = index(joint.role.kinematic);
-  iterate_ = {grids[source], 1};
+  grid_ = grids[source];
   support_ = kernels[source]->support;
   const Waveform& trace = trace_of(bodies, joint.kinematic_side());
   ABUT_ASSERT(trace.width == 1);
-  keep_row(trace, trace.f, index_at_begin(trace, window.begin), force_begin_);
+  const double f = trace.f[index_at_begin(trace, window.begin)];
   const bool unknown = !joint.closed() || support_ == ForceSupport::step;
-  for (double& f : force_begin_) f = unknown ? 0.0 : -joint.normal_of(joint.role.kinematic) * f;
-  scale_.step = iterate_.steps.step;
+  force_begin_ = unknown ? 0.0 : -joint.normal_of(joint.role.kinematic) * f;
+  scale_.step = grid_.step;
   scale_.velocity = reference_velocity(joint, compliance_, scale_.step);
   scale_.force = joint.contact.force_scale;
   inverse_ = nullptr;
@@ -61,7 +61,7 @@ void ParallelForce::see_trial(const std::array<Substeps, 2>& grids, const Joint&
   predicted_.resize(0);
   if (inverse_ == nullptr || !trial_.see(window_, grids, joint, bodies)) return;
   see_overlap(joint, {&trial_.motion(0), &trial_.motion(1)});
-  force_.setZero(iterate_.size());
+  force_.setZero(values());
   predicted_ = apply_inverse(overlap_ / compliance_);
 }
 
@@ -70,22 +70,16 @@ void ParallelForce::predict(Eigen::Ref<Eigen::VectorXd> x) const {
     x = predicted_;
     return;
   }
-  const bool known = covers(guess_, iterate_.steps);
-  for (int i = 1; i <= iterate_.steps.count; ++i) {
-    const std::span<double> to(&x[iterate_.at(i)], force_begin_.size());
-    std::ranges::copy(force_begin_, to.begin());
-    if (known) guess_.force_at(iterate_.steps.time(i), to);
-  }
+  x.setConstant(force_begin_);
+  if (!covers(guess_, grid_)) return;
+  for (int i = 1; i <= grid_.count; ++i) guess_.force_at(grid_.time(i), {&x[i - 1], 1});
 }
 
 void ParallelForce::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                            Bodies& bodies) {
-  guess_.clear();
-  guess_.width = iterate_.width;
+  lay_times(grid_, 1, guess_);
   guess_.support = support_;
-  guess_.time.push_back(iterate_.steps.begin);
-  for (int i = 1; i <= iterate_.steps.count; ++i) guess_.time.push_back(iterate_.steps.time(i));
-  guess_.f = force_begin_;
+  guess_.f.push_back(force_begin_);
   guess_.f.insert(guess_.f.end(), x.begin(), x.end());
   Waveform& force = bodies.force(joint.sides[side]);
   force = guess_;
@@ -110,16 +104,14 @@ void ParallelForce::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Join
 double ParallelForce::see_overlap(const Joint& joint,
                                   const std::array<const Waveform*, 2>& motions) {
   double travelled = 0.0;
-  overlap_.resize(iterate_.size());
-  std::array<std::vector<double>, 2> u;
-  for (std::vector<double>& values : u) values.resize(index(iterate_.width));
-  for (int i = 1; i <= iterate_.steps.count; ++i) {
+  overlap_.resize(values());
+  double u[2];
+  for (int i = 1; i <= grid_.count; ++i) {
     for (std::size_t s : {0u, 1u}) {
-      motions[s]->interpolate(motions[s]->u, iterate_.steps.time(i), u[s]);
-      travelled = std::max(travelled, largest(u[s]));
+      u[s] = value_at(*motions[s], motions[s]->u, grid_.time(i));
+      travelled = std::max(travelled, std::abs(u[s]));
     }
-    for (std::size_t c = 0; c < u[0].size(); ++c)
-      overlap_[iterate_.at(i) + static_cast<Eigen::Index>(c)] = -joint.gap(u[0][c], u[1][c]);
+    overlap_[i - 1] = -joint.gap(u[0], u[1]);
   }
   return travelled;
 }

@@ -16,7 +16,7 @@ class ParallelForce final : public Exchange {
   explicit ParallelForce(bool trials = true) : trials_(trials) {}
 
   void begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) override;
-  int values() const override { return static_cast<int>(iterate_.size()); }
+  int values() const override { return grid_.count; }
   void predict(Eigen::Ref<Eigen::VectorXd> x) const override;
   void impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
               Bodies& bodies) override;
@@ -36,12 +36,12 @@ class ParallelForce final : public Exchange {
   void find_inverse(const std::vector<const PortKernel*>& kernels, const TimeWindow& window,
                     const Joint& joint, const Bodies& bodies);
 
-  IterateGrid iterate_;     // of the force, compressive
+  Substeps grid_;           // of the force, compressive
   bool unilateral_ = true;  // contact: every substep decides for itself
   bool projects_ = false;
   Eigen::VectorXd overlap_, force_;  // [m] [N] of the last image
   ForceSupport support_ = ForceSupport::nodal;
-  std::vector<double> force_begin_;  // [N] (width) known at the window's begin
+  double force_begin_ = 0.0;  // [N] known at the window's begin
   Waveform guess_;
   ReferenceScales scale_;
   double compliance_ = 0.0;  // [m/N] of both sides over one substep

@@ -1,5 +1,4 @@
 #include "coordinator/coupling/compare/robin.hpp"
-#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -35,14 +34,14 @@ std::array<int, 2> Robin::iterated() const { return {kinematic_, 1 - kinematic_}
 
 int Robin::values() const {
   int count = 0;
-  for (int k = 0; k < parts(); ++k) count += static_cast<int>(partner(iterated()[k]).grid.size());
+  for (int k = 0; k < parts(); ++k) count += partner(iterated()[k]).grid.count;
   return count;
 }
 
 void Robin::find_impedances(const Joint& joint, Bodies& bodies) {
   for (std::size_t s : {0u, 1u}) {
     const Side& other = joint.sides[1 - s];
-    const Substeps& grid = sides_[1 - s].grid.steps;
+    const Substeps& grid = sides_[1 - s].grid;
     double z = given_;
     if (rule_ == Rule::matched) z = characteristic_impedance(bodies, other, grid.step);
     if (rule_ == Rule::kernel)
@@ -55,7 +54,7 @@ void Robin::find_impedances(const Joint& joint, Bodies& bodies) {
 void Robin::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) {
   kinematic_ = joint.role.kinematic;
   double compliance = 0.0, moved = joint.line.reference_gap;
-  std::array<std::vector<double>, 2> u;
+  double u[2];
   for (std::size_t s : {0u, 1u}) {
     const Side& here = joint.sides[s];
     const Waveform& trace = trace_of(bodies, here);
@@ -63,20 +62,17 @@ void Robin::begin(const TimeWindow& window, const Joint& joint, Bodies& bodies) 
     const std::size_t now = index_at_begin(trace, window.begin);
     const double n = joint.normal_of(static_cast<int>(s));
     Begin& side = sides_[s];
-    side.grid = {substeps_of(bodies, here, window), 1};
+    side.grid = substeps_of(bodies, here, window);
     side.support = trace.support;
-    keep_row(trace, trace.u, now, u[s]);
-    keep_row(trace, trace.v, now, side.v);
-    keep_row(trace, trace.f, now, side.force);
-    for (double& v : side.v) v *= n;
-    for (double& f : side.force) f *= -n;
-    moved = std::max(moved, largest(u[s]));
+    u[s] = trace.u[now];
+    side.v = trace.v[now] * n;
+    side.force = trace.f[now] * -n;
+    moved = std::max(moved, std::abs(u[s]));
     compliance += bodies.kernel(here.body, here.port, 1).displacement.front();
   }
-  overlap_.resize(u[0].size());
-  for (std::size_t c = 0; c < overlap_.size(); ++c) overlap_[c] = -joint.gap(u[0][c], u[1][c]);
+  overlap_ = -joint.gap(u[0], u[1]);
   if (impedance_sum_ == 0.0) find_impedances(joint, bodies);
-  scale_.step = std::max(sides_[0].grid.steps.step, sides_[1].grid.steps.step);
+  scale_.step = std::max(sides_[0].grid.step, sides_[1].grid.step);
   scale_.velocity = reference_velocity(joint, compliance, scale_.step);
   scale_.force = joint.contact.force_scale;
   scale_.roundoff = roundoff_of(moved, 0.0);
@@ -88,14 +84,12 @@ void Robin::predict(Eigen::Ref<Eigen::VectorXd> x) const {
     const int side = iterated()[k];
     const Begin& here = sides_[side];
     const Begin& other = partner(side);
-    const Substeps& steps = other.grid.steps;
-    const bool known = here.incoming_begin == steps.begin &&
-                       static_cast<Eigen::Index>(here.incoming.size()) >= other.grid.size();
-    for (Eigen::Index i = 0; i < other.grid.size(); ++i) {
-      const std::size_t c = index(i % other.grid.width);
-      const bool first = i < other.grid.width;
-      const double close = first ? overlap_[c] / (steps.time(1) - steps.time(0)) : 0.0;
-      x[at++] = known ? here.incoming[i] : other.force[c] + here.impedance * (other.v[c] + close);
+    const Substeps& steps = other.grid;
+    const bool known =
+        here.incoming_begin == steps.begin && static_cast<int>(here.incoming.size()) >= steps.count;
+    for (int i = 0; i < steps.count; ++i) {
+      const double close = i == 0 ? overlap_ / (steps.time(1) - steps.time(0)) : 0.0;
+      x[at++] = known ? here.incoming[i] : other.force + here.impedance * (other.v + close);
     }
   }
 }
@@ -105,15 +99,11 @@ void Robin::outgoing(int side, const Joint& joint, const Bodies& bodies,
   const double n = joint.normal_of(1 - side);
   const double z = sides_[side].impedance;
   const Waveform& trace = trace_of(bodies, joint.sides[1 - side]);
-  const std::size_t width = overlap_.size();
   for (std::size_t i = 1; i < trace.size(); ++i) {
-    const double length = trace.time[i] - trace.time[i - 1];
-    for (std::size_t c = 0; c < width; ++c) {
-      double moved = n * (trace.u[i * width + c] - trace.u[(i - 1) * width + c]);
-      if (i == 1) moved += overlap_[c];
-      q[static_cast<Eigen::Index>((i - 1) * width + c)] =
-          -n * trace.f[i * width + c] + z * moved / length;
-    }
+    double moved = n * (trace.u[i] - trace.u[i - 1]);
+    if (i == 1) moved += overlap_;
+    q[static_cast<Eigen::Index>(i) - 1] =
+        -n * trace.f[i] + z * moved / (trace.time[i] - trace.time[i - 1]);
   }
 }
 
@@ -121,7 +111,8 @@ void Robin::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const J
                    Bodies& bodies) {
   Begin& here = sides_[side];
   const Begin& other = partner(side);
-  const Eigen::Index size = other.grid.size();
+  const Substeps& steps = other.grid;
+  const int size = steps.count;
   Eigen::VectorXd q(size);
   if (side == kinematic_) {
     q = x.head(size);
@@ -130,25 +121,21 @@ void Robin::impose(int side, const Eigen::Ref<const Eigen::VectorXd>& x, const J
   } else {
     outgoing(side, joint, bodies, q);
   }
-  const Substeps& steps = other.grid.steps;
   here.incoming.assign(q.begin(), q.end());
   here.incoming_begin = steps.begin;
   const Side& port = joint.sides[side];
   const double inward = -joint.normal_of(side);
   Waveform& force = bodies.force(port);
-  force.clear();
-  force.width = 1;
+  lay_times(steps, 1, force);
   force.support = other.support;
-  for (int i = 0; i <= steps.count; ++i) force.time.push_back(steps.time(i));
-  for (std::size_t c = 0; c < overlap_.size(); ++c)
-    force.f.push_back(inward * (other.force[c] + here.impedance * other.v[c]));
+  force.f.push_back(inward * (other.force + here.impedance * other.v));
   for (double value : q) force.f.push_back(inward * value);
   bodies.boundary(port).impedance = {here.impedance, joint.tied()};
 }
 
 void Robin::image(const Eigen::Ref<const Eigen::VectorXd>& x, const Joint& joint,
                   const Bodies& bodies, Eigen::Ref<Eigen::VectorXd> g) {
-  const Eigen::Index first = partner(kinematic_).grid.size();
+  const int first = partner(kinematic_).grid.count;
   outgoing(kinematic_, joint, bodies, g.head(first));
   if (parallel_) outgoing(1 - kinematic_, joint, bodies, g.tail(x.size() - first));
   for (double f : trace_of(bodies, joint.kinematic_side()).f)
@@ -163,14 +150,11 @@ FieldResiduals Robin::measure(const Eigen::Ref<const Eigen::VectorXd>& x,
   FieldResiduals r;
   Eigen::Index at = 0;
   for (int k = 0; k < parts(); ++k) {
-    const IterateGrid& grid = partner(iterated()[k]).grid;
-    std::vector<double> overlap(overlap_.size(), 0.0);
-    for (Eigen::Index i = 0; i < grid.size(); ++i, ++at) {
+    const Substeps& steps = partner(iterated()[k]).grid;
+    double left = 0.0;
+    for (int i = 1; i <= steps.count; ++i, ++at) {
       const double difference = g[at] - x[at];
-      const int substep = static_cast<int>(i / grid.width) + 1;
-      double& left = overlap[i % grid.width];
-      left +=
-          difference / impedance_sum_ * (grid.steps.time(substep) - grid.steps.time(substep - 1));
+      left += difference / impedance_sum_ * (steps.time(i) - steps.time(i - 1));
       r.displacement =
           std::max(r.displacement, scaled(left, scale_.velocity * scale_.step, scale_.roundoff));
       r.force = std::max(r.force, scaled(0.5 * difference, scale_.force,

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
-#include "base/index.hpp"
 #include "coordinator/coupling/exchange.hpp"
 
 namespace abut {
@@ -31,16 +31,15 @@ class Robin final : public Exchange {
   FieldResiduals measure(const Eigen::Ref<const Eigen::VectorXd>& x,
                          const Eigen::Ref<const Eigen::VectorXd>& g) const override;
   void scales(Eigen::Ref<Eigen::VectorXd> s) const override;
-  Eigen::VectorXd apply_inverse(const Eigen::VectorXd& r) const override { return r; }
   bool ordered() const override { return !parallel_; }
   void state(Archive& archive) override;
 
  private:
   /// What is known of a side at the window's begin; displacements along its outward normal.
   struct Begin {
-    IterateGrid grid;  // of what it sends
+    Substeps grid;  // of what it sends
     ForceSupport support = ForceSupport::nodal;
-    std::vector<double> v, force;  // (width) [m/s] [N] compressive
+    double v = 0.0, force = 0.0;   // [m/s] [N] compressive
     double impedance = 0.0;        // [kg/s] that this side sees
     std::vector<double> incoming;  // [N] last q of this side: the guess of a shorter window
     double incoming_begin = 0.0;   // [s] begin of its window
@@ -59,7 +58,7 @@ class Robin final : public Exchange {
   bool parallel_;
   int kinematic_ = 0;
   std::array<Begin, 2> sides_;
-  std::vector<double> overlap_;  // [m] (width) at the window's begin
+  double overlap_ = 0.0;  // [m] at the window's begin
   double impedance_sum_ = 0.0;
   ReferenceScales scale_;
 };

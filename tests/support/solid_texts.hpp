@@ -7,7 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "tests/support/runs.hpp"
+#include "base/index.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace abut {
 
@@ -49,7 +50,7 @@ inline std::string scheme_named(char letter, double step) {
                          step);
 }
 
-/// A body in two or three dimensions as a scene file writes it. What is empty is left out.
+/// A body of cells as a scene file writes it. What is empty is left out.
 struct SolidText {
   std::string name = {};
   int dim = 2;
@@ -62,18 +63,19 @@ struct SolidText {
   std::string start = {};               // other keys of initial
   std::vector<std::string> sides = {};  // with ports of their names
   std::string more = {};                // keys of the body, in lines of their own
-  // In place of dim and mesh: a block of cells.
-  std::vector<double> lengths = {};
-  std::vector<int> cells = {};
-  std::string element = {};
+  struct Block {
+    std::vector<double> lengths = {};
+    std::vector<int> cells = {};
+    std::string element = {};
+  } block = {};  // in place of dim and mesh
 
   std::string text() const {
-    if (!lengths.empty()) {
-      SolidText block = *this;
-      block.dim = static_cast<int>(lengths.size());
-      block.mesh = block_mesh(lengths, cells, element);
-      block.lengths.clear();
-      return block.text();
+    if (!block.lengths.empty()) {
+      SolidText meshed = *this;
+      meshed.dim = static_cast<int>(block.lengths.size());
+      meshed.mesh = block_mesh(block.lengths, block.cells, block.element);
+      meshed.block = {};
+      return meshed.text();
     }
     std::string out = fmt::format("  {}:\n    model: {{{}: {{dimension: {}, {}mesh: {{{}}}}}}}\n",
                                   name, model, dim, keys, mesh);
@@ -86,36 +88,40 @@ struct SolidText {
     if (!start.empty()) initial.push_back(start);
     if (!side.empty()) ports.push_back(fmt::format("{}: {{side: {}}}", port, side));
     for (const std::string& each : sides) ports.push_back(fmt::format("{0}: {{side: {0}}}", each));
-    return out + fmt::format("    initial: {{{}}}\n    ports: {{{}}}\n{}", fmt::join(initial, ", "),
-                             fmt::join(ports, ", "), more);
+    if (!initial.empty()) out += fmt::format("    initial: {{{}}}\n", fmt::join(initial, ", "));
+    if (!ports.empty()) out += fmt::format("    ports: {{{}}}\n", fmt::join(ports, ", "));
+    return out + more;
   }
 };
+
+inline std::unique_ptr<Subdomain> build(const SolidText& solid) {
+  return build(solid.name, solid.text());
+}
+
+/// A block in the plane, or in space by the third of its numbers.
+inline SolidText::Block block_in(int dim, std::vector<double> lengths, std::vector<int> cells,
+                                 const std::string& element = "") {
+  lengths.resize(index(dim));
+  cells.resize(index(dim));
+  return {lengths, cells, element};
+}
+
+/// A rigid tool, with one port on this side of it.
+inline SolidText tool(const std::string& name, const SolidText::Block& block,
+                      const std::vector<double>& position, const std::string& side,
+                      const std::string& keys = "") {
+  return {.name = name,
+          .position = position,
+          .side = side,
+          .model = "rigid_tool",
+          .keys = keys,
+          .block = block};
+}
 
 inline std::string texts_of(const std::vector<SolidText>& bodies) {
   std::string all;
   for (const SolidText& body : bodies) all += body.text();
   return all;
-}
-
-/// Two surfaces that touch; `more`: keys of the interface after a comma.
-inline std::string touching(const std::string& name, const std::string& one,
-                            const std::string& other, const std::string& more = "") {
-  return fmt::format("  {}: {{sides: [{}, {}], contact: {{}}{}}}\n", name, one, other, more);
-}
-
-/// Two sides that are joined; `keys`: of tied.
-inline std::string joined(const std::string& name, const std::string& one, const std::string& other,
-                          const std::string& keys = "") {
-  return fmt::format("  {}: {{sides: [{}, {}], tied: {{{}}}}}\n", name, one, other, keys);
-}
-
-/// A run of such bodies from time 0 in windows of one length; `rest`: other sections.
-inline std::unique_ptr<RunResult> run_solids(double end, double window,
-                                             const std::vector<SolidText>& bodies,
-                                             const std::string& interfaces = "",
-                                             const std::string& rest = "") {
-  return run_scene(end, window, texts_of(bodies),
-                   (interfaces.empty() ? "" : "interfaces:\n" + interfaces) + rest);
 }
 
 }  // namespace abut

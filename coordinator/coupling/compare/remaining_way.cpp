@@ -1,4 +1,4 @@
-#include "coordinator/coupling/remaining_way.hpp"
+#include "coordinator/coupling/compare/remaining_way.hpp"
 
 #include <algorithm>
 
