@@ -350,6 +350,15 @@ int Controller::records_in(const TimeWindow& window) const {
   return std::max(1, static_cast<int>(std::lround(scene_.output.records_per_window * share)));
 }
 
+PairReport Controller::pair_report(const Joint& joint) {
+  const auto& [one, two] = joint.sides;
+  return {joint.interface,
+          {one.body, two.body},
+          {one.port, two.port},
+          {one.partner, two.partner},
+          joint.role.kinematic};
+}
+
 void Controller::fill_reports(bool flown) {
   std::ranges::fill(reports_, InterfaceReport{});
   pairs_.clear();
@@ -369,12 +378,7 @@ void Controller::fill_reports(bool flown) {
       report.iterations = std::max(report.iterations, attempt_.reports[k].iterations);
       report.residual = std::max(report.residual, attempt_.reports[k].residual.largest());
       if (index(joint.interface) < scene_.interfaces.size()) continue;
-      const auto& [one, two] = joint.sides;
-      pairs_.push_back({joint.interface,
-                        {one.body, two.body},
-                        {one.port, two.port},
-                        {one.partner, two.partner},
-                        joint.role.kinematic});
+      pairs_.push_back(pair_report(joint));
     }
   }
 }

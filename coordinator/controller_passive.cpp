@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/touching_pairs.hpp"
@@ -74,6 +75,9 @@ void Controller::accept_passively(const TimeWindow& window) {
     joint.engage(joint.watch->approach(joint, bodies_).speed);
   }
   fill_reports(false);
+  for (const Joint& joint : joints_)
+    if (joint.closed() && index(joint.interface) >= scene_.interfaces.size())
+      pairs_.push_back(pair_report(joint));
   events_.settle(window, guard_.most());
   const EnergyGuard::Verdict energy = guard_.look(bodies_.responses());
   const std::int64_t before = clock_.windows();
