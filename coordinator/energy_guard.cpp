@@ -13,8 +13,6 @@ constexpr int looks_from_rest = 10;
 /// Roundings of a place that may go into the velocity of a body: 16 in the sums of each step, and
 /// those of a million steps add up by chance, to the root of that.
 constexpr double roundings = 16.0e3;
-/// Of the most energy: what a single window may make.
-constexpr double most_in_window = 2.0e-3;
 }  // namespace
 
 EnergyGuard::EnergyGuard(double share, std::vector<bool> conserves, bool together,
@@ -48,7 +46,6 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
     unjudged_ = motion <= rounded ? looks_from_rest : 0;
     most_ = unresolved(responses);
   }
-  last_ = own;
   most_ = std::max({most_, motion, rounded});
   if (most_ <= 0.0 || unjudged_-- > 0) return Verdict::fine;
   unjudged_ = 0;
@@ -74,7 +71,7 @@ bool EnergyGuard::refuses(std::span<const Response> responses,
     motion += energy.kinetic + energy.stored;
   }
   const double scale = std::max(most_, motion);
-  return own - last_ > most_in_window * scale || own - first_ > 0.5 * share_ * scale;
+  return own - first_ > share_ * scale;
 }
 
 /// m (2 dt a)^2/2: of what a body moves at after two steps under its body force.
@@ -130,7 +127,6 @@ void EnergyGuard::state(Archive& archive) {
   bodies_.resize(static_cast<std::size_t>(count));
   for (Account& account : bodies_) account.state(archive);
   archive.field("first", first_);
-  archive.field("last", last_);
   archive.field("most", most_);
   archive.field("growth", growth_);
 }

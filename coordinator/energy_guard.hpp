@@ -36,8 +36,7 @@ class EnergyGuard {
   /// `struck` [J]: by body, what records hold already and the ports' work does not yet; empty:
   /// none.
   Verdict look(std::span<const Response> responses, std::span<const double> struck = {});
-  /// Whether a window that was tried would make energy: in it, or in all with what it adds. It is
-  /// asked before look(), and changes nothing.
+  /// Whether look() would fail a window that was tried for what all bodies gained. Changes nothing.
   bool refuses(std::span<const Response> responses, std::span<const double> struck = {}) const;
   double growth() const { return growth_; }  // as a fraction, at the last look
   double most() const { return most_; }      // [J] largest kinetic and stored energy so far
@@ -64,7 +63,6 @@ class EnergyGuard {
   int unjudged_ = 0;  // looks that are still not judged
   std::vector<Account> bodies_;
   double first_ = 0.0;  // [J] at the first look
-  double last_ = 0.0;   // [J] at the last one
   double most_ = 0.0;   // [J] largest kinetic and stored energy so far, or what numbers resolve
   double growth_ = 0.0;
   int culprit_ = -1;
