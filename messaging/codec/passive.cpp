@@ -106,7 +106,7 @@ void decode(Bytes bytes, const Description& body, PassiveStep& to) {
     }
   }
   require_count(ports, body.ports.size(), "ports", all_ports);
-  if (!(to.end > to.begin)) path.fail(fmt::format("is from {} to {} s", to.begin, to.end));
+  if (!(to.end >= to.begin)) path.fail(fmt::format("is from {} to {} s", to.begin, to.end));
 }
 
 void encode(const PassiveReply& from, WireWriter& to) {

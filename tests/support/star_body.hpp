@@ -128,7 +128,10 @@ class StarBody : public Subdomain, private PassiveForm {
     std::vector<double> impulses(3 * star_.points(), 0.0);
     for (std::size_t p = 0; p < 2; ++p)
       std::ranges::copy(asked_->impulses[p], impulses.begin() + first(p));
-    star_.step(asked_->length(), impulses);
+    const bool goes = asked_->length() > 0.0;
+    from_.assign(star_.u.size(), 0.0);
+    if (goes) from_.assign(star_.u.begin(), star_.u.end());
+    if (goes) star_.step(asked_->length(), impulses);
     answer(reply);
     if (spoil) spoil(reply);
     for (const double u : star_.u)
@@ -149,7 +152,9 @@ class StarBody : public Subdomain, private PassiveForm {
     reply.ports.resize(2);
     std::vector<std::size_t> rows;  // pressed points
     for (std::size_t p = 0; p < 2; ++p) {
-      reply.ports[p].displacement.assign(star_.u.begin() + first(p), star_.u.begin() + end(p));
+      reply.ports[p].displacement.clear();
+      for (std::ptrdiff_t k = first(p); k < end(p); ++k)
+        reply.ports[p].displacement.push_back(star_.u[k] - from_[k]);
       reply.ports[p].velocity.assign(star_.v.begin() + first(p), star_.v.begin() + end(p));
       for (const std::int32_t point : asked_->pressed[p]) rows.push_back(2 * p + index(point));
     }
@@ -187,6 +192,7 @@ class StarBody : public Subdomain, private PassiveForm {
   Star star_{{1.0, -0.5, 2.0}};
   bool passive_ = false;
   const Advance* flight_ = nullptr;
+  std::vector<double> from_;  // [m] where the step began
   const PassiveStep* asked_ = nullptr;
   std::vector<std::byte> saved_;
 };
