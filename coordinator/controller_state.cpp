@@ -50,6 +50,11 @@ void Controller::memory(Archive& archive) {
   archive.field("grounded", flight_.grounded);
   for (Joint& joint : joints_) joint.memory(archive);
   roles_.state(archive);
+  passive_.state(archive);
+  crossing_.state(archive);
+  whole(archive, "wait", waiting_.wait);
+  whole(archive, "left", waiting_.left);
+  whole(archive, "accurate", waiting_.accurate);
   schwarz_.state(archive);
 }
 

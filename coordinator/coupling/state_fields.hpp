@@ -28,6 +28,16 @@ inline void field(Archive& archive, std::string_view name, std::vector<std::int3
   if (!archive.writing()) values.assign(list.begin(), list.end());
 }
 
+inline void field(Archive& archive, std::string_view name, std::vector<Eigen::Vector3d>& places) {
+  std::vector<double> list(3 * places.size());
+  for (std::size_t k = 0; k < list.size(); ++k)
+    list[k] = places[k / 3](static_cast<Eigen::Index>(k % 3));
+  archive.field(name, list);
+  places.resize(list.size() / 3);
+  for (std::size_t k = 0; k < list.size(); ++k)
+    places[k / 3](static_cast<Eigen::Index>(k % 3)) = list[k];
+}
+
 /// A whole number or a choice.
 template <class Integer>
 void whole(Archive& archive, std::string_view name, Integer& value) {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/coupling/state_fields.hpp"
+
 namespace abut {
 
 namespace {
@@ -318,8 +320,26 @@ void CommonStep::share_out_work() {
 }
 
 void CommonStep::state(Archive& archive) {
+  archive.field("energies", energies_);
   archive.field("accounts", accounts_);
   archive.field("most", most_);
+  field(archive, "places", from_);
+  for (std::size_t b = 0; b < displacements_.size(); ++b) {
+    const std::size_t ports = bodies_.describe(static_cast<int>(b)).ports.size();
+    displacements_[b].resize(ports);
+    replies_[b].ports.resize(ports);
+    port_work_[b].resize(ports, 0.0);
+    for (std::size_t p = 0; p < ports; ++p) {
+      archive.field("displacement", displacements_[b][p]);
+      archive.field("velocity", replies_[b].ports[p].velocity);
+    }
+  }
+  std::vector<std::pair<DistanceRow::Key, Eigen::Vector3d>> warm(warm_.begin(), warm_.end());
+  list(archive, "warm", warm, [](Archive& a, auto& row) {
+    for (std::int32_t& part : row.first) whole(a, "key", part);
+    for (double& part : row.second) a.field("impulse", part);
+  });
+  warm_ = {warm.begin(), warm.end()};
 }
 
 }  // namespace abut

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/coupling/state_fields.hpp"
+
 namespace abut {
 
 namespace {
@@ -41,6 +43,13 @@ std::string CrossingWatch::look() {
   }
   if (text.empty()) known_ = found_;
   return text;
+}
+
+void CrossingWatch::state(Archive& archive) {
+  list(archive, "known", known_, [](Archive& a, Intersection& found) {
+    whole(a, "edge", found.edge);
+    whole(a, "facet", found.facet);
+  });
 }
 
 }  // namespace abut

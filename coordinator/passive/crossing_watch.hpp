@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "coordinator/passive/touching_surfaces.hpp"
 #include "surface/intersections.hpp"
 
@@ -21,6 +22,7 @@ class CrossingWatch {
   /// between rows that hold on average, in words; empty: none, beside those that did at the last
   /// look. Precondition: traces hold displacements.
   std::string look();
+  void state(Archive& archive);
 
  private:
   const std::vector<TouchingPair> pairs_;

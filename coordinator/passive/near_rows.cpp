@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "coordinator/coupling/state_fields.hpp"
 #include "surface/feature_path.hpp"
 
 namespace abut {
@@ -119,6 +120,13 @@ bool NearRows::known(const DistanceRow& row, const std::vector<DistanceRow>& row
         apart = std::max(apart, std::abs(other.weights[i] - row.weights[i]));
     return apart < same_weights;
   });
+}
+
+void NearRows::state(Archive& archive) {
+  std::vector<std::int32_t> behind(behind_.begin(), behind_.end());
+  field(archive, "behind", behind);
+  behind_.assign(behind.begin(), behind.end());
+  behind_count_ = static_cast<int>(std::ranges::count(behind_, 1));
 }
 
 }  // namespace abut

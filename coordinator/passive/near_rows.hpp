@@ -36,6 +36,7 @@ class NearRows {
   /// The step was taken.
   void accept(const Places& places);
   bool any_behind() const { return behind_count_ > 0; }
+  void state(Archive& archive);
 
  private:
   /// Of a pair at a part of the way, as the features are there.

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/coupling/state_fields.hpp"
+
 namespace abut {
 
 namespace {
@@ -37,13 +39,16 @@ std::string PassiveWay::find_hindrance() const {
   return {};
 }
 
+void PassiveWay::make() {
+  if (step_ != nullptr) return;
+  nominal_ = bodies_.shortest_step();
+  surfaces_ = std::make_unique<TouchingSurfaces>(pairs_, bodies_);
+  near_ = std::make_unique<NearRows>(*surfaces_, thickness_share * surfaces_->shortest_edge());
+  step_ = std::make_unique<CommonStep>(*surfaces_, *near_, bodies_, nominal_);
+}
+
 std::optional<Failed> PassiveWay::enter(double time) {
-  if (step_ == nullptr) {
-    nominal_ = bodies_.shortest_step();
-    surfaces_ = std::make_unique<TouchingSurfaces>(pairs_, bodies_);
-    near_ = std::make_unique<NearRows>(*surfaces_, thickness_share * surfaces_->shortest_edge());
-    step_ = std::make_unique<CommonStep>(*surfaces_, *near_, bodies_, nominal_);
-  }
+  make();
   for (int b = 0; b < bodies_.count(); ++b) ledger_.switched += bodies_[b].passive()->enter();
   active_ = true;
   level_ = good_ = held_ = 0;
@@ -167,8 +172,15 @@ bool PassiveWay::leave(double time) {
 }
 
 void PassiveWay::state(Archive& archive) {
-  archive.field("active", active_);
+  whole(archive, "active", active_);
   ledger_.state(archive);
+  if (!active_) return;
+  make();
+  whole(archive, "level", level_);
+  whole(archive, "good", good_);
+  whole(archive, "held", held_);
+  near_->state(archive);
+  step_->state(archive);
 }
 
 }  // namespace abut

@@ -45,6 +45,7 @@ class PassiveWay {
 
  private:
   std::string find_hindrance() const;
+  void make();
   bool step(double begin, double end, PassiveRecord& record, bool lenient);
   std::optional<Failed> advance_to(double end, double& time, PassiveRecord& record);
   bool hold_rigid();

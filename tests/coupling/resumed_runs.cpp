@@ -146,6 +146,9 @@ std::vector<Cut> cuts() {
       {"joined/row_of_eight", 1},
       {"joined/torsion_multi_scale", 61},
       {"joined/weld_overlap", 3},
+      {"robust/dominoes", 61},
+      {"robust/falling_plates", 301},
+      {"robust/one_cell_each", 71},
   };
 }
 
