@@ -55,6 +55,7 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
           make_energy_guard(scene.schwarz.energy_guard, joints_, !broad_phase_.empty(), bodies_)),
       passive_(touching_pairs(scene, joints_, bodies_), bodies_),
       crossing_(touching_pairs(scene, joints_, bodies_), bodies_),
+      folds_(touching_pairs(scene, joints_, bodies_), bodies_),
       reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {
   end_.status = "completed";
   flight_.longest = flight_.limit =
@@ -187,7 +188,7 @@ bool Controller::fly_free() {
     return true;
   }
   if (!broad_phase_.empty()) join(broad_phase_.crossed(bodies_));
-  if (!stayed_apart(joints_, bodies_, flight.length())) {
+  if (!stayed_apart(joints_, bodies_, flight.length()) || !folded().empty()) {
     bodies_.restore_all();
     flight_.grounded = true;
     flight_.limit = std::max(1, windows / 4);  // the bound was wrong: trust it less for a while
@@ -255,6 +256,8 @@ Controller::Judgement Controller::judge(const TimeWindow& window) {
 
 /// Surfaces may have passed through each other, where bodies could go another way.
 Controller::Judgement Controller::judge_ways(const TimeWindow& window) {
+  if (std::string meets = folded(); !meets.empty())
+    return {Judgement::Verdict::fail, window.end, std::move(meets)};
   const bool near = std::ranges::any_of(joints_, [](const Joint& j) { return j.closed(); });
   if (!near || !may_go_passively()) return {};
   if (guard_.refuses(bodies_.responses(), bodies_.struck()))

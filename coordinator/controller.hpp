@@ -16,6 +16,7 @@
 #include "coordinator/narrator.hpp"
 #include "coordinator/overlap_search.hpp"
 #include "coordinator/passive/crossing_watch.hpp"
+#include "coordinator/passive/fold_watch.hpp"
 #include "coordinator/passive/passive_way.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/scene.hpp"
@@ -110,6 +111,7 @@ class Controller {
   void look_for_overlaps();
   void look_for_passed();
   bool may_go_passively() const;
+  std::string folded();
   bool must_go_passively(const TimeWindow& window);
   bool go_passively(double time, const std::string& reason);
   void step_passively();
@@ -137,6 +139,7 @@ class Controller {
   OverlapSearch overlaps_;
   PassiveWay passive_;
   CrossingWatch crossing_;
+  FoldWatch folds_;
   Waiting waiting_;
   Flight flight_;
   std::int64_t halvings_ = 0;

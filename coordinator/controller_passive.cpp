@@ -26,6 +26,9 @@ bool Controller::may_go_passively() const {
          scene_.schwarz.on_nonconvergence == OnNonconvergence::passive;
 }
 
+/// Which body comes upon itself, where passive forms can keep it off itself; empty: none.
+std::string Controller::folded() { return may_go_passively() ? folds_.look() : std::string(); }
+
 /// Where surfaces come near of which neither side finds contact in another form.
 bool Controller::must_go_passively(const TimeWindow& window) {
   const bool near = std::ranges::any_of(joints_, [&](Joint& joint) {
@@ -98,7 +101,7 @@ void Controller::go_accurately() {
     const auto [distance, speed] = joint.watch->approach(joint, bodies_);
     return distance > far_ways * speed * scene_.time.window;
   });
-  if (!apart || !passive_.leave(clock_.time())) return;
+  if (!apart || !folds_.apart(far_ways) || !passive_.leave(clock_.time())) return;
   waiting_.accurate = 0;
   narrator_.accurate(clock_.time());
   for (Joint& joint : joints_)

@@ -86,9 +86,21 @@ void TiedSpec::fields(Fields& f) {
 }
 
 void SceneContactSpec::fields(Fields& f) {
-  f.section("everything", everything,
-            "law of contact between all surfaces (ports) of different bodies, but for pairs that "
-            "have an interface; measures name it contact.everything");
+  f.optional_section(
+      "everything", everything,
+      "law of contact between all surfaces (ports) of different bodies, but for pairs that "
+      "have an interface; measures name it contact.everything");
+  f.optional("self", self, "",
+             "contact of bodies with themselves, on each port of theirs that has facets and between "
+             "those that have no node in common, where strains are finite: windows in which a "
+             "surface comes upon itself are gone passively");
+  f.optional("self_friction", self_friction, "",
+             "Coulomb's coefficient of bodies on themselves; usual: that of everything, or 0",
+             between(0.0, rough_friction));
+  f.check(everything || !self || self_friction, "everything", "is missing",
+          "Write contact: {everything: {}}, contact: {self: false}, or leave contact out: bodies "
+          "touch themselves by default.");
+  f.idle(!self, "self_friction", "bodies do not touch themselves");
 }
 
 void InterfaceSpec::fields(Fields& f) {

@@ -19,9 +19,11 @@ struct ContactSpec {
   FrictionLaw friction;  // of surfaces
   void fields(Fields& f);
 };
-/// Contact between any two surfaces of a scene.
+/// Contact that is not written pair by pair.
 struct SceneContactSpec {
-  ContactSpec everything;
+  std::optional<ContactSpec> everything;  // between any two surfaces; absent: interfaces say it
+  bool self = true;                       // of bodies with themselves
+  std::optional<double> self_friction;    // absent: that of everything, or none
   void fields(Fields& f);
 };
 /// Its key, and the name of its interface in what a run tells.

@@ -183,7 +183,8 @@ void Scene::fields(Fields& f) {
 
 void Scene::idle_keys(Fields& f) const {
   const bool iterated =
-      contact || std::any_of(interfaces.begin(), interfaces.end(), [](const auto& entry) {
+      everything() != nullptr ||
+      std::any_of(interfaces.begin(), interfaces.end(), [](const auto& entry) {
         return !is_inside(entry.second.transmission);
       });
   for (const char* key : {"form", "tolerance", "max_iterations", "accelerator"})

@@ -140,7 +140,16 @@ struct Scene {
   void fields(Fields& f);
 
   /// The law where everything may touch everything; null: interfaces are written one by one.
-  const ContactSpec* everything() const { return contact ? &contact->everything : nullptr; }
+  const ContactSpec* everything() const {
+    return contact && contact->everything ? &*contact->everything : nullptr;
+  }
+  /// Coulomb's coefficient of bodies on themselves; empty: they do not touch themselves.
+  std::optional<double> own_friction() const {
+    if (!contact) return 0.0;
+    if (!contact->self) return std::nullopt;
+    return contact->self_friction.value_or(contact->everything ? contact->everything->friction
+                                                               : 0.0);
+  }
 
  private:
   void idle_keys(Fields& f) const;

@@ -45,6 +45,48 @@ void add_everything(const ContactSpec& law, const Bodies& bodies,
   }
 }
 
+/// Ports of a body whose strains are finite: others bend too little to come upon themselves.
+std::vector<Side> folding_ports(int body, const Bodies& bodies) {
+  const Description& of = bodies.describe(body);
+  std::vector<Side> sides;
+  if (of.dim == 1 || of.linear || !of.can.passive || std::isinf(of.mass)) return sides;
+  for (std::size_t p = 0; p < of.ports.size(); ++p) {
+    const PortGeometry& geometry = of.ports[p].geometry;
+    if (!geometry.facets.empty() && geometry.transit > 0.0)
+      sides.push_back({body, static_cast<int>(p)});
+  }
+  return sides;
+}
+
+/// Whether two ports of a body have a node in common: features there would touch from the start.
+bool share_a_node(const PortGeometry& one, const PortGeometry& other) {
+  const auto nodes = [](const PortGeometry& of) {
+    std::vector<std::array<double, 3>> all(index(of.count()));
+    for (std::size_t v = 0; v < of.points.size(); ++v)
+      all[v / index(of.dim)][v % index(of.dim)] = of.points[v];
+    std::ranges::sort(all);
+    return all;
+  };
+  const std::vector<std::array<double, 3>> a = nodes(one), b = nodes(other);
+  return std::ranges::any_of(a, [&b](const auto& x) { return std::ranges::binary_search(b, x); });
+}
+
+/// Surfaces of bodies that may touch themselves.
+void add_own(double friction, const Bodies& bodies, std::vector<TouchingPair>& pairs) {
+  int dim = pairs.empty() ? 0 : bodies.port(pairs.front().sides[0]).geometry.dim;
+  for (int b = 0; b < bodies.count(); ++b) {
+    const std::vector<Side> sides = folding_ports(b, bodies);
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      const PortGeometry& one = bodies.port(sides[i]).geometry;
+      if (dim == 0) dim = one.dim;
+      if (one.dim != dim) continue;
+      for (std::size_t j = i; j < sides.size(); ++j)
+        if (i == j || !share_a_node(one, bodies.port(sides[j]).geometry))
+          pairs.push_back({{sides[i], sides[j]}, friction});
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joint> joints,
@@ -57,6 +99,8 @@ std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joi
     pairs.push_back({joint.sides, spec.contact ? spec.contact->friction.kinetic_friction : 0.0});
   }
   if (scene.everything() != nullptr) add_everything(*scene.everything(), bodies, pairs);
+  if (const std::optional<double> friction = scene.own_friction())
+    add_own(*friction, bodies, pairs);
   return pairs;
 }
 

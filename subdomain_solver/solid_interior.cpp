@@ -92,7 +92,10 @@ void SolidInterior::find_abilities() {
 
 /// Ports without mass meet obstacles.
 void SolidInterior::find_contacts() {
-  if (description_.dim > 1) return find_surfaces();
+  if (description_.dim > 1) {
+    find_surfaces();
+    return watch_crossings();
+  }
   const std::vector<int>& massless = parts_.problem->model->massless();
   std::vector<PointContact::Point> points;
   for (std::size_t p = 0; p < ports_.size(); ++p) {
@@ -132,13 +135,23 @@ void SolidInterior::find_surfaces() {
   contact_ = std::move(contact);
   for (std::string& name : touch_measure_names(touched_))
     description_.measures.push_back(std::move(name));
-  if (parts_.deforms && !parts_.problem->model->is_linear()) {
-    crossings_ = std::make_unique<SelfCrossings>(touched_);
-    description_.measures.emplace_back("contact.crossings");
-  }
   for (FieldInfo& field : touch_fields()) description_.fields.push_back(std::move(field));
   description_.can.obstacle = description_.can.yielding = description_.can.friction = true;
   description_.can.neighbours = joins_;
+}
+
+/// Whether a partner is there or not: a body may come upon itself alone.
+void SolidInterior::watch_crossings() {
+  if (!parts_.deforms || parts_.problem->model->is_linear()) return;
+  std::vector<PortSurface> surfaces;
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    const PortGeometry& geometry = description_.ports[p].geometry;
+    if (geometry.facets.empty()) continue;
+    surfaces.push_back({p, port_map_->first(p), &geometry, ports_[p].nodes});
+  }
+  if (surfaces.empty()) return;
+  crossings_ = std::make_unique<SelfCrossings>(surfaces);
+  description_.measures.emplace_back("contact.crossings");
 }
 
 void SolidInterior::describe(std::string name, const std::vector<PortNodes>& ports) {

@@ -141,6 +141,7 @@ class SolidInterior final : public Interior,
   std::optional<Failed> take_port_forces(double time);
   void find_contacts();
   void find_surfaces();
+  void watch_crossings();
   void follow_ports(double time);
   void add_port_work();
   const Vector& forces_on_ports();

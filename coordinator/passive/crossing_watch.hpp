@@ -14,8 +14,8 @@ namespace abut {
 /// look at facets that face each other, and sharp edges and spikes may face nothing.
 class CrossingWatch {
  public:
-  CrossingWatch(std::vector<TouchingPair> pairs, const Bodies& bodies)
-      : pairs_(std::move(pairs)), bodies_(bodies) {}
+  /// Of the pairs those of different bodies are watched (FoldWatch: the others).
+  CrossingWatch(std::vector<TouchingPair> pairs, const Bodies& bodies);
   ~CrossingWatch();
 
   /// Of the latest replies: which bodies pass through each other by more than single nodes do
@@ -25,7 +25,7 @@ class CrossingWatch {
   void state(Archive& archive);
 
  private:
-  const std::vector<TouchingPair> pairs_;
+  std::vector<TouchingPair> pairs_;
   const Bodies& bodies_;
   std::unique_ptr<TouchingSurfaces> surfaces_;
   std::unique_ptr<SkinTrees> trees_;

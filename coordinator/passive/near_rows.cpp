@@ -40,10 +40,11 @@ NearRows::NearRows(const TouchingSurfaces& surfaces, double thickness)
     : surfaces_(surfaces),
       thickness_(thickness),
       trees_(surfaces.skin(), surfaces.reference()),
-      choice_(surfaces.choice()),
+      own_(surfaces, thickness),
       sides_(surfaces.skin()) {}
 
 bool NearRows::leaves_out(const FeaturePair& pair) const {
+  if (own_.leaves_out(pair)) return true;
   return behind_count_ > 0 && std::ranges::any_of(pair.points, [this](std::int32_t point) {
            return point >= 0 && behind_[point] != 0;
          });
@@ -52,13 +53,13 @@ bool NearRows::leaves_out(const FeaturePair& pair) const {
 void NearRows::find(const Places& from, const Places& to, std::vector<DistanceRow>& rows) {
   const int dim = surfaces_.skin().dim;
   const double reach = near_thicknesses * thickness_;
-  near_features(trees_, from, from, reach, choice_, pairs_);
+  near_features(trees_, from, from, reach, own_.choice(trees_, from, from, reach), pairs_);
   for (const FeaturePair& pair : pairs_) {
     if (leaves_out(pair)) continue;
     if (feature_distance(pair.kind, dim, at(pair, from, from, 0.0)).distance < reach)
       add(pair, from, from, 0.0, rows);
   }
-  near_features(trees_, from, to, thickness_, choice_, pairs_);
+  near_features(trees_, from, to, thickness_, own_.choice(trees_, from, to, thickness_), pairs_);
   for (const FeaturePair& pair : pairs_) {
     if (leaves_out(pair)) continue;
     const FeaturePoints before = at(pair, from, to, 0.0), after = at(pair, from, to, 1.0);
@@ -74,7 +75,7 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
                                   std::vector<DistanceRow>& rows) {
   const int dim = surfaces_.skin().dim;
   Crossed crossed;
-  near_features(trees_, from, to, thickness_, choice_, pairs_);
+  near_features(trees_, from, to, thickness_, own_.choice(trees_, from, to, thickness_), pairs_);
   for (const FeaturePair& pair : pairs_) {
     if (leaves_out(pair)) continue;
     const FeaturePoints before = at(pair, from, to, 0.0), after = at(pair, from, to, 1.0);

@@ -4,12 +4,16 @@
 #include <vector>
 
 #include "coordinator/passive/distance_row.hpp"
+#include "coordinator/passive/own_gaps.hpp"
 #include "coordinator/passive/touching_surfaces.hpp"
 #include "surface/intersections.hpp"
 #include "surface/near_features.hpp"
 #include "surface/signed_side.hpp"
 
 namespace abut {
+
+/// Of the shortest edge: how near surfaces press [M.134].
+constexpr double thickness_share = 1.0e-3;
 
 /// Finds what must be kept apart in a step, and checks the ways that the surfaces take [M.134].
 /// Distances have no inside: a row is the shortest way between two features, so thin, open and
@@ -51,7 +55,7 @@ class NearRows {
   const TouchingSurfaces& surfaces_;
   double thickness_;
   SkinTrees trees_;
-  FeatureChoice choice_;
+  OwnGaps own_;
   SkinSides sides_;
   std::vector<Intersection> crossing_;
   std::vector<std::vector<std::int32_t>> around_;  // (points) facets that a behind node is near

@@ -14,8 +14,6 @@ namespace abut {
 
 namespace {
 
-/// Of the shortest edge: how near surfaces press [M.134].
-constexpr double thickness_share = 1.0e-3;
 constexpr int most_halvings = 14;
 /// Steps that must succeed before they are doubled again, fewer where they are very short.
 constexpr int steps_to_double = 8, short_level = 6, short_steps_to_double = 3;

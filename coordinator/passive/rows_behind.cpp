@@ -35,7 +35,7 @@ void NearRows::accept(const Places& places) {
 void NearRows::mark_behind(const Places& places, const std::vector<std::uint8_t>& may_be) {
   const Skin& skin = surfaces_.skin();
   const double reach = surfaces_.shortest_edge();
-  intersections(trees_, places, on_surface * reach, choice_, crossing_);
+  intersections(trees_, places, on_surface * reach, own_.others(), crossing_);
   trees_.refit(places, places);
   std::ranges::fill(behind_, 0);
   const bool first = std::ranges::all_of(may_be, [](std::uint8_t m) { return m != 0; });
@@ -43,7 +43,7 @@ void NearRows::mark_behind(const Places& places, const std::vector<std::uint8_t>
   for (const std::int32_t node : skin.nodes) {
     if (may_be[node] == 0) continue;
     for (int group = 0; group < skin.groups && behind_[node] == 0; ++group) {
-      if (!choice_.allows(skin.group[node], group, skin.groups)) continue;
+      if (!own_.others().allows(skin.group[node], group, skin.groups)) continue;
       if (skin.group[node] == group) continue;
       const std::int32_t facet = trees_.closest_facet(group, places, places[node], reach);
       if (facet < 0) continue;
@@ -71,7 +71,7 @@ void NearRows::add_behind(const Places& from, std::vector<DistanceRow>& rows) {
   trees_.refit(from, from);
   for (int a = 0; a < skin.groups; ++a)
     for (int b = 0; b < skin.groups; ++b)
-      if (a != b && choice_.allows(a, b, skin.groups))
+      if (a != b && own_.others().allows(a, b, skin.groups))
         trees_.visit(SkinTrees::nodes, a, SkinTrees::facets, b, surfaces_.shortest_edge(),
                      [&](std::int32_t node, std::int32_t facet) {
                        const std::int32_t point = skin.nodes[node];

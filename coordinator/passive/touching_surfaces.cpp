@@ -86,6 +86,17 @@ void TouchingSurfaces::place(std::span<const Response> responses,
   }
 }
 
+void TouchingSurfaces::place(std::span<const Response> responses, std::size_t instant,
+                             std::vector<Eigen::Vector3d>& places) const {
+  places.resize(points_.size());
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const Point& at = points_[k];
+    const Waveform& trace = responses[index(at.body)].ports[index(at.port)].trace;
+    const std::size_t before = instant * index(trace.width) / index(dim_);
+    places[k] = reference_[k] + vector_at(trace.u, before + index(at.point), dim_);
+  }
+}
+
 FeatureChoice TouchingSurfaces::choice() const {
   FeatureChoice choice;
   for (int a = 0; a < groups(); ++a)

@@ -38,6 +38,9 @@ class TouchingSurfaces {
             std::vector<Eigen::Vector3d>& to) const;
   /// [m] the places of all points at the end of their bodies' latest responses.
   void place(std::span<const Response> responses, std::vector<Eigen::Vector3d>& places) const;
+  /// [m] the same at an instant of their traces, which bodies have in common.
+  void place(std::span<const Response> responses, std::size_t instant,
+             std::vector<Eigen::Vector3d>& places) const;
   const std::vector<Eigen::Vector3d>& reference() const { return reference_; }
   /// Pairs of features that may touch.
   FeatureChoice choice() const;

@@ -4,8 +4,8 @@
 
 namespace abut {
 
-SelfCrossings::SelfCrossings(const std::vector<TouchedSurface>& surfaces) {
-  for (const TouchedSurface& s : surfaces) {
+SelfCrossings::SelfCrossings(const std::vector<PortSurface>& surfaces) {
+  for (const PortSurface& s : surfaces) {
     const PortGeometry& g = *s.geometry;
     Watched& port = ports_.emplace_back(Watched{s.first, &g, {}});
     build(port.tree, {g.dim, g.points, g.facets, g.offsets}, 0.0);

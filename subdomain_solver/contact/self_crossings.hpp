@@ -3,16 +3,16 @@
 #include <span>
 #include <vector>
 
-#include "subdomain_solver/contact/contact_fields.hpp"
+#include "subdomain_solver/contact/surface_contact.hpp"
 #include "surface/boxes.hpp"
 
 namespace abut {
 
-/// Watches whether a body folds onto itself: contact within a port is not solved for, so facets of
-/// it that meet pass through each other.
+/// Watches whether facets of a port pass through each other: a body's own scheme knows of no
+/// contact with itself, which the passive way keeps where the scene lets it (contact.self).
 class SelfCrossings {
  public:
-  explicit SelfCrossings(const std::vector<TouchedSurface>& surfaces);
+  explicit SelfCrossings(const std::vector<PortSurface>& surfaces);
 
   /// Pairs of facets of a port that do now. `places`: [m] (port values) displacements.
   int count(std::span<const double> places);
