@@ -77,9 +77,8 @@ void check_overlap(const NamedSurface& one, const NamedSurface& other,
   constexpr int most_told = 5;
   const StartSurface k = start(one.geometry), n = start(other.geometry);
   const double size = facet_size(k, n), rounding = tolerance * size;
-  const std::vector<OverlapPlace> all =
-      overlap_places(k.surface, n.surface,
-                     {{allowed[0] + rounding, allowed[1] + rounding}, reach * size});
+  const std::vector<OverlapPlace> all = overlap_places(
+      k.surface, n.surface, {{allowed[0] + rounding, allowed[1] + rounding}, reach * size});
   if (all.empty()) return;
   const std::array sides{&one, &other};
   const std::vector<OverlapPlace> told = parted_places(all, apart * size, most_told);
@@ -87,11 +86,11 @@ void check_overlap(const NamedSurface& one, const NamedSurface& other,
                                  told.front().depth, words(told.front(), sides));
   for (std::size_t i = 1; i < told.size(); ++i)
     text += fmt::format(", and {} by {:.3g} m", words(told[i], sides), told[i].depth);
-  throw InputError(text, where,
-                   fmt::format("Move a body with initial.position until they are apart{}.",
-                               told.front().depth <= size
-                                   ? ", or give one of them initial: {adjust: true}"
-                                   : ""));
+  throw InputError(
+      text, where,
+      fmt::format(
+          "Move a body with initial.position until they are apart{}.",
+          told.front().depth <= size ? ", or give one of them initial: {adjust: true}" : ""));
 }
 
 /// Rows will be of the nodes of the surface that has edges, divided as finely as the finder's

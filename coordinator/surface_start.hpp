@@ -13,8 +13,8 @@ struct NamedSurface {
 };
 
 /// Refuses bodies that are in each other in the reference, deeper than facets that stand for round
-/// bodies leave them and than a millionth of a facet (surface/overlap_places.hpp). Throws InputError
-/// with places and depths; `where` is the interface's key.
+/// bodies leave them and than a millionth of a facet (surface/overlap_places.hpp). Throws
+/// InputError with places and depths; `where` is the interface's key.
 void check_apart(const NamedSurface& one, const NamedSurface& other, const std::string& where);
 
 /// Refuses what no rows of facets can start from: bodies that are in each other, a facet without

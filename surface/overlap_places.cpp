@@ -19,8 +19,13 @@ using Vector = Eigen::Vector3d;
 using What = OverlapPlace::What;
 
 /// Of a surface that encloses nothing: cosine of normals that face each other (as rows of nodes
-/// ask), and how far beside its rim a node may lie, in lengths of the facet (as those rows have it).
+/// ask), and how far beside its rim a node may lie, in lengths of the facet (as those rows have
+/// it).
 constexpr double facing = 0.5, rim = 0.02;
+
+/// An edge that passes through a thin body says more than a node of it that is in the other: by so
+/// much, as shifts that free an edge may point aside by 35 degrees.
+constexpr double much_deeper = 1.5;
 
 class PlaceSearch {
  public:
@@ -45,8 +50,10 @@ class PlaceSearch {
     }
     for (std::size_t f = 0; f < skin_.facets.size(); ++f) look_at(static_cast<std::int32_t>(f));
     sort();
-    if (found_.empty())
-      if (const std::optional<OverlapPlace> edge = deepest_edge()) found_.push_back(*edge);
+    const double seen = found_.empty() ? 0.0 : much_deeper * found_.front().depth;
+    if (const std::optional<OverlapPlace> edge =
+            deepest_edge(std::max({seen, choice_.allowed[0], choice_.allowed[1]})))
+      found_.insert(found_.begin(), *edge);
     return std::move(found_);
   }
 
@@ -82,9 +89,8 @@ class PlaceSearch {
   void sort() {
     constexpr double rounding = 1.0e-9;
     std::ranges::stable_sort(found_, std::ranges::greater{}, &OverlapPlace::depth);
-    const auto first = std::ranges::find_if(
-        found_,
-        [](const OverlapPlace& p) { return p.what == What::node; });
+    const auto first =
+        std::ranges::find_if(found_, [](const OverlapPlace& p) { return p.what == What::node; });
     if (first == found_.end() || first->depth < (1.0 - rounding) * found_.front().depth) return;
     std::rotate(found_.begin(), first, first + 1);
   }
@@ -120,8 +126,7 @@ class PlaceSearch {
     for (int i = 0; i < corners; ++i) x += points_[f[i]] / corners;
     const Vector normal = sides_.facet_normal(points_, facet);
     const SignedSide side = side_of(x, body);
-    if (is_in(x, side, body, [&] { return normal; }))
-      keep(x, -side.gap, surface, What::facet);
+    if (is_in(x, side, body, [&] { return normal; })) keep(x, -side.gap, surface, What::facet);
     const bool flush = closed_[0] && closed_[1] && normal.dot(side.normal) > facing &&
                        std::abs(side.gap) <= choice_.allowed[surface];
     if (!flush) return;
@@ -153,8 +158,7 @@ class PlaceSearch {
   }
 
   /// Depths are those of intersections(): what a shift of an edge must exceed to free it.
-  std::optional<OverlapPlace> deepest_edge() {
-    double known = std::max(choice_.allowed[0], choice_.allowed[1]);
+  std::optional<OverlapPlace> deepest_edge(double known) {
     if (!find_edges(known)) return {};
     Intersection deepest = edges_.front();
     double beyond = 2.0 * known;
@@ -172,8 +176,7 @@ class PlaceSearch {
         beyond = middle;
       }
     }
-    return OverlapPlace{known, place_of(deepest), What::edge,
-                        skin_.group[edge_of(deepest)[0]]};
+    return OverlapPlace{known, place_of(deepest), What::edge, skin_.group[edge_of(deepest)[0]]};
   }
   std::array<std::int32_t, 2> edge_of(const Intersection& pair) const {
     if (skin_.dim == 3) return skin_.edges[pair.edge];

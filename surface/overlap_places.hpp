@@ -25,8 +25,9 @@ struct OverlapChoice {
 /// Where bodies overlap whose surfaces these are, deepest first; facets look out of their bodies.
 /// A node, or the middle of a facet, is in a body where it is behind the closest facet of all,
 /// however far: of a surface that encloses nothing only within reach, where it faces the facet and
-/// lies over it. Facets on each other that look the same way overlap, too. Where nothing of that is,
-/// one edge is told that passes through a facet, the deepest. For setting up: it allocates.
+/// lies over it. Facets on each other that look the same way overlap, too. Where no such place is
+/// nearly as deep, one edge is told that passes through a facet, the deepest, with the shift that
+/// frees it. For setting up: it allocates.
 std::vector<OverlapPlace> overlap_places(const PosedSurface& one, const PosedSurface& other,
                                          const OverlapChoice& choice);
 
