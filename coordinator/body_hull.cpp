@@ -113,19 +113,40 @@ BodyHull interval_of(const Description& body, const Grid& grid) {
   return hull;
 }
 
+/// Of a port that encloses something, or else of the one with most facets.
 BodyHull port_hull(const Description& body) {
+  std::size_t port = body.ports.size(), most = 0;
   for (std::size_t p = 0; p < body.ports.size(); ++p) {
     const PortGeometry& g = body.ports[p].geometry;
-    if (g.dim == 1 || !is_closed(posed(g))) continue;
-    BodyHull hull;
-    hull.dim = g.dim;
-    hull.port = p;
-    hull.reference = g.points;
-    hull.facets = g.facets;
-    hull.offsets = g.offsets;
-    return hull;
+    if (g.dim == 1 || g.offsets.size() <= 1) continue;
+    const bool closed = is_closed(posed(g));
+    if (!closed && g.offsets.size() <= most) continue;
+    port = p;
+    most = g.offsets.size();
+    if (closed) break;
   }
-  return {};
+  if (port == body.ports.size()) return {};
+  const PortGeometry& g = body.ports[port].geometry;
+  BodyHull hull;
+  hull.dim = g.dim;
+  hull.port = port;
+  hull.reference = g.points;
+  hull.facets = g.facets;
+  hull.offsets = g.offsets;
+  return hull;
+}
+
+/// Cells of a mirrored mesh tell their facets from the other side.
+void look_outwards(BodyHull& hull) {
+  const PosedSurface surface = hull.surface();
+  double volume = 0.0;
+  for (int f = 0; f < surface.facet_count(); ++f) {
+    const Corners facet = corners(surface, f);
+    volume += area(facet) * mean_normal(facet).dot(centre(facet));
+  }
+  if (volume >= 0.0) return;
+  for (std::size_t f = 0; f + 1 < hull.offsets.size(); ++f)
+    std::reverse(hull.facets.begin() + hull.offsets[f], hull.facets.begin() + hull.offsets[f + 1]);
 }
 
 double typical_size(const PosedSurface& surface) {
@@ -148,9 +169,11 @@ BodyHull hull_of(const Description& body, const Grid& grid) {
   hull.dim = body.dim;
   hull.offsets = {0};
   add(hull, outside(grid, body.dim), grid);
-  if (hull.facets.empty()) hull = port_hull(body);
+  const bool of_cells = !hull.facets.empty();
+  if (!of_cells) hull = port_hull(body);
   if (hull.dim == 0) return hull;
   pose(hull, {});
+  if (of_cells) look_outwards(hull);
   hull.size = typical_size(hull.surface());
   return hull;
 }
@@ -162,7 +185,6 @@ void pose(BodyHull& hull, std::span<const double> displacement) {
     const bool of_grid = !hull.nodes.empty();
     hull.points[k] += displacement[of_grid ? 3 * index(hull.nodes[k / dim]) + k % dim : k];
   }
-  hull.tree = {};
   hull.box = {};
   for (std::size_t i = 0; i < dim; ++i) {
     double low = std::numeric_limits<double>::infinity(), high = -low;

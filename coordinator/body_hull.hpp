@@ -22,13 +22,13 @@ struct BodyHull {
   double size = 0.0;                          // [m] of a facet, typically; in 1D of a cell
   int endless = 0;                            // in 1D: it goes on without end to this side, -1 or 1
   Box box = {};                               // of the pose
-  BoxTree tree;                               // made when it is asked for
 
   PosedSurface surface() const { return {dim, points, facets, offsets}; }
 };
 
 /// That of a grid: facets of its cells that belong to one cell alone, straight between all their
-/// nodes. Of a body that has none: the facets of a port, where they enclose something.
+/// nodes. Of a body that has none: the facets of a port that encloses something, or else of
+/// the one with most facets.
 BodyHull hull_of(const Description& body, const Grid& grid);
 
 /// Puts the hull where its points have gone: `displacement` [m] (nodes of the grid, 3), or (n, dim)

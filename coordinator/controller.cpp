@@ -415,7 +415,13 @@ void Controller::watch_passing(std::int64_t windows_before) {
 void Controller::look_for_overlaps() {
   for (const Overlap& overlap : overlaps_.look(bodies_, joints_, clock_.time())) {
     narrator_.overlap(overlap, joints_);
-    end_.overlaps.push_back(overlap);
+    const auto before = std::ranges::find_if(end_.overlaps, [&overlap](const Overlap& told) {
+      return std::ranges::equal(told.body, overlap.body);
+    });
+    if (before == end_.overlaps.end())
+      end_.overlaps.push_back(overlap);
+    else
+      *before = overlap;
   }
 }
 

@@ -5,8 +5,7 @@
 #include <cstdint>
 
 #include "base/index.hpp"
-#include "surface/closest_point.hpp"
-#include "surface/inside.hpp"
+#include "surface/overlap_places.hpp"
 
 namespace abut {
 
@@ -15,6 +14,10 @@ namespace {
 /// Of a facet: what contact leaves, which averages over them, is less by far; round bodies whose
 /// facets stand for them end up to 3 % of one in each other (shipped scenes).
 constexpr double least_share = 0.1;
+/// Facets behind an open surface: what is in its body is not farther off, as at the start.
+constexpr double behind = 2.0;
+/// Times what was told: told again.
+constexpr double much_deeper = 2.0;
 /// Unknowns of a body whose fields still fit into one reply.
 constexpr std::int64_t most_unknowns = 1'000'000;
 
@@ -23,32 +26,11 @@ struct Depth {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  // [m]
 };
 
-bool holds(const Box& box, const Eigen::Vector3d& x, int dim) {
-  for (int i = 0; i < dim; ++i)
-    if (x[i] < box.low[i] || x[i] > box.high[i]) return false;
-  return true;
+double least_depth(const BodyHull& one, const BodyHull& other) {
+  return least_share * std::min(one.size, other.size);
 }
 
-BoxTree& tree_of(BodyHull& hull) {
-  if (hull.tree.empty()) build(hull.tree, hull.surface(), 0.0);
-  return hull.tree;
-}
-
-/// The point of one body, of its nodes and the middles of its facets, that is deepest in another.
-void look_inside(const BodyHull& one, BodyHull& other, Depth& deepest) {
-  const PosedSurface own = one.surface(), its = other.surface();
-  const auto see = [&](const Eigen::Vector3d& x) {
-    if (!holds(other.box, x, other.dim)) return;
-    BoxTree& tree = tree_of(other);
-    if (!inside(its, tree, x)) return;
-    const double depth = closest_point(its, tree, x)->at.distance;
-    if (depth > deepest.depth) deepest = {depth, x};
-  };
-  for (int n = 0; n < own.node_count(); ++n) see(own.point(n));
-  for (int f = 0; f < own.facet_count(); ++f) see(centre(corners(own, f)));
-}
-
-Depth depth_of(BodyHull& one, BodyHull& other) {
+Depth depth_of(const BodyHull& one, const BodyHull& other) {
   Depth deepest;
   if (one.dim != other.dim || one.dim == 0 || !overlap(one.box, other.box)) return deepest;
   if (one.dim == 1) {
@@ -56,8 +38,10 @@ Depth depth_of(BodyHull& one, BodyHull& other) {
     const double high = std::min(one.box.high[0], other.box.high[0]);
     return {high - low, {0.5 * (low + high), 0.0, 0.0}};
   }
-  look_inside(one, other, deepest);
-  look_inside(other, one, deepest);
+  const double least = least_depth(one, other), reach = behind * std::max(one.size, other.size);
+  const std::vector<OverlapPlace> places =
+      overlap_places(one.surface(), other.surface(), {{least, least}, reach});
+  if (!places.empty()) deepest = {places.front().depth, places.front().place};
   return deepest;
 }
 
@@ -112,7 +96,7 @@ bool OverlapSearch::meant(std::pair<int, int> pair, std::span<const Joint> joint
   BodyHull one = hulls_[pair.first], other = hulls_[pair.second];
   pose(one, {});
   pose(other, {});
-  return depth_of(one, other).depth > least_share * std::min(one.size, other.size);
+  return depth_of(one, other).depth > least_depth(one, other);
 }
 
 std::vector<Overlap> OverlapSearch::look(Bodies& bodies, std::span<const Joint> joints,
@@ -123,12 +107,13 @@ std::vector<Overlap> OverlapSearch::look(Bodies& bodies, std::span<const Joint> 
   pose_all(bodies);
   for (int a = 0; a < bodies.count(); ++a) {
     for (int b = a + 1; b < bodies.count(); ++b) {
-      BodyHull &one = hulls_[a], &other = hulls_[b];
-      if (told_.contains({a, b})) continue;
+      const BodyHull &one = hulls_[a], &other = hulls_[b];
       const Depth deepest = depth_of(one, other);
-      const bool deep = deepest.depth > least_share * std::min(one.size, other.size);
-      if (!deep || meant({a, b}, joints)) continue;
-      told_.insert({a, b});
+      if (!(deepest.depth > least_depth(one, other))) continue;
+      const auto told = told_.find({a, b});
+      if (told != told_.end() && deepest.depth <= much_deeper * told->second) continue;
+      if (told == told_.end() && meant({a, b}, joints)) continue;
+      told_[{a, b}] = deepest.depth;
       const Eigen::Vector3d& x = deepest.place;
       found.push_back({{a, b}, deepest.depth, {x[0], x[1], x[2]}, time});
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <set>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -12,13 +12,14 @@
 namespace abut {
 
 /// Looks for bodies that are in each other, whatever their ports are and whoever joins them: by
-/// boxes first, then by the points of their outsides. Asks bodies for grids and displacements, in
-/// states that the run has accepted; changes nothing.
+/// boxes first, then by the places that their outsides share (surface/overlap_places.hpp). Asks
+/// bodies for grids and displacements, in states that the run has accepted; changes nothing.
 class OverlapSearch {
  public:
-  /// Pairs that overlap by more than a part of their facets and were not told before. Not told:
-  /// bodies that are tied to each other, those that no interface joins and that overlapped in the
-  /// reference as well, and bodies of more than a million unknowns.
+  /// Pairs that overlap by more than a part of their facets and were not told before, or only half
+  /// as deep. Not told: bodies that are tied to each other, and those that no interface joins and
+  /// that overlapped in the reference as well. Of bodies of more than a million unknowns the
+  /// largest port is looked at.
   std::vector<Overlap> look(Bodies& bodies, std::span<const Joint> joints, double time);
 
  private:
@@ -27,8 +28,8 @@ class OverlapSearch {
   bool meant(std::pair<int, int> pair, std::span<const Joint> joints);
 
   bool made_ = false;
-  std::vector<BodyHull> hulls_;  // by body
-  std::set<std::pair<int, int>> told_;
+  std::vector<BodyHull> hulls_;                 // by body
+  std::map<std::pair<int, int>, double> told_;  // [m] how deep
 };
 
 }  // namespace abut

@@ -1,0 +1,132 @@
+// Goal: surfaces start where their bodies are apart, however they lie, and where they touch; bodies
+// that are in each other are refused with places and depths, whatever form their contact has.
+// Oracles: blocks and arches in given places.
+
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/refusal.hpp"
+#include "tests/support/runs.hpp"
+#include "tests/support/solid_texts.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace abut {
+namespace {
+
+SolidText solid(const std::string& name, const std::vector<double>& position) {
+  return {
+      .name = name,
+      .material = "linear_elastic: {youngs_modulus: 1.0e6, poissons_ratio: 0.3, density: 1000.0}",
+      .integrator = scheme_named('I', 1.0e-4),
+      .position = position,
+      .side = "boundary"};
+}
+
+/// A block of so many cells; of one across all nodes lie on the surface, and contact is passive.
+std::string block_text(const std::string& name, int dim, const std::vector<double>& lengths,
+                       int cells, const std::vector<double>& position) {
+  SolidText out = solid(name, position);
+  out.block = block_in(dim, lengths, {cells, cells, cells});
+  return out.text();
+}
+
+std::string arch(const std::string& name, double inner, double outer, int cells) {
+  SolidText out = solid(name, {});
+  out.mesh = fmt::format("rectangle: {{lengths: [1.0, 1.0], elements: [2, {}]}}", cells);
+  const std::string radius = fmt::format("({} + {} * x)", inner, outer - inner);
+  out.keys = fmt::format("map: [\"{0} * cos({1} * y)\", \"{0} * sin({1} * y)\"], ", radius,
+                         std::acos(-1.0));
+  return out.text();
+}
+
+const std::string met =
+    "interfaces: {met: {sides: [one.face, other.face], contact: {friction: 0.2}}}\n";
+const std::string everything = "contact: {everything: {friction: 0.2}}\n";
+
+std::string told_of(const std::string& bodies, const std::string& contact) {
+  return refusal([&] { run_text(scene_text(2.0e-4, 1.0e-4, bodies, contact)); });
+}
+
+struct Blocks {
+  const char* name;
+  std::vector<double> lengths, position;  // of the second; the first is [0, 1]
+  double least, most;                     // [m] depth that is told; 0: they start
+};
+
+const std::vector<Blocks>& all_blocks() {
+  static const std::vector<Blocks> all{{"on each other", {1, 1, 1}, {0, 1, 0}, 0, 0},
+                                       {"shifted", {1, 1, 1}, {0.3, 1, 0.2}, 0, 0},
+                                       {"edge on edge", {1, 1, 1}, {1, 1, 0}, 0, 0},
+                                       {"corner on corner", {1, 1, 1}, {1, 1, 1}, 0, 0},
+                                       {"near", {1, 1, 1}, {0.3, 1.001, 0.2}, 0, 0},
+                                       {"overlapping", {1, 1, 1}, {0.3, 0.9, 0.2}, 0.099, 0.101},
+                                       {"flush", {1, 1, 1}, {0, 0.9, 0}, 0.09, 0.101},
+                                       {"nested", {0.1, 0.1, 0.1}, {0.45, 0.45, 0.45}, 0.4, 0.51},
+                                       {"crossing", {0.2, 4, 4}, {0.4, -1.5, -1.5}, 0.09, 0.51}};
+  return all;
+}
+
+double depth_told(const std::string& text) {
+  const std::string before = "overlap by ";
+  const std::size_t at = text.find(before);
+  return at == std::string::npos ? 0.0 : std::stod(text.substr(at + before.size()));
+}
+
+TEST(StartsOfSurfaces, AreRefusedWhereBodiesAreInEachOtherAlone) {
+  for (const Blocks& blocks : all_blocks()) {
+    for (const int dim : {2, 3}) {
+      for (const int cells : {1, 3}) {
+        for (const std::string& contact : {met, everything}) {
+          const std::string text =
+              told_of(block_text("one", dim, {1, 1, 1}, cells, {}) +
+                          block_text("other", dim, blocks.lengths, cells, blocks.position),
+                      contact);
+          const std::string what = fmt::format("{} {}D of {}: {}", blocks.name, dim, cells, text);
+          if (blocks.most == 0.0) {
+            EXPECT_EQ(text, "not refused") << what;
+            continue;
+          }
+          EXPECT_GE(depth_told(text), blocks.least) << what;
+          EXPECT_LE(depth_told(text), blocks.most) << what;
+          expect_words(text, {contact == met ? "interfaces.met.sides" : "contact.everything",
+                              "at the start", ") m ", "initial.position"});
+        }
+      }
+    }
+  }
+}
+
+/// Facets on the far side of a thin body are no surface that a partner is behind.
+TEST(StartsOfSurfaces, OfThinArchesAreApart) {
+  for (const int cells : {8, 16}) {
+    EXPECT_EQ(told_of(arch("one", 0.8, 1.0, 12) + arch("other", 1.05, 1.2, cells), met),
+              "not refused")
+        << cells;
+    EXPECT_GT(depth_told(told_of(arch("one", 0.8, 1.0, 12) + arch("other", 0.9, 1.2, cells), met)),
+              0.05)
+        << cells;
+  }
+}
+
+/// A list: of a pair that overlaps in several places, and of several pairs.
+TEST(StartsOfSurfaces, TellAllPlaces) {
+  const std::string table = block_text("one", 2, {4.0, 0.2}, 8, {});
+  SolidText comb = solid("other", {});
+  comb.mesh = "rectangle: {lengths: [4.0, 1.0], elements: [32, 2]}";
+  comb.keys = "map: [\"x\", \"0.3 + y - (1 - y) * 0.2 * cos(3.141592653589793 * x) ^ 8\"], ";
+  const std::string text = told_of(table + comb.text(), met);
+  EXPECT_NEAR(depth_told(text), 0.1, 1.0e-3) << text;  // as it is printed
+  // four sizes of a facet apart, and no node on a flush side
+  expect_words(text, {"other.face at (1, 0.1) m", "other.face at (3, 0.1) m"});
+  const std::string pairs =
+      told_of(block_text("one", 2, {1, 1}, 3, {}) + block_text("other", 2, {1, 1}, 3, {0.3, 0.9}) +
+                  block_text("third", 2, {1, 1}, 3, {0.3, -0.95}),
+              everything);
+  expect_words(pairs, {"overlap by 0.1 m", "overlap by 0.05 m", "third.face", "other.face"});
+}
+
+}  // namespace
+}  // namespace abut
