@@ -232,7 +232,9 @@ void check_start(const InterfaceSpec& spec, const std::string& where, const Join
     return NamedSurface{spec.sides[s], bodies.port(joint.sides[s]).geometry};
   };
   const int finder = contact_finder(joint, bodies);
-  if (spec.contact->points) {
+  if (only_passive(joint, bodies)) {
+    check_apart(side(0), side(1), where + ".sides");
+  } else if (spec.contact->points) {
     check_points(side(finder), side(1 - finder), where);
   } else {
     check_surfaces(side(finder), side(1 - finder), where + ".sides");
@@ -355,7 +357,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     }
     if (surfaces) {
       set_surfaces(spec, "interfaces." + name, scene, bodies, joint);
-      if (!only_passive(joint, bodies)) check_start(spec, "interfaces." + name, joint, bodies);
+      check_start(spec, "interfaces." + name, joint, bodies);
     } else if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
       set_unilateral(spec, *unilateral, scene.schwarz, bodies, joint);
     } else if (const auto* robin = std::get_if<RobinTransmission>(&spec.transmission)) {
@@ -391,15 +393,20 @@ BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
                             const Bodies& bodies) {
   if (scene.everything() == nullptr) return {};
   BroadPhase all(bodies, joints);
-  try {
-    for (const PortPair& pair : all.near_at_start(bodies)) {
-      const Joint joint = make_pair(scene, pair, bodies);
-      if (!only_passive(joint, bodies)) check_start(spec_of(scene, pair, bodies), "", joint, bodies);
+  constexpr std::size_t most_told = 5;
+  std::vector<InputError> wrong;
+  for (const PortPair& pair : all.near_at_start(bodies)) {
+    if (wrong.size() == most_told) break;
+    try {
+      check_start(spec_of(scene, pair, bodies), "", make_pair(scene, pair, bodies), bodies);
+    } catch (const InputError& error) {
+      wrong.push_back(error);
     }
-  } catch (const InputError& error) {
-    throw InputError(error.what_is_wrong, std::string(everything_path), error.remedy);
   }
-  return all;
+  if (wrong.empty()) return all;
+  std::string text = wrong.front().what_is_wrong;
+  for (std::size_t i = 1; i < wrong.size(); ++i) text += "; " + wrong[i].what_is_wrong;
+  throw InputError(text, std::string(everything_path), wrong.front().remedy);
 }
 
 TieKernelOptions tie_kernel_options(const SchwarzSpec& spec) {

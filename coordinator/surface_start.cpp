@@ -1,6 +1,7 @@
 #include "coordinator/surface_start.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "surface/check.hpp"
 #include "surface/crossings.hpp"
 #include "surface/divided_surface.hpp"
+#include "surface/overlap_places.hpp"
 #include "surface/start_rows.hpp"
 
 namespace abut {
@@ -55,22 +57,41 @@ int deepest(const SurfaceRows& rows, double allowed) {
   return static_cast<int>(least - rows.gaps.begin());
 }
 
-/// Nodes of `one` that lie behind the facets of `other` by more than is allowed [m].
-void check_nodes(const NamedSurface& one, const NamedSurface& other, double allowed,
-                 const std::string& where) {
+std::string words(const OverlapPlace& place, const std::array<const NamedSurface*, 2>& sides) {
+  const NamedSurface& one = *sides[index(place.surface)];
+  const std::span<const double> at(place.place.data(), index(one.geometry.dim));
+  using What = OverlapPlace::What;
+  return fmt::format("{} of {} at ({:.6g}) m {} {}",
+                     place.what == What::node    ? "a node"
+                     : place.what == What::facet ? "the middle of a facet"
+                                                 : "an edge",
+                     one.name, fmt::join(at, ", "),
+                     place.what == What::edge ? "passes through" : "lies behind",
+                     sides[index(1 - place.surface)]->name);
+}
+
+/// Refuses bodies that are in each other by more than is allowed of nodes of either [m].
+void check_overlap(const NamedSurface& one, const NamedSurface& other,
+                   const std::array<double, 2>& allowed, const std::string& where) {
+  constexpr double reach = 2.0, apart = 4.0;  // facet sizes: behind an open surface, of places
+  constexpr int most_told = 5;
   const StartSurface k = start(one.geometry), n = start(other.geometry);
-  const SurfaceRows rows = node_rows(k, n);
-  const int row = deepest(rows, tolerance * facet_size(k, n) + allowed);
-  if (row < 0) return;
-  const std::size_t dim = index(rows.dim), node = index(rows.nodes[row]);
-  const std::span<const double> at = k.surface.points.subspan(node * dim, dim);
-  throw InputError(
-      fmt::format("its sides overlap by {:.3g} m at the start: a node of {} at ({:.6g}) "
-                  "m lies behind {}",
-                  -rows.gaps[row], one.name, fmt::join(at, ", "), other.name),
-      where,
-      "Move a body with initial.position until they are apart, or give one of them initial: "
-      "{adjust: true}.");
+  const double size = facet_size(k, n), rounding = tolerance * size;
+  const std::vector<OverlapPlace> all =
+      overlap_places(k.surface, n.surface,
+                     {{allowed[0] + rounding, allowed[1] + rounding}, reach * size});
+  if (all.empty()) return;
+  const std::array sides{&one, &other};
+  const std::vector<OverlapPlace> told = parted_places(all, apart * size, most_told);
+  std::string text = fmt::format("its sides overlap by {:.3g} m at the start: {}",
+                                 told.front().depth, words(told.front(), sides));
+  for (std::size_t i = 1; i < told.size(); ++i)
+    text += fmt::format(", and {} by {:.3g} m", words(told[i], sides), told[i].depth);
+  throw InputError(text, where,
+                   fmt::format("Move a body with initial.position until they are apart{}.",
+                               told.front().depth <= size
+                                   ? ", or give one of them initial: {adjust: true}"
+                                   : ""));
 }
 
 /// Rows will be of the nodes of the surface that has edges, divided as finely as the finder's
@@ -121,11 +142,15 @@ void check_surfaces(const NamedSurface& finder, const NamedSurface& other,
                     const std::string& where) {
   check_each(finder, other, where);
   const double round = roundness(start(finder.geometry), start(other.geometry));
-  check_nodes(finder, other, round, where);
-  check_nodes(other, finder, round, where);
+  check_overlap(finder, other, {round, round}, where);
   const bool turned = has_edges(posed(other.geometry)) && !has_edges(posed(finder.geometry));
   if (turned) check_division(finder, other, where);
   check_averages(turned ? other : finder, turned ? finder : other, where);
+}
+
+void check_apart(const NamedSurface& one, const NamedSurface& other, const std::string& where) {
+  const double round = roundness(start(one.geometry), start(other.geometry));
+  check_overlap(one, other, {round, round}, where);
 }
 
 void check_points(const NamedSurface& finder, const NamedSurface& other, const std::string& where) {
@@ -138,9 +163,8 @@ void check_points(const NamedSurface& finder, const NamedSurface& other, const s
                      fmt::format("Leave rows out, or give transmission: {{unilateral: {{kinematic: "
                                  "{}}}}}.",
                                  other.name));
-  check_nodes(finder, other, 0.0, where + ".sides");
   const double round = roundness(start(finder.geometry), start(other.geometry));
-  check_nodes(other, finder, round, where + ".sides");
+  check_overlap(finder, other, {0.0, round}, where + ".sides");
 }
 
 }  // namespace abut

@@ -12,11 +12,15 @@ struct NamedSurface {
   const PortGeometry& geometry;
 };
 
-/// Refuses what no contact can start from: a facet without area or folded, one that
-/// looks the other way than its neighbours, a surface that crosses itself, and surfaces that
-/// overlap in the reference by more than a millionth of a facet, in nodes or over the facets of the
-/// side whose nodes have the rows: the finder's, which finds their contact, but for edges. Throws
-/// InputError with the facet, or the place and how much; `where` is the interface's key.
+/// Refuses bodies that are in each other in the reference, deeper than facets that stand for round
+/// bodies leave them and than a millionth of a facet (surface/overlap_places.hpp). Throws InputError
+/// with places and depths; `where` is the interface's key.
+void check_apart(const NamedSurface& one, const NamedSurface& other, const std::string& where);
+
+/// Refuses what no rows of facets can start from: bodies that are in each other, a facet without
+/// area or folded, one that looks the other way than its neighbours, a surface that crosses itself,
+/// and rows that overlap by more than a millionth of a facet: of nodes of the finder, which finds
+/// their contact, but for edges.
 void check_surfaces(const NamedSurface& finder, const NamedSurface& other,
                     const std::string& where);
 
