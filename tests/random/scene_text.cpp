@@ -63,7 +63,8 @@ std::string body_text(const RandomScene& scene, const RandomBody& body, const Vi
     way = fmt::format("    way: [{}]\n", fmt::join(rows, ", "));
   }
   std::string keys = fmt::format("dimension: {}, {}, mesh: {{{}}}", dim, map_of(turn, dim), mesh);
-  if (dim == 2 && view.length != 1.0 && body.kind != Kind::tool) keys += fmt::format(", thickness: {:.17e}", view.length);
+  if (dim == 2 && view.length != 1.0 && body.kind != Kind::tool)
+    keys += fmt::format(", thickness: {:.17e}", view.length);
   std::string out = fmt::format("  {}:\n    model: {{{}: {{{}{}}}}}\n", body.name, model, keys,
                                 way.empty() ? "" : ", " + way.substr(4, way.size() - 5));
   if (body.kind != Kind::tool) {
