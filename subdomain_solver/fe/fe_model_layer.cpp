@@ -11,8 +11,23 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
+#include "subdomain_solver/solve/linear_solver.hpp"
 
 namespace abut {
+
+namespace {
+
+/// Whether what keeps its mass holds the layer of an undeformed body: inner nodes that lie on a
+/// line let the surface around them turn.
+bool is_held(FeModel& model, std::size_t massless) {
+  if (massless == 0) return true;
+  const std::vector<double> q(index(model.dofs()), 0.0), history(model.history_size(), 0.0);
+  LayerResponse response;
+  return model.evaluate_layer(q, history, Model::Want::tangent, response) &&
+         make_small_solver()->factor(response.tangent);
+}
+
+}  // namespace
 
 bool FeModel::is_bare(std::int32_t node, int direction) const {
   return std::ranges::binary_search(bare_, node * mesh_.dim + direction);
@@ -35,14 +50,21 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
   std::ranges::set_difference(bare_, held, std::back_inserter(massless_));
   try {
     find_layer();
+    if (!is_held(*this, massless_.size()))
+      throw InputError("has a surface that too few nodes inside hold while it is free of mass, as "
+                       "contact needs it",
+                       "mesh", "Make the mesh three elements across, or give fewer ports contact.");
   } catch (const InputError&) {
     bare_.clear();
     massless_.clear();
     held_.clear();
     layer_cells_.clear();
     heirs_ = {};
+    layer_rows_.resize(0, 0);
+    layer_measures_.clear();
     throw;
   }
+  layer_measures_.clear();  // an assembly may have them later
   whole_ = lumped_;
   lump_mass();
 }

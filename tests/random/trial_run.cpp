@@ -1,0 +1,233 @@
+#include "tests/random/trial_run.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <ctime>
+#include <exception>
+#include <memory>
+#include <set>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/yaml_document.hpp"
+#include "coordinator/body_hull.hpp"
+#include "coordinator/controller.hpp"
+#include "coordinator/launch_local.hpp"
+#include "coordinator/scene.hpp"
+#include "surface/intersections.hpp"
+#include "surface/skin.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Of energy, as issue and design set it: what is beyond is told by no rounding and no tolerance.
+constexpr double most_growth = 1e-3;
+/// Sums over bodies that nothing outside acts on; equations are solved to 1e-9.
+constexpr double most_momentum = 1e-6;
+/// Of the shortest edge: rows that hold on average let single nodes in by parts of a cell.
+constexpr double deep = 0.25;
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// The outsides of all bodies, in their present state, as one skin.
+class Outsides {
+ public:
+  explicit Outsides(std::span<Subdomain* const> bodies) : bodies_(bodies) {
+    for (Subdomain* body : bodies) {
+      hulls_.push_back(outside_of(*body));
+      names_.push_back(body->describe().name);
+    }
+    std::vector<PosedSurface> surfaces;
+    for (const BodyHull& hull : hulls_) surfaces.push_back(hull.surface());
+    skin_ = skin_of(surfaces);
+    skin_.dim = hulls_[0].dim;
+    place({});
+    trees_ = std::make_unique<SkinTrees>(skin_, places_);
+    shortest_ = std::numeric_limits<double>::infinity();
+    const auto see = [this](std::int32_t a, std::int32_t b) {
+      shortest_ = std::min(shortest_, (places_[a] - places_[b]).norm());
+    };
+    for (const auto& e : skin_.edges) see(e[0], e[1]);
+    if (skin_.dim == 2)
+      for (const auto& f : skin_.facets) see(f[0], f[1]);
+  }
+
+  /// Adds pairs that cross and did not before.
+  void look(double time, std::span<const Response> responses, std::vector<std::string>& out) {
+    place(responses);
+    std::vector<Intersection> found;
+    intersections(*trees_, places_, deep * shortest_, {}, found);
+    for (const Intersection& each : found) {
+      const std::int32_t edge =
+          skin_.dim == 2 ? skin_.facets[each.edge][0] : skin_.edges[each.edge][0];
+      std::pair<int, int> pair(skin_.group[edge], skin_.group[skin_.facets[each.facet][0]]);
+      if (pair.first > pair.second) std::swap(pair.first, pair.second);
+      if (known_.insert(pair).second)
+        out.push_back(fmt::format("{} and {} at {:.4g} s", names_[index(pair.first)],
+                                  names_[index(pair.second)], time));
+    }
+  }
+  bool finite() const { return finite_; }
+
+ private:
+  /// Of tools, which tell no fields: that of their port.
+  static BodyHull outside_of(Subdomain& body) {
+    if (!body.describe().fields.empty()) return hull_of(body.describe(), body.grid());
+    const PortGeometry& port = body.describe().ports[0].geometry;
+    BodyHull hull;
+    hull.dim = port.dim;
+    hull.reference = hull.points = port.points;
+    hull.facets = port.facets;
+    hull.offsets = port.offsets;
+    return hull;
+  }
+
+  std::vector<double> displacement_of(std::size_t b, std::span<const Response> responses) const {
+    if (responses.empty()) return {};  // nothing has begun
+    const auto& infos = bodies_[b]->describe().fields;
+    const auto at = std::ranges::find(infos, "displacement", &FieldInfo::name);
+    if (at != infos.end()) return bodies_[b]->fields()[index(at - infos.begin())];
+    const std::size_t width = hulls_[b].reference.size(), dim = index(hulls_[b].dim);
+    std::vector<double> out(width, 0.0);
+    if (responses[b].ports[0].trace.u.size() < dim) return out;
+    // No tool of these scenes turns: all of its points go where the last one goes.
+    const std::vector<double>& u = responses[b].ports[0].trace.u;
+    for (std::size_t k = 0; k < width; ++k) out[k] = u[u.size() - dim + k % dim];
+    return out;
+  }
+
+  void place(std::span<const Response> responses) {
+    places_.clear();
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const std::vector<double> values = displacement_of(b, responses);
+      for (const double value : values) finite_ = finite_ && std::isfinite(value);
+      pose(hulls_[b], values);
+      const BodyHull& hull = hulls_[b];
+      for (std::size_t n = 0; n * index(hull.dim) < hull.points.size(); ++n) {
+        Eigen::Vector3d x = Eigen::Vector3d::Zero();
+        for (int i = 0; i < hull.dim; ++i) x(i) = hull.points[n * index(hull.dim) + index(i)];
+        places_.push_back(x);
+      }
+    }
+  }
+
+  std::span<Subdomain* const> bodies_;
+  std::vector<BodyHull> hulls_;
+  std::vector<std::string> names_;
+  Skin skin_;
+  std::unique_ptr<SkinTrees> trees_;
+  std::vector<Eigen::Vector3d> places_;
+  std::set<std::pair<int, int>> known_;
+  double shortest_ = 0.0;
+  bool finite_ = true;
+};
+
+/// Watches a run from outside: balances, outsides, time.
+struct Judge : Observer {
+  Judge(TrialRun& of, std::span<Subdomain* const> bodies, double patience)
+      : run(of), outsides(bodies), until(processor_seconds() + patience) {}
+
+  void on_window(const WindowReport& report) override {
+    const std::size_t records = report.responses[0].records.size();
+    for (std::size_t r = 0; r < records; ++r) see(report.responses, r);
+    outsides.look(report.window.end, report.responses, run.crossings);
+    if (processor_seconds() > until) stop = true;
+  }
+  void on_end(const RunEnd& end) override {
+    run.status = end.status;
+    run.reason = end.reason;
+    for (const Overlap& overlap : end.overlaps)
+      run.overlaps.push_back(fmt::format("bodies {} and {} by {:.2g} m at {:.4g} s",
+                                         overlap.body[0], overlap.body[1], overlap.depth,
+                                         overlap.time));
+    run.passive = end.windows > 0 ? double(end.given_up.windows) / double(end.windows) : 0.0;
+    run.hashes = end.body_hashes;
+  }
+
+  void see(std::span<const Response> responses, std::size_t r) {
+    double energy = 0.0, account = 0.0, sizes = 0.0;
+    Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
+    run.momenta.clear();
+    for (const Response& response : responses) {
+      const BodyRecord& record = response.records[r];
+      energy += record.energy.total();
+      account += record.energy.total() + record.energy.dissipated - record.energy.external_work;
+      Eigen::Vector3d p = Eigen::Vector3d::Zero();
+      for (std::size_t i = 0; i < record.momentum.size(); ++i) p(int(i)) = record.momentum[i];
+      run.momenta.push_back(p);
+      momentum += p;
+      sizes += p.norm();
+    }
+    run.finite = run.finite && std::isfinite(account) && momentum.allFinite();
+    if (std::exchange(first, false)) {
+      first_account = account;
+      first_momentum = momentum;
+    }
+    run.energy = energy;
+    run.scale = std::max(run.scale, energy);
+    run.impulse = std::max(run.impulse, sizes);
+    grown = std::max(grown, account - first_account);
+    changed = std::max(changed, (momentum - first_momentum).norm());
+    if (run.scale > 0.0) run.growth = grown / run.scale;
+    if (run.impulse > 0.0) run.momentum = changed / run.impulse;
+  }
+
+  TrialRun& run;
+  Outsides outsides;
+  double until;
+  std::atomic<bool> stop = false;
+  bool first = true;
+  double first_account = 0.0, grown = 0.0, changed = 0.0;
+  Eigen::Vector3d first_momentum = Eigen::Vector3d::Zero();
+};
+
+void run_scene(const std::filesystem::path& folder, double patience, TrialRun& run) {
+  const Document document = Document::load((folder / "scene.yaml").string());
+  const Scene scene = read_scene(document);
+  const std::vector<std::unique_ptr<Subdomain>> bodies = launch_local(scene, document);
+  std::vector<Subdomain*> pointers;
+  std::vector<const Description*> descriptions;
+  for (const std::unique_ptr<Subdomain>& body : bodies) {
+    pointers.push_back(body.get());
+    descriptions.push_back(&body->describe());
+  }
+  validate_bodies(scene, descriptions, document);
+  Judge judge(run, pointers, patience);
+  Controller(scene, pointers, {&judge}, &judge.stop).run();
+  run.finite = run.finite && judge.outsides.finite();
+}
+
+}  // namespace
+
+TrialRun try_run(const std::filesystem::path& folder, double patience) {
+  TrialRun run;
+  const double before = processor_seconds();
+  try {
+    run_scene(folder, patience, run);
+  } catch (const InputError& error) {
+    run.status = "refused";
+    run.reason = error.what();
+  } catch (const std::exception& error) {
+    run.status = "threw";
+    run.reason = error.what();
+  }
+  run.seconds = processor_seconds() - before;
+  return run;
+}
+
+std::string TrialRun::trouble(bool free) const {
+  if (!completed()) return fmt::format("{}: {}", status, reason);
+  if (!finite) return "not finite";
+  if (growth > most_growth) return fmt::format("energy grown by {:.2g} of the most", growth);
+  if (free && momentum > most_momentum)
+    return fmt::format("momentum changed by {:.2g} of the most", momentum);
+  if (!crossings.empty()) return "crossed: " + crossings[0];
+  if (!overlaps.empty()) return "overlap told: " + overlaps[0];
+  return {};
+}
+
+}  // namespace abut

@@ -1,0 +1,173 @@
+#include "tests/random/verdict.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+namespace abut {
+
+namespace {
+
+/// [s] of the processor, a hundred times what scenes take mostly.
+constexpr double patience = 60.0;
+/// Of the largest energy and momentum. Which node is pressed first, and where a body slides, turns
+/// on roundings and on tolerances of the iteration; what differs by more was decided by the order,
+/// the place or the units.
+constexpr double like = 0.05;
+
+View view_of(Again again, const RandomScene& scene) {
+  View view;
+  if (again == Again::fields) view.fields_every = 3;
+  if (again == Again::order) view.reversed = true;
+  if (again == Again::turned) {
+    const Eigen::Vector3d axis = scene.dim == 2 ? Eigen::Vector3d::UnitZ().eval()
+                                                : Eigen::Vector3d(1.0, 2.0, 3.0).normalized();
+    view.turn = Eigen::AngleAxisd(37.0 * std::numbers::pi / 180.0, axis).toRotationMatrix();
+  }
+  if (again == Again::moved) view.shift = Eigen::Vector3d(100.0, -30.0, scene.dim == 3 ? 7.0 : 0.0);
+  if (again == Again::units) {  // mm, t, s
+    view.length = 1e3;
+    view.mass = 1e-3;
+  }
+  return view;
+}
+
+Again again_of(const RandomScene& scene) {
+  const Again again = static_cast<Again>(scene.seed % 7);
+  return again == Again::finder && scene.everything ? Again::order : again;
+}
+
+/// Some bodies take forces only, and the scene that names them is rightly refused.
+bool cannot_find(const TrialRun& run) {
+  return run.status == "refused" && run.reason.find("cannot be the kinematic side") != run.reason.npos;
+}
+
+/// Of the ends of two runs, over the most that there was.
+double difference_of(const Verdict& verdict, const View& view) {
+  const double joule = view.mass * view.length * view.length, pulse = view.mass * view.length;
+  const TrialRun &a = verdict.run, &b = verdict.other;
+  double out = std::abs(a.energy - b.energy / joule) / std::max(a.scale, 1e-300);
+  const std::size_t count = std::min(a.momenta.size(), b.momenta.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const Eigen::Vector3d& theirs = b.momenta[view.reversed ? count - 1 - k : k];
+    const double miss = (view.turn * a.momenta[k] - theirs / pulse).norm();
+    out = std::max(out, miss / std::max(a.impulse, 1e-300));
+  }
+  return out;
+}
+
+}  // namespace
+
+const char* to_string(Again again) {
+  const char* const names[] = {"fields", "order", "finder", "turned", "moved", "units", "fast"};
+  return names[static_cast<int>(again)];
+}
+
+RandomScene scene_of(std::uint64_t seed) {
+  return random_scene(seed, static_cast<Again>(seed % 7) == Again::fast ? 1000.0 : 0.0);
+}
+
+Verdict judge(const RandomScene& scene, const std::filesystem::path& folder) {
+  Verdict verdict;
+  verdict.again = again_of(scene);
+  View first;
+  if (verdict.again == Again::finder) first.finder = 0;
+  scene.write(folder, first);
+  verdict.run = try_run(folder, patience);
+  if (verdict.again == Again::finder && cannot_find(verdict.run)) {
+    verdict.again = Again::order;
+    first.finder = -1;
+    scene.write(folder, first);
+    verdict.run = try_run(folder, patience);
+  }
+  verdict.view = first;
+  verdict.trouble = verdict.run.trouble(scene.free());
+  if (!verdict.trouble.empty() || verdict.again == Again::fast) return verdict;
+  View view = view_of(verdict.again, scene);
+  if (verdict.again == Again::finder) view.finder = 1;
+  scene.write(folder, view);
+  verdict.other = try_run(folder, patience);
+  if (verdict.again == Again::finder && cannot_find(verdict.other)) verdict.other = verdict.run;
+  const std::string trouble = verdict.other.trouble(scene.free());
+  verdict.difference = difference_of(verdict, view);
+  if (!trouble.empty()) {
+    verdict.trouble = fmt::format("{}: {}", to_string(verdict.again), trouble);
+  } else if (verdict.again == Again::fields && verdict.run.hashes != verdict.other.hashes) {
+    verdict.trouble = "output of fields changes the result";
+  } else if (verdict.difference > like) {
+    verdict.trouble =
+        fmt::format("{}: {:.2g} of the most differ", to_string(verdict.again), verdict.difference);
+  }
+  if (!verdict.trouble.empty()) verdict.view = view;
+  return verdict;
+}
+
+std::string line_of(const RandomScene& scene, const Verdict& verdict) {
+  return fmt::format("{:>6} {:11} passive {:3.0f} % grown {:8.1e} momentum {:7.1e} {:6.2f} s "
+                     "{:6} {:7.1e} {}{}",
+                     scene.seed, verdict.run.status, 100.0 * verdict.run.passive,
+                     verdict.run.growth, scene.free() ? verdict.run.momentum : 0.0,
+                     verdict.run.seconds, to_string(verdict.again), verdict.difference,
+                     scene.words(),
+                     verdict.trouble.empty() ? "" : "\n           " + verdict.trouble);
+}
+
+void Table::add(const RandomScene& scene, const Verdict& verdict) {
+  Row& row = rows_[scene.dim];
+  ++row.scenes;
+  row.completed += verdict.run.completed() ? 1 : 0;
+  row.sound += verdict.run.trouble(scene.free()).empty() ? 1 : 0;
+  row.passive += verdict.run.passive;
+  row.growth = std::max(row.growth, verdict.run.growth);
+  if (scene.free()) row.momentum = std::max(row.momentum, verdict.run.momentum);
+  row.seconds += verdict.run.seconds;
+  if (!verdict.run.trouble(scene.free()).empty()) return;
+  Pairs& pairs = again_[verdict.again];
+  ++pairs.scenes;
+  pairs.same += verdict.trouble.empty() ? 1 : 0;
+  pairs.differences.push_back(verdict.difference);
+}
+
+std::string Table::text() const {
+  std::string out =
+      "| scenes | completed | all checks hold | windows passive | energy grown at most | momentum "
+      "changed at most | processor time each |\n|---|---|---|---|---|---|---|\n";
+  for (const auto& [dim, row] : rows_)
+    out += fmt::format("| {} {} | {} | {} | {:.0f} % | {:.1e} | {:.1e} | {:.2f} s |\n", row.scenes,
+                       dim == 2 ? "planar" : "in space", row.completed, row.sound,
+                       100.0 * row.passive / row.scenes, row.growth, row.momentum,
+                       row.seconds / row.scenes);
+  out += "\n| run again | scenes | as good | difference, median | nine tenths below |\n"
+         "|---|---|---|---|---|\n";
+  for (auto [again, pairs] : again_) {
+    std::ranges::sort(pairs.differences);
+    const std::size_t n = pairs.differences.size();
+    out += fmt::format("| {} | {} | {} | {:.1e} | {:.1e} |\n", to_string(again), pairs.scenes,
+                       pairs.same, pairs.differences[n / 2], pairs.differences[n * 9 / 10]);
+  }
+  return out;
+}
+
+std::string Table::sentence() const {
+  std::string out;
+  for (const auto& [dim, row] : rows_)
+    out += fmt::format("{}completed {} of {} {}", out.empty() ? "" : ", ", row.completed,
+                       row.scenes, dim == 2 ? "planar" : "in space");
+  int scenes = 0, same = 0;
+  for (const auto& [again, pairs] : again_) {
+    scenes += pairs.scenes;
+    same += pairs.same;
+  }
+  return fmt::format("{}; as good the second time {} of {}", out, same, scenes);
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace abut
