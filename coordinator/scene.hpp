@@ -148,7 +148,7 @@ struct Scene {
     if (!contact) return 0.0;
     if (!contact->self) return std::nullopt;
     const ContactSpec* all = everything();
-    return contact->self_friction.value_or(all ? all->friction.kinetic_friction : 0.0);
+    return contact->self_friction.value_or(all ? sliding(*all) : 0.0);
   }
 
  private:

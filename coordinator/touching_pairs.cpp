@@ -40,7 +40,7 @@ void add_everything(const ContactSpec& law, const Bodies& bodies,
                (is(pair.sides[1], one) && is(pair.sides[0], other));
       });
       if (one.body != other.body && !stand && !written)
-        pairs.push_back({{one, other}, law.friction.kinetic_friction});
+        pairs.push_back({{one, other}, sliding(law)});
     }
   }
 }
@@ -96,7 +96,7 @@ std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joi
     if (joint.exchange == nullptr || joint.tied()) continue;
     if (bodies.port(joint.sides[0]).geometry.dim == 1) continue;
     const InterfaceSpec& spec = scene.interfaces[index(joint.interface)].second;
-    pairs.push_back({joint.sides, spec.contact ? spec.contact->friction.kinetic_friction : 0.0});
+    pairs.push_back({joint.sides, spec.contact ? sliding(*spec.contact) : 0.0});
   }
   if (scene.everything() != nullptr) add_everything(*scene.everything(), bodies, pairs);
   if (const std::optional<double> friction = scene.own_friction())

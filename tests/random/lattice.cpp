@@ -159,8 +159,8 @@ bool sound(const Shape& shape) {
       const int base = k / 4 * 4, turn = base == 0 ? 1 : 3;
       const Eigen::Vector3d a = x[c[base + (k + turn) % 4]] - x[c[k]];
       const Eigen::Vector3d b = x[c[base + (k + 4 - turn) % 4]] - x[c[k]];
-      const Eigen::Vector3d up = shape.dim == 2 ? Eigen::Vector3d::UnitZ().eval()
-                                                : (x[c[(k + 4) % 8]] - x[c[k]]).eval();
+      const Eigen::Vector3d up =
+          shape.dim == 2 ? Eigen::Vector3d::UnitZ().eval() : (x[c[(k + 4) % 8]] - x[c[k]]).eval();
       if (triple(a, b, up) < small * a.norm() * b.norm() * up.norm()) return false;
     }
   return true;

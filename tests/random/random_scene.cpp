@@ -21,8 +21,8 @@ Eigen::Matrix3d random_turn(Draw& draw, int dim) {
   const double angle = draw.uniform(0.0, 2.0 * std::numbers::pi);
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   if (dim == 3) {
-    axis = Eigen::Vector3d{draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0),
-                           draw.uniform(-1.0, 1.0)};
+    axis =
+        Eigen::Vector3d{draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0)};
     axis.normalize();
   }
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
@@ -38,8 +38,8 @@ Eigen::Vector3d random_direction(Draw& draw, int dim, bool down) {
 
 /// A law, and how fast waves are: speeds are 0.5 to 20 % of that.
 void choose_material(Draw& draw, RandomBody& body, double speed) {
-  body.law = draw.of<std::string>({"linear_elastic", "saint_venant_kirchhoff", "neo_hookean",
-                                   "neo_hookean", "j2_plasticity"});
+  body.law = draw.of<std::string>(
+      {"linear_elastic", "saint_venant_kirchhoff", "neo_hookean", "neo_hookean", "j2_plasticity"});
   body.density = 1000.0 * draw.decades(0.1, 10.0);
   body.ratio = draw.uniform(0.0, 0.45);
   const double wave = speed / draw.decades(0.005, 0.2);
@@ -68,8 +68,7 @@ RandomBody random_body(Draw& draw, int dim, int number, double speed) {
     if (number > 0 && body.kind == Kind::tool) body.kind = Kind::deformable;
     body.shape = random_shape(draw, dim, draw.decades(0.4, 1.0));
     body.turn = draw.chance(0.2) ? Eigen::Matrix3d::Identity() : random_turn(draw, dim);
-    if (number == 0 && body.kind == Kind::deformable && draw.chance(0.3) &&
-        body.shape.has_bottom())
+    if (number == 0 && body.kind == Kind::deformable && draw.chance(0.3) && body.shape.has_bottom())
       body.kind = Kind::held;
   }
   body.port = body.shape.generator.empty() ? "skin" : "boundary";
@@ -126,9 +125,7 @@ void choose_steps(Draw& draw, RandomScene& scene) {
 
 }  // namespace
 
-double RandomBody::wave_speed() const {
-  return std::sqrt(modulus / density);
-}
+double RandomBody::wave_speed() const { return std::sqrt(modulus / density); }
 
 std::vector<Eigen::Vector3d> RandomBody::points() const {
   std::vector<Eigen::Vector3d> out;
@@ -170,8 +167,8 @@ RandomScene random_scene(std::uint64_t seed, double speed) {
     scene.gravity = draw.chance(0.5) ? Eigen::Vector3d{0.0, -9.81, 0.0}
                                      : Eigen::Vector3d{0.0, -0.2 * scene.speed / scene.end, 0.0};
   // No more windows than a second or so pays for, the first touch among them.
-  scene.end = scene.window *
-              std::clamp(std::ceil(scene.end / scene.window) + flight, 20.0, flight + 120.0);
+  scene.end =
+      scene.window * std::clamp(std::ceil(scene.end / scene.window) + flight, 20.0, flight + 120.0);
   return scene;
 }
 

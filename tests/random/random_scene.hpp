@@ -18,7 +18,7 @@ struct View {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // [m] before the turn
   bool reversed = false;                            // order of bodies, interfaces and their sides
-  int finder = -1;      // which side of interfaces finds contact; -1: as abut chooses
+  int finder = -1;       // which side of interfaces finds contact; -1: as abut chooses
   int fields_every = 0;  // windows; 0: no output of fields
 };
 
@@ -29,15 +29,15 @@ struct RandomBody {
   Shape shape;
   std::string law;  // of linear_elastic, saint_venant_kirchhoff, neo_hookean, j2_plasticity
   double modulus = 0.0, ratio = 0.0, density = 0.0, yield = 0.0;  // [Pa] [-] [kg/m^3] [Pa]
-  std::string scheme;  // of the integrator
-  double step = 0.0;   // [s]
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();     // of the part
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();        // [m] of its centre
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();     // [m/s]
-  std::string port;                                   // the side that it is
+  std::string scheme;                                             // of the integrator
+  double step = 0.0;                                              // [s]
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();             // of the part
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();                // [m] of its centre
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();             // [m/s]
+  std::string port;                                               // the side that it is
 
   bool moves_by_itself() const { return kind == Kind::deformable || kind == Kind::rigid; }
-  double wave_speed() const;  // [m/s]
+  double wave_speed() const;                    // [m/s]
   std::vector<Eigen::Vector3d> points() const;  // [m] in space
 };
 

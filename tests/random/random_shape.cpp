@@ -61,15 +61,17 @@ Shape random_brick(Draw& draw, int dim, double size) {
 
 Shape random_arch(Draw& draw, int dim, double size) {
   const bool whole = draw.chance(0.5);
-  const double inner = draw.uniform(0.4, 0.85), way = whole ? 2.0 * pi : draw.uniform(0.5, 1.5) * pi;
+  const double inner = draw.uniform(0.4, 0.85),
+               way = whole ? 2.0 * pi : draw.uniform(0.5, 1.5) * pi;
   const double start = whole ? 0.0 : 0.5 * (pi - way), depth = size * draw.uniform(0.15, 0.5);
-  const std::string element = dim == 2 ? draw.of<std::string>({"quad4", "tri3"})
-                                       : draw.of<std::string>({"hex8", "tet4"});
+  const std::string element =
+      dim == 2 ? draw.of<std::string>({"quad4", "tri3"}) : draw.of<std::string>({"hex8", "tet4"});
   const int around = dim == 2 ? draw.whole(whole ? 6 : 3, 16) : draw.whole(whole ? 5 : 3, 9);
   const std::array<int, 3> counts = {around, draw.whole(1, 2), 1};
   // The angle falls along the first axis, so that cells are not inside out.
   Shape shape = lattice(draw, element, counts, whole, [&](const Eigen::Vector3d& s) {
-    const double r = 0.5 * size * (inner + (1.0 - inner) * s(1)), angle = start + way * (1.0 - s(0));
+    const double r = 0.5 * size * (inner + (1.0 - inner) * s(1)),
+                 angle = start + way * (1.0 - s(0));
     return Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), dim == 3 ? depth * s(2) : 0.0);
   });
   shape.kind = whole ? "ring" : "arch";
@@ -153,8 +155,8 @@ Shape random_floor(Draw& draw, int dim, double width) {
   const std::array<int, 3> counts = {draw.whole(1, dim == 2 ? 8 : 3), draw.whole(1, 2),
                                      draw.whole(1, 3)};
   const Eigen::Vector3d lengths(width, width * draw.uniform(0.1, 0.3), dim == 3 ? width : 0.0);
-  const std::string element = dim == 2 ? draw.of<std::string>({"quad4", "tri3"})
-                                       : draw.of<std::string>({"hex8", "tet4"});
+  const std::string element =
+      dim == 2 ? draw.of<std::string>({"quad4", "tri3"}) : draw.of<std::string>({"hex8", "tet4"});
   Shape shape = lattice(draw, element, counts, false,
                         [&](const Eigen::Vector3d& s) { return lengths.cwiseProduct(s).eval(); });
   shape.kind = "floor";

@@ -39,10 +39,9 @@ std::string material_of(const RandomBody& body, const View& view) {
   if (body.law == "j2_plasticity")
     more = fmt::format(", yield_stress: {:.17e}, hardening: {:.17e}", body.yield * pressure,
                        0.02 * body.modulus * pressure);
-  return fmt::format(
-      "{}: {{youngs_modulus: {:.17e}, poissons_ratio: {:.17e}, density: {:.17e}{}}}", body.law,
-      body.modulus * pressure, body.ratio,
-      body.density * view.mass / (view.length * view.length * view.length), more);
+  return fmt::format("{}: {{youngs_modulus: {:.17e}, poissons_ratio: {:.17e}, density: {:.17e}{}}}",
+                     body.law, body.modulus * pressure, body.ratio,
+                     body.density * view.mass / (view.length * view.length * view.length), more);
 }
 
 std::string body_text(const RandomScene& scene, const RandomBody& body, const View& view) {
@@ -51,9 +50,8 @@ std::string body_text(const RandomScene& scene, const RandomBody& body, const Vi
                             : body.kind == Kind::tool ? "rigid_tool"
                                                       : "fe";
   const Shape& shape = body.shape;
-  const std::string mesh = shape.generator.empty()
-                               ? fmt::format("gmsh: {{file: {}.msh}}", body.name)
-                               : shape.generator;
+  const std::string mesh =
+      shape.generator.empty() ? fmt::format("gmsh: {{file: {}.msh}}", body.name) : shape.generator;
   const Eigen::Matrix3d turn = view.length * view.turn * body.turn;
   std::string way;
   if (body.kind == Kind::tool && !body.velocity.isZero()) {
@@ -72,7 +70,8 @@ std::string body_text(const RandomScene& scene, const RandomBody& body, const Vi
     out += fmt::format("    integrator: {{{}: {{step: {:.17e}{}}}}}\n", body.scheme, body.step,
                        body.scheme == "central_difference" ? ", above_limit: clamp" : "");
     if (!scene.gravity.isZero())
-      out += fmt::format("    body_force: {}\n", list(view.length * view.turn * scene.gravity, dim));
+      out +=
+          fmt::format("    body_force: {}\n", list(view.length * view.turn * scene.gravity, dim));
   }
   const Eigen::Vector3d place = view.length * (view.turn * (body.place + view.shift));
   out += fmt::format("    initial: {{position: {}", list(place, dim));
@@ -98,8 +97,9 @@ std::string interfaces_of(const RandomScene& scene, const View& view) {
                           : fmt::format(", transmission: {{unilateral: {{kinematic: {}}}}}",
                                         sides[view.finder]);
       if (view.reversed) std::swap(sides[0], sides[1]);
-      all.push_back(fmt::format("  pair_{}_{}: {{sides: [{}, {}], contact: {{friction: {:.17e}}}{}}}\n",
-                                i, j, sides[0], sides[1], scene.friction, finder));
+      all.push_back(
+          fmt::format("  pair_{}_{}: {{sides: [{}, {}], contact: {{friction: {:.17e}}}{}}}\n", i, j,
+                      sides[0], sides[1], scene.friction, finder));
     }
   if (view.reversed) std::ranges::reverse(all);
   return fmt::format("interfaces:\n{}", fmt::join(all, ""));

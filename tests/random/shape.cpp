@@ -4,7 +4,6 @@
 #include <limits>
 #include <map>
 
-
 namespace abut {
 
 namespace {
@@ -25,8 +24,8 @@ std::vector<std::array<int, 2>> edges_of(const std::string& element) {
   if (element.starts_with("tri")) return {{0, 1}, {1, 2}, {2, 0}};
   if (element == "quad4") return {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
   if (element.starts_with("tet")) return {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}};
-  return {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6},
-          {3, 7}};
+  return {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
+          {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
 }
 
 std::vector<Facet> Shape::outside() const {

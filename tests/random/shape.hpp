@@ -13,11 +13,11 @@ namespace abut {
 /// A random part: its mesh, as points and cells of one element.
 struct Shape {
   int dim = 2;
-  std::string kind;     // rectangle, triangle, spike, arch, ring, brick, wedge, pyramid, tetrahedron
-  std::string element;  // tri3, quad4, tri6, tet4, hex8, tet10
+  std::string kind;  // rectangle, triangle, spike, arch, ring, brick, wedge, pyramid, tetrahedron
+  std::string element;                  // tri3, quad4, tri6, tet4, hex8, tet10
   std::vector<Eigen::Vector3d> points;  // [m]
   std::vector<std::vector<int>> cells;  // in the order of Gmsh
-  std::string generator;                // the same mesh as a scene's generator makes it; may be empty
+  std::string generator;  // the same mesh as a scene's generator makes it; may be empty
 
   /// Facets by their corners that belong to one cell alone.
   std::vector<std::vector<int>> outside() const;

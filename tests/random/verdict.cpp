@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 namespace abut {
 
@@ -43,7 +43,8 @@ Again again_of(const RandomScene& scene) {
 
 /// Some bodies take forces only, and the scene that names them is rightly refused.
 bool cannot_find(const TrialRun& run) {
-  return run.status == "refused" && run.reason.find("cannot be the kinematic side") != run.reason.npos;
+  return run.status == "refused" &&
+         run.reason.find("cannot be the kinematic side") != run.reason.npos;
 }
 
 /// Of the ends of two runs, over the most that there was.
@@ -107,13 +108,13 @@ Verdict judge(const RandomScene& scene, const std::filesystem::path& folder) {
 }
 
 std::string line_of(const RandomScene& scene, const Verdict& verdict) {
-  return fmt::format("{:>6} {:11} passive {:3.0f} % grown {:8.1e} momentum {:7.1e} {:6.2f} s "
-                     "{:6} {:7.1e} {}{}",
-                     scene.seed, verdict.run.status, 100.0 * verdict.run.passive,
-                     verdict.run.growth, scene.free() ? verdict.run.momentum : 0.0,
-                     verdict.run.seconds, to_string(verdict.again), verdict.difference,
-                     scene.words(),
-                     verdict.trouble.empty() ? "" : "\n           " + verdict.trouble);
+  return fmt::format(
+      "{:>6} {:11} passive {:3.0f} % grown {:8.1e} momentum {:7.1e} {:6.2f} s "
+      "{:6} {:7.1e} {}{}",
+      scene.seed, verdict.run.status, 100.0 * verdict.run.passive, verdict.run.growth,
+      scene.free() ? verdict.run.momentum : 0.0, verdict.run.seconds, to_string(verdict.again),
+      verdict.difference, scene.words(),
+      verdict.trouble.empty() ? "" : "\n           " + verdict.trouble);
 }
 
 void Table::add(const RandomScene& scene, const Verdict& verdict) {
@@ -141,8 +142,9 @@ std::string Table::text() const {
                        dim == 2 ? "planar" : "in space", row.completed, row.sound,
                        100.0 * row.passive / row.scenes, row.growth, row.momentum,
                        row.seconds / row.scenes);
-  out += "\n| run again | scenes | as good | difference, median | nine tenths below |\n"
-         "|---|---|---|---|---|\n";
+  out +=
+      "\n| run again | scenes | as good | difference, median | nine tenths below |\n"
+      "|---|---|---|---|---|\n";
   for (auto [again, pairs] : again_) {
     std::ranges::sort(pairs.differences);
     const std::size_t n = pairs.differences.size();
@@ -166,8 +168,7 @@ std::string Table::sentence() const {
 }
 
 double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace abut
