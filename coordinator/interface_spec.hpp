@@ -19,6 +19,10 @@ struct ContactSpec {
   FrictionLaw friction;  // of surfaces
   void fields(Fields& f);
 };
+/// Coulomb's coefficient of what slides: the only one of the passive way [M.132].
+inline double sliding(const ContactSpec& law) {
+  return law.friction.coefficient(law.friction.remember(true));
+}
 /// Contact that is not written pair by pair.
 struct SceneContactSpec {
   std::optional<ContactSpec> everything;  // between any two surfaces; absent: interfaces say it
