@@ -1,6 +1,6 @@
 # The front door. Every target checks what it needs first, skips what is done, and may be run again.
 .DEFAULT_GOAL := help
-.PHONY: help demo build test bench results extremes clean dependencies-build dependencies-test dependencies-bench
+.PHONY: help demo build test fuzz bench results extremes clean dependencies-build dependencies-test dependencies-bench
 
 PRESET ?= release
 WITH ?=
@@ -11,6 +11,7 @@ help:
 	@echo "make demo    two bars collide, one process each; result table and a page of plots"
 	@echo "make build   the two programs, in $(BIN)"
 	@echo "make test    every test"
+	@echo "make fuzz SECONDS=600   random scenes of new seeds; what fails is told (docs/ROBUSTNESS.md)"
 	@echo "make bench   the measured figures"
 	@echo "make results   docs/RESULTS.md, measured anew (minutes)"
 	@echo "make extremes  docs/EXTREMES.md, measured anew"
@@ -36,6 +37,11 @@ demo: build
 test: dependencies-test
 	@sh scripts/build.sh tests
 	ctest --preset $(PRESET) --parallel 2 $(TESTS)
+
+SECONDS ?= 600
+fuzz: dependencies-test
+	@sh scripts/build.sh tests
+	$(BIN)/abut_fuzz --quiet --table --keep runs/fuzz --seconds $(SECONDS) $$(date +%s)
 
 bench: dependencies-bench
 	@sh scripts/build.sh bench

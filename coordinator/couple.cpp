@@ -225,9 +225,14 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
       how->kernel_memory.value_or(usual_kernel_memory) * 1048576.0, margin, law);
 }
 
-/// What no contact can start from.
+/// What no contact can start from. Averages that overlap begin with a blow, in windows that bodies
+/// with passive forms pass passively.
 void check_start(const InterfaceSpec& spec, const std::string& where, const Joint& joint,
-                 const Bodies& bodies) {
+                 const Scene& scene, const Bodies& bodies) {
+  const bool averages = scene.schwarz.on_nonconvergence != OnNonconvergence::passive ||
+                        std::ranges::any_of(joint.sides, [&bodies](const Side& side) {
+                          return !bodies.describe(side.body).can.passive;
+                        });
   const auto side = [&](int s) {
     return NamedSurface{spec.sides[s], bodies.port(joint.sides[s]).geometry};
   };
@@ -237,7 +242,7 @@ void check_start(const InterfaceSpec& spec, const std::string& where, const Join
   } else if (spec.contact->points) {
     check_points(side(finder), side(1 - finder), where);
   } else {
-    check_surfaces(side(finder), side(1 - finder), where + ".sides");
+    check_surfaces(side(finder), side(1 - finder), averages, where + ".sides");
   }
 }
 
@@ -357,7 +362,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     }
     if (surfaces) {
       set_surfaces(spec, "interfaces." + name, scene, bodies, joint);
-      check_start(spec, "interfaces." + name, joint, bodies);
+      check_start(spec, "interfaces." + name, joint, scene, bodies);
     } else if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
       set_unilateral(spec, *unilateral, scene.schwarz, bodies, joint);
     } else if (const auto* robin = std::get_if<RobinTransmission>(&spec.transmission)) {
@@ -398,7 +403,8 @@ BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
   for (const PortPair& pair : all.near_at_start(bodies)) {
     if (wrong.size() == most_told) break;
     try {
-      check_start(spec_of(scene, pair, bodies), "", make_pair(scene, pair, bodies), bodies);
+      check_start(spec_of(scene, pair, bodies), "", make_pair(scene, pair, bodies), scene,
+                  bodies);
     } catch (const InputError& error) {
       wrong.push_back(error);
     }

@@ -137,14 +137,14 @@ void check_each(const NamedSurface& one, const NamedSurface& other, const std::s
 
 }  // namespace
 
-void check_surfaces(const NamedSurface& finder, const NamedSurface& other,
+void check_surfaces(const NamedSurface& finder, const NamedSurface& other, bool averages,
                     const std::string& where) {
   check_each(finder, other, where);
   const double round = roundness(start(finder.geometry), start(other.geometry));
   check_overlap(finder, other, {round, round}, where);
   const bool turned = has_edges(posed(other.geometry)) && !has_edges(posed(finder.geometry));
   if (turned) check_division(finder, other, where);
-  check_averages(turned ? other : finder, turned ? finder : other, where);
+  if (averages) check_averages(turned ? other : finder, turned ? finder : other, where);
 }
 
 void check_apart(const NamedSurface& one, const NamedSurface& other, const std::string& where) {

@@ -19,9 +19,9 @@ void check_apart(const NamedSurface& one, const NamedSurface& other, const std::
 
 /// Refuses what no rows of facets can start from: bodies that are in each other, a facet without
 /// area or folded, one that looks the other way than its neighbours, a surface that crosses itself,
-/// and rows that overlap by more than a millionth of a facet: of nodes of the finder, which finds
-/// their contact, but for edges.
-void check_surfaces(const NamedSurface& finder, const NamedSurface& other,
+/// and, where `averages` are looked at, rows that overlap by more than a millionth of a facet: of
+/// nodes of the finder, which finds their contact, but for edges.
+void check_surfaces(const NamedSurface& finder, const NamedSurface& other, bool averages,
                     const std::string& where);
 
 /// The same for rows of the finder's single nodes, none of which may lie behind the other side, and
