@@ -464,11 +464,8 @@ RunEnd Controller::finish(double wall_seconds) {
     for (const std::string& note : validity_notes(bodies_.describe(b), end_.body_measures.back()))
       narrator_.warning(clock_.time(), bodies_.describe(b).name, note);
   }
-  const PassiveLedger& passive = passive_.ledger();
-  narrator_.given_up(passive, end_);
-  end_.given_up = {passive.windows,       passive.steps,    passive.refused,  passive.rigid,
-                   passive.shortest_step, passive.normal,   passive.friction, passive.damped,
-                   passive.switched,      passive.push_out, passive.deepest};
+  end_.given_up = given_up();
+  narrator_.given_up(end_);
   narrator_.end(end_);
   return end_;
 }
@@ -485,6 +482,7 @@ void Controller::give_up(const std::exception& error, bool interrupted, double w
   end_.exchanges = bodies_.exchanges();
   end_.windows = clock_.windows();
   end_.time = clock_.time();
+  end_.given_up = given_up();
   narrator_.end_after_error(end_);
 }
 

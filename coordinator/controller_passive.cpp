@@ -19,6 +19,17 @@ constexpr double near_ways = 1.5, far_ways = 4.0;
 /// Windows: the accurate method that fails sooner is tried again later, at most after so many.
 constexpr int soon = 10, longest_wait = 64;
 
+/// [J] of all that is there at the end, and what contact has taken.
+double energy_put_in(const Bodies& bodies, const PassiveLedger& ledger) {
+  double all = ledger.given_up() + ledger.friction;
+  for (const Response& response : bodies.responses()) {
+    if (response.records.empty()) continue;
+    const Energy& energy = response.records.back().energy;
+    all += energy.total() + energy.dissipated;
+  }
+  return all;
+}
+
 }  // namespace
 
 bool Controller::may_go_passively() const {
@@ -46,7 +57,7 @@ bool Controller::must_go_passively(const TimeWindow& window) {
 /// it was not tried. False: the scene cannot go on so, or does not want to.
 bool Controller::go_passively(double time, const std::string& reason) {
   if (!passive_.hindrance().empty() || (!reason.empty() && !may_go_passively())) return false;
-  if (std::optional<Failed> failed = passive_.enter(time)) {
+  if (std::optional<Failed> failed = passive_.enter(time, !reason.empty())) {
     fail(failed->time, failed->detail);
     return true;
   }
@@ -106,6 +117,28 @@ void Controller::go_accurately() {
   narrator_.accurate(clock_.time());
   for (Joint& joint : joints_)
     if (!joint.tied() && joint.exchange != nullptr) joint.disengage();
+}
+
+GivenUp Controller::given_up() const {
+  const PassiveLedger& passive = passive_.ledger();
+  return {.windows = passive.windows,
+          .halved_windows = passive.halved_windows,
+          .rigid_windows = passive.rigid_windows,
+          .unanswered = passive.unanswered,
+          .steps = passive.steps,
+          .refused = passive.refused,
+          .rigid = passive.rigid,
+          .shortest_step = passive.shortest_step,
+          .normal = passive.normal,
+          .friction = passive.friction,
+          .damped = passive.damped,
+          .switched = passive.switched,
+          .push_out = passive.push_out,
+          .deepest = passive.deepest,
+          .largest = std::max(guard_.most(), energy_put_in(bodies_, passive)),
+          .lost = passive.lost,
+          .taken = passive.taken,
+          .refused_by = passive.refused_by};
 }
 
 }  // namespace abut

@@ -10,6 +10,7 @@
 #include "base/index.hpp"
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/interface_spec.hpp"
+#include "coordinator/record/given_up_words.hpp"
 #include "surface/sharp_nodes.hpp"
 
 namespace abut {
@@ -198,17 +199,12 @@ void Narrator::accurate(double time) {
   tell({RunEvent::Kind::warning, time, "", "bodies are apart: the accurate method goes on", {}});
 }
 
-void Narrator::given_up(const PassiveLedger& ledger, const RunEnd& end) {
-  if (ledger.windows == 0) return;
-  tell({RunEvent::Kind::warning,
-        end.time,
-        "",
-        fmt::format("{:.3g} % of the windows were solved passively; {:.3g} J were given up in "
-                    "them, and friction took {:.3g} J",
-                    100.0 * static_cast<double>(ledger.windows) /
-                        static_cast<double>(std::max<std::int64_t>(end.windows, 1)),
-                    ledger.given_up(), ledger.friction),
-        {{"given_up", ledger.given_up()}}});
+void Narrator::given_up(const RunEnd& end) {
+  std::vector<const Description*> bodies;
+  for (int b = 0; b < bodies_.count(); ++b) bodies.push_back(&bodies_.describe(b));
+  const std::string text = given_up_words(end.given_up, end.windows, bodies);
+  if (text.empty()) return;
+  tell({RunEvent::Kind::warning, end.time, "", text, {{"given_up", end.given_up.joules()}}});
 }
 
 void Narrator::energy(const EnergyGuard& guard, std::span<const Joint> joints, double time) {

@@ -42,7 +42,7 @@ class Narrator {
   /// Bodies go on in their passive forms; the first times are told.
   void passive(double time, const std::string& reason);
   void accurate(double time);
-  void given_up(const PassiveLedger& ledger, const RunEnd& end);
+  void given_up(const RunEnd& end);
   void energy(const EnergyGuard& guard, std::span<const Joint> joints, double time);
   void warning(double time, const std::string& subject, const std::string& text);
   void failure(double time, const std::string& text);

@@ -258,6 +258,43 @@ def details(run: Run) -> str:
                    for title, content in parts if content)
 
 
+def given_up_table(run: Run) -> str:
+    """What windows that the accurate method could not take have cost."""
+    up = run.summary.get("accuracy", {}).get("given_up", {})
+    if not up.get("passive_windows"):
+        return ""
+    windows = max(run.summary.get("windows", 0), 1)
+    shares = [(windows - up["passive_windows"], "windows by the accurate method"),
+              (up["passive_windows"], "windows passively"),
+              (up.get("halved_windows", 0), "of these in shorter steps"),
+              (up.get("rigid_windows", 0), "of these with bodies rigid for an instant")]
+    rows = [[what, str(count), f"{100.0 * count / windows:.3g} %"] for count, what in shares]
+    largest = up.get("largest_energy")
+    for key, words in (("joules", "given up"), ("normal", "in normal contact"),
+                       ("push_out", "paid back to part what was too near"),
+                       ("damped", "by damping"),
+                       ("changes_of_form", "where bodies changed their form"),
+                       ("friction", "taken by friction, no loss of accuracy")):
+        value = up.get(key)
+        if value or key == "joules":
+            part = f"{100.0 * value / largest:.3g} %" if value is not None and largest else ""
+            rows.append([f"{words} [J]", shown(value), part])
+    rows.append(["deepest behind a partner's surface [m]", shown(up.get("deepest")), ""])
+    for key, words in (("lost_by_body", "lost in contact of {} [J]"),
+                       ("taken_from_body", "taken from {} [J]"),
+                       ("refused_by_body", "steps refused by {}")):
+        rows += [[words.format(body), shown(value), ""] for body, value in up.get(key, {}).items()]
+    words = html.escape(up.get("words", ""))
+    return f"<p>{words}.</p>" + table_of(["", "", "share"], rows)
+
+
+def overlaps_table(run: Run) -> str:
+    rows = [[" and ".join(overlap["bodies"]), shown(overlap["depth"]),
+             ", ".join(shown(x) for x in overlap.get("place", [])), shown(overlap["time"])]
+            for overlap in run.summary.get("overlaps", [])]
+    return table_of(["bodies", "depth [m]", "at [m]", "time [s]"], rows) if rows else ""
+
+
 # ---- page ------------------------------------------------------------
 
 
@@ -300,6 +337,8 @@ def page_of(run: Run, library: str, limit: int) -> str:
         TEMPLATE, library,
         title=html.escape(title), status=html.escape(status), kind=kind,
         summary=section("Why this is no success", reason_of(run)) +
+        section("Bodies that are in each other", overlaps_table(run)) +
+        section("Accuracy given up", given_up_table(run)) +
         section("Expectations", expectations_table(run)) +
         section("Against the closed form", closed_form_table(run)),
         figures=section("Figures", dashes + f'<div class="figures">{plots}</div>') if plots else "",

@@ -30,6 +30,8 @@ constexpr double push_share = 0.1, push_edges = 0.05, paid_share = 0.2;
 constexpr int softer_from = 3, softest = 3;
 /// Impulses below this share of those on a point are none.
 constexpr double no_impulse = 1.0e-9;
+/// Of the shortest edge: points less deep behind a surface are on it.
+constexpr double rounding_of_places = 1.0e-6;
 
 double own_energy(const BodyRecord& record) {
   const Energy& e = record.energy;
@@ -88,6 +90,7 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   points_.clear();
   prepared_ = 0;
   softer_ = 0;
+  culprit_ = -1;
   std::ranges::fill(advanced_, 0);
   const double budget = 0.5 * ledger.normal - ledger.push_out;
   pushing_ = budget > 0.0;
@@ -185,9 +188,11 @@ std::optional<Failed> CommonStep::advance(bool all) {
   std::optional<Failed> first;
   for (const int b : moved) {
     Outcome outcome = bodies_[b].passive()->finish(tried_[index(b)]);
-    if (Failed* failed = std::get_if<Failed>(&outcome); failed != nullptr && !first)
+    if (Failed* failed = std::get_if<Failed>(&outcome); failed != nullptr && !first) {
+      culprit_ = b;
       first = Failed{failed->cause, failed->time,
                      fmt::format("body '{}': {}", bodies_.describe(b).name, failed->detail)};
+    }
   }
   return first;
 }
@@ -269,6 +274,7 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
     if (!std::isfinite(gained[index(b)]) || (!lenient && gained[index(b)] > most_gain * scale)) {
       why_ =
           fmt::format("body '{}' would gain {:.3g} J", bodies_.describe(b).name, gained[index(b)]);
+      culprit_ = b;
       return Refusal::energy;
     }
   }
@@ -288,6 +294,7 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
       taken = bodies_[b].passive()->damp(account);
     account -= taken;
     ledger.damped += taken;
+    if (taken != 0.0) PassiveLedger::add(ledger.taken, b, taken);
     replies_[index(b)].record.energy.kinetic -= taken;
     energies_[index(b)] = own_energy(replies_[index(b)].record);
   }
@@ -295,13 +302,30 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
   for (const DistanceRow& row : rows_) {
     const double normal = row.normal_impulse * row_velocity(row, velocities_, row.normal);
     (normal < 0.0 ? ledger.normal : ledger.push_out) += std::abs(normal);
+    if (normal < 0.0) share_out_loss(row, -normal, ledger);
     for (const std::size_t t : {0u, 1u})
       ledger.friction -=
           row.tangential_impulse[t] * row_velocity(row, velocities_, row.tangents[t]);
     if (row.normal_impulse > 0.0) warm_[row.key()] = row.impulse();
-    ledger.deepest = std::max(ledger.deepest, row.behind ? -row.gap : 0.0);
+    if (row.behind && -row.gap > rounding_of_places * surfaces_.shortest_edge())
+      ledger.deepest = std::max(ledger.deepest, -row.gap);
   }
   return std::nullopt;
+}
+
+/// Half of it to either side that deforms: a finer mesh there would lose less.
+void CommonStep::share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const {
+  std::array<int, 2> sides{-1, -1};
+  int deforming = 0;
+  for (const std::size_t s : {0u, 1u}) {
+    const std::size_t first = s == 0 ? 0 : second_feature(row.features.kind);
+    const TouchingSurfaces::Point& at = surfaces_[row.features.points[first]];
+    if (!(bodies_.port({at.body, at.port}).geometry.transit > 0.0)) continue;  // rigid
+    sides[s] = at.body;
+    ++deforming;
+  }
+  for (const int body : sides)
+    if (body >= 0) PassiveLedger::add(ledger.lost, body, loss / deforming);
 }
 
 /// [J] of impulses at the mean velocities of the points that they push.

@@ -39,6 +39,8 @@ class CommonStep {
   std::optional<Refusal> take(double begin, double end, bool lenient, PassiveLedger& ledger);
   /// Of the last step that was refused, for people.
   const std::string& why() const { return why_; }
+  /// The body that could not take it; -1: none alone.
+  int culprit() const { return culprit_; }
 
   // Of the last step that was taken:
 
@@ -71,6 +73,7 @@ class CommonStep {
   void solve_rows();
   std::optional<Refusal> accept(bool lenient, PassiveLedger& ledger);
   void share_out_work();
+  void share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const;
   double energy_of(int body) const;
   double length() const { return step_.end - step_.begin; }
 
@@ -97,6 +100,7 @@ class CommonStep {
   double most_ = 0.0;                                 // [J] largest kinetic and stored energy
   double credit_ = 0.0;                               // [J] half of what normal contact has lost
   std::string why_;
+  int culprit_ = -1;
 };
 
 }  // namespace abut

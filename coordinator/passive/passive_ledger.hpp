@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "base/archive.hpp"
 
@@ -14,11 +15,23 @@ struct PassiveLedger {
   double damped = 0.0;    // [J] taken back from bodies that gained, or held rigid for an instant
   double switched = 0.0;  // [J] lost where bodies changed their form
   std::int64_t steps = 0, refused = 0, windows = 0, rigid = 0;
+  // windows in which steps were halved, in which bodies were held rigid; times that the accurate
+  // method had no answer
+  std::int64_t halved_windows = 0, rigid_windows = 0, unanswered = 0;
   double deepest = 0.0;        // [m] behind a partner's surface
   double shortest_step = 0.0;  // [s]; 0: none was taken
 
+  // By body, as long as one has any. [J] of its deforming side's normal contact; [J] that damping
+  // and changes of form took from it; steps that it refused
+  std::vector<double> lost, taken, refused_by;
+
   /// [J] what accuracy was given up; friction would be there anyway.
   double given_up() const { return normal - push_out + damped + switched; }
+  static void add(std::vector<double>& values, int body, double value) {
+    const std::size_t at = static_cast<std::size_t>(body);
+    if (values.size() <= at) values.resize(at + 1, 0.0);
+    values[at] += value;
+  }
   void state(Archive& archive) {
     archive.field("normal", normal);
     archive.field("friction", friction);
@@ -29,6 +42,12 @@ struct PassiveLedger {
     archive.field("refused", refused);
     archive.field("windows", windows);
     archive.field("rigid", rigid);
+    archive.field("halved_windows", halved_windows);
+    archive.field("rigid_windows", rigid_windows);
+    archive.field("unanswered", unanswered);
+    archive.field("lost", lost);
+    archive.field("taken", taken);
+    archive.field("refused_by", refused_by);
     archive.field("deepest", deepest);
     archive.field("shortest_step", shortest_step);
   }

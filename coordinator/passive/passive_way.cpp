@@ -45,9 +45,14 @@ void PassiveWay::make() {
   step_ = std::make_unique<CommonStep>(*surfaces_, *near_, bodies_, nominal_);
 }
 
-std::optional<Failed> PassiveWay::enter(double time) {
+std::optional<Failed> PassiveWay::enter(double time, bool unanswered) {
+  if (unanswered) ++ledger_.unanswered;
   make();
-  for (int b = 0; b < bodies_.count(); ++b) ledger_.switched += bodies_[b].passive()->enter();
+  for (int b = 0; b < bodies_.count(); ++b) {
+    const double lost = bodies_[b].passive()->enter();
+    ledger_.switched += lost;
+    if (lost != 0.0) PassiveLedger::add(ledger_.taken, b, lost);
+  }
   active_ = true;
   level_ = good_ = held_ = 0;
   return step_->begin(time);
@@ -63,6 +68,8 @@ std::optional<Failed> PassiveWay::window(const TimeWindow& window, int records,
   record.begin(window.begin, *step_, std::move(told));
   quiet_ = true;
   pressed_.clear();
+  halved_ = false;
+  const std::int64_t rigid = ledger_.rigid;
   double time = window.begin;
   for (int r = 1; r <= records; ++r) {
     const double end =
@@ -72,6 +79,8 @@ std::optional<Failed> PassiveWay::window(const TimeWindow& window, int records,
   }
   record.finish();
   ++ledger_.windows;
+  if (halved_) ++ledger_.halved_windows;
+  if (ledger_.rigid > rigid) ++ledger_.rigid_windows;
   return std::nullopt;
 }
 
@@ -103,10 +112,12 @@ std::optional<Failed> PassiveWay::advance_to(double end, double& time, PassiveRe
 
 bool PassiveWay::step(double begin, double end, PassiveRecord& record, bool lenient) {
   bodies_.save_all();
+  halved_ = halved_ || level_ > 0;
   ++ledger_.steps;
   if (step_->take(begin, end, lenient, ledger_)) {
     bodies_.restore_all();
     ++ledger_.refused;
+    if (step_->culprit() >= 0) PassiveLedger::add(ledger_.refused_by, step_->culprit(), 1.0);
     return false;
   }
   const double length = end - begin;
@@ -147,6 +158,7 @@ bool PassiveWay::hold_rigid() {
     if (!std::isfinite(bodies_.describe(b).mass)) continue;
     const double taken = bodies_[b].passive()->damp(std::numeric_limits<double>::infinity());
     ledger_.damped += taken;
+    PassiveLedger::add(ledger_.taken, b, taken);
     step_->lower(b, taken);
   }
   return true;
@@ -154,17 +166,18 @@ bool PassiveWay::hold_rigid() {
 
 bool PassiveWay::leave(double time) {
   bodies_.save_all();
-  double all = 0.0;
+  std::vector<double> lost(index(bodies_.count()), 0.0);
   for (int b = 0; b < bodies_.count(); ++b) {
-    double lost = 0.0;
-    const Outcome outcome = bodies_[b].passive()->leave(time, lost);
+    const Outcome outcome = bodies_[b].passive()->leave(time, lost[index(b)]);
     if (std::holds_alternative<Failed>(outcome)) {
       bodies_.restore_all();
       return false;
     }
-    all += lost;
   }
-  ledger_.switched += all;
+  for (int b = 0; b < bodies_.count(); ++b) {
+    ledger_.switched += lost[index(b)];
+    if (lost[index(b)] != 0.0) PassiveLedger::add(ledger_.taken, b, lost[index(b)]);
+  }
   active_ = false;
   return true;
 }

@@ -29,8 +29,9 @@ class PassiveWay {
   bool active() const { return active_; }
   const PassiveLedger& ledger() const { return ledger_; }
 
-  /// The bodies stand at a time at which they may be saved.
-  [[nodiscard]] std::optional<Failed> enter(double time);
+  /// The bodies stand at a time at which they may be saved. `unanswered`: the accurate method was
+  /// tried and had no answer.
+  [[nodiscard]] std::optional<Failed> enter(double time, bool unanswered);
   /// Advances all bodies and fills their responses, with so many records.
   [[nodiscard]] std::optional<Failed> window(const TimeWindow& window, int records,
                                              std::span<const Joint> joints);
@@ -55,6 +56,7 @@ class PassiveWay {
   Bodies& bodies_;
   std::string hindrance_;
   bool active_ = false, quiet_ = true;
+  bool halved_ = false;  // a step of the window was shorter than the nominal one
   PassiveLedger ledger_;
   double nominal_ = 0.0;                     // [s]
   int level_ = 0;                            // steps are nominal / 2^level

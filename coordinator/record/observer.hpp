@@ -81,11 +81,22 @@ struct Overlap {
 
 /// What passive windows cost.
 struct GivenUp {
-  std::int64_t windows = 0, steps = 0, refused = 0, rigid = 0;
+  // of passive windows all, those in which steps were halved, in which bodies were held rigid
+  std::int64_t windows = 0, halved_windows = 0, rigid_windows = 0;
+  std::int64_t unanswered = 0;  // times that the accurate method had no answer
+  std::int64_t steps = 0, refused = 0, rigid = 0;
   double shortest_step = 0.0;  // [s]
   // [J] lost in normal contact, by friction, by damping, at changes of form; given to part bodies
   double normal = 0.0, friction = 0.0, damped = 0.0, switched = 0.0, push_out = 0.0;
   double deepest = 0.0;  // [m] behind a partner's surface
+  // [J] the largest kinetic and stored energy of the run, or all that went into it where that is
+  // more: loads may put in again what contact takes
+  double largest = 0.0;
+  // By body, as long as one has any: [J] lost in its normal contact, and by damping and changes of
+  // form; steps that it refused.
+  std::vector<double> lost = {}, taken = {}, refused_by = {};
+
+  double joules() const { return normal - push_out + damped + switched; }
 };
 
 struct RunEnd {

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "coordinator/record/expectations.hpp"
+#include "coordinator/record/given_up_words.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 #include "coordinator/record/text_file.hpp"
 #include "coordinator/record/validity_notes.hpp"
@@ -190,19 +191,39 @@ Json overlaps_array(const RunEnd& end, const RunStart& start) {
   return array;
 }
 
-Json given_up_object(const RunEnd& end) {
+Json by_body(const std::vector<double>& values, const RunStart& start) {
+  Json object = Json::object();
+  for (std::size_t b = 0; b < values.size(); ++b)
+    if (values[b] != 0.0) object[start.bodies[b]->name] = number(values[b]);
+  return object;
+}
+
+Json given_up_object(const RunEnd& end, const RunStart& start) {
   const GivenUp& up = end.given_up;
-  return {{"passive_windows", up.windows},
-          {"passive_steps", up.steps},
-          {"refused_steps", up.refused},
-          {"held_rigid", up.rigid},
-          {"shortest_step", number(up.shortest_step)},
-          {"normal", number(up.normal)},
-          {"friction", number(up.friction)},
-          {"damped", number(up.damped)},
-          {"changes_of_form", number(up.switched)},
-          {"push_out", number(up.push_out)},
-          {"deepest", number(up.deepest)}};
+  Json object = {{"passive_windows", up.windows},
+                 {"halved_windows", up.halved_windows},
+                 {"rigid_windows", up.rigid_windows},
+                 {"unanswered", up.unanswered},
+                 {"passive_steps", up.steps},
+                 {"refused_steps", up.refused},
+                 {"held_rigid", up.rigid},
+                 {"shortest_step", number(up.shortest_step)},
+                 {"joules", number(up.joules())},
+                 {"largest_energy", number(up.largest)},
+                 {"normal", number(up.normal)},
+                 {"friction", number(up.friction)},
+                 {"damped", number(up.damped)},
+                 {"changes_of_form", number(up.switched)},
+                 {"push_out", number(up.push_out)},
+                 {"deepest", number(up.deepest)},
+                 {"lost_by_body", by_body(up.lost, start)},
+                 {"taken_from_body", by_body(up.taken, start)},
+                 {"refused_by_body", by_body(up.refused_by, start)},
+                 {"words", given_up_words(up, end.windows, start.bodies)}};
+  if (const std::optional<GivenUpRemedy> remedy = remedy_of(up))
+    object["remedy"] = {{"body", start.bodies[static_cast<std::size_t>(remedy->body)]->name},
+                        {"change", remedy->finer_mesh ? "finer mesh" : "smaller steps"}};
+  return object;
 }
 
 }  // namespace
@@ -242,7 +263,7 @@ std::string Summary::text(const RunEnd& end) const {
   summary["exchanges"] = end.exchanges;
   summary["overlaps"] = overlaps_array(end, start_);
   summary["never_closed"] = end.never_met;
-  summary["accuracy"]["given_up"] = given_up_object(end);
+  summary["accuracy"]["given_up"] = given_up_object(end, start_);
   summary["timing"] = timing_object(end, start_);
   if (heading_.program_began) summary["timing"]["startup_s"] = number(startup_seconds_);
   if (heading_.estimate) summary["estimate"] = estimate_object(*heading_.estimate);

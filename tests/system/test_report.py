@@ -219,6 +219,31 @@ class Report(unittest.TestCase):
         self.assertTrue(main.startswith("<section><h2>Why this is no success</h2>"), main[:80])
         self.assertIn("momentum.total is no value, expected at most 1e-12", main[:300])
 
+    def test_what_was_given_up_is_told_with_shares_and_the_body(self):
+        summary = summary_of("Passive")
+        summary["overlaps"] = [{"bodies": ["left", "right"], "depth": 0.25, "place": [1.0, 2.0],
+                                "time": 0.5}]
+        summary["accuracy"] = {"given_up": {
+            "passive_windows": 25, "halved_windows": 5, "rigid_windows": 0, "unanswered": 1,
+            "joules": 0.5, "largest_energy": 2.5, "normal": 0.375, "friction": 0.25,
+            "damped": 0.125, "changes_of_form": 0.0, "push_out": 0.0, "deepest": 1e-3,
+            "lost_by_body": {"right": 0.375}, "taken_from_body": {"left": 0.125},
+            "refused_by_body": {}, "words": "25 % of the windows <were> passive"}}
+        make_run(self.folder)
+        (self.folder / "summary.json").write_text(json.dumps(summary))
+        self.assertEqual(report(self.folder).returncode, 0)
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        rows = PageReader(page).rows
+        for row in (["windows by the accurate method", "75", "75 %"],
+                    ["windows passively", "25", "25 %"],
+                    ["of these in shorter steps", "5", "5 %"],
+                    ["given up [J]", "0.5", "20 %"], ["in normal contact [J]", "0.375", "15 %"],
+                    ["lost in contact of right [J]", "0.375", ""],
+                    ["left and right", "0.25", "1, 2", "0.5"]):
+            self.assertIn(row, rows)
+        self.assertIn("25 % of the windows &lt;were&gt; passive.", page)
+        self.assertNotIn("Accuracy given up", self.page())
+
     def test_round_off_below_zero_opens_no_space_below_the_axis(self):
         make_run(self.folder)
         path = self.folder / "history.csv"

@@ -141,6 +141,13 @@ SUMMARY = {
                  "in_use": [TEXT], "not_built": [TEXT]},
     "bodies": [{"!name": TEXT, "!model": TEXT, "members": [{"!name": TEXT}]}],
     "versions": {"*": TEXT},
+    "overlaps": [{"!bodies": [TEXT], "!depth": VALUE, "!time": VALUE, "place": [VALUE]}],
+    "accuracy": {"given_up": {
+        **dict.fromkeys(("passive_windows", "halved_windows", "rigid_windows", "unanswered"), NUMBER),
+        **dict.fromkeys(("joules", "largest_energy", "normal", "friction", "damped",
+                         "changes_of_form", "push_out", "deepest"), VALUE),
+        **dict.fromkeys(("lost_by_body", "taken_from_body", "refused_by_body"), {"*": VALUE}),
+        "words": TEXT}},
 }
 EVENT = {"time": VALUE, "kind": TEXT, "subject": TEXT, "text": TEXT}
 

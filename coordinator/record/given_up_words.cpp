@@ -1,0 +1,89 @@
+#include "coordinator/record/given_up_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace abut {
+
+namespace {
+
+/// Of the largest energy: less is what numbers are worth.
+constexpr double nothing = 1.0e-6;
+
+/// Of what was given up: a cause of less is not told.
+constexpr double little = 1.0e-3;
+
+/// Where most of it is; -1: nowhere.
+int most_of(const std::vector<double>& values) {
+  const auto most = std::ranges::max_element(values);
+  return most == values.end() || !(*most > 0.0) ? -1 : static_cast<int>(most - values.begin());
+}
+
+std::string share(std::int64_t part, std::int64_t all) {
+  return fmt::format("{:.3g} %", 100.0 * static_cast<double>(part) /
+                                     static_cast<double>(std::max<std::int64_t>(all, 1)));
+}
+
+std::string windows_words(const GivenUp& up, std::int64_t windows) {
+  std::string text = share(up.windows, windows) + " of the windows were solved passively";
+  if (up.halved_windows > 0)
+    text += fmt::format(", {} in shorter steps", share(up.halved_windows, windows));
+  if (up.rigid_windows > 0)
+    text += fmt::format(", and bodies were held rigid for an instant in {}",
+                        share(up.rigid_windows, windows));
+  return text;
+}
+
+std::string joules_words(const GivenUp& up) {
+  std::string text =
+      fmt::format("{:.3g} J of {:.3g} J were given up in them", up.joules(), up.largest);
+  std::string causes;
+  const auto add = [&](double joules, const char* cause) {
+    if (std::abs(joules) > little * std::abs(up.joules()))
+      causes += fmt::format("{}{:.3g} J {}", causes.empty() ? "" : ", ", joules, cause);
+  };
+  add(up.normal - up.push_out, "in normal contact");
+  add(up.damped, "by damping");
+  add(up.switched, "where bodies changed their form");
+  if (!causes.empty()) text += " (" + causes + ")";
+  if (up.friction != 0.0) text += fmt::format(", and friction took {:.3g} J", up.friction);
+  return text;
+}
+
+}  // namespace
+
+std::optional<GivenUpRemedy> remedy_of(const GivenUp& up) {
+  const bool lost_much = up.joules() > nothing * up.largest;
+  if (!lost_much && up.rigid_windows == 0) return {};
+  // Normal contact loses the motion of the nodes that meet, and so do changes of form: their mass
+  // falls with the mesh. What steps gain and damping takes falls with the steps.
+  const double by_mesh = up.normal - up.push_out + up.switched;
+  if (by_mesh < up.damped) {
+    const int body = most_of(up.refused_by.empty() ? up.taken : up.refused_by);
+    if (body >= 0) return GivenUpRemedy{body, false};
+  }
+  const int body = most_of(up.normal - up.push_out >= up.switched ? up.lost : up.taken);
+  if (body < 0) return {};
+  return GivenUpRemedy{body, true};
+}
+
+std::string given_up_words(const GivenUp& up, std::int64_t windows,
+                           std::span<const Description* const> bodies) {
+  if (up.windows == 0) return {};
+  std::string text = windows_words(up, windows) + "; " + joules_words(up);
+  if (up.deepest > 0.0)
+    text += fmt::format("; surfaces were up to {:.3g} m behind each other", up.deepest);
+  if (const std::optional<GivenUpRemedy> remedy = remedy_of(up)) {
+    const std::string& name = bodies[static_cast<std::size_t>(remedy->body)]->name;
+    text += remedy->finer_mesh ? fmt::format(
+                                     "; a finer mesh of '{}' where it meets others would "
+                                     "lose less",
+                                     name)
+                               : fmt::format("; smaller steps of '{}' would lose less", name);
+  }
+  return text;
+}
+
+}  // namespace abut
