@@ -147,8 +147,8 @@ struct Scene {
   std::optional<double> own_friction() const {
     if (!contact) return 0.0;
     if (!contact->self) return std::nullopt;
-    return contact->self_friction.value_or(contact->everything ? contact->everything->friction
-                                                               : 0.0);
+    const ContactSpec* others = everything();
+    return contact->self_friction.value_or(others ? others->friction.kinetic_friction : 0.0);
   }
 
  private:

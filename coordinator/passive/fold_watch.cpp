@@ -32,9 +32,8 @@ struct FoldWatch::Watched {
 
 FoldWatch::FoldWatch(std::vector<TouchingPair> pairs, const Bodies& bodies)
     : pairs_(std::move(pairs)), bodies_(bodies) {
-  std::erase_if(pairs_, [](const TouchingPair& pair) {
-    return pair.sides[0].body != pair.sides[1].body;
-  });
+  std::erase_if(pairs_,
+                [](const TouchingPair& pair) { return pair.sides[0].body != pair.sides[1].body; });
 }
 
 FoldWatch::~FoldWatch() = default;
@@ -79,8 +78,8 @@ bool FoldWatch::meets(Watched& body) const {
   near_features(body.trees, from_, to_, body.thickness, choice, found_);
   return std::ranges::any_of(found_, [&](const FeaturePair& pair) {
     return !body.gaps.leaves_out(pair) &&
-           first_time_within(pair.kind, dim, places(pair, from_), places(pair, to_),
-                             body.thickness, resolved * body.thickness) < 1.0;
+           first_time_within(pair.kind, dim, places(pair, from_), places(pair, to_), body.thickness,
+                             resolved * body.thickness) < 1.0;
   });
 }
 
