@@ -117,6 +117,7 @@ class Controller {
   void step_passively();
   void accept_passively(const TimeWindow& window);
   void go_accurately();
+  bool leave_apart();
   void fail(double time, const std::string& text);
   void state(Archive& archive);
   void memory(Archive& archive);

@@ -28,6 +28,7 @@ struct FoldWatch::Watched {
   double thickness;  // [m]
   SkinTrees trees;
   OwnGaps gaps;
+  std::vector<Eigen::Vector3d> left;  // [m] where its points were at the last look ahead
 };
 
 FoldWatch::FoldWatch(std::vector<TouchingPair> pairs, const Bodies& bodies)
@@ -65,6 +66,16 @@ bool FoldWatch::apart(double times) {
     body->surfaces.place(bodies_.responses(), 0, to_);
     body->surfaces.place(bodies_.responses(), trace.size() - 1, from_);
     for (std::size_t p = 0; p < to_.size(); ++p) to_[p] = from_[p] + times * (from_[p] - to_[p]);
+    body->left = from_;
+    if (meets(*body)) return false;
+  }
+  return true;
+}
+
+bool FoldWatch::still_apart() {
+  for (const auto& body : watched_) {
+    from_ = body->left;
+    body->surfaces.place(bodies_.responses(), 0, to_);
     if (meets(*body)) return false;
   }
   return true;
