@@ -118,6 +118,7 @@ class Controller {
   void accept_passively(const TimeWindow& window);
   void go_accurately();
   GivenUp given_up() const;
+  bool leave_apart();
   void fail(double time, const std::string& text);
   void state(Archive& archive);
   void memory(Archive& archive);

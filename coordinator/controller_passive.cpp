@@ -102,6 +102,17 @@ void Controller::accept_passively(const TimeWindow& window) {
   watch_energy(energy);
 }
 
+/// Bodies have left their passive forms; false: one came upon itself by that, and all are back.
+bool Controller::leave_apart() {
+  if (!folds_.any()) return true;
+  prepare({0, clock_.time(), clock_.time()}, 1, Sampling::substeps);
+  if (!bodies_.advance_all() && folds_.still_apart()) return true;
+  bodies_.restore_all();
+  passive_.stay();
+  waiting_.left = soon;
+  return false;
+}
+
 /// Back to the accurate method where nothing pressed and all surfaces are well apart: a return in
 /// the midst of contact costs a part of the energy.
 void Controller::go_accurately() {
@@ -112,7 +123,7 @@ void Controller::go_accurately() {
     const auto [distance, speed] = joint.watch->approach(joint, bodies_);
     return distance > far_ways * speed * scene_.time.window;
   });
-  if (!apart || !folds_.apart(far_ways) || !passive_.leave(clock_.time())) return;
+  if (!apart || !folds_.apart(far_ways) || !passive_.leave(clock_.time()) || !leave_apart()) return;
   waiting_.accurate = 0;
   narrator_.accurate(clock_.time());
   for (Joint& joint : joints_)

@@ -90,10 +90,11 @@ void SceneContactSpec::fields(Fields& f) {
       "everything", everything,
       "law of contact between all surfaces (ports) of different bodies, but for pairs that "
       "have an interface; measures name it contact.everything");
-  f.optional("self", self, "",
-             "contact of bodies with themselves, on each port of theirs that has facets and between "
-             "those that have no node in common, where strains are finite: windows in which a "
-             "surface comes upon itself are gone passively");
+  f.optional(
+      "self", self, "",
+      "contact of bodies with themselves, on each port of theirs that has facets and between "
+      "those that have no node in common, where strains are finite: windows in which a "
+      "surface comes upon itself are gone passively");
   f.optional("self_friction", self_friction, "",
              "Coulomb's coefficient of bodies on themselves; usual: that of everything, or 0",
              between(0.0, rough_friction));

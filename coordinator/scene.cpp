@@ -182,11 +182,10 @@ void Scene::fields(Fields& f) {
 }
 
 void Scene::idle_keys(Fields& f) const {
-  const bool iterated =
-      everything() != nullptr ||
-      std::any_of(interfaces.begin(), interfaces.end(), [](const auto& entry) {
-        return !is_inside(entry.second.transmission);
-      });
+  const bool iterated = everything() != nullptr ||
+                        std::any_of(interfaces.begin(), interfaces.end(), [](const auto& entry) {
+                          return !is_inside(entry.second.transmission);
+                        });
   for (const char* key : {"form", "tolerance", "max_iterations", "accelerator"})
     f.idle(!iterated, std::string("schwarz.") + key, "no two bodies of the scene meet");
   const auto waits = [](const auto& entry) {

@@ -33,7 +33,7 @@ void check_facets(const NamedSurface& surface, const std::string& where) {
                    "Mend the mesh there, or name another side.");
 }
 
-/// Facets of one port that cross each other: contact within a body is not modelled.
+/// Facets of one port that cross each other: nothing parts them.
 void check_itself(const NamedSurface& named, const std::string& where) {
   const PosedSurface surface = posed(named.geometry);
   BoxTree tree;
@@ -44,7 +44,7 @@ void check_itself(const NamedSurface& named, const std::string& where) {
   const Eigen::Vector3d at = centre(corners(surface, found.first.k));
   throw InputError(
       fmt::format("{} crosses itself: facets {} and {} of it pass through each other near "
-                  "({:.6g}) m, and contact of a body with itself is not modelled",
+                  "({:.6g}) m, and nothing would part them",
                   named.name, found.first.k, found.first.n,
                   fmt::join(at.data(), at.data() + surface.dim, ", ")),
       where, "Mend the mesh there, or name another side.");

@@ -19,9 +19,8 @@ constexpr double deep = 0.25;
 
 CrossingWatch::CrossingWatch(std::vector<TouchingPair> pairs, const Bodies& bodies)
     : pairs_(std::move(pairs)), bodies_(bodies) {
-  std::erase_if(pairs_, [](const TouchingPair& pair) {
-    return pair.sides[0].body == pair.sides[1].body;
-  });
+  std::erase_if(pairs_,
+                [](const TouchingPair& pair) { return pair.sides[0].body == pair.sides[1].body; });
 }
 
 CrossingWatch::~CrossingWatch() = default;

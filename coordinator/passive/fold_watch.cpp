@@ -28,13 +28,13 @@ struct FoldWatch::Watched {
   double thickness;  // [m]
   SkinTrees trees;
   OwnGaps gaps;
+  std::vector<Eigen::Vector3d> left;  // [m] where its points were at the last look ahead
 };
 
 FoldWatch::FoldWatch(std::vector<TouchingPair> pairs, const Bodies& bodies)
     : pairs_(std::move(pairs)), bodies_(bodies) {
-  std::erase_if(pairs_, [](const TouchingPair& pair) {
-    return pair.sides[0].body != pair.sides[1].body;
-  });
+  std::erase_if(pairs_,
+                [](const TouchingPair& pair) { return pair.sides[0].body != pair.sides[1].body; });
 }
 
 FoldWatch::~FoldWatch() = default;
@@ -66,6 +66,16 @@ bool FoldWatch::apart(double times) {
     body->surfaces.place(bodies_.responses(), 0, to_);
     body->surfaces.place(bodies_.responses(), trace.size() - 1, from_);
     for (std::size_t p = 0; p < to_.size(); ++p) to_[p] = from_[p] + times * (from_[p] - to_[p]);
+    body->left = from_;
+    if (meets(*body)) return false;
+  }
+  return true;
+}
+
+bool FoldWatch::still_apart() {
+  for (const auto& body : watched_) {
+    from_ = body->left;
+    body->surfaces.place(bodies_.responses(), 0, to_);
     if (meets(*body)) return false;
   }
   return true;
@@ -79,8 +89,8 @@ bool FoldWatch::meets(Watched& body) const {
   near_features(body.trees, from_, to_, body.thickness, choice, found_);
   return std::ranges::any_of(found_, [&](const FeaturePair& pair) {
     return !body.gaps.leaves_out(pair) &&
-           first_time_within(pair.kind, dim, places(pair, from_), places(pair, to_),
-                             body.thickness, resolved * body.thickness) < 1.0;
+           first_time_within(pair.kind, dim, places(pair, from_), places(pair, to_), body.thickness,
+                             resolved * body.thickness) < 1.0;
   });
 }
 

@@ -23,6 +23,10 @@ class FoldWatch {
   /// Whether no surface comes upon itself while all points go on for `times` as far as they went in
   /// the latest replies.
   bool apart(double times);
+  /// Since then, of replies of bodies that have left their passive forms: whether no surface came
+  /// upon itself. Nodes without mass go to where they are in balance.
+  bool still_apart();
+  bool any() const { return !pairs_.empty(); }
 
  private:
   struct Watched;

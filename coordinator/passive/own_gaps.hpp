@@ -32,11 +32,11 @@ class OwnGaps {
 
  private:
   struct Body {
-    FeatureChoice choice;              // its own pairs alone
-    std::vector<std::size_t> allowed;  // places of them in a choice
-    std::vector<std::int32_t> nodes;   // of its groups
-    double edge = 0.0;                 // [m] the shortest one
-    double apart = 0.0;                // [m] at the last look, at most an edge
+    FeatureChoice choice;                 // its own pairs alone
+    std::vector<std::size_t> allowed;     // places of them in a choice
+    std::vector<std::int32_t> nodes;      // of its groups
+    double edge = 0.0;                    // [m] the shortest one
+    double apart = 0.0;                   // [m] at the last look, at most an edge
     std::vector<Eigen::Vector3d> looked;  // (nodes) where they were then; empty: no look yet
     int near = 0;  // looks that are still to be left out: it was too near to itself
   };

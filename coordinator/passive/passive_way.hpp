@@ -37,6 +37,8 @@ class PassiveWay {
                                              std::span<const Joint> joints);
   /// False: a body cannot, and all stay as they are.
   bool leave(double time);
+  /// The bodies have been restored to where they were before they left.
+  void stay() { active_ = true; }
   /// Whether nothing pressed in the last window.
   bool quiet() const { return quiet_; }
   /// Whether surfaces pressed in the last window, of a joint.

@@ -40,8 +40,10 @@ std::vector<std::string> validity_notes(const Description& body, std::span<const
   }
   if (told(body, values, "contact.crossings") > 0.0)
     notes.push_back(
-        fmt::format("facets of {} have passed through each other on its ports: contact of a body "
-                    "with itself is not modelled, and what follows is not to be trusted",
+        fmt::format("facets of {} have passed through each other on its ports, and what follows is "
+                    "not to be trusted: bodies are kept off themselves by the passive way alone, "
+                    "which contact.self, schwarz.on_nonconvergence or a body without a passive "
+                    "form has kept away",
                     body.name));
   const double share = told(body, values, "energy.hourglass_share");
   const double stored = told(body, values, "energy.stored");
