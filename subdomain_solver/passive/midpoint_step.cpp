@@ -174,8 +174,8 @@ std::optional<Failed> MidpointStep::solve(const Motion& motion, const Vector& im
 
 void MidpointStep::find_free_step(const Motion& motion) {
   given_ = length_ * loads_;
-  unpushed_.factors.made = false;
-  present_ = next_ = &unpushed_.factors;
+  own_.made = unpushed_.factors.made = false;
+  present_ = next_ = &own_;
   unpushed_.failed = solve_from_begin(motion);
   unpushed_.change = change_;
   unpushed_.start = start_;

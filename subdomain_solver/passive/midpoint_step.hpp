@@ -59,7 +59,7 @@ class MidpointStep {
     std::vector<double> q, v, history;  // the state
     Vector change;                      // [m/s] (dofs)
     std::optional<Failed> failed;
-    Factors factors;  // of its tangent, when first needed
+    Factors factors;  // of the tangent there, when first needed
 
     bool is_of(const Motion& motion, double from, double until) const;
   };
