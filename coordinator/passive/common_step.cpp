@@ -95,23 +95,30 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   const double budget = 0.5 * ledger.normal - ledger.push_out;
   pushing_ = budget > 0.0;
   allowed_ = paid_share * std::max(0.0, budget);
+  near_.find(from_, rows_);
+  prepare_rows();
   if (std::optional<Failed> failed = advance(true)) {
     why_ = failed->detail;
     return Refusal::body;
   }
   see_velocities();
-  near_.find(from_, to_, rows_);
+  near_.find_on_ways(from_, to_, rows_);
   if (std::optional<Refusal> refused = iterate()) return refused;
   return accept(lenient, ledger);
 }
 
-/// Impulses, the bodies' answers, and again, until rows fit and the ways are free.
+/// Impulses, the bodies' answers, and again, until rows fit and the ways are free. What the bodies
+/// do freely is the first answer where they told of all points that are pressed then.
 std::optional<CommonStep::Refusal> CommonStep::iterate() {
   int checks = 0;
   if (rows_.empty() && near_.check(from_, to_, rows_).pairs == 0) return std::nullopt;
   for (int round = 0; round < most_rounds; ++round) {
     const bool last = round + 1 == most_rounds;
-    prepare_rows();
+    const bool told = !prepare_rows();
+    if (round == 0 && told) {
+      solve_rows(0);
+      continue;
+    }
     if (std::optional<Failed> failed = advance(false)) {
       why_ = failed->detail;
       return Refusal::body;
@@ -134,14 +141,16 @@ std::optional<CommonStep::Refusal> CommonStep::iterate() {
         return Refusal::work;
       }
     }
-    if (rows_.size() > known) continue;  // the bodies have not told of their points
-    solve_rows();
+    if (prepare_rows()) continue;  // the bodies have not told of their points
+    solve_rows(known);
   }
   why_ = "no impulses were found that fit";
   return Refusal::rows;
 }
 
-void CommonStep::prepare_rows() {
+/// True: some press on points that the bodies have not told of.
+bool CommonStep::prepare_rows() {
+  bool grown = false;
   const double h = length(), least = push_edges * surfaces_.shortest_edge() / nominal_;
   for (; prepared_ < rows_.size(); ++prepared_) {
     DistanceRow& row = rows_[prepared_];
@@ -149,8 +158,9 @@ void CommonStep::prepare_rows() {
     row.push = pushing_ && missing > 0.0 ? std::min(push_share * missing / h, least) : 0.0;
     row.closing = missing < 0.0 ? -missing / h : -row.push;
     warm(row);
-    points_.add(row);
+    grown = points_.add(row) || grown;
   }
+  return grown;
 }
 
 /// From the impulse of the same features in the step before.
@@ -170,7 +180,7 @@ void CommonStep::warm(DistanceRow& row) {
 
 /// Bodies that rows press on, from where the step begins; all of them, without impulses, first.
 std::optional<Failed> CommonStep::advance(bool all) {
-  find_impulses();
+  find_impulses(!all);
   std::vector<int> moved;
   for (int b = 0; b < bodies_.count(); ++b) {
     PassiveStep& asked = asked_[index(b)];
@@ -197,13 +207,14 @@ std::optional<Failed> CommonStep::advance(bool all) {
   return first;
 }
 
-/// Of all rows, by body, port and point.
-void CommonStep::find_impulses() {
+/// Of all rows, by body, port and point; or none.
+void CommonStep::find_impulses(bool any) {
   const int dim = surfaces_.skin().dim;
   for (int b = 0; b < bodies_.count(); ++b) {
     asked_[index(b)].impulses.resize(bodies_.describe(b).ports.size());
     for (std::vector<double>& port : asked_[index(b)].impulses) port.clear();
   }
+  if (!any) return;
   for (const DistanceRow& row : rows_) {
     const Eigen::Vector3d impulse = row.impulse();
     for (std::size_t i = 0; i < 4; ++i) {
@@ -242,7 +253,8 @@ void CommonStep::rows_ask(double& unfit, double& work) const {
   }
 }
 
-void CommonStep::solve_rows() {
+/// The bodies answered under the impulses of so many of the rows.
+void CommonStep::solve_rows(std::size_t answered) {
   const int doubled = std::clamp(softer_ - softer_from, 0, softest);
   for (int b = 0; b < bodies_.count(); ++b)
     if (points_.any(b))
@@ -250,6 +262,7 @@ void CommonStep::solve_rows() {
   const double still = negligible * near_.thickness() / length();
   const double rounding = 1.0e-3 * rounding_of_work * most_;
   RowImpulses solver(rows_, points_, surfaces_, velocities_);
+  solver.press_from(answered);
   solver.solve(still);
   if (pushing_ && solver.work() > allowed_ + rounding) {  // too dear: without it
     pushing_ = false;

@@ -64,13 +64,13 @@ class CommonStep {
   using Places = std::vector<Eigen::Vector3d>;
 
   std::optional<Refusal> iterate();
-  void prepare_rows();
+  bool prepare_rows();
   void warm(DistanceRow& row);
   std::optional<Failed> advance(bool all);
   void see_velocities();
-  void find_impulses();
+  void find_impulses(bool any);
   void rows_ask(double& unfit, double& work) const;
-  void solve_rows();
+  void solve_rows(std::size_t answered);
   std::optional<Refusal> accept(bool lenient, PassiveLedger& ledger);
   void share_out_work();
   void share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const;

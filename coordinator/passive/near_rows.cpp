@@ -50,8 +50,9 @@ bool NearRows::leaves_out(const FeaturePair& pair) const {
          });
 }
 
-void NearRows::find(const Places& from, const Places& to, std::vector<DistanceRow>& rows) {
+void NearRows::find(const Places& from, std::vector<DistanceRow>& rows) {
   const int dim = surfaces_.skin().dim;
+  name(rows);
   const double reach = near_thicknesses * thickness_;
   near_features(trees_, from, from, reach, own_.choice(trees_, from, from, reach), pairs_);
   for (const FeaturePair& pair : pairs_) {
@@ -59,6 +60,12 @@ void NearRows::find(const Places& from, const Places& to, std::vector<DistanceRo
     if (feature_distance(pair.kind, dim, at(pair, from, from, 0.0)).distance < reach)
       add(pair, from, from, 0.0, rows);
   }
+  if (behind_count_ > 0) add_behind(from, rows);
+}
+
+void NearRows::find_on_ways(const Places& from, const Places& to, std::vector<DistanceRow>& rows) {
+  const int dim = surfaces_.skin().dim;
+  name(rows);
   near_features(trees_, from, to, thickness_, own_.choice(trees_, from, to, thickness_), pairs_);
   for (const FeaturePair& pair : pairs_) {
     if (leaves_out(pair)) continue;
@@ -68,12 +75,12 @@ void NearRows::find(const Places& from, const Places& to, std::vector<DistanceRo
         first_time_within(pair.kind, dim, before, after, thickness_, resolved * thickness_);
     if (part < 1.0) add(pair, from, to, part, rows);
   }
-  if (behind_count_ > 0) add_behind(from, rows);
 }
 
 NearRows::Crossed NearRows::check(const Places& from, const Places& to,
                                   std::vector<DistanceRow>& rows) {
   const int dim = surfaces_.skin().dim;
+  name(rows);
   Crossed crossed;
   near_features(trees_, from, to, thickness_, own_.choice(trees_, from, to, thickness_), pairs_);
   for (const FeaturePair& pair : pairs_) {
@@ -91,7 +98,7 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
 }
 
 bool NearRows::add(const FeaturePair& pair, const Places& from, const Places& to, double part,
-                   std::vector<DistanceRow>& rows) const {
+                   std::vector<DistanceRow>& rows) {
   const int dim = surfaces_.skin().dim;
   const FeaturePoints x = at(pair, from, to, part), x0 = at(pair, from, to, 0.0);
   const FeatureDistance found = feature_distance(pair.kind, dim, x);
@@ -107,14 +114,16 @@ bool NearRows::add(const FeaturePair& pair, const Places& from, const Places& to
   row.friction = surfaces_.friction(pair.points[0], pair.points[second_feature(pair.kind)]);
   row.find_tangents(dim);
   if (known(row, rows)) return false;
+  named_.emplace(row.key(), rows.size());
   rows.push_back(row);
   return true;
 }
 
 bool NearRows::known(const DistanceRow& row, const std::vector<DistanceRow>& rows) const {
-  const DistanceRow::Key key = row.key();
-  return std::ranges::any_of(rows, [&](const DistanceRow& other) {
-    if (other.key() != key || other.normal.dot(row.normal) < 1.0 - same_normal) return false;
+  const auto [first, last] = named_.equal_range(row.key());
+  return std::any_of(first, last, [&](const auto& named) {
+    const DistanceRow& other = rows[named.second];
+    if (other.normal.dot(row.normal) < 1.0 - same_normal) return false;
     double apart = 0.0;
     if (other.features.points == row.features.points)
       for (std::size_t i = 0; i < 4; ++i)
@@ -128,6 +137,12 @@ void NearRows::state(Archive& archive) {
   field(archive, "behind", behind);
   behind_.assign(behind.begin(), behind.end());
   behind_count_ = static_cast<int>(std::ranges::count(behind_, 1));
+}
+
+/// Of all rows of the step, so that those that say the same are found without a look at the others.
+void NearRows::name(const std::vector<DistanceRow>& rows) {
+  named_.clear();
+  for (std::size_t k = 0; k < rows.size(); ++k) named_.emplace(rows[k].key(), k);
 }
 
 }  // namespace abut

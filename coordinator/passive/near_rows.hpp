@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <span>
 #include <vector>
 
@@ -30,8 +31,10 @@ class NearRows {
   double thickness() const { return thickness_; }
   /// Where the surfaces are when the passive way begins.
   void begin(const Places& places);
-  /// The step's first rows: of what is near, and of what free ways bring near.
-  void find(const Places& from, const Places& to, std::vector<DistanceRow>& rows);
+  /// The step's first rows: of what is near,
+  void find(const Places& from, std::vector<DistanceRow>& rows);
+  /// and of what free ways bring near.
+  void find_on_ways(const Places& from, const Places& to, std::vector<DistanceRow>& rows);
   /// Pairs whose ways bring them closer than may be; adds rows of the moments at which they do.
   struct Crossed {
     int pairs = 0, added = 0;
@@ -45,11 +48,12 @@ class NearRows {
  private:
   /// Of a pair at a part of the way, as the features are there.
   bool add(const FeaturePair& pair, const Places& from, const Places& to, double part,
-           std::vector<DistanceRow>& rows) const;
+           std::vector<DistanceRow>& rows);
   void add_behind(const Places& from, std::vector<DistanceRow>& rows);
   void add_facing(std::int32_t node, const Places& from, std::vector<DistanceRow>& rows) const;
   bool leaves_out(const FeaturePair& pair) const;
   bool known(const DistanceRow& row, const std::vector<DistanceRow>& rows) const;
+  void name(const std::vector<DistanceRow>& rows);
   void mark_behind(const Places& places, const std::vector<std::uint8_t>& may_be);
 
   const TouchingSurfaces& surfaces_;
@@ -60,6 +64,7 @@ class NearRows {
   std::vector<Intersection> crossing_;
   std::vector<std::vector<std::int32_t>> around_;  // (points) facets that a behind node is near
   std::vector<FeaturePair> pairs_;
+  std::multimap<DistanceRow::Key, std::size_t> named_;  // places of the step's rows
   std::vector<std::uint8_t> behind_;  // (points) begins behind a partner's surface
   int behind_count_ = 0;
 };

@@ -48,15 +48,21 @@ RowImpulses::Answer RowImpulses::answer_of(const DistanceRow& row) const {
   }
   const int directions = row.friction > 0.0 ? dim_ : 1;
   Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
-  for (int d = 0; d < directions; ++d) {
-    for (const std::size_t s : {0u, 1u}) {
-      if (answer.body[s] < 0) continue;
-      const Eigen::VectorXd pressed = spread(row, answer.body[s], direction_of(row, d));
-      Eigen::VectorXd& change = answer.change[index(d)][s];
-      change.noalias() = points_.compliance(answer.body[s]) * pressed;
-      for (int e = 0; e < directions; ++e)
-        own(e, d) += spread(row, answer.body[s], direction_of(row, e)).dot(change);
-    }
+  for (const std::size_t s : {0u, 1u}) {
+    if (answer.body[s] < 0) continue;
+    const Eigen::MatrixXd& compliance = points_.compliance(answer.body[s]);
+    for (int d = 0; d < directions; ++d) answer.change[index(d)][s].setZero(compliance.rows());
+    visit_pressed(row, answer.body[s], [&](int slot, double weight) {
+      for (int d = 0; d < directions; ++d)
+        answer.change[index(d)][s].noalias() +=
+            compliance.middleCols(slot, dim_) * (weight * direction_of(row, d).head(dim_));
+    });
+    visit_pressed(row, answer.body[s], [&](int slot, double weight) {
+      for (int d = 0; d < directions; ++d)
+        for (int e = 0; e < directions; ++e)
+          own(e, d) += weight * direction_of(row, e).head(dim_).dot(
+                                    answer.change[index(d)][s].segment(slot, dim_));
+    });
   }
   answer.normal = own(0, 0);
   const double trace = own(1, 1) + own(2, 2);
@@ -65,18 +71,16 @@ RowImpulses::Answer RowImpulses::answer_of(const DistanceRow& row) const {
   return answer;
 }
 
-/// The row along a direction, as values of a body.
-Eigen::VectorXd RowImpulses::spread(const DistanceRow& row, int body,
-                                    const Eigen::Vector3d& along) const {
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(points_.velocity(body).size());
+/// Calls `see` with the first value and the weight of each point of a row that is pressed on a
+/// body.
+template <class See>
+void RowImpulses::visit_pressed(const DistanceRow& row, int body, const See& see) const {
   for (std::size_t i = 0; i < 4; ++i) {
     if (row.weights[i] == 0.0) continue;
     const std::int32_t point = row.features.points[i];
     const int slot = points_.slot(point);
-    if (slot < 0 || surfaces_[point].body != body) continue;
-    out.segment(slot, dim_) += row.weights[i] * along.head(dim_);
+    if (slot >= 0 && surfaces_[point].body == body) see(slot, row.weights[i]);
   }
-  return out;
 }
 
 double RowImpulses::velocity(const DistanceRow& row, const Eigen::Vector3d& along) const {
@@ -98,6 +102,14 @@ void RowImpulses::press(std::size_t row, int direction, double impulse) {
   for (const std::size_t s : {0u, 1u})
     if (answer.body[s] >= 0)
       points_.velocity(answer.body[s]) += impulse * answer.change[index(direction)][s];
+}
+
+void RowImpulses::press_from(std::size_t row, double share) {
+  for (std::size_t k = row; k < rows_.size(); ++k) {
+    press(k, 0, share * rows_[k].normal_impulse);
+    for (int t = 0; t + 1 < dim_ && rows_[k].friction > 0.0; ++t)
+      press(k, 1 + t, share * rows_[k].tangential_impulse[index(t)]);
+  }
 }
 
 /// By the midpoint rule what an impulse works on is the velocity that closes the gap, so the
@@ -159,21 +171,15 @@ double RowImpulses::work() const {
 double RowImpulses::limit() {
   const double with = work();
   if (with <= 0.0) return 1.0;
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    press(k, 0, -rows_[k].normal_impulse);
-    for (int t = 0; t + 1 < dim_ && rows_[k].friction > 0.0; ++t)
-      press(k, 1 + t, -rows_[k].tangential_impulse[index(t)]);
-  }
+  press_from(0, -1.0);
   const double free = work();  // of the same impulses, at the velocities without them
   const double curved = with - free;
   const double factor = curved > 0.0 ? std::clamp(-free / curved, 0.0, 1.0) : 0.0;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     rows_[k].normal_impulse *= factor;
     for (double& value : rows_[k].tangential_impulse) value *= factor;
-    press(k, 0, rows_[k].normal_impulse);
-    for (int t = 0; t + 1 < dim_ && rows_[k].friction > 0.0; ++t)
-      press(k, 1 + t, rows_[k].tangential_impulse[index(t)]);
   }
+  press_from(0);
   return factor;
 }
 

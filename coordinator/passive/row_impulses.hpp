@@ -18,6 +18,9 @@ class RowImpulses {
   RowImpulses(std::vector<DistanceRow>& rows, PressedPoints& points,
               const TouchingSurfaces& surfaces, std::span<const Eigen::Vector3d> velocities);
 
+  /// Adds to the velocities so much of what the impulses of rows do, from one of them on: those
+  /// that are not in the velocities yet.
+  void press_from(std::size_t row, double share = 1.0);
   /// `negligible` [m/s]: less change of a velocity is none.
   void solve(double negligible);
   /// [J] sum of J.w
@@ -34,7 +37,8 @@ class RowImpulses {
   };
 
   Answer answer_of(const DistanceRow& row) const;
-  Eigen::VectorXd spread(const DistanceRow& row, int body, const Eigen::Vector3d& along) const;
+  template <class See>
+  void visit_pressed(const DistanceRow& row, int body, const See& see) const;
   double velocity(const DistanceRow& row, const Eigen::Vector3d& along) const;
   void press(std::size_t row, int direction, double impulse);
   double solve_normal(std::size_t row);

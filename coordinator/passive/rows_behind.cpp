@@ -67,7 +67,8 @@ void NearRows::mark_behind(const Places& places, const std::vector<std::uint8_t>
 
 void NearRows::add_behind(const Places& from, std::vector<DistanceRow>& rows) {
   const Skin& skin = surfaces_.skin();
-  around_.assign(surfaces_.count(), {});
+  around_.resize(surfaces_.count());
+  for (std::vector<std::int32_t>& facets : around_) facets.clear();
   trees_.refit(from, from);
   for (int a = 0; a < skin.groups; ++a)
     for (int b = 0; b < skin.groups; ++b)

@@ -21,6 +21,8 @@ constexpr int most_corrections = 6;
 constexpr double at_bottom = 100.0;
 constexpr int last_steps = 2;
 constexpr std::size_t most_factors = 3;
+/// A tangent is kept while it foretells that so many corrections are enough.
+constexpr double most_corrections_left = 4.0;
 /// Right-hand sides that are solved for at once.
 constexpr std::size_t together = 64;
 
@@ -41,7 +43,20 @@ SparseMatrix diagonal(const Vector& values) {
   return out;
 }
 
+/// Whether another tangent is worth its price: `before` and `now` are sizes of the balance before
+/// and after a correction, `least` is that at which no more are needed.
+bool converges_slowly(double before, double now, double least) {
+  if (now <= at_bottom * least) return false;
+  const double ratio = now / before;
+  return ratio >= 1.0 || std::log(least / now) < most_corrections_left * std::log(ratio);
+}
+
 }  // namespace
+
+bool MidpointStep::FreeStep::is_of(const Motion& motion, double from, double until) const {
+  return start == from && end == until && q == motion.q && v == motion.v &&
+         history == motion.history;
+}
 
 MidpointStep::MidpointStep(Body body)
     : body_(std::move(body)),
@@ -56,7 +71,7 @@ std::optional<Failed> MidpointStep::step(Motion& motion, double start, double en
   begin(motion, start, impulse);
   if (!given_.allFinite() || !std::ranges::all_of(held_, [](double u) { return std::isfinite(u); }))
     return not_finite(end);
-  auto failed = body_.cells == nullptr ? solve_linear(motion) : solve(motion);
+  auto failed = body_.cells == nullptr ? solve_linear(motion) : solve(motion, impulse);
   if (!failed) failed = finish(motion, impulse);
   return failed;
 }
@@ -139,26 +154,68 @@ std::optional<Failed> MidpointStep::solve_linear(const Motion& motion) {
                          : std::optional(failed_newton({NewtonReport::End::inadmissible}, end_));
 }
 
-std::optional<Failed> MidpointStep::solve(const Motion& motion) {
-  if (!respond(motion)) {  // free motion inverts cells: from where the step began
+/// From the free step, whose tangent is the first one.
+std::optional<Failed> MidpointStep::solve(const Motion& motion, const Vector& impulse) {
+  if (!unpushed_.is_of(motion, start_, end_)) find_free_step(motion);
+  given_ = impulse + length_ * loads_;
+  own_.made = false;
+  present_ = &unpushed_.factors;
+  next_ = &own_;
+  const bool pushed = (impulse.array() != 0.0).any();
+  if (unpushed_.failed && !pushed) return unpushed_.failed;
+  if (unpushed_.failed) {
+    present_ = next_;
+    return solve_from_begin(motion);
+  }
+  change_ = unpushed_.change;
+  if (!respond(motion)) return failed_newton({NewtonReport::End::inadmissible}, end_);
+  return pushed ? iterate(motion) : std::nullopt;
+}
+
+void MidpointStep::find_free_step(const Motion& motion) {
+  given_ = length_ * loads_;
+  own_.made = unpushed_.factors.made = false;
+  present_ = next_ = &own_;
+  unpushed_.failed = solve_from_begin(motion);
+  unpushed_.change = change_;
+  unpushed_.start = start_;
+  unpushed_.end = end_;
+  unpushed_.q = motion.q;
+  unpushed_.v = motion.v;
+  unpushed_.history = motion.history;
+}
+
+/// From the motion without forces.
+std::optional<Failed> MidpointStep::solve_from_begin(const Motion& motion) {
+  if (!respond(motion)) {  // it inverts cells: from where the step began
     for (const int i : free_.list()) change_(i) = -2.0 * motion.v[i];
     if (!respond(motion)) return failed_newton({NewtonReport::End::inadmissible}, end_);
   }
+  return iterate(motion);
+}
+
+std::optional<Failed> MidpointStep::iterate(const Motion& motion) {
   reached_ = potential();
   NewtonReport report{NewtonReport::End::not_converged};
+  double before = std::numeric_limits<double>::infinity();
+  bool afresh = false;
   for (int small = 0; report.iterations < most_iterations; ++report.iterations) {
-    const double size = residual();
+    const double size = residual(), least = roundoff();
     if (!std::isfinite(size)) return not_finite(end_);
-    if (size <= roundoff()) return std::nullopt;
-    if (!correct(motion)) return failed_newton({NewtonReport::End::singular}, end_);
+    if (size <= least) return std::nullopt;
+    afresh = afresh || !present_->made || converges_slowly(before, size, least);
+    before = size;
+    if (!correct(motion, afresh)) return failed_newton({NewtonReport::End::singular}, end_);
     const double slope = 0.25 * left_.dot(correction_);  // by which the potential falls
     if (slope < at_bottom * rounding_ && ++small > last_steps) return std::nullopt;
     switch (search(motion, slope)) {
       case Search::moved:
+        afresh = part_ < 1.0;
         break;
       case Search::ended:
         return std::nullopt;
       case Search::stuck:
+        if (!std::exchange(afresh, true)) break;  // by a tangent of another place
         report.residual = size / std::max(given_.norm(), body_.mass.maxCoeff());
         return failed_newton(report, end_);
     }
@@ -171,13 +228,13 @@ std::optional<Failed> MidpointStep::solve(const Motion& motion) {
 MidpointStep::Search MidpointStep::search(const Motion& motion, double slope) {
   constexpr double enough = 1.0e-4;  // of the fall that the slope foretells
   before_ = change_;
-  double part = 1.0;
-  for (int k = 0; k <= most_halvings; ++k, part *= 0.5) {
+  part_ = 1.0;
+  for (int k = 0; k <= most_halvings; ++k, part_ *= 0.5) {
     change_ = before_;
-    for (int i = 0; i < free_.count(); ++i) change_(free_.list()[i]) += part * correction_(i);
+    for (int i = 0; i < free_.count(); ++i) change_(free_.list()[i]) += part_ * correction_(i);
     if (!respond(motion)) continue;
     const double now = potential();
-    if (!(now <= reached_ - enough * part * slope + rounding_)) continue;
+    if (!(now <= reached_ - enough * part_ * slope + rounding_)) continue;
     reached_ = now;
     return Search::moved;
   }
@@ -189,19 +246,24 @@ MidpointStep::Search MidpointStep::search(const Motion& motion, double slope) {
 
 /// Of the middle of the step, from the history at its begin. The tangent itself, so that Newton's
 /// method stays one, where it is definite with the inertia; else cell by cell what is of it.
-bool MidpointStep::factor(std::span<const double> history) {
-  if (solver_ == nullptr) solver_ = make_direct_solver(Pivots::definite);
+bool MidpointStep::factor(std::span<const double> history, Factors& factors) {
+  if (factors.solver == nullptr) factors.solver = make_direct_solver(Pivots::definite);
+  factors.columns.clear();
   const double share = 0.25 * length_ * length_;
   if (!body_.cells->evaluate(middle_, history, Model::Want::tangent, curved_)) return false;
   free_.extract(inertia_ + share * curved_.tangent, matrix_);
-  if (solver_->factor(matrix_)) return true;
+  factors.made = factors.solver->factor(matrix_);
+  if (factors.made) return true;
   if (!body_.cells->definite_tangent(middle_, history, 1.0 / share, tangent_)) return false;
   free_.extract(inertia_ + share * tangent_, matrix_);
-  return solver_->factor(matrix_);
+  factors.made = factors.solver->factor(matrix_);
+  return factors.made;
 }
 
-bool MidpointStep::correct(const Motion& motion) {
-  return factor(motion.history) && solver_->solve(left_, correction_);
+bool MidpointStep::correct(const Motion& motion, bool afresh) {
+  if (afresh && present_->made) present_ = next_;
+  if (afresh && !factor(motion.history, *present_)) return false;
+  return present_->solver->solve(left_, correction_);
 }
 
 /// Of a linear body at the step's length. Null: there are none.
@@ -221,7 +283,7 @@ MidpointStep::Factors* MidpointStep::factors() {
   SparseMatrix whole = inertia_ + 0.25 * length * length * tangent_, reduced;
   FreeCoordinates(static_cast<int>(body_.mass.size()), body_.problem->supports)
       .extract(whole, reduced);
-  Factors made{length, make_direct_solver(Pivots::every), {}};
+  Factors made{length, make_direct_solver(Pivots::every), {}, true};
   if (!made.solver->factor(reduced)) return nullptr;
   if (factors_.size() == most_factors) factors_.erase(factors_.begin());
   factors_.push_back(std::move(made));
@@ -288,21 +350,19 @@ bool MidpointStep::compliance(const Motion& motion, const PortMap& ports,
                               const std::vector<std::size_t>& values, std::vector<double>& out) {
   out.assign(values.size() * values.size(), 0.0);
   if (values.empty()) return true;
-  Factors* kept = body_.cells == nullptr ? factors() : nullptr;
-  if (body_.cells == nullptr ? kept == nullptr : !factor(response_.history)) return false;
-  LinearSolver& solver = kept != nullptr ? *kept->solver : *solver_;
-  std::map<std::size_t, std::vector<double>> fresh;
-  std::map<std::size_t, std::vector<double>>& known = kept != nullptr ? kept->columns : fresh;
+  Factors* factors = body_.cells == nullptr ? this->factors() : present_;
+  if (factors == nullptr || (!factors->made && !factor(response_.history, *factors))) return false;
+  std::map<std::size_t, std::vector<double>>& known = factors->columns;
   std::vector<std::size_t> wanted;
   std::ranges::copy_if(values, std::back_inserter(wanted),
                        [&](std::size_t value) { return !known.contains(value); });
   // Those that are kept one by one: their bits must not depend on who else was asked for.
-  const std::size_t each = kept != nullptr ? 1 : together;
+  const std::size_t each = factors == &own_ ? together : 1;
   for (std::size_t first = 0; first < wanted.size(); first += each) {
     const std::span<const std::size_t> some =
         std::span(wanted).subspan(first, std::min(each, wanted.size() - first));
     std::vector<std::vector<double>> columns;
-    if (!find_columns(motion, ports, solver, some, columns)) return false;
+    if (!find_columns(motion, ports, *factors->solver, some, columns)) return false;
     for (std::size_t k = 0; k < some.size(); ++k) known[some[k]] = std::move(columns[k]);
   }
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -17,8 +17,10 @@ namespace abut {
 /// potential, by Newton's method with definite tangents and a line search, so that a step has an
 /// answer wherever the law has one. The unknown is the change of velocity: small steps lose nothing
 /// to round-off, and momentum is that of the impulses. A linear body is solved with one
-/// factorisation per length of step. Loads that follow the body are those of the place to which it
-/// would go freely.
+/// factorisation per length of step. Of other bodies it begins at the free step from the same
+/// state, with its tangent: both are kept while the state is tried under one impulse after the
+/// other, and depend on the state alone. Loads that follow the body are those of the place to which
+/// it would go freely.
 class MidpointStep {
  public:
   struct Body {
@@ -45,10 +47,21 @@ class MidpointStep {
                                 const std::vector<std::size_t>& values, std::vector<double>& out);
 
  private:
-  struct Factors {        // of a linear body
-    double length = 0.0;  // [s]
+  struct Factors {
+    double length = 0.0;  // [s] of a linear body
     std::unique_ptr<LinearSolver> solver;
     std::map<std::size_t, std::vector<double>> columns;  // by value of the ports: (port values)
+    bool made = false;
+  };
+  /// What a body of another law does from a state without impulses.
+  struct FreeStep {
+    double start = 0.0, end = 0.0;      // [s]
+    std::vector<double> q, v, history;  // the state
+    Vector change;                      // [m/s] (dofs)
+    std::optional<Failed> failed;
+    Factors factors;  // of the tangent there, when first needed
+
+    bool is_of(const Motion& motion, double from, double until) const;
   };
 
   void begin(const Motion& motion, double start, const Vector& impulse);
@@ -58,11 +71,14 @@ class MidpointStep {
   double residual();
   double roundoff();
   [[nodiscard]] std::optional<Failed> solve_linear(const Motion& motion);
-  [[nodiscard]] std::optional<Failed> solve(const Motion& motion);
-  [[nodiscard]] bool correct(const Motion& motion);
+  [[nodiscard]] std::optional<Failed> solve(const Motion& motion, const Vector& impulse);
+  void find_free_step(const Motion& motion);
+  [[nodiscard]] std::optional<Failed> solve_from_begin(const Motion& motion);
+  [[nodiscard]] std::optional<Failed> iterate(const Motion& motion);
+  [[nodiscard]] bool correct(const Motion& motion, bool afresh);
   enum class Search { moved, ended, stuck };
   [[nodiscard]] Search search(const Motion& motion, double slope);
-  [[nodiscard]] bool factor(std::span<const double> history);
+  [[nodiscard]] bool factor(std::span<const double> history, Factors& factors);
   Factors* factors();
   [[nodiscard]] std::optional<Failed> finish(Motion& motion, const Vector& impulse);
   [[nodiscard]] bool find_columns(const Motion& motion, const PortMap& ports, LinearSolver& solver,
@@ -72,7 +88,10 @@ class MidpointStep {
   Body body_;
   FreeCoordinates free_;
   std::vector<Factors> factors_;  // of the last lengths, the last one used at the end
-  std::unique_ptr<LinearSolver> solver_;
+  FreeStep unpushed_;
+  Factors own_;  // of a step under impulses
+  // Of the two, those of the last correction, and those that the next tangent goes to.
+  Factors *present_ = nullptr, *next_ = nullptr;
   SparseMatrix inertia_, tangent_, matrix_;
   ModelResponse response_, curved_;
   // Of one step:
@@ -83,6 +102,7 @@ class MidpointStep {
   std::vector<double> middle_, last_, moved_;      // [m] (dofs)
   Vector left_, correction_, before_;              // [kg m/s], [m/s] (free), [m/s] (dofs)
   double reached_ = 0.0, rounding_ = 0.0;          // [J] potential, and its rounding
+  double part_ = 1.0;                              // of a correction that was taken
 };
 
 }  // namespace abut

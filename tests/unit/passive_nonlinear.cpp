@@ -122,6 +122,44 @@ TEST(PassiveFinite, ComplianceIsThatOfTheTangent) {
   }
 }
 
+/// Everything of a reply that the coordinator reads.
+std::vector<double> numbers_of(const PassiveReply& reply) {
+  std::vector<double> all = reply.ports[0].displacement;
+  const Energy& energy = reply.record.energy;
+  for (const std::vector<double>& more :
+       {reply.ports[0].velocity, reply.compliance,
+        std::vector<double>{energy.kinetic, energy.stored, energy.dissipated,
+                            energy.external_work}})
+    all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+/// Nothing of what was tried before from this state or from others, at this length or another one,
+/// is seen in a reply: not in one bit.
+TEST(PassiveFinite, RepliesDependOnTheStateAndTheRequestAlone) {
+  for (PassiveText text : finite_cases()) {
+    SCOPED_TRACE(text.label());
+    PassiveRun tried(text.build()), plain(text.build());
+    for (int k = 0; k < 3; ++k) {
+      const std::vector<double> impulses = tried.random_impulses(0.05);
+      tried.body().save();
+      for (const double share : {0.0, -0.5, 0.9}) {
+        std::vector<double> others = tried.random_impulses(0.05);
+        for (double& impulse : others) impulse *= share;
+        PassiveReply ignored;
+        for (const double length : {0.01, 0.004}) {
+          static_cast<void>(tried.attempt(length, share == 0.0 ? std::vector<double>{} : others,
+                                          {0, 1}, ignored));
+          tried.body().restore();
+        }
+      }
+      EXPECT_EQ(numbers_of(tried.step(0.01, impulses, {1})),
+                numbers_of(plain.step(0.01, impulses, {1})));
+      EXPECT_EQ(numbers_of(tried.step(0.01, {}, {0})), numbers_of(plain.step(0.01, {}, {0})));
+    }
+  }
+}
+
 TEST(PassiveFinite, CrushedBodiesHaveAnAnswerOrAReason) {
   for (PassiveText text : finite_cases()) {
     SCOPED_TRACE(text.label());
