@@ -85,8 +85,8 @@ struct BodySpec {
   /// and are to be those of the context's digest.
   void place_files(const std::string& folder);
 
-  /// Lumped mass whatever the integrator: that of the passive form, in which the body is whenever it
-  /// touches something, so that nothing changes when it enters it.
+  /// Lumped mass whatever the integrator: that of the passive form, in which the body is whenever
+  /// it touches something, so that nothing changes when it enters it.
   void lump_mass();
 
   /// fe in one dimension, linear_elastic with Young's modulus, integrated in time, without points,

@@ -104,11 +104,11 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   check_formulation(fe, mesh, place, "model.fe");
   const bool explicit_in_time = spec.integrates(SchemeKind::explicit_steps);
   SolidInterior::Parts parts;
-  parts.model = std::make_unique<FeModel>(
-      std::move(mesh), make_material(*spec.material, place, fe.dimension),
-      FeOptions{fe.plane, fe.formulation, fe.thickness, fe.hourglass, explicit_in_time, fe.threads,
-                fe.area()},
-      constraints.frames);
+  parts.model =
+      std::make_unique<FeModel>(std::move(mesh), make_material(*spec.material, place, fe.dimension),
+                                FeOptions{fe.plane, fe.formulation, fe.thickness, fe.hourglass,
+                                          explicit_in_time, fe.threads, fe.area()},
+                                constraints.frames);
   FeModel& model = *parts.model;
   check_mass(model.lumped_mass().minCoeff(), model.lumped_mass().maxCoeff(), spec, place);
   if (fe.threads > 1 && model.threads() == nullptr) {
@@ -138,7 +138,8 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
     return stable_step(model, parts.motion.q, std::vector<double>(model.history_size(), 0.0));
   };
   parts.rung += on_file(fe) + adjusted;
-  if (parts.massive_surface) parts.rung += ", its surface has mass, lumped: contact in its passive form";
+  if (parts.massive_surface)
+    parts.rung += ", its surface has mass, lumped: contact in its passive form";
   if (const std::string why = spec.why_general(); !why.empty())
     parts.rung += " in place of the bars' own core, for " + why;
   MakeWatch watch;  // the tangent of linear bodies stays
