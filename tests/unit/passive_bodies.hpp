@@ -11,7 +11,7 @@
 
 #include "base/index.hpp"
 #include "subdomain_solver/make/body_spec.hpp"
-#include "tests/support/solid_scenes.hpp"
+#include "tests/support/solid_texts.hpp"
 #include "tests/support/tolerance.hpp"
 
 // Bodies in their passive form, for tests that loop over kinds of them.
