@@ -146,7 +146,7 @@ void SolidInterior::watch_crossings() {
   std::vector<PortSurface> surfaces;
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     const PortGeometry& geometry = description_.ports[p].geometry;
-    if (geometry.facets.empty()) continue;
+    if (geometry.facets.empty() || joined_[p] || description_.ports[p].tied) continue;
     surfaces.push_back({p, port_map_->first(p), &geometry, ports_[p].nodes});
   }
   if (surfaces.empty()) return;
