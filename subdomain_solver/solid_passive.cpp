@@ -27,6 +27,25 @@ SparseMatrix diagonal(const Vector& values) {
 
 double energy_of(const SparseMatrix& mass, const Vector& v) { return 0.5 * v.dot(mass * v); }
 
+/// Where velocities that have their angular momentum back have more energy than is allowed, and no
+/// deformation to pay it with: as much of the way from plain ones to them as the energy lasts for.
+/// Linear momentum is the same all along.
+template <class Energy>
+void stay_below(double most, const Vector& plain, std::vector<double>& v, const Energy& energy) {
+  const double whole = energy();
+  if (!(whole > most)) return;
+  const Vector way = view(v) - plain;
+  view(v) = plain;
+  const double least = energy();
+  view(v) += 0.5 * way;
+  const double half = energy();
+  // energy(s) = least + b s + c s^2
+  const double c = 2.0 * (whole + least - 2.0 * half), b = whole - least - c;
+  const double left = std::max(0.0, most - least), root = std::sqrt(b * b + 4.0 * c * left);
+  const double part = b + root > 0.0 ? std::clamp(2.0 * left / (b + root), 0.0, 1.0) : 0.0;
+  view(v) = plain + part * way;
+}
+
 }  // namespace
 
 /// Of solids in the plane and in space, with inertia and without joined ports. Reactions of modes
@@ -119,9 +138,11 @@ double SolidInterior::enter() {
   motion.force.assign(motion.v.size(), 0.0);
   std::ranges::fill(state_.port_force, 0.0);
   if (surfaces_ != nullptr) surfaces_->let_go();
+  const Vector plain = view(motion.v);
   keep_momentum(motions, momentum);
   for (int k = 0; k < 3 && moving_energy() > before; ++k)
     take_from_deformation(moving_energy() - before);
+  stay_below(before, plain, motion.v, [this] { return moving_energy(); });
   return before - moving_energy();
 }
 
@@ -206,8 +227,10 @@ std::optional<Failed> SolidInterior::leave(double time, double& lost) {
   const auto total = [this] {
     return parts_.scheme.integrator->kinetic(state_.motion) + state_.motion.stored;
   };
+  const Vector plain = view(state_.motion.v);
   keep_momentum(motions, momentum);
   for (int k = 0; k < 3 && total() > present; ++k) take_from_deformation(total() - present);
+  stay_below(present, plain, state_.motion.v, total);
   lost = present - total();
   if (port_map_) port_map_->displacement(state_.motion.q, places_);
   return std::nullopt;
