@@ -185,7 +185,8 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
   }
   const Description& one = bodies.describe(joint.sides[0].body);
   const Description& other = bodies.describe(joint.sides[1].body);
-  const bool passive = one.can.passive && other.can.passive;
+  const bool moves = std::isfinite(one.mass) || std::isfinite(other.mass);
+  const bool passive = moves && one.can.passive && other.can.passive;
   if (!one.can.obstacle && !other.can.obstacle && !passive) {
     throw InputError(fmt::format("joins '{}' ({}) and '{}' ({}), of which neither can find contact "
                                  "on its surface",
