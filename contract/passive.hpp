@@ -29,10 +29,10 @@ struct PassiveReply {
     std::vector<double> velocity;  // [m/s] (points x dim) at the step's end
   };
   std::vector<Port> ports;
-  // [m/(N s) / s] (values, values), values = pressed points x dim, of all ports in their order:
+  // [1/kg] (values, values), values = pressed points x dim, of all ports in their order:
   // what an impulse on one value adds to another one's mean velocity over the step, which is its
   // displacement over its length. Symmetric, positive semidefinite; of a body that is not linear
-  // that of its tangent at the step's end, made definite.
+  // that of a tangent of the step, made definite.
   std::vector<double> compliance;
   BodyRecord record;  // at the step's end; energy in the form that the midpoint rule conserves
   // [m] by which a point of a port leaves the straight way at most: of bodies that turn
