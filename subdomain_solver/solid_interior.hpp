@@ -112,6 +112,7 @@ class SolidInterior final : public Interior,
   void keep_momentum(const Eigen::MatrixXd& motions, const Vector& momentum);
   Vector momentum_along(const Eigen::MatrixXd& motions);
   Eigen::MatrixXd free_motions();
+  Vector mean_motion();
   const SparseMatrix& mass_of_form() const { return is_passive() ? whole_mass_ : mass_; }
   double take_from_deformation(double joules);
   double moving_energy() const;

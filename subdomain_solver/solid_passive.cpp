@@ -143,7 +143,22 @@ double SolidInterior::enter() {
   for (int k = 0; k < 3 && moving_energy() > before; ++k)
     take_from_deformation(moving_energy() - before);
   stay_below(before, plain, motion.v, [this] { return moving_energy(); });
+  if (!parts_.reduced && moving_energy() > before)  // plain ones have too much themselves
+    stay_below(before, mean_motion(), motion.v, [this] { return moving_energy(); });
   return before - moving_energy();
+}
+
+/// Velocities of the body's centre at all nodes where nothing holds it, else none; supports go on.
+Vector SolidInterior::mean_motion() {
+  see_nodes();
+  const std::size_t dim = index(description_.dim);
+  std::vector<double> mean(nodal_values(), 0.0), centre(dim, 0.0);
+  for (std::size_t k = 0; k < mean.size(); ++k) centre[k % dim] += momentum_(k) / description_.mass;
+  if (parts_.problem->supports.empty())
+    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] = centre[k % dim];
+  parts_.model->to_frames(mean);
+  for (const Prescribed& p : parts_.problem->supports) mean[p.dof] = state_.motion.v[p.dof];
+  return view(mean);
 }
 
 /// To nodes of the layer, which take that of what had their mass.

@@ -96,7 +96,10 @@ class PlaceSearch {
   }
 
   void keep(const Vector& x, double depth, int surface, What what) {
-    if (depth > choice_.allowed[surface]) found_.push_back({depth, x, what, surface});
+    // middles of round surfaces lie as far off them as facets do
+    const double allowed = what == What::facet ? std::max(choice_.allowed[0], choice_.allowed[1])
+                                               : choice_.allowed[surface];
+    if (depth > allowed) found_.push_back({depth, x, what, surface});
   }
 
   SignedSide side_of(const Vector& x, int body) const {

@@ -28,6 +28,7 @@ struct MasslessSpec {
   static constexpr std::string_view name = "massless";
   double stiffness_factor = 4.0 / 3.0;
   bool normal_alone = false;  // "directions: all | normal"
+  bool required = false;      // where no node could take the mass it is refused, and not kept
   void fields(Fields& f);
 };
 struct KickSpec {

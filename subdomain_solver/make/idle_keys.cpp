@@ -76,6 +76,7 @@ void BodySpec::idle_of_bars(Fields& f) const {
   f.idle(layered, "contact_layer.massless.stiffness_factor",
          "it is for bars of equal elements of linear_elastic material");
   f.idle(!flat, "contact_layer.massless.directions", "one dimension has one direction");
+  f.idle(!flat, "contact_layer.massless.required", "ends of bars always have one");
   for (const char* key : {"stabilised", "reaction"})
     f.idle(flat, std::string("contact_layer.massive.") + key, "it is for ends of bars");
   all_idle(

@@ -85,8 +85,9 @@ bool give_layer(FeModel& model, std::vector<int> layer, const std::vector<int>& 
     model.make_massless(std::move(layer), held);
     return true;
   } catch (const InputError& error) {
-    const bool asked = place.document.has(place.path + ".contact_layer");
-    if (model.mesh().dim > 1 && !asked) return false;
+    const auto* massless = std::get_if<MasslessSpec>(&spec.contact_layer);
+    const bool required = massless != nullptr && massless->required;
+    if (model.mesh().dim > 1 && !required) return false;
     throw InputError(error.what_is_wrong, place.where("model.fe.mesh"), error.remedy);
   }
 }

@@ -177,13 +177,13 @@ TEST(EnergyGuard, NamesTheRemedyOfWhatGains) {
                      .side = side};
   };
   for (const char* side : {"right", "boundary"})
-    EXPECT_EQ(
-        words(run_solids(
-            8.0, 0.1,
-            {square("left", -0.51, 0.05, side),
-             square("right", 0.01, -0.05, side == std::string("right") ? "left" : side)},
-            touching("impact", "left.skin", "right.skin") + "schwarz: {energy_guard: 1.0e-9}\n")),
-        "; give smaller steps");
+    EXPECT_EQ(words(run_solids(
+                  8.0, 0.1,
+                  {square("left", -0.51, 0.05, side),
+                   square("right", 0.01, -0.05, side == std::string("right") ? "left" : side)},
+                  touching("impact", "left.skin", "right.skin") +
+                      "schwarz: {energy_guard: 1.0e-9, on_nonconvergence: stop}\n")),
+              "; give smaller steps");
   // Octagons whose corners dig in: the guard's bound is below what the first contact leaves.
   const auto disk = [](const char* name, double x, double v) {
     return SolidText{.name = name,
@@ -195,9 +195,10 @@ TEST(EnergyGuard, NamesTheRemedyOfWhatGains) {
                      .port = "skin",
                      .side = "mantle"};
   };
-  const std::string told = words(run_solids(
-      8.0, 0.1, {disk("left", -0.52, 0.05), disk("right", 0.52, -0.05)},
-      touching("impact", "left.skin", "right.skin") + "schwarz: {energy_guard: 1.0e-7}\n"));
+  const std::string told =
+      words(run_solids(8.0, 0.1, {disk("left", -0.52, 0.05), disk("right", 0.52, -0.05)},
+                       touching("impact", "left.skin", "right.skin") +
+                           "schwarz: {energy_guard: 1.0e-7, on_nonconvergence: stop}\n"));
   EXPECT_EQ(told, "; give smaller steps, a finer mesh of round surfaces");
 }
 

@@ -123,7 +123,7 @@ TEST(Materials, NumbersAtTheEndOfTheirRangeAreRefusedOrHaveAllThatIsDerived) {
                                          std::sqrt(m.p_wave() / law.density())})
               EXPECT_TRUE(std::isfinite(derived)) << i << " " << k << " " << a << " " << b;
           });
-          ++(said.empty() ? made : refused);
+          ++(said == "not refused" ? made : refused);
         }
       }
     }

@@ -153,7 +153,7 @@ TEST(PassiveSwitch, ABodyOneCellAcrossIsBuiltForItsPassiveFormAlone) {
     EXPECT_FALSE(can.obstacle);
     EXPECT_NE(body->describe().model.find("its surface has mass"), std::string::npos);
   }
-  EXPECT_THROW(all_sides(", contact_layer: {massless: {}}"), InputError);
+  EXPECT_THROW(all_sides(", contact_layer: {massless: {required: true}}"), InputError);
 }
 
 TEST(PassiveSwitch, AMassiveLayerIsChosenForSurfaces) {
