@@ -294,14 +294,18 @@ void Controller::accept(const TimeWindow& window) {
   for (const Island& island : partition_.islands()) schwarz_.accept(island);
   fill_reports(false);
   events_.settle(window, guard_.most());
-  const EnergyGuard::Verdict energy = guard_.look(bodies_.responses(), bodies_.struck());
+  halvings_ = 0;
+  ++waiting_.accurate;
+  end_window(window, guard_.look(bodies_.responses(), bodies_.struck()));
+}
+
+/// Of a window that was stepped, in whatever way.
+void Controller::end_window(const TimeWindow& window, EnergyGuard::Verdict energy) {
   const std::int64_t before = clock_.windows();
   clock_.accept(window);
   narrator_.window({window, bodies_.responses(), reports_, clock_.windows(), pairs_});
   watch_passing(before);
   if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
-  halvings_ = 0;
-  ++waiting_.accurate;
   watch_energy(energy);
 }
 

@@ -100,6 +100,7 @@ class Controller {
   Judgement judge_ways(const TimeWindow& window);
   Judgement judge_trouble(const TimeWindow& window);
   void accept(const TimeWindow& window);
+  void end_window(const TimeWindow& window, EnergyGuard::Verdict energy);
 
   int windows_to_fly();
   void prepare(const TimeWindow& window, int records, Sampling sampling);

@@ -93,13 +93,7 @@ void Controller::accept_passively(const TimeWindow& window) {
     if (joint.closed() && index(joint.interface) >= scene_.interfaces.size())
       pairs_.push_back(pair_report(joint));
   events_.settle(window, guard_.most());
-  const EnergyGuard::Verdict energy = guard_.look(bodies_.responses());
-  const std::int64_t before = clock_.windows();
-  clock_.accept(window);
-  narrator_.window({window, bodies_.responses(), reports_, clock_.windows(), pairs_});
-  watch_passing(before);
-  if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
-  watch_energy(energy);
+  end_window(window, guard_.look(bodies_.responses()));
 }
 
 /// Bodies have left their passive forms; false: one came upon itself by that, and all are back.

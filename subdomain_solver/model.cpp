@@ -1,5 +1,7 @@
 #include "subdomain_solver/model.hpp"
 
+#include "subdomain_solver/solve/matrix_sum.hpp"
+
 #include "base/assert.hpp"
 
 namespace abut {
@@ -19,11 +21,7 @@ bool Model::evaluate_layer(std::span<const double>, std::span<const double>, Wan
 
 SparseMatrix mass_matrix(const Model& model, MassForm form) {
   if (form == MassForm::consistent) return model.mass();
-  const Vector& lumped = model.lumped_mass();
-  SparseMatrix diagonal(lumped.size(), lumped.size());
-  diagonal.reserve(Eigen::VectorXi::Constant(lumped.size(), 1));
-  for (int i = 0; i < lumped.size(); ++i) diagonal.insert(i, i) = lumped(i);
-  diagonal.makeCompressed();
+  const SparseMatrix diagonal = diagonal_matrix(model.lumped_mass());
   if (form == MassForm::lumped) return diagonal;
   return 0.5 * (model.mass() + diagonal);
 }

@@ -8,6 +8,7 @@
 
 #include "subdomain_solver/fe/rigid_motions.hpp"
 #include "subdomain_solver/solid_interior.hpp"
+#include "subdomain_solver/solve/matrix_sum.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -16,14 +17,6 @@ namespace {
 
 /// Roundings of the energy of a strain of one, relative: below them a fall is no fall.
 constexpr double energy_rounding = 2.0e-15;
-
-SparseMatrix diagonal(const Vector& values) {
-  SparseMatrix out(values.size(), values.size());
-  out.reserve(Eigen::VectorXi::Constant(values.size(), 1));
-  for (int i = 0; i < values.size(); ++i) out.insert(i, i) = values(i);
-  out.makeCompressed();
-  return out;
-}
 
 double energy_of(const SparseMatrix& mass, const Vector& v) { return 0.5 * v.dot(mass * v); }
 
@@ -80,7 +73,7 @@ void SolidInterior::start_passive() {
   }
   const FeModel& nodes = *parts_.model;
   const bool reduced = parts_.reduced != nullptr, linear = parts_.problem->model->is_linear();
-  whole_mass_ = reduced ? mass_ : diagonal(nodes.whole_mass());
+  whole_mass_ = reduced ? mass_ : diagonal_matrix(nodes.whole_mass());
   if (!reduced && !nodes.massless().empty()) given_mass_ = nodes.given_mass();
   midpoint_ = std::make_unique<MidpointStep>(MidpointStep::Body{
       parts_.problem.get(), linear ? nullptr : parts_.model.get(),

@@ -95,11 +95,6 @@ Vector SkinSides::point_normal(Points points, std::int32_t point) const {
   return normal_at(points, {1, {point, -1, -1}});
 }
 
-Vector SkinSides::normal(Points points, std::int32_t facet,
-                         const std::array<double, 3>& shares) const {
-  return normal_at(points, place(facet, shares));
-}
-
 SignedSide SkinSides::side(Points points, const Vector& x,
                            std::span<const std::int32_t> facets) const {
   SignedSide found;
@@ -124,54 +119,6 @@ SignedSide SkinSides::side(Points points, const Vector& x,
   const double least = found.border ? std::sqrt(0.5) * found.gap : 0.0;
   if (behind > least) found.gap = -found.gap;
   return found;
-}
-
-double SkinSides::least_sine(Points points, const Place& at, const Vector& x,
-                             const Vector& normal) const {
-  double least = 1.0;
-  visit_facets(at, [&](std::int32_t f) {
-    for (int i = 0; i < skin_.facet_points(); ++i) {
-      const Vector way = points[index(skin_.facets[index(f)][i])] - x;
-      const double length = way.norm();
-      if (length > 0.0) least = std::min(least, normal.dot(way) / length);
-    }
-  });
-  return least;
-}
-
-Vector SkinSides::touching_normal(Points points, const FeaturePair& pair) const {
-  const FeatureDistance d = feature_distance(pair.kind, skin_.dim, places(pair, points));
-  std::array<Place, 2> sides;
-  std::array<Vector, 2> closest{Vector::Zero(), Vector::Zero()};
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (d.weights[i] == 0.0) continue;
-    const std::size_t side = i < index(pair.first_side()) ? 0 : 1;
-    sides[side].points[index(sides[side].count++)] = pair.points[i];
-    closest[side] += std::abs(d.weights[i]) * points[index(pair.points[i])];
-  }
-  Vector best = Vector::Zero();
-  double most = -2.0;
-  const auto consider = [&](const Vector& n) {
-    constexpr double same = 1.0e-9;  // of directions: the first of several stays
-    if (n.isZero()) return;
-    const double least = std::min(least_sine(points, sides[0], closest[0], n),
-                                  least_sine(points, sides[1], closest[1], -n));
-    if (!(least > most + same)) return;
-    most = least;
-    best = n;
-  };
-  visit_facets(sides[1], [&](std::int32_t f) { consider(facet_normal(points, f)); });
-  visit_facets(sides[0], [&](std::int32_t f) { consider(-facet_normal(points, f)); });
-  consider(unit(normal_at(points, sides[1]) - normal_at(points, sides[0])));
-  if (pair.kind == FeatureKind::edge_edge) {
-    const auto edge = [&](std::size_t i) -> Vector {
-      return points[index(pair.points[i + 1])] - points[index(pair.points[i])];
-    };
-    const Vector n = unit(edge(0).cross(edge(2)));
-    consider(n);
-    consider(-n);
-  }
-  return best;
 }
 
 }  // namespace abut

@@ -34,20 +34,10 @@ class SkinSides {
   Eigen::Vector3d facet_normal(std::span<const Eigen::Vector3d> points, std::int32_t facet) const;
   /// Unit normal at a point, of its facets by their angles there; zero where there is none.
   Eigen::Vector3d point_normal(std::span<const Eigen::Vector3d> points, std::int32_t point) const;
-  /// Unit normal at a point of a facet, told by its shares of the facet's points (those that are 0
-  /// say which feature it is on); zero where all facets there have no area.
-  Eigen::Vector3d normal(std::span<const Eigen::Vector3d> points, std::int32_t facet,
-                         const std::array<double, 3>& shares) const;
   /// The side of the closest of the given facets. Where the surface ends, inside is what is behind
   /// the normal rather than beside it.
   SignedSide side(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& x,
                   std::span<const std::int32_t> facets) const;
-  /// Unit normal from the second side to the first of a pair whose distance is too small to have a
-  /// direction of its own: of the normals of the facets that are there and of both edges, or the
-  /// difference of both sides' normals, the one that parts those facets best. Zero: all of them
-  /// have no area.
-  Eigen::Vector3d touching_normal(std::span<const Eigen::Vector3d> points,
-                                  const FeaturePair& pair) const;
 
  private:
   struct Place {  // a feature, by the points of it that have a share
@@ -59,9 +49,6 @@ class SkinSides {
   bool has(std::int32_t facet, std::int32_t point) const;
   bool ends_at(const Place& place) const;
   Eigen::Vector3d normal_at(std::span<const Eigen::Vector3d> points, const Place& place) const;
-  /// How far facets at a place are from beyond a plane through x: the least sine of their points.
-  double least_sine(std::span<const Eigen::Vector3d> points, const Place& place,
-                    const Eigen::Vector3d& x, const Eigen::Vector3d& normal) const;
   template <class Visit>
   void visit_facets(const Place& place, const Visit& visit) const;
   double angle(std::span<const Eigen::Vector3d> points, std::int32_t facet,

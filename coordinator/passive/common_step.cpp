@@ -331,8 +331,7 @@ void CommonStep::share_out_loss(const DistanceRow& row, double loss, PassiveLedg
   std::array<int, 2> sides{-1, -1};
   int deforming = 0;
   for (const std::size_t s : {0u, 1u}) {
-    const std::size_t first = s == 0 ? 0 : second_feature(row.features.kind);
-    const TouchingSurfaces::Point& at = surfaces_[row.features.points[first]];
+    const TouchingSurfaces::Point& at = surfaces_[row.first_point(static_cast<int>(s))];
     if (!(bodies_.port({at.body, at.port}).geometry.transit > 0.0)) continue;  // rigid
     sides[s] = at.body;
     ++deforming;

@@ -5,14 +5,10 @@
 
 #include <Eigen/Core>
 
+#include "base/index.hpp"
 #include "surface/feature_distance.hpp"
 
 namespace abut {
-
-/// Place of the second feature's first point in a pair.
-constexpr std::size_t second_feature(FeatureKind kind) {
-  return kind == FeatureKind::node_facet ? 1 : 2;
-}
 
 /// What keeps two features of surfaces apart in a step [M.131]: their difference vector along a
 /// fixed normal, sum of weights x places, and the impulse [N s] that acts along it. The first
@@ -31,6 +27,10 @@ struct DistanceRow {
   double normal_impulse = 0.0;
   std::array<double, 2> tangential_impulse{};
 
+  /// The first point of either feature.
+  std::int32_t first_point(int side) const {
+    return features.points[side == 0 ? 0 : index(features.first_side())];
+  }
   Eigen::Vector3d impulse() const {
     return normal_impulse * normal + tangential_impulse[0] * tangents[0] +
            tangential_impulse[1] * tangents[1];

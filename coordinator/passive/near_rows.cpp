@@ -57,7 +57,7 @@ void NearRows::find(const Places& from, std::vector<DistanceRow>& rows) {
   near_features(trees_, from, from, reach, own_.choice(trees_, from, from, reach), pairs_);
   for (const FeaturePair& pair : pairs_) {
     if (leaves_out(pair)) continue;
-    if (feature_distance(pair.kind, dim, at(pair, from, from, 0.0)).distance < reach)
+    if (feature_distance(pair.kind, dim, places(pair, from)).distance < reach)
       add(pair, from, from, 0.0, rows);
   }
   if (behind_count_ > 0) add_behind(from, rows);
@@ -69,7 +69,7 @@ void NearRows::find_on_ways(const Places& from, const Places& to, std::vector<Di
   near_features(trees_, from, to, thickness_, own_.choice(trees_, from, to, thickness_), pairs_);
   for (const FeaturePair& pair : pairs_) {
     if (leaves_out(pair)) continue;
-    const FeaturePoints before = at(pair, from, to, 0.0), after = at(pair, from, to, 1.0);
+    const FeaturePoints before = places(pair, from), after = at(pair, from, to, 1.0);
     if (feature_distance(pair.kind, dim, before).distance <= thickness_) continue;
     const double part =
         first_time_within(pair.kind, dim, before, after, thickness_, resolved * thickness_);
@@ -85,7 +85,7 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
   near_features(trees_, from, to, thickness_, own_.choice(trees_, from, to, thickness_), pairs_);
   for (const FeaturePair& pair : pairs_) {
     if (leaves_out(pair)) continue;
-    const FeaturePoints before = at(pair, from, to, 0.0), after = at(pair, from, to, 1.0);
+    const FeaturePoints before = places(pair, from), after = at(pair, from, to, 1.0);
     const double distance = feature_distance(pair.kind, dim, before).distance;
     const double share = distance < close * thickness_ ? kept_when_close : kept;
     const double least = share * std::min(distance, thickness_);
@@ -100,7 +100,7 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
 bool NearRows::add(const FeaturePair& pair, const Places& from, const Places& to, double part,
                    std::vector<DistanceRow>& rows) {
   const int dim = surfaces_.skin().dim;
-  const FeaturePoints x = at(pair, from, to, part), x0 = at(pair, from, to, 0.0);
+  const FeaturePoints x = at(pair, from, to, part), x0 = places(pair, from);
   const FeatureDistance found = feature_distance(pair.kind, dim, x);
   if (!(found.distance > 0.0)) return false;
   DistanceRow row;
@@ -111,7 +111,7 @@ bool NearRows::add(const FeaturePair& pair, const Places& from, const Places& to
     return false;
   row.normal = found.difference(x) / found.distance;
   for (std::size_t i = 0; i < 4; ++i) row.gap += row.weights[i] * row.normal.dot(x0[i]);
-  row.friction = surfaces_.friction(pair.points[0], pair.points[second_feature(pair.kind)]);
+  row.friction = surfaces_.friction(pair.points[0], pair.points[index(pair.first_side())]);
   row.find_tangents(dim);
   if (known(row, rows)) return false;
   named_.emplace(row.key(), rows.size());

@@ -42,7 +42,6 @@ class NearRows {
   Crossed check(const Places& from, const Places& to, std::vector<DistanceRow>& rows);
   /// The step was taken.
   void accept(const Places& places);
-  bool any_behind() const { return behind_count_ > 0; }
   void state(Archive& archive);
 
  private:

@@ -57,13 +57,17 @@ void PassiveRecord::begin(double time, const CommonStep& state, std::vector<Told
     f.assign(bodies_.describe(b).ports[p].geometry.points.size(), 0.0);
   });
   for (const Told& pair : told_) {
-    Waveform& force = bodies_.response(pair.kinematic.body)
-                          .ports[index(pair.kinematic.port)]
-                          .reactions[index(pair.kinematic.partner)]
-                          .force;
+    Waveform& force = force_of(pair);
     force.time.push_back(time);
     force.f.assign(index(force.width), 0.0);
   }
+}
+
+Waveform& PassiveRecord::force_of(const Told& pair) {
+  return bodies_.response(pair.kinematic.body)
+      .ports[index(pair.kinematic.port)]
+      .reactions[index(pair.kinematic.partner)]
+      .force;
 }
 
 void PassiveRecord::append(double time, const CommonStep& state) {
@@ -112,10 +116,7 @@ void PassiveRecord::add(const CommonStep& step, double begin, double end) {
     reply.work += step.work(b, static_cast<int>(p));
   });
   for (const Told& pair : told_) {
-    Waveform& force = bodies_.response(pair.kinematic.body)
-                          .ports[index(pair.kinematic.port)]
-                          .reactions[index(pair.kinematic.partner)]
-                          .force;
+    Waveform& force = force_of(pair);
     force.time.push_back(end);
     force.f.resize(force.f.size() + index(force.width), 0.0);
   }
@@ -140,14 +141,10 @@ void PassiveRecord::add_forces(const CommonStep& step, double length) {
       put(trace.f, index(trace.width), i);
       for (const Told& pair : told_) {
         if (at.body != pair.partner.body || at.port != pair.partner.port) continue;
-        const std::size_t other =
-            i < index(row.features.first_side()) ? second_feature(row.features.kind) : 0;
-        const TouchingSurfaces::Point& from = surfaces_[row.features.points[other]];
+        const int other = i < index(row.features.first_side()) ? 1 : 0;
+        const TouchingSurfaces::Point& from = surfaces_[row.first_point(other)];
         if (from.body != pair.kinematic.body || from.port != pair.kinematic.port) continue;
-        Waveform& reaction = bodies_.response(pair.kinematic.body)
-                                 .ports[index(pair.kinematic.port)]
-                                 .reactions[index(pair.kinematic.partner)]
-                                 .force;
+        Waveform& reaction = force_of(pair);
         put(reaction.f, index(reaction.width), i);
       }
     }

@@ -28,6 +28,8 @@ class PassiveRecord {
   void finish();
 
  private:
+  /// On the partner, as the kinematic side tells it.
+  Waveform& force_of(const Told& pair);
   void append(double time, const CommonStep& state);
   void widen(const CommonStep& state);
   void add_forces(const CommonStep& step, double length);

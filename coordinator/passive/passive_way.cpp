@@ -133,9 +133,8 @@ void PassiveWay::note_pressed() {
   for (const DistanceRow& row : step_->rows()) {
     if (row.normal_impulse <= 0.0) continue;
     quiet_ = false;
-    const TouchingSurfaces::Point& one = (*surfaces_)[row.features.points[0]];
-    const TouchingSurfaces::Point& other =
-        (*surfaces_)[row.features.points[second_feature(row.features.kind)]];
+    const TouchingSurfaces::Point& one = (*surfaces_)[row.first_point(0)];
+    const TouchingSurfaces::Point& other = (*surfaces_)[row.first_point(1)];
     const std::array<int, 4> pair = {one.body, one.port, other.body, other.port};
     if (std::ranges::find(pressed_, pair) == pressed_.end()) pressed_.push_back(pair);
   }

@@ -40,10 +40,8 @@ RowImpulses::RowImpulses(std::vector<DistanceRow>& rows, PressedPoints& points,
 
 RowImpulses::Answer RowImpulses::answer_of(const DistanceRow& row) const {
   Answer answer;
-  const std::int32_t points[] = {row.features.points[0],
-                                 row.features.points[second_feature(row.features.kind)]};
   for (const std::size_t s : {0u, 1u}) {
-    const int body = surfaces_[points[s]].body;
+    const int body = surfaces_[row.first_point(static_cast<int>(s))].body;
     if (points_.any(body) && answer.body[0] != body) answer.body[s] = body;
   }
   const int directions = row.friction > 0.0 ? dim_ : 1;

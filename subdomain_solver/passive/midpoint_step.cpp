@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/index.hpp"
+#include "subdomain_solver/solve/matrix_sum.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -35,14 +36,6 @@ double shared_length(double length) {
   return std::ldexp(std::round(std::ldexp(mantissa, bits)), exponent - bits);
 }
 
-SparseMatrix diagonal(const Vector& values) {
-  SparseMatrix out(values.size(), values.size());
-  out.reserve(Eigen::VectorXi::Constant(values.size(), 1));
-  for (int i = 0; i < values.size(); ++i) out.insert(i, i) = values(i);
-  out.makeCompressed();
-  return out;
-}
-
 /// Whether another tangent is worth its price: `before` and `now` are sizes of the balance before
 /// and after a correction, `least` is that at which no more are needed.
 bool converges_slowly(double before, double now, double least) {
@@ -61,7 +54,7 @@ bool MidpointStep::FreeStep::is_of(const Motion& motion, double from, double unt
 MidpointStep::MidpointStep(Body body)
     : body_(std::move(body)),
       free_(body_.problem->model->dofs(), body_.problem->supports),
-      inertia_(diagonal(body_.mass)) {}
+      inertia_(diagonal_matrix(body_.mass)) {}
 
 std::optional<Failed> MidpointStep::step(Motion& motion, double start, double end,
                                          const Vector& impulse) {

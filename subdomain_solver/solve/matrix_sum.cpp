@@ -45,4 +45,12 @@ const SparseMatrix& MatrixSum::of(double a, const SparseMatrix& first, double b,
   return sum_;
 }
 
+SparseMatrix diagonal_matrix(const Vector& entries) {
+  SparseMatrix out(entries.size(), entries.size());
+  out.reserve(Eigen::VectorXi::Constant(entries.size(), 1));
+  for (int i = 0; i < entries.size(); ++i) out.insert(i, i) = entries(i);
+  out.makeCompressed();
+  return out;
+}
+
 }  // namespace abut

@@ -21,4 +21,7 @@ class MatrixSum {
   Eigen::Index entries_first_ = -1, entries_second_ = -1;
 };
 
+/// Square, with these entries.
+SparseMatrix diagonal_matrix(const Vector& entries);
+
 }  // namespace abut
