@@ -17,8 +17,9 @@ struct DistanceRow {
   FeaturePair features;
   std::array<double, 4> weights{};
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  std::array<Eigen::Vector3d, 2> tangents{};  // in the plane one
-  double gap = 0.0;                           // [m] along the normal at the step's begin
+  std::array<Eigen::Vector3d, 2> tangents{Eigen::Vector3d::Zero(),
+                                          Eigen::Vector3d::Zero()};  // in the plane one
+  double gap = 0.0;  // [m] along the normal at the step's begin
   double friction = 0.0;
   bool behind = false;  // its node begins behind the other surface
 
