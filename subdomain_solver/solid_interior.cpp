@@ -211,6 +211,7 @@ void SolidInterior::state(Archive& archive) {
 
 std::optional<Failed> SolidInterior::begin(const Window& window) {
   const double time = window.request.window.begin;
+  if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->renew();
   if (description_.dim == 1) {  // of the window's begin, which is accepted
     see_nodes();
     std::optional<Failed> failed =

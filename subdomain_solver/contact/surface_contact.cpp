@@ -299,20 +299,30 @@ std::span<const double> SurfaceContact::directions(const Meeting& m) const {
   return std::span(directions_).subspan(index(m.first) * dim, index(m.rows) * index(m.parts) * dim);
 }
 
-/// Gaps of the free pose, slips to it, and the compliance among the components.
-bool SurfaceContact::find_problem(const Vector& free, Compliance& give) {
-  const Eigen::Index count = static_cast<Eigen::Index>(first_term_.size()) - 1;
-  compliance_.setZero(count, count);
-  gaps_.resize(count);
+/// Gaps of the free pose, and slips to it. False: nothing would press.
+bool SurfaceContact::find_gaps(const Vector& free) {
+  gaps_.resize(static_cast<Eigen::Index>(first_term_.size()) - 1);
+  bool press = false;
   pose(free);
   for (Meeting& m : meetings_) {
     if (m.rows == 0) continue;
     row_gaps_.resize(index(m.rows));
     gaps(m.obstacle->rows(), surfaces_[m.own].pose, m.obstacle->free(), row_gaps_);
-    for (int r = 0; r < m.rows; ++r) gaps_(m.first + r * m.parts) = row_gaps_[r];
+    for (int r = 0; r < m.rows; ++r) {
+      gaps_(m.first + r * m.parts) = row_gaps_[r];
+      press = press || !(row_gaps_[r] >= 0.0);
+    }
     if (m.parts > 1) find_slips(m);
-    m.obstacle->add_compliance(m.first, directions(m), compliance_);
   }
+  return press;
+}
+
+/// Compliance among the components.
+bool SurfaceContact::find_compliance(Compliance& give) {
+  const Eigen::Index count = gaps_.size();
+  compliance_.setZero(count, count);
+  for (const Meeting& m : meetings_)
+    if (m.rows > 0) m.obstacle->add_compliance(m.first, directions(m), compliance_);
   for (Eigen::Index r = 0; r < count; ++r) {
     for (std::size_t t = first_term_[r]; t < first_term_[index(r) + 1]; ++t) {
       const Vector* column = give.column(terms_[t].coordinate);
@@ -401,10 +411,14 @@ const Vector* SurfaceContact::solve_rows(double time, const Vector& free, Compli
       ++looks_;
     }
     last_ = force_;
-    if (!find_problem(free, give)) return nullptr;
-    if (!find_forces()) {
-      tell_missing();
-      return nullptr;
+    if (!find_gaps(free)) {
+      row_force_.setZero(gaps_.size());
+    } else {
+      if (!find_compliance(give)) return nullptr;
+      if (!find_forces()) {
+        tell_missing();
+        return nullptr;
+      }
     }
     spread();
     const double change = (force_ - last_).lpNorm<Eigen::Infinity>();

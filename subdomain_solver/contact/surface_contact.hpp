@@ -93,7 +93,8 @@ class SurfaceContact final : public PortContact {
   void begin_forces();
   void pose(const Vector& q);
   void make_rows();
-  [[nodiscard]] bool find_problem(const Vector& free, Compliance& give);
+  bool find_gaps(const Vector& free);
+  [[nodiscard]] bool find_compliance(Compliance& give);
   void add_components(Meeting& m);
   void find_terms(const Own& own, const SurfaceRows& rows, int row, const double* direction);
   void find_slips(const Meeting& m);

@@ -66,10 +66,12 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
   const bool plain = options.formulation != Formulation::mean_dilatation &&
                      (mesh_.dim == 3 || options.plane == Plane::strain);
   if (!options.batched || !plain || !BatchedCells::can(mesh_, *material_)) return;
-  batched_ = std::make_unique<BatchedCells>(
-      mesh_, *material_,
-      BatchedOptions{options.formulation == Formulation::one_point, options.hourglass,
-                     options.thickness, options.threads});
+  batched_ = std::make_unique<BatchedCells>(mesh_, *material_, batched_options());
+}
+
+BatchedOptions FeModel::batched_options() const {
+  return {options_.formulation == Formulation::one_point, options_.hourglass, options_.thickness,
+          options_.threads};
 }
 
 FeModel::Assembly& FeModel::assembly() const {

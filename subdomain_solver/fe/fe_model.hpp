@@ -8,6 +8,7 @@
 
 #include "base/index.hpp"
 #include "subdomain_solver/fe/batched_cells.hpp"
+#include "subdomain_solver/fe/batched_layer.hpp"
 #include "subdomain_solver/fe/cell_kernel.hpp"
 #include "subdomain_solver/fe/cell_measures.hpp"
 #include "subdomain_solver/fe/mesh.hpp"
@@ -151,6 +152,8 @@ class FeModel final : public Model {
   void linear_layer_force(std::span<const double> q, Vector& force) const;
   void linear_layer(std::span<const double> q, Want want, LayerResponse& out);
   void spring_force(std::span<const double> q, ModelResponse& out) const;
+  BatchedOptions batched_options() const;
+  [[nodiscard]] bool batched_layer_force(std::span<const double> q, Vector& force);
   [[nodiscard]] bool batched_force(std::span<const double> q, ModelResponse& out);
   [[nodiscard]] bool respond(int block, int cell, std::span<const double> q,
                              std::span<const double> history);
@@ -186,6 +189,7 @@ class FeModel final : public Model {
   LayerRows layer_rows_;  // [N/m] (massless, dofs) of linear models, when first asked for
   mutable std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<BatchedCells> batched_;  // null: cell by cell
+  std::optional<BatchedLayer> batched_layer_;  // where batched_ is; when first asked for
   Vector lumped_;
   Vector whole_;  // as lumped_ was before make_massless(); empty: the same
   CellKernel kernel_;

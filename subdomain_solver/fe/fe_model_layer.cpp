@@ -292,6 +292,16 @@ void FeModel::linear_layer(std::span<const double> q, Want want, LayerResponse& 
   }
 }
 
+bool FeModel::batched_layer_force(std::span<const double> q, Vector& force) {
+  if (!batched_layer_) {
+    BatchedOptions options = batched_options();
+    options.threads = 1;
+    batched_layer_.emplace(mesh_, *material_, options, layer_cells_, massless_);
+  }
+  force.resize(static_cast<Eigen::Index>(massless_.size()));
+  return batched_layer_->evaluate(q, {force.data(), massless_.size()});
+}
+
 bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> history, Want want,
                              LayerResponse& out) {
   if (out.tangent.size() == 0) find_layer_pattern(out);
@@ -299,6 +309,7 @@ bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> 
     linear_layer(q, want, out);
     return true;
   }
+  if (batched_ && frames_.empty() && want == Want::force) return batched_layer_force(q, out.force);
   if (!assembly_ && layer_measures_.empty())
     for (const auto& [block, cell] : layer_cells_)
       layer_measures_.push_back(cell_measures(block, cell));

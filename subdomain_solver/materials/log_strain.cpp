@@ -1,6 +1,7 @@
 #include "subdomain_solver/materials/log_strain.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -17,12 +18,35 @@ double divided_difference(double x, double y) {
 
 }  // namespace
 
+/// Of bodies in the plane and round an axis, whose third axis is a principal one: one turn of
+/// Jacobi's method, which loses no digits when eigenvalues nearly coincide.
+void LogStrain::set_in_plane(const Matrix3& elastic) {
+  const double off = elastic(0, 1), apart = 0.5 * (elastic(1, 1) - elastic(0, 0));
+  const double size = std::abs(apart) + std::sqrt(apart * apart + off * off);
+  const double tangent = size == 0.0 ? 0.0 : std::copysign(off, off * apart) / size;
+  const double cosine = 1.0 / std::sqrt(1.0 + tangent * tangent), sine = tangent * cosine;
+  elastic_ = {elastic(0, 0) - tangent * off, elastic(1, 1) + tangent * off, elastic(2, 2)};
+  axes_ << cosine, sine, 0.0, -sine, cosine, 0.0, 0.0, 0.0, 1.0;
+  const auto order = [this](Eigen::Index a, Eigen::Index b) {
+    if (elastic_[a] <= elastic_[b]) return;
+    std::swap(elastic_[a], elastic_[b]);
+    axes_.col(a).swap(axes_.col(b));
+  };
+  order(0, 1);
+  order(1, 2);
+  order(0, 1);
+}
+
 bool LogStrain::set(const Matrix3& elastic) {
-  // The iterative solver: the direct one loses half the digits when eigenvalues nearly coincide.
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(elastic);
-  if (solver.info() != Eigen::Success) return false;
-  axes_ = solver.eigenvectors();
-  elastic_ = solver.eigenvalues();
+  if (elastic(0, 2) == 0.0 && elastic(1, 2) == 0.0) {
+    set_in_plane(elastic);
+  } else {
+    // The iterative solver: the direct one loses half the digits when eigenvalues nearly coincide.
+    const Eigen::SelfAdjointEigenSolver<Matrix3> solver(elastic);
+    if (solver.info() != Eigen::Success) return false;
+    axes_ = solver.eigenvectors();
+    elastic_ = solver.eigenvalues();
+  }
   if (!(elastic_.minCoeff() > -1.0) || !elastic_.allFinite()) return false;
   for (int a = 0; a < 3; ++a) principal_[a] = 0.5 * std::log1p(elastic_[a]);
   strain_ = with_axes(principal_);

@@ -42,6 +42,8 @@ class LogStrain {
                   const PrincipalModulus& modulus) const;
 
  private:
+  void set_in_plane(const Matrix3& elastic);
+
   Matrix3 strain_, axes_;
   Eigen::Vector3d elastic_, principal_;
 };

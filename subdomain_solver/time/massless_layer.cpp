@@ -47,24 +47,21 @@ MasslessLayer::MasslessLayer(const Problem& problem)
 
 bool MasslessLayer::respond(std::span<const double> q, std::span<const double> history,
                             Model::Want want) {
-  if (factored_) want = Model::Want::force;
+  if (factors_last_) want = Model::Want::force;
   return problem_.model->evaluate_layer(q, history, want, response_);
 }
 
-/// Factors serve for several iterations, but where the material may begin to yield.
-bool MasslessLayer::lasts() const { return problem_.model->history_size() == 0; }
-
 Model::Want MasslessLayer::along() const {
-  return lasts() ? Model::Want::force : Model::Want::tangent;
+  return yields_ ? Model::Want::tangent : Model::Want::force;
 }
 
 /// Factors of the layer's stiffness; columns of its inverse are to be found anew.
 bool MasslessLayer::factor() {
-  if (factored_) return true;
-  if (!factors_->factor(response_.tangent)) return false;
+  if (factors_last_) return true;
+  factored_ = factors_->factor(response_.tangent);
   std::ranges::fill(known_, 0);
-  factored_ = problem_.model->is_linear();
-  return true;
+  factors_last_ = factored_ && problem_.model->is_linear();
+  return factored_;
 }
 
 const Vector* MasslessLayer::column(int k) {
@@ -175,6 +172,8 @@ bool MasslessLayer::walk(std::vector<double>& q, std::span<const double> history
   return true;
 }
 
+void MasslessLayer::renew() { factored_ = factors_last_; }
+
 std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
                                             std::span<const double> history, const Vector& loads,
                                             Contact* contact) {
@@ -182,9 +181,12 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     pressed_.setZero(static_cast<Eigen::Index>(contact->coordinates().size()));
     find_places(*contact);
   }
-  // Factors of the begin serve as long as they lead on: they cost far more than forces do.
+  // Factors cost far more than forces do: they serve as long as they lead on, from step to step
+  // too. Where a material yields they are made anew from there on.
   double before = 0.0;
-  if (!respond(q, history, Model::Want::tangent)) return inadmissible(time);
+  yields_ = false;
+  if (!respond(q, history, factored_ ? Model::Want::force : Model::Want::tangent))
+    return inadmissible(time);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const double scale = find_rest(loads, contact != nullptr && iteration > 0);
     if (!rest_.allFinite()) return not_finite(time);
@@ -194,10 +196,11 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, roundoff))
       return std::nullopt;
     const double left = rest_.norm();
-    const bool anew = iteration == 0 || !lasts() || left > slow * before;
-    if (anew && iteration > 0 && lasts() && !respond(q, history, Model::Want::tangent))
+    const bool anew = !factored_ || yields_ || (iteration > 0 && left > slow * before);
+    if (anew && factored_ && !yields_ && !respond(q, history, Model::Want::tangent))
       return inadmissible(time);
     if (anew && !factor()) return not_held(time);
+    yields_ = anew && iteration > 0 && problem_.model->history_size() > 0;
     before = left;
     if (!factors_->solve(rest_, step_) || (contact != nullptr && !press(time, q, *contact)))
       return failed_newton({NewtonReport::End::singular}, time, contact);

@@ -20,6 +20,9 @@ class MasslessLayer final : private Compliance {
 
   bool empty() const { return dofs_.empty(); }
   const std::vector<int>& dofs() const { return dofs_; }
+  /// A window begins: factors of places before it are not used any more, as what a body answers
+  /// depends on its state and the request alone.
+  void renew();
   /// Moves the layer of `q` to balance at a time, under `loads` [N] (dofs; empty: none) and what
   /// `contact` presses (null: nothing). Other coordinates stay.
   [[nodiscard]] std::optional<Failed> settle(double time, std::vector<double>& q,
@@ -37,7 +40,6 @@ class MasslessLayer final : private Compliance {
   [[nodiscard]] bool respond(std::span<const double> q, std::span<const double> history,
                              Model::Want want);
   [[nodiscard]] bool factor();
-  bool lasts() const;
   Model::Want along() const;  // wanted at places of a step
   void find_places(const Contact& contact);
   [[nodiscard]] bool press(double time, std::span<const double> q, Contact& contact);
@@ -50,7 +52,9 @@ class MasslessLayer final : private Compliance {
   std::vector<int> dofs_;
   LayerResponse response_;
   std::unique_ptr<LinearSolver> factors_;
-  bool factored_ = false;              // for good: the model is linear
+  bool factored_ = false;              // since renew(), at some place
+  bool factors_last_ = false;          // for good: the model is linear
+  bool yields_ = false;                // the material, in this balance: tangents go with forces
   Vector step_, rest_;                 // [m], [N] (layer)
   double part_ = 0.0, largest_ = 0.0;  // of the step; [m] displacement that results
   Vector free_, pressed_;              // [m], [N] (contact)

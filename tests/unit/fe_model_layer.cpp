@@ -1,6 +1,8 @@
 // Goal: a surface that loses its mass leaves it to what can move. Oracle: identity, the mass of
 // all free coordinates along an axis is that of the plain body, whatever is held.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -80,6 +82,28 @@ TEST_P(Layers, LeaveTheirMassToWhatMoves) {
       // Of the consistent matrix free nodes also share what they have with held ones.
       EXPECT_GT(moving(layered, s.held), moving(plain, s.held) - 1e-13) << held << " " << cells;
     }
+  }
+}
+
+/// Explicit steps find the forces on a layer by batches of its cells, and its stiffness cell by cell.
+TEST(BatchedLayers, HaveTheForcesOfSingleCells) {
+  for (const char* element : {"hex8", "tet4", "quad4"}) {
+    FeOptions options;
+    std::array<LayerResponse, 2> responses;
+    for (const bool batched : {false, true}) {
+      options.batched = batched;
+      FeModel model(unit_mesh(element, 3), std::make_unique<NeoHookean>(test_moduli, 1.0), options);
+      const Sides s = sides(model, "left");
+      model.make_massless(s.bare, s.held);
+      ASSERT_EQ(model.batched() != nullptr, batched) << element;
+      std::vector<double> q(index(model.dofs()));
+      for (std::size_t i = 0; i < q.size(); ++i) q[i] = 0.03 * std::sin(7.0 * double(i));
+      ASSERT_TRUE(model.evaluate_layer(q, {}, Model::Want::force, responses[batched]));
+    }
+    // Some dozen roundings of stresses of order 1.
+    EXPECT_LT((responses[0].force - responses[1].force).lpNorm<Eigen::Infinity>(), 1e-14)
+        << element;
+    EXPECT_GT(responses[0].force.lpNorm<Eigen::Infinity>(), 1e-3) << element;
   }
 }
 

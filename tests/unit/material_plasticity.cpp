@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "subdomain_solver/materials/finite_strain.hpp"
+#include "subdomain_solver/materials/log_strain.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -35,6 +36,26 @@ double plastic_determinant(const History& h) {
   Matrix3 m;
   m << h[0], h[3], h[5], h[3], h[1], h[4], h[5], h[4], h[2];
   return (m + Matrix3::Identity()).determinant();
+}
+
+/// A strain with a principal axis across the plane takes the way of plane bodies; the same one with
+/// its axes in another order takes the general way.
+TEST(LogStrain, IsThatOfSpaceInThePlane) {
+  Draw draw;
+  for (int k = 0; k < 1000; ++k) {
+    const double size = std::pow(10.0, -draw.between(0.5, 12.0));
+    Matrix3 plane = Matrix3::Zero();
+    for (int i = 0; i < 3; ++i) plane(i, i) = size * draw.between(-1.0, 1.0);
+    plane(0, 1) = plane(1, 0) = k % 10 == 0 ? 0.0 : size * draw.between(-1.0, 1.0);
+    Matrix3 turn;  // 1 2 3 -> 2 3 1
+    turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    LogStrain one, other;
+    ASSERT_TRUE(one.set(plane) && other.set(turn * plane * turn.transpose()));
+    const Matrix3 back = turn.transpose() * other.strain() * turn;
+    // Some roundings of the largest entry.
+    EXPECT_LT((one.strain() - back).lpNorm<Eigen::Infinity>(), 8e-15 * size) << plane;
+    EXPECT_LT((one.principal_elastic() - other.principal_elastic()).norm(), 8e-15 * size) << plane;
+  }
 }
 
 // Some dozen roundings of strains of order 1.

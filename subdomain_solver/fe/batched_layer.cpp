@@ -1,0 +1,50 @@
+#include "subdomain_solver/fe/batched_layer.hpp"
+
+#include <algorithm>
+
+#include "base/index.hpp"
+
+namespace abut {
+
+BatchedLayer::BatchedLayer(const Mesh& mesh, const Material& material,
+                           const BatchedOptions& options,
+                           std::span<const std::pair<int, int>> cells, std::span<const int> dofs)
+    : dim_(index(mesh.dim)) {
+  for (const auto& [block, cell] : cells)
+    for (const std::int32_t node : nodes_of(mesh.blocks[block], cell)) nodes_.push_back(node);
+  std::ranges::sort(nodes_);
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  const auto own = [this](std::int32_t node) {
+    return static_cast<std::int32_t>(std::ranges::lower_bound(nodes_, node) - nodes_.begin());
+  };
+  Mesh layer;
+  layer.dim = mesh.dim;
+  for (const std::int32_t node : nodes_) {
+    const auto at = mesh.points.begin() + node * mesh.dim;
+    layer.points.insert(layer.points.end(), at, at + mesh.dim);
+  }
+  int last = -1;
+  for (const auto& [block, cell] : cells) {
+    const CellBlock& from = mesh.blocks[block];
+    if (block != last) layer.blocks.push_back({from.element, {}, from.name, {}});
+    last = block;
+    for (const std::int32_t node : nodes_of(from, cell))
+      layer.blocks.back().nodes.push_back(own(node));
+  }
+  for (const int dof : dofs)
+    places_.push_back(index(own(dof / mesh.dim)) * dim_ + index(dof % mesh.dim));
+  batched_.emplace(layer, material, options);
+  displacement_.resize(nodes_.size() * dim_);
+  force_.resize(displacement_.size());
+}
+
+bool BatchedLayer::evaluate(std::span<const double> q, std::span<double> force) {
+  for (std::size_t n = 0; n < nodes_.size(); ++n)
+    std::copy_n(q.begin() + index(nodes_[n]) * dim_, dim_, displacement_.begin() + n * dim_);
+  double stored = 0.0;
+  if (!batched_->evaluate(displacement_, force_, stored)) return false;
+  for (std::size_t k = 0; k < places_.size(); ++k) force[k] = force_[places_[k]];
+  return true;
+}
+
+}  // namespace abut
