@@ -111,7 +111,7 @@ bool Controller::leave_apart() {
 /// the midst of contact costs a part of the energy.
 void Controller::go_accurately() {
   if (waiting_.left > 0) --waiting_.left;
-  if (!passive_.quiet() || waiting_.left > 0 || !running()) return;
+  if (!passive_.returns() || !passive_.quiet() || waiting_.left > 0 || !running()) return;
   const bool apart = std::ranges::all_of(joints_, [&](Joint& joint) {
     if (joint.exchange == nullptr || joint.tied()) return true;
     const auto [distance, speed] = joint.watch->approach(joint, bodies_);

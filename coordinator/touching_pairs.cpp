@@ -5,6 +5,7 @@
 
 #include "base/index.hpp"
 #include "coordinator/coupling/exchange.hpp"
+#include "coordinator/coupling/tie.hpp"
 
 namespace abut {
 
@@ -102,6 +103,23 @@ std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joi
   if (const std::optional<double> friction = scene.own_friction())
     add_own(*friction, bodies, pairs);
   return pairs;
+}
+
+std::optional<std::vector<PassiveTie>> passive_ties(const Scene& scene,
+                                                    std::span<const Joint> joints) {
+  std::vector<PassiveTie> ties;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const Joint& joint = joints[j];
+    if (!joint.tied()) continue;
+    const InterfaceSpec& spec = scene.interfaces[index(joint.interface)].second;
+    KnownExchanges known;
+    joint.exchange->enter(joint, j, known);
+    const bool plain = known.ties.size() == 1 && spec.tied && !spec.tied->overlap &&
+                       std::holds_alternative<UnilateralTransmission>(spec.transmission);
+    if (!plain) return std::nullopt;
+    ties.push_back({joint.sides, &known.ties.front().exchange->rows()});
+  }
+  return ties;
 }
 
 }  // namespace abut

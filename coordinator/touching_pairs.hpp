@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "coordinator/coupling/joint.hpp"
+#include "coordinator/passive/passive_ties.hpp"
 #include "coordinator/passive/touching_surfaces.hpp"
 #include "coordinator/scene.hpp"
 
@@ -12,6 +14,9 @@ namespace abut {
 /// All pairs of surfaces of a run that may touch.
 std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joint> joints,
                                          const Bodies& bodies);
+/// All surfaces of a run that are one; none where bodies overlap, or dashpots join them.
+std::optional<std::vector<PassiveTie>> passive_ties(const Scene& scene,
+                                                    std::span<const Joint> joints);
 /// Whether neither side can find the contact of two surfaces but in its passive form.
 bool only_passive(const Joint& joint, const Bodies& bodies);
 

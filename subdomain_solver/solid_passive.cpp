@@ -41,11 +41,11 @@ void stay_below(double most, const Vector& plain, std::vector<double>& v, const 
 
 }  // namespace
 
-/// Of solids in the plane and in space, with inertia and without joined ports. Reactions of modes
-/// are told by their schemes alone.
+/// Of solids in the plane and in space, with inertia. Reactions of modes are told by their schemes
+/// alone.
 void SolidInterior::find_passive() {
   const bool modal = parts_.reduced != nullptr && parts_.rigid == nullptr;
-  if (description_.dim == 1 || joins_ || (modal && parts_.reactions)) return;
+  if (description_.dim == 1 || (modal && parts_.reactions)) return;
   able_.passive = this;
   description_.can.passive = true;
   description_.can.only_passive = parts_.massive_surface;

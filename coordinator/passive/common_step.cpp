@@ -33,6 +33,15 @@ constexpr double no_impulse = 1.0e-9;
 /// Of the shortest edge: points less deep behind a surface are on it.
 constexpr double rounding_of_places = 1.0e-6;
 
+/// Of the thickness: ties that are missed by less hold.
+constexpr double holds = 1.0e-3;
+
+std::vector<int> owners_of(const PassiveTies& ties, int bodies) {
+  std::vector<int> owners;
+  for (int b = 0; b < bodies; ++b) owners.push_back(ties.cluster(b));
+  return owners;
+}
+
 double own_energy(const BodyRecord& record) {
   const Energy& e = record.energy;
   return e.kinetic + e.stored + e.dissipated - e.external_work;
@@ -40,13 +49,14 @@ double own_energy(const BodyRecord& record) {
 
 }  // namespace
 
-CommonStep::CommonStep(const TouchingSurfaces& surfaces, NearRows& near, Bodies& bodies,
-                       double nominal)
+CommonStep::CommonStep(const TouchingSurfaces& surfaces, NearRows& near,
+                       std::vector<PassiveTie> ties, Bodies& bodies, double nominal)
     : surfaces_(surfaces),
       near_(near),
       bodies_(bodies),
       nominal_(nominal),
-      points_(surfaces, bodies.count()),
+      ties_(std::move(ties), bodies),
+      points_(surfaces, owners_of(ties_, bodies.count())),
       asked_(index(bodies.count())),
       tried_(index(bodies.count())),
       replies_(index(bodies.count())),
@@ -54,7 +64,10 @@ CommonStep::CommonStep(const TouchingSurfaces& surfaces, NearRows& near, Bodies&
       advanced_(index(bodies.count())),
       energies_(index(bodies.count())),
       accounts_(index(bodies.count())),
-      port_work_(index(bodies.count())) {}
+      port_work_(index(bodies.count())) {
+  for (int b = 0; b < bodies.count(); ++b)
+    pressing_.emplace_back(bodies.describe(b).ports.size());
+}
 
 std::optional<Failed> CommonStep::begin(double time) {
   step_.begin = step_.end = time;
@@ -75,6 +88,7 @@ std::optional<Failed> CommonStep::begin(double time) {
       displacements_[index(b)].push_back(port.displacement);
     port_work_[index(b)].assign(bodies_.describe(b).ports.size(), 0.0);
   }
+  ties_.begin(displacements_);
   return std::nullopt;
 }
 
@@ -95,6 +109,7 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   const double budget = 0.5 * ledger.normal - ledger.push_out;
   pushing_ = budget > 0.0;
   allowed_ = paid_share * std::max(0.0, budget);
+  ties_.aim(length(), displacements_, replies_);
   near_.find(from_, rows_);
   prepare_rows();
   if (std::optional<Failed> failed = advance(true)) {
@@ -111,7 +126,8 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
 /// do freely is the first answer where they told of all points that are pressed then.
 std::optional<CommonStep::Refusal> CommonStep::iterate() {
   int checks = 0;
-  if (rows_.empty() && near_.check(from_, to_, rows_).pairs == 0) return std::nullopt;
+  if (rows_.empty() && ties_fit() && near_.check(from_, to_, rows_).pairs == 0)
+    return std::nullopt;
   for (int round = 0; round < most_rounds; ++round) {
     const bool last = round + 1 == most_rounds;
     const bool told = !prepare_rows();
@@ -127,7 +143,7 @@ std::optional<CommonStep::Refusal> CommonStep::iterate() {
     double unfit = 0.0, work = 0.0;
     rows_ask(unfit, work);
     const std::size_t known = rows_.size();
-    if (round > 0 && (unfit < fits * near_.thickness() || last)) {
+    if (round > 0 && ((unfit < fits * near_.thickness() && ties_fit()) || last)) {
       if (work <= allowed_ + rounding_of_work * most_) {
         const NearRows::Crossed crossed = near_.check(from_, to_, rows_);
         if (crossed.pairs == 0) return std::nullopt;
@@ -186,12 +202,13 @@ std::optional<Failed> CommonStep::advance(bool all) {
     PassiveStep& asked = asked_[index(b)];
     const bool touched = std::ranges::any_of(
         asked.impulses, [](const std::vector<double>& port) { return !port.empty(); });
-    if (!all && !touched && !points_.any(b)) continue;
+    if (!all && !touched && !ties_.joined(b) && !points_.any(b)) continue;
     if (advanced_[index(b)] != 0) bodies_[b].restore();
     advanced_[index(b)] = 1;
     asked.begin = step_.begin;
     asked.end = step_.end;
     asked.pressed = points_.list(b, bodies_.describe(b).ports.size());
+    ties_.add_points(b, asked.pressed);
     bodies_[b].passive()->start(asked);
     moved.push_back(b);
   }
@@ -207,20 +224,25 @@ std::optional<Failed> CommonStep::advance(bool all) {
   return first;
 }
 
-/// Of all rows, by body, port and point; or none.
+/// Of all rows, or none of them, and of ties, by body, port and point.
 void CommonStep::find_impulses(bool any) {
-  const int dim = surfaces_.skin().dim;
+  for (auto& ports : pressing_)
+    for (std::vector<double>& port : ports) port.clear();
+  if (any) press_rows();
   for (int b = 0; b < bodies_.count(); ++b) {
-    asked_[index(b)].impulses.resize(bodies_.describe(b).ports.size());
-    for (std::vector<double>& port : asked_[index(b)].impulses) port.clear();
+    asked_[index(b)].impulses = pressing_[index(b)];
+    ties_.add_impulses(b, asked_[index(b)].impulses);
   }
-  if (!any) return;
+}
+
+void CommonStep::press_rows() {
+  const int dim = surfaces_.skin().dim;
   for (const DistanceRow& row : rows_) {
     const Eigen::Vector3d impulse = row.impulse();
     for (std::size_t i = 0; i < 4; ++i) {
       if (row.weights[i] == 0.0) continue;
       const TouchingSurfaces::Point& at = surfaces_[row.features.points[i]];
-      std::vector<double>& port = asked_[index(at.body)].impulses[index(at.port)];
+      std::vector<double>& port = pressing_[index(at.body)][index(at.port)];
       if (port.empty())
         port.assign(bodies_.describe(at.body).ports[at.port].geometry.points.size(), 0.0);
       for (int k = 0; k < dim; ++k)
@@ -234,6 +256,11 @@ void CommonStep::see_velocities() {
   velocities_.assign(to_.size(), Eigen::Vector3d::Zero());
   surfaces_.move(tried_, velocities_, velocities_);
   for (Eigen::Vector3d& velocity : velocities_) velocity /= length();
+  ties_.see(tried_, asked_);
+}
+
+bool CommonStep::ties_fit() const {
+  return !ties_.any() || ties_.missed() < holds * near_.thickness();
 }
 
 /// By how much rows are missed at most [m], those that press and need not a tenth; and what their
@@ -256,9 +283,8 @@ void CommonStep::rows_ask(double& unfit, double& work) const {
 /// The bodies answered under the impulses of so many of the rows.
 void CommonStep::solve_rows(std::size_t answered) {
   const int doubled = std::clamp(softer_ - softer_from, 0, softest);
-  for (int b = 0; b < bodies_.count(); ++b)
-    if (points_.any(b))
-      points_.take(b, tried_[index(b)].compliance, std::ldexp(1.0, doubled), velocities_);
+  const auto tried = pressing_;
+  for (int b = 0; b < bodies_.count(); ++b) take_answer(b, std::ldexp(1.0, doubled));
   const double still = negligible * near_.thickness() / length();
   const double rounding = 1.0e-3 * rounding_of_work * most_;
   RowImpulses solver(rows_, points_, surfaces_, velocities_);
@@ -270,7 +296,47 @@ void CommonStep::solve_rows(std::size_t answered) {
     solver.solve(still);
   }
   if (solver.work() > (pushing_ ? allowed_ : 0.0) + rounding) solver.limit();
+  if (ties_.any()) follow_ties(tried);
   ++softer_;
+}
+
+/// How a body, or the cluster that it leads, answers impulses of rows.
+void CommonStep::take_answer(int owner, double softer) {
+  if (ties_.cluster(owner) != owner) return;
+  if (!ties_.joined(owner)) {
+    if (!points_.any(owner)) return;
+    const std::vector<double>& told = tried_[index(owner)].compliance;
+    const auto size = static_cast<Eigen::Index>(std::lround(std::sqrt(told.size())));
+    points_.take(owner, Eigen::Map<const Eigen::MatrixXd>(told.data(), size, size), softer,
+                 velocities_);
+    return;
+  }
+  const PassiveTies::Answer answer = ties_.answer(owner, points_.values(owner));
+  if (!points_.any(owner)) return;
+  points_.take(owner, answer.compliance, softer, velocities_);
+  points_.velocity(owner) += answer.change;
+}
+
+/// `before`: impulses of rows that the bodies have answered.
+void CommonStep::follow_ties(std::span<const std::vector<std::vector<double>>> before) {
+  for (auto& ports : pressing_)
+    for (std::vector<double>& port : ports) port.clear();
+  press_rows();
+  const std::size_t dim = index(surfaces_.skin().dim);
+  for (int b = 0; b < bodies_.count(); ++b) {
+    if (ties_.cluster(b) != b || !ties_.joined(b)) continue;
+    std::vector<double> change;
+    for (const auto& [body, port, point] : points_.values(b)) {
+      const std::vector<double>& now = pressing_[index(body)][index(port)];
+      const std::vector<double>& then = before[index(body)][index(port)];
+      for (std::size_t i = 0; i < dim; ++i) {
+        const std::size_t v = index(point) * dim + i;
+        change.push_back((now.empty() ? 0.0 : now[v]) - (then.empty() ? 0.0 : then[v]));
+      }
+    }
+    ties_.follow(b, Eigen::Map<const Eigen::VectorXd>(change.data(),
+                                                      static_cast<Eigen::Index>(change.size())));
+  }
 }
 
 /// The account of every body: what its energy gained beside what its ports did.
@@ -292,6 +358,8 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
     }
   }
   most_ = scale;
+  ties_.accept();
+  ledger.switched -= ties_.work();
   std::swap(replies_, tried_);
   from_ = to_;
   near_.accept(from_);
@@ -353,6 +421,20 @@ void CommonStep::share_out_work() {
           row.weights[i] * impulse.dot(velocities_[index(point)]);
     }
   }
+  share_out_ties();
+}
+
+/// Of ties, whose ports no rows press on, and of those on which both do.
+void CommonStep::share_out_ties() {
+  for (int b = 0; b < bodies_.count() && ties_.any(); ++b) {
+    std::vector<std::vector<double>> impulses(port_work_[index(b)].size());
+    ties_.add_impulses(b, impulses);
+    for (std::size_t p = 0; p < impulses.size(); ++p) {
+      const std::vector<double>& moved = tried_[index(b)].ports[p].displacement;
+      for (std::size_t v = 0; v < impulses[p].size(); ++v)
+        port_work_[index(b)][p] += impulses[p][v] * moved[v] / length();
+    }
+  }
 }
 
 void CommonStep::state(Archive& archive) {
@@ -360,6 +442,7 @@ void CommonStep::state(Archive& archive) {
   archive.field("accounts", accounts_);
   archive.field("most", most_);
   field(archive, "places", from_);
+  ties_.state(archive);
   for (std::size_t b = 0; b < displacements_.size(); ++b) {
     const std::size_t ports = bodies_.describe(static_cast<int>(b)).ports.size();
     displacements_[b].resize(ports);

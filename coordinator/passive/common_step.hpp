@@ -8,6 +8,7 @@
 
 #include "coordinator/passive/near_rows.hpp"
 #include "coordinator/passive/passive_ledger.hpp"
+#include "coordinator/passive/passive_ties.hpp"
 #include "coordinator/passive/row_impulses.hpp"
 
 namespace abut {
@@ -30,7 +31,8 @@ class CommonStep {
   };
 
   /// `nominal` [s]: the longest step. All must outlive it.
-  CommonStep(const TouchingSurfaces& surfaces, NearRows& near, Bodies& bodies, double nominal);
+  CommonStep(const TouchingSurfaces& surfaces, NearRows& near, std::vector<PassiveTie> ties,
+             Bodies& bodies, double nominal);
 
   /// What the bodies are in when the passive way begins.
   [[nodiscard]] std::optional<Failed> begin(double time);
@@ -69,10 +71,15 @@ class CommonStep {
   std::optional<Failed> advance(bool all);
   void see_velocities();
   void find_impulses(bool any);
+  void press_rows();
+  bool ties_fit() const;
+  void take_answer(int owner, double softer);
+  void follow_ties(std::span<const std::vector<std::vector<double>>> before);
   void rows_ask(double& unfit, double& work) const;
   void solve_rows(std::size_t answered);
   std::optional<Refusal> accept(bool lenient, PassiveLedger& ledger);
   void share_out_work();
+  void share_out_ties();
   void share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const;
   double energy_of(int body) const;
   double length() const { return step_.end - step_.begin; }
@@ -81,9 +88,11 @@ class CommonStep {
   NearRows& near_;
   Bodies& bodies_;
   double nominal_;
+  PassiveTies ties_;
   PressedPoints points_;
   PassiveStep step_;                                             // what all share
   std::vector<PassiveStep> asked_;                               // by body
+  std::vector<std::vector<std::vector<double>>> pressing_;       // [N s] of rows alone, the same
   std::vector<PassiveReply> tried_, replies_;                    // by body
   std::vector<std::vector<std::vector<double>>> displacements_;  // [m] by body and port
   std::vector<char> advanced_;                                   // (bodies) since they were saved

@@ -23,13 +23,18 @@ constexpr double same_time = 1.0e-9;
 
 }  // namespace
 
-PassiveWay::PassiveWay(std::vector<TouchingPair> pairs, Bodies& bodies)
-    : pairs_(std::move(pairs)), bodies_(bodies), hindrance_(find_hindrance()) {}
+PassiveWay::PassiveWay(std::vector<TouchingPair> pairs,
+                       std::optional<std::vector<PassiveTie>> ties, Bodies& bodies)
+    : pairs_(std::move(pairs)),
+      ties_(std::move(ties)),
+      bodies_(bodies),
+      hindrance_(find_hindrance()) {}
 
 PassiveWay::~PassiveWay() = default;
 
 std::string PassiveWay::find_hindrance() const {
   if (pairs_.empty()) return "no surfaces touch";
+  if (!ties_) return "bodies that overlap, or that dashpots join, have no passive form";
   for (int b = 0; b < bodies_.count(); ++b)
     if (!bodies_.describe(b).can.passive)
       return fmt::format("body '{}' ({}) has no passive form", bodies_.describe(b).name,
@@ -42,7 +47,7 @@ void PassiveWay::make() {
   nominal_ = bodies_.shortest_step();
   surfaces_ = std::make_unique<TouchingSurfaces>(pairs_, bodies_);
   near_ = std::make_unique<NearRows>(*surfaces_, thickness_share * surfaces_->shortest_edge());
-  step_ = std::make_unique<CommonStep>(*surfaces_, *near_, bodies_, nominal_);
+  step_ = std::make_unique<CommonStep>(*surfaces_, *near_, *ties_, bodies_, nominal_);
 }
 
 std::optional<Failed> PassiveWay::enter(double time, bool unanswered) {

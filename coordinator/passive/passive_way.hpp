@@ -20,13 +20,17 @@ namespace abut {
 ///   leave    back to the bodies' own schemes
 class PassiveWay {
  public:
-  /// `pairs`: of surfaces that may touch. Bodies must outlive it.
-  PassiveWay(std::vector<TouchingPair> pairs, Bodies& bodies);
+  /// `pairs`: of surfaces that may touch; `ties`: of those that are one, none where some of the run
+  /// have no passive form. Bodies and rows of ties must outlive it.
+  PassiveWay(std::vector<TouchingPair> pairs, std::optional<std::vector<PassiveTie>> ties,
+             Bodies& bodies);
   ~PassiveWay();
 
   /// Why the scene cannot take this way, for people; empty: it can.
   const std::string& hindrance() const { return hindrance_; }
   bool active() const { return active_; }
+  /// Whether bodies may go back to their own schemes: those of ties would have to begin anew.
+  bool returns() const { return ties_ && ties_->empty(); }
   const PassiveLedger& ledger() const { return ledger_; }
 
   /// The bodies stand at a time at which they may be saved. `unanswered`: the accurate method was
@@ -55,6 +59,7 @@ class PassiveWay {
   void note_pressed();
 
   std::vector<TouchingPair> pairs_;
+  std::optional<std::vector<PassiveTie>> ties_;
   Bodies& bodies_;
   std::string hindrance_;
   bool active_ = false, quiet_ = true;

@@ -1,6 +1,7 @@
 #include "coordinator/passive/pressed_points.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace abut {
 
@@ -17,10 +18,11 @@ bool PressedPoints::add(const DistanceRow& row) {
   for (std::size_t i = 0; i < 4; ++i) {
     const std::int32_t point = row.features.points[i];
     if (row.weights[i] == 0.0 || surfaces_.stands(point) || slots_[point] >= 0) continue;
-    Body& body = bodies_[index(surfaces_[point].body)];
+    Body& body = bodies_[index(owner(point))];
     const auto before = [this](std::int32_t a, std::int32_t b) {
       const TouchingSurfaces::Point &one = surfaces_[a], &other = surfaces_[b];
-      return std::pair(one.port, one.point) < std::pair(other.port, other.point);
+      return std::tuple(one.body, one.port, one.point) <
+             std::tuple(other.body, other.port, other.point);
     };
     body.slots.insert(std::ranges::upper_bound(body.slots, point, before), point);
     const int dim = surfaces_.skin().dim;
@@ -33,17 +35,27 @@ bool PressedPoints::add(const DistanceRow& row) {
 
 std::vector<std::vector<std::int32_t>> PressedPoints::list(int body, std::size_t ports) const {
   std::vector<std::vector<std::int32_t>> out(ports);
-  for (const std::int32_t point : bodies_[index(body)].slots)
-    out[index(surfaces_[point].port)].push_back(surfaces_[point].point);
+  for (const std::int32_t point : bodies_[index(owners_[index(body)])].slots)
+    if (surfaces_[point].body == body)
+      out[index(surfaces_[point].port)].push_back(surfaces_[point].point);
   return out;
 }
 
-void PressedPoints::take(int body, const std::vector<double>& compliance, double softer,
-                         std::span<const Eigen::Vector3d> velocities) {
-  Body& to = bodies_[index(body)];
+std::vector<std::array<std::int32_t, 3>> PressedPoints::values(int owner) const {
+  std::vector<std::array<std::int32_t, 3>> out;
+  for (const std::int32_t point : bodies_[index(owner)].slots) {
+    const TouchingSurfaces::Point& at = surfaces_[point];
+    out.push_back({at.body, at.port, at.point});
+  }
+  return out;
+}
+
+void PressedPoints::take(int owner, const Eigen::Ref<const Eigen::MatrixXd>& compliance,
+                         double softer, std::span<const Eigen::Vector3d> velocities) {
+  Body& to = bodies_[index(owner)];
   const int dim = surfaces_.skin().dim;
   const Eigen::Index n = static_cast<Eigen::Index>(to.slots.size()) * dim;
-  to.compliance = softer * Eigen::Map<const Eigen::MatrixXd>(compliance.data(), n, n);
+  to.compliance = softer * compliance;
   to.velocity.resize(n);
   for (std::size_t k = 0; k < to.slots.size(); ++k)
     for (int i = 0; i < dim; ++i)

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,23 +14,28 @@
 namespace abut {
 
 /// The points that rows press on, by body, and how they answer: around the impulses that were
-/// tried, w = w_tried + C (J - J_tried) [M.129].
+/// tried, w = w_tried + C (J - J_tried) [M.129]. Bodies that are tied answer together, as the first
+/// of them: `owners` (bodies) says who that is.
 class PressedPoints {
  public:
-  explicit PressedPoints(const TouchingSurfaces& surfaces, int bodies)
-      : surfaces_(surfaces), bodies_(index(bodies)) {}
+  PressedPoints(const TouchingSurfaces& surfaces, std::vector<int> owners)
+      : surfaces_(surfaces), owners_(std::move(owners)), bodies_(owners_.size()) {}
+
+  int owner(std::int32_t point) const { return owners_[index(surfaces_[point].body)]; }
 
   void clear();
   /// Takes the points of a row; true: some are new, and the bodies have not told of them.
   bool add(const DistanceRow& row);
-  /// Whether anything is pressed on a body that could move it.
-  bool any(int body) const { return !bodies_[index(body)].slots.empty(); }
+  /// Whether anything is pressed on an owner that could move it.
+  bool any(int owner) const { return !bodies_[index(owner)].slots.empty(); }
   /// The points of a body's ports, for PassiveStep::pressed.
   std::vector<std::vector<std::int32_t>> list(int body, std::size_t ports) const;
   /// Takes the compliance that a body told, times `softer`, and the mean velocities [m/s] (points)
   /// under the impulses that were tried.
-  void take(int body, const std::vector<double>& compliance, double softer,
+  void take(int owner, const Eigen::Ref<const Eigen::MatrixXd>& compliance, double softer,
             std::span<const Eigen::Vector3d> velocities);
+  /// Body, port and point of an owner's values.
+  std::vector<std::array<std::int32_t, 3>> values(int owner) const;
 
   /// First value of a point among those of its body; -1: it is not pressed, or stands.
   int slot(std::int32_t point) const { return slots_.empty() ? -1 : slots_[point]; }
@@ -44,7 +51,8 @@ class PressedPoints {
   };
 
   const TouchingSurfaces& surfaces_;
-  std::vector<Body> bodies_;
+  std::vector<int> owners_;
+  std::vector<Body> bodies_;  // by owner
   std::vector<int> slots_;  // by point
 };
 

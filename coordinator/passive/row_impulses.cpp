@@ -41,7 +41,7 @@ RowImpulses::RowImpulses(std::vector<DistanceRow>& rows, PressedPoints& points,
 RowImpulses::Answer RowImpulses::answer_of(const DistanceRow& row) const {
   Answer answer;
   for (const std::size_t s : {0u, 1u}) {
-    const int body = surfaces_[row.first_point(static_cast<int>(s))].body;
+    const int body = points_.owner(row.first_point(static_cast<int>(s)));
     if (points_.any(body) && answer.body[0] != body) answer.body[s] = body;
   }
   const int directions = row.friction > 0.0 ? dim_ : 1;
@@ -77,7 +77,7 @@ void RowImpulses::visit_pressed(const DistanceRow& row, int body, const See& see
     if (row.weights[i] == 0.0) continue;
     const std::int32_t point = row.features.points[i];
     const int slot = points_.slot(point);
-    if (slot >= 0 && surfaces_[point].body == body) see(slot, row.weights[i]);
+    if (slot >= 0 && points_.owner(point) == body) see(slot, row.weights[i]);
   }
 }
 
@@ -87,7 +87,7 @@ double RowImpulses::velocity(const DistanceRow& row, const Eigen::Vector3d& alon
     if (row.weights[i] == 0.0) continue;
     const std::int32_t point = row.features.points[i];
     const int slot = points_.slot(point);
-    const Eigen::VectorXd* pressed = slot < 0 ? nullptr : &points_.velocity(surfaces_[point].body);
+    const Eigen::VectorXd* pressed = slot < 0 ? nullptr : &points_.velocity(points_.owner(point));
     for (int k = 0; k < dim_; ++k)
       sum += row.weights[i] * along(k) *
              (pressed != nullptr ? (*pressed)(slot + k) : velocities_[index(point)](k));
