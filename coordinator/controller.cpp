@@ -210,7 +210,7 @@ void Controller::step_window() {
   events_.begin(window);
   bodies_.save_all();
   while (running()) {
-    advance(window);
+    try_window(window);
     const Judgement judgement = judge(window);
     if (judgement.verdict == Judgement::Verdict::accept) return accept(window);
     if (judgement.verdict == Judgement::Verdict::fail) {

@@ -97,6 +97,7 @@ class Controller {
   void step_window();
   void advance(const TimeWindow& window);
   Judgement judge(const TimeWindow& window);
+  void try_window(const TimeWindow& window);
   Judgement judge_ways(const TimeWindow& window);
   Judgement judge_trouble(const TimeWindow& window);
   void accept(const TimeWindow& window);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/index.hpp"
+#include "contract/no_answer.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/touching_pairs.hpp"
@@ -35,6 +36,17 @@ double energy_put_in(const Bodies& bodies, const PassiveLedger& ledger) {
 bool Controller::may_go_passively() const {
   return passive_.hindrance().empty() &&
          scene_.schwarz.on_nonconvergence == OnNonconvergence::passive;
+}
+
+/// What keeps the accurate method from the window ends the run, unless bodies can go passively.
+void Controller::try_window(const TimeWindow& window) {
+  try {
+    advance(window);
+  } catch (const NoAnswer& error) {
+    if (!may_go_passively()) throw;
+    attempt_.failed = Failed{Failed::Cause::no_convergence, window.begin,
+                             error.where + ": " + error.what_is_wrong};
+  }
 }
 
 /// Which body comes upon itself, where passive forms can keep it off itself; empty: none.

@@ -5,6 +5,7 @@
 #include "base/assert.hpp"
 #include "base/index.hpp"
 #include "contract/kernel_parts.hpp"
+#include "contract/no_answer.hpp"
 #include "messaging/soundness.hpp"
 
 namespace abut {
@@ -132,9 +133,14 @@ PortKernel RemoteSubdomain::probe_part(const Probing& probing) {
   encode(probing, *caller_.request().mutable_probe());
   carry_flags();
   const v1::Reply& reply = caller_.call("probe");
-  if (!reply.has_kernel()) caller_.refuse_reply("not a kernel");
+  if (!reply.has_kernel() && !reply.has_failed()) caller_.refuse_reply("not a kernel");
   PortKernel result;
   try {
+    if (reply.has_failed()) {
+      Failed failed;
+      decode(reply.failed(), failed);
+      throw NoAnswer(failed, description_.name);
+    }
     decode(reply.kernel(), description_, probing, result);
     require_sound(result, description_, probing);
   } catch (const CodecError& error) {

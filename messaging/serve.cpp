@@ -13,6 +13,7 @@
 #include "base/life_signs.hpp"
 #include "base/printable.hpp"
 #include "contract/kernel_parts.hpp"
+#include "contract/no_answer.hpp"
 #include "messaging/codec.hpp"
 #include "messaging/codec/wire.hpp"
 #include "messaging/soundness.hpp"
@@ -316,7 +317,11 @@ void Server::probe(const v1::Probe& request) {
   refuse_large(sizeof(double) * probing.patterns.size() * index(probing.count),
                fmt::format("a kernel of {} substeps for {} values", probing.count,
                            probing.patterns.size()));
-  encode(body_->probe(probing), *reply_.mutable_kernel());
+  try {
+    encode(body_->probe(probing), *reply_.mutable_kernel());
+  } catch (const NoAnswer& error) {
+    encode(error.failed, *reply_.mutable_failed());
+  }
 }
 
 /// The reply with what goes straight into the frame as its body.

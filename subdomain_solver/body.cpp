@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "contract/force_means.hpp"
+#include "contract/no_answer.hpp"
 #include "subdomain_solver/port_forecast.hpp"
 #include "subdomain_solver/port_statics.hpp"
 
@@ -384,8 +385,7 @@ PortKernel Body::probe_dynamics(const Probing& asked, std::span<const int> seen)
   read(*interior_, kept, Archive::Form::bare);
   interior_->restored();
   if (!failed) return kernel;
-  throw RunError("has no port kernel: " + failed->detail, fmt::format("body '{}'", describe().name),
-                 "Give the body inertia or supports that hold it.");
+  throw NoAnswer(*failed, describe().name);
 }
 
 /// What has no inertia answers at once, and forgets.
@@ -401,10 +401,9 @@ PortKernel Body::probe_statics(const Probing& asked, std::span<const int> seen) 
   std::vector<double> force(ports_.back().first + ports_.back().width, 0.0), moved;
   Eigen::VectorXd place = Eigen::VectorXd::Zero(loose_motions(describe())), left;
   const auto see = [&](std::vector<double>& to) {
-    if (!interior_->able().statics->give(force, place, moved, left)) {
-      throw RunError("has no port kernel: its stiffness is singular",
-                     fmt::format("body '{}'", describe().name), "Give the body more supports.");
-    }
+    if (!interior_->able().statics->give(force, place, moved, left))
+      throw NoAnswer({Failed::Cause::no_convergence, 0.0, "its stiffness is singular"},
+                     describe().name);
     for (const int s : seen) {
       const auto from = moved.begin() + static_cast<std::ptrdiff_t>(ports_[s].first);
       to.insert(to.end(), from, from + static_cast<std::ptrdiff_t>(ports_[s].width));

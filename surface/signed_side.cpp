@@ -95,6 +95,10 @@ Vector SkinSides::point_normal(Points points, std::int32_t point) const {
   return normal_at(points, {1, {point, -1, -1}});
 }
 
+Vector SkinSides::edge_normal(Points points, std::int32_t one, std::int32_t other) const {
+  return normal_at(points, {2, {one, other, -1}});
+}
+
 SignedSide SkinSides::side(Points points, const Vector& x,
                            std::span<const std::int32_t> facets) const {
   SignedSide found;

@@ -34,6 +34,9 @@ class SkinSides {
   Eigen::Vector3d facet_normal(std::span<const Eigen::Vector3d> points, std::int32_t facet) const;
   /// Unit normal at a point, of its facets by their angles there; zero where there is none.
   Eigen::Vector3d point_normal(std::span<const Eigen::Vector3d> points, std::int32_t point) const;
+  /// Unit normal of an edge, of its facets; zero where there is none.
+  Eigen::Vector3d edge_normal(std::span<const Eigen::Vector3d> points, std::int32_t one,
+                              std::int32_t other) const;
   /// The side of the closest of the given facets. Where the surface ends, inside is what is behind
   /// the normal rather than beside it.
   SignedSide side(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& x,

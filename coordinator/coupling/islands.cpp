@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "base/error.hpp"
+#include "contract/no_answer.hpp"
 #include "coordinator/coupling/exchange.hpp"
 
 namespace abut {
@@ -60,7 +60,7 @@ std::vector<std::vector<int>> levels_of(const std::vector<int>& members,
       if (--waits_for[body] == 0) next.push_back(body);
     }
     if (next.empty()) {
-      throw RunError("the kinematic sides of closed interfaces go round in a circle", "interfaces",
+      throw NoAnswer("the kinematic sides of closed interfaces go round in a circle", "interfaces",
                      "Leave `kinematic: auto` on at least one interface of the circle.");
     }
     std::ranges::sort(next);

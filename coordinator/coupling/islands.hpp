@@ -20,7 +20,7 @@ struct Island {
 };
 
 /// Finds the islands of the closed joints and the order of sweeps inside them: kinematic sides
-/// first. Throws RunError when the roles go round in a circle, which Roles rules out.
+/// first. Throws NoAnswer when the roles go round in a circle, which Roles rules out.
 std::vector<Island> find_islands(std::span<const Joint> joints, int bodies);
 
 /// Whether no two contacts of an island reach each other through bodies that may move, all of which

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "coordinator/coupling/state_fields.hpp"
 #include "surface/feature_path.hpp"
 
 namespace abut {
@@ -41,13 +40,10 @@ NearRows::NearRows(const TouchingSurfaces& surfaces, double thickness)
       thickness_(thickness),
       trees_(surfaces.skin(), surfaces.reference()),
       own_(surfaces, thickness),
-      sides_(surfaces.skin()) {}
+      behind_(surfaces, thickness, own_.others()) {}
 
-bool NearRows::leaves_out(const FeaturePair& pair) const {
-  if (own_.leaves_out(pair)) return true;
-  return behind_count_ > 0 && std::ranges::any_of(pair.points, [this](std::int32_t point) {
-           return point >= 0 && behind_[point] != 0;
-         });
+bool NearRows::leaves_out(const FeaturePair& pair, const Places& from) const {
+  return own_.leaves_out(pair) || behind_.leaves_out(pair, from);
 }
 
 void NearRows::find(const Places& from, std::vector<DistanceRow>& rows) {
@@ -56,11 +52,11 @@ void NearRows::find(const Places& from, std::vector<DistanceRow>& rows) {
   const double reach = near_thicknesses * thickness_;
   near_features(trees_, from, from, reach, own_.choice(trees_, from, from, reach), pairs_);
   for (const FeaturePair& pair : pairs_) {
-    if (leaves_out(pair)) continue;
+    if (leaves_out(pair, from)) continue;
     if (feature_distance(pair.kind, dim, places(pair, from)).distance < reach)
       add(pair, from, from, 0.0, rows);
   }
-  if (behind_count_ > 0) add_behind(from, rows);
+  behind_.find(trees_, from, rows);
 }
 
 void NearRows::find_on_ways(const Places& from, const Places& to, std::vector<DistanceRow>& rows) {
@@ -68,7 +64,7 @@ void NearRows::find_on_ways(const Places& from, const Places& to, std::vector<Di
   name(rows);
   near_features(trees_, from, to, thickness_, own_.choice(trees_, from, to, thickness_), pairs_);
   for (const FeaturePair& pair : pairs_) {
-    if (leaves_out(pair)) continue;
+    if (leaves_out(pair, from)) continue;
     const FeaturePoints before = places(pair, from), after = at(pair, from, to, 1.0);
     if (feature_distance(pair.kind, dim, before).distance <= thickness_) continue;
     const double part =
@@ -84,7 +80,7 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
   Crossed crossed;
   near_features(trees_, from, to, thickness_, own_.choice(trees_, from, to, thickness_), pairs_);
   for (const FeaturePair& pair : pairs_) {
-    if (leaves_out(pair)) continue;
+    if (leaves_out(pair, from)) continue;
     const FeaturePoints before = places(pair, from), after = at(pair, from, to, 1.0);
     const double distance = feature_distance(pair.kind, dim, before).distance;
     const double share = distance < close * thickness_ ? kept_when_close : kept;
@@ -94,6 +90,9 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
     ++crossed.pairs;
     if (add(pair, from, to, part, rows)) ++crossed.added;
   }
+  const int deeper = behind_.check(trees_, from, to, rows);
+  crossed.pairs += deeper;
+  crossed.added += deeper;
   return crossed;
 }
 
@@ -130,13 +129,6 @@ bool NearRows::known(const DistanceRow& row, const std::vector<DistanceRow>& row
         apart = std::max(apart, std::abs(other.weights[i] - row.weights[i]));
     return apart < same_weights;
   });
-}
-
-void NearRows::state(Archive& archive) {
-  std::vector<std::int32_t> behind(behind_.begin(), behind_.end());
-  field(archive, "behind", behind);
-  behind_.assign(behind.begin(), behind.end());
-  behind_count_ = static_cast<int>(std::ranges::count(behind_, 1));
 }
 
 /// Of all rows of the step, so that those that say the same are found without a look at the others.

@@ -2,6 +2,7 @@
 // Oracle: the same calls on a body without any transport: equal state hash, equal counts.
 #include <gtest/gtest.h>
 
+#include "contract/no_answer.hpp"
 #include "tests/transport/loop.hpp"
 
 namespace abut {
@@ -119,6 +120,27 @@ TEST(Transport, AKernelComesBackAsTheBodyMadeIt) {
   EXPECT_EQ(got.displacement, loop.fake->probe({0, patterns, 0.01, 5}).displacement);
   EXPECT_EQ(got.patterns, 2);
   EXPECT_EQ(got.count(), 5);
+}
+
+/// It is a value of the numbers' kind, so that the coordinator may go another way, and the body
+/// serves on.
+TEST(Transport, ABodyWithoutAKernelSaysSoInEitherPlacement) {
+  ConfiguredLoop loop;
+  loop.fake->before_probe = [] {
+    throw NoAnswer({Failed::Cause::inverted_element, 0.0, "an element is inverted"}, "fake");
+  };
+  const auto told = [](Subdomain& body) -> std::string {
+    try {
+      (void)body.probe({0, {1.0}, 0.01, 5});
+    } catch (const NoAnswer& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  EXPECT_EQ(told(loop.body), told(*loop.fake));
+  EXPECT_NE(told(loop.body), "nothing");
+  loop.fake->before_probe = nullptr;
+  EXPECT_EQ(loop.body.probe({0, {1.0}, 0.01, 5}).count(), 5);
 }
 
 }  // namespace

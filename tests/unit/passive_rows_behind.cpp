@@ -1,0 +1,142 @@
+// Goal: what is behind a partner's surface when the passive way begins goes no deeper, not through
+// the other side and not along another feature's way, and can come out. Oracles: places by hand.
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "coordinator/passive/near_rows.hpp"
+#include "tests/support/solid_texts.hpp"
+
+namespace abut {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+constexpr double rounding = 1.0e-12;  // of places of about 1 m
+constexpr double root = 0.5 * std::numbers::sqrt2;
+constexpr double depth = 0.1;  // [m] at the begin
+
+/// Two rigid bodies and the rows between them, in places that are told.
+class Pair {
+ public:
+  Pair(const SolidText& one, const SolidText& other)
+      : one_(build(one)),
+        other_(build(other)),
+        bodies_({one_.get(), other_.get()}),
+        surfaces_(std::vector<TouchingPair>{{{Side{0, 0}, Side{1, 0}}, 0.0}}, bodies_),
+        near_(surfaces_, thickness_share * surfaces_.shortest_edge()) {}
+
+  /// All places, with the second body moved.
+  std::vector<Vector> moved(const Vector& by) const {
+    std::vector<Vector> places = surfaces_.reference();
+    for (std::size_t p = 0; p < places.size(); ++p)
+      if (surfaces_.skin().group[p] == 1) places[p] += by;
+    return places;
+  }
+  std::vector<DistanceRow> begin(const Vector& by) {
+    near_.begin(moved(by));
+    std::vector<DistanceRow> rows;
+    near_.find(moved(by), rows);
+    return rows;
+  }
+  int offended(const Vector& from, const Vector& to) {
+    std::vector<DistanceRow> rows;
+    near_.find(moved(from), rows);
+    return near_.check(moved(from), moved(to), rows).pairs;
+  }
+
+ private:
+  std::unique_ptr<Subdomain> one_, other_;
+  Bodies bodies_;
+  TouchingSurfaces surfaces_;
+  NearRows near_;
+};
+
+SolidText rigid(const std::string& name, const std::string& side, const std::string& keys,
+                const std::vector<double>& lengths, const std::vector<int>& cells) {
+  return {.name = name,
+          .material = unit_law("linear_elastic", 0.3),
+          .integrator = "rigid_motion: {step: 0.1}",
+          .side = side,
+          .model = "rigid",
+          .keys = keys,
+          .block = {lengths, cells}};
+}
+
+/// A plate of one cell, 0.5 m thick, and a square that stands on its corner.
+Pair tip_on_plate(const std::string& side) {
+  const std::string turned =
+      fmt::format("map: [\"{0} * (x - y)\", \"{0} * (x + y)\"], ", number(root));
+  return {rigid("plate", side, "", {4.0, 0.5}, {4, 1}),
+          rigid("tip", "boundary", turned, {1.0, 1.0}, {1, 1})};
+}
+
+const Vector tip(2.2, 0.5 - depth, 0.0);  // of that corner
+
+TEST(RowsBehind, HoldATipWhereItCameIn) {
+  Pair pair = tip_on_plate("boundary");
+  const std::vector<DistanceRow> rows = pair.begin(tip);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_TRUE(rows[0].behind);
+  EXPECT_NEAR(rows[0].normal.y(), 1.0, rounding);
+  EXPECT_NEAR(rows[0].gap, -depth, rounding);
+  EXPECT_EQ(pair.offended(tip, tip + Vector(0, 0.3, 0)), 0);   // out
+  EXPECT_EQ(pair.offended(tip, tip + Vector(0.1, 0, 0)), 0);   // along
+  EXPECT_GT(pair.offended(tip, tip - Vector(0, 0.05, 0)), 0);  // deeper
+  EXPECT_GT(pair.offended(tip, tip - Vector(0, 0.6, 0)), 0);   // through
+  EXPECT_GT(pair.offended(tip, tip - Vector(3.0, 0, 0)), 0);   // a plate's node in it
+}
+
+/// Nothing is behind what it has come out of.
+TEST(RowsBehind, EndOutside) {
+  Pair pair = tip_on_plate("boundary");
+  pair.begin(tip);
+  const Vector outside(2.2, 0.7, 0.0);
+  EXPECT_TRUE(pair.begin(outside).empty());
+  EXPECT_GT(pair.offended(outside, tip), 0);
+}
+
+/// The only surface that is told looks the way that the tip goes.
+TEST(RowsBehind, HoldAlongTheShortestWayWhereNothingFaces) {
+  Pair pair = tip_on_plate("bottom");
+  const Vector low(2.2, depth, 0.0);
+  const std::vector<DistanceRow> rows = pair.begin(low);
+  const auto lowest = std::ranges::max_element(rows, {}, &DistanceRow::gap);
+  ASSERT_NE(lowest, rows.end());
+  EXPECT_NEAR(lowest->normal.y(), -1.0, rounding);
+  EXPECT_NEAR(lowest->gap, -depth, rounding);
+}
+
+/// Two edges through each other, all of whose ends are outside.
+TEST(RowsBehind, HoldEdgesInSpace) {
+  // Local z along (0, -1, 1), the edge at x = y = 0 opposite to (0, 1, 1): see the normals below.
+  const std::string turned = fmt::format(
+      "map: [\"{0} * (x - y)\", \"0.5 * (x + y) - {0} * (z - 1)\", \"0.5 * (x + y) + {0} * (z - "
+      "1)\"], ",
+      number(root));
+  Pair pair{rigid("bar", "boundary", "", {2.0, 1.0, 1.0}, {1, 1, 1}),
+            rigid("other", "boundary", turned, {1.0, 1.0, 2.0}, {1, 1, 1})};
+  const Vector out(0.0, root, root);
+  const Vector crossed = Vector(1.1, 1.0, 1.0) - depth * out;
+  const std::vector<DistanceRow> rows = pair.begin(crossed);
+  int found = 0;
+  for (const DistanceRow& row : rows) {
+    if (row.features.kind != FeatureKind::edge_edge || !row.behind) continue;
+    ++found;
+    EXPECT_NEAR(std::abs(row.normal.dot(out)), 1.0, rounding);
+    EXPECT_NEAR(row.gap, -depth, rounding);
+  }
+  EXPECT_GT(found, 0);
+  EXPECT_EQ(pair.offended(crossed, crossed + 0.3 * out), 0);
+  EXPECT_EQ(pair.offended(crossed, crossed + Vector(0.1, 0, 0)), 0);
+  EXPECT_GT(pair.offended(crossed, crossed - 0.1 * out), 0);
+  EXPECT_GT(pair.offended(crossed, crossed - 0.8 * out), 0);
+}
+
+}  // namespace
+}  // namespace abut
