@@ -106,6 +106,9 @@ class SolidInterior final : public Interior,
   void find_passive();
   void start_passive();
   void take_impulses(const PassiveStep& step);
+  std::optional<Failed> pass_guarded(const PassiveStep& step, PassiveReply& reply);
+  std::optional<Failed> step_guarded(const PassiveStep& step);
+  double store_guarded();
   std::optional<Failed> restart(double time, double& work);
   void spread_velocities();
   void gather_velocities();

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "subdomain_solver/fe/rigid_motions.hpp"
+#include "subdomain_solver/materials/crush_guard.hpp"
 #include "subdomain_solver/solid_interior.hpp"
 #include "subdomain_solver/solve/matrix_sum.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
@@ -123,6 +124,7 @@ double SolidInterior::enter() {
     motion.force.assign(motion.v.size(), 0.0);
     return 0.0;
   }
+  const double guard = store_guarded();
   const Eigen::MatrixXd motions = parts_.reduced ? Eigen::MatrixXd() : free_motions();
   const Vector momentum = parts_.reduced ? Vector() : momentum_along(motions);
   const double before = parts_.scheme.integrator->kinetic(motion);
@@ -138,7 +140,21 @@ double SolidInterior::enter() {
   stay_below(before, plain, motion.v, [this] { return moving_energy(); });
   if (!parts_.reduced && moving_energy() > before)  // plain ones have too much themselves
     stay_below(before, mean_motion(), motion.v, [this] { return moving_energy(); });
-  return before - moving_energy();
+  return before - moving_energy() - guard;
+}
+
+/// Takes the energy that is stored anew where cells are crushed already; by how much [J] it grows.
+double SolidInterior::store_guarded() {
+  Motion& motion = state_.motion;
+  if (parts_.reduced != nullptr || parts_.problem->model->is_linear()) return 0.0;
+  FeModel& cells = *parts_.model;
+  if (!cells.guard(cells.least_volume(motion.q) < crushed)) return 0.0;
+  ModelResponse response;
+  const double before = motion.stored;
+  if (cells.evaluate(motion.q, motion.history, Model::Want::force, response))
+    motion.stored = response.stored;
+  cells.guard(false);
+  return motion.stored - before;
 }
 
 /// Velocities of the body's centre at all nodes where nothing holds it, else none; supports go on.
@@ -274,7 +290,28 @@ void SolidInterior::take_impulses(const PassiveStep& step) {
                       now_.begin() + static_cast<std::ptrdiff_t>(port_map_->first(p)));
 }
 
+/// Cells that are crushed, or would be by the step, are guarded in it.
+std::optional<Failed> SolidInterior::step_guarded(const PassiveStep& step) {
+  Motion& motion = state_.motion;
+  FeModel& cells = *parts_.model;
+  const auto take = [&] { return midpoint_->step(motion, step.begin, step.end, change_); };
+  if (parts_.reduced != nullptr || parts_.problem->model->is_linear()) return take();
+  if (cells.guard(cells.least_volume(motion.q) < nearly_crushed)) return take();
+  const Motion before = motion;
+  std::optional<Failed> failed = take();
+  if ((!failed && cells.least_volume(motion.q) >= crushed) || !cells.guard(true)) return failed;
+  motion = before;
+  return take();
+}
+
+/// Nothing but the step sees guarded laws.
 std::optional<Failed> SolidInterior::pass(const PassiveStep& step, PassiveReply& reply) {
+  std::optional<Failed> failed = pass_guarded(step, reply);
+  parts_.model->guard(false);
+  return failed;
+}
+
+std::optional<Failed> SolidInterior::pass_guarded(const PassiveStep& step, PassiveReply& reply) {
   Motion& motion = state_.motion;
   take_impulses(step);
   if (step.length() == 0.0) {
@@ -287,7 +324,7 @@ std::optional<Failed> SolidInterior::pass(const PassiveStep& step, PassiveReply&
   } else {
     change_.setZero(parts_.problem->model->dofs());
     port_map_->lift(motion.q, now_, change_);
-    if (auto failed = midpoint_->step(motion, step.begin, step.end, change_)) return failed;
+    if (auto failed = step_guarded(step)) return failed;
     port_map_->velocity(motion.q, midpoint_->moved(), before_);  // a linear map
     reply.bulge = 0.0;
   }

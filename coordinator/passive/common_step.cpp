@@ -208,7 +208,7 @@ std::optional<Failed> CommonStep::advance(bool all) {
     asked.begin = step_.begin;
     asked.end = step_.end;
     asked.pressed = points_.list(b, bodies_.describe(b).ports.size());
-    ties_.add_points(b, asked.pressed);
+    if (length() > 0.0) ties_.add_points(b, asked.pressed);
     bodies_[b].passive()->start(asked);
     moved.push_back(b);
   }

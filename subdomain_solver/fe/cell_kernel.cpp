@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "base/index.hpp"
+#include "subdomain_solver/materials/crush_guard.hpp"
 #include "subdomain_solver/materials/finite_strain.hpp"
 
 namespace abut {
@@ -152,6 +153,8 @@ bool CellKernel::respond(std::span<const double> before, std::span<double> after
     if (!material_.evaluate(point.f, before.subspan(p * each, each), after.subspan(p * each, each),
                             want, point.response))
       return false;
+    if (guarded_)
+      guard_against_crushing(point.f, material_.moduli().p_wave(), want, point.response);
     out.stored += point.volume * point.response.energy;
     out.dissipation += point.volume * point.response.dissipation;
     point.force = point.volume * point.response.stress;

@@ -59,6 +59,9 @@ class CellKernel {
   /// F of a quadrature point as the material sees it in the last evaluated cell, P beside it.
   const Matrix3& deformation(int point) const { return points_[point].f; }
   const Matrix3& stress(int point) const { return points_[point].response.stress; }
+  /// From now on laws are stiffened, or not, where they are crushed [M.137].
+  void guard(bool on) { guarded_ = on; }
+  bool guarded() const { return guarded_; }
 
  private:
   struct Point {
@@ -98,6 +101,7 @@ class CellKernel {
   void integrate_moduli(Eigen::MatrixXd& out);
 
   const Material& material_;
+  bool guarded_ = false;
   std::vector<Point> points_;
   int dim_ = 3, nodes_ = 0;
   /// (nodes, 3 x points) B: derivatives of three entries of F at a point by the displacements along

@@ -165,7 +165,7 @@ const SparseMatrix& FeModel::linear_stiffness() {
 
 bool FeModel::evaluate(std::span<const double> q, std::span<const double> history, Want want,
                        ModelResponse& out) {
-  if (batched_ && want == Want::force) return batched_force(q, out);
+  if (batched_ && want == Want::force && !kernel_.guarded()) return batched_force(q, out);
   if (!is_linear()) return assemble(q, history, want, out);
   const SparseMatrix& stiffness = linear_stiffness();
   out.dissipation = 0.0;

@@ -81,6 +81,12 @@ class FeModel final : public Model {
   [[nodiscard]] bool definite_tangent(std::span<const double> q, std::span<const double> history,
                                       double inertia, SparseMatrix& tangent);
 
+  /// From now on the law is stiffened, or not, where cells are crushed [M.137]: in the plane under
+  /// plane strain, and in space, of laws that are not linear. Returns whether it is.
+  bool guard(bool on);
+  /// The least det F of the quadrature points at q, of bodies that can be guarded; of others 1.
+  double least_volume(std::span<const double> q) const;
+
   /// Tangent of one cell at q (nodes x dim), in the axes of space. False: inadmissible.
   [[nodiscard]] bool cell_tangent(int block, int cell, std::span<const double> q,
                                   std::span<const double> history, Eigen::MatrixXd& tangent);
@@ -133,6 +139,7 @@ class FeModel final : public Model {
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
   int layer_place(int dof) const;  // among the massless; -1: it is none
   bool is_bare(std::int32_t node, int direction) const;  // it has no mass in it
+  bool can_be_crushed() const;
   bool takes_mass(std::int32_t node, int direction) const;  // of bare ones: it is free
   void find_layer();
   void find_heirs(int direction);

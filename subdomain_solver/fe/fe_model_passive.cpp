@@ -1,7 +1,10 @@
 // What the passive form of finite elements takes of them: all mass on the nodes, definite tangents.
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include "base/index.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
@@ -70,6 +73,47 @@ bool FeModel::definite_tangent(std::span<const double> q, std::span<const double
     }
   }
   return true;
+}
+
+bool FeModel::can_be_crushed() const {
+  return !is_linear() && (mesh_.dim == 3 || (mesh_.dim == 2 && options_.plane == Plane::strain));
+}
+
+bool FeModel::guard(bool on) {
+  kernel_.guard(on && can_be_crushed());
+  return kernel_.guarded();
+}
+
+double FeModel::least_volume(std::span<const double> q) const {
+  double least = 1.0;
+  if (!can_be_crushed()) return least;
+  std::vector<double> u(q.begin(), q.end());
+  to_space(u);
+  const std::size_t dim = index(mesh_.dim);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const Tabulation& table = blocks_[k].table;
+    for (int c = 0; c < mesh_.blocks[k].count(); ++c) {
+      const std::span<const std::int32_t> nodes = nodes_of(mesh_.blocks[k], c);
+      const double* slope = table.dn.data();
+      for (int p = 0; p < table.points; ++p) {
+        Matrix3 before = Matrix3::Identity(), now = Matrix3::Identity();
+        before.topLeftCorner(mesh_.dim, mesh_.dim).setZero();
+        now.topLeftCorner(mesh_.dim, mesh_.dim).setZero();
+        for (const std::int32_t node : nodes) {
+          for (std::size_t j = 0; j < dim; ++j, ++slope) {
+            for (std::size_t i = 0; i < dim; ++i) {
+              const double x = mesh_.points[index(node) * dim + i];
+              const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(j);
+              before(row, column) += x * *slope;
+              now(row, column) += (x + u[index(node) * dim + i]) * *slope;
+            }
+          }
+        }
+        least = std::min(least, now.determinant() / before.determinant());
+      }
+    }
+  }
+  return least;
 }
 
 }  // namespace abut
