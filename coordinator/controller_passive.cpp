@@ -55,7 +55,7 @@ std::string Controller::folded() { return may_go_passively() ? folds_.look() : s
 /// Where surfaces come near of which neither side finds contact in another form.
 bool Controller::must_go_passively(const TimeWindow& window) {
   const bool near = std::ranges::any_of(joints_, [&](Joint& joint) {
-    if (!only_passive(joint, bodies_)) return false;
+    if (joint.tied() || !only_passive(joint, bodies_)) return false;
     const auto [apart, speed] = joint.watch->approach(joint, bodies_);
     return apart <= near_ways * speed * window.length();
   });

@@ -115,7 +115,7 @@ std::optional<std::vector<PassiveTie>> passive_ties(const Scene& scene,
     KnownExchanges known;
     joint.exchange->enter(joint, j, known);
     const bool plain = known.ties.size() == 1 && spec.tied && !spec.tied->overlap &&
-                       std::holds_alternative<UnilateralTransmission>(spec.transmission);
+                       !is_dashpot(spec.transmission);
     if (!plain) return std::nullopt;
     ties.push_back({joint.sides, &known.ties.front().exchange->rows()});
   }

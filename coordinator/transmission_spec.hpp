@@ -87,6 +87,10 @@ inline bool is_inside(const TransmissionSpec& how) {
   return std::holds_alternative<InternalTransmission>(how);
 }
 /// Accelerations are exchanged beside motions.
+inline bool is_dashpot(const TransmissionSpec& how) {
+  return std::holds_alternative<RobinTransmission>(how);
+}
+
 inline bool is_published(const TransmissionSpec& how) {
   return std::holds_alternative<DirichletNeumannTransmission>(how);
 }

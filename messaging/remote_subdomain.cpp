@@ -102,9 +102,7 @@ Outcome RemoteSubdomain::finish(Response& response) {
 
 PortKernel RemoteSubdomain::probe(const Probing& asked) {
   const auto& [port, patterns, step, count, seen] = asked;
-  const auto width_of = [this](int p) {
-    return description_.ports[p].geometry.points.size();
-  };
+  const auto width_of = [this](int p) { return description_.ports[p].geometry.points.size(); };
   const std::size_t pressed = width_of(port), all = patterns.size() / pressed;
   std::size_t width = seen.empty() ? pressed : 0;
   for (const int p : seen) width += width_of(p);

@@ -314,9 +314,9 @@ bool Server::gather(const ReceivedMeeting& part) {
 void Server::probe(const v1::Probe& request) {
   Probing probing;
   decode(request, body_->describe(), probing);
-  refuse_large(sizeof(double) * probing.patterns.size() * index(probing.count),
-               fmt::format("a kernel of {} substeps for {} values", probing.count,
-                           probing.patterns.size()));
+  refuse_large(
+      sizeof(double) * probing.patterns.size() * index(probing.count),
+      fmt::format("a kernel of {} substeps for {} values", probing.count, probing.patterns.size()));
   try {
     encode(body_->probe(probing), *reply_.mutable_kernel());
   } catch (const NoAnswer& error) {

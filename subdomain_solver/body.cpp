@@ -74,9 +74,8 @@ void Body::meet(const Meeting& meeting) {
   }
   if (meeting.kernel == nullptr) return;
   const Obstructed* obstructed = interior_->able().obstructed;
-  const std::string misfit = obstructed != nullptr
-                                 ? obstructed->misfit(meeting.port, *meeting.kernel)
-                                 : "it takes none";
+  const std::string misfit =
+      obstructed != nullptr ? obstructed->misfit(meeting.port, *meeting.kernel) : "it takes none";
   if (!misfit.empty()) {
     throw RunError("gives way by a kernel that this body cannot take: " + misfit, partner_of,
                    "Let obstacles give way only with kernels of this body's step and support.");

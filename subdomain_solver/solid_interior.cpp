@@ -11,9 +11,9 @@
 #include "subdomain_solver/contact/surface_contact.hpp"
 #include "subdomain_solver/port_geometry.hpp"
 #include "subdomain_solver/solid_fields.hpp"
-#include "subdomain_solver/time/motion_views.hpp"
 #include "subdomain_solver/time/inertia.hpp"
 #include "subdomain_solver/time/massless_layer.hpp"
+#include "subdomain_solver/time/motion_views.hpp"
 #include "subdomain_solver/time/quasi_static.hpp"
 #include "subdomain_solver/time/stable_steps.hpp"
 #include "subdomain_solver/validity_measures.hpp"
@@ -70,8 +70,7 @@ void SolidInterior::find_traits() {
   traits_.slow = !explicit_in_time && description_.dofs >= long_factorisation;
   // Let go of, material with a history would unload at a joined port: implicit bodies take the way
   // there by Newton's method or by a tangent that is not that of loading, and neither saves a call.
-  traits_.looks_ahead =
-      !joins_ || parts_.problem->model->history_size() == 0 || explicit_in_time;
+  traits_.looks_ahead = !joins_ || parts_.problem->model->history_size() == 0 || explicit_in_time;
 }
 
 void SolidInterior::find_abilities() {
@@ -85,8 +84,7 @@ void SolidInterior::find_abilities() {
     able_.forecast = forecast_.get();
   }
   if (scheme.statics == nullptr) return find_passive();
-  statics_ =
-      std::make_unique<PortStatics>(state_.motion, state_.time, *scheme.statics, *port_map_);
+  statics_ = std::make_unique<PortStatics>(state_.motion, state_.time, *scheme.statics, *port_map_);
   able_.statics = statics_.get();
 }
 
@@ -173,8 +171,7 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   description_.can.force = true;
   const bool small = parts_.problem->model->is_linear() && parts_.deforms;
   description_.linear = small;
-  description_.can.kernel =
-      (small || mesh.dim == 1) && scheme.inertia != nullptr && !ports.empty();
+  description_.can.kernel = (small || mesh.dim == 1) && scheme.inertia != nullptr && !ports.empty();
   for (const PortNodes& p : ports) {
     ports_.push_back({p.name, mesh.nodes_of(p.side), p.inside.rows});
     may_touch_.push_back(p.touched);
@@ -277,7 +274,7 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i, bool) {
     const std::span<const double> carry = window.request.carry;
     const std::size_t each = index(loose_motions(description_));
     integrator.able().statics->carry_to(carry.empty() ? carry
-                                                 : carry.subspan(index(i - 1) * each, each));
+                                                      : carry.subspan(index(i - 1) * each, each));
   }
   if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);
@@ -449,8 +446,7 @@ std::vector<FieldValues> SolidInterior::fields() {
 Energy SolidInterior::energy() const {
   const Motion& motion = state_.motion;
   const double rubbed = surfaces_ != nullptr ? surfaces_->dissipated() : 0.0;
-  const double kinetic =
-      is_passive() ? moving_energy() : parts_.scheme.integrator->kinetic(motion);
+  const double kinetic = is_passive() ? moving_energy() : parts_.scheme.integrator->kinetic(motion);
   return {kinetic, motion.stored, motion.dissipated + rubbed,
           motion.external_work - state_.port_work};  // partners account for what ports exchange
 }

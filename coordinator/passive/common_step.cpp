@@ -65,8 +65,7 @@ CommonStep::CommonStep(const TouchingSurfaces& surfaces, NearRows& near,
       energies_(index(bodies.count())),
       accounts_(index(bodies.count())),
       port_work_(index(bodies.count())) {
-  for (int b = 0; b < bodies.count(); ++b)
-    pressing_.emplace_back(bodies.describe(b).ports.size());
+  for (int b = 0; b < bodies.count(); ++b) pressing_.emplace_back(bodies.describe(b).ports.size());
 }
 
 std::optional<Failed> CommonStep::begin(double time) {
@@ -126,8 +125,7 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
 /// do freely is the first answer where they told of all points that are pressed then.
 std::optional<CommonStep::Refusal> CommonStep::iterate() {
   int checks = 0;
-  if (rows_.empty() && ties_fit() && near_.check(from_, to_, rows_).pairs == 0)
-    return std::nullopt;
+  if (rows_.empty() && ties_fit() && near_.check(from_, to_, rows_).pairs == 0) return std::nullopt;
   for (int round = 0; round < most_rounds; ++round) {
     const bool last = round + 1 == most_rounds;
     const bool told = !prepare_rows();

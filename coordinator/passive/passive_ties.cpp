@@ -73,9 +73,9 @@ void PassiveTies::aim(double length, const Displacements& displacements,
     for (const std::size_t s : {0u, 1u}) {
       const Side& side = ties_[t].sides[s];
       const std::size_t b = index(side.body), p = index(side.port);
-      aim_[t] += (s == 0 ? 1.0 : -1.0) *
-                 (0.5 * part(ties_[t], s, before[b].ports[p].velocity) -
-                  taken_back / length * part(ties_[t], s, displacements[b][p]));
+      aim_[t] +=
+          (s == 0 ? 1.0 : -1.0) * (0.5 * part(ties_[t], s, before[b].ports[p].velocity) -
+                                   taken_back / length * part(ties_[t], s, displacements[b][p]));
     }
     impulses_[t] = length * forces_[t];
   }
@@ -114,9 +114,9 @@ void PassiveTies::see(std::span<const PassiveReply> replies, std::span<const Pas
     velocity_[t].setZero();
     for (const std::size_t s : {0u, 1u}) {
       const Side& side = ties_[t].sides[s];
-      velocity_[t] += (s == 0 ? 1.0 : -1.0) / length_ *
-                      part(ties_[t], s,
-                           replies[index(side.body)].ports[index(side.port)].displacement);
+      velocity_[t] +=
+          (s == 0 ? 1.0 : -1.0) / length_ *
+          part(ties_[t], s, replies[index(side.body)].ports[index(side.port)].displacement);
     }
   }
 }
@@ -154,8 +154,8 @@ Eigen::MatrixXd PassiveTies::block_compliance(const Cluster& cluster) const {
 
 /// T: (rows, values).
 Eigen::MatrixXd PassiveTies::operator_of(const Cluster& cluster) const {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(
-      cluster.rows, static_cast<Eigen::Index>(cluster.values.size()) * dim_);
+  Eigen::MatrixXd out =
+      Eigen::MatrixXd::Zero(cluster.rows, static_cast<Eigen::Index>(cluster.values.size()) * dim_);
   for (std::size_t k = 0; k < cluster.ties.size(); ++k) {
     const PassiveTie& tie = ties_[index(cluster.ties[k])];
     for (const std::size_t s : {0u, 1u}) {

@@ -19,7 +19,7 @@ struct PassiveTie {
   const TieRows* rows = nullptr;
 };
 
-/// Joined bodies in a passive step [M.136]: impulses L of rows T that make both sides move alike,
+/// Joined bodies in a passive step [M.139]: impulses L of rows T that make both sides move alike,
 /// T w = T v/2 at the step's begin - b d/h, with d what the sides have parted by. So the velocities
 /// at its end are alike as well, and T w = 0 from then on. Bodies that hang together by ties, a
 /// cluster, answer contact as one body: what contact presses on one of them, ties hand on.
@@ -36,8 +36,7 @@ class PassiveTies {
   /// Where the sides are when the passive way begins: they part from there on.
   void begin(const Displacements& displacements);
   /// A step begins, of a length [s], from there and with the velocities of these replies.
-  void aim(double length, const Displacements& displacements,
-           std::span<const PassiveReply> before);
+  void aim(double length, const Displacements& displacements, std::span<const PassiveReply> before);
   /// Adds the points of tied ports to those that contact presses on.
   void add_points(int body, std::vector<std::vector<std::int32_t>>& pressed) const;
   /// Adds the impulses [N s] of ties to those of contact.
@@ -69,8 +68,8 @@ class PassiveTies {
     std::vector<std::array<std::int32_t, 3>> values;  // body, port, point of every dim values
     std::vector<Eigen::Index> first;                  // (ties) of their rows
     Eigen::Index rows = 0;
-    Eigen::MatrixXd across;   // [1/kg] (rows, values) T C
-    Eigen::MatrixXd contact;  // [1/kg] (rows, contact values) of it
+    Eigen::MatrixXd across;                  // [1/kg] (rows, values) T C
+    Eigen::MatrixXd contact;                 // [1/kg] (rows, contact values) of it
     Eigen::LDLT<Eigen::MatrixXd> stiffness;  // of T C T^T
     Eigen::VectorXd before;                  // impulses that make ties hold without more contact
   };
@@ -83,9 +82,9 @@ class PassiveTies {
   const Bodies& bodies_;
   int dim_ = 2;
   double length_ = 0.0;
-  std::vector<int> cluster_;                // (bodies)
-  std::vector<std::vector<int>> members_;   // (bodies) of the cluster that a body leads
-  std::vector<Cluster> clusters_;           // (bodies) the same
+  std::vector<int> cluster_;               // (bodies)
+  std::vector<std::vector<int>> members_;  // (bodies) of the cluster that a body leads
+  std::vector<Cluster> clusters_;          // (bodies) the same
   std::span<const PassiveReply> replies_;
   std::span<const PassiveStep> asked_;
   std::vector<Eigen::VectorXd> start_;     // [m] (ties; rows, dim)

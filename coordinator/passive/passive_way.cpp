@@ -23,8 +23,8 @@ constexpr double same_time = 1.0e-9;
 
 }  // namespace
 
-PassiveWay::PassiveWay(std::vector<TouchingPair> pairs,
-                       std::optional<std::vector<PassiveTie>> ties, Bodies& bodies)
+PassiveWay::PassiveWay(std::vector<TouchingPair> pairs, std::optional<std::vector<PassiveTie>> ties,
+                       Bodies& bodies)
     : pairs_(std::move(pairs)),
       ties_(std::move(ties)),
       bodies_(bodies),

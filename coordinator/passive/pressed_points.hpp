@@ -53,7 +53,7 @@ class PressedPoints {
   const TouchingSurfaces& surfaces_;
   std::vector<int> owners_;
   std::vector<Body> bodies_;  // by owner
-  std::vector<int> slots_;  // by point
+  std::vector<int> slots_;    // by point
 };
 
 }  // namespace abut

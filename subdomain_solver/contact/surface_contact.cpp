@@ -55,8 +55,7 @@ void SurfaceContact::state(Archive& archive) {
 }
 
 void SurfaceContact::let_go() {
-  for (std::vector<double>* list :
-       {&pressed_, &reactions_, &turned_, &slid_, &shears_, &anchored_})
+  for (std::vector<double>* list : {&pressed_, &reactions_, &turned_, &slid_, &shears_, &anchored_})
     std::ranges::fill(*list, 0.0);
 }
 
@@ -361,8 +360,7 @@ void SurfaceContact::spread() {
       const auto add = [&](const SparseRows& of, double factor, const auto& to) {
         for (std::int32_t e = of.offsets[r]; e < of.offsets[r + 1]; ++e)
           for (std::size_t d = 0; d < dim; ++d)
-            to(of.columns[e])[d] +=
-                factor * force * of.values[e] * along[c * dim + d];
+            to(of.columns[e])[d] += factor * force * of.values[e] * along[c * dim + d];
       };
       add(rows.k, 1.0, [&](std::int32_t point) { return &pressed(m)[index(point) * dim]; });
       add(rows.n, -1.0,

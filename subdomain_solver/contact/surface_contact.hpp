@@ -70,10 +70,10 @@ class SurfaceContact final : public PortContact {
   };
   struct Meeting {
     std::unique_ptr<SurfaceObstacle> obstacle;
-    std::size_t own = 0;                   // of surfaces_
+    std::size_t own = 0;  // of surfaces_
     ContactLaw law;
-    std::size_t pressed = 0, reacted = 0;    // where its forces begin in pressed_, reactions_
-    std::size_t slid = 0, anchor = 0;        // and its parts of slid_, anchors_, where it rubs
+    std::size_t pressed = 0, reacted = 0;  // where its forces begin in pressed_, reactions_
+    std::size_t slid = 0, anchor = 0;      // and its parts of slid_, anchors_, where it rubs
     // Where what sticks has a coefficient of its own, of the window: points that count as sliding
     // because they slid in earlier sweeps, and those that slid in this one (Reaction::slid).
     std::vector<std::int32_t> told_slid, slid_now;
@@ -133,8 +133,8 @@ class SurfaceContact final : public PortContact {
   std::vector<double> anchors_;     // [m] (meetings that rub, values of the partner): state
   std::vector<double> anchored_;    // (meetings) 1: anchors are those of now: state
   std::vector<double> dissipated_;  // [J] (meetings) by friction: state
-  int looks_ = 0;                  // at the geometry, at this time
-  double time_ = 0.0;              // [s] that was solved for last
+  int looks_ = 0;                   // at the geometry, at this time
+  double time_ = 0.0;               // [s] that was solved for last
   // The problem of all rows, by component:
   std::vector<double> directions_;  // (components, dim) normals and tangents
   std::vector<FrictionRow> rows_;

@@ -59,7 +59,7 @@ class CellKernel {
   /// F of a quadrature point as the material sees it in the last evaluated cell, P beside it.
   const Matrix3& deformation(int point) const { return points_[point].f; }
   const Matrix3& stress(int point) const { return points_[point].response.stress; }
-  /// From now on laws are stiffened, or not, where they are crushed [M.137].
+  /// From now on laws are stiffened, or not, where they are crushed [M.140].
   void guard(bool on) { guarded_ = on; }
   bool guarded() const { return guarded_; }
 
@@ -114,9 +114,9 @@ class CellKernel {
   Eigen::MatrixXd swelling_;  // (nodes x dim, fields) their derivatives by displacement
   Eigen::MatrixXd coupling_, added_;  // work space (nodes x dim, fields)
   Eigen::MatrixXd stiffness_;         // [J] (fields, fields) second derivatives by theta
-  Eigen::VectorXd entries_;   // work space (3 x points)
-  Eigen::MatrixXd scaled_;    // work space (nodes, 3 x points)
-  Eigen::MatrixXd part_;      // work space (nodes, nodes)
+  Eigen::VectorXd entries_;           // work space (3 x points)
+  Eigen::MatrixXd scaled_;            // work space (nodes, 3 x points)
+  Eigen::MatrixXd part_;              // work space (nodes, nodes)
 };
 
 }  // namespace abut

@@ -385,8 +385,7 @@ CellMeasures FeModel::cell_measures(int block, int cell) const {
 bool FeModel::respond(int block, int cell, std::span<const double> q,
                       std::span<const double> history) {
   if (assembly_)
-    return respond(block, cell, assembly_->measures[block].of(cell), q, history,
-                   Need::tangent);
+    return respond(block, cell, assembly_->measures[block].of(cell), q, history, Need::tangent);
   const CellMeasures own = cell_measures(block, cell);
   return respond(block, cell, own.of(0), q, history, Need::tangent);
 }

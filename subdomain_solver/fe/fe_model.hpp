@@ -12,16 +12,10 @@
 #include "subdomain_solver/fe/cell_kernel.hpp"
 #include "subdomain_solver/fe/cell_measures.hpp"
 #include "subdomain_solver/fe/mesh.hpp"
+#include "subdomain_solver/fe/node_frame.hpp"
 #include "subdomain_solver/model.hpp"
 
 namespace abut {
-
-/// Orthonormal frame of one node (dim x dim, columns are its axes): the node's coordinates q are
-/// components along them, which makes an inclined roller a prescribed coordinate.
-struct NodeFrame {
-  std::int32_t node = 0;
-  Matrix3 axes = Matrix3::Identity();
-};
 
 /// Finite elements in one, two or three dimensions, total Lagrangian [M.41]: q holds the nodal
 /// displacements (nodes, dim), in the node's own frame where it has one. What only tangents need
@@ -81,7 +75,7 @@ class FeModel final : public Model {
   [[nodiscard]] bool definite_tangent(std::span<const double> q, std::span<const double> history,
                                       double inertia, SparseMatrix& tangent);
 
-  /// From now on the law is stiffened, or not, where cells are crushed [M.137]: in the plane under
+  /// From now on the law is stiffened, or not, where cells are crushed [M.140]: in the plane under
   /// plane strain, and in space, of laws that are not linear. Returns whether it is.
   bool guard(bool on);
   /// The least det F of the quadrature points at q, of bodies that can be guarded; of others 1.
@@ -125,8 +119,8 @@ class FeModel final : public Model {
     std::vector<double> springs;                      // [N/m] (cells) of linear bars
     SparseMatrix mass;
     std::vector<Vector> cell_masses;  // [kg] (cells; nodes), when first asked for
-    double force_unit = 0.0;     // [N] largest force of a cell at unit strain
-    double gradient_unit = 0.0;  // [1/m] largest gradient of a shape function
+    double force_unit = 0.0;          // [N] largest force of a cell at unit strain
+    double gradient_unit = 0.0;       // [1/m] largest gradient of a shape function
   };
 
   Assembly& assembly() const;
@@ -137,7 +131,7 @@ class FeModel final : public Model {
   void assemble_mass(SparseMatrix& out) const;
   void lump_mass();
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
-  int layer_place(int dof) const;  // among the massless; -1: it is none
+  int layer_place(int dof) const;                        // among the massless; -1: it is none
   bool is_bare(std::int32_t node, int direction) const;  // it has no mass in it
   bool can_be_crushed() const;
   bool takes_mass(std::int32_t node, int direction) const;  // of bare ones: it is free
@@ -195,14 +189,14 @@ class FeModel final : public Model {
   std::vector<CellMeasures> layer_measures_;  // the same, where no assembly has them
   LayerRows layer_rows_;  // [N/m] (massless, dofs) of linear models, when first asked for
   mutable std::unique_ptr<Assembly> assembly_;
-  std::unique_ptr<BatchedCells> batched_;  // null: cell by cell
+  std::unique_ptr<BatchedCells> batched_;      // null: cell by cell
   std::optional<BatchedLayer> batched_layer_;  // where batched_ is; when first asked for
   Vector lumped_;
   Vector whole_;  // as lumped_ was before make_massless(); empty: the same
   CellKernel kernel_;
   CellResponse local_;
   std::vector<double> u_;
-  Vector relative_;  // (dofs) of linear models
+  Vector relative_;            // (dofs) of linear models
   std::vector<double> after_;  // history that nobody asked for
 };
 

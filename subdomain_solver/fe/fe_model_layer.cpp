@@ -51,9 +51,10 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
   try {
     find_layer();
     if (!is_held(*this, massless_.size()))
-      throw InputError("has a surface that too few nodes inside hold while it is free of mass, as "
-                       "contact needs it",
-                       "mesh", "Make the mesh three elements across, or give fewer ports contact.");
+      throw InputError(
+          "has a surface that too few nodes inside hold while it is free of mass, as "
+          "contact needs it",
+          "mesh", "Make the mesh three elements across, or give fewer ports contact.");
   } catch (const InputError&) {
     bare_.clear();
     massless_.clear();
@@ -325,8 +326,7 @@ bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> 
         assembly_ ? assembly_->measures[block].of(cell) : (measures++)->of(0);
     if (!respond(block, cell, geometry, q, history, tangent ? Need::tangent : Need::stress))
       return false;
-    turn(nodes_of(mesh_.blocks[block], cell), &local_.force,
-         tangent ? &local_.tangent : nullptr);
+    turn(nodes_of(mesh_.blocks[block], cell), &local_.force, tangent ? &local_.tangent : nullptr);
     for (Eigen::Index a = 0; a < local_.force.size(); ++a, ++place)
       if (*place >= 0) out.force(*place) += local_.force(a);
     const Eigen::Index values = local_.force.size() * local_.force.size();

@@ -193,8 +193,7 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     // What is left is momentum that the partner gave and the body behind did not get. Steps end at
     // rounding by themselves, so that the margin of the roundings is not for here.
     const double roundoff = problem_.model->roundoff(q) / summed_roundings;
-    if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, roundoff))
-      return std::nullopt;
+    if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, roundoff)) return std::nullopt;
     const double left = rest_.norm();
     const bool anew = !factored_ || yields_ || (iteration > 0 && left > slow * before);
     if (anew && factored_ && !yields_ && !respond(q, history, Model::Want::tangent))

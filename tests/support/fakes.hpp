@@ -52,8 +52,7 @@ class FakeSubdomain : public Subdomain {
   }
 
   /// Called once per substep: a test may sleep, fail or report progress here.
-  std::function<void()> during_substep;
-  std::function<void()> before_probe;
+  std::function<void()> during_substep, before_probe;
   std::function<void(Grid&)> spoil_grid;  // a test may make the grid or the fields unsound here
   std::function<void(std::vector<FieldValues>&)> spoil_fields;
   Counts counts;
@@ -118,8 +117,7 @@ class FakeSubdomain : public Subdomain {
   }
 
   PortKernel probe(const Probing& asked) override {
-    ++counts.kernels;
-    if (before_probe) before_probe();
+    if (++counts.kernels > 0 && before_probe) before_probe();
     PortKernel kernel;
     kernel.step = asked.step, kernel.support = ForceSupport::step;
     kernel.patterns = static_cast<int>(asked.patterns.size());

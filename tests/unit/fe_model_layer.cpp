@@ -85,7 +85,8 @@ TEST_P(Layers, LeaveTheirMassToWhatMoves) {
   }
 }
 
-/// Explicit steps find the forces on a layer by batches of its cells, and its stiffness cell by cell.
+/// Explicit steps find the forces on a layer by batches of its cells, and its stiffness cell by
+/// cell.
 TEST(BatchedLayers, HaveTheForcesOfSingleCells) {
   for (const char* element : {"hex8", "tet4", "quad4"}) {
     FeOptions options;

@@ -1,0 +1,81 @@
+// Goal: joined bodies in their passive forms move as the whole body does, whatever touches them.
+// Oracles: the undivided body, whose halves with nodes that meet are the same equations; momentum
+// and energy.
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/runs.hpp"
+
+namespace abut {
+namespace {
+
+struct Halves {
+  std::string name, element = "quad4", law = "linear_elastic", scheme = "newmark: {step: 2.0e-5}";
+  int dim = 2;
+  bool meet = true;  // nodes of the halves
+  friend std::ostream& operator<<(std::ostream& out, const Halves& h) { return out << h.name; }
+};
+
+SolidText part(const Halves& h, const std::string& name, double height, int layers, double y,
+               int across) {
+  return {.name = name,
+          .material = h.law + ": {youngs_modulus: 1.0e7, poissons_ratio: 0.3, density: 1000.0" +
+                      (h.law == "j2_plasticity" ? ", yield_stress: 1.0e5, hardening: 1.0e6}" : "}"),
+          .integrator = h.scheme,
+          .position = {0.0, y},
+          .velocity = {1.0, -3.0},
+          .sides = {"bottom", "top"},
+          .more = "    contact_layer: {massive: {}}\n",
+          .block = block_in(h.dim, {0.1, height, 0.1}, {across, layers, across}, h.element)};
+}
+
+ResultPtr fall(const Halves& h, bool whole) {
+  const SolidText floor =
+      tool("floor", block_in(h.dim, {0.4, 0.02, 0.4}, {1, 1, 1}), {-0.1, -0.0202, -0.1}, "top");
+  const std::string hit = "interfaces:\n  hit: {sides: [low.bottom, floor.face], contact: {}}\n";
+  if (whole)
+    return run_scene(4.0e-3, 1.0e-4, part(h, "low", 0.1, 4, 0.0, 4).text() + floor.text(), hit);
+  return run_scene(4.0e-3, 1.0e-4,
+                   part(h, "low", 0.05, 2, 0.0, 4).text() +
+                       part(h, "high", 0.05, 2, 0.05, h.meet ? 4 : 3).text() + floor.text(),
+                   hit + "  joint: {sides: [low.top, high.bottom], tied: {}}\n");
+}
+
+class TiedPassively : public testing::TestWithParam<Halves> {};
+
+TEST_P(TiedPassively, AreTheWhole) {
+  const Halves& h = GetParam();
+  const auto halves = fall(h, false), whole = fall(h, true);
+  ASSERT_TRUE(halves->completed() && whole->completed());
+  EXPECT_GT(halves->end.given_up.windows, 0);
+  const auto &last = halves->rows.back(), &undivided = whole->rows.back();
+  const double scale = undivided.total[0];
+  const double energy = last.total[0] + last.total[1];
+  ASSERT_GT(scale, 0.0);
+  // Impulses fit to a twentieth of the thickness, which decides when rows press: some
+  // ten-thousandths of the energy. Where nodes do not meet, the joint is as stiff as its finer side
+  // to some thousandths.
+  const double tolerance = h.meet ? 1e-3 : 2e-2;
+  EXPECT_NEAR(energy, undivided.total[0], tolerance * scale);
+  EXPECT_NEAR(last.momentum[0] + last.momentum[1], undivided.momentum[0],
+              tolerance * halves->masses[0] * 3.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Combinations, TiedPassively,
+    testing::Values(Halves{.name = "linear"}, Halves{.name = "triangles", .element = "tri3"},
+                    Halves{.name = "neo_hookean", .law = "neo_hookean"},
+                    Halves{.name = "plastic", .law = "j2_plasticity"},
+                    Halves{.name = "explicit",
+                           .scheme = "central_difference: {step: 1.0e-5, above_limit: clamp}"},
+                    Halves{.name = "generalized_alpha",
+                           .scheme = "generalized_alpha: {step: 2.0e-5}"},
+                    Halves{.name = "in_space", .element = "hex8", .dim = 3},
+                    Halves{.name = "nodes_apart", .meet = false},
+                    Halves{.name = "nodes_apart_neo_hookean", .law = "neo_hookean", .meet = false}),
+    [](const auto& p) { return p.param.name; });
+
+}  // namespace
+}  // namespace abut
