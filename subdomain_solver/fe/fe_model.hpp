@@ -59,14 +59,12 @@ class FeModel final : public Model {
   bool round() const { return mesh_.dim == 2 && options_.plane == Plane::axisymmetric; }
   double volume() const;  // [m^3] reference
   bool has_frames() const { return !frames_.empty(); }
-  /// A node's own frame; null: the axes of space.
-  const Matrix3* frame(std::int32_t node) const;
+  const Matrix3* frame(std::int32_t node) const;  // its own; null: the axes of space
   /// From the nodes' own frames to the axes of space and back, in place: (nodes, dim).
   void to_space(std::span<double> values) const { rotate(values, false); }
   void to_frames(std::span<double> values) const { rotate(values, true); }
 
-  /// Adds a matrix of some nodes of one cell (nodes x dim), in the axes of space, to a tangent;
-  /// turns it into the nodes' frames.
+  /// Adds a matrix of a cell's nodes (nodes x dim), in the axes of space, to a tangent of frames.
   void add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::MatrixXd& local,
                       SparseMatrix& tangent) const;
 
@@ -75,13 +73,12 @@ class FeModel final : public Model {
   [[nodiscard]] bool definite_tangent(std::span<const double> q, std::span<const double> history,
                                       double inertia, SparseMatrix& tangent);
 
-  /// From now on the law is stiffened, or not, where cells are crushed [M.140]: in the plane under
-  /// plane strain, and in space, of laws that are not linear. Returns whether it is.
+  /// From now on the law is stiffened, or not, where cells are crushed [M.140]; whether it is.
   bool guard(bool on);
-  /// The least det F of the quadrature points at q, of bodies that can be guarded; of others 1.
+  /// The least det F of the quadrature points at q; of bodies that cannot be guarded 1.
   double least_volume(std::span<const double> q) const;
 
-  /// Tangent of one cell at q (nodes x dim), in the axes of space. False: inadmissible.
+  /// Of one cell at q (nodes x dim), in the axes of space. False: inadmissible.
   [[nodiscard]] bool cell_tangent(int block, int cell, std::span<const double> q,
                                   std::span<const double> history, Eigen::MatrixXd& tangent);
   /// Its share of the lumped mass [kg] (nodes), that of massless nodes still theirs: stable steps
@@ -89,7 +86,7 @@ class FeModel final : public Model {
   Vector cell_mass(int block, int cell) const;
   /// Its reference geometry, as that of one cell.
   CellMeasures cell_measures(int block, int cell) const;
-  /// The rule at which a block's cells are integrated.
+  /// Of the quadrature points of a block.
   const Tabulation& rule(int block) const { return blocks_[block].table; }
   /// Null: forces are found cell by cell.
   BatchedCells* batched() { return batched_.get(); }
@@ -133,7 +130,7 @@ class FeModel final : public Model {
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
   int layer_place(int dof) const;                        // among the massless; -1: it is none
   bool is_bare(std::int32_t node, int direction) const;  // it has no mass in it
-  bool can_be_crushed() const;
+  bool can_be_crushed() const;  // by a law that is not linear, of plane strain or in space
   bool takes_mass(std::int32_t node, int direction) const;  // of bare ones: it is free
   void find_layer();
   void find_heirs(int direction);
