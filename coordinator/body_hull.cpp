@@ -1,6 +1,7 @@
 #include "coordinator/body_hull.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -8,6 +9,7 @@
 
 #include "base/index.hpp"
 #include "contract/whole_facets.hpp"
+#include "surface/check.hpp"
 #include "surface/inside.hpp"
 
 namespace abut {
@@ -66,6 +68,16 @@ std::vector<Facet> outside(const Grid& grid, int dim) {
   return out;
 }
 
+/// Of a quadrilateral in space; of others none.
+Corners corners_of(const Facet& facet, const Grid& grid) {
+  Corners corners;
+  if (facet.size() != 4) return corners;
+  for (const std::int32_t node : facet)
+    corners.x[index(corners.count++)] =
+        Eigen::Map<const Eigen::Vector3d>(&grid.points[3 * index(node)]);
+  return corners;
+}
+
 /// Straight facets between all nodes of these, and the points that they need.
 void add(BodyHull& hull, const std::vector<Facet>& facets, const Grid& grid) {
   std::map<std::int32_t, std::int32_t> place;
@@ -86,7 +98,9 @@ void add(BodyHull& hull, const std::vector<Facet>& facets, const Grid& grid) {
       for (const auto i : part) hull.facets.push_back(number(facet[i]));
       hull.offsets.push_back(static_cast<std::int32_t>(hull.facets.size()));
     };
-    if (whole) {
+    if (const auto parts = unfolding(corners_of(facet, grid))) {
+      for (const std::array<int, 3>& part : *parts) push(part);
+    } else if (whole) {
       push(every);
     } else {
       for (const std::vector<int>& part : straight_parts(hull.dim, facet.size())) push(part);

@@ -1,17 +1,36 @@
 #include "subdomain_solver/port_geometry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/index.hpp"
 #include "contract/whole_facets.hpp"
 #include "subdomain_solver/fe/loads.hpp"
+#include "surface/check.hpp"
 
 namespace abut {
 
 namespace {
 
+/// A quadrilateral that is not convex makes two facets, which rows can be made of.
+bool add_divided(const std::vector<std::int32_t>& places, PortGeometry& geometry) {
+  if (geometry.dim != 3 || places.size() != 4) return false;
+  Corners corners{4, {}};
+  for (std::size_t i = 0; i < 4; ++i)
+    corners.x[i] = Eigen::Map<const Eigen::Vector3d>(&geometry.points[3 * index(places[i])]);
+  const auto parts = unfolding(corners);
+  if (!parts) return false;
+  for (const std::array<int, 3>& part : *parts) {
+    for (const int local : part) geometry.facets.push_back(places[index(local)]);
+    geometry.offsets.push_back(static_cast<std::int32_t>(geometry.facets.size()));
+    geometry.parts.push_back(1);
+  }
+  return true;
+}
+
 void add_parts(int dim, const std::vector<std::int32_t>& places, PortGeometry& geometry) {
+  if (add_divided(places, geometry)) return;
   const std::vector<std::vector<int>>& parts = straight_parts(dim, places.size());
   for (const std::vector<int>& part : parts) {
     for (const int local : part) geometry.facets.push_back(places[local]);

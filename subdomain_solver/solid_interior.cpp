@@ -432,8 +432,10 @@ std::vector<FieldValues> SolidInterior::fields() {
   see_nodes();
   std::vector<double> q(nodal_values());
   parts_.map->displacement(state_.motion.q, q);
+  std::vector<double> history = state_.motion.history;
+  history.resize(parts_.model->history_size(), 0.0);  // before the first advance there is none
   std::vector<FieldValues> values =
-      solid_field_values(*parts_.model, {q, u_, v_, state_.motion.history}, parts_.deforms);
+      solid_field_values(*parts_.model, {q, u_, v_, history}, parts_.deforms);
   if (parts_.reactions) values.push_back(nodal_reactions());
   if (touched_.empty()) return values;
   for (FieldValues& field :

@@ -42,18 +42,35 @@ std::optional<SurfaceDefect> check_nodes(const PosedSurface& s, int facet) {
   return std::nullopt;
 }
 
-std::optional<SurfaceDefect> check_shape(const Corners& c) {
+double longest_edge_squared(const Corners& c) {
   double longest = 0.0;
   for (int i = 0; i < c.count; ++i)
     longest = std::max(longest, (c.x[(i + 1) % c.count] - c.x[i]).squaredNorm());
-  if (c.count == 2) return longest > 0.0 ? std::nullopt : std::optional(SurfaceDefect::no_area);
-  if (!(area(c) > least_area * longest)) return SurfaceDefect::no_area;
-  if (c.count == 3) return std::nullopt;
+  return longest;
+}
+
+struct ReflexCorners {
+  int count = 0, last = -1;
+};
+
+/// Of a quadrilateral in its mean plane.
+ReflexCorners reflex_corners(const Corners& c, double longest) {
+  ReflexCorners found;
   const Eigen::Vector3d n = mean_normal(c);
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d before = c.x[i] - c.x[(i + 3) % 4], after = c.x[(i + 1) % 4] - c.x[i];
-    if (!(before.cross(after).dot(n) > least_area * longest)) return SurfaceDefect::folded;
+    if (before.cross(after).dot(n) > least_area * longest) continue;
+    ++found.count;
+    found.last = i;
   }
+  return found;
+}
+
+std::optional<SurfaceDefect> check_shape(const Corners& c) {
+  const double longest = longest_edge_squared(c);
+  if (c.count == 2) return longest > 0.0 ? std::nullopt : std::optional(SurfaceDefect::no_area);
+  if (!(area(c) > least_area * longest)) return SurfaceDefect::no_area;
+  if (c.count == 4 && reflex_corners(c, longest).count > 0) return SurfaceDefect::folded;
   return std::nullopt;
 }
 
@@ -123,6 +140,14 @@ std::optional<UnsoundSurface> check(const PosedSurface& surface) {
     if (defect) return UnsoundSurface{*defect, f};
   }
   return check_orientation(surface);
+}
+
+std::optional<std::array<std::array<int, 3>, 2>> unfolding(const Corners& c) {
+  if (c.count != 4) return std::nullopt;
+  const ReflexCorners found = reflex_corners(c, longest_edge_squared(c));
+  if (found.count != 1) return std::nullopt;
+  const int i = found.last, next = (i + 1) % 4, opposite = (i + 2) % 4, before = (i + 3) % 4;
+  return {{{{i, next, opposite}, {i, opposite, before}}}};
 }
 
 std::string words(const UnsoundSurface& unsound) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -30,6 +31,10 @@ struct UnsoundSurface {
 /// The first defect in the order of facets; nothing when the surface is sound. To be called once
 /// for a surface that comes from outside; it visits every facet.
 std::optional<UnsoundSurface> check(const PosedSurface& surface);
+
+/// The two triangles, by places of its corners, into which a quadrilateral with one corner that is
+/// not convex in its mean plane divides without a fold; none: it is convex, or has two of them.
+std::optional<std::array<std::array<int, 3>, 2>> unfolding(const Corners& quadrilateral);
 
 /// The defect as the words of a message: "facet 3 has no area".
 std::string words(const UnsoundSurface& unsound);

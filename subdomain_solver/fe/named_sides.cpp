@@ -102,6 +102,8 @@ void settle_names(Mesh& mesh, const std::string& where) {
                        where, "Give them different names.");
     set = mesh.node_sets.erase(set);
   }
+  if (!mesh.sides.contains("boundary") && !mesh.node_sets.contains("boundary"))
+    mesh.sides["boundary"] = facets.boundary();
 }
 
 }  // namespace abut

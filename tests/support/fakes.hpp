@@ -35,8 +35,7 @@ class FakeSubdomain : public Subdomain {
   FakeSubdomain() : FakeSubdomain(Options{}) {}
   explicit FakeSubdomain(const Options& options)
       : options_(options), u_(options.position), v_(options.velocity) {
-    description_.name = options.name;
-    description_.model = "point mass on a spring";
+    description_.name = options.name, description_.model = "point mass on a spring";
     description_.dofs = 1;
     description_.mass = options.mass;
     description_.stable_step = std::numeric_limits<double>::infinity();
@@ -51,7 +50,7 @@ class FakeSubdomain : public Subdomain {
     counts = Counts{};
   }
 
-  /// Called once per substep: a test may sleep, fail or report progress here.
+  /// Called once per substep, and for a probe: a test may sleep, fail or report progress here.
   std::function<void()> during_substep, before_probe;
   std::function<void(Grid&)> spoil_grid;  // a test may make the grid or the fields unsound here
   std::function<void(std::vector<FieldValues>&)> spoil_fields;
@@ -117,7 +116,8 @@ class FakeSubdomain : public Subdomain {
   }
 
   PortKernel probe(const Probing& asked) override {
-    if (++counts.kernels > 0 && before_probe) before_probe();
+    ++counts.kernels;
+    if (before_probe) before_probe();
     PortKernel kernel;
     kernel.step = asked.step, kernel.support = ForceSupport::step;
     kernel.patterns = static_cast<int>(asked.patterns.size());

@@ -80,6 +80,7 @@ TEST_P(ExodusBlocks, HaveTheirVolumesSidesAndSets) {
   expect_area("behind", 1, 6.0);
   expect_area("left", 0, -3.0);
   expect_area("right", 0, 3.0);
+  EXPECT_NEAR(measures.surface("boundary").area, 22.0, roundoff(2000, 22.0));
   EXPECT_FALSE(mesh.sides.contains("between"));
   for (std::int32_t n : mesh.nodes_of("edge")) {
     EXPECT_EQ(mesh.points[3 * n + 1], 0.0);
@@ -153,7 +154,7 @@ TEST(ExodusFile, PlanePartsHaveTwoBlocksOfTheirOwnElements) {
   EXPECT_EQ(mesh.blocks[0].name, "block_1");
   EXPECT_EQ(mesh.blocks[0].element->name, "quad8");
   EXPECT_EQ(mesh.blocks[1].element->name, "tri6");
-  EXPECT_EQ(mesh.sides.size(), 4u);
+  EXPECT_EQ(mesh.sides.size(), 5u);  // with all of the boundary
   // the file's node set `left` is the side's nodes in another order: one name, one meaning
   EXPECT_FALSE(mesh.node_sets.contains("left"));
   EXPECT_EQ(mesh.nodes_of("left"), (std::vector<std::int32_t>{0, 3, 7, 9, 12}));

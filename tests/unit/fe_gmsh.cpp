@@ -55,8 +55,9 @@ TEST_P(GmshBlocks, HaveTheirVolumesSidesAndSets) {
   EXPECT_EQ(mesh.blocks[1].name, "lead");
   EXPECT_NEAR(measures.surface("bottom").vector[2], -2.0, roundoff(500, 2.0));
   EXPECT_NEAR(measures.surface("top of it").vector[2], 2.0, roundoff(500, 2.0));
-  EXPECT_EQ(mesh.sides.size(), 3u);  // and the one without a name:
+  EXPECT_EQ(mesh.sides.size(), 4u);  // and all of the boundary, and the one without a name:
   EXPECT_NEAR(measures.surface("surface_77").vector[1], -6.0, roundoff(500, 6.0));
+  EXPECT_NEAR(measures.surface("boundary").area, 22.0, roundoff(2000, 22.0));
   for (std::int32_t n : mesh.nodes_of("between"))
     EXPECT_NEAR(mesh.points[3 * n + 2], 1.0, roundoff(4, 1.0));
   EXPECT_GE(mesh.nodes_of("between").size(), 4u);

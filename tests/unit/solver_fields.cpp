@@ -3,6 +3,7 @@
 // definition of the stress on current lengths.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -10,6 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "base/index.hpp"
+#include "surface/check.hpp"
+#include "tests/support/solid_texts.hpp"
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
@@ -139,6 +142,51 @@ TEST(PairFields, StressOnCurrentLengthsIsLogarithmic) {
     most = std::max(most, std::abs(stress[6 * c]));
   }
   EXPECT_GT(most, 0.1);  // they have met: E v / c is 0.3
+}
+
+/// Laws with a history have none before the first advance.
+TEST(SolidFields, AreSoundBeforeTheBodyBegins) {
+  for (const std::string law : {"linear_elastic", "neo_hookean", "j2_plasticity"}) {
+    SCOPED_TRACE(law);
+    const std::unique_ptr<Subdomain> body =
+        build(SolidText{.name = "block",
+                        .material = law == "j2_plasticity"
+                                        ? "j2_plasticity: {youngs_modulus: 1, poissons_ratio: 0.3, "
+                                          "density: 1, yield_stress: 0.01}"
+                                        : unit_law(law, 0.3),
+                        .integrator = implicit_scheme("newmark", 0.1),
+                        .side = "boundary",
+                        .block = {{2.0, 1.0}, {2, 1}}});
+    expect_sound(*body);
+    for (const double entry : told(*body, "stress")) EXPECT_EQ(entry, 0.0);
+  }
+}
+
+/// The warped top of a sound cell, one corner of which points inward in the mean plane.
+TEST(SolidPorts, OfFacetsThatAreNotConvexAreDivided) {
+  const auto moved = [](const char* axis, std::array<const char*, 4> by) {
+    return fmt::format(
+        "\"{0} + z * ((1 - x) * ((1 - y) * {1} + y * {2}) + x * ((1 - y) * {3} + y * "
+        "{4}))\"",
+        axis, by[0], by[1], by[2], by[3]);
+  };
+  const std::string warped =
+      fmt::format("map: [{}, {}, {}], ", moved("x", {"0.5", "(-0.1)", "0.1", "0.3"}),
+                  moved("y", {"0.5", "0.5", "(-0.5)", "(-0.5)"}),
+                  moved("z", {"0.3", "(-0.2)", "(-0.4)", "0.5"}));
+  for (const bool warp : {false, true}) {
+    SolidText cell{.name = "cell",
+                   .material = unit_law("linear_elastic", 0.3),
+                   .integrator = implicit_scheme("newmark", 0.1),
+                   .side = "boundary",
+                   .block = {{1.0, 1.0, 1.0}, {1, 1, 1}}};
+    if (warp) cell.keys = warped;
+    const std::unique_ptr<Subdomain> body = build(cell);
+    const PortGeometry& port = body->describe().ports[0].geometry;
+    EXPECT_EQ(port.offsets.size(), warp ? 8u : 7u);
+    EXPECT_EQ(port.facets.size(), warp ? 26u : 24u);
+    EXPECT_FALSE(check(posed(port)).has_value());
+  }
 }
 
 TEST(WallFields, AWallIsAPointThatStays) {

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <string>
 
+#include "base/index.hpp"
 #include "surface/check.hpp"
 #include "tests/support/surfaces.hpp"
 
@@ -66,6 +68,28 @@ TEST(SurfaceCheck, NamesTheDefectAndItsFacet) {
             "facet 0 is not convex");
   EXPECT_EQ(spoilt([](SurfaceMesh& m) { std::swap(m.facets[5], m.facets[6]); }),
             "facet 1 has no area");  // a bow
+}
+
+/// Divided along the diagonal from the corner that points inward, both triangles look as the whole
+/// does, and have its area together.
+TEST(SurfaceCheck, DividesAQuadrilateralThatIsNotConvex) {
+  const Eigen::Vector3d x[] = {{0, 0, 0}, {1, 0, 0}, {0.25, 0.25, 0}, {0, 1, 0}};
+  for (int first = 0; first < 4; ++first) {
+    Corners arrow{4, {}};
+    for (int i = 0; i < 4; ++i) arrow.x[index((first + i) % 4)] = x[i];
+    const auto parts = unfolding(arrow);
+    ASSERT_TRUE(parts.has_value());
+    double sum = 0.0;
+    for (const std::array<int, 3>& part : *parts) {
+      Corners triangle{3, {}};
+      for (std::size_t i = 0; i < 3; ++i) triangle.x[i] = arrow.x[index(part[i])];
+      EXPECT_GT(area_vector(triangle).z(), 0.0);
+      sum += area_vector(triangle).z();
+    }
+    EXPECT_DOUBLE_EQ(sum, area_vector(arrow).z());
+    arrow.x[index((first + 2) % 4)] = {1, 1, 0};
+    EXPECT_FALSE(unfolding(arrow).has_value()) << "convex";
+  }
 }
 
 TEST(SurfaceCheck, KnowsSegments) {
