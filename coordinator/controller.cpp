@@ -220,6 +220,7 @@ void Controller::step_window() {
     }
     if (judgement.verdict == Judgement::Verdict::cut) window.end = judgement.end;
     bodies_.restore_all();
+    if (must_go_passively(window)) return step_passively();  // they came faster than was foreseen
   }
 }
 

@@ -54,11 +54,19 @@ struct RigidModelSpec : SolidShapeSpec {
   static constexpr std::string_view name = "rigid";
   void fields(Fields& f);
 };
+/// How a tool turns, about a point that goes its way with it.
+struct TurnSpec {
+  std::vector<double> about;  // [m] (dim) where it is before it has moved; empty: the tool's origin
+  std::vector<double> axis;   // in space, of any length
+  std::string angle;          // [rad]
+  void fields(Fields& f);
+};
 /// A shape that goes where it is told.
 struct RigidToolSpec : SolidShapeSpec {
   static constexpr std::string_view name = "rigid_tool";
   std::vector<std::string> way;  // [m] one expression per dimension; empty: it stands
-  std::optional<double> step;    // [s]; none: windows
+  std::optional<TurnSpec> turn;
+  std::optional<double> step;  // [s]; none: windows
   void fields(Fields& f);
 };
 struct RigidWallSpec {
