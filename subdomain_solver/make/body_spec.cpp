@@ -187,6 +187,13 @@ void MassiveSpec::fields(Fields& f) {
           "Give reaction: internal, or stabilised: false.");
 }
 
+void InterferenceSpec::fields(Fields& f) {
+  f.optional("over", over, "s",
+             "time from the run's begin in which the overlap grows; bodies that are quasi_static "
+             "take it at once",
+             at_least(0.0));
+}
+
 void InitialSpec::fields(Fields& f) {
   f.optional("position", position, "m", "place of the body's own origin, one number per dimension");
   f.optional("velocity", velocity, "m/s",
@@ -204,6 +211,12 @@ void InitialSpec::fields(Fields& f) {
              "distance up to which nodes before such a surface are moved onto it as well",
              at_least(0.0));
   f.idle(!adjust, "adjust_gaps", "it belongs to adjust: true");
+  f.optional_section(
+      "interference", interference,
+      "wanted overlap with what the body touches (press fit, preload): it grows from "
+      "nothing to what is drawn; the body finds its contacts");
+  f.check(!interference || !adjust, "interference", "stands beside adjust, which takes it away",
+          "Leave one of them out.");
 }
 
 void SupportsSpec::fields(Fields& f) {
