@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/index.hpp"
+#include "subdomain_solver/fe/surface_shape.hpp"
 #include "subdomain_solver/port_geometry.hpp"
 #include "subdomain_solver/solid_fields.hpp"
 
@@ -322,7 +323,21 @@ std::vector<double> RigidTool::measure() {
   return told;
 }
 
-Grid RigidTool::grid() { return grid_of(shape_->mesh()); }
+/// Cells that stand for a facet each are shown as facets.
+Grid RigidTool::grid() {
+  Grid grid = grid_of(shape_->mesh());
+  if (!is_surface_shape(shape_->mesh())) return grid;
+  constexpr std::int32_t line = 3, triangle = 5;  // of VTK
+  const std::size_t each = way_.size() + 1;       // nodes of a cell, the last one inside
+  std::vector<std::int32_t> nodes;
+  for (std::size_t k = 0; k < grid.connectivity.size(); ++k)
+    if ((k + 1) % each != 0) nodes.push_back(grid.connectivity[k]);
+  grid.connectivity = std::move(nodes);
+  for (std::size_t c = 0; c < grid.offsets.size(); ++c)
+    grid.offsets[c] = static_cast<std::int32_t>(c * way_.size());
+  std::ranges::fill(grid.types, way_.size() == 2 ? line : triangle);
+  return grid;
+}
 
 std::vector<FieldValues> RigidTool::fields() {
   std::vector<double> u, v;
