@@ -102,7 +102,8 @@ void Narrator::pressed_in(const Joint& joint, double time) {
         time,
         joint.name,
         fmt::format("interference of {:.3g} m is pressed in at the contact '{}': its sides overlap "
-                    "by it at the start, and neither has inertia",
+                    "by it at the start, and neither has inertia. What presses it in is told as "
+                    "work where it grows: initial: {{interference: {{over: TIME}}}}",
                     joint.fit, joint.name),
         {{"interference", joint.fit}}});
 }
