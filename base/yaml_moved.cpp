@@ -75,6 +75,17 @@ YAML::Node moved_points(const YAML::Node& points, const std::vector<double>& way
   return out;
 }
 
+/// The point about which a tool turns is a place as well.
+YAML::Node moved_model(const YAML::Node& model, const std::vector<double>& way) {
+  YAML::Node out = YAML::Clone(model);
+  const std::optional<Found> tool = child(out, "rigid_tool");
+  const std::optional<Found> turn = tool ? child(tool->node, "turn") : std::nullopt;
+  if (!turn || !child(turn->node, "about")) return out;
+  YAML::Node turned = turn->node;
+  turned["about"] = sum(child(turn->node, "about")->node, way);
+  return out;
+}
+
 YAML::Node moved_initial(const YAML::Node& initial, const YAML::Node& own,
                          const std::vector<double>& way) {
   YAML::Node out(YAML::NodeType::Map);
@@ -120,6 +131,7 @@ YAML::Node moved_copy(const YAML::Node& body, const YAML::Node& own) {
     begins = begins || key == "initial";
     out.force_insert(key, initial           ? moved_initial(pair.second, own, way)
                           : key == "points" ? moved_points(pair.second, way)
+                          : key == "model"  ? moved_model(pair.second, way)
                                             : YAML::Clone(pair.second));
   }
   if (!begins)

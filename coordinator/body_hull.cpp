@@ -54,6 +54,7 @@ std::vector<Facet> outside(const Grid& grid, int dim) {
   for (std::size_t c = 0; c < grid.cells(); ++c) {
     const std::int32_t* nodes = grid.connectivity.data() + grid.offsets[c];
     for (const Facet& local : facets_of(grid.types[c])) {
+      if (static_cast<int>(local.size()) < dim) continue;  // edges of a surface in space
       Facet facet;
       for (const std::int32_t node : local) facet.push_back(nodes[node]);
       Facet key(facet.begin(), facet.begin() + corners_of(dim, facet.size()));

@@ -126,6 +126,7 @@ void Controller::start() {
   events_.start();
   for (const auto& [joint, contact, part] : known_exchanges(joints_).obstacles)
     narrator_.found(*joint, clock_.time());
+  for (const Joint& joint : joints_) narrator_.pressed_in(joint, clock_.time());
   watch_energy(guard_.look(bodies_.responses(), bodies_.struck()));
   fill_reports(true);
   narrator_.window({instant, bodies_.responses(), reports_, 0, {}});
@@ -220,6 +221,7 @@ void Controller::step_window() {
     }
     if (judgement.verdict == Judgement::Verdict::cut) window.end = judgement.end;
     bodies_.restore_all();
+    if (must_go_passively(window)) return step_passively();  // they came faster than was foreseen
   }
 }
 

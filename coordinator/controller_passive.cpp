@@ -52,10 +52,12 @@ void Controller::try_window(const TimeWindow& window) {
 /// Which body comes upon itself, where passive forms can keep it off itself; empty: none.
 std::string Controller::folded() { return may_go_passively() ? folds_.look() : std::string(); }
 
-/// Where surfaces come near of which neither side finds contact in another form.
+/// Where surfaces come near, or have met in an attempt, of which neither side finds contact in
+/// another form.
 bool Controller::must_go_passively(const TimeWindow& window) {
   const bool near = std::ranges::any_of(joints_, [&](Joint& joint) {
     if (joint.tied() || !only_passive(joint, bodies_)) return false;
+    if (joint.closed()) return true;
     const auto [apart, speed] = joint.watch->approach(joint, bodies_);
     return apart <= near_ways * speed * window.length();
   });

@@ -24,6 +24,7 @@
 #include "coordinator/surface_start.hpp"
 #include "coordinator/tied_surfaces.hpp"
 #include "coordinator/touching_pairs.hpp"
+#include "coordinator/wanted_fit.hpp"
 
 namespace abut {
 
@@ -230,20 +231,21 @@ void set_surfaces(const InterfaceSpec& spec, const std::string& where, const Sce
 /// with passive forms pass passively.
 void check_start(const InterfaceSpec& spec, const std::string& where, const Joint& joint,
                  const Scene& scene, const Bodies& bodies) {
-  const bool averages = scene.schwarz.on_nonconvergence != OnNonconvergence::passive ||
-                        std::ranges::any_of(joint.sides, [&bodies](const Side& side) {
-                          return !bodies.describe(side.body).can.passive;
-                        });
+  const bool meant = joint.fit > 0.0;
+  const bool averages = !meant && (scene.schwarz.on_nonconvergence != OnNonconvergence::passive ||
+                                   std::ranges::any_of(joint.sides, [&bodies](const Side& side) {
+                                     return !bodies.describe(side.body).can.passive;
+                                   }));
   const auto side = [&](int s) {
     return NamedSurface{spec.sides[s], bodies.port(joint.sides[s]).geometry};
   };
   const int finder = contact_finder(joint, bodies);
   if (only_passive(joint, bodies)) {
-    check_apart(side(0), side(1), where + ".sides");
+    check_apart(side(0), side(1), meant, where + ".sides");
   } else if (spec.contact->points) {
-    check_points(side(finder), side(1 - finder), where);
+    check_points(side(finder), side(1 - finder), meant, where);
   } else {
-    check_surfaces(side(finder), side(1 - finder), averages, where + ".sides");
+    check_surfaces(side(finder), side(1 - finder), averages, meant, where + ".sides");
   }
 }
 
@@ -305,9 +307,11 @@ void set_robin(const InterfaceSpec& spec, const RobinTransmission& how, const Sc
 
 namespace {
 
-void see_adjusted(const Scene& scene, Joint& joint) {
+void see_starts(const Scene& scene, Joint& joint) {
   for (const int s : {0, 1})
     if (scene.bodies[joint.sides[index(s)].body].second.adjusts) joint.role.adjusted = s;
+  for (const int s : {0, 1})
+    if (scene.bodies[joint.sides[index(s)].body].second.fits) joint.role.fitted = s;
 }
 
 /// A pair of a scene where everything may touch everything, as if the scene wrote it.
@@ -350,7 +354,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     Joint& joint = joints.emplace_back(surfaces ? make_surface_joint(name, sides, bodies)
                                                 : make_joint(name, sides, bodies));
     joint.interface = number;
-    see_adjusted(scene, joint);
+    see_starts(scene, joint);
     if (is_inside(spec.transmission)) {
       joint.watch = std::make_unique<InsideWatch>();
       continue;
@@ -363,6 +367,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     }
     if (surfaces) {
       set_surfaces(spec, "interfaces." + name, scene, bodies, joint);
+      find_fit(spec.sides, "interfaces." + name, bodies, joint);
       check_start(spec, "interfaces." + name, joint, scene, bodies);
     } else if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
       set_unilateral(spec, *unilateral, scene.schwarz, bodies, joint);
@@ -373,6 +378,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
                     bodies, joint);
     }
   }
+  check_fits(scene, joints);
   check_supports(joints, bodies);
   check_still_contact(joints, scene.everything() != nullptr, bodies);
   share_out_loose_motions(joints, bodies);
@@ -387,11 +393,12 @@ Joint make_pair(const Scene& scene, const PortPair& pair, const Bodies& bodies) 
   const InterfaceSpec spec = spec_of(scene, pair, bodies);
   Joint joint = make_surface_joint(spec.name, pair, bodies);
   joint.interface = static_cast<int>(scene.interfaces.size());
-  see_adjusted(scene, joint);
+  see_starts(scene, joint);
   const std::string where(everything_path);
   refuse_members(joint, bodies, where);
   refuse_tied_ports(spec, bodies, joint);
   set_surfaces(spec, where, scene, bodies, joint);
+  find_fit(spec.sides, where, bodies, joint);
   return joint;
 }
 
@@ -404,8 +411,7 @@ BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
   for (const PortPair& pair : all.near_at_start(bodies)) {
     if (wrong.size() == most_told) break;
     try {
-      check_start(spec_of(scene, pair, bodies), "", make_pair(scene, pair, bodies), scene,
-                  bodies);
+      check_start(spec_of(scene, pair, bodies), "", make_pair(scene, pair, bodies), scene, bodies);
     } catch (const InputError& error) {
       wrong.push_back(error);
     }

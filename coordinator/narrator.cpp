@@ -96,6 +96,18 @@ void Narrator::found(const Joint& joint, double time) {
         {{"ratio", finder.step / other.step}}});
 }
 
+void Narrator::pressed_in(const Joint& joint, double time) {
+  if (joint.fit == 0.0 || joint.role.fitted >= 0) return;
+  tell({RunEvent::Kind::warning,
+        time,
+        joint.name,
+        fmt::format("interference of {:.3g} m is pressed in at the contact '{}': its sides overlap "
+                    "by it at the start, and neither has inertia. What presses it in is told as "
+                    "work where it grows: initial: {{interference: {{over: TIME}}}}",
+                    joint.fit, joint.name),
+        {{"interference", joint.fit}}});
+}
+
 void Narrator::lowered_step(const Joint& joint, double time, double limit) {
   tell({RunEvent::Kind::warning,
         time,

@@ -35,6 +35,8 @@ class Narrator {
   void found(const Joint& joint, double time);
   /// The contact spring of a joint lowers its Neumann side's stable step to a limit [s].
   void lowered_step(const Joint& joint, double time, double limit);
+  /// Warns of interference that bodies without inertia take at once.
+  void pressed_in(const Joint& joint, double time);
   /// Bodies that are in each other, with the joints that there are.
   void overlap(const Overlap& overlap, std::span<const Joint> joints);
   /// An interface whose sides went past each other.

@@ -99,6 +99,15 @@ bool OverlapSearch::meant(std::pair<int, int> pair, std::span<const Joint> joint
   return depth_of(one, other).depth > least_depth(one, other);
 }
 
+/// [m] Wanted interference, not or not yet pressed in.
+double OverlapSearch::fit(std::pair<int, int> pair, std::span<const Joint> joints) {
+  constexpr double rounding = 1.01;  // places are of nodes, the fit is of averages
+  double most = 0.0;
+  for (const Joint& joint : joints)
+    if (joins(joint, pair)) most = std::max(most, rounding * joint.fit);
+  return most;
+}
+
 std::vector<Overlap> OverlapSearch::look(Bodies& bodies, std::span<const Joint> joints,
                                          double time) {
   std::vector<Overlap> found;
@@ -110,6 +119,7 @@ std::vector<Overlap> OverlapSearch::look(Bodies& bodies, std::span<const Joint> 
       const BodyHull &one = hulls_[a], &other = hulls_[b];
       const Depth deepest = depth_of(one, other);
       if (!(deepest.depth > least_depth(one, other))) continue;
+      if (deepest.depth <= fit({a, b}, joints)) continue;
       const auto told = told_.find({a, b});
       if (told != told_.end() && deepest.depth <= much_deeper * told->second) continue;
       if (told == told_.end() && meant({a, b}, joints)) continue;

@@ -26,6 +26,7 @@ class OverlapSearch {
   void make(Bodies& bodies);
   void pose_all(Bodies& bodies);
   bool meant(std::pair<int, int> pair, std::span<const Joint> joints);
+  static double fit(std::pair<int, int> pair, std::span<const Joint> joints);
 
   bool made_ = false;
   std::vector<BodyHull> hulls_;                 // by body

@@ -208,9 +208,12 @@ void RoleReader::assign() {
     BodyEntry& entry = scene_.bodies[b].second;
     entry.context = {};
     entry.context.others_touch = scene_.everything() != nullptr;
+    const std::string initial = path_of(scene_.bodies[b].first) + ".initial.";
     const BodySpec* own =
-        document_.has(path_of(scene_.bodies[b].first) + ".initial.adjust") ? spec(b) : nullptr;
+        document_.has(initial + "adjust") || document_.has(initial + "interference") ? spec(b)
+                                                                                     : nullptr;
     entry.adjusts = own != nullptr && own->initial.adjust;
+    entry.fits = own != nullptr && own->initial.interference;
     entry.context.mesh_digest = digest_for(entry, b);
   }
   compare_bodies();

@@ -52,6 +52,7 @@ struct BodyEntry {
   bool external = false;  // of another program, which alone can describe it
   std::string like;       // body that it has the rest from; the document has written it out
   bool adjusts = false;   // its own specification has initial: {adjust: true}
+  bool fits = false;      // ... initial: {interference: ...}
   BodyContext context;    // what the interfaces make of it
   void fields(Fields& f);
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -70,27 +71,41 @@ std::string words(const OverlapPlace& place, const std::array<const NamedSurface
                      sides[index(1 - place.surface)]->name);
 }
 
+/// Places that two sides share, deeper than is allowed of nodes of either [m].
+std::vector<OverlapPlace> shared_places(const NamedSurface& one, const NamedSurface& other,
+                                        const std::array<double, 2>& allowed) {
+  constexpr double reach = 2.0;  // facet sizes: behind an open surface
+  const StartSurface k = start(one.geometry), n = start(other.geometry);
+  const double size = facet_size(k, n), rounding = tolerance * size;
+  return overlap_places(k.surface, n.surface,
+                        {{allowed[0] + rounding, allowed[1] + rounding}, reach * size});
+}
+
+/// What parts bodies that overlap so deep [m].
+std::string remedy(double depth, const NamedSurface& one, const NamedSurface& other) {
+  std::string text = "Move a body with initial.position until they are apart";
+  if (depth <= facet_size(start(one.geometry), start(other.geometry)))
+    text += ", or give one of them initial: {adjust: true}";
+  if (depth <= deepest_fit(one, other))
+    text += ", or, where a fit is meant, initial: {interference: {over: TIME}}";
+  return text + ".";
+}
+
 /// Refuses bodies that are in each other by more than is allowed of nodes of either [m].
 void check_overlap(const NamedSurface& one, const NamedSurface& other,
                    const std::array<double, 2>& allowed, const std::string& where) {
-  constexpr double reach = 2.0, apart = 4.0;  // facet sizes: behind an open surface, of places
+  constexpr double apart = 4.0;  // facet sizes, of places
   constexpr int most_told = 5;
-  const StartSurface k = start(one.geometry), n = start(other.geometry);
-  const double size = facet_size(k, n), rounding = tolerance * size;
-  const std::vector<OverlapPlace> all = overlap_places(
-      k.surface, n.surface, {{allowed[0] + rounding, allowed[1] + rounding}, reach * size});
+  const std::vector<OverlapPlace> all = shared_places(one, other, allowed);
   if (all.empty()) return;
+  const double size = facet_size(start(one.geometry), start(other.geometry));
   const std::array sides{&one, &other};
   const std::vector<OverlapPlace> told = parted_places(all, apart * size, most_told);
   std::string text = fmt::format("its sides overlap by {:.3g} m at the start: {}",
                                  told.front().depth, words(told.front(), sides));
   for (std::size_t i = 1; i < told.size(); ++i)
     text += fmt::format(", and {} by {:.3g} m", words(told[i], sides), told[i].depth);
-  throw InputError(
-      text, where,
-      fmt::format(
-          "Move a body with initial.position until they are apart{}.",
-          told.front().depth <= size ? ", or give one of them initial: {adjust: true}" : ""));
+  throw InputError(text, where, remedy(told.front().depth, one, other));
 }
 
 /// Rows will be of the nodes of the surface that has edges, divided as finely as the finder's
@@ -137,22 +152,42 @@ void check_each(const NamedSurface& one, const NamedSurface& other, const std::s
 
 }  // namespace
 
+double overlap_of(const NamedSurface& one, const NamedSurface& other) {
+  const double round = roundness(start(one.geometry), start(other.geometry));
+  const std::vector<OverlapPlace> places = shared_places(one, other, {round, round});
+  const StartSurface k = start(one.geometry), n = start(other.geometry);
+  double depth = places.empty() ? 0.0 : places.front().depth;
+  for (const auto& [own, its] : {std::pair(&k, &n), std::pair(&n, &k)}) {
+    if (has_edges(its->surface) && !has_edges(own->surface)) continue;  // rows are of the other's
+    const SurfaceRows rows = average_rows(*own, *its);
+    const int row = deepest(rows, tolerance * facet_size(k, n));
+    if (row >= 0) depth = std::max(depth, -rows.gaps[row]);
+  }
+  return depth;
+}
+
+double deepest_fit(const NamedSurface& one, const NamedSurface& other) {
+  return 0.5 * std::min(one.geometry.spacing, other.geometry.spacing);
+}
+
 void check_surfaces(const NamedSurface& finder, const NamedSurface& other, bool averages,
-                    const std::string& where) {
+                    bool meant, const std::string& where) {
   check_each(finder, other, where);
-  const double round = roundness(start(finder.geometry), start(other.geometry));
-  check_overlap(finder, other, {round, round}, where);
+  check_apart(finder, other, meant, where);
   const bool turned = has_edges(posed(other.geometry)) && !has_edges(posed(finder.geometry));
   if (turned) check_division(finder, other, where);
   if (averages) check_averages(turned ? other : finder, turned ? finder : other, where);
 }
 
-void check_apart(const NamedSurface& one, const NamedSurface& other, const std::string& where) {
+void check_apart(const NamedSurface& one, const NamedSurface& other, bool meant,
+                 const std::string& where) {
   const double round = roundness(start(one.geometry), start(other.geometry));
-  check_overlap(one, other, {round, round}, where);
+  const double allowed = meant ? std::max(round, deepest_fit(one, other)) : round;
+  check_overlap(one, other, {allowed, allowed}, where);
 }
 
-void check_points(const NamedSurface& finder, const NamedSurface& other, const std::string& where) {
+void check_points(const NamedSurface& finder, const NamedSurface& other, bool meant,
+                  const std::string& where) {
   check_each(finder, other, where + ".sides");
   if (has_edges(posed(other.geometry)))
     throw InputError(fmt::format("is point_to_surface, but {} has sharp edges, which would pass "
@@ -162,6 +197,7 @@ void check_points(const NamedSurface& finder, const NamedSurface& other, const s
                      fmt::format("Leave rows out, or give transmission: {{unilateral: {{kinematic: "
                                  "{}}}}}.",
                                  other.name));
+  if (meant) return check_apart(finder, other, true, where + ".sides");
   const double round = roundness(start(finder.geometry), start(other.geometry));
   check_overlap(finder, other, {0.0, round}, where + ".sides");
 }

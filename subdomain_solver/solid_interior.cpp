@@ -128,7 +128,10 @@ void SolidInterior::find_surfaces() {
     for (const std::int32_t node : nodes) surface.frames.push_back(model.frame(node));
   }
   if (surfaces.empty()) return;
-  auto contact = std::make_unique<SurfaceContact>(std::move(surfaces), description_.name);
+  std::optional<Interference> interference;
+  if (parts_.pressed_over) interference.emplace(*parts_.pressed_over);
+  auto contact = std::make_unique<SurfaceContact>(std::move(surfaces), description_.name,
+                                                  std::move(interference));
   surfaces_ = contact.get();
   contact_ = std::move(contact);
   for (std::string& name : touch_measure_names(touched_))
@@ -449,8 +452,10 @@ Energy SolidInterior::energy() const {
   const Motion& motion = state_.motion;
   const double rubbed = surfaces_ != nullptr ? surfaces_->dissipated() : 0.0;
   const double kinetic = is_passive() ? moving_energy() : parts_.scheme.integrator->kinetic(motion);
+  const double pressed_in = surfaces_ != nullptr ? surfaces_->pressed_in() : 0.0;
   return {kinetic, motion.stored, motion.dissipated + rubbed,
-          motion.external_work - state_.port_work};  // partners account for what ports exchange
+          // partners account for what ports exchange
+          motion.external_work + pressed_in - state_.port_work};
 }
 
 /// A hint, which the horizon's flight verifies: waves inside may yet throw the surface faster.

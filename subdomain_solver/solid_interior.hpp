@@ -67,6 +67,7 @@ class SolidInterior final : public Interior,
     std::vector<std::unique_ptr<Load>> whole_loads;
     const RigidModel* rigid = nullptr;  // the problem's model, of a rigid body
     bool massive_surface = false;       // it has no layer, and takes obstacles when passive alone
+    std::optional<double> pressed_over;  // [s] in which wanted interference grows; absent: none
   };
 
   SolidInterior(std::string name, Parts parts, const std::vector<PortNodes>& ports);

@@ -47,6 +47,7 @@ void stay_below(double most, const Vector& plain, std::vector<double>& v, const 
 void SolidInterior::find_passive() {
   const bool modal = parts_.reduced != nullptr && parts_.rigid == nullptr;
   if (description_.dim == 1 || (modal && parts_.reactions)) return;
+  if (parts_.pressed_over) return;  // its rows know of distances alone, not of what is wanted
   able_.passive = this;
   description_.can.passive = true;
   description_.can.only_passive = parts_.massive_surface;

@@ -20,6 +20,7 @@ struct Role {
   int kinematic = 0;   // index of the kinematic (Dirichlet) side
   bool fixed = false;  // by the scene, or for the rest of the run; else it is still to be chosen
   int adjusted = -1;   // side whose surface was moved onto the other's; -1: none
+  int fitted = -1;     // side that grows its overlap with the other one; -1: none
 };
 
 /// Two points on a line, the ends of bars. Ports of surfaces have none of this.
@@ -56,6 +57,7 @@ struct Joint {
   std::array<Side, 2> sides;
   Role role;
   PointGap line;
+  double fit = 0.0;  // [m] interference that is wanted, as it is drawn
   std::unique_ptr<Exchange> exchange;  // null: contact inside a body, which exchanges nothing
   std::unique_ptr<Watch> watch;
   ContactState contact;

@@ -77,6 +77,7 @@ std::optional<int> shorter_steps(const Joint& joint, const Bodies& bodies) {
 int contact_finder(const Joint& joint, const Bodies& bodies) {
   if (joint.role.fixed) return joint.role.kinematic;
   if (const std::optional<int> only = only_side(joint, bodies)) return *only;
+  if (joint.role.fitted >= 0) return joint.role.fitted;
   if (joint.role.adjusted >= 0) return joint.role.adjusted;
   bool yields[2];
   double spacing[2];
@@ -124,7 +125,7 @@ void Roles::start(std::span<Joint> joints) {
 void Roles::join(Joint& joint) {
   if (joint.role.fixed) return;
   const std::optional<int> only = only_side(joint, bodies_);
-  settle(joint, only ? *only : contact_finder(joint, bodies_), !only);
+  settle(joint, only ? *only : contact_finder(joint, bodies_), !only && joint.role.fitted < 0);
   joint.role.fixed = true;
 }
 

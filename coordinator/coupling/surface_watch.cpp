@@ -19,6 +19,7 @@ constexpr double near_ways = 1.5, far_ways = 4.0;
 
 Approach SurfaceWatch::approach(const Joint& joint, const Bodies& bodies) {
   if (!bodies.taken_back()) approach_ = approach_of(joint, margin_, bodies);
+  if (joint.fit > 0.0) approach_.apart = 0.0;  // overlap grows there, whatever moves
   return approach_;
 }
 
@@ -79,7 +80,7 @@ void SurfaceWatch::see_passing(const Joint& joint, const Bodies& bodies) {
 }
 
 bool SurfaceWatch::passed(const Joint& joint, const Bodies& bodies) const {
-  return near_ && changed_places(joint, bodies);
+  return near_ && joint.fit == 0.0 && changed_places(joint, bodies);  // it is pressed apart
 }
 
 void SurfaceWatch::state(Archive& archive) {

@@ -19,7 +19,7 @@ namespace abut {
 /// What is behind a partner's surface, or on it, when the passive way begins: points, and in space
 /// edges that pass through it with both ends outside. Each is held by a row along its shortest way
 /// out, so that it goes no deeper, until it is out. Only its own distances from that one surface
-/// are not kept above zero meanwhile: they are those of the other side [M.136].
+/// are not kept above zero meanwhile: they are those of the other side [M.138].
 class BehindRows {
  public:
   using Places = std::vector<Eigen::Vector3d>;

@@ -23,8 +23,9 @@ constexpr double settled = 1.0e-12;
 
 }  // namespace
 
-SurfaceContact::SurfaceContact(std::vector<Surface> surfaces, const std::string& body)
-    : body_(body) {
+SurfaceContact::SurfaceContact(std::vector<Surface> surfaces, const std::string& body,
+                               std::optional<Interference> interference)
+    : body_(body), interference_(std::move(interference)) {
   for (Surface& surface : surfaces) {
     const int dim = surface.geometry->dim;
     for (const std::int32_t node : surface.nodes)
@@ -52,6 +53,7 @@ void SurfaceContact::state(Archive& archive) {
   archive.field("anchors", anchors_);
   archive.field("anchored", anchored_);
   archive.field("dissipated", dissipated_);
+  if (interference_) interference_->state(archive);
 }
 
 void SurfaceContact::let_go() {
@@ -97,6 +99,7 @@ void SurfaceContact::meet(const Window& window) {
       }
       sizes_.pressed += surfaces_[s].at.size();
       sizes_.reacted += m.obstacle->width();
+      if (interference_) interference_->meet(*own.geometry, met.surface, met.law.points);
       meetings_.push_back(std::move(m));
     }
   }
@@ -117,6 +120,7 @@ void SurfaceContact::begin_forces() {
 void SurfaceContact::impose(const Window& window) {
   meet(window);
   begin_forces();
+  if (interference_) interference_->begin(window.grid.begin);
   for (std::size_t k = 0; k < meetings_.size(); ++k) {
     Meeting& m = meetings_[k];
     const std::size_t port = m.obstacle->port();
@@ -160,6 +164,15 @@ void SurfaceContact::settle(std::vector<double>& forces) {
     if (own.neighbours.act()) own.neighbours.settle(pressing(own));
   for (std::size_t k = 0; k < meetings_.size(); ++k)
     if (meetings_[k].law.friction.rubs() && meetings_[k].obstacle->acts()) settle_friction(k);
+  for (std::size_t k = 0; interference_ && k < meetings_.size(); ++k) settle_interference(k);
+}
+
+void SurfaceContact::settle_interference(std::size_t meeting) {
+  const Meeting& m = meetings_[meeting];
+  double force = 0.0;
+  for (int r = 0; m.obstacle->acts() && r < m.rows; ++r)
+    force += row_force_(m.first + static_cast<Eigen::Index>(r) * m.parts);
+  interference_->settle(meeting, time_, force);
 }
 
 void SurfaceContact::react(std::size_t port, std::size_t partner, const std::vector<double>&,
@@ -188,13 +201,14 @@ void SurfaceContact::see_gaps(std::size_t port, const SeeGap& see) const {
   for (const Meeting& m : meetings_) {
     if (m.obstacle->port() != port || !m.obstacle->acts()) continue;
     const SurfaceRows& rows = m.obstacle->rows();
+    const double left = left_of(m);
     for (int r = 0; r < rows.count(); ++r) {
       const std::int32_t first = rows.k.offsets[r], last = rows.k.offsets[index(r) + 1];
       const auto begin = rows.k.values.begin();
       const auto most = std::max_element(begin + first, begin + last);
       const bool sticks =
           r < m.rows && row_state(rows_[m.first_row + r], row_force_) == RowState::sticks;
-      see(index(rows.k.columns[most - begin]), rows.gaps[r], sticks);
+      see(index(rows.k.columns[most - begin]), rows.gaps[r] + left, sticks);
     }
   }
 }
@@ -307,9 +321,10 @@ bool SurfaceContact::find_gaps(const Vector& free) {
     if (m.rows == 0) continue;
     row_gaps_.resize(index(m.rows));
     gaps(m.obstacle->rows(), surfaces_[m.own].pose, m.obstacle->free(), row_gaps_);
+    const double left = left_of(m);
     for (int r = 0; r < m.rows; ++r) {
-      gaps_(m.first + r * m.parts) = row_gaps_[r];
-      press = press || !(row_gaps_[r] >= 0.0);
+      gaps_(m.first + r * m.parts) = row_gaps_[r] + left;
+      press = press || !(row_gaps_[r] + left >= 0.0);
     }
     if (m.parts > 1) find_slips(m);
   }

@@ -3,10 +3,12 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/archive.hpp"
+#include "subdomain_solver/contact/interference.hpp"
 #include "subdomain_solver/contact/port_contact.hpp"
 #include "subdomain_solver/contact/surface_obstacle.hpp"
 #include "subdomain_solver/contact/tied_neighbours.hpp"
@@ -25,8 +27,10 @@ class SurfaceContact final : public PortContact {
   struct Surface : PortSurface {
     std::vector<const Matrix3*> frames;  // by point; null: the axes of space
   };
-  /// `body`: its name, for people. Frames must outlive it.
-  SurfaceContact(std::vector<Surface> surfaces, const std::string& body);
+  /// `body`: its name, for people. Frames must outlive it. `interference`: absent, there is none
+  /// that is wanted.
+  SurfaceContact(std::vector<Surface> surfaces, const std::string& body,
+                 std::optional<Interference> interference = {});
 
   /// What changes during a step beside the forces on ports.
   void state(Archive& archive);
@@ -50,6 +54,8 @@ class SurfaceContact final : public PortContact {
   void finish(std::size_t port, std::size_t partner, Reaction& reply) const;
   /// [J] by friction with all partners, since the run began.
   double dissipated() const;
+  /// [J] on this body and its partners, by overlap that grows.
+  double pressed_in() const { return interference_ ? interference_->work() : 0.0; }
   /// Calls `see` with the points of a port that have something near, the gaps [m] there, and
   /// whether friction holds them.
   using SeeGap = std::function<void(std::size_t point, double gap, bool sticks)>;
@@ -104,6 +110,11 @@ class SurfaceContact final : public PortContact {
   void begin_slid(Meeting& m, const BoundaryData& boundary, const Substeps& grid);
   void settle_slid(Meeting& m);
   void settle_friction(std::size_t meeting);
+  void settle_interference(std::size_t meeting);
+  /// [m] by which the gaps of a meeting are larger than they are, at the time solved for.
+  double left_of(const Meeting& m) const {
+    return interference_ ? interference_->left(index(&m - meetings_.data()), time_) : 0.0;
+  }
   void forget_shears(const Meeting& m);
   void spread();
   [[nodiscard]] bool move(const Vector& free, Compliance& give);
@@ -114,6 +125,7 @@ class SurfaceContact final : public PortContact {
 
   std::vector<Own> surfaces_;
   std::string body_;
+  std::optional<Interference> interference_;
   std::vector<int> dofs_;
   struct Sizes {  // of what all meetings so far have in the state
     std::size_t pressed = 0, reacted = 0, slid = 0, shears = 0, anchor = 0;

@@ -18,6 +18,7 @@
 #include "subdomain_solver/fe/facet_index.hpp"
 #include "subdomain_solver/fe/gmsh_data.hpp"
 #include "subdomain_solver/fe/named_sides.hpp"
+#include "subdomain_solver/fe/surface_shape.hpp"
 
 namespace abut {
 namespace {
@@ -29,7 +30,8 @@ std::span<const std::int32_t> nodes_of(const GmshData::Elements& block, std::siz
 
 class Builder {
  public:
-  Builder(GmshData data, double scale) : data_(std::move(data)), scale_(scale) {}
+  Builder(GmshData data, double scale, int surface_in)
+      : data_(std::move(data)), scale_(scale), surface_in_(surface_in) {}
 
   Mesh build() {
     for (const GmshData::Elements& block : data_.elements)
@@ -37,6 +39,7 @@ class Builder {
     if (mesh_.dim == 0)
       throw InputError("has no elements but points", data_.name, "Mesh the part in Gmsh.");
     check_names();
+    if (mesh_.dim + 1 == surface_in_) return surface_shape(surface(), data_.name);
     add_points();
     add_cells();
     refuse_repeated_cells(mesh_, data_.name);
@@ -80,6 +83,22 @@ class Builder {
         throw InputError("has two physical groups called '" + group_name(group) + "'", data_.name,
                          "Give them different names in Gmsh.");
     }
+  }
+
+  SurfaceFacets surface() {
+    SurfaceFacets out;
+    out.dim = surface_in_;
+    for (std::size_t n = 0; n < data_.node_tags.size(); ++n)
+      for (int d = 0; d < out.dim; ++d)
+        out.points.push_back(scale_ * data_.points[3 * n + index(d)]);
+    for (const GmshData::Elements& block : data_.elements) {
+      if (block.type->dim != mesh_.dim) continue;
+      const std::vector<std::string> groups = groups_of(block);
+      for (std::size_t e = 0; e < block.tags.size(); ++e)
+        out.add(nodes_of(block, e), fmt::format("element {} ({})", block.tags[e], block.type->name),
+                groups);
+    }
+    return out;
   }
 
   /// Nodes of cells, in the file's order.
@@ -176,22 +195,23 @@ class Builder {
 
   GmshData data_;
   double scale_;
+  int surface_in_;
   Mesh mesh_;
   std::vector<std::int32_t> number_;  // in the mesh, of a node of the file; -1: in no cell
 };
 
 }  // namespace
 
-Mesh gmsh_mesh(std::string bytes, const std::string& name, double scale) {
-  return Builder(parse_gmsh(std::move(bytes), name), scale).build();
+Mesh gmsh_mesh(std::string bytes, const std::string& name, double scale, int surface_in) {
+  return Builder(parse_gmsh(std::move(bytes), name), scale, surface_in).build();
 }
 
-Mesh read_gmsh(const std::string& path, double scale) {
+Mesh read_gmsh(const std::string& path, double scale, int surface_in) {
   // The mesh takes about as much memory as the text that it was read from.
   const std::size_t most = static_cast<std::size_t>(0.5 * machine_memory());
   constexpr const char* remedy = "Check the path of the mesh.";
   check_input_file(path, most, remedy);
-  return gmsh_mesh(read_input_file(path, most, remedy), path, scale);
+  return gmsh_mesh(read_input_file(path, most, remedy), path, scale, surface_in);
 }
 
 }  // namespace abut

@@ -95,22 +95,47 @@ void RigidModelSpec::fields(Fields& f) {
   f.idle(true, "plane", "a rigid body has no stress");
 }
 
+void TurnSpec::fields(Fields& f) {
+  f.optional("about", about, "m",
+             "point about which the tool turns, where it is before it has moved, one number per "
+             "dimension; it goes the tool's way; default the tool's own origin");
+  f.optional("axis", axis, "",
+             "direction about which the tool turns in space, anticlockwise to one who looks "
+             "against it; in the plane it is z");
+  f.required("angle", angle, "rad", "angle by which the tool is turned, an expression in t");
+}
+
 void RigidToolSpec::fields(Fields& f) {
   SolidShapeSpec::fields(f);
   f.optional("way", way, "m",
              "displacement of the tool, one expression in t per dimension; it stands without");
+  f.optional_section("turn", turn, "how the tool turns");
   f.optional("step", step, "s",
-             "time between the points at which its way is told; default the "
-             "window",
+             "time between the points at which its way is told, from one to the next straight; "
+             "default the window",
              positive);
   f.check(dimension > 1, "dimension", "is 1, but a tool has a surface",
           "Use rigid_wall for bars, or give dimension 2 or 3.");
   f.check(way.empty() || way.size() == index(dimension), "way",
           fmt::format("has {} expressions", way.size()),
           fmt::format("Give {} expressions, one per dimension.", dimension));
+  f.check(!turn || turn->about.empty() || turn->about.size() == index(dimension), "turn.about",
+          fmt::format("has {} numbers", turn ? turn->about.size() : 0),
+          fmt::format("Give {} numbers, one per dimension.", dimension));
+  f.check(!turn || dimension != 3 || turn->axis.size() == 3, "turn.axis",
+          turn && turn->axis.empty() ? "is missing"
+                                     : fmt::format("has {} numbers", turn ? turn->axis.size() : 0),
+          "Give the three numbers of a direction, for example [0, 0, 1].");
+  const auto is_zero = [](double x) { return x == 0.0; };
+  f.check(!turn || dimension != 3 || !std::ranges::all_of(turn->axis, is_zero), "turn.axis",
+          "has no direction", "Give a direction that is not zero, for example [0, 0, 1].");
+  f.check(!turn || plane != Plane::axisymmetric, "turn",
+          "does not fit an axisymmetric tool, which is the same all around",
+          "Mesh the whole tool in space, or leave turn out.");
+  f.idle(turn && dimension != 3, "turn.axis", "in the plane all turns are about z");
   f.idle(true, "thickness", "a rigid tool has no mass");
   f.idle(plane != Plane::axisymmetric, "plane", "a rigid tool has no stress");
-  f.idle(way.empty(), "step", "a tool that stands has no way to tell");
+  f.idle(way.empty() && !turn, "step", "a tool that stands has no way to tell");
 }
 
 void PairedBarSpec::fields(Fields& f) {
@@ -162,6 +187,13 @@ void MassiveSpec::fields(Fields& f) {
           "Give reaction: internal, or stabilised: false.");
 }
 
+void InterferenceSpec::fields(Fields& f) {
+  f.optional("over", over, "s",
+             "time from the run's begin in which the overlap grows; bodies that are quasi_static "
+             "take it at once",
+             at_least(0.0));
+}
+
 void InitialSpec::fields(Fields& f) {
   f.optional("position", position, "m", "place of the body's own origin, one number per dimension");
   f.optional("velocity", velocity, "m/s",
@@ -179,6 +211,12 @@ void InitialSpec::fields(Fields& f) {
              "distance up to which nodes before such a surface are moved onto it as well",
              at_least(0.0));
   f.idle(!adjust, "adjust_gaps", "it belongs to adjust: true");
+  f.optional_section(
+      "interference", interference,
+      "wanted overlap with what the body touches (press fit, preload): it grows from "
+      "nothing to what is drawn; the body finds its contacts");
+  f.check(!interference || !adjust, "interference", "stands beside adjust, which takes it away",
+          "Leave one of them out.");
 }
 
 void SupportsSpec::fields(Fields& f) {

@@ -42,12 +42,18 @@ struct MassiveSpec {
   void fields(Fields& f);
 };
 
+/// Wanted interference: the overlap grows from nothing to what is drawn.
+struct InterferenceSpec {
+  double over = 0.0;  // [s] from the run's begin; 0: at once
+  void fields(Fields& f);
+};
 struct InitialSpec {
   std::vector<double> position = {0.0}, velocity = {0.0};  // [m] [m/s] (dim)
   // one expression per dimension, added to the uniform values
   std::vector<std::string> displacement_field, velocity_field;
   bool adjust = false;       // the mesh is moved out of what it may touch, before there is stress
   double adjust_gaps = 0.0;  // [m]
+  std::optional<InterferenceSpec> interference;
   void fields(Fields& f);
 };
 struct SupportsSpec {

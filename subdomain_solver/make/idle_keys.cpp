@@ -48,6 +48,10 @@ void BodySpec::idle_of_walls_and_pairs(Fields& f) const {
   }
   f.idle(shape() == nullptr ? !pair : shape()->dimension == 1, "initial.adjust",
          "it is for surfaces, of bodies in two and three dimensions");
+  const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
+  f.idle(fe == nullptr || fe->dimension == 1, "initial.interference",
+         "it is of the body that finds contact on its surface: of model fe, in two and three "
+         "dimensions");
   f.idle(pair, "integrator.central_difference.above_limit", "it is for solids");
   const auto* elastic = material ? std::get_if<LinearElasticSpec>(&*material) : nullptr;
   const bool one_dimension = shape() != nullptr && shape()->dimension == 1;

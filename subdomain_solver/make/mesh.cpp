@@ -52,6 +52,7 @@ auto told_of(const std::string& where, Read read) {
 struct MeshMaker {
   const Place& place;
   const std::string& model;
+  int surface_in = 0;
 
   Mesh operator()(const BarMeshSpec& s) const {
     return generate(BarMesh{0.0, s.length, s.elements, s.grading}, where("mesh.bar"));
@@ -93,7 +94,8 @@ struct MeshMaker {
     return generate(SphereMesh{{}, s.radius, s.core, s.layers, s.element}, where("mesh.sphere"));
   }
   Mesh operator()(const GmshSpec& s) const {
-    return told_of(where("mesh.gmsh.file"), [&s] { return read_gmsh(s.file, s.scale); });
+    return told_of(where("mesh.gmsh.file"),
+                   [&, this] { return read_gmsh(s.file, s.scale, surface_in); });
   }
   Mesh operator()(const ExodusSpec& s) const {
     return told_of(where("mesh.exodus.file"), [&s] { return read_exodus(s.file, s.scale); });
@@ -211,7 +213,8 @@ void require_same_file(const SolidShapeSpec& spec, const Place& place, const std
 Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,
                const std::string& model) {
   require_same_file(spec, place, model);
-  Mesh mesh = std::visit(MeshMaker{place, model}, spec.mesh);
+  Mesh mesh =
+      std::visit(MeshMaker{place, model, spec.surface_alone ? spec.dimension : 0}, spec.mesh);
   map_nodes(spec, place, model, mesh);
   check_mesh(mesh, place.where(model + ".mesh"));
   if (mesh.dim != spec.dimension) {

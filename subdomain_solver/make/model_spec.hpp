@@ -30,6 +30,7 @@ struct SolidShapeSpec {
   Plane plane = Plane::strain;
   double thickness = 1.0;        // [m]
   std::vector<std::string> map;  // [m] where nodes of the mesh go; empty: they stay
+  bool surface_alone = false;    // no key: a surface without cells is shape enough
   std::uint64_t digest = 0;      // no key: of the mesh's file where the scene is; 0: not known
   void fields(Fields& f);
   double area() const;  // [m^2] cross section of a bar; 1 of other meshes
@@ -54,11 +55,20 @@ struct RigidModelSpec : SolidShapeSpec {
   static constexpr std::string_view name = "rigid";
   void fields(Fields& f);
 };
+/// How a tool turns, about a point that goes its way with it.
+struct TurnSpec {
+  std::vector<double> about;  // [m] (dim) where it is before it has moved; empty: the tool's origin
+  std::vector<double> axis;   // in space, of any length
+  std::string angle;          // [rad]
+  void fields(Fields& f);
+};
 /// A shape that goes where it is told.
 struct RigidToolSpec : SolidShapeSpec {
   static constexpr std::string_view name = "rigid_tool";
+  RigidToolSpec() { surface_alone = true; }
   std::vector<std::string> way;  // [m] one expression per dimension; empty: it stands
-  std::optional<double> step;    // [s]; none: windows
+  std::optional<TurnSpec> turn;
+  std::optional<double> step;  // [s]; none: windows
   void fields(Fields& f);
 };
 struct RigidWallSpec {

@@ -92,6 +92,26 @@ bool give_layer(FeModel& model, std::vector<int> layer, const std::vector<int>& 
   }
 }
 
+/// [s] in which wanted interference grows.
+std::optional<double> interference_of(const BodySpec& spec, bool massive_surface,
+                                      const Place& place) {
+  if (!spec.initial.interference) return std::nullopt;
+  const double over = spec.initial.interference->over;
+  if (massive_surface)
+    throw InputError(
+        "is of a body whose surface has mass: its contact is in the passive form, "
+        "which presses nothing in",
+        place.where("initial.interference"),
+        "Use a finer mesh, or give the key to the body that it is pressed into.");
+  if (over == 0.0 && !spec.integrates(SchemeKind::statics))
+    throw InputError(
+        "is 0, but the body has inertia, which an overlap that is there at once "
+        "would strike",
+        place.where("initial.interference.over"),
+        "Give a time of many steps, some periods of the body.");
+  return over;
+}
+
 }  // namespace
 
 std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
@@ -127,6 +147,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
   const Eigen::MatrixXd loose = check_statics(spec, place, model, constraints.supports, joined);
   if (loose.cols() > 0) parts.loose = translations_and_rotations(model, loose);
+  parts.pressed_over = interference_of(spec, parts.massive_surface, place);
   parts.map = std::make_unique<IdentityMap>();
   parts.problem = std::make_unique<Problem>();
   parts.body_acceleration = body_acceleration(spec);
@@ -139,6 +160,9 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
     return stable_step(model, parts.motion.q, std::vector<double>(model.history_size(), 0.0));
   };
   parts.rung += on_file(fe) + adjusted;
+  if (parts.pressed_over)
+    parts.rung +=
+        fmt::format(", pressed in over {:g} s, without a passive form", *parts.pressed_over);
   if (parts.massive_surface)
     parts.rung += ", its surface has mass, lumped: contact in its passive form";
   if (const std::string why = spec.why_general(); !why.empty())

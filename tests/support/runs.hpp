@@ -72,6 +72,7 @@ struct RunResult : Observer {
     int iterations = 0;
     std::vector<double> total;     // [J] by body
     std::vector<double> momentum;  // [kg m/s] by body
+    std::vector<double> work;      // [J] external, by body: a tool's is what drives it
     std::vector<double> u, f;      // [m] [N] of first ports at the window's end
   };
   RunEnd end;
@@ -93,6 +94,7 @@ struct RunResult : Observer {
     for (const Response& r : report.responses) {
       row.total.push_back(r.records.back().energy.total());
       row.momentum.push_back(r.records.back().momentum[0]);
+      row.work.push_back(r.records.back().energy.external_work);
       if (r.ports.empty()) continue;
       row.u.push_back(r.ports[0].trace.u.back());
       row.f.push_back(r.ports[0].trace.f.back());
