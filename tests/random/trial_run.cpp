@@ -28,8 +28,9 @@ namespace {
 constexpr double most_growth = 1e-3;
 /// Sums over bodies that nothing outside acts on; equations are solved to 1e-9.
 constexpr double most_momentum = 1e-6;
-/// Of the shortest edge: rows that hold on average let single nodes in by parts of a cell.
-constexpr double deep = 0.25;
+/// Of the shortest edge: rows that hold on average let single nodes in by parts of a cell. Windows
+/// are refused from 0.12 of the shortest edge of the reference, and edges shorten.
+constexpr double deep = 0.15;
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
