@@ -253,7 +253,8 @@ Controller::Judgement Controller::judge(const TimeWindow& window) {
   const std::optional<double> event = events_.first_event(window, guard_.most());
   if (!event || *event >= window.end) return judge_ways(window);
   if (*event > window.begin) return {Verdict::cut, *event, {}};
-  return {events_.release_kicks(window) ? Verdict::again : Verdict::accept, window.end, {}};
+  if (events_.release_kicks(window)) return {Verdict::again, window.end, {}};
+  return judge_ways(window);
 }
 
 /// Surfaces may have passed through each other, where bodies could go another way.

@@ -10,6 +10,11 @@ namespace abut {
 namespace {
 /// Bodies at rest that loads set in motion have hardly any energy at first.
 constexpr int looks_from_rest = 10;
+/// Growth that is told as none [M.21], and the part of a share beyond that, where that is larger.
+constexpr double granted = 1.0e-3, part_of_share = 0.1;
+/// Of a share: what is told, and what one window may gain. Contact that dips and comes back stays
+/// below: 0.2 of it where a block lands, 0.02 where balls roll.
+constexpr double notable = 0.5;
 /// Roundings of a place that may go into the velocity of a body: 16 in the sums of each step, and
 /// those of a million steps add up by chance, to the root of that.
 constexpr double roundings = 16.0e3;
@@ -41,6 +46,7 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
     account.change = here - account.first - account.ports - ahead;
   }
   const double rounded = rounding(responses);
+  latest_ = own;
   if (!std::exchange(begun_, true)) {
     first_ = own;
     unjudged_ = motion <= rounded ? looks_from_rest : 0;
@@ -71,7 +77,9 @@ bool EnergyGuard::refuses(std::span<const Response> responses,
     motion += energy.kinetic + energy.stored;
   }
   const double scale = std::max(most_, motion);
-  return own - first_ > share_ * scale;
+  const double bound = std::max(std::min(share_, granted), part_of_share * share_);
+  const double at_once = std::max(bound, notable * share_);
+  return own - first_ > bound * scale || own - latest_ > at_once * scale;
 }
 
 /// m (2 dt a)^2/2: of what a body moves at after two steps under its body force.
@@ -107,8 +115,8 @@ double EnergyGuard::rounding(std::span<const Response> responses) const {
 EnergyGuard::Verdict EnergyGuard::verdict(double change, double share, bool losses) {
   growth_ = change;
   if (change > share) return Verdict::fail;
-  const bool notable = change > 0.5 * share || (losses && change < -share);
-  return notable && !std::exchange(warned_, true) ? Verdict::warn : Verdict::fine;
+  const bool told = change > notable * share || (losses && change < -share);
+  return told && !std::exchange(warned_, true) ? Verdict::warn : Verdict::fine;
 }
 
 void EnergyGuard::Account::state(Archive& archive) {
@@ -127,6 +135,7 @@ void EnergyGuard::state(Archive& archive) {
   bodies_.resize(static_cast<std::size_t>(count));
   for (Account& account : bodies_) account.state(archive);
   archive.field("first", first_);
+  archive.field("latest", latest_);
   archive.field("most", most_);
   archive.field("growth", growth_);
 }

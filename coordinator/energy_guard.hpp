@@ -36,7 +36,9 @@ class EnergyGuard {
   /// `struck` [J]: by body, what records hold already and the ports' work does not yet; empty:
   /// none.
   Verdict look(std::span<const Response> responses, std::span<const double> struck = {});
-  /// Whether look() would fail a window that was tried for what all bodies gained. Changes nothing.
+  /// Whether a window that was tried, where it can be gone another way, gains too much: beyond a
+  /// thousandth above the start (a tenth of the share, where that is more), or by half the share
+  /// at once [M.21]. Changes nothing.
   bool refuses(std::span<const Response> responses, std::span<const double> struck = {}) const;
   double growth() const { return growth_; }  // as a fraction, at the last look
   double most() const { return most_; }      // [J] largest kinetic and stored energy so far
@@ -62,8 +64,9 @@ class EnergyGuard {
   bool begun_ = false, warned_ = false;
   int unjudged_ = 0;  // looks that are still not judged
   std::vector<Account> bodies_;
-  double first_ = 0.0;  // [J] at the first look
-  double most_ = 0.0;   // [J] largest kinetic and stored energy so far, or what numbers resolve
+  double first_ = 0.0;   // [J] at the first look
+  double latest_ = 0.0;  // [J] at the latest look
+  double most_ = 0.0;    // [J] largest kinetic and stored energy so far, or what numbers resolve
   double growth_ = 0.0;
   int culprit_ = -1;
 };

@@ -114,8 +114,10 @@ class SolidInterior final : public Interior,
   void spread_velocities();
   void gather_velocities();
   void keep_momentum(const Eigen::MatrixXd& motions, const Vector& momentum);
-  Vector momentum_along(const Eigen::MatrixXd& motions);
-  Eigen::MatrixXd free_motions();
+  template <class Energy>
+  void keep_momenta(const Vector& momentum, double most, const Energy& energy);
+  Vector nodal_momentum();
+  Eigen::MatrixXd free_motions(bool turns);
   Vector mean_motion();
   const SparseMatrix& mass_of_form() const { return is_passive() ? whole_mass_ : mass_; }
   double take_from_deformation(double joules);

@@ -90,22 +90,37 @@ double SolidInterior::moving_energy() const {
   return 0.5 * view(motion.v).dot(midpoint_->mass().cwiseProduct(view(motion.v)));
 }
 
-/// Rigid motions of the body where it is, that no support holds: (coordinates, k).
-Eigen::MatrixXd SolidInterior::free_motions() {
+/// Rigid motions of the body where it is, that no support holds, all or translations alone:
+/// (coordinates, k).
+Eigen::MatrixXd SolidInterior::free_motions(bool turns) {
   see_nodes();
   std::vector<double> at = parts_.model->mesh().points;
   for (std::size_t k = 0; k < at.size(); ++k) at[k] += u_[k];
   std::vector<int> held;
   for (const Prescribed& p : parts_.problem->supports) held.push_back(p.dof);
-  return vanishing_on(held, rigid_motions(*parts_.model, at));
+  Eigen::MatrixXd motions = rigid_motions(*parts_.model, at);
+  if (!turns)  // they come first
+    motions = motions.leftCols(std::min<Eigen::Index>(motions.cols(), description_.dim)).eval();
+  return vanishing_on(held, motions);
 }
 
-/// [kg m/s], [kg m^2/s] along rigid motions.
-Vector SolidInterior::momentum_along(const Eigen::MatrixXd& motions) {
+/// [kg m/s] of the nodes, in their frames, as the scheme tells it.
+Vector SolidInterior::nodal_momentum() {
   see_nodes();
   Vector momentum = momentum_;
   parts_.model->to_frames({momentum.data(), nodal_values()});
-  return motions.transpose() * momentum;
+  return momentum;
+}
+
+/// Momentum is made what it was, and angular momentum as far as the energy lasts: what deforms pays
+/// for it first.
+template <class Energy>
+void SolidInterior::keep_momenta(const Vector& momentum, double most, const Energy& energy) {
+  if (!parts_.reduced) keep_momentum(free_motions(false), momentum);
+  const Vector plain = view(state_.motion.v);
+  if (!parts_.reduced) keep_momentum(free_motions(true), momentum);
+  for (int k = 0; k < 3 && energy() > most; ++k) take_from_deformation(energy() - most);
+  stay_below(most, plain, state_.motion.v, energy);
 }
 
 double SolidInterior::enter() {
@@ -126,20 +141,17 @@ double SolidInterior::enter() {
     return 0.0;
   }
   const double guard = store_guarded();
-  const Eigen::MatrixXd motions = parts_.reduced ? Eigen::MatrixXd() : free_motions();
-  const Vector momentum = parts_.reduced ? Vector() : momentum_along(motions);
+  const Vector momentum = parts_.reduced ? Vector() : nodal_momentum();
   const double before = parts_.scheme.integrator->kinetic(motion);
   spread_velocities();
   motion.a.clear();
   motion.force.assign(motion.v.size(), 0.0);
   std::ranges::fill(state_.port_force, 0.0);
   if (surfaces_ != nullptr) surfaces_->let_go();
-  const Vector plain = view(motion.v);
-  keep_momentum(motions, momentum);
-  for (int k = 0; k < 3 && moving_energy() > before; ++k)
-    take_from_deformation(moving_energy() - before);
-  stay_below(before, plain, motion.v, [this] { return moving_energy(); });
-  if (!parts_.reduced && moving_energy() > before)  // plain ones have too much themselves
+  keep_momenta(momentum, before, [this] { return moving_energy(); });
+  // Plain ones have too much themselves. Alpha schemes tell momentum ahead of velocities while
+  // forces change [M.24]: what it asks beyond the energy before is given.
+  if (!parts_.reduced && moving_energy() > before)
     stay_below(before, mean_motion(), motion.v, [this] { return moving_energy(); });
   return before - moving_energy() - guard;
 }
@@ -197,7 +209,8 @@ void SolidInterior::gather_velocities() {
 void SolidInterior::keep_momentum(const Eigen::MatrixXd& motions, const Vector& momentum) {
   if (motions.cols() == 0) return;
   const Eigen::MatrixXd heavy = motions.transpose() * (mass_of_form() * motions);
-  view(state_.motion.v) += motions * heavy.ldlt().solve(momentum - momentum_along(motions)).eval();
+  const Vector missing = motions.transpose() * (momentum - nodal_momentum());
+  view(state_.motion.v) += motions * heavy.ldlt().solve(missing).eval();
 }
 
 /// What is left of velocities beside the rigid motions that supports leave is scaled down.
@@ -213,7 +226,7 @@ double SolidInterior::take_from_deformation(double joules) {
   } else {
     const SparseMatrix& whole = mass_of_form();
     mass = whole.diagonal();
-    const Eigen::MatrixXd rigid = free_motions();
+    const Eigen::MatrixXd rigid = free_motions(true);
     if (rigid.cols() > 0) {
       const Eigen::MatrixXd heavy = whole * rigid;
       rest -= rigid * (rigid.transpose() * heavy).ldlt().solve(heavy.transpose() * rest);
@@ -239,8 +252,7 @@ std::optional<Failed> SolidInterior::leave(double time, double& lost) {
   lost = 0.0;
   if (!is_passive()) return std::nullopt;
   const State before = state_;
-  const Eigen::MatrixXd motions = parts_.reduced ? Eigen::MatrixXd() : free_motions();
-  const Vector momentum = parts_.reduced ? Vector() : momentum_along(motions);
+  const Vector momentum = parts_.reduced ? Vector() : nodal_momentum();
   double present = moving_energy() + state_.motion.stored;
   double work = 0.0;
   if (std::optional<Failed> failed = restart(time, work)) {
@@ -252,10 +264,7 @@ std::optional<Failed> SolidInterior::leave(double time, double& lost) {
   const auto total = [this] {
     return parts_.scheme.integrator->kinetic(state_.motion) + state_.motion.stored;
   };
-  const Vector plain = view(state_.motion.v);
-  keep_momentum(motions, momentum);
-  for (int k = 0; k < 3 && total() > present; ++k) take_from_deformation(total() - present);
-  stay_below(present, plain, state_.motion.v, total);
+  keep_momenta(momentum, present, total);
   lost = present - total();
   if (port_map_) port_map_->displacement(state_.motion.q, places_);
   return std::nullopt;

@@ -86,6 +86,11 @@ class SurfaceContact final : public PortContact {
     Eigen::Index first = 0;                  // of its components
     int first_row = 0, rows = 0, parts = 1;  // of the problem; components of a row
   };
+  struct OfPoint {  // rows of a point of the port
+    int rows = 0;
+    double pressed = 0.0;  // [N]
+    std::size_t nearest = 0;
+  };
   struct Term {  // of a component
     int coordinate;
     double factor;
@@ -109,6 +114,7 @@ class SurfaceContact final : public PortContact {
   void guess_forces();
   void begin_slid(Meeting& m, const BoundaryData& boundary, const Substeps& grid);
   void settle_slid(Meeting& m);
+  void share_shears(const Meeting& m);
   void settle_friction(std::size_t meeting);
   void settle_interference(std::size_t meeting);
   /// [m] by which the gaps of a meeting are larger than they are, at the time solved for.
@@ -140,6 +146,8 @@ class SurfaceContact final : public PortContact {
   // [N] (meetings that rub, values of the port) along the surface, on the body: state
   std::vector<double> shears_;
   std::vector<double> shears_before_;
+  std::vector<OfPoint> of_points_;  // of a meeting
+  std::vector<double> shares_;      // (rows of a meeting) of what is of the same point
   Substeps grid_;  // of the window
   int substep_ = 0;
   std::vector<double> anchors_;     // [m] (meetings that rub, values of the partner): state

@@ -20,6 +20,27 @@ void SurfaceContact::forget_shears(const Meeting& m) {
   std::ranges::fill(std::span(slid_).subspan(m.slid, points), 0.0);
 }
 
+/// What pressed along the surface at a point in the substep before acts on through one row of the
+/// point: where several are of one point (edges, rows of the partner's nodes), in the shares in
+/// which these press now, and where none does on the nearest one.
+void SurfaceContact::share_shears(const Meeting& m) {
+  const auto& nodes = m.obstacle->rows().nodes;
+  const auto normal = [&](std::size_t r) { return rows_[index(m.first_row) + r].first; };
+  of_points_.assign(surfaces_[m.own].surface.nodes.size(), {});
+  for (std::size_t r = 0; r < index(m.rows); ++r) {
+    OfPoint& point = of_points_[index(nodes[r])];
+    if (point.rows++ == 0 || opened_(normal(r)) < opened_(normal(point.nearest))) point.nearest = r;
+    point.pressed += row_force_(normal(r));
+  }
+  shares_.assign(index(m.rows), 1.0);
+  for (std::size_t r = 0; r < index(m.rows); ++r) {
+    const OfPoint& point = of_points_[index(nodes[r])];
+    if (point.rows == 1) continue;
+    shares_[r] = point.pressed > 0.0 ? row_force_(normal(r)) / point.pressed
+                                     : (r == point.nearest ? 1.0 : 0.0);
+  }
+}
+
 /// What friction took in the substep: by the mean of the forces at its ends, as the schemes work
 /// with them. Which points slid, and where the partner was.
 void SurfaceContact::settle_friction(std::size_t meeting) {
@@ -34,6 +55,7 @@ void SurfaceContact::settle_friction(std::size_t meeting) {
   std::ranges::fill(slid, 0.0);
   shears_before_.assign(shears.begin(), shears.end());
   std::ranges::fill(shears, 0.0);
+  share_shears(m);
   const std::span<const double> along = directions(m);
   for (int r = 0; r < m.rows; ++r) {
     const FrictionRow& row = rows_[m.first_row + r];
@@ -48,6 +70,7 @@ void SurfaceContact::settle_friction(std::size_t meeting) {
         before += tangent[i] * shears_before_[point * dim + i];
         shears[point * dim + i] += tangent[i] * now;
       }
+      before *= shares_[index(r)];
       dissipated_[meeting] -= 0.5 * (before + now) * opened_(row.first + p);
     }
   }

@@ -33,6 +33,30 @@ TEST(EnergyGuard, CountsWhatExternalWorkDoesNotExplain) {
   EXPECT_NEAR(guard.growth(), 1.1 / 101.1, roundoff(4.0, 1.0));  // of energies of 100
 }
 
+// A window that can be gone another way is judged more strictly than a run that would end: by a
+// thousandth above the start, but not below what a scene grants, and by half the share at once.
+TEST(EnergyGuard, RefusesWindowsThatGainAThousandthOrMuchAtOnce) {
+  struct Case {
+    double share, most, at_once;  // and what may be gained
+  };
+  for (const Case& is : {Case{0.01, 1.0e-3, 5.0e-3}, {5.0e-4, 5.0e-4, 5.0e-4}, {1.0, 0.1, 0.5}}) {
+    EnergyGuard guard(is.share, {false});
+    EXPECT_FALSE(guard.refuses(std::vector{holding(1000.0, 0.0)})) << "nothing to compare with";
+    guard.look(std::vector{holding(1000.0, 0.0)});
+    // Growth counts over the energies with it.
+    const double below = 0.99 * is.most, above = 1.02 * is.most / (1.0 - 1.02 * is.most);
+    EXPECT_FALSE(guard.refuses(std::vector{holding(1000.0 * (1.0 + below), 0.0)})) << is.share;
+    EXPECT_TRUE(guard.refuses(std::vector{holding(1000.0 * (1.0 + above), 0.0)})) << is.share;
+    // Heat counts, and so does what the bodies were given.
+    EXPECT_TRUE(guard.refuses(std::vector{holding(1000.0, 0.0, 0.0, 1000.0 * above)}));
+    EXPECT_FALSE(guard.refuses(std::vector{holding(1000.0 * (1.0 + above), 0.0, 1000.0 * above)}));
+    // Below the start by much: what contact had taken comes back by and by, not at once.
+    guard.look(std::vector{holding(100.0, 0.0)});
+    EXPECT_FALSE(guard.refuses(std::vector{holding(100.0 + 980.0 * is.at_once, 0.0)})) << is.share;
+    EXPECT_TRUE(guard.refuses(std::vector{holding(100.0 + 1020.0 * is.at_once, 0.0)})) << is.share;
+  }
+}
+
 TEST(EnergyGuard, JudgesFromRestWhenThereIsEnergyToCompareWith) {
   EnergyGuard guard(0.01, {false});
   EXPECT_EQ(guard.look(std::vector{holding(0.0, 0.0)}), Verdict::fine);
