@@ -216,7 +216,8 @@ void Controller::step_window() {
     if (judgement.verdict == Judgement::Verdict::accept) return accept(window);
     if (judgement.verdict == Judgement::Verdict::fail) {
       bodies_.restore_all();
-      if (!go_passively(window.begin, judgement.reason)) fail(window.begin, judgement.reason);
+      if (judgement.final || !go_passively(window.begin, judgement.reason))
+        fail(window.begin, judgement.reason);
       return;
     }
     if (judgement.verdict == Judgement::Verdict::cut) window.end = judgement.end;
@@ -262,7 +263,7 @@ Controller::Judgement Controller::judge_ways(const TimeWindow& window) {
   if (std::string meets = folded(); !meets.empty())
     return {Judgement::Verdict::fail, window.end, std::move(meets)};
   const bool near = std::ranges::any_of(joints_, [](const Joint& j) { return j.closed(); });
-  if (!near || !may_go_passively()) return {};
+  if (!near || !may_refuse()) return {};
   if (guard_.refuses(bodies_.responses(), bodies_.struck()))
     return {Judgement::Verdict::fail, window.end, "contact would make energy"};
   if (std::string crossed = crossing_.look(); !crossed.empty())
@@ -277,7 +278,8 @@ Controller::Judgement Controller::judge_trouble(const TimeWindow& window) {
       return {Verdict::cut, *end, {}};
   }
   for (const SchwarzReport& report : attempt_.reports)  // no shorter window changes it
-    if (!report.contradiction.empty()) return {Verdict::fail, window.end, report.contradiction};
+    if (!report.contradiction.empty())
+      return {Verdict::fail, window.end, report.contradiction, !passive_.returns()};
   const std::string text = attempt_.trouble(scene_.schwarz.tolerance);
   const OnNonconvergence policy = scene_.schwarz.on_nonconvergence;
   if (policy == OnNonconvergence::accept && !attempt_.failed) {

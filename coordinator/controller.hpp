@@ -72,6 +72,7 @@ class Controller {
     Verdict verdict = Verdict::accept;
     double end = 0.0;    // [s] of a window that is cut
     std::string reason;  // of a failure
+    bool final = false;  // no other way takes the window either
   };
   struct Flight {           // how many windows are flown free in one request
     int longest = 1;        // (flight_work.hpp)
@@ -113,6 +114,7 @@ class Controller {
   void look_for_overlaps();
   void look_for_passed();
   bool may_go_passively() const;
+  bool may_refuse() const;
   std::string folded();
   bool must_go_passively(const TimeWindow& window);
   bool go_passively(double time, const std::string& reason);

@@ -49,8 +49,11 @@ void Controller::try_window(const TimeWindow& window) {
   }
 }
 
+/// Whether windows that have an answer may be refused all the same: not where there is no way back.
+bool Controller::may_refuse() const { return may_go_passively() && passive_.returns(); }
+
 /// Which body comes upon itself, where passive forms can keep it off itself; empty: none.
-std::string Controller::folded() { return may_go_passively() ? folds_.look() : std::string(); }
+std::string Controller::folded() { return may_refuse() ? folds_.look() : std::string(); }
 
 /// Where surfaces come near, or have met in an attempt, of which neither side finds contact in
 /// another form.

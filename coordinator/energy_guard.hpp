@@ -37,7 +37,7 @@ class EnergyGuard {
   /// none.
   Verdict look(std::span<const Response> responses, std::span<const double> struck = {});
   /// Whether a window that was tried, where it can be gone another way, gains too much: beyond a
-  /// thousandth above the start (a tenth of the share, where that is more), or by half the share
+  /// two-hundredth above the start (a tenth of the share, where that is more), or by half the share
   /// at once [M.21]. Changes nothing.
   bool refuses(std::span<const Response> responses, std::span<const double> struck = {}) const;
   double growth() const { return growth_; }  // as a fraction, at the last look

@@ -187,7 +187,7 @@ class FeModel final : public Model {
   LayerRows layer_rows_;  // [N/m] (massless, dofs) of linear models, when first asked for
   mutable std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<BatchedCells> batched_;      // null: cell by cell
-  std::optional<BatchedLayer> batched_layer_;  // where batched_ is; when first asked for
+  std::unique_ptr<BatchedLayer> batched_layer_;  // where batched_ is; when first asked for
   Vector lumped_;
   Vector whole_;  // as lumped_ was before make_massless(); empty: the same
   CellKernel kernel_;

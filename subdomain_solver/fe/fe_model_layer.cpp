@@ -297,7 +297,8 @@ bool FeModel::batched_layer_force(std::span<const double> q, Vector& force) {
   if (!batched_layer_) {
     BatchedOptions options = batched_options();
     options.threads = 1;
-    batched_layer_.emplace(mesh_, *material_, options, layer_cells_, massless_);
+    batched_layer_ =
+        std::make_unique<BatchedLayer>(mesh_, *material_, options, layer_cells_, massless_);
   }
   force.resize(static_cast<Eigen::Index>(massless_.size()));
   return batched_layer_->evaluate(q, {force.data(), massless_.size()});
