@@ -224,16 +224,17 @@ std::optional<Failed> CommonStep::advance(bool all) {
 
 /// Of all rows, or none of them, and of ties, by body, port and point.
 void CommonStep::find_impulses(bool any) {
-  for (auto& ports : pressing_)
-    for (std::vector<double>& port : ports) port.clear();
-  if (any) press_rows();
+  press_rows(any);
   for (int b = 0; b < bodies_.count(); ++b) {
     asked_[index(b)].impulses = pressing_[index(b)];
     ties_.add_impulses(b, asked_[index(b)].impulses);
   }
 }
 
-void CommonStep::press_rows() {
+void CommonStep::press_rows(bool any) {
+  for (auto& ports : pressing_)
+    for (std::vector<double>& port : ports) port.clear();
+  if (!any) return;
   const int dim = surfaces_.skin().dim;
   for (const DistanceRow& row : rows_) {
     const Eigen::Vector3d impulse = row.impulse();
@@ -281,7 +282,6 @@ void CommonStep::rows_ask(double& unfit, double& work) const {
 /// The bodies answered under the impulses of so many of the rows.
 void CommonStep::solve_rows(std::size_t answered) {
   const int doubled = std::clamp(softer_ - softer_from, 0, softest);
-  const auto tried = pressing_;
   for (int b = 0; b < bodies_.count(); ++b) take_answer(b, std::ldexp(1.0, doubled));
   const double still = negligible * near_.thickness() / length();
   const double rounding = 1.0e-3 * rounding_of_work * most_;
@@ -294,7 +294,7 @@ void CommonStep::solve_rows(std::size_t answered) {
     solver.solve(still);
   }
   if (solver.work() > (pushing_ ? allowed_ : 0.0) + rounding) solver.limit();
-  if (ties_.any()) follow_ties(tried);
+  if (ties_.any()) follow_ties();
   ++softer_;
 }
 
@@ -315,11 +315,10 @@ void CommonStep::take_answer(int owner, double softer) {
   points_.velocity(owner) += answer.change;
 }
 
-/// `before`: impulses of rows that the bodies have answered.
-void CommonStep::follow_ties(std::span<const std::vector<std::vector<double>>> before) {
-  for (auto& ports : pressing_)
-    for (std::vector<double>& port : ports) port.clear();
-  press_rows();
+/// By what rows press on now beside the impulses that the bodies have answered.
+void CommonStep::follow_ties() {
+  const auto before = pressing_;
+  press_rows(true);
   const std::size_t dim = index(surfaces_.skin().dim);
   for (int b = 0; b < bodies_.count(); ++b) {
     if (ties_.cluster(b) != b || !ties_.joined(b)) continue;

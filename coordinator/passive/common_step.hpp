@@ -71,10 +71,10 @@ class CommonStep {
   std::optional<Failed> advance(bool all);
   void see_velocities();
   void find_impulses(bool any);
-  void press_rows();
+  void press_rows(bool any);
   bool ties_fit() const;
   void take_answer(int owner, double softer);
-  void follow_ties(std::span<const std::vector<std::vector<double>>> before);
+  void follow_ties();
   void rows_ask(double& unfit, double& work) const;
   void solve_rows(std::size_t answered);
   std::optional<Refusal> accept(bool lenient, PassiveLedger& ledger);

@@ -78,7 +78,7 @@ class FeModel final : public Model {
   /// The least det F of the quadrature points at q; of bodies that cannot be guarded 1.
   double least_volume(std::span<const double> q) const;
 
-  /// Of one cell at q (nodes x dim), in the axes of space. False: inadmissible.
+  /// Tangent of one cell at q (nodes x dim), in the axes of space. False: inadmissible.
   [[nodiscard]] bool cell_tangent(int block, int cell, std::span<const double> q,
                                   std::span<const double> history, Eigen::MatrixXd& tangent);
   /// Its share of the lumped mass [kg] (nodes), that of massless nodes still theirs: stable steps
@@ -86,7 +86,7 @@ class FeModel final : public Model {
   Vector cell_mass(int block, int cell) const;
   /// Its reference geometry, as that of one cell.
   CellMeasures cell_measures(int block, int cell) const;
-  /// Of the quadrature points of a block.
+  /// The rule at which a block's cells are integrated.
   const Tabulation& rule(int block) const { return blocks_[block].table; }
   /// Null: forces are found cell by cell.
   BatchedCells* batched() { return batched_.get(); }
