@@ -301,6 +301,7 @@ void Controller::accept(const TimeWindow& window) {
   events_.settle(window, guard_.most());
   halvings_ = 0;
   ++waiting_.accurate;
+  repay();
   end_window(window, guard_.look(bodies_.responses(), bodies_.struck()));
 }
 

@@ -119,6 +119,7 @@ class Controller {
   bool must_go_passively(const TimeWindow& window);
   bool go_passively(double time, const std::string& reason);
   void step_passively();
+  void repay();
   void accept_passively(const TimeWindow& window);
   void go_accurately();
   GivenUp given_up() const;

@@ -1,6 +1,9 @@
 // The way through windows that the iteration cannot take: bodies in their passive forms.
 
 #include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -98,6 +101,22 @@ void Controller::step_passively() {
   go_accurately();
 }
 
+/// Energy that an accurate window has gained, beyond what may stand, is taken back at its end from
+/// the bodies that touch.
+void Controller::repay() {
+  if (!may_refuse()) return;
+  const double excess = guard_.excess(bodies_.responses(), bodies_.struck());
+  if (!(excess > 0.0)) return;
+  std::set<int> touching;
+  for (const Joint& joint : joints_)
+    if (joint.closed())
+      for (const Side& side : joint.sides)
+        if (std::isfinite(bodies_.describe(side.body).mass)) touching.insert(side.body);
+  const std::vector<int> bodies(touching.begin(), touching.end());
+  const std::vector<double> gave = passive_.repay(bodies, excess);
+  for (std::size_t k = 0; k < bodies.size(); ++k) guard_.repaid(bodies[k], gave[k]);
+}
+
 void Controller::accept_passively(const TimeWindow& window) {
   attempt_.reports.clear();
   for (Joint& joint : joints_) {
@@ -156,6 +175,7 @@ GivenUp Controller::given_up() const {
           .damped = passive.damped,
           .switched = passive.switched,
           .push_out = passive.push_out,
+          .repaid = passive.repaid,
           .deepest = passive.deepest,
           .largest = std::max(guard_.most(), energy_put_in(bodies_, passive)),
           .lost = passive.lost,

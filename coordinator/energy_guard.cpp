@@ -14,6 +14,9 @@ constexpr int looks_from_rest = 10;
 /// and roles make some thousandths in scenes that the passive way would cost far more. Above it,
 /// the part of a share [M.21].
 constexpr double granted = 5.0e-3, part_of_share = 0.1;
+/// Of the largest energy: growth that stays. Beyond a thousandth nobody wants it, and a window's
+/// records come before what is taken back at its end.
+constexpr double stands = 8.0e-4;
 /// Of a share: what is told, and what one window may gain. Contact that dips and comes back stays
 /// below: 0.2 of it where a block lands, 0.02 where balls roll.
 constexpr double notable = 0.5;
@@ -68,20 +71,42 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
   return verdict((own - first_) / most_, share_, all_conserve_);
 }
 
-bool EnergyGuard::refuses(std::span<const Response> responses,
-                          std::span<const double> struck) const {
-  if (!begun_ || !together_ || unjudged_ > 0) return false;
-  double own = 0.0, motion = 0.0;
+/// [J] of all bodies together, less what impulses did; `motion`: the kinetic and stored part.
+double EnergyGuard::own_energy(std::span<const Response> responses, std::span<const double> struck,
+                               double& motion) const {
+  double own = 0.0;
+  motion = 0.0;
   for (std::size_t b = 0; b < responses.size(); ++b) {
     const Energy& energy = responses[b].records.back().energy;
     own += energy.total() + energy.dissipated - energy.external_work;
     own -= struck.empty() ? 0.0 : struck[b];
     motion += energy.kinetic + energy.stored;
   }
+  return own;
+}
+
+bool EnergyGuard::refuses(std::span<const Response> responses,
+                          std::span<const double> struck) const {
+  if (!begun_ || !together_ || unjudged_ > 0) return false;
+  double motion = 0.0;
+  const double own = own_energy(responses, struck, motion);
   const double scale = std::max(most_, motion);
   const double bound = std::max(std::min(share_, granted), part_of_share * share_);
   const double at_once = std::max(bound, notable * share_);
-  return own - first_ > bound * scale || own - latest_ > at_once * scale;
+  return own + repaid_ - first_ > bound * scale || own - latest_ > at_once * scale;
+}
+
+double EnergyGuard::excess(std::span<const Response> responses,
+                           std::span<const double> struck) const {
+  if (!begun_ || !together_ || unjudged_ > 0) return 0.0;
+  double motion = 0.0;
+  const double own = own_energy(responses, struck, motion);
+  return std::max(0.0, own - first_ - stands * std::max(most_, motion));
+}
+
+void EnergyGuard::repaid(int body, double joules) {
+  bodies_[static_cast<std::size_t>(body)].ports -= joules;
+  repaid_ += joules;
 }
 
 /// m (2 dt a)^2/2: of what a body moves at after two steps under its body force.
@@ -139,6 +164,7 @@ void EnergyGuard::state(Archive& archive) {
   archive.field("first", first_);
   archive.field("latest", latest_);
   archive.field("most", most_);
+  archive.field("repaid", repaid_);
   archive.field("growth", growth_);
 }
 

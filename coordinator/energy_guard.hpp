@@ -40,6 +40,11 @@ class EnergyGuard {
   /// two-hundredth above the start (a tenth of the share, where that is more), or by half the share
   /// at once [M.21]. Changes nothing.
   bool refuses(std::span<const Response> responses, std::span<const double> struck = {}) const;
+  /// [J] by which the energy is above its start, beyond what may stand there: below a thousandth of
+  /// the largest [M.21].
+  double excess(std::span<const Response> responses, std::span<const double> struck = {}) const;
+  /// So much [J] of what was gained a body has given back since: what accounts say takes it in.
+  void repaid(int body, double joules);
   double growth() const { return growth_; }  // as a fraction, at the last look
   double most() const { return most_; }      // [J] largest kinetic and stored energy so far
   void state(Archive& archive);
@@ -53,6 +58,8 @@ class EnergyGuard {
     void state(Archive& archive);
   };
 
+  double own_energy(std::span<const Response> responses, std::span<const double> struck,
+                    double& motion) const;
   double unresolved(std::span<const Response> responses) const;
   double rounding(std::span<const Response> responses) const;
   Verdict verdict(double change, double share, bool losses);
@@ -67,6 +74,7 @@ class EnergyGuard {
   double first_ = 0.0;   // [J] at the first look
   double latest_ = 0.0;  // [J] at the latest look
   double most_ = 0.0;    // [J] largest kinetic and stored energy so far, or what numbers resolve
+  double repaid_ = 0.0;  // [J] by all bodies
   double growth_ = 0.0;
   int culprit_ = -1;
 };

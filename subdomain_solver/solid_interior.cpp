@@ -392,6 +392,9 @@ void SolidInterior::follow_ports(double time) {
   if (!port_forces_->acts() && !pressed) return;
   port_forces_->at(time, now_);
   if (pressed) contact_->settle(now_);
+  if (description_.quasi_static && surfaces_ != nullptr &&
+      std::ranges::all_of(state_.port_force, [](double force) { return force == 0.0; }))
+    state_.motion.external_work += surfaces_->taken_at_once();
   add_port_work();
   state_.port_force = now_;
 }

@@ -261,7 +261,7 @@ def details(run: Run) -> str:
 def given_up_table(run: Run) -> str:
     """What windows that the accurate method could not take have cost."""
     up = run.summary.get("accuracy", {}).get("given_up", {})
-    if not up.get("passive_windows"):
+    if not up.get("passive_windows") and not up.get("repaid"):
         return ""
     windows = max(run.summary.get("windows", 0), 1)
     shares = [(windows - up["passive_windows"], "windows by the accurate method"),
@@ -274,6 +274,7 @@ def given_up_table(run: Run) -> str:
                        ("push_out", "paid back to part what was too near"),
                        ("damped", "by damping"),
                        ("changes_of_form", "where bodies changed their form"),
+                       ("repaid", "gained in accurate windows and taken back"),
                        ("friction", "taken by friction, no loss of accuracy")):
         value = up.get(key)
         if value or key == "joules":

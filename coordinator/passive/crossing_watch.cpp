@@ -1,6 +1,7 @@
 #include "coordinator/passive/crossing_watch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +16,8 @@ namespace {
 /// by parts of a cell: teeth of gears by up to 0.11 of it, all other shipped scenes by less than
 /// 0.05.
 constexpr double deep = 0.12;
+/// Within a window, whatever the way: 12 edges.
+constexpr int most_looks = 100;
 
 }  // namespace
 
@@ -33,23 +36,32 @@ std::string CrossingWatch::look() {
     trees_ = std::make_unique<SkinTrees>(surfaces_->skin(), surfaces_->reference());
     choice_ = surfaces_->choice();
   }
-  surfaces_->place(bodies_.responses(), places_);
-  intersections(*trees_, places_, deep * surfaces_->shortest_edge(), choice_, found_);
-  const auto is_new = [this](const Intersection& found) {
-    return !std::ranges::binary_search(known_, found);
-  };
-  const auto first = std::ranges::find_if(found_, is_new);
-  std::string text;
-  if (first != found_.end()) {
-    const Skin& skin = surfaces_->skin();
-    const std::int32_t edge =
-        skin.dim == 2 ? skin.facets[first->edge][0] : skin.edges[first->edge][0];
-    text = fmt::format("an edge of body '{}' passes through the surface of body '{}'",
-                       bodies_.describe((*surfaces_)[edge].body).name,
-                       bodies_.describe((*surfaces_)[skin.facets[first->facet][0]].body).name);
+  const double step = deep * surfaces_->shortest_edge();
+  const int parts =
+      std::clamp(static_cast<int>(std::ceil(surfaces_->longest_way(bodies_.responses()) / step)), 1,
+                 most_looks);
+  for (int part = 1; part <= parts; ++part) {
+    if (part == parts)
+      surfaces_->place(bodies_.responses(), places_);
+    else
+      surfaces_->place_within(bodies_.responses(), part / double(parts), places_);
+    intersections(*trees_, places_, step, choice_, found_);
+    const auto is_new = [this](const Intersection& found) {
+      return !std::ranges::binary_search(known_, found);
+    };
+    const auto first = std::ranges::find_if(found_, is_new);
+    if (first != found_.end()) return name(*first);
   }
-  if (text.empty()) known_ = found_;
-  return text;
+  known_ = found_;
+  return {};
+}
+
+std::string CrossingWatch::name(const Intersection& found) const {
+  const Skin& skin = surfaces_->skin();
+  const std::int32_t edge = skin.dim == 2 ? skin.facets[found.edge][0] : skin.edges[found.edge][0];
+  return fmt::format("an edge of body '{}' passes through the surface of body '{}'",
+                     bodies_.describe((*surfaces_)[edge].body).name,
+                     bodies_.describe((*surfaces_)[skin.facets[found.facet][0]].body).name);
 }
 
 void CrossingWatch::state(Archive& archive) {

@@ -10,8 +10,9 @@
 
 namespace abut {
 
-/// Looks whether surfaces pass through each other at the end of accurate windows: rows of facets
-/// look at facets that face each other, and sharp edges and spikes may face nothing.
+/// Looks whether surfaces pass through each other in accurate windows, at their ends and at as many
+/// instants before as the way of points asks for: rows of facets look at facets that face each
+/// other, and sharp edges and spikes may face nothing.
 class CrossingWatch {
  public:
   /// Of the pairs those of different bodies are watched (FoldWatch: the others).
@@ -25,6 +26,8 @@ class CrossingWatch {
   void state(Archive& archive);
 
  private:
+  std::string name(const Intersection& found) const;
+
   std::vector<TouchingPair> pairs_;
   const Bodies& bodies_;
   std::unique_ptr<TouchingSurfaces> surfaces_;

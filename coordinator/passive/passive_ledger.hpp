@@ -13,6 +13,7 @@ struct PassiveLedger {
   double friction = 0.0;  // [J] by friction, which is physics
   double push_out = 0.0;  // [J] given to part what was too near, out of what normal contact lost
   double damped = 0.0;    // [J] taken back from bodies that gained, or held rigid for an instant
+  double repaid = 0.0;    // [J] gained in accurate windows and taken back from bodies that touch
   double switched = 0.0;  // [J] lost where bodies changed their form
   std::int64_t steps = 0, refused = 0, windows = 0, rigid = 0;
   // windows in which steps were halved, in which bodies were held rigid; times that the accurate
@@ -37,6 +38,7 @@ struct PassiveLedger {
     archive.field("friction", friction);
     archive.field("push_out", push_out);
     archive.field("damped", damped);
+    archive.field("repaid", repaid);
     archive.field("switched", switched);
     archive.field("steps", steps);
     archive.field("refused", refused);

@@ -168,6 +168,24 @@ bool PassiveWay::hold_rigid() {
   return true;
 }
 
+std::vector<double> PassiveWay::repay(std::span<const int> bodies, double joules) {
+  std::vector<double> gave(bodies.size(), 0.0);
+  const auto energy_of = [this](int b) -> Energy& {
+    return bodies_.response(b).records.back().energy;
+  };
+  double motion = 0.0;
+  for (const int b : bodies) motion += energy_of(b).kinetic;
+  if (!(motion > 0.0)) return gave;
+  std::vector<double> shares;
+  for (const int b : bodies) shares.push_back(energy_of(b).kinetic / motion);
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    gave[k] = bodies_[bodies[k]].passive()->damp(shares[k] * joules);
+    energy_of(bodies[k]).kinetic -= gave[k];
+    ledger_.repaid += gave[k];
+  }
+  return gave;
+}
+
 bool PassiveWay::leave(double time) {
   bodies_.save_all();
   std::vector<double> lost(index(bodies_.count()), 0.0);

@@ -43,6 +43,10 @@ class PassiveWay {
   bool leave(double time);
   /// The bodies have been restored to where they were before they left.
   void stay() { active_ = true; }
+  /// Takes energy [J] from the motion by which bodies deform that are in their own schemes, in the
+  /// shares of their kinetic energies; momentum and angular momentum stay. Their last records tell
+  /// of the state after it. Returns what each of them gave.
+  std::vector<double> repay(std::span<const int> bodies, double joules);
   /// Whether nothing pressed in the last window.
   bool quiet() const { return quiet_; }
   /// Whether surfaces pressed in the last window, of a joint.

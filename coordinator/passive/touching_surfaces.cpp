@@ -97,6 +97,39 @@ void TouchingSurfaces::place(std::span<const Response> responses, std::size_t in
   }
 }
 
+void TouchingSurfaces::place_within(std::span<const Response> responses, double part,
+                                    std::vector<Eigen::Vector3d>& places) const {
+  std::vector<std::vector<double>> moved(ports_.size());
+  for (std::size_t g = 0; g < ports_.size(); ++g) {
+    const Waveform& trace =
+        responses[index(ports_[g].body)].ports[index(ports_[g].port)].trace;
+    const double begin = trace.time.front(), end = trace.time.back();
+    moved[g].resize(index(trace.width));
+    trace.interpolate(trace.u, std::min(end, begin + part * (end - begin)), moved[g]);
+  }
+  places.resize(points_.size());
+  for (std::size_t k = 0; k < points_.size(); ++k)
+    places[k] = reference_[k] +
+                vector_at(moved[index(skin_.group[k])], index(points_[k].point), dim_);
+}
+
+double TouchingSurfaces::longest_way(std::span<const Response> responses) const {
+  double longest = 0.0;
+  for (const Side& side : ports_) {
+    const Waveform& trace = responses[index(side.body)].ports[index(side.port)].trace;
+    const std::size_t width = index(trace.width), dim = index(dim_);
+    for (std::size_t v = width; v + dim <= trace.u.size(); v += dim) {
+      double square = 0.0;
+      for (std::size_t d = 0; d < dim; ++d) {
+        const double way = trace.u[v + d] - trace.u[(v + d) % width];
+        square += way * way;
+      }
+      longest = std::max(longest, square);
+    }
+  }
+  return std::sqrt(longest);
+}
+
 FeatureChoice TouchingSurfaces::choice() const {
   FeatureChoice choice;
   for (int a = 0; a < groups(); ++a)

@@ -41,6 +41,11 @@ class TouchingSurfaces {
   /// [m] the same at an instant of their traces, which bodies have in common.
   void place(std::span<const Response> responses, std::size_t instant,
              std::vector<Eigen::Vector3d>& places) const;
+  /// [m] the same at a part of the latest window, 0 to 1: linear between instants of the traces.
+  void place_within(std::span<const Response> responses, double part,
+                    std::vector<Eigen::Vector3d>& places) const;
+  /// [m] the longest way from its begin that a point has been in the latest window.
+  double longest_way(std::span<const Response> responses) const;
   const std::vector<Eigen::Vector3d>& reference() const { return reference_; }
   /// Pairs of features that may touch.
   FeatureChoice choice() const;

@@ -71,8 +71,15 @@ std::optional<GivenUpRemedy> remedy_of(const GivenUp& up) {
 
 std::string given_up_words(const GivenUp& up, std::int64_t windows,
                            std::span<const Description* const> bodies) {
-  if (up.windows == 0) return {};
-  std::string text = windows_words(up, windows) + "; " + joules_words(up);
+  const bool repaid = up.repaid > nothing * up.largest;
+  if (up.windows == 0 && !repaid) return {};
+  std::string text;
+  if (up.windows > 0) text = windows_words(up, windows) + "; " + joules_words(up);
+  if (repaid)
+    text += fmt::format(
+        "{}{:.3g} J of {:.3g} J that accurate windows had gained were taken back from the swinging "
+        "of bodies",
+        text.empty() ? "" : "; ", up.repaid, up.largest);
   if (up.deepest > 0.0)
     text += fmt::format("; surfaces were up to {:.3g} m behind each other", up.deepest);
   if (const std::optional<GivenUpRemedy> remedy = remedy_of(up)) {

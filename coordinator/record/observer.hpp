@@ -88,6 +88,7 @@ struct GivenUp {
   double shortest_step = 0.0;  // [s]
   // [J] lost in normal contact, by friction, by damping, at changes of form; given to part bodies
   double normal = 0.0, friction = 0.0, damped = 0.0, switched = 0.0, push_out = 0.0;
+  double repaid = 0.0;   // [J] that accurate windows gained and that was taken back at their ends
   double deepest = 0.0;  // [m] behind a partner's surface
   // [J] the largest kinetic and stored energy of the run, or all that went into it where that is
   // more: loads may put in again what contact takes

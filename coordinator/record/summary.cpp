@@ -215,6 +215,7 @@ Json given_up_object(const RunEnd& end, const RunStart& start) {
                  {"damped", number(up.damped)},
                  {"changes_of_form", number(up.switched)},
                  {"push_out", number(up.push_out)},
+                 {"repaid", number(up.repaid)},
                  {"deepest", number(up.deepest)},
                  {"lost_by_body", by_body(up.lost, start)},
                  {"taken_from_body", by_body(up.taken, start)},

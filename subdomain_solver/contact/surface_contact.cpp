@@ -20,6 +20,8 @@ constexpr int looks_of_a_call = 3, most_looks = 6;
 
 /// Of the largest force: rows that change forces by less are settled.
 constexpr double settled = 1.0e-12;
+/// Of a facet: surfaces that overlap by less are drawn as touching.
+constexpr double drawn_together = 1.0e-6;
 
 }  // namespace
 
@@ -175,6 +177,26 @@ void SurfaceContact::settle_interference(std::size_t meeting) {
   interference_->settle(meeting, time_, force);
 }
 
+double SurfaceContact::taken_at_once() const {
+  double work = 0.0;
+  std::vector<double> places, row_gaps;
+  for (const Meeting& m : meetings_) {
+    if (!m.obstacle->acts() || m.rows == 0) continue;
+    m.obstacle->find_begin(places);
+    row_gaps.resize(index(m.rows));
+    gaps(m.obstacle->rows(), surfaces_[m.own].begin, places, row_gaps);
+    const double left = left_of(m, m.obstacle->begin());
+    double taken = 0.0, deepest = 0.0;
+    for (int r = 0; r < m.rows; ++r) {
+      const double overlap = -(row_gaps[index(r)] + left);
+      deepest = std::max(deepest, overlap);
+      taken += 0.5 * overlap * row_force_(m.first + static_cast<Eigen::Index>(r) * m.parts);
+    }
+    if (deepest > drawn_together * surfaces_[m.own].surface.geometry->spacing) work += taken;
+  }
+  return work;
+}
+
 void SurfaceContact::react(std::size_t port, std::size_t partner, const std::vector<double>&,
                            std::vector<double>& out) const {
   for (const Meeting& m : meetings_) {
@@ -201,7 +223,7 @@ void SurfaceContact::see_gaps(std::size_t port, const SeeGap& see) const {
   for (const Meeting& m : meetings_) {
     if (m.obstacle->port() != port || !m.obstacle->acts()) continue;
     const SurfaceRows& rows = m.obstacle->rows();
-    const double left = left_of(m);
+    const double left = left_of(m, time_);
     for (int r = 0; r < rows.count(); ++r) {
       const std::int32_t first = rows.k.offsets[r], last = rows.k.offsets[index(r) + 1];
       const auto begin = rows.k.values.begin();
@@ -321,7 +343,7 @@ bool SurfaceContact::find_gaps(const Vector& free) {
     if (m.rows == 0) continue;
     row_gaps_.resize(index(m.rows));
     gaps(m.obstacle->rows(), surfaces_[m.own].pose, m.obstacle->free(), row_gaps_);
-    const double left = left_of(m);
+    const double left = left_of(m, time_);
     for (int r = 0; r < m.rows; ++r) {
       gaps_(m.first + r * m.parts) = row_gaps_[r] + left;
       press = press || !(row_gaps_[r] + left >= 0.0);

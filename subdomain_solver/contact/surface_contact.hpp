@@ -55,6 +55,10 @@ class SurfaceContact final : public PortContact {
   /// [J] by friction with all partners, since the run began.
   double dissipated() const;
   /// [J] on this body and its partners, by overlap that grows.
+  /// [J] on the body and its partners in the substep that was settled last, which nothing pressed
+  /// on before, where they overlapped: bodies without inertia take at once what is drawn [M.137].
+  /// Of each row's force the half, on the way by which its gap has closed.
+  double taken_at_once() const;
   double pressed_in() const { return interference_ ? interference_->work() : 0.0; }
   /// Calls `see` with the points of a port that have something near, the gaps [m] there, and
   /// whether friction holds them.
@@ -117,9 +121,9 @@ class SurfaceContact final : public PortContact {
   void share_shears(const Meeting& m);
   void settle_friction(std::size_t meeting);
   void settle_interference(std::size_t meeting);
-  /// [m] by which the gaps of a meeting are larger than they are, at the time solved for.
-  double left_of(const Meeting& m) const {
-    return interference_ ? interference_->left(index(&m - meetings_.data()), time_) : 0.0;
+  /// [m] by which the gaps of a meeting are larger than they are, at a time.
+  double left_of(const Meeting& m, double time) const {
+    return interference_ ? interference_->left(index(&m - meetings_.data()), time) : 0.0;
   }
   void forget_shears(const Meeting& m);
   void spread();

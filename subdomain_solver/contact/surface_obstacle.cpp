@@ -287,6 +287,12 @@ void SurfaceObstacle::end_slip(std::span<const double> reaction, std::span<doubl
     anchor[near_.values()[v]] = pose_[v] - near_.points[v];
 }
 
+void SurfaceObstacle::find_begin(std::vector<double>& places) const {
+  places.resize(near_.points.size());
+  motion_->interpolate(motion_->u, begin_, near_.values(), places);
+  for (std::size_t v = 0; v < places.size(); ++v) places[v] += near_.points[v];
+}
+
 void SurfaceObstacle::add_compliance(Eigen::Index first, std::span<const double> directions,
                                      Eigen::MatrixXd& a) {
   if (!yields() || rows_.count() == 0) return;

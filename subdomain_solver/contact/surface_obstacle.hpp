@@ -54,6 +54,9 @@ class SurfaceObstacle {
   const SurfaceRows& rows() const { return rows_; }
   /// [m] (near points, dim) where it lies without the substep's own reaction.
   const std::vector<double>& free() const { return free_; }
+  double begin() const { return begin_; }  // [s] of this substep
+  /// Where it lay then [m] (near points, dim).
+  void find_begin(std::vector<double>& places) const;
   /// Adds the compliance [m/N] among the rows' components, as many of each row as it has
   /// `directions` (components, dim), to a square of `a` that begins at `first`.
   void add_compliance(Eigen::Index first, std::span<const double> directions, Eigen::MatrixXd& a);

@@ -93,6 +93,9 @@ TEST(PressFits, StaticsHoldBarsInEquilibrium) {
             return event.text.find("interference of 0.01 m is pressed in") != std::string::npos;
           });
           EXPECT_EQ(told, *key != '\0');
+          // Forces grow linearly with what is pressed in, at once or in steps: sums alone are
+          // rounded, beside the sweeps' tolerance, whose error is of second order in the work.
+          EXPECT_NEAR(unbalanced(*run), 0.0, 1.0e-9 * bars.force() * bars.deep);
           EXPECT_TRUE(run->end.overlaps.empty());
         }
       }
@@ -168,6 +171,8 @@ TEST(PressFits, RingsPressAsLameSays) {
     const double stored =
         at_once->measure("body.hub.energy.stored") + at_once->measure("body.shaft.energy.stored");
     errors.push_back(stored / energy - 1.0);
+    const double at_once_work = at_once->rows.back().work[0] + at_once->rows.back().work[1];
+    EXPECT_NEAR(at_once_work, stored, 1.0e-6 * stored);  // tolerance of the sweeps
     const auto grown = rings(around, d, "interference: {over: 1.0}", 1.0);
     ASSERT_TRUE(grown->completed()) << grown->end.reason;
     EXPECT_NEAR(
