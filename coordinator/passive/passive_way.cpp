@@ -18,6 +18,9 @@ constexpr int most_halvings = 14;
 /// Steps that must succeed before they are doubled again, fewer where they are very short.
 constexpr int steps_to_double = 8, short_level = 6, short_steps_to_double = 3;
 constexpr int most_holds = 4;
+/// What bodies repay: those that have no more are left out of the next round.
+constexpr int rounds_to_repay = 3;
+constexpr double most_of_share = 0.99;
 /// Of a step: ends that are nearer are the same.
 constexpr double same_time = 1.0e-9;
 
@@ -173,16 +176,26 @@ std::vector<double> PassiveWay::repay(std::span<const int> bodies, double joules
   const auto energy_of = [this](int b) -> Energy& {
     return bodies_.response(b).records.back().energy;
   };
-  double motion = 0.0;
-  for (const int b : bodies) motion += energy_of(b).kinetic;
-  if (!(motion > 0.0)) return gave;
-  std::vector<double> shares;
-  for (const int b : bodies) shares.push_back(energy_of(b).kinetic / motion);
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    gave[k] = bodies_[bodies[k]].passive()->damp(shares[k] * joules);
-    energy_of(bodies[k]).kinetic -= gave[k];
-    ledger_.repaid += gave[k];
+  std::vector<char> gives(bodies.size(), 1);  // what it is asked for
+  double left = joules;
+  for (int round = 0; round < rounds_to_repay && left > 0.0; ++round) {
+    double motion = 0.0;
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+      if (gives[k] != 0) motion += energy_of(bodies[k]).kinetic;
+    if (!(motion > 0.0)) break;
+    std::vector<double> shares(bodies.size(), 0.0);
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+      if (gives[k] != 0) shares[k] = left * energy_of(bodies[k]).kinetic / motion;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      if (!(shares[k] > 0.0)) continue;
+      const double given = bodies_[bodies[k]].passive()->damp(shares[k]);
+      gives[k] = given >= most_of_share * shares[k];
+      energy_of(bodies[k]).kinetic -= given;
+      gave[k] += given;
+      left -= given;
+    }
   }
+  for (const double given : gave) ledger_.repaid += given;
   return gave;
 }
 
