@@ -14,9 +14,9 @@ constexpr int looks_from_rest = 10;
 /// and roles make some thousandths in scenes that the passive way would cost far more. Above it,
 /// the part of a share [M.21].
 constexpr double granted = 5.0e-3, part_of_share = 0.1;
-/// Of the largest energy: growth that stays. Beyond a thousandth nobody wants it, and a window's
-/// records come before what is taken back at its end.
-constexpr double stands = 8.0e-4;
+/// Of a share: growth that stays. Of the default that is below a thousandth of the energy, which
+/// nobody wants, as records within a window come before what is taken back at its end.
+constexpr double stands = 0.08;
 /// Of a share: what is told, and what one window may gain. Contact that dips and comes back stays
 /// below: 0.2 of it where a block lands, 0.02 where balls roll.
 constexpr double notable = 0.5;
@@ -99,9 +99,11 @@ bool EnergyGuard::refuses(std::span<const Response> responses,
 double EnergyGuard::excess(std::span<const Response> responses,
                            std::span<const double> struck) const {
   if (!begun_ || !together_ || unjudged_ > 0) return 0.0;
-  double motion = 0.0;
+  double motion = 0.0, worked = 0.0;
   const double own = own_energy(responses, struck, motion);
-  return std::max(0.0, own - first_ - stands * std::max(most_, motion));
+  for (const Response& response : responses)
+    worked = std::max(worked, std::abs(response.records.back().energy.external_work));
+  return std::max(0.0, own - first_ - stands * share_ * std::max({most_, motion, worked}));
 }
 
 void EnergyGuard::repaid(int body, double joules) {

@@ -40,8 +40,8 @@ class EnergyGuard {
   /// two-hundredth above the start (a tenth of the share, where that is more), or by half the share
   /// at once [M.21]. Changes nothing.
   bool refuses(std::span<const Response> responses, std::span<const double> struck = {}) const;
-  /// [J] by which the energy is above its start, beyond what may stand there: below a thousandth of
-  /// the largest [M.21].
+  /// [J] by which the energy is above its start, beyond what may stand there: less than a tenth of
+  /// the share of the largest, and of what loads and supports have worked on a body [M.21].
   double excess(std::span<const Response> responses, std::span<const double> struck = {}) const;
   /// So much [J] of what was gained a body has given back since: what accounts say takes it in.
   void repaid(int body, double joules);

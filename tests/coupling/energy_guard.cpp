@@ -57,6 +57,29 @@ TEST(EnergyGuard, RefusesWindowsThatGainByAndByOrMuchAtOnce) {
   }
 }
 
+TEST(EnergyGuard, TellsWhatIsToBeRepaid) {
+  struct Case {
+    double share, bound;  // and what may be gained
+  };
+  for (const auto& [share, bound] : {Case{0.01, 5.0e-3}, {0.1, 1.0e-2}}) {
+    EnergyGuard guard(share, {false});
+    EXPECT_EQ(guard.excess(std::vector{holding(1000.0, 0.0)}), 0.0) << "nothing to compare with";
+    guard.look(std::vector{holding(1000.0, 0.0)});
+    const double most = 0.08 * share;
+    EXPECT_EQ(guard.excess(std::vector{holding(1000.0 * (1.0 + 0.99 * most), 0.0)}), 0.0);
+    const double above = 1000.0 * (1.0 + 2.0 * most);
+    EXPECT_NEAR(guard.excess(std::vector{holding(above, 0.0)}), above * (1.0 - most) - 1000.0,
+                1.0e-9);  // sums of thousands
+    // Work of loads counts as much as energy: a driven scene holds little of what goes through it.
+    EXPECT_EQ(guard.excess(std::vector{holding(above + 1.0e5, 0.0, 1.0e5)}), 0.0);
+    // What was repaid counts in what refuses a window, so many small gains are not free.
+    const std::vector gained{holding(1000.0 * (1.0 + 0.6 * bound), 0.0)};
+    EXPECT_FALSE(guard.refuses(gained)) << share;
+    guard.repaid(0, 600.0 * bound);
+    EXPECT_TRUE(guard.refuses(gained)) << share;
+  }
+}
+
 TEST(EnergyGuard, JudgesFromRestWhenThereIsEnergyToCompareWith) {
   EnergyGuard guard(0.01, {false});
   EXPECT_EQ(guard.look(std::vector{holding(0.0, 0.0)}), Verdict::fine);

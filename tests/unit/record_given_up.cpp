@@ -38,6 +38,13 @@ TEST(GivenUp, IsNothingWithoutPassiveWindows) {
   EXPECT_FALSE(remedy_of({.windows = 4, .largest = 1.0}));
 }
 
+TEST(GivenUp, TellsWhatAccurateWindowsRepaid) {
+  EXPECT_EQ(Told().words({.repaid = 0.06, .largest = 120.0}),
+            "0.06 J of 120 J that accurate windows had gained were taken back from the swinging of "
+            "bodies");
+  EXPECT_EQ(Told().words({.repaid = 1.0e-7, .largest = 120.0}), "");
+}
+
 TEST(GivenUp, TellsSharesJoulesAndDepth) {
   EXPECT_EQ(Told().words(passive()),
             "3 % of the windows were solved passively, 1 % in shorter steps; 0.375 J of 120 J were "
