@@ -1,6 +1,6 @@
 /// Cost of explicit solids: whole steps (force and update) of boxes of hex8, per element and step,
 /// full and one point, neo-Hookean and linear; the share of the force; the force on each
-/// instruction set; beside it what the machine's memory allows for the bytes moved, in the same
+/// instruction set; the force of J2 plasticity by batches and cell by cell; beside it what the machine's memory allows for the bytes moved, in the same
 /// run.
 ///
 ///   abut_bench_explicit_solid [EDGE OF THE LARGE BOX] [REPEATS]
@@ -14,12 +14,14 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/index.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
+#include "subdomain_solver/materials/j2_plasticity.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
 #include "subdomain_solver/time/explicit_dynamics.hpp"
@@ -112,15 +114,55 @@ void run_instructions(int repeats) {
   for (const KernelTable* kernels : batched_kernels()) {
     fmt::print("{:>9} {:>8}", count, kernels->instructions);
     for (const bool one_point : {false, true}) {
-      BatchedCells cells(mesh, law, {one_point, 0.05, 1.0, 1, kernels});
-      double stored = 0.0;
+      BatchedCells cells(mesh, law, {one_point ? Formulation::one_point : Formulation::full, 0.05, 1.0, 1, kernels});
+      CellEnergies energies;
       const double wall = least(repeats, 1, [&] {
-        if (!cells.evaluate(q, force, stored)) std::abort();
+        if (!cells.evaluate(q, {}, force, energies)) std::abort();
       });
       fmt::print("   {} point(s): {:.1f} ns, {} B an element", one_point ? 1 : 8,
                  wall * 1.0e9 / count, cells.bytes() / index(count));
     }
     fmt::print("\n");
+  }
+}
+
+/// The force of J2 plasticity where no point yields and where every one does, by batches and cell
+/// by cell in turns: ns per element and evaluation.
+void run_plastic(int repeats) {
+  BoxMesh box;
+  box.elements = {32, 16, 20};
+  box.lengths = {0.032, 0.016, 0.02};
+  const Moduli steel{1.67e11, 7.7e10};
+  const Hardening hardening{4.0e8, 1.0e9, {}};
+  fmt::print("{:>16} {:>8} {:>9} {:>13} {:>7}   J2 force, ns per element\n", "formulation", "state",
+             "batched", "cell by cell", "ratio");
+  for (const auto& [formulation, name] : {std::pair{Formulation::full, "full"},
+                                          {Formulation::mean_dilatation, "mean_dilatation"},
+                                          {Formulation::one_point, "one_point"}}) {
+    for (const bool yields : {false, true}) {
+      std::array<double, 2> cost{};
+      for (const bool batched : {false, true}) {
+        FeOptions options;
+        options.formulation = formulation;
+        options.batched = batched;
+        FeModel model(generate(box, "bench"),
+                      std::make_unique<J2Plasticity>(steel, hardening, 7800.0), options);
+        std::vector<double> q(index(model.dofs()), 0.0), history(model.history_size(), 0.0);
+        for (std::size_t i = 0; i < q.size(); ++i)  // a stretch, and each cell's own part
+          q[i] = (i % 3 == 0 ? model.mesh().points[i] : 0.0) * (yields ? 8.0e-3 : 4.0e-4) +
+                 1.0e-8 * static_cast<double>(i * i % 97);
+        ModelResponse response;
+        const double best = least(repeats, 1, [&] {
+          if (!model.evaluate(q, history, Model::Want::force, response)) std::abort();
+        });
+        cost[batched] = best * 1.0e9 / model.mesh().cell_count();
+        const auto flown = [&](std::size_t k) { return response.history[k] > 0.0; };
+        for (std::size_t k = 6; k < history.size(); k += 7)
+          if (flown(k) != yields) std::abort();
+      }
+      fmt::print("{:>16} {:>8} {:>9.1f} {:>13.1f} {:>7.1f}\n", name, yields ? "yields" : "elastic",
+                 cost[1], cost[0], cost[0] / cost[1]);
+    }
   }
 }
 
@@ -163,6 +205,7 @@ void run(int edge, int repeats) {
   fmt::print("explicit hex8, whole steps, least of {}; instructions: {}\n", repeats,
              batched_kernels().front()->instructions);
   run_instructions(repeats);
+  run_plastic(repeats);
   run_stable_step(repeats);
   fmt::print("{:>9} {:>8} {:>10} {:>7} {:>8} {:>8} {:>9}   ns per element-step\n", "elements",
              "law", "points", "threads", "step", "force", "streaming");

@@ -6,6 +6,7 @@
 
 #include "base/assert.hpp"
 #include "base/index.hpp"
+#include "subdomain_solver/materials/j2_plasticity.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
 #include "subdomain_solver/materials/saint_venant_kirchhoff.hpp"
@@ -19,14 +20,47 @@ std::optional<BatchedLaw> law_of(const Material& material) {
   if (dynamic_cast<const SaintVenantKirchhoff*>(&material) != nullptr)
     return BatchedLaw::saint_venant_kirchhoff;
   if (dynamic_cast<const NeoHookean*>(&material) != nullptr) return BatchedLaw::neo_hookean;
+  if (dynamic_cast<const J2Plasticity*>(&material) != nullptr) return BatchedLaw::j2_plasticity;
   return std::nullopt;
 }
 
-std::optional<BatchedCell> cell_of(const Element& element, bool one_point) {
-  if (element.name == "hex8") return one_point ? BatchedCell::hex8_one_point : BatchedCell::hex8;
-  if (element.name == "quad4") return one_point ? BatchedCell::quad4_one_point : BatchedCell::quad4;
-  if (element.name == "tet4") return BatchedCell::tet4;
+std::optional<BatchedCell> cell_of(const Element& element, Formulation formulation) {
+  const auto choose = [formulation](BatchedCell full, BatchedCell mean, BatchedCell one_point) {
+    if (formulation == Formulation::mean_dilatation) return mean;
+    return formulation == Formulation::one_point ? one_point : full;
+  };
+  using enum BatchedCell;
+  if (element.name == "hex8") return choose(hex8, hex8_mean_dilatation, hex8_one_point);
+  if (element.name == "quad4") return choose(quad4, quad4_mean_dilatation, quad4_one_point);
+  if (element.name == "tet4") return tet4;
+  if (element.name == "tri3") return tri3;
   return std::nullopt;
+}
+
+/// Points at which a cell has its law.
+int points_of(BatchedCell cell) {
+  switch (cell) {
+    case BatchedCell::hex8:
+    case BatchedCell::hex8_mean_dilatation:
+      return 8;
+    case BatchedCell::quad4:
+    case BatchedCell::quad4_mean_dilatation:
+      return 4;
+    default:
+      return 1;
+  }
+}
+
+HardeningNumbers hardening_of(const Material& material) {
+  const auto* law = dynamic_cast<const J2Plasticity*>(&material);
+  if (law == nullptr) return {};
+  const Hardening& h = law->hardening();
+  HardeningNumbers numbers{h.yield_stress, h.modulus, 0.0, 0.0};
+  if (h.saturation) {
+    numbers.rise = h.saturation->stress - h.yield_stress;
+    numbers.rate = h.saturation->rate;
+  }
+  return numbers;
 }
 
 /// Rows of Dim numbers, wherever they lie, to rows of 4, and back.
@@ -59,11 +93,14 @@ std::vector<const KernelTable*> batched_kernels() {
   return tables;
 }
 
-bool BatchedCells::can(const Mesh& mesh, const Material& material) {
-  return law_of(material) &&
-         std::all_of(mesh.blocks.begin(), mesh.blocks.end(), [](const CellBlock& block) {
-           return block.shares.empty() && cell_of(*block.element, false).has_value();
-         });
+bool BatchedCells::can(const Mesh& mesh, const Material& material, Formulation formulation) {
+  const std::optional<BatchedLaw> law = law_of(material);
+  return law && std::all_of(mesh.blocks.begin(), mesh.blocks.end(),
+                            [law, formulation](const CellBlock& block) {
+                              const auto cell = cell_of(*block.element, formulation);
+                              return block.shares.empty() && cell &&
+                                     batched_kernels_generic().of(*cell, *law) != nullptr;
+                            });
 }
 
 BatchedCells::BatchedCells(const Mesh& mesh, const Material& material,
@@ -72,11 +109,11 @@ BatchedCells::BatchedCells(const Mesh& mesh, const Material& material,
       patches_(mesh),
       table_(options.kernels != nullptr ? *options.kernels : *batched_kernels().front()),
       parameters_{material.moduli(), options.hourglass * material.moduli().p_wave(),
-                  options.thickness},
+                  options.thickness, hardening_of(material)},
       threads_(options.threads) {
-  ABUT_ASSERT(can(mesh, material));
+  ABUT_ASSERT(can(mesh, material, options.formulation));
   for (const CellBlock& block : mesh.blocks) {
-    const BatchedCell cell = *cell_of(*block.element, options.one_point);
+    const BatchedCell cell = *cell_of(*block.element, options.formulation);
     kernels_.push_back(table_.of(cell, *law_of(material)));
     frequencies_.push_back(table_.frequency_of(cell, *law_of(material)));
   }
@@ -86,8 +123,44 @@ BatchedCells::BatchedCells(const Mesh& mesh, const Material& material,
     c.force.resize(4 * patches_.most_copies());
   }
   shared_.resize(patches_.shared_copies() * index(dim_));
-  stored_.resize(patches_.list().size());
+  energies_.resize(patches_.list().size());
   answers_.resize(patches_.list().size());
+  if (material.history_size() > 0) {
+    for (const CellBlock& block : mesh.blocks)
+      cell_numbers_.push_back(material.history_size() *
+                              points_of(*cell_of(*block.element, options.formulation)));
+    place_histories(mesh, options.first_history);
+  }
+}
+
+/// Lanes without a cell have none.
+void BatchedCells::place_histories(const Mesh& mesh,
+                                   const std::vector<std::vector<std::int64_t>>& given) {
+  std::vector<std::int64_t> first = {0};  // of the blocks
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b)
+    first.push_back(first.back() + std::int64_t{mesh.blocks[b].count()} * cell_numbers_[b]);
+  for (const CellPatch& patch : patches_.list()) {
+    std::vector<std::int64_t>& list = first_history_.emplace_back();
+    for (const std::int32_t cell : patch.cells)
+      list.push_back(given.empty() ? first[patch.block] + cell * cell_numbers_[patch.block]
+                                   : given[patch.block][cell]);
+    list.resize(index(patch.batches) * batch_lanes, -1);
+  }
+}
+
+PatchView BatchedCells::view_of(std::size_t p, Copies& copies, const Histories& histories) const {
+  const CellPatch& patch = patches_.list()[p];
+  PatchView view;
+  view.batches = patch.batches;
+  view.nodes = patch.places.data();
+  view.reference = patch.reference.data();
+  view.displacement = copies.displacement.data();
+  view.force = copies.force.data();
+  if (first_history_.empty()) return view;
+  view.first_history = first_history_[p].data();
+  view.before = histories.before;
+  view.after = histories.after;
+  return view;
 }
 
 void BatchedCells::copy_displacement(const CellPatch& patch, Copies& copies,
@@ -101,16 +174,15 @@ void BatchedCells::copy_displacement(const CellPatch& patch, Copies& copies,
 }
 
 void BatchedCells::evaluate(std::size_t p, Copies& copies, std::span<const double> q,
-                            std::span<double> force) {
+                            const Histories& histories, std::span<double> force) {
   const CellPatch& patch = patches_.list()[p];
   copy_displacement(patch, copies, q);
   std::fill_n(copies.force.begin(), patch.reference.size(), 0.0);
-  PatchView view{patch.batches,          patch.places.data(),
-                 patch.reference.data(), copies.displacement.data(),
-                 copies.force.data(),    {}};
+  PatchView view = view_of(p, copies, histories);
   answers_[p] = kernels_[patch.block](view, parameters_);
-  stored_[p] = 0.0;
-  for (const double energy : view.stored) stored_[p] += energy;
+  energies_[p] = {};
+  for (const double energy : view.stored) energies_[p].stored += energy;
+  for (const double energy : view.dissipated) energies_[p].dissipated += energy;
   const std::span<const std::int32_t> own = std::span(patch.nodes).first(index(patch.own));
   if (dim_ == 3)
     copy_out<3>(own, copies.force.data(), force.data());
@@ -122,10 +194,13 @@ void BatchedCells::evaluate(std::size_t p, Copies& copies, std::span<const doubl
       shared_[(patch.first_shared + n - own.size()) * dim + i] = copies.force[4 * n + i];
 }
 
-bool BatchedCells::evaluate(std::span<const double> q, std::span<double> force, double& stored) {
+bool BatchedCells::evaluate(std::span<const double> q, const PointHistories& histories,
+                            std::span<double> force, CellEnergies& energies) {
+  const Histories numbers{histories.before.data(),
+                          histories.after.empty() ? nullptr : histories.after.data()};
   // Handed on by reference: a copy of what the lambdas hold would be allocated.
-  const auto ask = [this, q, force](std::size_t patch, int worker) {
-    evaluate(patch, copies_[worker], q, force);
+  const auto ask = [this, q, numbers, force](std::size_t patch, int worker) {
+    evaluate(patch, copies_[worker], q, numbers, force);
   };
   threads_.run(patches_.list().size(), std::ref(ask));
   const std::size_t dim = index(dim_), count = patches_.shared_count();
@@ -141,13 +216,18 @@ bool BatchedCells::evaluate(std::span<const double> q, std::span<double> force, 
     }
   };
   threads_.run((count + each - 1) / each, std::ref(add));
-  stored = 0.0;
-  for (const double energy : stored_) stored += energy;
-  return std::isfinite(stored) && std::find(answers_.begin(), answers_.end(), 0) == answers_.end();
+  energies = {};
+  for (const CellEnergies& of_patch : energies_) {
+    energies.stored += of_patch.stored;
+    energies.dissipated += of_patch.dissipated;
+  }
+  return std::isfinite(energies.stored) && std::isfinite(energies.dissipated) &&
+         std::find(answers_.begin(), answers_.end(), 0) == answers_.end();
 }
 
 /// Answers the questions of all patches.
-void BatchedCells::ask_all(std::span<const double> q, std::span<const double> scales) {
+void BatchedCells::ask_all(std::span<const double> q, std::span<const double> history,
+                           std::span<const double> scales) {
   const std::vector<CellPatch>& list = patches_.list();
   const double* scale = scales.data();
   for (std::size_t p = 0; p < list.size(); ++p) {
@@ -156,32 +236,32 @@ void BatchedCells::ask_all(std::span<const double> q, std::span<const double> sc
     scale += list[p].batches * batch_lanes;
   }
   ABUT_ASSERT(scale == scales.data() + scales.size());
-  const auto ask = [this, q](std::size_t p, int worker) {
+  const auto ask = [this, q, history](std::size_t p, int worker) {
     const CellPatch& patch = patches_.list()[p];
     Copies& copies = copies_[worker];
     copy_displacement(patch, copies, q);
-    const PatchView view{patch.batches,
-                         patch.places.data(),
-                         patch.reference.data(),
-                         copies.displacement.data(),
-                         nullptr,
-                         {}};
+    const PatchView view = view_of(p, copies, {history.data(), nullptr});
     frequencies_[patch.block](view, parameters_, questions_[p]);
   };
   threads_.run(list.size(), std::ref(ask));
 }
 
-double BatchedCells::bound_frequencies(std::span<const double> q, double from,
-                                       std::span<const double> scales) {
+bool BatchedCells::bounds() const {
+  return std::ranges::find(frequencies_, nullptr) == frequencies_.end();
+}
+
+double BatchedCells::bound_frequencies(std::span<const double> q, std::span<const double> history,
+                                       double from, std::span<const double> scales) {
   questions_.assign(patches_.list().size(), {nullptr, 0, from, nullptr, 0});
-  ask_all(q, scales);
+  ask_all(q, history, scales);
   double most = from;
   for (const FrequencyQuestion& question : questions_) most = std::max(most, question.square);
   return most;
 }
 
-void BatchedCells::find_fast(std::span<const double> q, double square,
-                             std::span<const double> scales, std::vector<Place>& out) {
+void BatchedCells::find_fast(std::span<const double> q, std::span<const double> history,
+                             double square, std::span<const double> scales,
+                             std::vector<Place>& out) {
   const std::vector<CellPatch>& list = patches_.list();
   questions_.assign(list.size(), {nullptr, 0, square, nullptr, 0});
   fast_.resize(list.size());
@@ -189,15 +269,18 @@ void BatchedCells::find_fast(std::span<const double> q, double square,
     fast_[p].resize(list[p].cells.size());
     questions_[p].fast = fast_[p].data();
   }
-  ask_all(q, scales);
+  ask_all(q, history, scales);
   for (std::size_t p = 0; p < list.size(); ++p)
     for (int k = 0; k < questions_[p].found; ++k)
       out.push_back({list[p].block, list[p].cells[fast_[p][index(k)]]});
 }
 
 std::size_t BatchedCells::bytes() const {
-  std::size_t sum = patches_.bytes() + (shared_.size() + stored_.size()) * sizeof(double);
+  std::size_t sum = patches_.bytes() + shared_.size() * sizeof(double) +
+                    energies_.size() * sizeof(CellEnergies);
   for (const Copies& c : copies_) sum += (c.displacement.size() + c.force.size()) * sizeof(double);
+  for (const std::vector<std::int64_t>& list : first_history_)
+    sum += list.size() * sizeof(std::int64_t);
   return sum;
 }
 

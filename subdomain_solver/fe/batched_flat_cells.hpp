@@ -43,16 +43,69 @@ template <int N>
   return out;
 }
 
+/// Of the 2x2 points, numbered along x first: coordinate, and place among the cell's histories,
+/// where the last direction runs fastest, as in quadrature().
+constexpr double quad_sign(int i) { return i != 0 ? gauss_point : -gauss_point; }
+constexpr int quad_history_place(int p) { return 2 * (p & 1) + (p >> 1); }
+
+/// A point of quad4 at reference coordinates a, b.
+template <int N>
+struct QuadPoint {
+  using Real = typename Lanes<N>::Real;
+  double a = 0.0, b = 0.0;
+  Real cof[2][2], det;  // of dX/dxi, whose modes carry the factor 4
+
+  [[gnu::always_inline]] void set(const QuadModes<N>& x, double at_a, double at_b) {
+    a = at_a;
+    b = at_b;
+    Real j[2][2];
+    slopes(x, j);
+    det = fused(j[0][0], j[1][1], Real(-j[0][1] * j[1][0]));
+    cof[0][0] = j[1][1];
+    cof[0][1] = -j[1][0];
+    cof[1][0] = -j[0][1];
+    cof[1][1] = j[0][0];
+  }
+  /// H of displacements u.
+  [[gnu::always_inline]] void gradient(const QuadModes<N>& u, Real (&h)[2][2]) const {
+    Real g[2][2];
+    slopes(u, g);
+    const Real inverse = 1.0 / det;
+    ABUT_UNROLLED (i, 0, 2)
+      ABUT_UNROLLED (k, 0, 2)
+        h[i][k] = fused(g[i][0], cof[k][0], Real(g[i][1] * cof[k][1])) * inverse;
+  }
+  /// Adds what a stress does to the modes; `scale`: of volume over det.
+  [[gnu::always_inline]] void add_pull(const TensorLanes<N>& stress, double scale,
+                                       QuadModes<N>& pull) const {
+    ABUT_UNROLLED (i, 0, 2) {
+      const Real* s = stress.entry + i;
+      const Real fx = fused(s[0], cof[0][0], Real(s[3] * cof[1][0])) * scale;
+      const Real fy = fused(s[0], cof[0][1], Real(s[3] * cof[1][1])) * scale;
+      pull.at[i][1] += fx;
+      pull.at[i][2] += fy;
+      pull.at[i][3] += fused(broadcast<Real>(b), fx, Real(a * fy));
+    }
+  }
+
+ private:
+  /// (component, direction)
+  [[gnu::always_inline]] void slopes(const QuadModes<N>& of, Real (&j)[2][2]) const {
+    ABUT_UNROLLED (i, 0, 2) {
+      j[i][0] = fused(broadcast<Real>(b), of.at[i][3], of.at[i][1]);
+      j[i][1] = fused(broadcast<Real>(a), of.at[i][3], of.at[i][2]);
+    }
+  }
+};
+
 /// Plane strain, full 2x2 integration [M.50].
 struct Quad4 {
   static constexpr int nodes = 4;
 
-  template <int N, class Law>
+  template <int N, class Law, class Sums>
   [[gnu::always_inline]] static void evaluate(const double* nodal_x, const double* nodal_u,
                                               double* force, const Law& law,
-                                              const BatchedParameters& parameters,
-                                              typename Lanes<N>::Real& stored,
-                                              typename Lanes<N>::Bits& valid) {
+                                              const BatchedParameters& parameters, Sums& sums) {
     using Real = typename Lanes<N>::Real;
     QuadModes<N> x, u, pull;
     x.load_from(nodal_x);
@@ -61,34 +114,14 @@ struct Quad4 {
       ABUT_UNROLLED (m, 0, 4) pull.at[i][m] = Real{};
     const double scale = parameters.thickness / 16.0;  // 4^2: modes carry the factor 4
     for (int p = 0; p < 4; ++p) {
-      const double a = (p & 1) != 0 ? gauss_point : -gauss_point;
-      const double b = p > 1 ? gauss_point : -gauss_point;
-      Real j[2][2], g[2][2];  // (component, direction)
-      ABUT_UNROLLED (i, 0, 2) {
-        j[i][0] = fused(broadcast<Real>(b), x.at[i][3], x.at[i][1]);
-        j[i][1] = fused(broadcast<Real>(a), x.at[i][3], x.at[i][2]);
-        g[i][0] = fused(broadcast<Real>(b), u.at[i][3], u.at[i][1]);
-        g[i][1] = fused(broadcast<Real>(a), u.at[i][3], u.at[i][2]);
-      }
-      const Real det = fused(j[0][0], j[1][1], Real(-j[0][1] * j[1][0]));
-      const Real cof[2][2] = {{j[1][1], -j[1][0]}, {-j[0][1], j[0][0]}};
-      const Real inverse = 1.0 / det;
+      QuadPoint<N> at;
+      at.set(x, quad_sign(p & 1), quad_sign(p >> 1));
       Real h[2][2];
-      ABUT_UNROLLED (i, 0, 2)
-        ABUT_UNROLLED (k, 0, 2)
-          h[i][k] = fused(g[i][0], cof[k][0], Real(g[i][1] * cof[k][1])) * inverse;
+      at.gradient(u, h);
       LaneResponse<N> response;
-      law(plane_gradient<N>(h), response);
-      valid &= response.valid > 0.0;
-      stored = fused(Real(scale * det), response.energy, stored);
-      ABUT_UNROLLED (i, 0, 2) {
-        const Real* s = response.stress.entry + i;
-        const Real fx = fused(s[0], cof[0][0], Real(s[3] * cof[1][0])) * scale;
-        const Real fy = fused(s[0], cof[0][1], Real(s[3] * cof[1][1])) * scale;
-        pull.at[i][1] += fx;
-        pull.at[i][2] += fy;
-        pull.at[i][3] += fused(broadcast<Real>(b), fx, Real(a * fy));
-      }
+      law(quad_history_place(p), plane_gradient<N>(h), response);
+      sums.add(Real(scale * at.det), response);
+      at.add_pull(response.stress, scale, pull);
     }
     pull.store_to(force);
   }
@@ -98,12 +131,10 @@ struct Quad4 {
 struct Quad4OnePoint {
   static constexpr int nodes = 4;
 
-  template <int N, class Law>
+  template <int N, class Law, class Sums>
   [[gnu::always_inline]] static void evaluate(const double* nodal_x, const double* nodal_u,
                                               double* force, const Law& law,
-                                              const BatchedParameters& parameters,
-                                              typename Lanes<N>::Real& stored,
-                                              typename Lanes<N>::Bits& valid) {
+                                              const BatchedParameters& parameters, Sums& sums) {
     using Real = typename Lanes<N>::Real;
     QuadModes<N> x, u, pull;
     x.load_from(nodal_x);
@@ -117,9 +148,8 @@ struct Quad4OnePoint {
       ABUT_UNROLLED (j, 0, 2)
         h[i][j] = fused(u.at[i][1], cof[j][0], Real(u.at[i][2] * cof[j][1])) * inverse;
     LaneResponse<N> response;
-    law(plane_gradient<N>(h), response);
-    valid &= response.valid > 0.0;
-    stored = fused(volume, response.energy, stored);
+    law(0, plane_gradient<N>(h), response);
+    sums.add(volume, response);
     // k = coefficient M/8 V sum_a |b_a|^2; sum_a |A b_a|^2 = 4/16 sum_m |cof_m|^2.
     Real squares = cof[0][0] * cof[0][0];
     squares = fused(cof[0][1], cof[0][1], squares);
@@ -129,7 +159,7 @@ struct Quad4OnePoint {
       Real gap = u.at[i][3];
       ABUT_UNROLLED (j, 0, 2) gap = fused(Real(-h[i][j]), x.at[j][3], gap);
       const Real q = k * gap;
-      stored = fused(Real(0.5 * q), gap, stored);
+      sums.stored = fused(Real(0.5 * q), gap, sums.stored);
       Real work[2];
       ABUT_UNROLLED (j, 0, 2) {
         const Real moment = q * x.at[j][3] * inverse;
@@ -142,43 +172,6 @@ struct Quad4OnePoint {
       pull.at[i][3] = q;
     }
     pull.store_to(force);
-  }
-};
-
-/// Four nodes in space; F is the same everywhere.
-struct Tet4 {
-  static constexpr int nodes = 4;
-
-  template <int N, class Law>
-  [[gnu::always_inline]] static void evaluate(const double* x, const double* u, double* force,
-                                              const Law& law, const BatchedParameters&,
-                                              typename Lanes<N>::Real& stored,
-                                              typename Lanes<N>::Bits& valid) {
-    using Real = typename Lanes<N>::Real;
-    TensorLanes<N> j, g, cof, h;
-    ABUT_UNROLLED (d, 0, 3)
-      ABUT_UNROLLED (i, 0, 3) {
-        const int at = (3 * (d + 1) + i) * batch_lanes, origin = i * batch_lanes;
-        j.entry[i + 3 * d] = load<N>(x + at) - load<N>(x + origin);
-        g.entry[i + 3 * d] = load<N>(u + at) - load<N>(u + origin);
-      }
-    const Real det = cofactor(j, cof);
-    displacement_gradient<N>(g, cof, Real(1.0 / det), h);
-    LaneResponse<N> response;
-    law(h, response);
-    valid &= response.valid > 0.0;
-    stored = fused(Real((1.0 / 6.0) * det), response.energy, stored);
-    ABUT_UNROLLED (i, 0, 3) {
-      const Real* s = response.stress.entry + i;
-      Real rest = Real{};
-      ABUT_UNROLLED (d, 0, 3) {
-        const Real* c = cof.entry + 3 * d;
-        const Real f = fused(s[0], c[0], fused(s[3], c[1], Real(s[6] * c[2]))) * (1.0 / 6.0);
-        store<N>(f, force + (3 * (d + 1) + i) * batch_lanes);
-        rest -= f;
-      }
-      store<N>(rest, force + i * batch_lanes);
-    }
   }
 };
 

@@ -137,16 +137,18 @@ template <int N>
     }
 }
 
+/// Where a Gauss point of the cube has its history among the cell's: the last direction runs
+/// fastest, as in quadrature().
+constexpr int history_place(int a, int b, int c) { return 4 * a + 2 * b + c; }
+
 /// Full 2x2x2 integration [M.50]. X and u from the modes: their common factor 8 cancels in F, and
 /// becomes 8^3 in volumes.
 struct Hex8 {
   static constexpr int nodes = 8;
 
-  template <int N, class Law>
+  template <int N, class Law, class Sums>
   [[gnu::always_inline]] static void evaluate(const double* x, const double* u, double* force,
-                                              const Law& law, const BatchedParameters&,
-                                              typename Lanes<N>::Real& stored,
-                                              typename Lanes<N>::Bits& valid) {
+                                              const Law& law, const BatchedParameters&, Sums& sums) {
     using Real = typename Lanes<N>::Real;
     constexpr double scale = 1.0 / 512.0;
     Real mode[3][8];
@@ -170,9 +172,8 @@ struct Hex8 {
       const Real det = cofactor(j, cof);
       displacement_gradient<N>(g, cof, Real(1.0 / det), h);
       LaneResponse<N> response;
-      law(h, response);
-      stored = fused(Real(scale * det), response.energy, stored);
-      valid &= response.valid > 0.0;
+      law(history_place(a, b, c), h, response);
+      sums.add(Real(scale * det), response);
       const Real* s = response.stress.entry;
       ABUT_UNROLLED (d, 0, 3)
         ABUT_UNROLLED (i, 0, 3) {

@@ -64,12 +64,10 @@ struct HexMeanGradients {
 struct Hex8OnePoint {
   static constexpr int nodes = 8;
 
-  template <int N, class Law>
+  template <int N, class Law, class Sums>
   [[gnu::always_inline]] static void evaluate(const double* nodal_x, const double* nodal_u,
                                               double* force, const Law& law,
-                                              const BatchedParameters& parameters,
-                                              typename Lanes<N>::Real& stored,
-                                              typename Lanes<N>::Bits& valid) {
+                                              const BatchedParameters& parameters, Sums& sums) {
     using Real = typename Lanes<N>::Real;
     Real x[3][8], u[3][8];
     load_hex_modes<N>(nodal_x, x);
@@ -79,9 +77,8 @@ struct Hex8OnePoint {
     TensorLanes<N> h;
     mean.template gradient<N>(u, inverse, h);
     LaneResponse<N> response;
-    law(h, response);
-    valid &= response.valid > 0.0;
-    stored = fused(volume, response.energy, stored);
+    law(0, h, response);
+    sums.add(volume, response);
 
     // k = coefficient M/24 V sum_a |b_a|^2; sum_a |V b_a|^2 = 8/64^2 sum_m |mean_m|^2.
     Real squares = mean.at[1][0] * mean.at[1][0];
@@ -96,7 +93,7 @@ struct Hex8OnePoint {
         sum_q = fused(gap, gap, sum_q);
         q[i][m] = k * gap;
       }
-    stored = fused(Real(0.5 * k), sum_q, stored);
+    sums.stored = fused(Real(0.5 * k), sum_q, sums.stored);
 
     Real mode[3][8];
     ABUT_UNROLLED (i, 0, 3) {

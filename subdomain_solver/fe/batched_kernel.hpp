@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/index.hpp"
+#include "subdomain_solver/materials/hardening_numbers.hpp"
 #include "subdomain_solver/materials/moduli.hpp"
 
 namespace abut {
@@ -18,13 +19,20 @@ struct PatchView {
   const double* reference = nullptr;         // [m] (nodes, 4) position; the fourth number is unused
   const double* displacement = nullptr;      // [m] (nodes, 4)
   double* force = nullptr;                   // [N] (nodes, 4) to which the cells add
-  std::array<double, batch_lanes> stored{};  // [J] per lane, to which the cells add
+  /// (batches, 8) where the numbers of a cell's points begin in the histories, point after point;
+  /// -1: the lane has no cell.
+  const std::int64_t* first_history = nullptr;
+  const double* before = nullptr;                // history at the step's begin
+  double* after = nullptr;                       // at its end; null: not wanted
+  std::array<double, batch_lanes> stored{};      // [J] per lane, to which the cells add
+  std::array<double, batch_lanes> dissipated{};  // [J] likewise
 };
 
 struct BatchedParameters {
   Moduli moduli;
   double hourglass = 0.0;  // [Pa] coefficient x P-wave modulus
   double thickness = 1.0;  // [m] of plane cells
+  HardeningNumbers hardening;
 };
 
 /// Internal force and stored energy of a patch. False: a point has no answer.
@@ -43,10 +51,27 @@ struct FrequencyQuestion {
 };
 using FrequencyKernel = void (*)(const PatchView&, const BatchedParameters&, FrequencyQuestion&);
 
-enum class BatchedLaw { linear_elastic, saint_venant_kirchhoff, neo_hookean, count };
-enum class BatchedCell { hex8, hex8_one_point, quad4, quad4_one_point, tet4, count };
+enum class BatchedLaw {
+  linear_elastic,
+  saint_venant_kirchhoff,
+  neo_hookean,
+  j2_plasticity,
+  count
+};
+enum class BatchedCell {
+  hex8,
+  hex8_one_point,
+  hex8_mean_dilatation,
+  quad4,
+  quad4_one_point,
+  quad4_mean_dilatation,
+  tet4,
+  tri3,
+  count
+};
 
-/// Kernels of every cell (rows) with every law (columns), for one instruction set.
+/// Kernels of every cell (rows) with every law (columns), for one instruction set; null: there is
+/// none. Frequencies of cells with mean dilatation have no bound [M.58].
 struct KernelTable {
   const char* instructions = "";
   std::array<std::array<PatchKernel, static_cast<int>(BatchedLaw::count)>,

@@ -4,7 +4,10 @@
 #include "subdomain_solver/fe/batched_hex8.hpp"
 #include "subdomain_solver/fe/batched_hex8_one_point.hpp"
 #include "subdomain_solver/fe/batched_kernel.hpp"
+#include "subdomain_solver/fe/batched_law_points.hpp"
+#include "subdomain_solver/fe/batched_mean_dilatation.hpp"
 #include "subdomain_solver/fe/batched_points.hpp"
+#include "subdomain_solver/fe/batched_simplices.hpp"
 
 namespace abut {
 
@@ -64,46 +67,48 @@ template <int nodes>
 template <class Cell, class Law>
 bool run_patch(PatchView& patch, const BatchedParameters& parameters) {
   constexpr int lanes = ABUT_LANES;
-  using Real = Lanes<lanes>::Real;
-  using Bits = Lanes<lanes>::Bits;
   constexpr int size = Cell::nodes * 3 * batch_lanes;
   alignas(64) double x[size], u[size], force[size];
-  const Law law{parameters.moduli};
-  Bits valid = ~Bits{};
+  Law law(patch, parameters);
+  PointSums<lanes, Law::dissipates> sums;
+  sums.valid = ~Lanes<lanes>::Bits{};
   for (int b = 0; b < patch.batches; ++b) {
     const std::int32_t* list = patch.nodes + b * Cell::nodes * batch_lanes;
     gather<Cell::nodes>(patch.reference, list, x);
     gather<Cell::nodes>(patch.displacement, list, u);
     for (int slice = 0; slice < batch_lanes; slice += lanes) {
-      Real stored = load<lanes>(patch.stored.data() + slice);
-      Cell::template evaluate<lanes, Law>(x + slice, u + slice, force + slice, law, parameters,
-                                          stored, valid);
-      store<lanes>(stored, patch.stored.data() + slice);
+      law.begin(b, slice);
+      sums.stored = load<lanes>(patch.stored.data() + slice);
+      if (Law::dissipates) sums.dissipated = load<lanes>(patch.dissipated.data() + slice);
+      Cell::template evaluate<lanes>(x + slice, u + slice, force + slice, law, parameters, sums);
+      store<lanes>(sums.stored, patch.stored.data() + slice);
+      if (Law::dissipates) store<lanes>(sums.dissipated, patch.dissipated.data() + slice);
     }
     scatter<Cell::nodes>(force, list, patch.force);
   }
   ABUT_UNROLLED (l, 0, lanes)
-    if (valid[l] == 0) return false;
+    if (sums.valid[l] == 0) return false;
   return true;
 }
 
 /// Cells of a batch (x, u: nodal values) that are slower than a limit, one bit each.
 template <class Points, class Tangent>
 unsigned slower_cells(const double* x, const double* u, const double* scale, double square,
-                      const Tangent& tangent) {
+                      int batch, Tangent& tangent) {
   constexpr int lanes = ABUT_LANES, dim = Points::dim;
   using Real = Lanes<lanes>::Real;
   using Bits = Lanes<lanes>::Bits;
   unsigned slower = 0;
   for (int slice = 0; slice < batch_lanes; slice += lanes) {
     const Real limit = load<lanes>(scale + slice) * square;
+    tangent.begin(batch, slice);
     Bits below = ~Bits{};
     Real metric[dim][dim];
     Points::template run<lanes>(x + slice, u + slice, metric,
-                                [&](const TensorLanes<lanes>& h) ABUT_INLINED {
+                                [&](int place, const TensorLanes<lanes>& h) ABUT_INLINED {
                                   ElasticityLanes<lanes> moduli;
                                   Real valid, scaled[dim][dim];
-                                  tangent(h, moduli, valid);
+                                  tangent(place, h, moduli, valid);
                                   below &= valid > 0.0;
                                   ABUT_UNROLLED (j, 0, dim)
                                     ABUT_UNROLLED (l, 0, dim) scaled[j][l] = limit * metric[j][l];
@@ -121,7 +126,7 @@ void ask_patch(const PatchView& patch, const BatchedParameters& parameters,
   constexpr int size = Points::nodes * 3 * batch_lanes;
   constexpr double most = 1.0e12;  // rises of the limit, for cells without an answer
   alignas(64) double x[size], u[size];
-  const Tangent tangent{parameters.moduli};
+  Tangent tangent(patch, parameters);
   const double end = question.square * most;
   for (int b = 0; b < patch.batches; ++b) {
     const std::int32_t* list = patch.nodes + b * Points::nodes * batch_lanes;
@@ -131,7 +136,7 @@ void ask_patch(const PatchView& patch, const BatchedParameters& parameters,
     const unsigned all = rest < batch_lanes ? (1u << rest) - 1 : (1u << batch_lanes) - 1;
     unsigned fast = 0;
     for (;;) {
-      fast = all & ~slower_cells<Points>(x, u, question.scale + first, question.square, tangent);
+      fast = all & ~slower_cells<Points>(x, u, question.scale + first, question.square, b, tangent);
       if (fast == 0 || question.fast != nullptr) break;
       question.square *= 1.01;
       if (question.square < end) continue;
@@ -143,23 +148,39 @@ void ask_patch(const PatchView& patch, const BatchedParameters& parameters,
   }
 }
 
+constexpr int laws = static_cast<int>(BatchedLaw::count);
+template <class Law>
+using Plain = ElasticPoints<ABUT_LANES, Law>;
+
 template <class Points>
-constexpr std::array<FrequencyKernel, static_cast<int>(BatchedLaw::count)> frequency_row() {
-  return {ask_patch<Points, LinearElasticTangent>, ask_patch<Points, SaintVenantKirchhoffTangent>,
-          ask_patch<Points, NeoHookeanTangent>};
+constexpr std::array<FrequencyKernel, laws> frequency_row() {
+  return {ask_patch<Points, Plain<LinearElasticTangent>>,
+          ask_patch<Points, Plain<SaintVenantKirchhoffTangent>>,
+          ask_patch<Points, Plain<NeoHookeanTangent>>,
+          ask_patch<Points, J2BoundPoints<ABUT_LANES>>};
 }
 
 template <class Cell>
-constexpr std::array<PatchKernel, static_cast<int>(BatchedLaw::count)> row() {
-  return {run_patch<Cell, LinearElasticResponse>, run_patch<Cell, SaintVenantKirchhoffResponse>,
-          run_patch<Cell, NeoHookeanResponse>};
+constexpr std::array<PatchKernel, laws> row() {
+  return {run_patch<Cell, Plain<LinearElasticResponse>>,
+          run_patch<Cell, Plain<SaintVenantKirchhoffResponse>>,
+          run_patch<Cell, Plain<NeoHookeanResponse>>, run_patch<Cell, J2Points<ABUT_LANES>>};
+}
+
+/// Of cells whose volume change is of finite strain: linear laws have another one.
+template <class Cell>
+constexpr std::array<PatchKernel, laws> finite_row() {
+  std::array<PatchKernel, laws> all = row<Cell>();
+  all[static_cast<int>(BatchedLaw::linear_elastic)] = nullptr;
+  return all;
 }
 
 constexpr KernelTable table = {
     ABUT_INSTRUCTIONS,
-    {row<Hex8>(), row<Hex8OnePoint>(), row<Quad4>(), row<Quad4OnePoint>(), row<Tet4>()},
-    {frequency_row<Hex8Points>(), frequency_row<Hex8MeanPoint>(), frequency_row<Quad4Points>(),
-     frequency_row<Quad4MeanPoint>(), frequency_row<Tet4Point>()}};
+    {row<Hex8>(), row<Hex8OnePoint>(), finite_row<Hex8MeanDilatation>(), row<Quad4>(),
+     row<Quad4OnePoint>(), finite_row<Quad4MeanDilatation>(), row<Tet4>(), row<Tri3>()},
+    {frequency_row<Hex8Points>(), frequency_row<Hex8MeanPoint>(), {}, frequency_row<Quad4Points>(),
+     frequency_row<Quad4MeanPoint>(), {}, frequency_row<Tet4Point>(), frequency_row<Tri3Point>()}};
 
 }  // namespace
 

@@ -7,10 +7,10 @@
 namespace abut {
 
 BatchedLayer::BatchedLayer(const Mesh& mesh, const Material& material,
-                           const BatchedOptions& options,
-                           std::span<const std::pair<int, int>> cells, std::span<const int> dofs)
+                           BatchedOptions options, std::span<const Cell> cells,
+                           std::span<const int> dofs)
     : dim_(index(mesh.dim)) {
-  for (const auto& [block, cell] : cells)
+  for (const auto& [block, cell, first] : cells)
     for (const std::int32_t node : nodes_of(mesh.blocks[block], cell)) nodes_.push_back(node);
   std::ranges::sort(nodes_);
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
@@ -24,9 +24,13 @@ BatchedLayer::BatchedLayer(const Mesh& mesh, const Material& material,
     layer.points.insert(layer.points.end(), at, at + mesh.dim);
   }
   int last = -1;
-  for (const auto& [block, cell] : cells) {
+  for (const auto& [block, cell, first] : cells) {
     const CellBlock& from = mesh.blocks[block];
-    if (block != last) layer.blocks.push_back({from.element, {}, from.name, {}});
+    if (block != last) {
+      layer.blocks.push_back({from.element, {}, from.name, {}});
+      options.first_history.emplace_back();
+    }
+    options.first_history.back().push_back(first);
     last = block;
     for (const std::int32_t node : nodes_of(from, cell))
       layer.blocks.back().nodes.push_back(own(node));
@@ -38,11 +42,12 @@ BatchedLayer::BatchedLayer(const Mesh& mesh, const Material& material,
   force_.resize(displacement_.size());
 }
 
-bool BatchedLayer::evaluate(std::span<const double> q, std::span<double> force) {
+bool BatchedLayer::evaluate(std::span<const double> q, std::span<const double> history,
+                            std::span<double> force) {
   for (std::size_t n = 0; n < nodes_.size(); ++n)
     std::copy_n(q.begin() + index(nodes_[n]) * dim_, dim_, displacement_.begin() + n * dim_);
-  double stored = 0.0;
-  if (!batched_->evaluate(displacement_, force_, stored)) return false;
+  CellEnergies unused;
+  if (!batched_->evaluate(displacement_, {history, {}}, force_, unused)) return false;
   for (std::size_t k = 0; k < places_.size(); ++k) force[k] = force_[places_[k]];
   return true;
 }

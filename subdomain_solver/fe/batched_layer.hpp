@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "subdomain_solver/fe/batched_cells.hpp"
@@ -13,13 +12,19 @@ namespace abut {
 /// Internal forces on the coordinates of a surface layer, by batches of the cells that touch it.
 class BatchedLayer {
  public:
-  /// `cells`: (block, cell), in the order of blocks; `dofs`: of the mesh, ascending, of nodes of
-  /// these cells.
-  BatchedLayer(const Mesh& mesh, const Material& material, const BatchedOptions& options,
-               std::span<const std::pair<int, int>> cells, std::span<const int> dofs);
+  /// A cell of the mesh, and where its numbers begin in the histories of the mesh's points.
+  struct Cell {
+    int block = 0, cell = 0;
+    std::int64_t first_history = 0;
+  };
+  /// `cells`: in the order of blocks; `dofs`: of the mesh, ascending, of nodes of these cells.
+  BatchedLayer(const Mesh& mesh, const Material& material, BatchedOptions options,
+               std::span<const Cell> cells, std::span<const int> dofs);
 
-  /// q: [m] (nodes of the mesh, dim); force: [N] (dofs). False: a point has no answer.
-  [[nodiscard]] bool evaluate(std::span<const double> q, std::span<double> force);
+  /// q: [m] (nodes of the mesh, dim); history: of all points at the step's begin; force: [N]
+  /// (dofs). False: a point has no answer.
+  [[nodiscard]] bool evaluate(std::span<const double> q, std::span<const double> history,
+                              std::span<double> force);
 
  private:
   std::size_t dim_;

@@ -2,11 +2,13 @@
 
 #include "subdomain_solver/fe/batched_flat_cells.hpp"
 #include "subdomain_solver/fe/batched_hex8_one_point.hpp"
+#include "subdomain_solver/fe/batched_simplices.hpp"
 #include "subdomain_solver/fe/lane_metric_test.hpp"
 
 namespace abut {
 
-// For each cell: its dimension, its metric from nodal positions, and `visit(H)` at every point.
+// For each cell: its dimension, its metric from nodal positions, and `visit(place, H)` at every
+// point, by its place among the cell's histories.
 
 struct Hex8Points {
   static constexpr int nodes = 8, dim = 3;
@@ -36,7 +38,7 @@ struct Hex8Points {
         }
       const Real det = cofactor(j, cof);
       displacement_gradient<N>(g, cof, Real(1.0 / det), h);
-      visit(h);
+      visit(history_place(a, b, c), h);
     }
   }
 };
@@ -58,7 +60,7 @@ struct Hex8MeanPoint {
     const HexMeanGradients<Real> mean(x);
     TensorLanes<N> h;
     mean.template gradient<N>(u, Real(1.0 / mean.volume(x)), h);
-    visit(h);
+    visit(0, h);
   }
 };
 
@@ -77,7 +79,7 @@ struct Quad4Points {
     for (int p = 0; p < 4; ++p) {
       const Real a = broadcast<Real>((p & 1) != 0 ? gauss_point : -gauss_point);
       const Real b = broadcast<Real>(p > 1 ? gauss_point : -gauss_point);
-      visit(quad_gradient<N>(x, u, a, b));
+      visit(quad_history_place(p), quad_gradient<N>(x, u, a, b));
     }
   }
 
@@ -127,7 +129,7 @@ struct Quad4MeanPoint {
     x.load_from(nodal_x);
     u.load_from(nodal_u);
     Quad4Points::quad_metric<N>(x, metric);
-    visit(Quad4Points::quad_gradient<N>(x, u, Real{}, Real{}));
+    visit(0, Quad4Points::quad_gradient<N>(x, u, Real{}, Real{}));
   }
 };
 
@@ -156,7 +158,34 @@ struct Tet4Point {
       ABUT_UNROLLED (b, 0, 3) metric[a][b] -= sum[a] * sum[b];
     const Real det = cofactor(j, cof);
     displacement_gradient<N>(g, cof, Real(1.0 / det), h);
-    visit(h);
+    visit(0, h);
+  }
+};
+
+/// Likewise of three corners: 1/3 sum e_d e_d^T - 1/9 (sum e_d)(sum e_d)^T.
+struct Tri3Point {
+  static constexpr int nodes = 3, dim = 2;
+
+  template <int N, class Visit>
+  [[gnu::always_inline]] static void run(const double* x, const double* u,
+                                         typename Lanes<N>::Real (&metric)[2][2],
+                                         const Visit& visit) {
+    using Real = typename Lanes<N>::Real;
+    Real j[2][2], g[2][2], h[2][2], edge[2][2];
+    Tri3::tri_edges<N>(x, j);
+    Tri3::tri_edges<N>(u, g);
+    ABUT_UNROLLED (d, 0, 2)
+      ABUT_UNROLLED (i, 0, 2) edge[d][i] = gauss_point * j[i][d];  // of 1/sqrt(3)
+    metric_of<2>(edge, metric);
+    ABUT_UNROLLED (a, 0, 2)
+      ABUT_UNROLLED (b, 0, 2)
+        metric[a][b] -= (1.0 / 9.0) * ((j[a][0] + j[a][1]) * (j[b][0] + j[b][1]));
+    const Real inverse = 1.0 / fused(j[0][0], j[1][1], Real(-j[0][1] * j[1][0]));
+    const Real cof[2][2] = {{j[1][1], -j[1][0]}, {-j[0][1], j[0][0]}};
+    ABUT_UNROLLED (i, 0, 2)
+      ABUT_UNROLLED (k, 0, 2)
+        h[i][k] = fused(g[i][0], cof[k][0], Real(g[i][1] * cof[k][1])) * inverse;
+    visit(0, plane_gradient<N>(h));
   }
 };
 

@@ -5,11 +5,27 @@
 
 namespace abut {
 
-/// What a law answers at N points: P [Pa], W [J/m^3], and `valid`, positive where it has an answer.
+/// What a law answers at N points: P [Pa], W [J/m^3], what laws with a history dissipate in the
+/// step [J/m^3], and `valid`, positive where there is an answer.
 template <int N>
 struct LaneResponse {
   TensorLanes<N> stress;
-  typename Lanes<N>::Real energy, valid;
+  typename Lanes<N>::Real energy, dissipation, valid;
+};
+
+/// Sums over the points of cells; `dissipates`: the law does.
+template <int N, bool dissipates>
+struct PointSums {
+  typename Lanes<N>::Real stored, dissipated;  // [J]
+  typename Lanes<N>::Bits valid;
+
+  /// volume: [m^3] that the points stand for.
+  [[gnu::always_inline]] void add(const typename Lanes<N>::Real& volume,
+                                  const LaneResponse<N>& response) {
+    stored = fused(volume, response.energy, stored);
+    if constexpr (dissipates) dissipated = fused(volume, response.dissipation, dissipated);
+    valid &= response.valid > 0.0;
+  }
 };
 
 // Stress and energy of the batched laws in one go, from H = F - I, sharing what both need.

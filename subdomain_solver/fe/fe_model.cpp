@@ -58,20 +58,20 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
     block.table = tabulate(element, quadrature(element.shape, degree));
     block.mass_table = tabulate(element, quadrature(element.shape, mass_degree(element)));
     block.history = history_size_;
-    const int points = cells.count() * law_points(element, block.table, options.formulation);
-    history_size_ += index(points) * index(kernel_.history_size());
+    const int points = law_points(element, block.table, options.formulation);
+    block.cell_history = index(points) * index(kernel_.history_size());
+    history_size_ += index(cells.count()) * block.cell_history;
     blocks_.push_back(std::move(block));
   }
   lump_mass();
-  const bool plain = options.formulation != Formulation::mean_dilatation &&
-                     (mesh_.dim == 3 || options.plane == Plane::strain);
-  if (!options.batched || !plain || !BatchedCells::can(mesh_, *material_)) return;
+  const bool plain = mesh_.dim == 3 || options.plane == Plane::strain;
+  if (!options.batched || !plain || !BatchedCells::can(mesh_, *material_, options.formulation))
+    return;
   batched_ = std::make_unique<BatchedCells>(mesh_, *material_, batched_options());
 }
 
 BatchedOptions FeModel::batched_options() const {
-  return {options_.formulation == Formulation::one_point, options_.hourglass, options_.thickness,
-          options_.threads};
+  return {options_.formulation, options_.hourglass, options_.thickness, options_.threads};
 }
 
 FeModel::Assembly& FeModel::assembly() const {
@@ -165,7 +165,7 @@ const SparseMatrix& FeModel::linear_stiffness() {
 
 bool FeModel::evaluate(std::span<const double> q, std::span<const double> history, Want want,
                        ModelResponse& out) {
-  if (batched_ && want == Want::force && !kernel_.guarded()) return batched_force(q, out);
+  if (batched_ && want == Want::force && !kernel_.guarded()) return batched_force(q, history, out);
   if (!is_linear()) return assemble(q, history, want, out);
   const SparseMatrix& stiffness = linear_stiffness();
   out.dissipation = 0.0;
@@ -216,16 +216,26 @@ void FeModel::spring_force(std::span<const double> q, ModelResponse& out) const 
   }
 }
 
-bool FeModel::batched_force(std::span<const double> q, ModelResponse& out) {
-  out.dissipation = 0.0;
-  out.history.clear();
+std::size_t FeModel::first_history(int block, int cell) const {
+  return blocks_[block].history + index(cell) * blocks_[block].cell_history;
+}
+
+bool FeModel::batched_force(std::span<const double> q, std::span<const double> history,
+                            ModelResponse& out) {
+  out.history.resize(history_size_);
   out.force.resize(dofs());
   const std::span<double> force(out.force.data(), index(dofs()));
-  if (frames_.empty()) return batched_->evaluate(q, force, out.stored);
-  u_.assign(q.begin(), q.end());
-  to_space(u_);
-  const bool admissible = batched_->evaluate(u_, force, out.stored);
-  to_frames(force);
+  const PointHistories histories{history, out.history};
+  if (!frames_.empty()) {
+    u_.assign(q.begin(), q.end());
+    to_space(u_);
+    q = u_;
+  }
+  CellEnergies energies;
+  const bool admissible = batched_->evaluate(q, histories, force, energies);
+  out.stored = energies.stored;
+  out.dissipation = energies.dissipated;
+  if (!frames_.empty()) to_frames(force);
   return admissible;
 }
 
@@ -254,7 +264,7 @@ bool FeModel::assemble(std::span<const double> q, std::span<const double> histor
     const CellMeasures& measures = reference.measures[k];
     const std::size_t each = index(measures.points * kernel_.history_size());
     for (int c = 0; c < cells.count(); ++c) {
-      const std::size_t at = blocks_[k].history + index(c) * each;
+      const std::size_t at = first_history(static_cast<int>(k), c);
       gather(cells, c, q, u_);
       const bool admissible = kernel_.evaluate(
           measures.of(c), u_, history.subspan(at, each), std::span(out.history).subspan(at, each),
@@ -393,7 +403,7 @@ bool FeModel::respond(int block, int cell, std::span<const double> q,
 bool FeModel::respond(int block, int cell, const CellGeometry& geometry, std::span<const double> q,
                       std::span<const double> history, Need need) {
   const std::size_t each = index(geometry.points * kernel_.history_size());
-  const std::size_t first = blocks_[block].history + index(cell) * each;
+  const std::size_t first = first_history(block, cell);
   after_.resize(each);
   gather(mesh_.blocks[block], cell, q, u_);
   return kernel_.evaluate(geometry, u_, history.subspan(first, each), after_, need, local_);
@@ -427,7 +437,7 @@ bool FeModel::visit(std::span<const double> q, std::span<const double> history,
       const std::size_t each = index(measures.points) * per_point;
       after.resize(each);
       const std::span<const double> before =
-          history.subspan(blocks_[k].history + index(c) * each, each);
+          history.subspan(first_history(static_cast<int>(k), c), each);
       const CellGeometry cell = measures.of(assembly_ ? c : 0);
       gather(cells, c, q, u_);
       if (!kernel_.evaluate(cell, u_, before, after, Need::stress, local_)) return false;

@@ -63,16 +63,13 @@ class FeModel final : public Model {
   /// From the nodes' own frames to the axes of space and back, in place: (nodes, dim).
   void to_space(std::span<double> values) const { rotate(values, false); }
   void to_frames(std::span<double> values) const { rotate(values, true); }
-
   /// Adds a matrix of a cell's nodes (nodes x dim), in the axes of space, to a tangent of frames.
   void add_to_tangent(const std::vector<std::int32_t>& nodes, Eigen::MatrixXd& local,
                       SparseMatrix& tangent) const;
-
   /// The tangent, where cells that are indefinite even together with `inertia` [1/s^2] times their
   /// own lumped mass have that of their definite part. False: q is inadmissible.
   [[nodiscard]] bool definite_tangent(std::span<const double> q, std::span<const double> history,
                                       double inertia, SparseMatrix& tangent);
-
   /// From now on the law is stiffened, or not, where cells are crushed [M.140]; whether it is.
   bool guard(bool on);
   /// The least det F of the quadrature points at q; of bodies that cannot be guarded 1.
@@ -105,7 +102,7 @@ class FeModel final : public Model {
  private:
   struct Block {  // the cells of one element
     Tabulation table, mass_table;
-    std::size_t history = 0;  // where its numbers begin
+    std::size_t history = 0, cell_history = 0;  // where its numbers begin; numbers of each cell
   };
   struct Assembly {                                   // of whole matrices
     std::vector<CellMeasures> measures;               // (blocks)
@@ -151,8 +148,11 @@ class FeModel final : public Model {
   void linear_layer(std::span<const double> q, Want want, LayerResponse& out);
   void spring_force(std::span<const double> q, ModelResponse& out) const;
   BatchedOptions batched_options() const;
-  [[nodiscard]] bool batched_layer_force(std::span<const double> q, Vector& force);
-  [[nodiscard]] bool batched_force(std::span<const double> q, ModelResponse& out);
+  [[nodiscard]] bool batched_layer_force(std::span<const double> q,
+                                         std::span<const double> history, Vector& force);
+  [[nodiscard]] bool batched_force(std::span<const double> q, std::span<const double> history,
+                                   ModelResponse& out);
+  std::size_t first_history(int block, int cell) const;  // where a cell's numbers begin
   [[nodiscard]] bool respond(int block, int cell, std::span<const double> q,
                              std::span<const double> history);
   [[nodiscard]] bool respond(int block, int cell, const CellGeometry& geometry,

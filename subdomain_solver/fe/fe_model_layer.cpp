@@ -293,15 +293,18 @@ void FeModel::linear_layer(std::span<const double> q, Want want, LayerResponse& 
   }
 }
 
-bool FeModel::batched_layer_force(std::span<const double> q, Vector& force) {
+bool FeModel::batched_layer_force(std::span<const double> q, std::span<const double> history,
+                                  Vector& force) {
   if (!batched_layer_) {
     BatchedOptions options = batched_options();
     options.threads = 1;
-    batched_layer_ =
-        std::make_unique<BatchedLayer>(mesh_, *material_, options, layer_cells_, massless_);
+    std::vector<BatchedLayer::Cell> cells;
+    for (const auto& [block, cell] : layer_cells_)
+      cells.push_back({block, cell, static_cast<std::int64_t>(first_history(block, cell))});
+    batched_layer_ = std::make_unique<BatchedLayer>(mesh_, *material_, options, cells, massless_);
   }
   force.resize(static_cast<Eigen::Index>(massless_.size()));
-  return batched_layer_->evaluate(q, {force.data(), massless_.size()});
+  return batched_layer_->evaluate(q, history, {force.data(), massless_.size()});
 }
 
 bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> history, Want want,
@@ -311,7 +314,8 @@ bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> 
     linear_layer(q, want, out);
     return true;
   }
-  if (batched_ && frames_.empty() && want == Want::force) return batched_layer_force(q, out.force);
+  if (batched_ && frames_.empty() && want == Want::force && !kernel_.guarded())
+    return batched_layer_force(q, history, out.force);
   if (!assembly_ && layer_measures_.empty())
     for (const auto& [block, cell] : layer_cells_)
       layer_measures_.push_back(cell_measures(block, cell));

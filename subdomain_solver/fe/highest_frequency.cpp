@@ -56,8 +56,9 @@ double rest_in_metric(const Moduli& moduli, const Eigen::MatrixXd& s) {
 
 }  // namespace
 
-HighestFrequency::HighestFrequency(FeModel& model) : model_(model) {
-  if (model_.batched() != nullptr)
+HighestFrequency::HighestFrequency(FeModel& model) : model_(model), cells_(model.batched()) {
+  if (cells_ != nullptr && !cells_->bounds()) cells_ = nullptr;
+  if (cells_ != nullptr)
     find_scales();
   else
     find_masses();
@@ -91,7 +92,7 @@ void HighestFrequency::find_scales() {
   std::vector<CellKeys> keys;
   for (const CellBlock& cells : mesh.blocks) keys.emplace_back(mesh, cells);
   std::vector<std::unordered_map<CellKeys::Key, double, CellKeys::Hash>> known(keys.size());
-  for (const CellPatch& patch : model_.batched()->patches().list()) {
+  for (const CellPatch& patch : cells_->patches().list()) {
     const std::size_t first = scales_.size(), b = index(patch.block);
     for (const std::int32_t cell : patch.cells) {
       const auto [at, fresh] = known[b].try_emplace(keys[b].of(cell), 0.0);
@@ -116,8 +117,8 @@ void HighestFrequency::find_masses() {
 std::optional<FrequencyWatch::Bound> HighestFrequency::bound(std::span<const double> q,
                                                              std::span<const double> history,
                                                              double from, Effort effort) {
-  if (model_.batched() == nullptr) return cell_bound(q, history, from);
-  if (effort == Effort::bounded) return batched_bound(in_space(q), from);
+  if (cells_ == nullptr) return cell_bound(q, history, from);
+  if (effort == Effort::bounded) return batched_bound(in_space(q), history, from);
   return fast_bound(q, history, from);
 }
 
@@ -138,9 +139,9 @@ bool HighestFrequency::compute(int block, int cell, std::span<const double> q,
   return true;
 }
 
-std::optional<FrequencyWatch::Bound> HighestFrequency::batched_bound(std::span<const double> u,
-                                                                     double from) {
-  const double square = model_.batched()->bound_frequencies(u, std::max(from, floor_), scales_);
+std::optional<FrequencyWatch::Bound> HighestFrequency::batched_bound(
+    std::span<const double> u, std::span<const double> history, double from) {
+  const double square = cells_->bound_frequencies(u, history, std::max(from, floor_), scales_);
   if (!std::isfinite(square)) return std::nullopt;
   return Bound{square, -1, -1};
 }
@@ -151,7 +152,7 @@ std::optional<FrequencyWatch::Bound> HighestFrequency::fast_bound(std::span<cons
                                                                   std::span<const double> history,
                                                                   double from) {
   fast_.clear();
-  model_.batched()->find_fast(in_space(q), from < floor_ ? 0.0 : from, scales_, fast_);
+  cells_->find_fast(in_space(q), history, from < floor_ ? 0.0 : from, scales_, fast_);
   Bound best{from, -1, -1};
   for (const BatchedCells::Place& place : fast_) {
     if (!compute(place.block, place.cell, q, history, best)) return std::nullopt;

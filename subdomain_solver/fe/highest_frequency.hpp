@@ -19,12 +19,13 @@ class HighestFrequency final : public FrequencyWatch {
                                            std::span<const double> history, double from,
                                            Effort effort) override;
   std::string place(const Bound& bound) const override;
-  int least_interval() const override { return model_.batched() != nullptr ? 40 : 128; }
+  int least_interval() const override { return cells_ != nullptr ? 40 : 128; }
 
  private:
   [[nodiscard]] bool compute(int block, int cell, std::span<const double> q,
                              std::span<const double> history, Bound& best);
-  std::optional<Bound> batched_bound(std::span<const double> q, double from);
+  std::optional<Bound> batched_bound(std::span<const double> q, std::span<const double> history,
+                                     double from);
   std::optional<Bound> fast_bound(std::span<const double> q, std::span<const double> history,
                                   double from);
   std::optional<Bound> cell_bound(std::span<const double> q, std::span<const double> history,
@@ -35,6 +36,7 @@ class HighestFrequency final : public FrequencyWatch {
   double scale_of(int block, int cell);
 
   FeModel& model_;
+  BatchedCells* cells_;                    // that have bounds; null: cell by cell
   std::vector<double> scales_;             // [Pa s^2/m^2] (patches, batches, 8) of batched cells
   double floor_ = 0.0;                     // [1/s^2] below which the batched bound does not tell
   std::vector<double> masses_;             // [kg] (blocks, cells, nodes) of cells one by one

@@ -38,6 +38,7 @@ class J2Plasticity final : public IsotropicMaterial {
   /// Throws InputError, with the key's name as `where`, when a number is inadmissible.
   J2Plasticity(const Moduli& moduli, const Hardening& hardening, double density);
 
+  const Hardening& hardening() const { return hardening_; }
   int history_size() const override { return 7; }
   std::vector<NamedHistory> named_history() const override {
     return {{"equivalent_plastic_strain", 6}};

@@ -18,28 +18,40 @@ namespace {
 
 struct Case {
   std::string element;
-  bool one_point;
+  Formulation formulation;
   std::string law;
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
-  *out << c.element << (c.one_point ? " one_point " : " full ") << c.law;
+  const char* names[] = {" full ", " mean_dilatation ", " one_point "};
+  *out << c.element << names[static_cast<int>(c.formulation)] << c.law;
 }
 
 std::vector<Case> cases(const std::vector<std::string>& laws) {
   std::vector<Case> out;
-  for (const char* element : {"hex8", "quad4", "tet4"})
-    for (const bool one_point : {false, true})
-      for (const std::string& law : laws) out.push_back({element, one_point, law});
+  for (const std::string element : {"hex8", "quad4", "tet4", "tri3"})
+    for (const Formulation formulation :
+         {Formulation::full, Formulation::one_point, Formulation::mean_dilatation})
+      for (const std::string& law : laws) {
+        // The volume change of linear laws is another one, which has no batched form.
+        const bool several = element == "hex8" || element == "quad4";
+        if (several && formulation == Formulation::mean_dilatation && law == "linear_elastic")
+          continue;
+        out.push_back({element, formulation, law});
+      }
   return out;
 }
-const std::vector<std::string> objective = {"saint_venant_kirchhoff", "neo_hookean"};
-const std::vector<std::string> laws = {"linear_elastic", "saint_venant_kirchhoff", "neo_hookean"};
+const std::vector<std::string> objective = {"saint_venant_kirchhoff", "neo_hookean",
+                                            "j2_plasticity"};
+const std::vector<std::string> laws = {"linear_elastic", "saint_venant_kirchhoff", "neo_hookean",
+                                       "j2_plasticity"};
 
 std::unique_ptr<const Material> law_named(const std::string& name) {
   if (name == "linear_elastic") return std::make_unique<LinearElastic>(test_moduli, 1.0);
   if (name == "saint_venant_kirchhoff")
     return std::make_unique<SaintVenantKirchhoff>(test_moduli, 1.0);
+  if (name == "j2_plasticity")
+    return std::make_unique<J2Plasticity>(test_moduli, test_hardening(), 1.0);
   return std::make_unique<NeoHookean>(test_moduli, 1.0);
 }
 
@@ -48,30 +60,36 @@ constexpr int cells = 9;
 constexpr double thickness = 0.7;
 
 Mesh distorted_mesh(const Case& c) {
-  Mesh mesh = unit_mesh(c.element, c.element == "quad4" ? 3 * cells : cells);
-  distort(mesh, 0.02 / (c.element == "quad4" ? 3.0 : 1.0));
+  const bool flat = c.element == "quad4" || c.element == "tri3";
+  Mesh mesh = unit_mesh(c.element, flat ? 3 * cells : cells);
+  distort(mesh, 0.02 / (flat ? 3.0 : 1.0));
   return mesh;
 }
 
 FeModel model_of(const Case& c) {
-  const Formulation formulation = c.one_point ? Formulation::one_point : Formulation::full;
   return FeModel(distorted_mesh(c), law_named(c.law),
-                 {Plane::strain, formulation, thickness, 0.05});
+                 {Plane::strain, c.formulation, thickness, 0.05});
 }
 
 struct Answer {
   bool admissible = false;
-  double stored = 0.0;
-  std::vector<double> force;
+  double stored = 0.0, dissipated = 0.0;
+  std::vector<double> force, history;
 };
 
 Answer batched(const Case& c, const Mesh& mesh, std::span<const double> q,
                const KernelTable* kernels = nullptr, int threads = 1) {
   const std::unique_ptr<const Material> law = law_named(c.law);
-  BatchedCells all(mesh, *law, {c.one_point, 0.05, thickness, threads, kernels});
+  BatchedCells all(mesh, *law, {c.formulation, 0.05, thickness, threads, kernels});
   Answer out;
   out.force.resize(q.size());
-  out.admissible = all.evaluate(q, out.force, out.stored);
+  // As many numbers as the most points of a cell could have.
+  const std::vector<double> before(index(mesh.cell_count() * 8 * law->history_size()), 0.0);
+  out.history = before;
+  CellEnergies energies;
+  out.admissible = all.evaluate(q, {before, out.history}, out.force, energies);
+  out.stored = energies.stored;
+  out.dissipated = energies.dissipated;
   return out;
 }
 
@@ -106,7 +124,8 @@ TEST_P(BatchedCellsOf, AreTheCellByCellOnes) {
   for (const double size : {1.0e-10, 1.0e-4, 1.0e-2}) {
     const std::vector<double> q = displaced(model.mesh(), size);
     ModelResponse expected;
-    ASSERT_TRUE(model.evaluate(q, {}, Model::Want::force, expected));
+    const std::vector<double> before(model.history_size(), 0.0);
+    ASSERT_TRUE(model.evaluate(q, before, Model::Want::force, expected));
     for (const KernelTable* kernels : batched_kernels()) {
       const Answer found = batched(GetParam(), model.mesh(), q, kernels);
       ASSERT_TRUE(found.admissible) << kernels->instructions;
@@ -119,6 +138,11 @@ TEST_P(BatchedCellsOf, AreTheCellByCellOnes) {
       const double digits = 1.0e-12 + 1.0e-16 / size;
       EXPECT_NEAR(found.stored, expected.stored, digits * expected.stored)
           << kernels->instructions << " " << size;
+      EXPECT_NEAR(found.dissipated, expected.dissipation,
+                  digits * std::max(expected.dissipation, expected.stored));
+      // Plastic strains of 0.1, of numbers near 1 that round.
+      const std::span<const double> history(found.history.data(), expected.history.size());
+      EXPECT_LT(largest_difference(history, expected.history), roundoff(100.0, 1.0));
     }
   }
 }
@@ -132,6 +156,8 @@ TEST_P(BatchedCellsOf, AreTheSameBitsForAllThreadsAndInstructions) {
       const Answer other = batched(GetParam(), mesh, q, kernels, threads);
       EXPECT_EQ(first.force, other.force) << kernels->instructions << " " << threads;
       EXPECT_EQ(first.stored, other.stored) << kernels->instructions << " " << threads;
+      EXPECT_EQ(first.dissipated, other.dissipated) << kernels->instructions << " " << threads;
+      EXPECT_EQ(first.history, other.history) << kernels->instructions << " " << threads;
     }
   }
 }
@@ -150,8 +176,8 @@ TEST_P(BatchedCellsOf, PassThePatchTest) {
     if (!inside) continue;
     EXPECT_LT(std::abs(found.force[i]), roundoff(operations, 1.0)) << "node " << i / dim;
   }
-  History none;
   const std::unique_ptr<const Material> law = law_named(GetParam().law);
+  History none = zero_history(*law);
   const double energy = answer(*law, Matrix3::Identity() + h, none).energy;
   const double volume = mesh.dim == 2 ? thickness : 1.0;
   EXPECT_NEAR(found.stored, energy * volume, roundoff(operations, energy) / h.norm());

@@ -88,23 +88,32 @@ TEST_P(Layers, LeaveTheirMassToWhatMoves) {
 /// Explicit steps find the forces on a layer by batches of its cells, and its stiffness cell by
 /// cell.
 TEST(BatchedLayers, HaveTheForcesOfSingleCells) {
-  for (const char* element : {"hex8", "tet4", "quad4"}) {
-    FeOptions options;
-    std::array<LayerResponse, 2> responses;
-    for (const bool batched : {false, true}) {
-      options.batched = batched;
-      FeModel model(unit_mesh(element, 3), std::make_unique<NeoHookean>(test_moduli, 1.0), options);
-      const Sides s = sides(model, "left");
-      model.make_massless(s.bare, s.held);
-      ASSERT_EQ(model.batched() != nullptr, batched) << element;
-      std::vector<double> q(index(model.dofs()));
-      for (std::size_t i = 0; i < q.size(); ++i) q[i] = 0.03 * std::sin(7.0 * double(i));
-      ASSERT_TRUE(model.evaluate_layer(q, {}, Model::Want::force, responses[batched]));
+  for (const char* element : {"hex8", "tet4", "quad4", "tri3"}) {
+    for (const bool plastic : {false, true}) {
+      SCOPED_TRACE(std::string(element) + (plastic ? " plastic" : ""));
+      FeOptions options;
+      options.formulation = plastic ? Formulation::mean_dilatation : Formulation::full;
+      std::array<LayerResponse, 2> responses;
+      for (const bool batched : {false, true}) {
+        options.batched = batched;
+        std::unique_ptr<const Material> law = std::make_unique<NeoHookean>(test_moduli, 1.0);
+        if (plastic) law = std::make_unique<J2Plasticity>(test_moduli, test_hardening(), 1.0);
+        FeModel model(unit_mesh(element, 3), std::move(law), options);
+        const Sides s = sides(model, "left");
+        model.make_massless(s.bare, s.held);
+        ASSERT_EQ(model.batched() != nullptr, batched);
+        std::vector<double> q(index(model.dofs()));
+        for (std::size_t i = 0; i < q.size(); ++i) q[i] = 0.03 * std::sin(7.0 * double(i));
+        // Every point has flown in its own way.
+        std::vector<double> history(model.history_size());
+        for (std::size_t i = 0; i < history.size(); ++i)
+          history[i] = 0.01 * std::abs(std::sin(3.0 * double(i)));
+        ASSERT_TRUE(model.evaluate_layer(q, history, Model::Want::force, responses[batched]));
+      }
+      // Some dozen roundings of stresses of order 1.
+      EXPECT_LT((responses[0].force - responses[1].force).lpNorm<Eigen::Infinity>(), 1e-14);
+      EXPECT_GT(responses[0].force.lpNorm<Eigen::Infinity>(), 1e-3);
     }
-    // Some dozen roundings of stresses of order 1.
-    EXPECT_LT((responses[0].force - responses[1].force).lpNorm<Eigen::Infinity>(), 1e-14)
-        << element;
-    EXPECT_GT(responses[0].force.lpNorm<Eigen::Infinity>(), 1e-3) << element;
   }
 }
 

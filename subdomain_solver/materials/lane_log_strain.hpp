@@ -1,0 +1,105 @@
+#pragma once
+
+#include "subdomain_solver/materials/lane_logarithm.hpp"
+#include "subdomain_solver/materials/lane_principal_axes.hpp"
+#include "subdomain_solver/materials/symmetric_lanes.hpp"
+
+namespace abut {
+
+/// Logarithmic strain ln(b)/2 of b = I + E at N points, and exponentials of its deviator. Where the
+/// shape of b is near that of a sphere, as that of metals always is, both are series in the
+/// deviator of b [M.141]; elsewhere they are found in principal axes.
+template <int N>
+struct LogStrainLanes {
+  using Real = typename Lanes<N>::Real;
+  using Bits = typename Lanes<N>::Bits;
+
+  SymmetricLanes<Real> deviator;  // of the strain
+  Real volume;                    // its trace
+  Bits valid;                     // where b is positive definite
+
+  [[gnu::always_inline]] explicit LogStrainLanes(const SymmetricLanes<Real>& e) : elastic_(e) {
+    const Real mean = (1.0 / 3.0) * (e.at[0] + e.at[1] + e.at[2]), inverse = 1.0 / (1.0 + mean);
+    SymmetricLanes<Real> d;
+    ABUT_UNROLLED (k, 0, 3) d.at[k] = (e.at[k] - mean) * inverse;
+    ABUT_UNROLLED (k, 3, 6) d.at[k] = e.at[k] * inverse;
+    const Deviator<Real> shape(d);
+    valid = mean > -1.0;
+    far_ = valid & ~(shape.j2 <= 0.5 * largest_norm * largest_norm);
+    // Principal values of the deviator are below 0.103 there: the next term is 1e-17 of the first.
+    const InPowers<Real> logarithm = InPowers<Real>::template series<16>(
+        shape.j2, shape.j3,
+        [](int n) ABUT_INLINED { return (n % 2 == 0 ? -1.0 : 1.0) / static_cast<double>(n); });
+    const Real* k = logarithm.k;
+    volume = fused(broadcast<Real>(1.5), Real(k[0] + log1p_lanes<N>(mean)), Real(k[2] * shape.j2));
+    const Real third = (2.0 / 3.0) * shape.j2;
+    ABUT_UNROLLED (i, 0, 6) {
+      const Real square = i < 3 ? shape.square.at[i] - third : shape.square.at[i];
+      deviator.at[i] = 0.5 * fused(k[1], d.at[i], Real(k[2] * square));
+    }
+    if (any(far_)) set_by_axes();
+  }
+
+  /// b (exp(factor x deviator) - I) for |factor| <= 2.
+  [[gnu::always_inline]] SymmetricLanes<Real> change(const Real& factor) const {
+    SymmetricLanes<Real> d, power, out;
+    ABUT_UNROLLED (k, 0, 6) d.at[k] = factor * deviator.at[k];
+    const Deviator<Real> flow(d);
+    const InPowers<Real> less =
+        InPowers<Real>::template series<10>(flow.j2, flow.j3, [](int n) ABUT_INLINED {
+          double factorial = 1.0;
+          for (int i = 2; i <= n; ++i) factorial *= i;
+          return 1.0 / factorial;
+        });
+    ABUT_UNROLLED (k, 0, 6) {
+      power.at[k] = fused(less.k[1], d.at[k], Real(less.k[2] * flow.square.at[k]));
+      if (k < 3) power.at[k] += less.k[0];
+    }
+    multiply(elastic_, power, out);
+    ABUT_UNROLLED (k, 0, 6) out.at[k] += power.at[k];
+    if (any(far_)) take_where(far_, change_by_axes(factor), out);
+    return out;
+  }
+
+ private:
+  static constexpr double largest_norm = 0.125;  // of the deviator of b over a third of its trace
+
+  [[gnu::always_inline]] static bool any(const Bits& mask) {
+    bool found = false;
+    ABUT_UNROLLED (l, 0, N) found = found || mask[l] != 0;
+    return found;
+  }
+
+  [[gnu::always_inline]] void set_by_axes() {
+    const PrincipalLanes<Real> principal(elastic_);
+    Real strain[3];
+    Bits positive = ~Bits{};
+    ABUT_UNROLLED (a, 0, 3) {
+      positive &= principal.value[a] > -1.0;
+      strain[a] = 0.5 * log1p_lanes<N>(principal.value[a]);
+    }
+    const Real sum = strain[0] + strain[1] + strain[2];
+    ABUT_UNROLLED (a, 0, 3) strain[a] -= (1.0 / 3.0) * sum;
+    SymmetricLanes<Real> whole;
+    principal.with_values(strain, whole);
+    take_where(far_, whole, deviator);
+    volume = far_ ? sum : volume;
+    valid &= positive | ~far_;
+  }
+  [[gnu::always_inline]] SymmetricLanes<Real> change_by_axes(const Real& factor) const {
+    const PrincipalLanes<Real> principal(elastic_);
+    Real strain[3], values[3];
+    ABUT_UNROLLED (a, 0, 3) strain[a] = 0.5 * log1p_lanes<N>(principal.value[a]);
+    const Real mean = (1.0 / 3.0) * (strain[0] + strain[1] + strain[2]);
+    ABUT_UNROLLED (a, 0, 3)
+      values[a] = (1.0 + principal.value[a]) * expm1_lanes<N>(Real(factor * (strain[a] - mean)));
+    SymmetricLanes<Real> out;
+    principal.with_values(values, out);
+    return out;
+  }
+
+  SymmetricLanes<Real> elastic_;  // b - I
+  Bits far_;                      // where principal axes are taken
+};
+
+}  // namespace abut
