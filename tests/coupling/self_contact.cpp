@@ -75,6 +75,17 @@ TEST(SelfContact, KeepsAHorseshoeOffItself) {
   }
 }
 
+/// The law of everything is that of a body with itself, where there is no other.
+TEST(SelfContact, OfABodyAloneHasTheLawOfEverything) {
+  const std::vector<SolidText> bodies = {
+      horseshoe("neo_hookean", -1.0, "newmark: {step: 0.025}")};
+  const auto all = run_solids(3.0, 0.05, bodies, "", "contact: {everything: {friction: 0.5}}\n");
+  const auto own = run_solids(3.0, 0.05, bodies, "", "contact: {self_friction: 0.5}\n");
+  expect_apart(*all, "shoe");
+  EXPECT_GT(all->end.given_up.friction, 0.0);
+  EXPECT_EQ(all->end.body_hashes, own->end.body_hashes);
+}
+
 /// Nothing is given up where a body does not come upon itself, and small strains do not fold one.
 TEST(SelfContact, LeavesOthersToTheAccurateMethod) {
   const std::string scheme = "central_difference: {step: 0.01}";
