@@ -237,7 +237,8 @@ void check_start(const InterfaceSpec& spec, const std::string& where, const Join
                                      return !bodies.describe(side.body).can.passive;
                                    }));
   const auto side = [&](int s) {
-    return NamedSurface{spec.sides[s], bodies.port(joint.sides[s]).geometry};
+    const Side& of = joint.sides[index(s)];
+    return named_surface(spec.sides[index(s)], bodies.describe(of.body), of.port);
   };
   const int finder = contact_finder(joint, bodies);
   if (only_passive(joint, bodies)) {

@@ -114,6 +114,13 @@ void require_one_kind(std::span<const Description* const> bodies, const Document
   }
 }
 
+/// Whether the law is that of a body with itself, as of one that folds.
+bool meets_itself(const Scene& scene, std::span<const Description* const> bodies) {
+  return scene.own_friction() && std::ranges::any_of(bodies, [](const Description* body) {
+           return body != nullptr && body->dim > 1 && !body->linear && body->can.passive;
+         });
+}
+
 }  // namespace
 
 void validate_everything(const Scene& scene, std::span<const Description* const> bodies,
@@ -121,7 +128,7 @@ void validate_everything(const Scene& scene, std::span<const Description* const>
   if (scene.everything() == nullptr) return;
   InputErrors errors;
   const std::string where = document.where(std::string(everything_path));
-  if (bodies.size() < 2)
+  if (bodies.size() < 2 && !meets_itself(scene, bodies))
     errors.add({"has no effect: the scene has one body", where, "Leave it out."});
   for (const auto& [name, interface] : scene.interfaces)
     if (name == everything_name)

@@ -77,8 +77,17 @@ std::vector<OverlapPlace> shared_places(const NamedSurface& one, const NamedSurf
   constexpr double reach = 2.0;  // facet sizes: behind an open surface
   const StartSurface k = start(one.geometry), n = start(other.geometry);
   const double size = facet_size(k, n), rounding = tolerance * size;
-  return overlap_places(k.surface, n.surface,
-                        {{allowed[0] + rounding, allowed[1] + rounding}, reach * size});
+  std::vector<OverlapPlace> places = overlap_places(
+      k.surface, n.surface, {{allowed[0] + rounding, allowed[1] + rounding}, reach * size});
+  const std::array sides{&one, &other};
+  std::erase_if(places, [&sides](const OverlapPlace& place) {
+    const NamedSurface& body = *sides[index(1 - place.surface)];
+    return place.what != OverlapPlace::What::edge &&
+           std::ranges::any_of(body.beside, [&](const PortGeometry* beside) {
+             return is_before(posed(*beside), place.place, place.depth);
+           });
+  });
+  return places;
 }
 
 /// What parts bodies that overlap so deep [m].
@@ -151,6 +160,14 @@ void check_each(const NamedSurface& one, const NamedSurface& other, const std::s
 }
 
 }  // namespace
+
+NamedSurface named_surface(const std::string& name, const Description& body, int port) {
+  NamedSurface named{name, body.ports[index(port)].geometry};
+  for (const Port& other : body.ports)
+    if (&other.geometry != &named.geometry && other.geometry.dim == named.geometry.dim)
+      named.beside.push_back(&other.geometry);
+  return named;
+}
 
 double overlap_of(const NamedSurface& one, const NamedSurface& other) {
   const double round = roundness(start(one.geometry), start(other.geometry));

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "contract/port.hpp"
+#include "contract/subdomain.hpp"
 
 namespace abut {
 
@@ -10,7 +11,11 @@ namespace abut {
 struct NamedSurface {
   std::string name;  // body.port
   const PortGeometry& geometry;
+  // of its body's other ports: what is behind the outer surface of a ring may be in its hole
+  std::vector<const PortGeometry*> beside = {};
 };
+
+NamedSurface named_surface(const std::string& name, const Description& body, int port);
 
 /// [m] how deep the sides are in each other in the reference, in places
 /// (surface/overlap_places.hpp) beyond what facets that stand for round bodies leave them, or over

@@ -28,8 +28,10 @@ bool statics_alone(const Joint& joint, const Bodies& bodies) {
 void find_fit(const std::array<std::string, 2>& sides, const std::string& where,
               const Bodies& bodies, Joint& joint) {
   if (joint.role.fitted < 0 && !statics_alone(joint, bodies)) return;
-  const NamedSurface one{sides[0], bodies.port(joint.sides[0]).geometry};
-  const NamedSurface other{sides[1], bodies.port(joint.sides[1]).geometry};
+  const auto side = [&](std::size_t s) {
+    return named_surface(sides[s], bodies.describe(joint.sides[s].body), joint.sides[s].port);
+  };
+  const NamedSurface one = side(0), other = side(1);
   joint.fit = overlap_of(one, other);
   if (joint.role.fitted < 0 || joint.fit == 0.0) return;
   const Description& finder = bodies.describe(joint.sides[index(joint.role.fitted)].body);

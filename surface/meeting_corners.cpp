@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
+#include "base/index.hpp"
 #include "surface/clip.hpp"
 #include "surface/plane_facet.hpp"
 
@@ -92,6 +94,14 @@ void MeetingCorners::find_verdicts(std::span<const FacetPair> pairs) {
   const auto twice = std::ranges::unique(verdicts_, {}, wedges);
   verdicts_.erase(twice.begin(), twice.end());
   for (Verdict& verdict : verdicts_) judge(verdict);
+  begins_.assign(index(k_.wedges->count()) + 1, 0);
+  for (const Verdict& verdict : verdicts_) ++begins_[index(verdict.k) + 1];
+  std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+}
+
+std::span<const MeetingCorners::Verdict> MeetingCorners::verdicts_of(std::int32_t k) const {
+  const std::size_t from = begins_[index(k)], to = begins_[index(k) + 1];
+  return std::span(verdicts_).subspan(from, to - from);
 }
 
 /// One candidate; planes of a kind that are nearly the same count once. Edges that go on straight
@@ -186,26 +196,26 @@ bool MeetingCorners::is_dropped(FacetPair pair) const {
   const Eigen::Vector3d out_k = normal_of(k_.now, pair.k), out_n = normal_of(n_.now, pair.n);
   if (out_k.dot(out_n) > -options_.facing) return false;  // it is none
   const bool faced = out_k.dot(out_n) <= -same;
-  const auto touches = [&pair, this](const Verdict& v) {
-    return std::ranges::binary_search(k_.wedges->at(pair.k), v.k) &&
-           std::ranges::binary_search(n_.wedges->at(pair.n), v.n);
-  };
+  const std::span<const std::int32_t> at_k = k_.wedges->at(pair.k), at_n = n_.wedges->at(pair.n);
   bool stays = false, other = false;
-  const std::span<const std::int32_t> ones =
-      crosses_ ? k_.wedges->around(pair.k) : k_.wedges->at(pair.k);
-  const std::span<const std::int32_t> twos =
-      crosses_ ? n_.wedges->around(pair.n) : n_.wedges->at(pair.n);
-  for (const std::int32_t one : ones)
-    for (const std::int32_t two : twos) {
-      const bool holds = has((*k_.wedges)[one], pair.k) && has((*n_.wedges)[two], pair.n);
-      if (faced && !holds) continue;
-      const auto at = std::ranges::lower_bound(verdicts_, std::pair(one, two), {}, wedges);
-      if (at == verdicts_.end() || wedges(*at) != std::pair(one, two) || !at->told) continue;
-      if (at->crosses) return true;
-      if (!touches(*at)) continue;
-      const bool fits = out_n.dot(at->normal) >= along && -out_k.dot(at->normal) >= along;
-      (at->joined && fits ? stays : other) = true;
+  const std::span<const std::int32_t> twos = crosses_ ? n_.wedges->around(pair.n) : at_n;
+  for (const std::int32_t one : crosses_ ? k_.wedges->around(pair.k) : at_k) {
+    const bool held = has((*k_.wedges)[one], pair.k);
+    if (faced && !held) continue;
+    const bool touched = std::ranges::binary_search(at_k, one);
+    // both ordered: what they have in common is met on one way through them
+    auto two = twos.begin();
+    for (const Verdict& v : verdicts_of(one)) {
+      two = std::find_if(two, twos.end(), [&v](std::int32_t n) { return n >= v.n; });
+      if (two == twos.end()) break;
+      if (*two != v.n || !v.told) continue;
+      if (faced && !has((*n_.wedges)[v.n], pair.n)) continue;
+      if (v.crosses) return true;
+      if (!touched || !std::ranges::binary_search(at_n, v.n)) continue;
+      const bool fits = out_n.dot(v.normal) >= along && -out_k.dot(v.normal) >= along;
+      (v.joined && fits ? stays : other) = true;
     }
+  }
   return other && !stays;
 }
 

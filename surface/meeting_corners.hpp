@@ -78,6 +78,8 @@ class MeetingCorners {
   double reach() const;
   void find_verdicts(std::span<const FacetPair> pairs);
   void judge(Verdict& verdict);
+  /// Of a wedge of K's, ordered by those of N's.
+  std::span<const Verdict> verdicts_of(std::int32_t k) const;
   bool is_dropped(FacetPair pair) const;
   void look_along(const Wedge& a, const Wedge& b, Plane plane);
   void look_across(const Wedge& a, const Wedge& b, const Ends& one, const Ends& two);
@@ -98,7 +100,8 @@ class MeetingCorners {
   std::vector<Plane> planes_;
   Eigen::Vector3d shared_;  // normals of planes that separate nearly as well as the best
   std::vector<Verdict> verdicts_;
-  bool crosses_ = false;  // one of them does
+  std::vector<std::size_t> begins_;  // of the verdicts of each wedge of K's, and their end
+  bool crosses_ = false;             // one of them does
   std::vector<FacetPair> dropped_;
   std::vector<Row> rows_;
   SurfaceRows others_;

@@ -212,6 +212,19 @@ std::vector<OverlapPlace> overlap_places(const PosedSurface& one, const PosedSur
   return PlaceSearch(one, other, choice).find();
 }
 
+bool is_before(const PosedSurface& surface, const Eigen::Vector3d& x, double distance) {
+  if (surface.facet_count() == 0 || !is_closed(surface)) return false;
+  const Skin skin = skin_of(std::array{surface});
+  std::vector<Vector> points;
+  for (int n = 0; n < surface.node_count(); ++n) points.push_back(surface.point(n));
+  SkinTrees trees(skin, points);
+  trees.refit(points, points);
+  const std::int32_t facet = trees.closest_facet(0, points, x, distance);
+  if (facet < 0) return false;
+  const SignedSide side = SkinSides(skin).side(points, x, std::span(&facet, 1));
+  return side.gap > 0.0 && side.gap < distance;
+}
+
 std::vector<OverlapPlace> parted_places(const std::vector<OverlapPlace>& places, double distance,
                                         int most) {
   std::vector<OverlapPlace> parted;

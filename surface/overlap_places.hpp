@@ -31,6 +31,10 @@ struct OverlapChoice {
 std::vector<OverlapPlace> overlap_places(const PosedSurface& one, const PosedSurface& other,
                                          const OverlapChoice& choice);
 
+/// Whether a place is before a closed surface, nearer to it than `distance` [m]. For setting up: it
+/// allocates.
+bool is_before(const PosedSurface& surface, const Eigen::Vector3d& x, double distance);
+
 /// The deepest places that are farther apart than `distance` [m], as many as are asked for.
 std::vector<OverlapPlace> parted_places(const std::vector<OverlapPlace>& places, double distance,
                                         int most);

@@ -25,6 +25,7 @@ class Wedges {
   Wedges() = default;
   explicit Wedges(const PosedSurface& surface);
   bool any() const { return !all_.empty(); }
+  int count() const { return static_cast<int>(all_.size()); }
   const Wedge& operator[](std::int32_t wedge) const { return all_[wedge]; }
   /// Those that a facet touches with a node, and those that its neighbours touch, ascending.
   std::span<const std::int32_t> at(int facet) const { return at_.of(facet); }

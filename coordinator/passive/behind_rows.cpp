@@ -124,11 +124,25 @@ void BehindRows::add_points(const SkinTrees& trees, const Places& places) {
       if (group == own || !choice_.allows(own, group, skin.groups)) continue;
       Behind what{.points = {node, -1}, .group = group};
       const SignedSide side = side_of(trees, places, what);
-      if (!(side.gap < rounding_)) continue;
+      if (!(side.gap < rounding_) || is_before_another(trees, places, what, -side.gap)) continue;
       what.gap = side.gap;
       behind_.push_back(what);
     }
   }
+}
+
+/// What is behind the outer surface of a ring may be in its hole: before the inner one, which is
+/// nearer.
+bool BehindRows::is_before_another(const SkinTrees& trees, const Places& places, Behind what,
+                                   double depth) const {
+  const int body = surfaces_.port(what.group).body, behind = what.group;
+  for (what.group = 0; what.group < surfaces_.groups(); ++what.group) {
+    if (what.group == behind || surfaces_.port(what.group).body != body) continue;
+    if (closed_[index(what.group)] == 0) continue;
+    const double gap = side_of(trees, places, what).gap;
+    if (gap > 0.0 && gap < depth) return true;
+  }
+  return false;
 }
 
 /// Of a surface that ends somewhere only so far as its facets are long: what is behind it is not

@@ -22,6 +22,9 @@ constexpr double resolved = 0.02;
 constexpr double at_end = 1.0e-7;
 /// Rows along one normal whose weights differ by less say the same.
 constexpr double same_normal = 1.0e-8, same_weights = 1.0e-3;
+/// Sine of an angle to a surface's normals: a way between closest points that leaves them by more
+/// is none of theirs. Below are the tilts of faces that lie on each other and of their facets.
+constexpr double steep = 0.1;
 
 FeaturePoints at(const FeaturePair& pair, const NearRows::Places& from, const NearRows::Places& to,
                  double part) {
@@ -39,6 +42,7 @@ NearRows::NearRows(const TouchingSurfaces& surfaces, double thickness)
     : surfaces_(surfaces),
       thickness_(thickness),
       trees_(surfaces.skin(), surfaces.reference()),
+      surroundings_(surfaces.skin()),
       own_(surfaces, thickness),
       behind_(surfaces, thickness, own_.others()) {}
 
@@ -54,7 +58,7 @@ void NearRows::find(const Places& from, std::vector<DistanceRow>& rows) {
   for (const FeaturePair& pair : pairs_) {
     if (leaves_out(pair, from)) continue;
     if (feature_distance(pair.kind, dim, places(pair, from)).distance < reach)
-      add(pair, from, from, 0.0, rows);
+      add_if_closest(pair, from, from, 0.0, rows);
   }
   behind_.find(trees_, from, rows);
 }
@@ -69,7 +73,7 @@ void NearRows::find_on_ways(const Places& from, const Places& to, std::vector<Di
     if (feature_distance(pair.kind, dim, before).distance <= thickness_) continue;
     const double part =
         first_time_within(pair.kind, dim, before, after, thickness_, resolved * thickness_);
-    if (part < 1.0) add(pair, from, to, part, rows);
+    if (part < 1.0) add_if_closest(pair, from, to, part, rows);
   }
 }
 
@@ -94,6 +98,18 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
   crossed.pairs += deeper;
   crossed.added += deeper;
   return crossed;
+}
+
+void NearRows::add_if_closest(const FeaturePair& pair, const Places& from, const Places& to,
+                              double part, std::vector<DistanceRow>& rows) {
+  const FeaturePoints x = at(pair, from, to, part);
+  const FeatureDistance found = feature_distance(pair.kind, surfaces_.skin().dim, x);
+  if (!(found.distance > 0.0)) return;
+  const Eigen::Vector3d way = found.difference(x) / found.distance;
+  const PartOfWay places{from, to, part};
+  for (const int side : {1, 0})
+    if (surroundings_.goes_nearer(pair, found.weights, side, way, steep, places)) return;
+  add(pair, from, to, part, rows);
 }
 
 bool NearRows::add(const FeaturePair& pair, const Places& from, const Places& to, double part,

@@ -8,6 +8,7 @@
 #include "coordinator/passive/distance_row.hpp"
 #include "coordinator/passive/own_gaps.hpp"
 #include "coordinator/passive/touching_surfaces.hpp"
+#include "surface/feature_surroundings.hpp"
 #include "surface/near_features.hpp"
 
 namespace abut {
@@ -47,6 +48,10 @@ class NearRows {
   /// Of a pair at a part of the way, as the features are there.
   bool add(const FeaturePair& pair, const Places& from, const Places& to, double part,
            std::vector<DistanceRow>& rows);
+  /// The same, unless a surface comes nearer beside the closest points: there the row would hold a
+  /// node that slides inside of a flat side by an edge of its partner.
+  void add_if_closest(const FeaturePair& pair, const Places& from, const Places& to, double part,
+                      std::vector<DistanceRow>& rows);
   bool leaves_out(const FeaturePair& pair, const Places& from) const;
   bool known(const DistanceRow& row, const std::vector<DistanceRow>& rows) const;
   void name(const std::vector<DistanceRow>& rows);
@@ -54,6 +59,7 @@ class NearRows {
   const TouchingSurfaces& surfaces_;
   double thickness_;
   SkinTrees trees_;
+  FeatureSurroundings surroundings_;
   OwnGaps own_;
   BehindRows behind_;
   std::vector<FeaturePair> pairs_;

@@ -1,5 +1,6 @@
 #include "subdomain_solver/fe/gmsh_data.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <string_view>
@@ -15,7 +16,8 @@ namespace abut {
 namespace {
 
 const char* const as_version =
-    "Export as version 4.1 (in Gmsh: `gmsh -format msh41`, or Mesh.MshFileVersion = 4.1).";
+    "Export as version 4.1 (in Gmsh: `gmsh -format msh41`, or Mesh.MshFileVersion = 4.1), or 2.2 "
+    "as text.";
 
 /// Nothing: we do not have it.
 const Element* element_of(int gmsh) {
@@ -48,9 +50,9 @@ class Parser {
       } else if (section == "$Entities") {
         in_binary([this]() { entities(); });
       } else if (section == "$Nodes") {
-        in_binary([this]() { nodes(); });
+        in_binary([this]() { listed_ ? listed_nodes() : nodes(); });
       } else if (section == "$Elements") {
-        in_binary([this]() { elements(); });
+        in_binary([this]() { listed_ ? listed_elements() : elements(); });
       } else if (section == "$PartitionedEntities" || section == "$GhostElements") {
         file_.refuse("is a partitioned mesh", "Export it without partitions.");
       } else if (section.size() > 1 && section[0] == '$' && !section.starts_with("$End")) {
@@ -79,10 +81,14 @@ class Parser {
       file_.refuse("is not a Gmsh mesh: it does not begin with $MeshFormat", as_version);
     const std::string line(file_.line());
     const std::string version = line.substr(0, line.find(' '));
-    if (version != "4.1") file_.refuse("is in version " + version.substr(0, 12), as_version);
-    if (line != "4.1 0 8" && line != "4.1 1 8")
+    if (version != "4.1" && version != "2.2")
+      file_.refuse("is in version " + version.substr(0, 12), as_version);
+    listed_ = version == "2.2";
+    if (line == "2.2 1 8")
+      file_.refuse("is in version 2.2, binary", "Export it as text, or as version 4.1.");
+    if (line != "4.1 0 8" && line != "4.1 1 8" && line != "2.2 0 8")
       file_.refuse("has the format '" + line.substr(0, 40) + "'",
-                   "Expected is 4.1 0 8 or 4.1 1 8.");
+                   "Expected is 4.1 0 8, 4.1 1 8 or 2.2 0 8.");
     binary_ = line[4] == '1';
     if (binary_) {
       in_binary([this]() {
@@ -144,10 +150,7 @@ class Parser {
       const bool parametric = file_.integer() != 0;
       const std::size_t count = file_.count("nodes", 4);
       for (std::size_t i = 0; i < count; ++i) {
-        const std::uint64_t tag = file_.natural();
-        if (!number_.try_emplace(tag, static_cast<std::int32_t>(number_.size())).second)
-          file_.refuse(fmt::format("has node {} twice", tag), "Export the file again.");
-        data_.node_tags.push_back(tag);
+        add_node(file_.natural());
       }
       for (std::size_t i = 0; i < count; ++i) {
         for (int d = 0; d < 3; ++d) data_.points.push_back(file_.real());
@@ -170,10 +173,7 @@ class Parser {
       GmshData::Elements block;
       const int dim = dimension();
       block.entity = {dim, file_.integer()};
-      const int type = file_.integer();
-      block.type = element_of(type);
-      if (block.type == nullptr)
-        file_.refuse(fmt::format("has elements of Gmsh's type {}", type), other_element(type));
+      block.type = element_type();
       if (block.type->dim != dim)
         file_.refuse(fmt::format("has {} on an entity of {} dimensions", block.type->name, dim),
                      "Export the file again.");
@@ -194,6 +194,89 @@ class Parser {
     has_elements_ = true;
   }
 
+  void add_node(std::uint64_t tag) {
+    if (!number_.try_emplace(tag, static_cast<std::int32_t>(number_.size())).second)
+      file_.refuse(fmt::format("has node {} twice", tag), "Export the file again.");
+    data_.node_tags.push_back(tag);
+  }
+
+  const Element* element_type() {
+    const int type = file_.integer();
+    const Element* found = element_of(type);
+    if (found == nullptr)
+      file_.refuse(fmt::format("has elements of Gmsh's type {}", type), other_element(type));
+    return found;
+  }
+
+  /// Of version 2.2: a line per node.
+  void listed_nodes() {
+    if (!data_.node_tags.empty()) file_.refuse("has $Nodes twice", "Export the file again.");
+    const std::size_t count = file_.count("nodes", 4);
+    data_.node_tags.reserve(count);
+    data_.points.reserve(3 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+      add_node(file_.natural());
+      for (int d = 0; d < 3; ++d) data_.points.push_back(file_.real());
+    }
+  }
+
+  /// Of version 2.2: a line per element, with its physical group and its entity, to which other
+  /// programs than Gmsh pay no regard; so what has the same groups is one entity of ours. An
+  /// element of several groups stands there once for each.
+  void listed_elements() {
+    if (data_.node_tags.empty()) file_.refuse("has elements before its nodes", "Export it again.");
+    const std::size_t count = file_.count("elements", 4);
+    std::map<std::vector<std::int32_t>, std::size_t> place;  // of nodes, types' numbers in front
+    std::vector<Listed> all;
+    for (std::size_t i = 0; i < count; ++i) {
+      Listed next;
+      next.where = file_.where();
+      next.tag = file_.natural();
+      next.type = element_type();
+      const std::size_t tags = file_.count("tags", 1);
+      for (std::size_t k = 0; k < tags; ++k) {
+        const int value = static_cast<int>(std::llabs(file_.integer()));
+        if (k == 0 && value != 0) next.groups.push_back(value);
+      }
+      next.nodes.push_back(next.type->gmsh);
+      for (int a = 0; a < next.type->nodes; ++a) next.nodes.push_back(node(next.tag));
+      const auto [entry, fresh] = place.try_emplace(next.nodes, all.size());
+      if (fresh || !all[entry->second].join(next.groups)) all.push_back(std::move(next));
+    }
+    for (const Listed& element : all) add(element);
+    has_elements_ = true;
+  }
+
+  struct Listed {
+    const Element* type = nullptr;
+    std::string where;
+    std::uint64_t tag = 0;
+    std::vector<int> groups;
+    std::vector<std::int32_t> nodes;  // the first is the type's number
+    /// Takes the groups as well, unless it has them or has none: then that is another element.
+    bool join(const std::vector<int>& more) {
+      if (groups.empty() || more.empty() || std::ranges::count(groups, more[0]) > 0) return false;
+      groups.push_back(more[0]);
+      return true;
+    }
+  };
+
+  void add(const Listed& element) {
+    const auto [entry, fresh] =
+        blocks_.try_emplace({element.type, element.groups}, data_.elements.size());
+    if (fresh) {
+      GmshData::Elements block;
+      block.type = element.type;
+      block.entity = {element.type->dim, static_cast<int>(blocks_.size())};
+      block.where = element.where;
+      data_.groups[block.entity] = element.groups;
+      data_.elements.push_back(std::move(block));
+    }
+    GmshData::Elements& block = data_.elements[entry->second];
+    block.tags.push_back(element.tag);
+    block.nodes.insert(block.nodes.end(), element.nodes.begin() + 1, element.nodes.end());
+  }
+
   std::int32_t node(std::uint64_t element) {
     const std::uint64_t tag = file_.natural();
     const auto found = number_.find(tag);
@@ -205,8 +288,9 @@ class Parser {
 
   GmshCursor file_;
   GmshData data_;
-  std::unordered_map<std::uint64_t, std::int32_t> number_;  // of a node tag
-  bool binary_ = false, has_elements_ = false;
+  std::unordered_map<std::uint64_t, std::int32_t> number_;                     // of a node tag
+  std::map<std::pair<const Element*, std::vector<int>>, std::size_t> blocks_;  // of version 2.2
+  bool binary_ = false, listed_ = false, has_elements_ = false;  // listed: version 2.2
 };
 
 }  // namespace

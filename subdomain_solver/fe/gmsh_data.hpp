@@ -31,9 +31,9 @@ struct GmshData {
   std::vector<Elements> elements;
 };
 
-/// Reads the bytes of a file in Gmsh's format MSH 4.1, text or binary of this machine's byte order.
-/// Throws InputError with line or byte: other versions, partitioned meshes, elements that we do not
-/// have, damage.
+/// Reads the bytes of a file in Gmsh's format MSH 4.1, text or binary of this machine's byte order,
+/// or 2.2, text. Throws InputError with line or byte: other versions, partitioned meshes, elements
+/// that we do not have, damage.
 GmshData parse_gmsh(std::string bytes, const std::string& name);
 
 }  // namespace abut

@@ -6,9 +6,9 @@
 
 namespace abut {
 
-/// The mesh of a file in Gmsh's format MSH 4.1 (text or binary), with coordinates times `scale` [m
-/// per unit of the file]. The elements of the highest dimension are the cells; meshes in the plane
-/// or on a line must have constant other coordinates.
+/// The mesh of a file in Gmsh's format MSH 4.1 (text or binary) or 2.2 (text), with coordinates
+/// times `scale` [m per unit of the file]. The elements of the highest dimension are the cells;
+/// meshes in the plane or on a line must have constant other coordinates.
 ///
 /// Physical groups become names: of cells, blocks and node sets; of their facets, sides; of facets
 /// between cells, and of lower dimensions, node sets. A group without a name is called after its

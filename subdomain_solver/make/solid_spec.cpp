@@ -95,7 +95,8 @@ void SphereSpec::fields(Fields& f) {
 }
 
 void MeshFileSpec::fields(Fields& f) {
-  f.required("file", file, "", "mesh file, relative to the scene file: MSH 4.1, or Exodus II");
+  f.required("file", file, "",
+             "mesh file, relative to the scene file: MSH 4.1 or 2.2, or Exodus II");
   f.optional("scale", scale, "m", "length of the file's unit", positive);
 }
 

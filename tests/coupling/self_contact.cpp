@@ -75,6 +75,19 @@ TEST(SelfContact, KeepsAHorseshoeOffItself) {
   }
 }
 
+/// The law of everything is that of a body with itself, where there is no other.
+TEST(SelfContact, OfABodyAloneHasTheLawOfEverything) {
+  const std::vector<SolidText> bodies = {horseshoe("neo_hookean", -1.0, "newmark: {step: 0.025}")};
+  for (const double friction : {0.0, 0.5}) {
+    SCOPED_TRACE(friction);
+    const auto result =
+        run_solids(3.0, 0.05, bodies, "",
+                   fmt::format("contact: {{everything: {{friction: {}}}}}\n", friction));
+    expect_apart(*result, "shoe");
+    EXPECT_EQ(result->end.given_up.friction > 0.0, friction > 0.0);
+  }
+}
+
 /// Nothing is given up where a body does not come upon itself, and small strains do not fold one.
 TEST(SelfContact, LeavesOthersToTheAccurateMethod) {
   const std::string scheme = "central_difference: {step: 0.01}";

@@ -162,5 +162,19 @@ TEST(OverlapPlaces, PartedPlacesAreTheDeepestOfTheirSurroundings) {
   EXPECT_EQ(parted_places(places, 1.0, 9).size(), 3u);
 }
 
+/// What is in the hole of a ring is behind its outer surface, and before the inner one.
+TEST(OverlapPlaces, InAHoleAreBeforeItsSurface) {
+  SurfaceMesh hole = block(2, {0, 0, 0}, {1, 1, 0});
+  for (std::size_t k = 0; k < hole.facets.size(); k += 2)
+    std::swap(hole.facets[k], hole.facets[k + 1]);  // looks inwards, out of the ring
+  const Vector in(0.4, 0.3, 0.0), beside(1.2, 0.3, 0.0);
+  EXPECT_TRUE(is_before(hole.pose(), in, 1.0));
+  EXPECT_FALSE(is_before(hole.pose(), in, 0.2));      // the outer surface is nearer
+  EXPECT_FALSE(is_before(hole.pose(), beside, 1.0));  // in the ring
+  hole.facets.resize(hole.facets.size() - 2);
+  hole.offsets.pop_back();
+  EXPECT_FALSE(is_before(hole.pose(), in, 1.0));  // of a surface that ends, nothing is known
+}
+
 }  // namespace
 }  // namespace abut

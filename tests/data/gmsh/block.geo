@@ -2,7 +2,7 @@
 // name, one inside, and points that belong to no cell. Made with Gmsh 4.8, quadratic elements:
 //   gmsh -3 -format msh41 -order 2 block.geo -o block_tet10.msh          (-bin for the binary)
 //   gmsh -3 -format msh41 -order 2 -setnumber hex 1 -setnumber Mesh.SecondOrderIncomplete 1 ...
-// and with -order 1 as tet4, hex8. Older formats, to be refused: -format msh22, msh40.
+// and with -order 1 as tet4, hex8. Older formats: -format msh22, and msh40, to be refused.
 DefineConstant[ hex = 0 ];
 Mesh.MeshSizeMin = 10;
 Mesh.MeshSizeMax = 10;
