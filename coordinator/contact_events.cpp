@@ -118,6 +118,23 @@ double ContactEvents::common_end(const TimeWindow& window, double time) const {
   return window.end;
 }
 
+TimeWindow ContactEvents::even(const TimeWindow& window) const {
+  constexpr double rounding = 1.0e-6;  // of a step
+  const bool tied = std::ranges::any_of(joints_, [this](const Joint& joint) {
+    return joint.tied() && bodies_.port(joint.sides[0]).geometry.dim > 1;
+  });
+  TimeWindow part = window;
+  for (int b = 0; tied && b < bodies_.count(); ++b) {
+    const double step = bodies_.describe(b).step;
+    const double count = step > 0.0 ? part.length() / step : 0.0,
+                 whole = std::floor(count + rounding);
+    if (whole < 1.0 || count - whole <= rounding) continue;
+    part.end = part.begin + whole * step;
+    b = -1;  // others' steps may no longer fit
+  }
+  return part;
+}
+
 bool ContactEvents::release_kicks(const TimeWindow& window) {
   bool released = false;
   for (Joint& joint : joints_) {

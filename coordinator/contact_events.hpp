@@ -42,6 +42,9 @@ class ContactEvents {
   std::optional<double> first_event(const TimeWindow& window, double energy);
   /// First time in the window, from `time` on, at which substeps of all bodies end.
   double common_end(const TimeWindow& window, double time) const;
+  /// Where surfaces are tied, the longest part of a window from its begin in which every body takes
+  /// whole steps of its own, or a single one that is shorter: kernels hold for steps of one length.
+  TimeWindow even(const TimeWindow& window) const;
   /// Kick layers that end their contact at the window's begin part with what they were owed.
   bool release_kicks(const TimeWindow& window);
   /// An earlier end: fewer substeps at once, fewer kinks in the map that is iterated.

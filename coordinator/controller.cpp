@@ -206,7 +206,7 @@ bool Controller::fly_free() {
 }
 
 void Controller::step_window() {
-  TimeWindow window = clock_.next();
+  TimeWindow window = events_.even(clock_.next());
   if (must_go_passively(window)) return step_passively();
   events_.begin(window);
   bodies_.save_all();
@@ -221,6 +221,7 @@ void Controller::step_window() {
       return;
     }
     if (judgement.verdict == Judgement::Verdict::cut) window.end = judgement.end;
+    window = events_.even(window);
     bodies_.restore_all();
     if (must_go_passively(window)) return step_passively();  // they came faster than was foreseen
   }
@@ -279,7 +280,7 @@ Controller::Judgement Controller::judge_trouble(const TimeWindow& window) {
   }
   for (const SchwarzReport& report : attempt_.reports)  // no shorter window changes it
     if (!report.contradiction.empty())
-      return {Verdict::fail, window.end, report.contradiction, !passive_.returns()};
+      return {Verdict::fail, window.end, report.contradiction, true};
   const std::string text = attempt_.trouble(scene_.schwarz.tolerance);
   const OnNonconvergence policy = scene_.schwarz.on_nonconvergence;
   if (policy == OnNonconvergence::accept && !attempt_.failed) {

@@ -124,6 +124,7 @@ class Controller {
   void go_accurately();
   GivenUp given_up() const;
   bool leave_apart();
+  bool rejoin();
   void fail(double time, const std::string& text);
   void state(Archive& archive);
   void memory(Archive& archive);

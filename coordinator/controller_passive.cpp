@@ -11,6 +11,7 @@
 #include "contract/no_answer.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/coupling/exchange.hpp"
+#include "coordinator/coupling/velocity_start.hpp"
 #include "coordinator/touching_pairs.hpp"
 
 namespace abut {
@@ -52,8 +53,8 @@ void Controller::try_window(const TimeWindow& window) {
   }
 }
 
-/// Whether windows that have an answer may be refused all the same: not where there is no way back.
-bool Controller::may_refuse() const { return may_go_passively() && passive_.returns(); }
+/// Whether windows that have an answer may be refused all the same.
+bool Controller::may_refuse() const { return may_go_passively(); }
 
 /// Which body comes upon itself, where passive forms can keep it off itself; empty: none.
 std::string Controller::folded() { return may_refuse() ? folds_.look() : std::string(); }
@@ -143,17 +144,47 @@ bool Controller::leave_apart() {
   return false;
 }
 
+/// Bodies have left their passive forms: joined sides, which move alike by the masses of those, are
+/// to do so by the masses of their own schemes [M.122]. False: the run stays on the passive way.
+bool Controller::rejoin() {
+  if (!passive_.joins()) return true;
+  const auto kinetic = [this] {
+    double sum = 0.0;
+    for (const Response& response : bodies_.responses())
+      for (const BodyRecord& record : response.records) sum += record.energy.kinetic;
+    return sum;
+  };
+  prepare({0, clock_.time(), clock_.time()}, 1, Sampling::substeps);
+  waiting_.left = longest_wait;
+  if (bodies_.advance_all()) {
+    bodies_.restore_all();
+    passive_.stay();
+    return false;
+  }
+  const double before = kinetic();
+  std::vector<UnlikeStart> unlike;
+  if (!unite_velocities(joints_, clock_.time(), bodies_, unlike)) {
+    waiting_.left = 0;
+    passive_.rejoin(before - kinetic());
+    return true;
+  }
+  if (std::optional<Failed> failed = passive_.enter(clock_.time(), false))
+    fail(failed->time, failed->detail);
+  return false;
+}
+
 /// Back to the accurate method where nothing pressed and all surfaces are well apart: a return in
 /// the midst of contact costs a part of the energy.
 void Controller::go_accurately() {
   if (waiting_.left > 0) --waiting_.left;
-  if (!passive_.returns() || !passive_.quiet() || waiting_.left > 0 || !running()) return;
+  if (!passive_.quiet() || waiting_.left > 0 || !running()) return;
   const bool apart = std::ranges::all_of(joints_, [&](Joint& joint) {
     if (joint.exchange == nullptr || joint.tied()) return true;
     const auto [distance, speed] = joint.watch->approach(joint, bodies_);
     return distance > far_ways * speed * scene_.time.window;
   });
   if (!apart || !folds_.apart(far_ways) || !passive_.leave(clock_.time()) || !leave_apart()) return;
+  if (!rejoin()) return;
   waiting_.accurate = 0;
   narrator_.accurate(clock_.time());
   for (Joint& joint : joints_)

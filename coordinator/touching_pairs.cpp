@@ -6,6 +6,7 @@
 #include "base/index.hpp"
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/tie.hpp"
+#include "coordinator/coupling/tied_wholes.hpp"
 
 namespace abut {
 
@@ -20,8 +21,9 @@ bool only_passive(const Joint& joint, const Bodies& bodies) {
 namespace {
 
 /// Surfaces of all bodies, where everything may touch everything.
-void add_everything(const ContactSpec& law, const Bodies& bodies,
+void add_everything(const ContactSpec& law, std::span<const Joint> joints, const Bodies& bodies,
                     std::vector<TouchingPair>& pairs) {
+  const std::vector<int> wholes = tied_wholes(joints, bodies.count());
   std::vector<Side> sides;
   for (int b = 0; b < bodies.count(); ++b)
     for (std::size_t p = 0; p < bodies.describe(b).ports.size(); ++p) {
@@ -40,7 +42,7 @@ void add_everything(const ContactSpec& law, const Bodies& bodies,
         return (is(pair.sides[0], one) && is(pair.sides[1], other)) ||
                (is(pair.sides[1], one) && is(pair.sides[0], other));
       });
-      if (one.body != other.body && !stand && !written)
+      if (wholes[index(one.body)] != wholes[index(other.body)] && !stand && !written)
         pairs.push_back({{one, other}, sliding(law)});
     }
   }
@@ -99,7 +101,7 @@ std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joi
     const InterfaceSpec& spec = scene.interfaces[index(joint.interface)].second;
     pairs.push_back({joint.sides, spec.contact ? sliding(*spec.contact) : 0.0});
   }
-  if (scene.everything() != nullptr) add_everything(*scene.everything(), bodies, pairs);
+  if (scene.everything() != nullptr) add_everything(*scene.everything(), joints, bodies, pairs);
   if (const std::optional<double> friction = scene.own_friction())
     add_own(*friction, bodies, pairs);
   return pairs;
@@ -117,7 +119,7 @@ std::optional<std::vector<PassiveTie>> passive_ties(const Scene& scene,
     const bool plain = known.ties.size() == 1 && spec.tied && !spec.tied->overlap &&
                        !is_dashpot(spec.transmission);
     if (!plain) return std::nullopt;
-    ties.push_back({joint.sides, &known.ties.front().exchange->rows()});
+    ties.push_back({joint.sides, known.ties.front().exchange, joint.role.kinematic});
   }
   return ties;
 }

@@ -24,6 +24,8 @@ namespace {
 constexpr std::size_t overhead_samples = 1u << 20;
 /// [B] of a kernel that is asked for at once, about: it is wider than what is kept of it.
 constexpr double probe_bytes = 3.2e7;
+/// Of a step: what is left of a window and less than this is none.
+constexpr double remainder = 1.0e-6;
 /// Means over a port's points of the responses of a kernel of one pattern, along the normals.
 PortKernel along(const PortKernel& all, const PortGeometry& surface) {
   const std::vector<double>& normals = surface.normals;
@@ -217,9 +219,14 @@ PortKernel& Bodies::cached(Kernels& kernels, int body, int port) {
   return kernels.emplace_back(CachedKernel{body, port, {}}).kernel;
 }
 
-PortKernel Bodies::ask(int body, Probing probing) {
-  const double step = describe(body).step;
-  probing.step = step > 0.0 ? step : window_;
+double Bodies::step(int body) const {
+  const double own = describe(body).step, window = request(body).window.length();
+  const double whole = own > 0.0 ? own : window_;
+  return window > 0.0 && window < (1.0 - remainder) * whole ? window : whole;
+}
+
+PortKernel Bodies::ask(int body, double step, Probing probing) {
+  probing.step = step;
   ++exchanges_;
   return (*this)[body].probe(probing);
 }
@@ -228,14 +235,16 @@ PortKernel Bodies::probe(int body, int port, std::span<const double> patterns, i
                          std::span<const int> seen) {
   Probing probing{port, {patterns.begin(), patterns.end()}, 0.0, count};
   if (seen.size() != 1 || seen.front() != port) probing.seen.assign(seen.begin(), seen.end());
-  return ask(body, std::move(probing));
+  return ask(body, step(body), std::move(probing));
 }
 
 const PortKernel& Bodies::kernel(int body, int port, int count) {
   PortKernel& kernel = cached(kernels_, body, port);
   if (kernel.count() >= count) return kernel;
   const PortGeometry& surface = describe(body).ports[port].geometry;
-  kernel = along(ask(body, {port, surface.normals, 0.0, count}), surface);
+  const double own = describe(body).step;
+  kernel =
+      along(ask(body, own > 0.0 ? own : window_, {port, surface.normals, 0.0, count}), surface);
   return kernel;
 }
 
@@ -256,7 +265,8 @@ PortKernel Bodies::full_kernel(int body, int port, int count,
       const std::size_t v = first + k;
       units[k * width + (points.empty() ? v : index(points[v / dim]) * dim + v % dim)] = 1.0;
     }
-    PortKernel part = for_levels(cut(ask(body, {port, units, 0.0, count}), points, dim));
+    PortKernel part =
+        for_levels(cut(ask(body, step(body), {port, units, 0.0, count}), points, dim));
     if (some == values) return part;
     if (first == 0) whole = room_for(part, static_cast<int>(values));
     put(part, static_cast<int>(first), whole);

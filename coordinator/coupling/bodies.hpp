@@ -90,7 +90,10 @@ class Bodies {
   /// one does; `of` is whose kernel it is.
   void meet(const Side& kinematic, int partner, const Side& of, const PortKernel& kernel);
 
-  /// Responses of some ports, one after the other, to patterns of force on one of them.
+  /// [s] of a body's steps in the window that is requested: its own, or all of a shorter window.
+  double step(int body) const;
+  /// Responses of some ports, one after the other, to patterns of force on one of them, in such
+  /// steps; so are those of full_kernel().
   PortKernel probe(int body, int port, std::span<const double> patterns, int count,
                    std::span<const int> seen);
 
@@ -115,7 +118,7 @@ class Bodies {
   };
   using Kernels = std::deque<CachedKernel>;  // references to kernels stay valid
   static PortKernel& cached(Kernels& kernels, int body, int port);
-  PortKernel ask(int body, Probing probing);
+  PortKernel ask(int body, double step, Probing probing);
 
   std::vector<Subdomain*> subdomains_;
   double window_;  // [s]

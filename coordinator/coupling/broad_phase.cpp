@@ -8,6 +8,7 @@
 
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/row_margin.hpp"
+#include "coordinator/coupling/tied_wholes.hpp"
 
 namespace abut {
 
@@ -78,7 +79,7 @@ BroadPhase::BroadPhase(const Bodies& bodies, std::span<const Joint> joined) {
              });
     });
   };
-  const std::vector<int> rank = ranks(bodies.count());
+  const std::vector<int> rank = ranks(bodies.count()), whole = tied_wholes(joined, bodies.count());
   std::vector<Side> sides;
   place_.resize(index(bodies.count()));
   for (int b = 0; b < bodies.count(); ++b) {
@@ -88,7 +89,7 @@ BroadPhase::BroadPhase(const Bodies& bodies, std::span<const Joint> joined) {
       const bool touches = surface.dim > 1 && !surface.facets.empty() && !tied(b, p);
       place_[b].push_back(touches ? static_cast<int>(ports_.size()) : -1);
       if (!touches) continue;
-      ports_.push_back({{b, static_cast<int>(p)}, std::isinf(body.mass), rank[b]});
+      ports_.push_back({{b, static_cast<int>(p)}, std::isinf(body.mass), rank[b], whole[b]});
       sides.push_back(ports_.back().side);
     }
   }
@@ -113,7 +114,7 @@ std::vector<PortPair> BroadPhase::overlapping() const {
       const Box& other = boxes_[order[k]];
       if (other.low[axis] > box.high[axis]) break;
       const Surface& two = ports_[order[k]];
-      if (one.side.body == two.side.body || (one.stands && two.stands)) continue;
+      if (one.whole == two.whole || (one.stands && two.stands)) continue;
       if (overlap(box, other)) found.push_back(std::minmax(order[i], order[k]));
     }
   }

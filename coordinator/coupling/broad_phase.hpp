@@ -44,6 +44,7 @@ class BroadPhase {
     Side side;
     bool stands = false;  // nothing that touches it moves it
     int rank = 0;         // of its body in the order of sweeps
+    int whole = 0;        // of what ties hold together
   };
   std::vector<PortPair> overlapping() const;
 

@@ -106,7 +106,8 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
     return;
   }
   kernel_ = &answer_;
-  const bool holds = answer_.count() >= iterate_.steps.count && answer_.points == zone_.points();
+  const bool holds = answer_.count() >= iterate_.steps.count && answer_.points == zone_.points() &&
+                     answer_.step == bodies.step(n.body);
   if (holds && answer_told_) return;
   if (!holds) {
     answer_ = bodies.full_kernel(n.body, n.port, iterate_.steps.count, zone_.points());

@@ -191,6 +191,30 @@ double Tie::seen_by_motion(double distance) const {
   return scaled(distance, moved_, scale_.roundoff);
 }
 
+/// Taken back in a step, what they have parted by would swing for ever.
+void Tie::rejoin() {
+  start_.clear();
+  past_.clear();
+  last_ = {};
+}
+
+void Tie::begin_passive(double time) {
+  force_.time = {time};
+  force_.width = rows_.width();
+  force_.support = ForceSupport::step;
+  force_.f.assign(index(rows_.width()), 0.0);
+  jump_.setZero(rows_.width());
+}
+
+void Tie::see_passive(double end, std::span<const double> force, std::span<const double> parted) {
+  force_.time.push_back(end);
+  force_.f.insert(force_.f.end(), force.begin(), force.end());
+  for (std::size_t k = 0; k < parted.size(); ++k) {
+    double& most = jump_[static_cast<Eigen::Index>(k)];
+    most = std::max(most, std::abs(parted[k]));
+  }
+}
+
 double Tie::largest_force() const {
   double most = 0.0;
   for (std::size_t i = 1; i < force_.size(); ++i)

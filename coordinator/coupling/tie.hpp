@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "coordinator/coupling/exchange.hpp"
@@ -76,6 +77,14 @@ class Tie : public Exchange {
   double missed() const { return jump_.size() > 0 ? jump_.lpNorm<Eigen::Infinity>() : 0.0; }
   double largest_force() const;
   double row_force() const { return row_force_; }  // [N] the largest of a row
+
+  /// The accurate method takes over: the sides are one as they stand then.
+  void rejoin();
+  /// A window begins that is gone passively.
+  void begin_passive(double time);
+  /// Of a step of it: forces [N] (rows, dim) on the kinematic side, constant in it, and by what
+  /// the sides have parted at its end [m], the same.
+  void see_passive(double end, std::span<const double> force, std::span<const double> parted);
 
  protected:
   TieRows rows_;

@@ -1,6 +1,7 @@
 #include "coordinator/coupling/tie_layout.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -49,6 +50,7 @@ void TieLayout::arrange(const Bodies& bodies) {
         const Description& told = bodies.describe(body);
         parts.push_back({body,
                          member.counts[s],
+                         bodies.step(body),
                          0,
                          !told.can.kernel,
                          told.quasi_static && !told.linear,
@@ -73,7 +75,10 @@ void TieLayout::arrange(const Bodies& bodies) {
 
 std::vector<int> TieLayout::pattern() const {
   std::vector<int> pattern;
-  for (const Part& part : parts) pattern.insert(pattern.end(), {part.body, part.steps});
+  // In single precision, because ends of equal windows are rounded differently.
+  for (const Part& part : parts)
+    pattern.insert(pattern.end(),
+                   {part.body, part.steps, std::bit_cast<int>(static_cast<float>(part.step))});
   for (const Member& member : members) pattern.insert(pattern.end(), {member.steps, member.width});
   return pattern;
 }

@@ -30,6 +30,7 @@ struct TieLayout {
   struct Part {  // a body
     int body = 0;
     int steps = 0;           // in a block
+    double step = 0.0;       // [s]
     Eigen::Index width = 0;  // rows x dim of all its ends
     bool stands = false;     // no force moves it
     bool bends = false;      // without inertia, and not linear: it answers as it is strained

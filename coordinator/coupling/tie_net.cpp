@@ -39,8 +39,8 @@ void TieNet::begin(const KnownExchanges& known, std::span<const Eigen::Index> fi
 /// Bodies are probed where their kernels are not known for as long as this window.
 void TieNet::find_kernel(Bodies& bodies) {
   std::vector<int> pattern = layout_.pattern();
-  const bool known = kernel_ != nullptr && pattern == pattern_ && blocks_ >= layout_.blocks;
-  if (known) return;
+  const bool alike = pattern == pattern_;
+  if (kernel_ != nullptr && alike && blocks_ >= layout_.blocks) return;
   pattern_ = std::move(pattern);
   blocks_ = layout_.blocks;
   kernel_.reset();  // its memory is wanted
@@ -48,7 +48,8 @@ void TieNet::find_kernel(Bodies& bodies) {
   const TieKernelPlan plan = plan_tie_kernel(layout_, options_, bodies);
   kernel_ = plan.banded ? make_banded_tie_kernel(layout_, plan.width, plan.lags, bodies)
                         : make_dense_tie_kernel(layout_, plan.lags, bodies);
-  if (!restored_.empty()) kernel_->take(layout_, restored_);
+  if (!restored_.empty() && alike && restored_.size() == kernel_->answers().size())
+    kernel_->take(layout_, restored_);
   restored_.clear();
 }
 
@@ -76,7 +77,8 @@ const TiedPort* TieNet::touching(const Side& side, const std::vector<std::int32_
     known = touching_.end() - 1;
   }
   const bool holds = known->answer != nullptr && known->answer->give().points == points &&
-                     known->answer->give().count() >= layout_.blocks;
+                     known->answer->give().count() >= layout_.blocks &&
+                     known->answer->give().step == bodies.step(side.body);
   if (!holds)
     known->answer = std::make_unique<TiedPort>(layout_, *part, *kernel_, side.port, points, bodies);
   return known->answer.get();
@@ -141,6 +143,7 @@ std::string TieNet::contradiction(const Eigen::VectorXd& r, double tolerance, do
 
 void TieNet::state(Archive& archive) {
   whole(archive, "blocks", blocks_);
+  field(archive, "pattern", pattern_);
   if (archive.writing() && kernel_ != nullptr) restored_ = kernel_->answers();
   archive.field("answers", restored_);
   if (archive.writing()) restored_.clear();

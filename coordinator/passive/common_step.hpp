@@ -60,6 +60,8 @@ class CommonStep {
   /// What was damped or forgiven outside of steps.
   void lower(int body, double joules);
 
+  const PassiveTies& ties() const { return ties_; }
+
   void state(Archive& archive);
 
  private:

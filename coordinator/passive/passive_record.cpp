@@ -52,6 +52,7 @@ void PassiveRecord::begin(double time, const CommonStep& state, std::vector<Told
     bodies_.response(b).steps = 0;
   }
   append(time, state);
+  state.ties().begin_window(time);
   each_port(bodies_, [&](int b, std::size_t p, std::size_t) {
     std::vector<double>& f = bodies_.response(b).ports[p].trace.f;
     f.assign(bodies_.describe(b).ports[p].geometry.points.size(), 0.0);
@@ -121,6 +122,8 @@ void PassiveRecord::add(const CommonStep& step, double begin, double end) {
     force.f.resize(force.f.size() + index(force.width), 0.0);
   }
   add_forces(step, length);
+  add_ties(step, length);
+  step.ties().tell(end);
   for (int b = 0; b < bodies_.count(); ++b) ++bodies_.response(b).steps;
 }
 
@@ -147,6 +150,19 @@ void PassiveRecord::add_forces(const CommonStep& step, double length) {
         Waveform& reaction = force_of(pair);
         put(reaction.f, index(reaction.width), i);
       }
+    }
+  }
+}
+
+void PassiveRecord::add_ties(const CommonStep& step, double length) {
+  std::vector<std::vector<double>> impulses;
+  for (int b = 0; b < bodies_.count() && step.ties().any(); ++b) {
+    impulses.assign(bodies_.describe(b).ports.size(), {});
+    step.ties().add_impulses(b, impulses);
+    for (std::size_t p = 0; p < impulses.size(); ++p) {
+      std::vector<double>& f = bodies_.response(b).ports[p].trace.f;
+      const std::size_t last = f.size() - impulses[p].size();
+      for (std::size_t v = 0; v < impulses[p].size(); ++v) f[last + v] += impulses[p][v] / length;
     }
   }
 }

@@ -33,6 +33,7 @@ class PassiveRecord {
   void append(double time, const CommonStep& state);
   void widen(const CommonStep& state);
   void add_forces(const CommonStep& step, double length);
+  void add_ties(const CommonStep& step, double length);
 
   const TouchingSurfaces& surfaces_;
   Bodies& bodies_;

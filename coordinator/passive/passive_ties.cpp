@@ -28,7 +28,7 @@ PassiveTies::PassiveTies(std::vector<PassiveTie> ties, const Bodies& bodies)
       clusters_(index(bodies.count())) {
   std::iota(cluster_.begin(), cluster_.end(), 0);
   for (const PassiveTie& tie : ties_) {
-    dim_ = tie.rows->dim;
+    dim_ = tie.rows().dim;
     const int one = cluster_[index(tie.sides[0].body)], other = cluster_[index(tie.sides[1].body)];
     for (int& of : cluster_)
       if (of == one || of == other) of = std::min(one, other);
@@ -38,17 +38,17 @@ PassiveTies::PassiveTies(std::vector<PassiveTie> ties, const Bodies& bodies)
     Cluster& own = clusters_[index(cluster(ties_[t].sides[0].body))];
     own.ties.push_back(static_cast<int>(t));
     own.first.push_back(own.rows);
-    own.rows += ties_[t].rows->width();
-    impulses_.push_back(Eigen::VectorXd::Zero(ties_[t].rows->width()));
+    own.rows += ties_[t].rows().width();
+    impulses_.push_back(Eigen::VectorXd::Zero(ties_[t].rows().width()));
   }
-  start_ = aim_ = velocity_ = forces_ = impulses_;
+  start_ = parted_ = aim_ = velocity_ = forces_ = impulses_;
 }
 
 /// Rows of one side, of values (points, dim).
 Eigen::VectorXd PassiveTies::part(const PassiveTie& tie, std::size_t side,
                                   const std::vector<double>& values) const {
-  std::vector<double> out(index(tie.rows->width()), 0.0);
-  apply(tie.rows->of[side], dim_, values, out);
+  std::vector<double> out(index(tie.rows().width()), 0.0);
+  apply(tie.rows().of[side], dim_, values, out);
   return view(out);
 }
 
@@ -70,12 +70,15 @@ void PassiveTies::aim(double length, const Displacements& displacements,
   length_ = length;
   for (std::size_t t = 0; t < ties_.size(); ++t) {
     aim_[t] = taken_back / length * start_[t];
+    parted_[t] = -start_[t];
     for (const std::size_t s : {0u, 1u}) {
       const Side& side = ties_[t].sides[s];
       const std::size_t b = index(side.body), p = index(side.port);
-      aim_[t] +=
-          (s == 0 ? 1.0 : -1.0) * (0.5 * part(ties_[t], s, before[b].ports[p].velocity) -
-                                   taken_back / length * part(ties_[t], s, displacements[b][p]));
+      const Eigen::VectorXd place = part(ties_[t], s, displacements[b][p]);
+      const double sign = s == 0 ? 1.0 : -1.0;
+      parted_[t] += sign * place;
+      aim_[t] += sign * (0.5 * part(ties_[t], s, before[b].ports[p].velocity) -
+                         taken_back / length * place);
     }
     impulses_[t] = length * forces_[t];
   }
@@ -87,7 +90,7 @@ void PassiveTies::add_points(int body, std::vector<std::vector<std::int32_t>>& p
       const Side& side = tie.sides[s];
       if (side.body != body || std::isinf(bodies_.describe(body).mass)) continue;
       std::vector<std::int32_t>& points = pressed[index(side.port)];
-      for (const std::int32_t point : tie.rows->of[s].columns) points.push_back(point);
+      for (const std::int32_t point : tie.rows().of[s].columns) points.push_back(point);
       std::ranges::sort(points);
       points.erase(std::unique(points.begin(), points.end()), points.end());
     }
@@ -101,7 +104,7 @@ void PassiveTies::add_impulses(int body, std::vector<std::vector<double>>& impul
       if (side.body != body || impulses_[t].isZero(0.0)) continue;
       std::vector<double>& port = impulses[index(side.port)];
       if (port.empty()) port.assign(bodies_.port(side).geometry.points.size(), 0.0);
-      add_transposed(ties_[t].rows->of[s], dim_, s == 0 ? 1.0 : -1.0,
+      add_transposed(ties_[t].rows().of[s], dim_, s == 0 ? 1.0 : -1.0,
                      {impulses_[t].data(), index(static_cast<int>(impulses_[t].size()))}, port);
     }
   }
@@ -159,7 +162,7 @@ Eigen::MatrixXd PassiveTies::operator_of(const Cluster& cluster) const {
   for (std::size_t k = 0; k < cluster.ties.size(); ++k) {
     const PassiveTie& tie = ties_[index(cluster.ties[k])];
     for (const std::size_t s : {0u, 1u}) {
-      const SparseRows& rows = tie.rows->of[s];
+      const SparseRows& rows = tie.rows().of[s];
       for (int r = 0; r < rows.count(); ++r) {
         for (std::int32_t e = rows.offsets[index(r)]; e < rows.offsets[index(r) + 1]; ++e) {
           const std::array<std::int32_t, 3> point = {tie.sides[s].body, tie.sides[s].port,
@@ -224,6 +227,19 @@ void PassiveTies::follow(int lead, const Eigen::VectorXd& change) {
 
 void PassiveTies::accept() {
   for (std::size_t t = 0; t < ties_.size(); ++t) forces_[t] = impulses_[t] / length_;
+}
+
+void PassiveTies::begin_window(double time) const {
+  for (const PassiveTie& tie : ties_) tie.tie->begin_passive(time);
+}
+
+void PassiveTies::tell(double end) const {
+  for (std::size_t t = 0; t < ties_.size(); ++t) {
+    const Eigen::VectorXd force = (ties_[t].kinematic == 0 ? 1.0 : -1.0) * forces_[t],
+                          parted = parted_[t] + length_ * velocity_[t];
+    const std::size_t count = index(static_cast<int>(force.size()));
+    ties_[t].tie->see_passive(end, {force.data(), count}, {parted.data(), count});
+  }
 }
 
 void PassiveTies::state(Archive& archive) {

@@ -9,14 +9,17 @@
 
 #include "contract/passive.hpp"
 #include "coordinator/coupling/bodies.hpp"
-#include "coordinator/coupling/tie_rows.hpp"
+#include "coordinator/coupling/tie.hpp"
 
 namespace abut {
 
 /// Two surfaces that are one, and the rows in which their motions are compared.
 struct PassiveTie {
   std::array<Side, 2> sides;
-  const TieRows* rows = nullptr;
+  Tie* tie = nullptr;  // is told of forces
+  int kinematic = 0;   // its side on which they act as they are told
+
+  const TieRows& rows() const { return tie->rows(); }
 };
 
 /// Joined bodies in a passive step [M.139]: impulses L of rows T that make both sides move alike,
@@ -59,6 +62,10 @@ class PassiveTies {
   void follow(int cluster, const Eigen::VectorXd& change);
   /// The step was taken: the next one begins with forces like these.
   void accept();
+  /// A window begins.
+  void begin_window(double time) const;
+  /// Tells the ties of the step that was taken.
+  void tell(double end) const;
 
   void state(Archive& archive);
 
@@ -88,6 +95,7 @@ class PassiveTies {
   std::span<const PassiveReply> replies_;
   std::span<const PassiveStep> asked_;
   std::vector<Eigen::VectorXd> start_;     // [m] (ties; rows, dim)
+  std::vector<Eigen::VectorXd> parted_;    // [m] when the step begins
   std::vector<Eigen::VectorXd> aim_;       // [m/s] T w wanted
   std::vector<Eigen::VectorXd> velocity_;  // [m/s] T w seen
   std::vector<Eigen::VectorXd> impulses_;  // [N s]

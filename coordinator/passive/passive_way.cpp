@@ -217,6 +217,11 @@ bool PassiveWay::leave(double time) {
   return true;
 }
 
+void PassiveWay::rejoin(double lost) {
+  ledger_.switched += lost;
+  for (const PassiveTie& tie : *ties_) tie.tie->rejoin();
+}
+
 void PassiveWay::state(Archive& archive) {
   whole(archive, "active", active_);
   ledger_.state(archive);

@@ -29,8 +29,8 @@ class PassiveWay {
   /// Why the scene cannot take this way, for people; empty: it can.
   const std::string& hindrance() const { return hindrance_; }
   bool active() const { return active_; }
-  /// Whether bodies may go back to their own schemes: those of ties would have to begin anew.
-  bool returns() const { return ties_ && ties_->empty(); }
+  /// Whether ties hold bodies together.
+  bool joins() const { return ties_ && !ties_->empty(); }
   const PassiveLedger& ledger() const { return ledger_; }
 
   /// The bodies stand at a time at which they may be saved. `unanswered`: the accurate method was
@@ -47,6 +47,8 @@ class PassiveWay {
   /// shares of their kinetic energies; momentum and angular momentum stay. Their last records tell
   /// of the state after it. Returns what each of them gave.
   std::vector<double> repay(std::span<const int> bodies, double joules);
+  /// They have left, and velocities of joined sides were made one, at this cost [J].
+  void rejoin(double lost);
   /// Whether nothing pressed in the last window.
   bool quiet() const { return quiet_; }
   /// Whether surfaces pressed in the last window, of a joint.
