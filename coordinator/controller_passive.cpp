@@ -110,9 +110,12 @@ void Controller::repay() {
   if (!(excess > 0.0)) return;
   std::set<int> touching;
   for (const Joint& joint : joints_)
-    if (joint.closed())
-      for (const Side& side : joint.sides)
-        if (std::isfinite(bodies_.describe(side.body).mass)) touching.insert(side.body);
+    for (const Side& side : joint.sides)
+      if (joint.closed() && !joint.tied() && std::isfinite(bodies_.describe(side.body).mass))
+        touching.insert(side.body);
+  for (const Joint& joint : joints_)  // sides of one surface move as one
+    for (const Side& side : joint.sides)
+      if (joint.tied()) touching.erase(side.body);
   const std::vector<int> bodies(touching.begin(), touching.end());
   const std::vector<double> gave = passive_.repay(bodies, excess);
   for (std::size_t k = 0; k < bodies.size(); ++k) guard_.repaid(bodies[k], gave[k]);
