@@ -1,7 +1,7 @@
 /// Cost of explicit solids: whole steps (force and update) of boxes of hex8, per element and step,
 /// full and one point, neo-Hookean and linear; the share of the force; the force on each
-/// instruction set; the force of J2 plasticity by batches and cell by cell; beside it what the machine's memory allows for the bytes moved, in the same
-/// run.
+/// instruction set; the force of J2 plasticity by batches and cell by cell; beside it what the
+/// machine's memory allows for the bytes moved, in the same run.
 ///
 ///   abut_bench_explicit_solid [EDGE OF THE LARGE BOX] [REPEATS]
 
@@ -114,7 +114,9 @@ void run_instructions(int repeats) {
   for (const KernelTable* kernels : batched_kernels()) {
     fmt::print("{:>9} {:>8}", count, kernels->instructions);
     for (const bool one_point : {false, true}) {
-      BatchedCells cells(mesh, law, {one_point ? Formulation::one_point : Formulation::full, 0.05, 1.0, 1, kernels});
+      BatchedCells cells(
+          mesh, law,
+          {one_point ? Formulation::one_point : Formulation::full, 0.05, 1.0, 1, kernels});
       CellEnergies energies;
       const double wall = least(repeats, 1, [&] {
         if (!cells.evaluate(q, {}, force, energies)) std::abort();

@@ -1,8 +1,8 @@
 #include "subdomain_solver/fe/batched_cells.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <cmath>
+#include <functional>
 
 #include "base/assert.hpp"
 #include "base/index.hpp"
@@ -276,8 +276,8 @@ void BatchedCells::find_fast(std::span<const double> q, std::span<const double> 
 }
 
 std::size_t BatchedCells::bytes() const {
-  std::size_t sum = patches_.bytes() + shared_.size() * sizeof(double) +
-                    energies_.size() * sizeof(CellEnergies);
+  std::size_t sum =
+      patches_.bytes() + shared_.size() * sizeof(double) + energies_.size() * sizeof(CellEnergies);
   for (const Copies& c : copies_) sum += (c.displacement.size() + c.force.size()) * sizeof(double);
   for (const std::vector<std::int64_t>& list : first_history_)
     sum += list.size() * sizeof(std::int64_t);

@@ -91,16 +91,16 @@ class BatchedCells {
   CellPatches patches_;
   const KernelTable& table_;
   BatchedParameters parameters_;
-  std::vector<PatchKernel> kernels_;             // (blocks)
-  std::vector<FrequencyKernel> frequencies_;     // (blocks)
-  std::vector<Copies> copies_;                   // (threads)
-  std::vector<double> shared_;                   // [N] (shared copies, dim)
-  std::vector<int> cell_numbers_;                // (blocks) of a cell's history
-  std::vector<CellEnergies> energies_;           // (patches)
+  std::vector<PatchKernel> kernels_;                      // (blocks)
+  std::vector<FrequencyKernel> frequencies_;              // (blocks)
+  std::vector<Copies> copies_;                            // (threads)
+  std::vector<double> shared_;                            // [N] (shared copies, dim)
+  std::vector<int> cell_numbers_;                         // (blocks) of a cell's history
+  std::vector<CellEnergies> energies_;                    // (patches)
   std::vector<std::vector<std::int64_t>> first_history_;  // (patches; batches, 8) or nothing
-  std::vector<unsigned char> answers_;           // (patches)
-  std::vector<FrequencyQuestion> questions_;     // (patches)
-  std::vector<std::vector<std::int32_t>> fast_;  // (patches) places in the patch
+  std::vector<unsigned char> answers_;                    // (patches)
+  std::vector<FrequencyQuestion> questions_;              // (patches)
+  std::vector<std::vector<std::int32_t>> fast_;           // (patches) places in the patch
   WorkerThreads threads_;
 };
 

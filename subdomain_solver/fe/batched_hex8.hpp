@@ -148,7 +148,8 @@ struct Hex8 {
 
   template <int N, class Law, class Sums>
   [[gnu::always_inline]] static void evaluate(const double* x, const double* u, double* force,
-                                              const Law& law, const BatchedParameters&, Sums& sums) {
+                                              const Law& law, const BatchedParameters&,
+                                              Sums& sums) {
     using Real = typename Lanes<N>::Real;
     constexpr double scale = 1.0 / 512.0;
     Real mode[3][8];

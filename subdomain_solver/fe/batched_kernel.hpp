@@ -15,10 +15,10 @@ inline constexpr int batch_lanes = 8;  // cells of a batch, whatever the width o
 /// their nodes carry.
 struct PatchView {
   int batches = 0;
-  const std::int32_t* nodes = nullptr;       // (batches, nodes of the element, 8) into the copies
-  const double* reference = nullptr;         // [m] (nodes, 4) position; the fourth number is unused
-  const double* displacement = nullptr;      // [m] (nodes, 4)
-  double* force = nullptr;                   // [N] (nodes, 4) to which the cells add
+  const std::int32_t* nodes = nullptr;   // (batches, nodes of the element, 8) into the copies
+  const double* reference = nullptr;     // [m] (nodes, 4) position; the fourth number is unused
+  const double* displacement = nullptr;  // [m] (nodes, 4)
+  double* force = nullptr;               // [N] (nodes, 4) to which the cells add
   /// (batches, 8) where the numbers of a cell's points begin in the histories, point after point;
   /// -1: the lane has no cell.
   const std::int64_t* first_history = nullptr;
@@ -51,13 +51,7 @@ struct FrequencyQuestion {
 };
 using FrequencyKernel = void (*)(const PatchView&, const BatchedParameters&, FrequencyQuestion&);
 
-enum class BatchedLaw {
-  linear_elastic,
-  saint_venant_kirchhoff,
-  neo_hookean,
-  j2_plasticity,
-  count
-};
+enum class BatchedLaw { linear_elastic, saint_venant_kirchhoff, neo_hookean, j2_plasticity, count };
 enum class BatchedCell {
   hex8,
   hex8_one_point,

@@ -179,8 +179,14 @@ constexpr KernelTable table = {
     ABUT_INSTRUCTIONS,
     {row<Hex8>(), row<Hex8OnePoint>(), finite_row<Hex8MeanDilatation>(), row<Quad4>(),
      row<Quad4OnePoint>(), finite_row<Quad4MeanDilatation>(), row<Tet4>(), row<Tri3>()},
-    {frequency_row<Hex8Points>(), frequency_row<Hex8MeanPoint>(), {}, frequency_row<Quad4Points>(),
-     frequency_row<Quad4MeanPoint>(), {}, frequency_row<Tet4Point>(), frequency_row<Tri3Point>()}};
+    {frequency_row<Hex8Points>(),
+     frequency_row<Hex8MeanPoint>(),
+     {},
+     frequency_row<Quad4Points>(),
+     frequency_row<Quad4MeanPoint>(),
+     {},
+     frequency_row<Tet4Point>(),
+     frequency_row<Tri3Point>()}};
 
 }  // namespace
 

@@ -6,9 +6,8 @@
 
 namespace abut {
 
-BatchedLayer::BatchedLayer(const Mesh& mesh, const Material& material,
-                           BatchedOptions options, std::span<const Cell> cells,
-                           std::span<const int> dofs)
+BatchedLayer::BatchedLayer(const Mesh& mesh, const Material& material, BatchedOptions options,
+                           std::span<const Cell> cells, std::span<const int> dofs)
     : dim_(index(mesh.dim)) {
   for (const auto& [block, cell, first] : cells)
     for (const std::int32_t node : nodes_of(mesh.blocks[block], cell)) nodes_.push_back(node);

@@ -46,8 +46,7 @@ struct DilatedPoints {
       const Real j = cofactor(plus_identity(h[p]), cof);
       const Real pressure = amount - third[p] / j;
       ABUT_UNROLLED (k, 0, 9)
-        stress[p].entry[k] =
-            fused(pressure, cof.entry[k], Real(stretch[p] * stress[p].entry[k]));
+        stress[p].entry[k] = fused(pressure, cof.entry[k], Real(stretch[p] * stress[p].entry[k]));
     }
   }
 
@@ -114,8 +113,8 @@ struct Hex8MeanDilatation {
         ABUT_UNROLLED (i, 0, 3) {
           Real& at = pull.at[d][line[d]][i];
           const Real* along_d = cof[p].entry + 3 * d;
-          at = fused(s[i], along_d[0],
-                     fused(s[i + 3], along_d[1], fused(s[i + 6], along_d[2], at)));
+          at =
+              fused(s[i], along_d[0], fused(s[i + 3], along_d[1], fused(s[i + 6], along_d[2], at)));
         }
     }
     hex_forces(pull, scale, mode);

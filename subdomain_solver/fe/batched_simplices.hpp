@@ -10,7 +10,8 @@ struct Tet4 {
 
   template <int N, class Law, class Sums>
   [[gnu::always_inline]] static void evaluate(const double* x, const double* u, double* force,
-                                              const Law& law, const BatchedParameters&, Sums& sums) {
+                                              const Law& law, const BatchedParameters&,
+                                              Sums& sums) {
     using Real = typename Lanes<N>::Real;
     TensorLanes<N> j, g, cof, h;
     ABUT_UNROLLED (d, 0, 3)
@@ -79,8 +80,8 @@ struct Tri3 {
                                                typename Lanes<N>::Real (&edge)[2][2]) {
     ABUT_UNROLLED (i, 0, 2)
       ABUT_UNROLLED (d, 0, 2)
-        edge[i][d] = load<N>(nodal + (3 * (d + 1) + i) * batch_lanes) -
-                     load<N>(nodal + i * batch_lanes);
+        edge[i][d] =
+            load<N>(nodal + (3 * (d + 1) + i) * batch_lanes) - load<N>(nodal + i * batch_lanes);
   }
 };
 

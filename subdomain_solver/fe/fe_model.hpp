@@ -148,8 +148,8 @@ class FeModel final : public Model {
   void linear_layer(std::span<const double> q, Want want, LayerResponse& out);
   void spring_force(std::span<const double> q, ModelResponse& out) const;
   BatchedOptions batched_options() const;
-  [[nodiscard]] bool batched_layer_force(std::span<const double> q,
-                                         std::span<const double> history, Vector& force);
+  [[nodiscard]] bool batched_layer_force(std::span<const double> q, std::span<const double> history,
+                                         Vector& force);
   [[nodiscard]] bool batched_force(std::span<const double> q, std::span<const double> history,
                                    ModelResponse& out);
   std::size_t first_history(int block, int cell) const;  // where a cell's numbers begin
@@ -186,7 +186,7 @@ class FeModel final : public Model {
   std::vector<CellMeasures> layer_measures_;  // the same, where no assembly has them
   LayerRows layer_rows_;  // [N/m] (massless, dofs) of linear models, when first asked for
   mutable std::unique_ptr<Assembly> assembly_;
-  std::unique_ptr<BatchedCells> batched_;      // null: cell by cell
+  std::unique_ptr<BatchedCells> batched_;        // null: cell by cell
   std::unique_ptr<BatchedLayer> batched_layer_;  // where batched_ is; when first asked for
   Vector lumped_;
   Vector whole_;  // as lumped_ was before make_massless(); empty: the same

@@ -24,12 +24,12 @@ struct J2Lanes {
   using Real = typename Lanes<N>::Real;
   using Bits = typename Lanes<N>::Bits;
 
-  TensorLanes<N> f, cof;     // F; cof F
-  Real inverse;              // 1/det F
-  LogStrainLanes<N> trial;   // of the elastic strain
-  Real square;               // e : e of its deviator e
-  Real flow, left;           // increment of plastic strain; share of e that stays
-  Bits yields, valid;        // valid: where the law has an answer
+  TensorLanes<N> f, cof;    // F; cof F
+  Real inverse;             // 1/det F
+  LogStrainLanes<N> trial;  // of the elastic strain
+  Real square;              // e : e of its deviator e
+  Real flow, left;          // increment of plastic strain; share of e that stays
+  Bits yields, valid;       // valid: where the law has an answer
 
   [[gnu::always_inline]] J2Lanes(const Moduli& moduli, const HardeningNumbers& hardening,
                                  const TensorLanes<N>& h, const J2HistoryLanes<N>& before)
@@ -121,9 +121,9 @@ struct J2Lanes {
     SymmetricLanes<Real> e;
     ABUT_UNROLLED (m, 0, 6) {
       const int i = row[m], j = column[m];
-      e.at[m] = fused(k[i], f.entry[j],
-                      fused(k[i + 3], f.entry[j + 3],
-                            fused(k[i + 6], f.entry[j + 6], h.entry[j + 3 * i])));
+      e.at[m] = fused(
+          k[i], f.entry[j],
+          fused(k[i + 3], f.entry[j + 3], fused(k[i + 6], f.entry[j + 6], h.entry[j + 3 * i])));
     }
     return LogStrainLanes<N>(e);
   }

@@ -18,8 +18,8 @@ struct J2Bound {
     using Real = typename Lanes<N>::Real;
     const J2Lanes<N> state(moduli, hardening, h, before);
     const double mu = moduli.shear;
-    // What stays of the deviator scales mu. Principal values of a deviator e are below sqrt(2/3) |e|
-    // and their differences below sqrt(2) |e|: x coth x <= 1 + x^2/3 of these.
+    // What stays of the deviator scales mu. Principal values of a deviator e are below sqrt(2/3)
+    // |e| and their differences below sqrt(2) |e|: x coth x <= 1 + x^2/3 of these.
     const Real soft = mu * state.left;
     const Real shear = fused(Real((2.0 / 3.0) * soft), state.square, soft);
     const Real lame = fused(broadcast<Real>(-2.0 / 3.0), soft, broadcast<Real>(moduli.bulk));

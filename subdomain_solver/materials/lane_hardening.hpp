@@ -18,8 +18,8 @@ struct HardeningLanes {
     if (h.rise > 0.0) saturated = expm1_lanes<N>(Real(-h.rate * at));
   }
   [[gnu::always_inline]] Real stress() const {  // [Pa]
-    const Real linear = fused(broadcast<Real>(numbers.modulus), a,
-                              broadcast<Real>(numbers.yield_stress));
+    const Real linear =
+        fused(broadcast<Real>(numbers.modulus), a, broadcast<Real>(numbers.yield_stress));
     return fused(broadcast<Real>(-numbers.rise), saturated, linear);
   }
   [[gnu::always_inline]] Real slope() const {  // [Pa]

@@ -27,9 +27,8 @@ struct LogStrainLanes {
     valid = mean > -1.0;
     far_ = valid & ~(shape.j2 <= 0.5 * largest_norm * largest_norm);
     // Principal values of the deviator are below 0.103 there: the next term is 1e-17 of the first.
-    const InPowers<Real> logarithm = InPowers<Real>::template series<16>(
-        shape.j2, shape.j3,
-        [](int n) ABUT_INLINED { return (n % 2 == 0 ? -1.0 : 1.0) / static_cast<double>(n); });
+    const InPowers<Real> logarithm =
+        InPowers<Real>::template series<16>(shape.j2, shape.j3, of_logarithm);
     const Real* k = logarithm.k;
     volume = fused(broadcast<Real>(1.5), Real(k[0] + log1p_lanes<N>(mean)), Real(k[2] * shape.j2));
     const Real third = (2.0 / 3.0) * shape.j2;
@@ -46,11 +45,7 @@ struct LogStrainLanes {
     ABUT_UNROLLED (k, 0, 6) d.at[k] = factor * deviator.at[k];
     const Deviator<Real> flow(d);
     const InPowers<Real> less =
-        InPowers<Real>::template series<10>(flow.j2, flow.j3, [](int n) ABUT_INLINED {
-          double factorial = 1.0;
-          for (int i = 2; i <= n; ++i) factorial *= i;
-          return 1.0 / factorial;
-        });
+        InPowers<Real>::template series<10>(flow.j2, flow.j3, of_exponential);
     ABUT_UNROLLED (k, 0, 6) {
       power.at[k] = fused(less.k[1], d.at[k], Real(less.k[2] * flow.square.at[k]));
       if (k < 3) power.at[k] += less.k[0];
@@ -62,6 +57,14 @@ struct LogStrainLanes {
   }
 
  private:
+  /// Coefficients of ln(1 + x) and exp(x) - 1 by powers of x.
+  static constexpr double of_logarithm[17] = {
+      0.0,         1.0,        -1.0 / 2.0,  1.0 / 3.0,  -1.0 / 4.0,  1.0 / 5.0,
+      -1.0 / 6.0,  1.0 / 7.0,  -1.0 / 8.0,  1.0 / 9.0,  -1.0 / 10.0, 1.0 / 11.0,
+      -1.0 / 12.0, 1.0 / 13.0, -1.0 / 14.0, 1.0 / 15.0, -1.0 / 16.0};
+  static constexpr double of_exponential[11] = {
+      0.0,         1.0,          1.0 / 2.0,     1.0 / 6.0,      1.0 / 24.0,     1.0 / 120.0,
+      1.0 / 720.0, 1.0 / 5040.0, 1.0 / 40320.0, 1.0 / 362880.0, 1.0 / 3628800.0};
   static constexpr double largest_norm = 0.125;  // of the deviator of b over a third of its trace
 
   [[gnu::always_inline]] static bool any(const Bits& mask) {

@@ -45,8 +45,8 @@ struct PrincipalLanes {
     constexpr int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
     ABUT_UNROLLED (k, 0, 6) {
       const Real *x = axis[row[k]], *y = axis[column[k]];
-      out.at[k] = fused(Real(v[0] * x[0]), y[0],
-                        fused(Real(v[1] * x[1]), y[1], Real(v[2] * x[2] * y[2])));
+      out.at[k] =
+          fused(Real(v[0] * x[0]), y[0], fused(Real(v[1] * x[1]), y[1], Real(v[2] * x[2] * y[2])));
     }
   }
 
@@ -54,8 +54,7 @@ struct PrincipalLanes {
   /// Turns axes p and q until `off`, which couples them, is zero; p_r and q_r couple them to the
   /// third.
   template <int p, int q>
-  [[gnu::always_inline]] void turn(Real& of_p, Real& of_q, Real& off, Real& p_r,
-                                   Real& q_r) {
+  [[gnu::always_inline]] void turn(Real& of_p, Real& of_q, Real& off, Real& p_r, Real& q_r) {
     const Real apart = 0.5 * (of_q - of_p);
     const Real size = magnitude(apart) + square_root(Real(fused(apart, apart, Real(off * off))));
     const Real whole = size > 0.0 ? size : broadcast<Real>(1.0);
@@ -68,7 +67,8 @@ struct PrincipalLanes {
     rotate(cosine, sine, p_r, q_r);
     ABUT_UNROLLED (i, 0, 3) rotate(cosine, sine, axis[i][p], axis[i][q]);
   }
-  [[gnu::always_inline]] static void rotate(const Real& cosine, const Real& sine, Real& x, Real& y) {
+  [[gnu::always_inline]] static void rotate(const Real& cosine, const Real& sine, Real& x,
+                                            Real& y) {
     const Real before = x;
     x = fused(cosine, before, Real(-sine * y));
     y = fused(sine, before, Real(cosine * y));

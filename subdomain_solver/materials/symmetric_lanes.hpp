@@ -48,8 +48,8 @@ template <class Real, class Mask>
   ABUT_UNROLLED (k, 0, 6) out.at[k] = mask ? chosen.at[k] : out.at[k];
 }
 
-/// A symmetric D without trace, its square, and D^3 = j2 D + j3 I (Cayley and Hamilton): every power
-/// of D is a sum of I, D and D^2, so that series in D are series of three numbers, which know
+/// A symmetric D without trace, its square, and D^3 = j2 D + j3 I (Cayley and Hamilton): every
+/// power of D is a sum of I, D and D^2, so that series in D are series of three numbers, which know
 /// nothing of eigenvalues and lose no digits where two of them coincide.
 template <class Real>
 struct Deviator {
@@ -68,13 +68,14 @@ template <class Real>
 struct InPowers {
   Real k[3];
 
-  /// The sum of coefficient(n) D^n for 1 <= n <= terms.
-  template <int terms, class Coefficient>
+  /// The sum of coefficient[n] D^n for 1 <= n <= terms.
+  template <int terms>
   [[gnu::always_inline]] static InPowers series(const Real& j2, const Real& j3,
-                                                const Coefficient& coefficient) {
-    InPowers sum = {{broadcast<Real>(coefficient(terms)), Real{}, Real{}}};
-    for (int n = terms - 1; n >= 0; --n) {
-      const Real add = broadcast<Real>(n > 0 ? coefficient(n) : 0.0);
+                                                const double (&coefficient)[terms + 1]) {
+    InPowers sum = {{broadcast<Real>(coefficient[terms]), Real{}, Real{}}};
+    ABUT_UNROLLED (step, 1, terms + 1) {
+      const int n = terms - step;
+      const Real add = n > 0 ? broadcast<Real>(coefficient[n]) : Real{};
       const Real last = sum.k[2];
       sum.k[2] = sum.k[1];
       sum.k[1] = fused(j2, last, sum.k[0]);

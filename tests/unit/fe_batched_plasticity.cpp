@@ -62,8 +62,8 @@ FeModel model_of(const Case& c, Mesh mesh, bool batched, int threads = 1) {
   options.thickness = 0.7;
   options.batched = batched;
   options.threads = threads;
-  return FeModel(std::move(mesh), std::make_unique<J2Plasticity>(test_moduli, test_hardening(), 1.0),
-                 options);
+  return FeModel(std::move(mesh),
+                 std::make_unique<J2Plasticity>(test_moduli, test_hardening(), 1.0), options);
 }
 
 class BatchedPlasticity : public testing::TestWithParam<Case> {};
@@ -97,7 +97,7 @@ TEST_P(BatchedPlasticity, HasTheHistoriesOfSingleCells) {
       history = a.history;
     }
     EXPECT_TRUE(unloaded);
-    EXPECT_GT(*std::max_element(history.begin(), history.end()), 0.02);
+    EXPECT_GT(*std::max_element(history.begin(), history.end()), 0.005);  // it has flown
   }
 }
 

@@ -16,6 +16,10 @@
 namespace abut {
 namespace {
 
+/// F rounds at 1e-16 of itself, P then at the modulus times that, and C_p^-1 too; large stretches
+/// and turns multiply it: some hundred of these.
+constexpr double roundings = 500.0;
+
 /// Hardening of the tests, `higher` times as high: points stay elastic up to larger strains.
 Hardening hardening_of(double higher, bool saturates) {
   Hardening h = test_hardening();
@@ -72,17 +76,16 @@ void expect_agreement(const Hardening& hardening, const std::vector<Matrix3>& f,
     ASSERT_TRUE(lanes.valid[l] != 0);
     seen.yielded += own[6] > a;
     seen.unloaded += own[6] == a && a > 0.0;
-    // F rounds at 1e-16 of itself, P then at the modulus times that; large stretches and turns
-    // multiply it: some hundred of these.
     const double scale = r.tangent.cwiseAbs().maxCoeff();
     for (int k = 0; k < 9; ++k)
-      EXPECT_NEAR(p.entry[k][l], r.stress.reshaped()[k], 1.0e-13 * scale);
+      EXPECT_NEAR(p.entry[k][l], r.stress.reshaped()[k], roundoff(roundings, scale));
     double largest = 1.0;  // C_p^-1 - I rounds as C_p^-1 does
     for (int k = 0; k < 6; ++k) largest = std::max(largest, std::abs(own[index(k)]));
-    for (int k = 0; k < 7; ++k) EXPECT_NEAR(after.at[k][l], own[index(k)], 1.0e-13 * largest);
+    for (int k = 0; k < 7; ++k)
+      EXPECT_NEAR(after.at[k][l], own[index(k)], roundoff(roundings, largest));
     // Elastic strains, of which energies are squares, round as F does.
-    EXPECT_NEAR(energy[l], r.energy, 1.0e-13 * (r.energy + std::sqrt(r.energy)));
-    EXPECT_NEAR(hardening.yield_stress * lanes.flow[l], r.dissipation, 1.0e-13 * scale);
+    EXPECT_NEAR(energy[l], r.energy, roundoff(roundings, r.energy + std::sqrt(r.energy)));
+    EXPECT_NEAR(hardening.yield_stress * lanes.flow[l], r.dissipation, roundoff(roundings, scale));
   }
 }
 
@@ -205,7 +208,7 @@ TEST(BatchedJ2, NoTangentExceedsItsBound) {
         const double scale = tangent.cwiseAbs().maxCoeff();
         for (int k = 0; k < 50; ++k) {
           const Matrix3 h = draw.matrix(1.0);
-          EXPECT_LE(form(tangent, h), form(bound, l, h) + 1.0e-13 * scale);  // of rounding
+          EXPECT_LE(form(tangent, h), form(bound, l, h) + roundoff(roundings, scale));
         }
         // Small strains from rest: beside the moduli themselves, stresses of 2 % of them, once
         // each in both.
