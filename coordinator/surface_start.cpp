@@ -27,6 +27,10 @@ constexpr double tolerance = 1.0e-6;
 
 StartSurface start(const PortGeometry& surface) { return {posed(surface), surface.spacing}; }
 
+PosedSurface outside(const NamedSurface& side) {
+  return posed(side.outside != nullptr ? *side.outside : side.geometry);
+}
+
 void check_facets(const NamedSurface& surface, const std::string& where) {
   const std::optional<UnsoundSurface> unsound = check(posed(surface.geometry));
   if (!unsound) return;
@@ -77,7 +81,7 @@ std::vector<OverlapPlace> shared_places(const NamedSurface& one, const NamedSurf
   constexpr double reach = 2.0;  // facet sizes: behind an open surface
   const StartSurface k = start(one.geometry), n = start(other.geometry);
   const double size = facet_size(k, n), rounding = tolerance * size;
-  return overlap_places(k.surface, n.surface,
+  return overlap_places(outside(one), outside(other),
                         {{allowed[0] + rounding, allowed[1] + rounding}, reach * size});
 }
 

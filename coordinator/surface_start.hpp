@@ -10,6 +10,7 @@ namespace abut {
 struct NamedSurface {
   std::string name;  // body.port
   const PortGeometry& geometry;
+  const PortGeometry* outside = nullptr;  // closed, that it is a part of; null: not known
 };
 
 /// [m] how deep the sides are in each other in the reference, in places
