@@ -1,6 +1,6 @@
 # The front door. Every target checks what it needs first, skips what is done, and may be run again.
 .DEFAULT_GOAL := help
-.PHONY: help demo build test fuzz bench results extremes clean dependencies-build dependencies-test dependencies-bench
+.PHONY: help demo build test fuzz bench results extremes robustness clean dependencies-build dependencies-test dependencies-bench
 
 PRESET ?= release
 WITH ?=
@@ -15,6 +15,7 @@ help:
 	@echo "make bench   the measured figures"
 	@echo "make results   docs/RESULTS.md, measured anew (minutes)"
 	@echo "make extremes  docs/EXTREMES.md, measured anew"
+	@echo "make robustness  the tables of docs/ROBUSTNESS.md, measured anew (minutes)"
 	@echo "make clean   removes build/ (runs/ is yours and stays)"
 	@echo "Optional libraries are used when they are named: make build WITH=\"cholmod exodus\""
 	@echo "Missing Debian packages are installed first, with sudo when you are not root."
@@ -49,6 +50,10 @@ bench: dependencies-bench
 
 results extremes: build
 	/usr/bin/python3 scripts/study_documents.py $(BIN) $@
+
+robustness: dependencies-test
+	@sh scripts/build.sh tests
+	/usr/bin/python3 scripts/robustness_document.py $(BIN)
 
 clean:
 	rm -rf build

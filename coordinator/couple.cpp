@@ -1,9 +1,11 @@
 #include "coordinator/couple.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,6 +24,7 @@
 #include "coordinator/coupling/surface_watch.hpp"
 #include "coordinator/coupling/unilateral.hpp"
 #include "coordinator/surface_start.hpp"
+#include "coordinator/tied_outside.hpp"
 #include "coordinator/tied_surfaces.hpp"
 #include "coordinator/touching_pairs.hpp"
 #include "coordinator/wanted_fit.hpp"
@@ -236,9 +239,13 @@ void check_start(const InterfaceSpec& spec, const std::string& where, const Join
                                    std::ranges::any_of(joint.sides, [&bodies](const Side& side) {
                                      return !bodies.describe(side.body).can.passive;
                                    }));
+  std::array<std::optional<PortGeometry>, 2> outsides;
+  for (const std::size_t s : {0u, 1u}) outsides[s] = tied_outside(scene, joint.sides[s], bodies);
   const auto side = [&](int s) {
     const Side& of = joint.sides[index(s)];
-    return named_surface(spec.sides[index(s)], bodies.describe(of.body), of.port);
+    NamedSurface named = named_surface(spec.sides[index(s)], bodies.describe(of.body), of.port);
+    if (outsides[index(s)]) named.outside = &*outsides[index(s)];
+    return named;
   };
   const int finder = contact_finder(joint, bodies);
   if (only_passive(joint, bodies)) {

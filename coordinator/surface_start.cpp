@@ -27,6 +27,10 @@ constexpr double tolerance = 1.0e-6;
 
 StartSurface start(const PortGeometry& surface) { return {posed(surface), surface.spacing}; }
 
+PosedSurface outside(const NamedSurface& side) {
+  return posed(side.outside != nullptr ? *side.outside : side.geometry);
+}
+
 void check_facets(const NamedSurface& surface, const std::string& where) {
   const std::optional<UnsoundSurface> unsound = check(posed(surface.geometry));
   if (!unsound) return;
@@ -78,7 +82,7 @@ std::vector<OverlapPlace> shared_places(const NamedSurface& one, const NamedSurf
   const StartSurface k = start(one.geometry), n = start(other.geometry);
   const double size = facet_size(k, n), rounding = tolerance * size;
   std::vector<OverlapPlace> places = overlap_places(
-      k.surface, n.surface, {{allowed[0] + rounding, allowed[1] + rounding}, reach * size});
+      outside(one), outside(other), {{allowed[0] + rounding, allowed[1] + rounding}, reach * size});
   const std::array sides{&one, &other};
   std::erase_if(places, [&sides](const OverlapPlace& place) {
     const NamedSurface& body = *sides[index(1 - place.surface)];

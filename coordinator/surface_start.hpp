@@ -13,6 +13,7 @@ struct NamedSurface {
   const PortGeometry& geometry;
   // of its body's other ports: what is behind the outer surface of a ring may be in its hole
   std::vector<const PortGeometry*> beside = {};
+  const PortGeometry* outside = nullptr;  // closed, that it is a part of; null: not known
 };
 
 NamedSurface named_surface(const std::string& name, const Description& body, int port);

@@ -68,40 +68,70 @@ int facet_type(std::size_t nodes, int dim) {
   return nodes == 3 ? 2 : nodes == 4 ? 3 : 9;
 }
 
-std::string head_of(const Shape& shape, bool bottom) {
+/// Facets of one entity, and the numbers of the physical groups that it is of.
+struct Part {
+  std::string name;
+  std::vector<int> groups;
+  std::vector<Facet> facets;
+};
+
+constexpr int skin_group = 1, bottom_group = 2, body_group = 3, first_cut_group = 4;
+
+std::string head_of(const Shape& shape, const std::vector<Part>& parts, bool bottom) {
   const int facet_dim = shape.dim - 1;
   std::string out = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n";
-  out += fmt::format("{}\n{} 1 \"skin\"\n", bottom ? 3 : 2, facet_dim);
+  out += fmt::format("{}\n{} 1 \"skin\"\n", shape.cuts.size() + (bottom ? 3 : 2), facet_dim);
   if (bottom) out += fmt::format("{} 2 \"bottom\"\n", facet_dim);
-  out += fmt::format("{} 3 \"body\"\n$EndPhysicalNames\n$Entities\n", shape.dim);
+  int group = first_cut_group;
+  for (const auto& [name, facets] : shape.cuts)
+    out += fmt::format("{} {} \"{}\"\n", facet_dim, group++, name);
+  out += fmt::format("{} {} \"body\"\n$EndPhysicalNames\n$Entities\n", shape.dim, body_group);
   const std::string box = box_of(shape);
-  const int facets = bottom ? 2 : 1;
-  out += shape.dim == 2 ? fmt::format("0 {} 1 0\n", facets) : fmt::format("0 0 {} 1\n", facets);
-  // Facets at the bottom are of both groups.
-  out += fmt::format("1 {} 1 1 0\n", box);
-  if (bottom) out += fmt::format("2 {} 2 1 2 0\n", box);
-  return out + fmt::format("1 {} 1 3 0\n$EndEntities\n", box);
+  out += shape.dim == 2 ? fmt::format("0 {} 1 0\n", parts.size())
+                        : fmt::format("0 0 {} 1\n", parts.size());
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    out += fmt::format("{} {} {} {} 0\n", k + 1, box, parts[k].groups.size(),
+                       fmt::join(parts[k].groups, " "));
+  return out + fmt::format("1 {} 1 {} 0\n$EndEntities\n", box, body_group);
+}
+
+/// Facets at the bottom are of both groups.
+std::vector<Part> parts_of(const Shape& shape) {
+  const std::vector<Facet> low = shape.bottom();
+  const Middles middles(shape);
+  std::vector<Part> parts = {{"skin", {skin_group}, {}}};
+  if (!low.empty()) parts.push_back({"bottom", {skin_group, bottom_group}, {}});
+  for (const Facet& facet : shape.outside()) {
+    if (shape.is_cut(facet)) continue;
+    const bool below = std::ranges::find(low, facet) != low.end();
+    parts[below ? 1 : 0].facets.push_back(middles.whole(facet));
+  }
+  int group = first_cut_group;
+  for (const auto& [name, facets] : shape.cuts) {
+    parts.push_back({name, {group++}, {}});
+    if (shape.closed) parts.back().groups.insert(parts.back().groups.begin(), skin_group);
+    for (const Facet& facet : facets) parts.back().facets.push_back(middles.whole(facet));
+  }
+  return parts;
 }
 
 }  // namespace
 
 std::string Shape::gmsh() const {
-  const std::vector<Facet> low = bottom();
-  const Middles middles(*this);
-  std::vector<Facet> parts[2];
-  for (const Facet& facet : outside())
-    parts[std::ranges::find(low, facet) == low.end() ? 0 : 1].push_back(middles.whole(facet));
-  std::string out = head_of(*this, !low.empty());
+  const std::vector<Part> parts = parts_of(*this);
+  std::string out = head_of(*this, parts, has_bottom());
   out += fmt::format("$Nodes\n1 {0} 1 {0}\n{1} 1 0 {0}\n", points.size(), dim);
   for (std::size_t n = 1; n <= points.size(); ++n) out += fmt::format("{}\n", n);
   for (const Eigen::Vector3d& x : points)
     out += fmt::format("{:.17g} {:.17g} {:.17g}\n", x(0), x(1), x(2));
-  const std::size_t count = cells.size() + parts[0].size() + parts[1].size();
-  out += fmt::format("$EndNodes\n$Elements\n{0} {1} 1 {1}\n", low.empty() ? 2 : 3, count);
+  std::size_t count = cells.size();
+  for (const Part& part : parts) count += part.facets.size();
+  out += fmt::format("$EndNodes\n$Elements\n{0} {1} 1 {1}\n", parts.size() + 1, count);
   std::size_t tag = 0;
-  for (const int k : {0, 1})
-    if (!parts[k].empty())
-      out += block(dim - 1, k + 1, facet_type(parts[k][0].size(), dim), parts[k], tag);
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    if (!parts[k].facets.empty())
+      out += block(dim - 1, static_cast<int>(k) + 1, facet_type(parts[k].facets[0].size(), dim),
+                   parts[k].facets, tag);
   const std::map<std::string, int> types = {{"tri3", 2}, {"quad4", 3}, {"tet4", 4},
                                             {"hex8", 5}, {"tri6", 9},  {"tet10", 11}};
   return out + block(dim, 1, types.at(element), cells, tag) + "$EndElements\n";

@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "tests/random/kinds.hpp"
 #include "tests/random/sweep.hpp"
 
 namespace abut {
@@ -137,8 +138,19 @@ bool RandomScene::free() const {
   return gravity.isZero() && std::ranges::all_of(bodies, &RandomBody::moves_by_itself);
 }
 
+bool RandomScene::turns() const {
+  return dim > 1 && std::ranges::all_of(bodies, [](const RandomBody& body) {
+           return body.kind == Kind::rigid || body.law == "neo_hookean" ||
+                  body.law == "saint_venant_kirchhoff";
+         });
+}
+
 RandomScene random_scene(std::uint64_t seed, double speed) {
   Draw draw(seed);
+  // Beside the draws of other scenes, which stay as they are.
+  const bool all_kinds = seed >= first_of_all_kinds;
+  Draw more(~seed);
+  if (all_kinds && more.chance(0.15)) return random_bars(more, seed, speed);
   RandomScene scene;
   scene.seed = seed;
   scene.dim = draw.chance(0.65) ? 2 : 3;
@@ -150,6 +162,7 @@ RandomScene random_scene(std::uint64_t seed, double speed) {
   scene.bodies.push_back(random_body(draw, scene.dim, 0, scene.speed));
   for (int k = 1; k < count; ++k)
     scene.bodies.push_back(random_body(draw, scene.dim, k, scene.speed));
+  if (all_kinds) choose_what_is_cut(more, scene);
   choose_steps(draw, scene);
   const int flight = draw.whole(2, 20);  // windows to the first touch
   std::vector<RandomBody> placed = {scene.bodies[0]};
@@ -169,6 +182,11 @@ RandomScene random_scene(std::uint64_t seed, double speed) {
   // No more windows than a second or so pays for, the first touch among them.
   scene.end =
       scene.window * std::clamp(std::ceil(scene.end / scene.window) + flight, 20.0, flight + 120.0);
+  if (all_kinds) {
+    choose_turns(more, scene);
+    cut_wholes(more, scene);
+    if (more.chance(0.3)) scene.end -= more.uniform(0.0, 1.0) * scene.window;
+  }
   return scene;
 }
 

@@ -21,6 +21,7 @@ std::vector<Facet> facets_of(const std::string& element) {
 }  // namespace
 
 std::vector<std::array<int, 2>> edges_of(const std::string& element) {
+  if (element == "bar2") return {{0, 1}};
   if (element.starts_with("tri")) return {{0, 1}, {1, 2}, {2, 0}};
   if (element == "quad4") return {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
   if (element.starts_with("tet")) return {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}};
@@ -43,6 +44,12 @@ std::vector<Facet> Shape::outside() const {
     return seen[facet] > 1;
   });
   return all;
+}
+
+bool Shape::is_cut(const Facet& facet) const {
+  return std::ranges::any_of(cuts, [&](const auto& cut) {
+    return std::ranges::find(cut.second, facet) != cut.second.end();
+  });
 }
 
 double Shape::shortest_edge() const {
@@ -71,7 +78,8 @@ std::vector<Facet> Shape::bottom() const {
   std::vector<Facet> out = outside();
   std::erase_if(out, [&](const Facet& facet) {
     return std::ranges::any_of(facet,
-                               [&](int n) { return points[n](1) > low + 0.1 * (high - low); });
+                               [&](int n) { return points[n](1) > low + 0.1 * (high - low); }) ||
+           is_cut(facet);
   });
   return out;
 }

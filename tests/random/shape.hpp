@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,17 +19,23 @@ struct Shape {
   std::vector<Eigen::Vector3d> points;  // [m]
   std::vector<std::vector<int>> cells;  // in the order of Gmsh
   std::string generator;  // the same mesh as a scene's generator makes it; may be empty
+  /// Of a part that is cut out of another one: facets by the name of the cut.
+  std::map<std::string, std::vector<std::vector<int>>> cuts;
+  bool closed = false;  // its skin is all of its outside, cuts too
 
   /// Facets by their corners that belong to one cell alone.
   std::vector<std::vector<int>> outside() const;
   double shortest_edge() const;  // [m] of straight cells
   double size() const;           // [m] largest extent
-  /// Text of an MSH 4.1 file with a physical group of all facets, "skin", and of those at the
-  /// lower end of the second axis, "bottom", where there are any.
+  /// Text of an MSH 4.1 file with a physical group of all facets, "skin" (but those of cuts where
+  /// it is not closed), of
+  /// those among them at the lower end of the second axis, "bottom", where there are any, and of
+  /// each cut.
   std::string gmsh() const;
   bool has_bottom() const { return !bottom().empty(); }
+  bool is_cut(const std::vector<int>& facet) const;
 
-  std::vector<std::vector<int>> bottom() const;  // facets, as outside() has them
+  std::vector<std::vector<int>> bottom() const;  // facets, as outside() has them, not of cuts
 };
 
 /// Places of a cell's edges in it, in the order of Gmsh's nodes on edges.

@@ -14,6 +14,7 @@ struct TrialRun {
   std::string reason;     // in words, where it is not completed
   double growth = 0.0;    // of energy that nobody gave, over the most that there was
   double momentum = 0.0;  // largest change of their sum over the largest sum of their sizes
+  double angular = 0.0;   // the same of the angular momentum; 0: a body does not tell it
   bool finite = true;
   std::vector<std::string> crossings;    // pairs of bodies whose outsides cross, and when
   std::vector<std::string> overlaps;     // pairs that the run told
@@ -25,11 +26,16 @@ struct TrialRun {
   std::vector<Eigen::Vector3d> momenta;  // [N s] of bodies at the end, in the scene's order
 
   bool completed() const { return status == "completed"; }
-  /// Why it is not as it should be; empty: it is. `free`: nothing outside acts on the bodies.
-  std::string trouble(bool free) const;
+  /// Why it is not as it should be; empty: it is. `free`: nothing outside acts on the bodies;
+  /// `turns`: and their laws let them turn.
+  std::string trouble(bool free, bool turns) const;
 };
 
+/// Where the bodies are: in this process, in one each, or in this one with a second coordinator and
+/// new bodies from half of the time on.
+enum class Where { here, processes, resumed };
+
 /// Runs the scene of a folder, for at most so many seconds.
-TrialRun try_run(const std::filesystem::path& folder, double patience);
+TrialRun try_run(const std::filesystem::path& folder, double patience, Where where = Where::here);
 
 }  // namespace abut

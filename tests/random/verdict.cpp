@@ -22,7 +22,8 @@ constexpr double like = 0.05;
 View view_of(Again again, const RandomScene& scene) {
   View view;
   if (again == Again::fields) view.fields_every = 3;
-  if (again == Again::order) view.reversed = true;
+  view.bodies_reversed = again == Again::order || again == Again::bodies;
+  view.interfaces_reversed = again == Again::order || again == Again::interfaces;
   if (again == Again::turned) {
     const Eigen::Vector3d axis = scene.dim == 2 ? Eigen::Vector3d::UnitZ().eval()
                                                 : Eigen::Vector3d(1.0, 2.0, 3.0).normalized();
@@ -36,9 +37,29 @@ View view_of(Again again, const RandomScene& scene) {
   return view;
 }
 
+Again way_of(std::uint64_t seed) {
+  if (seed < first_of_all_kinds) return static_cast<Again>(seed % 7);
+  constexpr Again all[] = {Again::fields, Again::processes, Again::bodies, Again::interfaces,
+                           Again::finder, Again::turned,    Again::moved,  Again::units,
+                           Again::fast,   Again::resumed};
+  return all[seed % std::size(all)];
+}
+
 Again again_of(const RandomScene& scene) {
-  const Again again = static_cast<Again>(scene.seed % 7);
-  return again == Again::finder && scene.everything ? Again::order : again;
+  const Again again = way_of(scene.seed);
+  const bool bars_turn = scene.dim == 1 && again == Again::turned;
+  return (again == Again::finder && scene.everything) || bars_turn ? Again::order : again;
+}
+
+Where where_of(Again again) {
+  return again == Again::processes ? Where::processes
+         : again == Again::resumed ? Where::resumed
+                                   : Where::here;
+}
+
+/// Ways that must not change a bit.
+bool same_bits(Again again) {
+  return again == Again::fields || again == Again::processes || again == Again::resumed;
 }
 
 /// Some bodies take forces only, and the scene that names them is rightly refused.
@@ -54,22 +75,25 @@ double difference_of(const Verdict& verdict, const View& view) {
   double out = std::abs(a.energy - b.energy / joule) / std::max(a.scale, 1e-300);
   const std::size_t count = std::min(a.momenta.size(), b.momenta.size());
   for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3d& theirs = b.momenta[view.reversed ? count - 1 - k : k];
+    const Eigen::Vector3d& theirs = b.momenta[view.bodies_reversed ? count - 1 - k : k];
     const double miss = (view.turn * a.momenta[k] - theirs / pulse).norm();
     out = std::max(out, miss / std::max(a.impulse, 1e-300));
   }
   return out;
 }
 
+const char* space_of(int dim) { return dim == 1 ? "of bars" : dim == 2 ? "planar" : "in space"; }
+
 }  // namespace
 
 const char* to_string(Again again) {
-  const char* const names[] = {"fields", "order", "finder", "turned", "moved", "units", "fast"};
+  const char* const names[] = {"fields", "order",     "finder", "turned",     "moved",  "units",
+                               "fast",   "processes", "bodies", "interfaces", "resumed"};
   return names[static_cast<int>(again)];
 }
 
 RandomScene scene_of(std::uint64_t seed) {
-  return random_scene(seed, static_cast<Again>(seed % 7) == Again::fast ? 1000.0 : 0.0);
+  return random_scene(seed, way_of(seed) == Again::fast ? 1000.0 : 0.0);
 }
 
 Verdict judge(const RandomScene& scene, const std::filesystem::path& folder) {
@@ -86,19 +110,19 @@ Verdict judge(const RandomScene& scene, const std::filesystem::path& folder) {
     verdict.run = try_run(folder, patience);
   }
   verdict.view = first;
-  verdict.trouble = verdict.run.trouble(scene.free());
+  verdict.trouble = verdict.run.trouble(scene.free(), scene.turns());
   if (!verdict.trouble.empty() || verdict.again == Again::fast) return verdict;
   View view = view_of(verdict.again, scene);
   if (verdict.again == Again::finder) view.finder = 1;
   scene.write(folder, view);
-  verdict.other = try_run(folder, patience);
+  verdict.other = try_run(folder, patience, where_of(verdict.again));
   if (verdict.again == Again::finder && cannot_find(verdict.other)) verdict.other = verdict.run;
-  const std::string trouble = verdict.other.trouble(scene.free());
+  const std::string trouble = verdict.other.trouble(scene.free(), scene.turns());
   verdict.difference = difference_of(verdict, view);
   if (!trouble.empty()) {
     verdict.trouble = fmt::format("{}: {}", to_string(verdict.again), trouble);
-  } else if (verdict.again == Again::fields && verdict.run.hashes != verdict.other.hashes) {
-    verdict.trouble = "output of fields changes the result";
+  } else if (same_bits(verdict.again) && verdict.run.hashes != verdict.other.hashes) {
+    verdict.trouble = fmt::format("{}: bits differ", to_string(verdict.again));
   } else if (verdict.difference > like) {
     verdict.trouble =
         fmt::format("{}: {:.2g} of the most differ", to_string(verdict.again), verdict.difference);
@@ -109,11 +133,12 @@ Verdict judge(const RandomScene& scene, const std::filesystem::path& folder) {
 
 std::string line_of(const RandomScene& scene, const Verdict& verdict) {
   return fmt::format(
-      "{:>6} {:11} passive {:3.0f} % grown {:8.1e} momentum {:7.1e} {:6.2f} s "
+      "{:>6} {:11} passive {:3.0f} % grown {:8.1e} momentum {:7.1e} angular {:7.1e} {:6.2f} s "
       "{:6} {:7.1e} {}{}",
       scene.seed, verdict.run.status, 100.0 * verdict.run.passive, verdict.run.growth,
-      scene.free() ? verdict.run.momentum : 0.0, verdict.run.seconds, to_string(verdict.again),
-      verdict.difference, scene.words(),
+      scene.free() ? verdict.run.momentum : 0.0,
+      scene.free() && scene.turns() ? verdict.run.angular : 0.0, verdict.run.seconds,
+      to_string(verdict.again), verdict.difference, scene.words(),
       verdict.trouble.empty() ? "" : "\n           " + verdict.trouble);
 }
 
@@ -121,12 +146,12 @@ void Table::add(const RandomScene& scene, const Verdict& verdict) {
   Row& row = rows_[scene.dim];
   ++row.scenes;
   row.completed += verdict.run.completed() ? 1 : 0;
-  row.sound += verdict.run.trouble(scene.free()).empty() ? 1 : 0;
+  row.sound += verdict.run.trouble(scene.free(), scene.turns()).empty() ? 1 : 0;
   row.passive += verdict.run.passive;
   row.growth = std::max(row.growth, verdict.run.growth);
   if (scene.free()) row.momentum = std::max(row.momentum, verdict.run.momentum);
   row.seconds += verdict.run.seconds;
-  if (!verdict.run.trouble(scene.free()).empty()) return;
+  if (!verdict.run.trouble(scene.free(), scene.turns()).empty()) return;
   Pairs& pairs = again_[verdict.again];
   ++pairs.scenes;
   pairs.same += verdict.trouble.empty() ? 1 : 0;
@@ -139,9 +164,8 @@ std::string Table::text() const {
       "changed at most | processor time each |\n|---|---|---|---|---|---|---|\n";
   for (const auto& [dim, row] : rows_)
     out += fmt::format("| {} {} | {} | {} | {:.0f} % | {:.1e} | {:.1e} | {:.2f} s |\n", row.scenes,
-                       dim == 2 ? "planar" : "in space", row.completed, row.sound,
-                       100.0 * row.passive / row.scenes, row.growth, row.momentum,
-                       row.seconds / row.scenes);
+                       space_of(dim), row.completed, row.sound, 100.0 * row.passive / row.scenes,
+                       row.growth, row.momentum, row.seconds / row.scenes);
   out +=
       "\n| run again | scenes | as good | difference, median | nine tenths below |\n"
       "|---|---|---|---|---|\n";
@@ -158,7 +182,7 @@ std::string Table::sentence() const {
   std::string out;
   for (const auto& [dim, row] : rows_)
     out += fmt::format("{}completed {} of {} {}", out.empty() ? "" : ", ", row.completed,
-                       row.scenes, dim == 2 ? "planar" : "in space");
+                       row.scenes, space_of(dim));
   int scenes = 0, same = 0;
   for (const auto& [again, pairs] : again_) {
     scenes += pairs.scenes;

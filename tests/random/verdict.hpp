@@ -10,7 +10,19 @@
 namespace abut {
 
 /// How a scene is run a second time, and what must be the same then.
-enum class Again { fields, order, finder, turned, moved, units, fast };
+enum class Again {
+  fields,
+  order,  // of bodies, interfaces and their sides
+  finder,
+  turned,
+  moved,
+  units,
+  fast,
+  processes,
+  bodies,      // their order
+  interfaces,  // their order, and that of their sides
+  resumed,
+};
 const char* to_string(Again again);
 
 /// What became of a random scene: of the run as it is and of the one that is as good.
