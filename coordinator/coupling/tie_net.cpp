@@ -39,7 +39,7 @@ void TieNet::begin(const KnownExchanges& known, std::span<const Eigen::Index> fi
 /// Bodies are probed where their kernels are not known for as long as this window.
 void TieNet::find_kernel(Bodies& bodies) {
   std::vector<int> pattern = layout_.pattern();
-  const bool alike = pattern == pattern_;
+  const bool alike = pattern == pattern_, equal = alike && blocks_ == layout_.blocks;
   if (kernel_ != nullptr && alike && blocks_ >= layout_.blocks) return;
   pattern_ = std::move(pattern);
   blocks_ = layout_.blocks;
@@ -48,8 +48,7 @@ void TieNet::find_kernel(Bodies& bodies) {
   const TieKernelPlan plan = plan_tie_kernel(layout_, options_, bodies);
   kernel_ = plan.banded ? make_banded_tie_kernel(layout_, plan.width, plan.lags, bodies)
                         : make_dense_tie_kernel(layout_, plan.lags, bodies);
-  if (!restored_.empty() && alike && restored_.size() == kernel_->answers().size())
-    kernel_->take(layout_, restored_);
+  if (!restored_.empty() && equal) kernel_->take(layout_, restored_);
   restored_.clear();
 }
 
