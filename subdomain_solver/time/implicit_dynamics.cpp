@@ -9,14 +9,6 @@
 
 namespace abut {
 
-namespace {
-
-/// Of a step whose balance is not found at once; a part solved in fewer iterations may be followed
-/// by one of twice its length.
-constexpr int most_parts = 1024, few_iterations = 5;
-
-}  // namespace
-
 /// Balance of momentum at the end of a step, with the free accelerations as unknowns.
 class ImplicitDynamics::Balance final : public Equations {
  public:
@@ -328,34 +320,11 @@ NewtonReport ImplicitDynamics::solve(Balance& balance, const Motion& motion) {
   }
 }
 
-NewtonReport ImplicitDynamics::part(Motion& motion, double time, double dt) {
+std::optional<Failed> ImplicitDynamics::step(Motion& motion, double time, double dt) {
   Balance balance(*this, motion, time, dt);
   const NewtonReport report = solve(balance, motion);
-  if (report.converged()) balance.finish(motion);
-  return report;
-}
-
-/// In parts where Newton's method finds no balance of the whole; partners see its end alone. Where
-/// something presses, with a force of the whole step's end, shorter ones are the passive way's.
-std::optional<Failed> ImplicitDynamics::step(Motion& motion, double time, double dt) {
-  const NewtonReport whole = part(motion, time, dt);
-  if (whole.converged()) return std::nullopt;
-  if (problem_.contact != nullptr || problem_.model->is_linear())
-    return failed_newton(whole, time + dt, problem_.contact);
-  const Motion before = motion;
-  for (int done = 0, length = most_parts / 2; done < most_parts;) {
-    const double begin = time + dt * done / most_parts;
-    const NewtonReport report = part(motion, begin, dt * length / most_parts);
-    if (report.converged()) {
-      done += length;
-      if (report.iterations <= few_iterations && done % (2 * length) == 0) length *= 2;
-      continue;
-    }
-    length /= 2;
-    if (length > 0) continue;
-    motion = before;
-    return failed_newton(report, begin, problem_.contact);
-  }
+  if (!report.converged()) return failed_newton(report, time + dt, problem_.contact);
+  balance.finish(motion);
   return std::nullopt;
 }
 

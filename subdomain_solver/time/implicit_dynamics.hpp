@@ -55,7 +55,6 @@ class ImplicitDynamics final : public Integrator, private Inertia, private Fores
   bool foresee(const Motion& motion, double time, double dt, Foreseen& ahead) override;
   bool sums() const { return options_.accelerations == Accelerations::summed; }
   [[nodiscard]] NewtonReport solve(Balance& balance, const Motion& motion);
-  [[nodiscard]] NewtonReport part(Motion& motion, double time, double dt);
 
   struct Buffers {  // of one step at a time
     Vector q_start, v_start, q, v, a, x;
