@@ -19,7 +19,7 @@ RandomBody random_bar(Draw& draw, int number, double speed) {
   bar.shape.kind = "bar";
   bar.shape.element = "bar2";
   const double length = draw.decades(0.2, 1.0);
-  const int count = draw.whole(1, 40);
+  const int count = std::max(2, draw.whole(1, 40));  // one cannot be free of mass at both ends
   for (int i = 0; i <= count; ++i) bar.shape.points.emplace_back(length * i / count, 0.0, 0.0);
   for (int i = 0; i < count; ++i) bar.shape.cells.push_back({i, i + 1});
   bar.law = draw.of<std::string>(
