@@ -106,8 +106,6 @@ void Controller::step_passively() {
 /// the bodies that touch.
 void Controller::repay() {
   if (!may_refuse()) return;
-  const double excess = guard_.excess(bodies_.responses(), bodies_.struck());
-  if (!(excess > 0.0)) return;
   std::set<int> touching;
   for (const Joint& joint : joints_)
     for (const Side& side : joint.sides)
@@ -116,6 +114,9 @@ void Controller::repay() {
   for (const Joint& joint : joints_)  // sides of one surface move as one
     for (const Side& side : joint.sides)
       if (joint.tied()) touching.erase(side.body);
+  if (touching.empty()) return;
+  const double excess = guard_.excess(bodies_.responses(), bodies_.struck());
+  if (!(excess > 0.0)) return;
   const std::vector<int> bodies(touching.begin(), touching.end());
   const std::vector<double> gave = passive_.repay(bodies, excess);
   for (std::size_t k = 0; k < bodies.size(); ++k) guard_.repaid(bodies[k], gave[k]);

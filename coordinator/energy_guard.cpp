@@ -59,6 +59,7 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
     first_ = own;
     unjudged_ = motion <= rounded ? looks_from_rest : 0;
     most_ = unresolved(responses);
+    most_touching_ = std::max(motion, rounded);
   }
   most_ = std::max({most_, motion, rounded});
   if (most_ <= 0.0 || unjudged_-- > 0) return Verdict::fine;
@@ -100,14 +101,15 @@ bool EnergyGuard::refuses(std::span<const Response> responses,
   return own + repaid_ - first_ > bound * scale || own - latest_ > at_once * scale;
 }
 
-double EnergyGuard::excess(std::span<const Response> responses,
-                           std::span<const double> struck) const {
+double EnergyGuard::excess(std::span<const Response> responses, std::span<const double> struck) {
   if (!begun_ || !together_ || unjudged_ > 0) return 0.0;
-  double motion = 0.0, worked = 0.0;
+  double motion = 0.0;
   const double own = own_energy(responses, struck, motion);
+  most_touching_ = std::max(most_touching_, motion);
   for (const Response& response : responses)
-    worked = std::max(worked, std::abs(response.records.back().energy.external_work));
-  return std::max(0.0, own - first_ - stands * share_ * std::max({most_, motion, worked}));
+    most_touching_ =
+        std::max(most_touching_, std::abs(response.records.back().energy.external_work));
+  return std::max(0.0, own - first_ - stands * share_ * most_touching_);
 }
 
 void EnergyGuard::repaid(int body, double joules) {
@@ -171,6 +173,7 @@ void EnergyGuard::state(Archive& archive) {
   archive.field("latest", latest_);
   archive.field("most", most_);
   archive.field("repaid", repaid_);
+  archive.field("most_touching", most_touching_);
   archive.field("growth", growth_);
 }
 
