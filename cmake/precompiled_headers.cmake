@@ -1,0 +1,23 @@
+# Half of what a file costs to compile is reading the headers of others: they are read once for each
+# kind of target and kept. Off in the presets of developers, where a file that lacks an include is
+# to be found.
+option(ABUT_PRECOMPILED_HEADERS "Read the headers of libraries once for each kind of target" ON)
+
+# Gives targets the headers that their kind reads.
+#   kind: its name; TARGETS: who reads them; HEADERS: <of libraries> or by full path; LIBRARIES: whose
+#   include directories and definitions the headers need
+function(abut_precompile_headers kind)
+  if(NOT ABUT_PRECOMPILED_HEADERS)
+    return()
+  endif()
+  cmake_parse_arguments(PARSE_ARGV 1 of "" "" "TARGETS;HEADERS;LIBRARIES")
+  set(source ${CMAKE_BINARY_DIR}/precompiled/${kind}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "// Nothing but the headers of ${kind}.\n")
+  add_library(abut_headers_${kind} OBJECT ${source})
+  target_include_directories(abut_headers_${kind} PRIVATE ${CMAKE_SOURCE_DIR})
+  target_link_libraries(abut_headers_${kind} PRIVATE ${of_LIBRARIES} abut_warnings)
+  target_precompile_headers(abut_headers_${kind} PRIVATE ${of_HEADERS})
+  foreach(target IN LISTS of_TARGETS)
+    target_precompile_headers(${target} REUSE_FROM abut_headers_${kind})
+  endforeach()
+endfunction()
