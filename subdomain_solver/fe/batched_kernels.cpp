@@ -64,6 +64,19 @@ template <int nodes>
     }
 }
 
+/// A law that is called, not inlined: what plasticity does at a point costs hundreds of times what
+/// a call does, and within each cell's code it takes minutes to compile.
+template <class Law>
+struct Called : Law {
+  using Law::Law;
+
+  template <class... Out>
+  [[gnu::noinline]] void operator()(int point, const TensorLanes<ABUT_LANES>& h,
+                                    Out&... out) const {
+    Law::operator()(point, h, out...);
+  }
+};
+
 template <class Cell, class Law>
 bool run_patch(PatchView& patch, const BatchedParameters& parameters) {
   constexpr int lanes = ABUT_LANES;
@@ -91,6 +104,23 @@ bool run_patch(PatchView& patch, const BatchedParameters& parameters) {
   return true;
 }
 
+/// Whether the moduli at a point are below a limit times the metric of its cell. Called: it is the
+/// same for all cells of a dimension.
+template <int dim, class Tangent>
+[[gnu::noinline]] void keep_slower(const Tangent& tangent, int place,
+                                   const TensorLanes<ABUT_LANES>& h,
+                                   const Lanes<ABUT_LANES>::Real& limit,
+                                   const Lanes<ABUT_LANES>::Real (&metric)[dim][dim],
+                                   Lanes<ABUT_LANES>::Bits& below) {
+  ElasticityLanes<ABUT_LANES> moduli;
+  Lanes<ABUT_LANES>::Real valid, scaled[dim][dim];
+  tangent(place, h, moduli, valid);
+  below &= valid > 0.0;
+  ABUT_UNROLLED (j, 0, dim)
+    ABUT_UNROLLED (l, 0, dim) scaled[j][l] = limit * metric[j][l];
+  MetricTest<dim, ABUT_LANES>::run(scaled, moduli, below);
+}
+
 /// Cells of a batch (x, u: nodal values) that are slower than a limit, one bit each.
 template <class Points, class Tangent>
 unsigned slower_cells(const double* x, const double* u, const double* scale, double square,
@@ -106,13 +136,7 @@ unsigned slower_cells(const double* x, const double* u, const double* scale, dou
     Real metric[dim][dim];
     Points::template run<lanes>(x + slice, u + slice, metric,
                                 [&](int place, const TensorLanes<lanes>& h) ABUT_INLINED {
-                                  ElasticityLanes<lanes> moduli;
-                                  Real valid, scaled[dim][dim];
-                                  tangent(place, h, moduli, valid);
-                                  below &= valid > 0.0;
-                                  ABUT_UNROLLED (j, 0, dim)
-                                    ABUT_UNROLLED (l, 0, dim) scaled[j][l] = limit * metric[j][l];
-                                  MetricTest<dim, lanes>::run(scaled, moduli, below);
+                                  keep_slower(tangent, place, h, limit, metric, below);
                                 });
     ABUT_UNROLLED (l, 0, lanes)
       if (below[l] != 0) slower |= 1u << (slice + l);
@@ -164,7 +188,8 @@ template <class Cell>
 constexpr std::array<PatchKernel, laws> row() {
   return {run_patch<Cell, Plain<LinearElasticResponse>>,
           run_patch<Cell, Plain<SaintVenantKirchhoffResponse>>,
-          run_patch<Cell, Plain<NeoHookeanResponse>>, run_patch<Cell, J2Points<ABUT_LANES>>};
+          run_patch<Cell, Plain<NeoHookeanResponse>>,
+          run_patch<Cell, Called<J2Points<ABUT_LANES>>>};
 }
 
 /// Of cells whose volume change is of finite strain: linear laws have another one.
