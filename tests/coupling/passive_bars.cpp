@@ -74,8 +74,9 @@ TEST(PassiveBars, AreCrushedToTheEndAndGainNothing) {
       return sum;
     };
     const double first = energy(result->rows.front());
-    for (const RunResult::Row& row : result->rows)  // accurate windows may gain so much
-      EXPECT_LE(energy(row), first * (1.0 + 1.0e-3)) << row.time;
+    const double may_gain = 1.0e-3;  // of accurate windows: what they gain beyond 8e-4 is repaid
+    for (const RunResult::Row& row : result->rows)
+      EXPECT_LE(energy(row), first * (1.0 + may_gain)) << row.time;
     if (!crush.wall) EXPECT_LT(result->momentum_error(), roundoff(1.0e6, 1.0));
     const double element = 0.1 / crush.cells;
     for (const char* joint : {"one", "two"})
