@@ -18,6 +18,7 @@ from abut_tools.run_files import (SUMMARY, cut_short, is_there, read_events, rea
                                   read_table)
 from abut_tools.tables import (COLOURS, Figure, Table, ToolError, colour_of, less, plus,
                                scaled_unit, shown, since_begin, sum_of, with_jumps)
+from abut_tools.version import TellVersion
 
 TEMPLATE = Path(__file__).resolve().with_suffix(".html")
 CURVE_POINTS = 2000     # more than a screen has columns
@@ -359,6 +360,7 @@ def main() -> int:
     parser.add_argument("--out", type=named, metavar="FILE", help="default: DIR/report.html")
     parser.add_argument("--chart-library", type=Path, metavar="FILE", default=CHART_LIBRARY,
                         help="Chart.js 3 (default: that of Debian's package libjs-chart.js)")
+    parser.add_argument("--version", action=TellVersion)
     options = parser.parse_args()
     sys.stdout.reconfigure(errors="backslashreplace")  # names of files may be no text
     out = options.out or options.directory / "report.html"
