@@ -1,7 +1,8 @@
 # `make package`: abut_VERSION_ARCH.deb, and libabut-dev_VERSION_ARCH.deb for solvers of others.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME abut)
-set(CPACK_PACKAGE_CONTACT "The abut authors <abut@localhost>")
+set(CPACK_PACKAGE_CONTACT "The abut authors <abut@localhost>" CACHE STRING
+  "Name and address of who makes the Debian packages")
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -22,9 +23,9 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "python3 (>= 3.11), python3-yaml, libjs-chart.js")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "libabut-dev, paraview")
 set(CPACK_DEBIAN_PROGRAMS_DESCRIPTION "collision of solids that are solved by separate programs
- Each body advances in a process of its own, with its own mesh, time integrator
- and step; a coordinator joins them by Schwarz iteration over windows of time.
- Contact, friction and ties in one, two and three dimensions.${licence}")
+Each body advances in a process of its own, with its own mesh, time integrator
+and step; a coordinator joins them by Schwarz iteration over windows of time.
+Contact, friction and ties in one, two and three dimensions.${licence}")
 
 file(STRINGS ${PROJECT_SOURCE_DIR}/scripts/packages.txt needed REGEX "^link ")
 list(TRANSFORM needed REPLACE "^link +([^ ]+) .*" "\\1")
@@ -34,8 +35,8 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${needed}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "abut")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "serve a body of your own to abut
- Libraries, headers and the Protocol Buffers files with which a program becomes
- a body of a scene of abut, a CMake package, a pkg-config file and examples.")
+Libraries, headers and the Protocol Buffers files with which a program becomes
+a body of a scene of abut, a CMake package, a pkg-config file and examples.")
 install(CODE "if(\"\${CMAKE_INSTALL_COMPONENT}\" STREQUAL development)
   file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/share/doc/libabut-dev\" TYPE FILE
     RENAME copyright FILES ${PROJECT_SOURCE_DIR}/LICENSE)
