@@ -10,7 +10,8 @@ cd "$(dirname "$0")/.."
 
 packages=${1:-build/release/packages}
 [ "$(id -u)" -eq 0 ] || { echo "$0: is for root: it makes a system of its own" >&2; exit 2; }
-command -v debootstrap >/dev/null || { echo "$0: install Debian's package debootstrap" >&2; exit 2; }
+command -v debootstrap >/dev/null ||
+  { echo "$0: install Debian's package debootstrap" >&2; exit 2; }
 ls "$packages"/abut_*.deb "$packages"/libabut-dev_*.deb >/dev/null 2>&1 ||
   { echo "$0: no packages in $packages: run make package first" >&2; exit 2; }
 mirror=${MIRROR:-$(apt-get indextargets --format '$(SITE)' 'Codename: bookworm' 'Component: main' |
@@ -20,7 +21,8 @@ root=$(mktemp -d)
 chmod 755 "$root"
 clean() {
   umount "$root/proc" 2>/dev/null || true
-  if [ "${KEEP:-}" = 1 ]; then echo "the system is in $root"; else rm -rf --one-file-system "$root"; fi
+  if [ "${KEEP:-}" = 1 ]; then echo "the system is in $root"; return; fi
+  rm -rf --one-file-system "$root"
 }
 trap clean EXIT
 trap 'exit 1' INT TERM

@@ -18,7 +18,7 @@ from pathlib import Path
 from unittest import mock
 
 sys.dont_write_bytecode = True
-from support import PACKAGE, SystemTest, main, shared_run, strict_json  # noqa: E402
+from support import ABUT, PACKAGE, SystemTest, main, shared_run, strict_json  # noqa: E402
 
 sys.path.insert(0, str(PACKAGE))
 from abut_tools import report  # noqa: E402
@@ -204,8 +204,8 @@ class DamagedRuns(SystemTest):
         if os.geteuid() == 0:  # whom no permission stops
             self.folder.chmod(0o755)
         who = {"user": NOBODY} if os.geteuid() == 0 else {}
-        result = subprocess.run([PROGRAM, folder], text=True, capture_output=True, check=False,
-                                timeout=60, **who)
+        result = subprocess.run([ABUT.with_name("abut-report"), folder], text=True, check=False,
+                                capture_output=True, timeout=60, **who)
         self.assertEqual(result.returncode, 2, result.stderr)
         self.assertRegex(result.stderr, r"\A[^\n]*run/\S+: cannot be read: Permission[^\n]*\n\Z")
 
