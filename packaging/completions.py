@@ -63,6 +63,7 @@ def main() -> int:
     programs, out = Path(sys.argv[1]), Path(sys.argv[2])
     verbs = verbs_of(programs)
     commands = {f"abut-{verb}": help_of(programs / "abut", verb) for verb in verbs}
+    own = sorted(name for name in [*commands, "abut-solver"] if (programs / name).is_file())
     commands["abut-solver"] = help_of(programs / "abut-solver")
     parts = {
         "completion.bash.in": ("abut", {
@@ -81,6 +82,7 @@ def main() -> int:
         text = (HERE / template).read_text(encoding="utf-8")
         for key, value in filled.items():
             text = text.replace(f"@{key}@", value)
+        text = text.replace("@PROGRAMS@", " ".join(["abut", *own]))
         (out / name).write_text(text, encoding="utf-8")
     return 0
 
