@@ -35,12 +35,15 @@ dependencies-bench:
 build: dependencies-build
 	@sh scripts/build.sh programs
 
+# realpath and not abspath: a PREFIX may contain blanks.
 install: build
-	@cmake --install build/$(PRESET) --prefix "$(abspath $(PREFIX))" >build/$(PRESET)/install.log
-	@echo "installed in $(DESTDIR)$(abspath $(PREFIX))"
+	@prefix=$$(realpath -m -- "$(PREFIX)") && \
+	  cmake --install build/$(PRESET) --prefix "$$prefix" >build/$(PRESET)/install.log && \
+	  echo "installed in $(DESTDIR)$$prefix"
 
 uninstall:
-	@cmake -Dprefix="$(abspath $(PREFIX))" -P packaging/uninstall.cmake
+	@prefix=$$(realpath -m -- "$(PREFIX)") && \
+	  cmake -Dprefix="$$prefix" -P packaging/uninstall.cmake
 
 package: build
 	@sh scripts/install_dependencies.sh package
