@@ -47,6 +47,7 @@ uninstall:
 
 package: build
 	@sh scripts/install_dependencies.sh package
+	@rm -f build/$(PRESET)/packages/*.deb
 	@cd build/$(PRESET) && cpack >package.log || { cat package.log; exit 1; }
 	@ls build/$(PRESET)/packages/*.deb
 

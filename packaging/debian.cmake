@@ -5,6 +5,7 @@ set(CPACK_PACKAGE_CONTACT "The abut authors <abut@localhost>" CACHE STRING
   "Name and address of who makes the Debian packages")
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_SOURCE_DIR}/debian_version.cmake)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL programs development)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS

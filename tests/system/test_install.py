@@ -97,6 +97,13 @@ class Programs(Install):
             self.assertRegex(lines[2], r"^build    .*optional libraries: ")
             self.assertEqual(lines[2], said[0][2])
 
+    def test_the_citation_is_of_this_version(self):
+        said = self.call(BUILD / "bin/abut", "--version").split()[1]
+        citation = (ROOT / "CITATION.cff").read_text("utf-8")
+        self.assertIn(f"\nversion: {said}\n", citation)
+        for key in ("cff-version", "message", "title", "authors"):  # that CFF 1.2 wants
+            self.assertRegex(citation, rf"(?m)^{key}:")
+
     def test_help_lists_every_verb(self):
         self.install(self.prefix)
         beside = {path.name.removeprefix("abut-") for path in (self.prefix / "bin").iterdir()}
