@@ -20,8 +20,7 @@ from support import ABUT, PACKAGE, ROOT, SystemTest, main  # noqa: E402
 CMAKE = sys.argv[3]
 BUILD = ABUT.parents[1]
 sys.path[:0] = [str(PACKAGE), str(ROOT / "packaging")]
-from abut_tools.complete import completed  # noqa: E402
-from abut_tools.scene_keys import KeyList  # noqa: E402
+from abut_tools.complete import completed, kinds_in  # noqa: E402
 from help_text import help_of, verbs_of  # noqa: E402
 
 # What is not beside the programs is not found: no abut of this machine may help.
@@ -229,7 +228,7 @@ class Words(Install):
             self.assertIn(f"'{option}[", text.replace("'*", "'"))
 
     def test_every_key_is_reached_by_completing_and_no_other(self):
-        kinds = KeyList(ABUT).kinds
+        kinds = kinds_in(self.call(ABUT, "reference"))
         reached, begun = set(), [""]
         while begun:
             for word in completed(kinds, {}, begun.pop()):
@@ -243,8 +242,16 @@ class Words(Install):
         self.assertEqual(known - reached, set())
         self.assertEqual(reached - known, set())
 
+    def test_a_row_of_several_keys_is_each_of_them(self):
+        text = ("| key | type | unit |\n|---|---|---|\n| `a` | choice of x, y, z | m |\n"
+                "| `a.{x,y}.n` | number | m |\n| `a.*.w` | one of p, q | |\n")
+        kinds = kinds_in(text)
+        self.assertEqual(set(kinds), {"a", "a.x.n", "a.y.n", "a.x.w", "a.y.w", "a.z.w"})
+        self.assertEqual(completed(kinds, {}, "a.z."), ["a.z.w="])
+        self.assertEqual(completed(kinds, {}, "a.z.w="), ["a.z.w=p", "a.z.w=q"])
+
     def test_names_are_those_of_the_scene(self):
-        kinds = KeyList(ABUT).kinds
+        kinds = kinds_in(self.call(ABUT, "reference"))
         scene = {"bodies": {"ball": {"material": {"neo_hookean": {}}, "ports": {"skin": {}}},
                             "wall": {"like": "ball"}}, "meta": {"expect": [{}, {}]}}
         for word, expected in (

@@ -6,14 +6,43 @@ values of keys that have few.
 usage: complete.py ABUT SCENE WORD     prints completed words, one per line
 """
 
+import itertools
 import re
+import subprocess
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from abut_tools.scene_keys import KeyList  # noqa: E402
 from abut_tools.tables import ToolError  # noqa: E402
 from abut_tools.yaml_text import read_yaml  # noqa: E402
+
+
+def kinds_in(reference: str) -> dict[str, str]:
+    """Of every key of `abut reference`, what may stand there: "number, at least 0". A row may
+    be of several keys: {fe,modal} are these alternatives of a choice, * is each of them."""
+    kinds = {}
+    for row, kind in re.findall(r"^\| `([^`]+)` \| ([^|]*?) *\|", reference, re.MULTILINE):
+        keys = [[]]
+        for part in row.split("."):
+            keys = [[*key, each] for key in keys for each in alternatives(part, kinds, key)]
+        kinds.update(dict.fromkeys(map(".".join, keys), kind))
+    return kinds
+
+
+def alternatives(part: str, kinds: dict[str, str], above: list[str]) -> list[str]:
+    if part == "*":
+        return words_of(kinds.get(".".join(above), ""))
+    pieces = re.split(r"\{([^}]*)\}", part)  # names, then what is in braces, in turns
+    choices = [piece.split(",") if k % 2 else [piece] for k, piece in enumerate(pieces)]
+    return ["".join(each) for each in itertools.product(*choices)]
+
+
+def words_of(kind: str) -> list[str]:
+    """What a value may be, where that is few words."""
+    if kind.startswith("true or false"):
+        return ["true", "false"]
+    words = re.match(r"(?:one|choice) of ([\w, ]+)", kind)
+    return [each.strip() for each in words[1].split(",")] if words else []
 
 
 def parts_of(key: str) -> list[str]:
@@ -106,10 +135,7 @@ def values_of(kinds: dict[str, str], key: str) -> list[str]:
     for known, kind in kinds.items():
         pattern = parts_of(known)
         if len(pattern) == len(parts) and all(map(is_at, pattern, parts)):
-            words = re.match(r"(?:one|choice) of ([\w, ]+)", kind)
-            if kind.startswith("true or false"):
-                return ["true", "false"]
-            return [each.strip() for each in words[1].split(",")] if words else []
+            return words_of(kind)
     return []
 
 
@@ -118,10 +144,8 @@ def main() -> int:
         print(__doc__.strip().rsplit("\n\n", maxsplit=1)[-1], file=sys.stderr)
         return 2
     abut, scene, word = sys.argv[1:]
-    try:
-        kinds = KeyList(Path(abut)).kinds
-    except ToolError:  # a shell that completes has no place for words of ours
-        return 1
+    asked = subprocess.run([abut, "reference"], capture_output=True, text=True, check=False)
+    kinds = kinds_in(asked.stdout)
     try:
         tree = read_yaml(Path(scene)) if scene else {}
     except (ToolError, OSError):

@@ -33,9 +33,7 @@ class KeyList:
         except (OSError, subprocess.SubprocessError) as error:
             raise ToolError(f"{abut} does not answer ({error}). Build the programs first.",
                             3) from error
-        rows = re.findall(r"^\| `([^`]+)` \| ([^|]*?) *\|", text, re.MULTILINE)
-        self.keys = [key for key, _ in rows]
-        self.kinds = dict(rows)  # what may stand at a key: "number, greater than 0"
+        self.keys = re.findall(r"^\| `([^`]+)` \|", text, re.MULTILINE)
 
     def refuse_unknown(self, key: str, bodies: dict, where: str) -> None:
         parts = key.split(".")
