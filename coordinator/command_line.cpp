@@ -11,7 +11,7 @@ namespace {
 
 constexpr int most_parts = 64;  // as many as processes of a run
 
-constexpr std::array<std::string_view, 4> own_verbs{"run", "check", "split", "reference"};
+constexpr std::array<std::string_view, 5> own_verbs{"run", "check", "split", "init", "reference"};
 
 /// An empty path is most often a variable of a script that was never set.
 const CLI::Validator named_folder(
@@ -40,6 +40,19 @@ CLI::App& add_split(CLI::App& app, SplitCommand& split) {
       ->type_name("DIR")
       ->check(named_folder);
   verb.add_flag("--force", split.force, "replace the files that DIR holds");
+  return verb;
+}
+
+CLI::App& add_init(CLI::App& app, InitCommand& init) {
+  CLI::App& verb = *app.add_subcommand("init", "write a commented scene that runs, to begin with");
+  verb.add_option("name", init.name, "the scene's file, with or without .yaml")
+      ->required()
+      ->type_name("NAME");
+  verb.add_option("--from", init.from,
+                  "what it is of: bars, contact, friction, joined, study or gmsh; default bars")
+      ->type_name("KIND");
+  verb.add_option("mesh", init.meshes, "Gmsh files of --from gmsh, a body each")->type_name("MESH");
+  verb.add_flag("--force", init.force, "replace the files that are there");
   return verb;
 }
 
@@ -75,6 +88,9 @@ Command parse_command_line(int argc, const char* const* argv) {
   SplitCommand split;
   const CLI::App& split_verb = add_split(app, split);
 
+  InitCommand init;
+  const CLI::App& init_verb = add_init(app, init);
+
   CLI::App& reference_verb =
       *app.add_subcommand("reference", "print every key of a scene file, as Markdown");
 
@@ -88,6 +104,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (run_verb.parsed()) return run;
   if (check_verb.parsed()) return check;
   if (split_verb.parsed()) return split;
+  if (init_verb.parsed()) return init;
   if (reference_verb.parsed()) return ReferenceCommand{};
   return PrintCommand{app.help(), 2};
 }

@@ -27,6 +27,7 @@
 #include "coordinator/external_body.hpp"
 #include "coordinator/external_verb.hpp"
 #include "coordinator/frame_check.hpp"
+#include "coordinator/init/init_files.hpp"
 #include "coordinator/interrupt.hpp"
 #include "coordinator/launch.hpp"
 #include "coordinator/launch_local.hpp"
@@ -311,22 +312,24 @@ fs::path split_directory(const SplitCommand& command) {
   return fmt::format("{}_split_{}", fs::path(command.scene).stem().string(), command.bodies);
 }
 
-/// Writes nothing where a file is in the way.
-void write_split(const SplitScene& split, const fs::path& directory, const fs::path& scene,
-                 bool force) {
-  std::vector<std::pair<fs::path, const std::string*>> files;
-  for (const auto& [name, text] : split.meshes) files.emplace_back(directory / name, &text);
-  files.emplace_back(scene, &split.scene);  // the last one: it needs the others
+using NewFiles = std::vector<std::pair<fs::path, std::string>>;
+
+/// In the order of the list; nothing where a file is in the way. `option`: that names the place.
+void write_new(const NewFiles& files, bool force, const char* option) {
   for (const auto& [path, text] : files) {
     if (!force && fs::exists(fs::symlink_status(path)))
-      throw InputError("is there already", path.string(), "Give another --out, or --force.");
+      throw InputError("is there already", path.string(),
+                       fmt::format("Give another {}, or --force.", option));
   }
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error)
-    throw InputError(fmt::format("cannot be made: {}", error.message()), directory.string(),
-                     "Give a folder that can be written to.");
-  for (const auto& [path, text] : files) write_whole(path, *text);
+  for (const auto& [path, text] : files) {
+    const fs::path directory = path.parent_path();
+    std::error_code error;
+    if (!directory.empty()) fs::create_directories(directory, error);
+    if (error)
+      throw InputError(fmt::format("cannot be made: {}", error.message()), directory.string(),
+                       "Give a folder that can be written to.");
+    write_whole(path, text);
+  }
 }
 
 int split_verb(const SplitCommand& command) {
@@ -335,12 +338,24 @@ int split_verb(const SplitCommand& command) {
   const fs::path directory = split_directory(command);
   const SplitScene split = split_scene(document, scene, {command.bodies, command.body, directory});
   const fs::path written = directory / fs::path(command.scene).filename();
-  write_split(split, directory, written, command.force);
+  NewFiles files;
+  for (const auto& [name, text] : split.meshes) files.emplace_back(directory / name, text);
+  files.emplace_back(written, split.scene);  // the last one: it needs the others
+  write_new(files, command.force, "--out");
   for (const std::string& part : split.parts) fmt::print("{}\n", part);
   for (const auto& [measure, why] : split.left_out)
     fmt::print("left out: what is expected of {}: {}\n", measure, why);
   fmt::print("written: {}\n", written.string());
   return check_verb({written.string(), {}, false});
+}
+
+int init_verb(const InitCommand& command) {
+  const InitFiles made = init_files({command.name, command.from, command.meshes});
+  write_new(made.files, command.force, "name");
+  for (const std::string& line : made.words) fmt::print("{}\n", line);
+  for (const auto& [path, text] : made.files) fmt::print("written: {}\n", path.string());
+  fmt::print("next: abut run {}\n", made.files.front().first.string());
+  return 0;
 }
 
 int reference_verb() {
@@ -362,6 +377,7 @@ struct Verbs {
   int operator()(const RunCommand& command) const { return run_verb(command); }
   int operator()(const CheckCommand& command) const { return check_verb(command); }
   int operator()(const SplitCommand& command) const { return split_verb(command); }
+  int operator()(const InitCommand& command) const { return init_verb(command); }
   int operator()(const ReferenceCommand&) const { return reference_verb(); }
   int operator()(const ExternalCommand& command) const {
     become_external_verb(command.verb, command.arguments);

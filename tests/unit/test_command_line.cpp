@@ -47,6 +47,19 @@ TEST(CommandLine, SplitTakesANumberOfBodies) {
   EXPECT_TRUE(split.force && split.overrides.empty());
 }
 
+TEST(CommandLine, InitTakesANameAKindAndMeshes) {
+  const InitCommand bars = std::get<InitCommand>(parsed({"init", "mine"}));
+  EXPECT_EQ(bars.name, "mine");
+  EXPECT_EQ(bars.from, "bars");
+  EXPECT_TRUE(bars.meshes.empty() && !bars.force);
+  const InitCommand gmsh = std::get<InitCommand>(
+      parsed({"init", "mine", "--from", "gmsh", "a.msh", "b.msh", "--force"}));
+  EXPECT_EQ(gmsh.name, "mine");
+  EXPECT_EQ(gmsh.from, "gmsh");
+  EXPECT_EQ(gmsh.meshes, (std::vector<std::string>{"a.msh", "b.msh"}));
+  EXPECT_TRUE(gmsh.force);
+}
+
 TEST(CommandLine, OtherVerbsKeepTheirArgumentsUntouched) {
   const ExternalCommand report =
       std::get<ExternalCommand>(parsed({"report", "dir", "--help", "--set"}));
@@ -68,6 +81,8 @@ TEST(CommandLine, WhatIsWrongEndsWithCodeTwo) {
        std::vector<std::vector<const char*>>{{},
                                              {"run"},
                                              {"split", "a"},
+                                             {"init"},
+                                             {"init", "a", "--from"},
                                              {"split", "a", "--bodies", "1"},
                                              {"run", "a", "b"},
                                              {"run", "a", "--nonsense"},
