@@ -56,6 +56,22 @@ CLI::App& add_init(CLI::App& app, InitCommand& init) {
   return verb;
 }
 
+CLI::App& add_reference(CLI::App& app, ReferenceCommand& reference) {
+  CLI::App& verb =
+      *app.add_subcommand("reference", "print the keys of a scene file, all of them as Markdown");
+  CLI::Option& key = *verb.add_option("key", reference.key,
+                                      "one of them and what is below it, as bodies.b.material")
+                          ->type_name("KEY");
+  CLI::Option& schema =
+      *verb.add_flag("--json-schema", reference.json_schema,
+                     "print a JSON Schema, with which editors complete and check scene files");
+  verb.add_flag("--keys", reference.keys, "print key paths alone, a line each")
+      ->excludes(&key)
+      ->excludes(&schema);
+  schema.excludes(&key);
+  return verb;
+}
+
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
@@ -91,8 +107,8 @@ Command parse_command_line(int argc, const char* const* argv) {
   InitCommand init;
   const CLI::App& init_verb = add_init(app, init);
 
-  CLI::App& reference_verb =
-      *app.add_subcommand("reference", "print every key of a scene file, as Markdown");
+  ReferenceCommand reference;
+  const CLI::App& reference_verb = add_reference(app, reference);
 
   try {
     app.parse(argc, argv);
@@ -105,7 +121,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (check_verb.parsed()) return check;
   if (split_verb.parsed()) return split;
   if (init_verb.parsed()) return init;
-  if (reference_verb.parsed()) return ReferenceCommand{};
+  if (reference_verb.parsed()) return reference;
   return PrintCommand{app.help(), 2};
 }
 

@@ -33,7 +33,11 @@ struct InitCommand {
   std::vector<std::string> meshes;  // of gmsh
   bool force = false;
 };
-struct ReferenceCommand {};
+struct ReferenceCommand {
+  std::string key;  // empty: all of them
+  bool json_schema = false;
+  bool keys = false;
+};
 /// `abut V ...` where V is none of ours: the program abut-V.
 struct ExternalCommand {
   std::string verb;

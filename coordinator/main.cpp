@@ -29,6 +29,7 @@
 #include "coordinator/frame_check.hpp"
 #include "coordinator/init/init_files.hpp"
 #include "coordinator/interrupt.hpp"
+#include "coordinator/json_schema.hpp"
 #include "coordinator/launch.hpp"
 #include "coordinator/launch_local.hpp"
 #include "coordinator/record/closed_form_table.hpp"
@@ -358,18 +359,29 @@ int init_verb(const InitCommand& command) {
   return 0;
 }
 
-int reference_verb() {
+int reference_verb(const ReferenceCommand& command) {
   Reference reference;
-  reference.heading("The scene");
-  reference.add<Scene>("");
-  reference.heading("A body");
+  reference.add<Scene>("The scene", "");
   document_body_keys(reference);
-  fmt::print(
-      "# Keys of a scene file\n\nPrinted by `abut reference`. Units are named in SI; any other "
-      "consistent set (mm, ms, kg, kN, GPa)\ndoes as well: no constant is built in. A choice is "
-      "written `{{name: {{its keys}}}}`, or as the name alone when all its\nkeys have "
-      "defaults.\n\n{}",
-      reference.markdown());
+  if (command.json_schema) {
+    fmt::print("{}", json_schema(reference));
+  } else if (command.keys) {
+    fmt::print("{}", reference.key_paths());
+  } else if (!command.key.empty()) {
+    fmt::print("{}", reference.part(command.key));
+  } else {
+    fmt::print(
+        "# Keys of a scene file\n\nPrinted by `abut reference`. Units are named in SI; any other "
+        "consistent set (mm, ms, kg, kN, GPa)\ndoes as well: no constant is built in. A choice is "
+        "written `{{name: {{its keys}}}}`, or as the name alone when all its\nkeys have "
+        "defaults. What alternatives of a choice have in common stands once: `{{fe,modal}}` are "
+        "these two, `*` is each of them.\n`abut reference KEY` prints a part, as "
+        "`abut reference bodies.b.material`.\n\n"
+        "`abut reference --json-schema > abut.schema.json` writes the same as a JSON Schema. With "
+        "it an editor that has a YAML\nlanguage server completes and checks a scene whose first "
+        "line is `# yaml-language-server: $schema=abut.schema.json`.\n\n{}",
+        reference.markdown());
+  }
   return 0;
 }
 
@@ -378,7 +390,7 @@ struct Verbs {
   int operator()(const CheckCommand& command) const { return check_verb(command); }
   int operator()(const SplitCommand& command) const { return split_verb(command); }
   int operator()(const InitCommand& command) const { return init_verb(command); }
-  int operator()(const ReferenceCommand&) const { return reference_verb(); }
+  int operator()(const ReferenceCommand& command) const { return reference_verb(command); }
   int operator()(const ExternalCommand& command) const {
     become_external_verb(command.verb, command.arguments);
   }

@@ -89,7 +89,9 @@ TEST(CommandLine, WhatIsWrongEndsWithCodeTwo) {
                                              {"check", "a", "--out", "d"},
                                              {"run", "a", "--set"},
                                              {"--nonsense"},
-                                             {"reference", "a"}}) {
+                                             {"reference", "a", "b"},
+                                             {"reference", "a", "--keys"},
+                                             {"reference", "--json-schema", "--keys"}}) {
     const Command command = parsed(arguments);
     ASSERT_TRUE(std::holds_alternative<PrintCommand>(command));
     EXPECT_EQ(std::get<PrintCommand>(command).exit_code, 2);

@@ -172,7 +172,7 @@ TEST(ResolvedYaml, MergesReadersThatShareAMap) {
 
 TEST(Reference, ListsEveryKeyWithTypeUnitDefaultAndMeaning) {
   Reference reference;
-  reference.add<All>("");
+  reference.add<All>("", "");
   const std::string text = reference.markdown();
   for (const char* row :
        {"| `length` | number, greater than 0 | m | required | length of the bar |",
