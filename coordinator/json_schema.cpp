@@ -41,6 +41,8 @@ Json text() { return {{"type", {"string", "number", "boolean"}}}; }
 
 Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
 
+Json one_or_list_of(const Json& item) { return {{"anyOf", {item, list_of(item)}}}; }
+
 /// Parts of the schema that stand more than once, under names of their keys.
 class Definitions {
  public:
@@ -117,9 +119,9 @@ class Schemas {
       case Kind::text:
         return text();
       case Kind::numbers:
-        return list_of(number(key.rule));
+        return one_or_list_of(number(key.rule));
       case Kind::words:
-        return list_of(text());
+        return one_or_list_of(text());
       case Kind::two_words: {
         Json schema = list_of(text());
         schema["minItems"] = schema["maxItems"] = 2;

@@ -282,11 +282,9 @@ INSTANTIATE_TEST_SUITE_P(
             "between its parts."},
         Bad{"NotAMap", "- a\n- b\n",
             "s.yaml: is not a map of keys. Write a scene as key: value lines, beginning with "
-            "meta:, "
             "time:, bodies:."},
         Bad{"Empty", "",
             "s.yaml: is empty. Write a scene as key: value lines, beginning with "
-            "meta:, "
             "time:, bodies:."}),
     [](const testing::TestParamInfo<Bad>& instance) { return std::string(instance.param.name); });
 
