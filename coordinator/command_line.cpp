@@ -20,7 +20,7 @@ const std::array<std::pair<std::string, std::string>, 2> tools{{
     {"study", "run a scene with many settings: cost against accuracy"},
 }};
 
-constexpr std::array<std::string_view, 4> own_verbs{"run", "check", "split", "reference"};
+constexpr std::array<std::string_view, 5> own_verbs{"run", "check", "split", "init", "reference"};
 
 /// An empty path is most often a variable of a script that was never set.
 const CLI::Validator named_folder(
@@ -50,6 +50,35 @@ CLI::App& add_split(CLI::App& app, SplitCommand& split) {
       ->type_name("DIR")
       ->check(named_folder);
   verb.add_flag("--force", split.force, "replace the files that DIR holds");
+  return verb;
+}
+
+CLI::App& add_init(CLI::App& app, InitCommand& init) {
+  CLI::App& verb = *app.add_subcommand("init", "write a commented scene that runs, to begin with");
+  verb.add_option("name", init.name, "the scene's file, with or without .yaml")
+      ->required()
+      ->type_name("NAME");
+  verb.add_option("--from", init.from,
+                  "what it is of: bars, contact, friction, joined, study or gmsh; default bars")
+      ->type_name("KIND");
+  verb.add_option("mesh", init.meshes, "Gmsh files of --from gmsh, a body each")->type_name("MESH");
+  verb.add_flag("--force", init.force, "replace the files that are there");
+  return verb;
+}
+
+CLI::App& add_reference(CLI::App& app, ReferenceCommand& reference) {
+  CLI::App& verb =
+      *app.add_subcommand("reference", "print the keys of a scene file, all of them as Markdown");
+  CLI::Option& key = *verb.add_option("key", reference.key,
+                                      "one of them and what is below it, as bodies.b.material")
+                          ->type_name("KEY");
+  CLI::Option& schema =
+      *verb.add_flag("--json-schema", reference.json_schema,
+                     "print a JSON Schema, with which editors complete and check scene files");
+  verb.add_flag("--keys", reference.keys, "print key paths alone, a line each")
+      ->excludes(&key)
+      ->excludes(&schema);
+  schema.excludes(&key);
   return verb;
 }
 
@@ -85,8 +114,12 @@ Command parse_command_line(int argc, const char* const* argv) {
   SplitCommand split;
   const CLI::App& split_verb = add_split(app, split);
 
-  CLI::App& reference_verb =
-      *app.add_subcommand("reference", "print every key of a scene file, as Markdown");
+  InitCommand init;
+  const CLI::App& init_verb = add_init(app, init);
+
+  ReferenceCommand reference;
+  const CLI::App& reference_verb = add_reference(app, reference);
+
   // For the list alone: their command lines are read by programs of their own.
   for (const auto& [name, purpose] : tools) app.add_subcommand(name, purpose);
 
@@ -106,7 +139,8 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (run_verb.parsed()) return run;
   if (check_verb.parsed()) return check;
   if (split_verb.parsed()) return split;
-  if (reference_verb.parsed()) return ReferenceCommand{};
+  if (init_verb.parsed()) return init;
+  if (reference_verb.parsed()) return reference;
   return PrintCommand{app.help(), 2};
 }
 
