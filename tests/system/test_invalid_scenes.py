@@ -236,7 +236,7 @@ class CommandLines(RefusalTest):
         self.assert_refused(
             abut("rum"),
             "there is no verb rum, and no program abut-rum beside abut or on PATH. Use run, check, "
-            "reference, report or study; abut --help describes them.")
+            "split, reference, report, film, picture or study; abut --help describes them.")
 
     def test_an_unknown_option_is_refused(self):
         result = abut("run", "scene.yaml", "--fast")
