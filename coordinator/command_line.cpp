@@ -15,8 +15,10 @@ namespace {
 constexpr int most_parts = 64;  // as many as processes of a run
 
 /// Verbs that are programs of their own beside this one.
-const std::array<std::pair<std::string, std::string>, 2> tools{{
-    {"report", "make a page of a run: tables and figures"},
+const std::array<std::pair<std::string, std::string>, 4> tools{{
+    {"report", "make a page of a run: tables, figures, moving bodies"},
+    {"film", "draw a run's bodies as they move: a GIF or MP4"},
+    {"picture", "draw a run's bodies at one time: a PNG"},
     {"study", "run a scene with many settings: cost against accuracy"},
 }};
 

@@ -22,6 +22,10 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME abut)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "python3 (>= 3.11), python3-yaml, libjs-chart.js")
+file(STRINGS ${PROJECT_SOURCE_DIR}/scripts/packages.txt pictures REGEX "^pictures ")
+list(TRANSFORM pictures REPLACE "^pictures +([^ ]+) .*" "\\1")
+list(JOIN pictures ", " pictures)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "${pictures}")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "libabut-dev, paraview")
 set(CPACK_DEBIAN_PROGRAMS_DESCRIPTION "collision of solids that are solved by separate programs
 Each body advances in a process of its own, with its own mesh, time integrator
