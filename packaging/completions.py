@@ -16,6 +16,9 @@ ZSH = {"KEY": "_abut_keys", "SCENE": '_files -g "*.yaml(-.)"', "DIR": "_files -/
 
 
 def kind_of(operand: str) -> str:
+    """{one,other}: these words; else a name that the completion functions know."""
+    if operand.startswith("{"):
+        return operand
     return KINDS.get(operand, "OTHER")
 
 
@@ -37,6 +40,10 @@ def bash_options(said: Help) -> list[str]:
             for item in said.items("options") for name in item.names()]
 
 
+def zsh_kind(kind: str) -> str:
+    return f"({kind[1:-1].replace(',', ' ')})" if kind.startswith("{") else ZSH[kind]
+
+
 def quoted(text: str) -> str:
     return "'" + text.replace("'", "'\\''") + "'"
 
@@ -45,7 +52,10 @@ def zsh_option(item: Item) -> list[str]:
     """Specifications of _arguments, one for each name."""
     meaning = item.meaning.replace("[", "(").replace("]", ")").replace(":", ";")
     operand = item.operand()
-    word = f":{operand.replace(':', ' ')}:{ZSH[kind_of(operand)]}" if operand else ""
+    word = ""
+    if operand:
+        name = "word" if operand.startswith("{") else operand.replace(":", " ")
+        word = f":{name}:{zsh_kind(kind_of(operand))}"
     many = "*" if "repeatable" in meaning or not word else ""
     return [quoted(f"{many}{name}[{meaning}]{word}") for name in item.names()]
 

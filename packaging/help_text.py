@@ -15,6 +15,7 @@ SECTIONS = {"positionals": "arguments", "positional arguments": "arguments",
 class Item:
     term: str      # "--out DIR"
     meaning: str
+    beside: str = ""   # "not with --keys": what else the command line may say
 
     def names(self) -> list[str]:
         """Of an option: -h, --help."""
@@ -55,6 +56,8 @@ def parsed(text: str) -> Help:
             elif heading and heading[1].lower() in SECTIONS:
                 part = SECTIONS[heading[1].lower()]
                 items = found.parts.setdefault(part, [])
+            elif part == "usage" and line.startswith("  "):
+                found.usage += " " + line.strip()
             elif part in found.parts and line.startswith(" "):
                 add(items, line)
             elif line.strip():
@@ -69,7 +72,10 @@ def add(items: list[Item], line: str) -> None:
     """A line of a section: an item, or more of the last one's meaning."""
     item = re.fullmatch(r"  (\S.*?)(?:\s{2,}(\S.*))?", line)
     if item:
-        items.append(Item(item[1], item[2] or ""))
+        term, *more = re.split(r" (?=Excludes:|Needs:)", item[1])  # CLI11's
+        words = [each.replace("Excludes: ", "not with ").replace("Needs: ", "only with ")
+                 for each in more]
+        items.append(Item(term, item[2] or "", "; ".join(words)))
     elif items:
         items[-1].meaning = f"{items[-1].meaning} {line.strip()}".strip()
 

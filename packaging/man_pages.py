@@ -45,7 +45,8 @@ def page(name: str, version: str, purpose: str, said: Help, others: list[str]) -
     for part, items in said.parts.items():
         lines.append(f".SH {HEADINGS[part]}")
         for item in items:
-            lines += [".TP", bold(item.term.replace(" REQUIRED", "")), roff(item.meaning)]
+            more = f"; {item.beside}" if item.beside else ""
+            lines += [".TP", bold(item.term.replace(" REQUIRED", "")), roff(item.meaning + more)]
     see = [other for other in others if other != name]
     lines += [".SH SEE ALSO", ",\n".join(f".BR {roff(other)} (1)" for other in see), ".PP",
               "The documents in share/doc/abut, and the scenes in share/abut/configs, below the "

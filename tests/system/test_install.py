@@ -21,7 +21,8 @@ CMAKE = sys.argv[3]
 BUILD = ABUT.parents[1]
 sys.path[:0] = [str(PACKAGE), str(ROOT / "packaging")]
 from abut_tools.complete import completed, kinds_in  # noqa: E402
-from help_text import help_of, verbs_of  # noqa: E402
+from completions import bash_options, zsh_case  # noqa: E402
+from help_text import help_of, parsed, verbs_of  # noqa: E402
 
 # What is not beside the programs is not found: no abut of this machine may help.
 BARE = {"PATH": "/usr/bin:/bin", "LC_ALL": "C.UTF-8"}
@@ -217,6 +218,27 @@ class Words(Install):
         self.assertEqual(keys, {"bodies.right.material.", "bodies.right.material="})
         self.assertEqual(values, {"connect"})  # readline has a word begin behind "="
         self.assertEqual(other, {"--process", "--patience"})
+
+    def test_both_forms_of_help_are_read(self):
+        first = parsed("title\nUsage: p [OPTIONS] scene\n\nPositionals:\n"
+                       "  scene SCENE REQUIRED   it\n\nOptions:\n  -h,--help    help\n"
+                       "  --keys Excludes: key --all\n                   paths alone\n"
+                       "  --n N ...      repeatable\n\nfoot\n")
+        self.assertEqual(first.texts, ["title", "foot"])
+        self.assertEqual([(item.names(), item.operand(), item.meaning, item.beside)
+                          for item in first.items("options")],
+                         [(["-h", "--help"], "", "help", ""),
+                          (["--keys"], "", "paths alone", "not with key --all"),
+                          (["--n"], "N", "repeatable", "")])
+        self.assertEqual(bash_options(first), ["-h", "--help", "--keys", "--n=OTHER"])
+        second = parsed("usage: p q [-h] [--out FILE]\n           [--field {a,b}] DIR\n\nDoes it.\n"
+                        "\npositional arguments:\n  DIR   folder\n\noptions:\n"
+                        "  -h, --help   help\n  --field {a,b}\n               colour\n"
+                        "  --out FILE   name\n")
+        self.assertEqual(second.usage, "p q [-h] [--out FILE] [--field {a,b}] DIR")
+        self.assertEqual(bash_options(second), ["-h", "--help", "--field={a,b}", "--out=FILE"])
+        self.assertIn("'--out[name]:FILE:_files'", zsh_case("p-q", second))
+        self.assertIn("'--field[colour]:word:(a b)'", zsh_case("p-q", second))
 
     def test_both_shells_can_read_their_completions(self):
         self.install(self.prefix)
