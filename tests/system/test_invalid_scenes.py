@@ -111,7 +111,7 @@ class InvalidScenes(RefusalTest):
                 scene.write_text(text, encoding="utf-8")
                 self.assert_refused(abut("check", scene),
                                     f"{scene}: is empty. Write a scene as key: value lines, "
-                                    "beginning with meta:, time:, bodies:.")
+                                    "beginning with time:, bodies:.")
 
     def test_every_scene_is_refused_with_its_message_and_writes_nothing(self):
         scenes = sorted(INVALID.glob("*.yaml"))
