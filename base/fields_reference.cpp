@@ -3,22 +3,56 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <utility>
 
 #include "base/assert.hpp"
+#include "base/fields_rows.hpp"
 #include "base/yaml_document.hpp"
 
 namespace abut {
 namespace {
 
-const char* type_of(const double*) { return "number"; }
-const char* type_of(const int*) { return "whole number"; }
-const char* type_of(const std::int64_t*) { return "whole number"; }
-const char* type_of(const bool*) { return "true or false"; }
-const char* type_of(const std::string*) { return "text"; }
-const char* type_of(const std::optional<double>*) { return "number"; }
-const char* type_of(const std::vector<double>*) { return "list of numbers"; }
-const char* type_of(const std::vector<std::string>*) { return "list of words"; }
-const char* type_of(const std::array<std::string, 2>*) { return "list of two words"; }
+using Kind = KeyNode::Kind;
+
+Kind kind_of(const double*) { return Kind::number; }
+Kind kind_of(const int*) { return Kind::whole; }
+Kind kind_of(const std::int64_t*) { return Kind::whole; }
+Kind kind_of(const bool*) { return Kind::flag; }
+Kind kind_of(const std::string*) { return Kind::text; }
+Kind kind_of(const std::optional<double>*) { return Kind::number; }
+Kind kind_of(const std::vector<double>*) { return Kind::numbers; }
+Kind kind_of(const std::vector<std::string>*) { return Kind::words; }
+Kind kind_of(const std::array<std::string, 2>*) { return Kind::two_words; }
+
+std::string_view words_of(Kind kind) {
+  switch (kind) {
+    case Kind::number:
+      return "number";
+    case Kind::whole:
+      return "whole number";
+    case Kind::flag:
+      return "true or false";
+    case Kind::text:
+      return "text";
+    case Kind::numbers:
+      return "list of numbers";
+    case Kind::words:
+      return "list of words";
+    case Kind::two_words:
+      return "list of two words";
+    case Kind::word:
+      return "one of";
+    case Kind::map:
+      return "map";
+    case Kind::list:
+      return "list of maps";
+    case Kind::names:
+      return "map from names to maps";
+    case Kind::choice:
+      return "choice of";
+  }
+  return "";
+}
 
 std::string shown(double value) { return fmt::format("{}", value); }
 std::string shown(int value) { return fmt::format("{}", value); }
@@ -33,13 +67,13 @@ std::string shown(const Values& values) {
   return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
+/// Builds the tree of the keys that a struct declares.
 class Documenter final : public Fields {
  public:
-  Documenter(std::vector<Reference::Row>& rows, std::string path)
-      : Fields(Purpose::document), rows_(rows), stack_{std::move(path)} {}
+  explicit Documenter(KeyNode& root) : Fields(Purpose::document), stack_{&root} {}
 
   void ignore(std::string_view) override {}
-  void ignore_rest() override {}
+  void ignore_rest() override { stack_.back()->open = true; }
   void idle(bool, std::string_view, std::string_view) override {}
   void leave() override {
     ABUT_ASSERT(stack_.size() > 1);
@@ -50,72 +84,92 @@ class Documenter final : public Fields {
   void leaf(const Key& key, Slot slot, const Rule& rule) override {
     std::visit(
         [this, &key, &rule](const auto* value) {
-          const std::string range = rule.range();
-          const std::string type = type_of(value);
-          row(key, range.empty() ? type : type + ", " + range, shown(*value));
+          KeyNode& node = add(key, kind_of(value), shown(*value));
+          node.rule = rule;
         },
         slot);
   }
   void word_leaf(const Key& key, std::string& value,
                  std::span<const std::string_view> words) override {
-    row(key, fmt::format("one of {}", fmt::join(words, ", ")), value);
+    add(key, Kind::word, value).words.assign(words.begin(), words.end());
   }
   bool enter(const Key& key, bool) override {
-    row(key, "map", "optional");
-    descend(key.name);
+    stack_.push_back(&add(key, Kind::map, "optional"));
     return true;
   }
   std::size_t enter_list(const Key& key, std::size_t) override {
-    row(key, "list of maps", "[]");
-    descend(key.name);
+    stack_.push_back(&add(key, Kind::list, "[]"));
     return 0;
   }
   void enter_map(const Key& key, std::vector<std::string>&) override {
-    row(key, "map from names to maps", "{}");
-    descend(key.name);
+    stack_.push_back(&add(key, Kind::names, "{}"));
   }
-  std::string enter_choice(const Key& key, std::span<const std::string_view> names,
+  std::string enter_choice(const Key& key, std::span<const std::string_view>,
                            std::string_view current) override {
-    row(key, fmt::format("choice of {}", fmt::join(names, ", ")),
-        current.empty() ? "absent" : std::string(current));
-    descend(key.name);
+    stack_.push_back(&add(key, Kind::choice, current.empty() ? "absent" : std::string(current)));
     return std::string(current);
   }
-  void descend(std::string_view name, std::string_view = {}) override {
-    stack_.push_back(join_path(stack_.back(), name == "[]" ? "[i]" : name));
+  /// Items of lists and maps have their keys in the list's own node, alternatives in one each.
+  void descend(std::string_view name, std::string_view shorthand) override {
+    KeyNode* node = stack_.back();
+    if (node->kind == Kind::choice)
+      node = &add({name, "", "", Presence::optional}, Kind::map, "optional");
+    node->shorthand = shorthand;
+    stack_.push_back(node);
   }
   void broken(std::string_view, const std::string&, const std::string&) override {}
 
  private:
-  void row(const Key& key, const std::string& type, const std::string& fallback) {
-    const bool required = key.presence == Presence::required;
-    rows_.push_back({join_path(stack_.back(), key.name), type, std::string(key.unit),
-                     required ? "required" : fallback, std::string(key.help)});
+  KeyNode& add(const Key& key, Kind kind, const std::string& fallback) {
+    KeyNode node;
+    node.name = key.name;
+    node.unit = key.unit;
+    node.help = key.help;
+    node.required = key.presence == Presence::required;
+    node.kind = kind;
+    node.fallback = fallback;
+    return stack_.back()->keys.emplace_back(std::move(node));
   }
 
-  std::vector<Reference::Row>& rows_;
-  std::vector<std::string> stack_;
+  std::vector<KeyNode*> stack_;  // none of them gets a sibling while it is here
 };
 
 }  // namespace
 
-void Reference::heading(std::string_view text) { sections_.push_back({std::string(text), {}}); }
+std::string KeyNode::type() const {
+  const std::string range = rule.range();
+  std::string text(words_of(kind));
+  if (kind == Kind::word) text += fmt::format(" {}", fmt::join(words, ", "));
+  if (kind == Kind::choice) {
+    std::vector<std::string> names;
+    for (const KeyNode& key : keys) names.push_back(key.name);
+    text += fmt::format(" {}", fmt::join(names, ", "));
+  }
+  return range.empty() ? text : text + ", " + range;
+}
 
-std::unique_ptr<Fields> Reference::documenter_at(std::string_view path) {
-  if (sections_.empty()) sections_.emplace_back();
-  return std::make_unique<Documenter>(sections_.back().rows, std::string(path));
+std::unique_ptr<Fields> Reference::documenter_of(std::string_view heading, std::string_view path) {
+  sections_.push_back({std::string(heading), std::string(path), {}});
+  return std::make_unique<Documenter>(sections_.back().root);
 }
 
 std::string Reference::markdown() const {
   std::string out;
-  for (const Section& section : sections_) {
+  for (const KeySection& section : sections_) {
     if (!section.heading.empty()) out += "## " + section.heading + "\n\n";
     out += "| key | type | unit | default | meaning |\n|---|---|---|---|---|\n";
-    for (const Row& row : section.rows)
+    for (const KeyRow& row : key_rows(section.root, section.path))
       out += fmt::format("| `{}` | {} | {} | {} | {} |\n", row.path, row.type, row.unit,
                          row.fallback, row.help);
     out += '\n';
   }
+  return out;
+}
+
+std::string Reference::key_paths() const {
+  std::string out;
+  for (const KeySection& section : sections_)
+    for (const std::string& path : paths_below(section.root, section.path)) out += path + '\n';
   return out;
 }
 

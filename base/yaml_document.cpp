@@ -37,6 +37,12 @@ YAML::Node replaced(const YAML::Node& node, const std::string& step, const YAML:
   return copy;
 }
 
+YAML::Node list_of_one(const YAML::Node& value) {
+  YAML::Node list(YAML::NodeType::Sequence);
+  list.push_back(value);
+  return list;
+}
+
 /// The map without one of its keys.
 YAML::Node without(const YAML::Node& map, const std::string& key) {
   YAML::Node rest(YAML::NodeType::Map);
@@ -51,7 +57,8 @@ YAML::Node with_value(const YAML::Node& old, const std::vector<std::string>& ste
                       const YAML::Node& value, const std::string& where) {
   if (at == steps.size()) return value;
   const bool chosen = old.IsScalar() && old.Scalar() == steps[at];
-  const YAML::Node node = chosen ? choice_as_map(old) : old;
+  const bool alone = old.IsScalar() && list_index(steps[at]) == 0;
+  const YAML::Node node = chosen ? choice_as_map(old) : alone ? list_of_one(old) : old;
   const std::optional<std::size_t> index = list_index(steps[at]);
   const std::optional<Found> found = child(node, steps[at]);
   if (index ? !found : !node.IsMap())
@@ -174,7 +181,7 @@ Document::Document(std::string name, std::string text, std::vector<std::string> 
       text_, name_, "", "Correct the line; most often it is an indentation, a bracket or a colon.");
   if (!root.IsMap())
     throw InputError(root.IsNull() ? "is empty" : "is not a map of keys", name_,
-                     "Write a scene as key: value lines, beginning with meta:, time:, bodies:.");
+                     "Write a scene as key: value lines, beginning with time:, bodies:.");
   write_out(root);
 }
 

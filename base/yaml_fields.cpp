@@ -249,7 +249,7 @@ void Reader::descend(std::string_view name, std::string_view shorthand) {
     node.reset(parent.node[std::stoul(std::string(name.substr(1)))]);
   else
     node.reset(parent.node[std::string(name)]);
-  if (!shorthand.empty() && node.IsScalar()) {
+  if (!shorthand.empty() && (node.IsScalar() || node.IsSequence())) {
     YAML::Node map(YAML::NodeType::Map);
     map[std::string(shorthand)] = node;
     node.reset(map);
@@ -387,6 +387,10 @@ void Reader::fill(std::optional<double>& value, const Key& key, const std::strin
 void Reader::fill(std::vector<double>& value, const Key& key, const std::string& path,
                   const YAML::Node& node, const Rule& rule) {
   value.clear();
+  if (is_plain(node) && parse<double>(node.Scalar())) {  // a list of one
+    value.push_back(number(key, path, node, rule));
+    return;
+  }
   for (const YAML::Node& item : list_of(key, path, node, "a list of numbers"))
     value.push_back(number(key, fmt::format("{}[{}]", path, value.size()), item, rule));
 }
@@ -394,6 +398,10 @@ void Reader::fill(std::vector<double>& value, const Key& key, const std::string&
 void Reader::fill(std::vector<std::string>& value, const Key& key, const std::string& path,
                   const YAML::Node& node, const Rule&) {
   value.clear();
+  if (node.IsScalar()) {  // a list of one
+    value.push_back(node.Scalar());
+    return;
+  }
   for (const YAML::Node& item : list_of(key, path, node, "a list of words"))
     value.push_back(text(key, fmt::format("{}[{}]", path, value.size()), item));
 }

@@ -154,6 +154,7 @@ class Bodies {
     }
     for (const auto& pair : own) {
       const std::string& key = pair.first.Scalar();
+      if (path.empty() && key == "copies" && pair.second.IsNull()) continue;  // none, in words
       if (!theirs.contains(key) || (path.empty() && is_own(key)))
         out.force_insert(YAML::Clone(pair.first), YAML::Clone(pair.second));
     }

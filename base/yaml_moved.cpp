@@ -16,13 +16,18 @@
 namespace abut {
 namespace {
 
-/// Nothing where a value is no list of numbers.
+std::optional<double> number_in(const YAML::Node& node) {
+  return is_plain(node) ? parse<double>(node.Scalar()) : std::nullopt;
+}
+
+/// Nothing where a value is neither a number nor a list of numbers.
 std::optional<std::vector<double>> numbers_in(const YAML::Node& node) {
+  const std::optional<double> alone = number_in(node);
+  if (alone) return std::vector<double>{*alone};
   if (!node.IsSequence()) return std::nullopt;
   std::vector<double> values;
   for (const YAML::Node& item : node) {
-    const std::optional<double> value =
-        is_plain(item) ? parse<double>(item.Scalar()) : std::optional<double>();
+    const std::optional<double> value = number_in(item);
     if (!value) return std::nullopt;
     values.push_back(*value);
   }
@@ -56,6 +61,7 @@ std::string moved(const std::string& text, const std::vector<double>& way) {
 }
 
 YAML::Node moved_fields(const YAML::Node& texts, const std::vector<double>& way) {
+  if (texts.IsScalar()) return YAML::Node(moved(texts.Scalar(), way));
   if (!texts.IsSequence()) return YAML::Clone(texts);
   YAML::Node list(YAML::NodeType::Sequence);
   for (const YAML::Node& text : texts)
@@ -70,6 +76,7 @@ YAML::Node moved_points(const YAML::Node& points, const std::vector<double>& way
     YAML::Node point = YAML::Clone(pair.second);
     const std::optional<Found> at = child(point, "at");
     if (at) point["at"] = sum(at->node, way);
+    if (!point.IsMap()) point = sum(point, way);  // the place alone
     out.force_insert(pair.first.Scalar(), point);
   }
   return out;

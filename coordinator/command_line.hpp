@@ -27,7 +27,17 @@ struct SplitCommand {
   std::vector<std::string> overrides;
   bool force = false;
 };
-struct ReferenceCommand {};
+struct InitCommand {
+  std::string name;
+  std::string from = "bars";
+  std::vector<std::string> meshes;  // of gmsh
+  bool force = false;
+};
+struct ReferenceCommand {
+  std::string key;  // empty: all of them
+  bool json_schema = false;
+  bool keys = false;
+};
 /// `abut V ...` where V is none of ours: the program abut-V.
 struct ExternalCommand {
   std::string verb;
@@ -39,7 +49,7 @@ struct PrintCommand {
   int exit_code = 0;  // other than 0: for standard error
 };
 
-using Command = std::variant<RunCommand, CheckCommand, SplitCommand, ReferenceCommand,
+using Command = std::variant<RunCommand, CheckCommand, SplitCommand, InitCommand, ReferenceCommand,
                              ExternalCommand, PrintCommand>;
 
 /// Never throws: a command line that is wrong becomes a PrintCommand with exit code 2.

@@ -248,9 +248,8 @@ std::optional<ClosedForm> make_closed_form(const Scene& scene,
 }
 
 void document_body_keys(Reference& reference) {
-  reference.add<BodySpec>("bodies.<name>");
-  reference.heading("A body of another program");
-  reference.add<ExternalBody>("bodies.<name>");
+  reference.add<BodySpec>("A body", "bodies.<name>");
+  reference.add<ExternalBody>("A body of another program", "bodies.<name>");
 }
 
 void resolve_body_keys(const Scene& scene, const Document& document, ResolvedYaml& resolved) {

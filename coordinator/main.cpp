@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "base/build_info.hpp"
 #include "base/denormals.hpp"
 #include "base/error.hpp"
 #include "base/input_errors.hpp"
@@ -27,7 +28,9 @@
 #include "coordinator/external_body.hpp"
 #include "coordinator/external_verb.hpp"
 #include "coordinator/frame_check.hpp"
+#include "coordinator/init/init_files.hpp"
 #include "coordinator/interrupt.hpp"
+#include "coordinator/json_schema.hpp"
 #include "coordinator/launch.hpp"
 #include "coordinator/launch_local.hpp"
 #include "coordinator/record/closed_form_table.hpp"
@@ -77,6 +80,7 @@ struct Placement {
 
 std::map<std::string, std::string> versions() {
   return {{"abut", build_version()},
+          {"commit", std::string(build_info.commit)},
           {"protocol", fmt::format("{}", protocol_version)},
           {"compiler", __VERSION__}};
 }
@@ -311,22 +315,24 @@ fs::path split_directory(const SplitCommand& command) {
   return fmt::format("{}_split_{}", fs::path(command.scene).stem().string(), command.bodies);
 }
 
-/// Writes nothing where a file is in the way.
-void write_split(const SplitScene& split, const fs::path& directory, const fs::path& scene,
-                 bool force) {
-  std::vector<std::pair<fs::path, const std::string*>> files;
-  for (const auto& [name, text] : split.meshes) files.emplace_back(directory / name, &text);
-  files.emplace_back(scene, &split.scene);  // the last one: it needs the others
+using NewFiles = std::vector<std::pair<fs::path, std::string>>;
+
+/// In the order of the list; nothing where a file is in the way. `option`: that names the place.
+void write_new(const NewFiles& files, bool force, const char* option) {
   for (const auto& [path, text] : files) {
     if (!force && fs::exists(fs::symlink_status(path)))
-      throw InputError("is there already", path.string(), "Give another --out, or --force.");
+      throw InputError("is there already", path.string(),
+                       fmt::format("Give another {}, or --force.", option));
   }
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error)
-    throw InputError(fmt::format("cannot be made: {}", error.message()), directory.string(),
-                     "Give a folder that can be written to.");
-  for (const auto& [path, text] : files) write_whole(path, *text);
+  for (const auto& [path, text] : files) {
+    const fs::path directory = path.parent_path();
+    std::error_code error;
+    if (!directory.empty()) fs::create_directories(directory, error);
+    if (error)
+      throw InputError(fmt::format("cannot be made: {}", error.message()), directory.string(),
+                       "Give a folder that can be written to.");
+    write_whole(path, text);
+  }
 }
 
 int split_verb(const SplitCommand& command) {
@@ -335,7 +341,10 @@ int split_verb(const SplitCommand& command) {
   const fs::path directory = split_directory(command);
   const SplitScene split = split_scene(document, scene, {command.bodies, command.body, directory});
   const fs::path written = directory / fs::path(command.scene).filename();
-  write_split(split, directory, written, command.force);
+  NewFiles files;
+  for (const auto& [name, text] : split.meshes) files.emplace_back(directory / name, text);
+  files.emplace_back(written, split.scene);  // the last one: it needs the others
+  write_new(files, command.force, "--out");
   for (const std::string& part : split.parts) fmt::print("{}\n", part);
   for (const auto& [measure, why] : split.left_out)
     fmt::print("left out: what is expected of {}: {}\n", measure, why);
@@ -343,18 +352,39 @@ int split_verb(const SplitCommand& command) {
   return check_verb({written.string(), {}, false});
 }
 
-int reference_verb() {
+int init_verb(const InitCommand& command) {
+  const InitFiles made = init_files({command.name, command.from, command.meshes});
+  write_new(made.files, command.force, "name");
+  for (const std::string& line : made.words) fmt::print("{}\n", line);
+  for (const auto& [path, text] : made.files) fmt::print("written: {}\n", path.string());
+  fmt::print("next: abut run {}\n", made.files.front().first.string());
+  return 0;
+}
+
+int reference_verb(const ReferenceCommand& command) {
   Reference reference;
-  reference.heading("The scene");
-  reference.add<Scene>("");
-  reference.heading("A body");
+  reference.add<Scene>("The scene", "");
   document_body_keys(reference);
-  fmt::print(
-      "# Keys of a scene file\n\nPrinted by `abut reference`. Units are named in SI; any other "
-      "consistent set (mm, ms, kg, kN, GPa)\ndoes as well: no constant is built in. A choice is "
-      "written `{{name: {{its keys}}}}`, or as the name alone when all its\nkeys have "
-      "defaults.\n\n{}",
-      reference.markdown());
+  if (command.json_schema) {
+    fmt::print("{}", json_schema(reference));
+  } else if (command.keys) {
+    fmt::print("{}", reference.key_paths());
+  } else if (!command.key.empty()) {
+    fmt::print("{}", reference.part(command.key));
+  } else {
+    fmt::print(
+        "# Keys of a scene file\n\nPrinted by `abut reference`. Units are named in SI; any other "
+        "consistent set (mm, ms, kg, kN, GPa)\ndoes as well: no constant is built in. A choice is "
+        "written `{{name: {{its keys}}}}`, or as the name alone when all its\nkeys have "
+        "defaults, and a list of one as its value alone. What alternatives of a choice have in "
+        "common stands once: `{{fe,modal}}` are "
+        "these two, `*` is each of them.\n`abut reference KEY` prints a part, as "
+        "`abut reference bodies.b.material`.\n\n"
+        "`abut reference --json-schema > abut.schema.json` writes the same as a JSON Schema. With "
+        "it an editor that has a YAML\nlanguage server completes and checks a scene whose first "
+        "line is `# yaml-language-server: $schema=abut.schema.json`.\n\n{}",
+        reference.markdown());
+  }
   return 0;
 }
 
@@ -362,7 +392,8 @@ struct Verbs {
   int operator()(const RunCommand& command) const { return run_verb(command); }
   int operator()(const CheckCommand& command) const { return check_verb(command); }
   int operator()(const SplitCommand& command) const { return split_verb(command); }
-  int operator()(const ReferenceCommand&) const { return reference_verb(); }
+  int operator()(const InitCommand& command) const { return init_verb(command); }
+  int operator()(const ReferenceCommand& command) const { return reference_verb(command); }
   int operator()(const ExternalCommand& command) const {
     become_external_verb(command.verb, command.arguments);
   }

@@ -26,7 +26,7 @@ constexpr Rule patience_rule{.low = 0.0, .high = 604'800.0, .above_low = true};
 }  // namespace
 
 void TimeSpec::fields(Fields& f) {
-  f.required("begin", begin, "s", "time at which the run begins");
+  f.optional("begin", begin, "s", "time at which the run begins");
   f.required("end", end, "s", "time at which the run ends");
   f.required("window", window, "s", "length of the controller step, over which bodies are coupled",
              positive);
@@ -170,7 +170,7 @@ void NetworkSpec::fields(Fields& f) {
 }
 
 void Scene::fields(Fields& f) {
-  f.section("meta", meta, "what the scene is and what it must produce");
+  f.defaulted("meta", meta, "what the scene is and what it must produce");
   f.section("time", time, "interval of the run and its windows");
   f.map("bodies", bodies, "bodies, in the order of every table");
   f.map("interfaces", interfaces, "pairs of ports that may meet", Presence::optional);
@@ -320,6 +320,12 @@ void validate_pairs(const Scene& scene, const Document& document) {
   }
 }
 
+/// "a/two_bars.yaml" is "two_bars".
+std::string stem_of(const std::string& path) {
+  const std::string name = path.substr(path.rfind('/') + 1);
+  return name.substr(0, name.rfind('.'));
+}
+
 }  // namespace
 
 std::vector<std::string> exact_interfaces(const Scene& scene) {
@@ -344,6 +350,7 @@ Scene read_scene(const Document& document, InputErrors& errors) {
   Scene scene;
   const std::size_t before = errors.count();
   errors.gather([&] { read_fields(document, "", [&scene](Fields& f) { scene.fields(f); }); });
+  if (scene.meta.title.empty()) scene.meta.title = stem_of(document.name());
   for (auto& [name, entry] : scene.bodies) entry.external = is_external(document, name);
   assign_roles(scene, document);
   if (errors.count() == before) errors.gather([&] { validate(scene, document); });

@@ -25,7 +25,8 @@ void BarImpactForm::fields(Fields& f) {
 }
 
 void Meta::fields(Fields& f) {
-  f.required("title", title, "", "sentence that says what the scene shows");
+  f.optional("title", title, "",
+             "sentence that says what the scene shows; usual: the name of its file");
   f.choice("closed_form", closed_form, "exact solution to compare with");
   f.list("expect", expect, "statements about the result, evaluated after the run");
 }

@@ -61,6 +61,7 @@ struct SupportsSpec {
   void fields(Fields& f);
 };
 struct PortSpec {
+  static constexpr std::string_view shorthand = "side";
   std::string side;
   bool tied = false;  // a joint for the whole run: the node keeps its mass
   void fields(Fields& f);

@@ -98,6 +98,7 @@ struct J2PlasticitySpec : ElasticSpec {
 
 /// A node under a name of its own, on which ports and constraints may lie.
 struct PointSpec {
+  static constexpr std::string_view shorthand = "at";
   std::vector<double> at;  // [m] (dim) reference position
   void fields(Fields& f);
 };

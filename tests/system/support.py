@@ -17,6 +17,7 @@ from pathlib import Path
 
 ABUT = Path(sys.argv[1]).resolve()
 SOLVER = ABUT.with_name("abut-solver")
+PACKAGE = ABUT.parents[1] / "share" / "abut" / "python"  # with abut_tools
 ROOT = Path(sys.argv[2]).resolve()
 SECONDS = 120  # the longest run takes a few seconds; only a hang takes longer
 CONNECTED = "two_bars_processes"  # the scene whose solvers somebody else starts

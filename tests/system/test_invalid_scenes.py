@@ -111,7 +111,7 @@ class InvalidScenes(RefusalTest):
                 scene.write_text(text, encoding="utf-8")
                 self.assert_refused(abut("check", scene),
                                     f"{scene}: is empty. Write a scene as key: value lines, "
-                                    "beginning with meta:, time:, bodies:.")
+                                    "beginning with time:, bodies:.")
 
     def test_every_scene_is_refused_with_its_message_and_writes_nothing(self):
         scenes = sorted(INVALID.glob("*.yaml"))
@@ -235,8 +235,8 @@ class CommandLines(RefusalTest):
     def test_an_unknown_verb_is_refused(self):
         self.assert_refused(
             abut("rum"),
-            "there is no verb rum, and no program abut-rum beside abut or on PATH. Use run, check, "
-            "reference, report or study; abut --help describes them.")
+            "there is no verb rum, and no program abut-rum beside abut or on PATH. "
+            "The verbs are listed by abut --help.")
 
     def test_an_unknown_option_is_refused(self):
         result = abut("run", "scene.yaml", "--fast")

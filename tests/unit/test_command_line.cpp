@@ -47,6 +47,19 @@ TEST(CommandLine, SplitTakesANumberOfBodies) {
   EXPECT_TRUE(split.force && split.overrides.empty());
 }
 
+TEST(CommandLine, InitTakesANameAKindAndMeshes) {
+  const InitCommand bars = std::get<InitCommand>(parsed({"init", "mine"}));
+  EXPECT_EQ(bars.name, "mine");
+  EXPECT_EQ(bars.from, "bars");
+  EXPECT_TRUE(bars.meshes.empty() && !bars.force);
+  const InitCommand gmsh = std::get<InitCommand>(
+      parsed({"init", "mine", "--from", "gmsh", "a.msh", "b.msh", "--force"}));
+  EXPECT_EQ(gmsh.name, "mine");
+  EXPECT_EQ(gmsh.from, "gmsh");
+  EXPECT_EQ(gmsh.meshes, (std::vector<std::string>{"a.msh", "b.msh"}));
+  EXPECT_TRUE(gmsh.force);
+}
+
 TEST(CommandLine, OtherVerbsKeepTheirArgumentsUntouched) {
   const ExternalCommand report =
       std::get<ExternalCommand>(parsed({"report", "dir", "--help", "--set"}));
@@ -57,10 +70,17 @@ TEST(CommandLine, OtherVerbsKeepTheirArgumentsUntouched) {
 TEST(CommandLine, VersionAndHelpAreNoErrors) {
   const PrintCommand version = std::get<PrintCommand>(parsed({"--version"}));
   EXPECT_TRUE(version.text.starts_with("abut ")) << version.text;
+  EXPECT_NE(version.text.find("\ncommit   "), std::string::npos) << version.text;
   EXPECT_EQ(version.exit_code, 0);
   const PrintCommand help = std::get<PrintCommand>(parsed({"run", "--help"}));
   EXPECT_NE(help.text.find("--force"), std::string::npos) << help.text;
   EXPECT_EQ(help.exit_code, 0);
+}
+
+TEST(CommandLine, HelpListsEveryVerb) {
+  const std::string help = std::get<PrintCommand>(parsed({"--help"})).text;
+  for (const char* verb : {"run", "check", "split", "reference", "report", "study"})
+    EXPECT_NE(help.find(std::string("\n  ") + verb + ' '), std::string::npos) << verb << help;
 }
 
 TEST(CommandLine, WhatIsWrongEndsWithCodeTwo) {
@@ -68,13 +88,17 @@ TEST(CommandLine, WhatIsWrongEndsWithCodeTwo) {
        std::vector<std::vector<const char*>>{{},
                                              {"run"},
                                              {"split", "a"},
+                                             {"init"},
+                                             {"init", "a", "--from"},
                                              {"split", "a", "--bodies", "1"},
                                              {"run", "a", "b"},
                                              {"run", "a", "--nonsense"},
                                              {"check", "a", "--out", "d"},
                                              {"run", "a", "--set"},
                                              {"--nonsense"},
-                                             {"reference", "a"}}) {
+                                             {"reference", "a", "b"},
+                                             {"reference", "a", "--keys"},
+                                             {"reference", "--json-schema", "--keys"}}) {
     const Command command = parsed(arguments);
     ASSERT_TRUE(std::holds_alternative<PrintCommand>(command));
     EXPECT_EQ(std::get<PrintCommand>(command).exit_code, 2);

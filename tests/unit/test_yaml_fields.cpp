@@ -172,7 +172,7 @@ TEST(ResolvedYaml, MergesReadersThatShareAMap) {
 
 TEST(Reference, ListsEveryKeyWithTypeUnitDefaultAndMeaning) {
   Reference reference;
-  reference.add<All>("");
+  reference.add<All>("", "");
   const std::string text = reference.markdown();
   for (const char* row :
        {"| `length` | number, greater than 0 | m | required | length of the bar |",
@@ -282,11 +282,9 @@ INSTANTIATE_TEST_SUITE_P(
             "between its parts."},
         Bad{"NotAMap", "- a\n- b\n",
             "s.yaml: is not a map of keys. Write a scene as key: value lines, beginning with "
-            "meta:, "
             "time:, bodies:."},
         Bad{"Empty", "",
             "s.yaml: is empty. Write a scene as key: value lines, beginning with "
-            "meta:, "
             "time:, bodies:."}),
     [](const testing::TestParamInfo<Bad>& instance) { return std::string(instance.param.name); });
 

@@ -28,12 +28,12 @@ class KeyList:
     def __init__(self, abut: Path):
         self.abut = abut
         try:
-            text = subprocess.run([abut, "reference"], capture_output=True, text=True, check=True,
-                                  timeout=30).stdout
+            text = subprocess.run([abut, "reference", "--keys"], capture_output=True, text=True,
+                                  check=True, timeout=30).stdout
         except (OSError, subprocess.SubprocessError) as error:
             raise ToolError(f"{abut} does not answer ({error}). Build the programs first.",
                             3) from error
-        self.keys = re.findall(r"^\| `([^`]+)` \|", text, re.MULTILINE)
+        self.keys = list(dict.fromkeys(text.split()))
 
     def refuse_unknown(self, key: str, bodies: dict, where: str) -> None:
         parts = key.split(".")
