@@ -8,6 +8,7 @@ usage: test_pictures.py REPORT FILM PICTURE   (ends with 77 where packages of pi
 import array
 import base64
 import json
+import random
 import re
 import shutil
 import subprocess
@@ -16,11 +17,13 @@ import tempfile
 import unittest
 import zlib
 from pathlib import Path
+from unittest import mock
 
-from made_fields import PEAK, PUSH, TIMES, brick, make_fields, make_run, way
+from made_fields import PEAK, PUSH, TIMES, brick, make_fields, make_run, state, way
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 sys.dont_write_bytecode = True
+from abut_tools import bodies_page  # noqa: E402
 from abut_tools.motion import motion_of  # noqa: E402
 from abut_tools.surfaces import clustered, surface_of  # noqa: E402
 from abut_tools.vtu import Grid, State  # noqa: E402
@@ -203,6 +206,33 @@ class Pages(Made):
                                                 "name='a' file='../summary.json'/></Collection>"
                                                 "</VTKFile>")
         self.assertIn("no file of fields/", self.refused(2, REPORT, self.folder))
+
+
+    def test_bodies_that_are_too_large_for_a_page_are_thinned_and_it_says_so(self):
+        chance = random.Random(1)  # no two numbers alike: nothing packs well
+        points = [(x / 40, y / 40, 0.0) for y in range(41) for x in range(41)]
+        cells = [(k, k + 1, k + 42, k + 41) for k in range(40 * 41) if k % 41 < 40]
+        (self.folder / "fields").mkdir(parents=True)
+        lines = ""
+        for k in range(50):
+            moved = [tuple(1e-3 * chance.random() for _ in range(3)) for _ in points]
+            (self.folder / f"fields/plate_{k:06}.vtu").write_text(
+                state(points, cells, 9, moved, [chance.random() for _ in points]))
+            lines += f'<DataSet timestep="{k}" name="plate" file="fields/plate_{k:06}.vtu"/>'
+        (self.folder / "fields.pvd").write_text(
+            f"<VTKFile><Collection>{lines}</Collection></VTKFile>")
+        for limit, states, nodes in ((10_000_000, 50, 1681), (800_000, 30, 1681),
+                                     (100_000, 30, 1000)):
+            with mock.patch.object(bodies_page, "LIMIT", limit):
+                motion, data = bodies_page.fitting_motion(self.folder, (1.0, "s"))
+            self.assertLessEqual(len(data["block"]), limit)
+            self.assertLessEqual(len(motion.bodies[0].rest), nodes)
+            self.assertGreater(len(motion.bodies[0].rest), 100)
+            self.assertLessEqual(len(motion.times), 50)
+            self.assertGreaterEqual(len(motion.times), states)
+            words = bodies_page.words_of(motion)
+            self.assertEqual("fewer nodes" in words, nodes < 1681, words)
+            self.assertEqual("of the 50 states" in words, limit < 10_000_000, words)
 
 
 class Pictures(Made):

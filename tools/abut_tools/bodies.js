@@ -239,7 +239,7 @@ class Stage {
       length += Math.hypot(s[3 * e[k]] - s[3 * e[k + 1]], s[3 * e[k] + 1] - s[3 * e[k + 1] + 1]);
     }
     if (!seen || (length / seen < 5 * ratio && !body.strip)) return;
-    const bias = 1e-3 * this.picture.width;
+    const bias = 3e-3 * this.picture.width;  // lines are on whole pixels, beside their facets
     for (let k = 0; k < e.length; k += 2) this.picture.line(s, e[k], e[k + 1], bias, 0.72,
       !body.triangles.length);
   }
