@@ -225,8 +225,12 @@ class Stage {
     if (!this.tables[colour]) this.tables[colour] = table(() => channels(colour));
     return this.tables[colour];
   }
+  stops(shade) {  // nothing looks like the ground
+    const {plain, signed, signed_dark} = this.data.ramps;
+    return shade.low >= 0 ? plain : scheme.matches ? signed_dark : signed;
+  }
   colours(shade) {
-    const stops = this.data.ramps[shade.low < 0 ? "signed" : "plain"];
+    const stops = this.stops(shade);
     if (!this.tables[shade.key]) this.tables[shade.key] = table((t) => rampColour(stops, t));
     return this.tables[shade.key];
   }

@@ -10,7 +10,7 @@ from abut_tools.motion import Motion, Shade
 from abut_tools.raster import Picture, ramp, stops_of
 from abut_tools.run_figures import figures_of, force_figure
 from abut_tools.run_folder import Run
-from abut_tools.tables import COLOURS, RAMPS, Figure, ToolError, few, measured, scaled_unit
+from abut_tools.tables import COLOURS, Figure, ToolError, few, measured, ramp_of, scaled_unit
 
 matplotlib.use("Agg")  # before pyplot would look for a display, which nothing here needs
 from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: E402
@@ -82,7 +82,7 @@ class Scene:
             plain = COLOURS[k % len(COLOURS)] if not self.shade else "#9aa4b2"
             return numpy.repeat(stops_of((plain,)), count, 0)
         scale = self.motion.scales[self.shade.key]
-        stops = RAMPS["signed" if scale.low < 0.0 else "plain"]
+        stops = ramp_of(scale.low, self.look.dark)
         return ramp(stops, (numpy.frombuffer(row) - scale.low) / (scale.high - scale.low))
 
     def picture(self, state: int, width: int, height: int, ground: str) -> numpy.ndarray:
@@ -176,7 +176,7 @@ class Frames:
         scale, theme = self.motion.scales[self.shade.key], self.theme
         width, height = (pixels / self.finer for pixels in self.look.size)
         factor, unit = scaled_unit(max(abs(scale.low), abs(scale.high)), self.shade.unit)
-        stops = RAMPS["signed" if scale.low < 0.0 else "plain"]
+        stops = ramp_of(scale.low, self.look.dark)
         strip = ramp(stops, numpy.linspace(0.0, 1.0, 256))[None] / 255.0
         left = bodies[0] + 130.0 / width
         bar = self.sheet.add_axes((left, bodies[1] - 20.0 / height, bodies[0] + bodies[2] - left,

@@ -14,7 +14,7 @@ function drawScale(stage) {
   if (!shade) return;
   const ramp = element("ramp"), context = ramp.getContext("2d");
   ramp.width = 256; ramp.height = 1;
-  const stops = stage.data.ramps[shade.low < 0 ? "signed" : "plain"];
+  const stops = stage.stops(shade);
   for (let k = 0; k < 256; k++) {
     context.fillStyle = "rgb(" + rampColour(stops, k / 255).join(",") + ")";
     context.fillRect(k, 0, 1, 1);
@@ -262,6 +262,7 @@ async function openStage(data) {
   new ResizeObserver(() => stage.redraw()).observe(stage.canvas);
   followTheme(() => {
     stage.tables = {};
+    drawScale(stage);
     showBodies(stage);
     drawSpaceTime(stage);
     drawGauge(stage);
