@@ -103,7 +103,7 @@ def add_components(figure: Figure, run: Run, vectors: dict[str, str],
 def vector_figure(run: Run, figure: Figure, vectors: dict[str, str],
                   colours: dict[str, str], scale: float = 0.0) -> Figure:
     if not add_components(figure, run, vectors, colours, scale):
-        figure.quantity = f"magnitude of the {figure.quantity}"
+        figure.title += ", magnitude"
         add_sizes(figure, run, vectors, colours)
     return figure
 
