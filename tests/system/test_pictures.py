@@ -256,6 +256,19 @@ class Pictures(Made):
         self.assertFalse([pixel for pixel in (first.getpixel((x, 110)) for x in range(20, 940))
                           if pixel[0] > pixel[2] + 60], "at the begin nothing is stressed")
 
+    def test_bars_have_a_diagram_of_space_and_time(self):
+        make_run(self.folder, 1)
+        image = self.image("--size", "900x600", "--field", "displacement")
+        # below the strips: the left bar stands still, the right one comes from the right
+        plane = [[image.getpixel((x, y)) for x in range(120, 860)] for y in range(200, 354)]
+        moved = [sum(pixel[2] > pixel[0] + 60 for pixel in row) for row in plane]
+        upper, lower = moved[:70], moved[84:]
+        self.assertGreater(sum(upper), 5000, "places go up, and the right bar is above")
+        self.assertLess(sum(lower), 500)
+        early = sum(row[k][2] > row[k][0] + 60 for row in plane for k in range(100))
+        late = sum(row[-k][2] > row[-k][0] + 60 for row in plane for k in range(1, 101))
+        self.assertGreater(late, 5 * early + 1000, "time goes to the right")
+
     def test_what_is_in_front_hides_what_is_behind(self):
         make_run(self.folder, 3)
         # along x from the right: the right brick, the left one behind it
