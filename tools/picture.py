@@ -52,6 +52,8 @@ def make_picture(options: argparse.Namespace, out: Path) -> str:
     time = time_of(options.directory, options.time)
     # Colours that mean the same at all times: the scale is that of a part of the run's states.
     motion = motion_of(options.directory, 20, also=time)
+    if motion.dimension == 1:  # a diagram of space and time needs more, and bars are small
+        motion = motion_of(options.directory, 150, also=time)
     look = Look(options.size, options.field, options.view, options.deformation, options.dark)
     image = Frames(run, motion, look).draw(motion.times.index(time))
     temporary = out.with_name(out.name + ".tmp")

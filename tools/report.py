@@ -32,12 +32,23 @@ def time_scale_of(run: Run) -> tuple[float, str]:
     return scaled_unit(max(times, default=0.0), "s")
 
 
-def bodies_section(run: Run, moving: tuple | None, beside: Figure | None) -> str:
-    """The bodies, a force beside them; or how to get them."""
+def bodies_section(run: Run, moving: tuple | None, beside: list[Figure]) -> str:
+    """The bodies, curves beside them; or how to get them."""
     if moving is None:
         return section("The bodies", how_to_get(run.summary.get("windows", 0)))
-    figure = canvas_of(beside) if beside else ""
-    return section("The bodies", stage(moving[0], figure) + space_time(moving[0]))
+    curves = "".join(canvas_of(figure) for figure in beside)
+    return section("The bodies", stage(moving[0], curves) + space_time(moving[0]))
+
+
+def beside_bodies(figures: list[Figure], moving: tuple | None) -> list[Figure]:
+    """Forces, and energies where there is room: strips of bars are low."""
+    if not moving:
+        return []
+    force = force_figure(figures)
+    energy = next((figure for figure in figures if figure.name == "energy"),
+                  next((figure for figure in figures if figure.name.startswith("energy_")), None))
+    wanted = [force] + ([energy] if moving[0].dimension > 1 and energy is not force else [])
+    return [figure for figure in wanted if figure]
 
 
 def figures_section(figures: list[Figure]) -> str:
@@ -52,12 +63,12 @@ def figures_section(figures: list[Figure]) -> str:
 
 def page_of(run: Run, moving: tuple | None, library: str, limit: int) -> str:
     figures = figures_of(run)
-    beside = force_figure(figures) if moving else None
+    beside = beside_bodies(figures, moving)
     status, kind = status_of(run)
     scale, told = time_scale_of(run), what_happened(run)
     data = [figure.data(limit, scale) for figure in figures]
     for figure in data:
-        figure["moment"] = beside is not None and figure["name"] == beside.name
+        figure["moment"] = figure["name"] in [each.name for each in beside]
     scripts = ("page.js", "bodies.js", "stage.js") if moving else ("page.js",)
     return filled(
         TEMPLATE, library, scripts,
@@ -67,7 +78,7 @@ def page_of(run: Run, moving: tuple | None, library: str, limit: int) -> str:
         section("Warnings", warnings_list(run)) +
         section("Bodies that are in each other", overlaps_table(run)),
         bodies=bodies_section(run, moving, beside),
-        figures=figures_section([figure for figure in figures if figure is not beside]),
+        figures=figures_section([figure for figure in figures if figure not in beside]),
         accuracy=section("Accuracy given up", given_up_table(run)) +
         section("Expectations", expectations_table(run)) +
         section("Against the closed form", closed_form_table(run)),

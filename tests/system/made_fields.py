@@ -1,5 +1,5 @@
 """A run with fields made by hand, for tests of pages and pictures: two bricks of two cells each
-that meet, in space or in the plane; the right one's stress is known at every node and time."""
+that meet, in space, in the plane or on a line; the right one's stress is known at every node."""
 
 import base64
 import csv
@@ -30,7 +30,9 @@ def array(kind: str, code: str, name: str, components: int, numbers: list) -> st
 
 
 def brick(shift: float, dimension: int) -> tuple[list, list, int]:
-    """Nodes, cells and VTK's kind of cell: two cubes or squares of edge 1 in a row along x."""
+    """Nodes, cells and VTK's kind of cell: two cubes, squares or lines of edge 1 along x."""
+    if dimension == 1:
+        return [(shift + x, 0.0, 0.0) for x in (0.0, 1.0, 2.0)], [(0, 1), (1, 2)], 3
     layers = (0.0, 1.0) if dimension == 3 else (0.0,)
     points = [(shift + x, y, z) for z in layers for y in (0.0, 1.0) for x in (0.0, 1.0, 2.0)]
     flat = [(k, k + 1, k + 4, k + 3) for k in (0, 1)]

@@ -163,7 +163,7 @@ class SystemTest(unittest.TestCase):
         tables = ["history.csv"] + (["closed_form.csv"] if "closed_form" in summary else [])
         resolved = (folder / "scene.resolved.yaml").read_text(encoding="utf-8")
         pictures = re.search(r"^output:\n(?:  .*\n)*?  fields:", resolved, re.MULTILINE)
-        fields = {"fields", "fields.pvd"} if pictures else set()
+        fields = {"fields", "fields.pvd", "fields.pvsm"} if pictures else set()
         self.assertEqual(names, FILES | fields | set(tables))
         self.events(folder)
         columns = []

@@ -8,6 +8,7 @@ usage: test_pictures.py REPORT FILM PICTURE   (ends with 77 where packages of pi
 import array
 import base64
 import json
+import random
 import re
 import shutil
 import subprocess
@@ -16,11 +17,13 @@ import tempfile
 import unittest
 import zlib
 from pathlib import Path
+from unittest import mock
 
-from made_fields import PEAK, PUSH, TIMES, brick, make_fields, make_run, way
+from made_fields import PEAK, PUSH, TIMES, brick, make_fields, make_run, state, way
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 sys.dont_write_bytecode = True
+from abut_tools import bodies_page  # noqa: E402
 from abut_tools.motion import motion_of  # noqa: E402
 from abut_tools.surfaces import clustered, surface_of  # noqa: E402
 from abut_tools.vtu import Grid, State  # noqa: E402
@@ -205,6 +208,33 @@ class Pages(Made):
         self.assertIn("no file of fields/", self.refused(2, REPORT, self.folder))
 
 
+    def test_bodies_that_are_too_large_for_a_page_are_thinned_and_it_says_so(self):
+        chance = random.Random(1)  # no two numbers alike: nothing packs well
+        points = [(x / 40, y / 40, 0.0) for y in range(41) for x in range(41)]
+        cells = [(k, k + 1, k + 42, k + 41) for k in range(40 * 41) if k % 41 < 40]
+        (self.folder / "fields").mkdir(parents=True)
+        lines = ""
+        for k in range(50):
+            moved = [tuple(1e-3 * chance.random() for _ in range(3)) for _ in points]
+            (self.folder / f"fields/plate_{k:06}.vtu").write_text(
+                state(points, cells, 9, moved, [chance.random() for _ in points]))
+            lines += f'<DataSet timestep="{k}" name="plate" file="fields/plate_{k:06}.vtu"/>'
+        (self.folder / "fields.pvd").write_text(
+            f"<VTKFile><Collection>{lines}</Collection></VTKFile>")
+        for limit, states, nodes in ((10_000_000, 50, 1681), (800_000, 30, 1681),
+                                     (100_000, 30, 1000)):
+            with mock.patch.object(bodies_page, "LIMIT", limit):
+                motion, data = bodies_page.fitting_motion(self.folder, (1.0, "s"))
+            self.assertLessEqual(len(data["block"]), limit)
+            self.assertLessEqual(len(motion.bodies[0].rest), nodes)
+            self.assertGreater(len(motion.bodies[0].rest), 100)
+            self.assertLessEqual(len(motion.times), 50)
+            self.assertGreaterEqual(len(motion.times), states)
+            words = bodies_page.words_of(motion)
+            self.assertEqual("fewer nodes" in words, nodes < 1681, words)
+            self.assertEqual("of the 50 states" in words, limit < 10_000_000, words)
+
+
 class Pictures(Made):
     def image(self, *arguments):
         from PIL import Image
@@ -225,6 +255,19 @@ class Pictures(Made):
         first = self.image("--time", 0.0)
         self.assertFalse([pixel for pixel in (first.getpixel((x, 110)) for x in range(20, 940))
                           if pixel[0] > pixel[2] + 60], "at the begin nothing is stressed")
+
+    def test_bars_have_a_diagram_of_space_and_time(self):
+        make_run(self.folder, 1)
+        image = self.image("--size", "900x600", "--field", "displacement")
+        # below the strips: the left bar stands still, the right one comes from the right
+        plane = [[image.getpixel((x, y)) for x in range(120, 860)] for y in range(200, 354)]
+        moved = [sum(pixel[2] > pixel[0] + 60 for pixel in row) for row in plane]
+        upper, lower = moved[:70], moved[84:]
+        self.assertGreater(sum(upper), 5000, "places go up, and the right bar is above")
+        self.assertLess(sum(lower), 500)
+        early = sum(row[k][2] > row[k][0] + 60 for row in plane for k in range(100))
+        late = sum(row[-k][2] > row[-k][0] + 60 for row in plane for k in range(1, 101))
+        self.assertGreater(late, 5 * early + 1000, "time goes to the right")
 
     def test_what_is_in_front_hides_what_is_behind(self):
         make_run(self.folder, 3)

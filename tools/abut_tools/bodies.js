@@ -43,12 +43,18 @@ function bodyFrom(data, told, block) {
 function channels(colour) {
   return [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16));
 }
-function packedColour(r, g, b) { return (255 << 24 | b << 16 | g << 8 | r) >>> 0; }
+// Signed: engines of browsers are slow with larger whole numbers.
+function packedColour(r, g, b) { return 255 << 24 | b << 16 | g << 8 | r; }
 // Between stops, linearly; t from 0 to 1.
 function rampColour(stops, t) {
   const at = Math.min(stops.length - 1.000001, Math.max(0, t * (stops.length - 1)));
   const k = Math.floor(at), one = channels(stops[k]), other = channels(stops[k + 1]);
   return one.map((v, i) => Math.round(v + (at - k) * (other[i] - v)));
+}
+// A colour of the 256 of a scale, not quite a whole number.
+function levelOf(shade, value) {
+  const part = (value - shade.low) / (shade.high - shade.low);
+  return 0.25 + 255.5 * Math.max(0, Math.min(1, part));
 }
 const LEVELS = 32;
 function lit(colour, level) {
@@ -56,7 +62,7 @@ function lit(colour, level) {
   return packedColour(...colour.map((v) => Math.round(v * light)));
 }
 function table(colourOf) {  // of every level of light 256 colours
-  const out = new Uint32Array(LEVELS * 256);
+  const out = new Int32Array(LEVELS * 256);
   for (let k = 0; k < 256; k++) {
     const colour = colourOf(k / 255);
     for (let level = 0; level < LEVELS; level++) out[level * 256 + k] = lit(colour, level);
@@ -68,33 +74,41 @@ class Picture {
   constructor(width, height) {
     this.width = width; this.height = height;
     this.image = new ImageData(width, height);
-    this.pixels = new Uint32Array(this.image.data.buffer);
+    this.pixels = new Int32Array(this.image.data.buffer);
     this.depth = new Float32Array(width * height);
   }
   clear() { this.pixels.fill(0); this.depth.fill(-Infinity); }
-  triangle(p, a, b, c, colours, va, vb, vc) {
+  // Of values between 0 and 255 at its corners: colours from `first` on.
+  triangle(p, a, b, c, colours, first, va, vb, vc) {
     const {width, height, pixels, depth} = this;
     const ax = p[3 * a], ay = p[3 * a + 1], bx = p[3 * b], by = p[3 * b + 1];
     const cx = p[3 * c], cy = p[3 * c + 1];
     const area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay);
     if (!area) return;
-    const x0 = Math.max(0, Math.ceil(Math.min(ax, bx, cx) - 0.5));
-    const x1 = Math.min(width - 1, Math.floor(Math.max(ax, bx, cx) + 0.5));
-    const y0 = Math.max(0, Math.ceil(Math.min(ay, by, cy) - 0.5));
-    const y1 = Math.min(height - 1, Math.floor(Math.max(ay, by, cy) + 0.5));
-    const one = 1 / area, slack = -1e-4;
-    const stepA = (by - cy) * one, stepB = (cy - ay) * one;
-    const az = p[3 * a + 2], bz = p[3 * b + 2], cz = p[3 * c + 2];
+    const y0 = Math.max(0, Math.ceil(Math.min(ay, by, cy)));
+    const y1 = Math.min(height - 1, Math.floor(Math.max(ay, by, cy)));
+    const one = 1 / area, az = p[3 * a + 2], bz = p[3 * b + 2], cz = p[3 * c + 2];
+    const du = (by - cy) * one, dv = (cy - ay) * one, dw = -du - dv;
+    const dz = du * az + dv * bz + dw * cz, dt = du * va + dv * vb + dw * vc;
     for (let y = y0; y <= y1; y++) {
-      let u = ((bx - x0) * (cy - y) - (cx - x0) * (by - y)) * one;
-      let v = ((cx - x0) * (ay - y) - (ax - x0) * (cy - y)) * one;
-      for (let x = x0, at = y * width + x0; x <= x1; x++, at++, u += stepA, v += stepB) {
-        const w = 1 - u - v;
-        if (u < slack || v < slack || w < slack) continue;
-        const z = u * az + v * bz + w * cz;
+      const u = (bx * (cy - y) - cx * (by - y)) * one, v = (cx * (ay - y) - ax * (cy - y)) * one;
+      const w = 1 - u - v;
+      // Between which columns all three weights are positive.
+      let from = 0, to = width - 1;
+      if (du > 0) from = Math.max(from, -u / du); else if (du < 0) to = Math.min(to, -u / du);
+      else if (u < 0) continue;
+      if (dv > 0) from = Math.max(from, -v / dv); else if (dv < 0) to = Math.min(to, -v / dv);
+      else if (v < 0) continue;
+      if (dw > 0) from = Math.max(from, -w / dw); else if (dw < 0) to = Math.min(to, -w / dw);
+      else if (w < 0) continue;
+      from = Math.ceil(from - 1e-3);
+      const last = y * width + Math.floor(to + 1e-3);
+      let z = u * az + v * bz + w * cz + from * dz;
+      let t = first + u * va + v * vb + w * vc + from * dt;
+      for (let at = y * width + from; at <= last; at++, z += dz, t += dt) {
         if (z <= depth[at]) continue;
         depth[at] = z;
-        pixels[at] = colours[Math.min(255, Math.max(0, u * va + v * vb + w * vc)) | 0];
+        pixels[at] = colours[t | 0];
       }
     }
   }
@@ -121,6 +135,7 @@ class Stage {
     this.data = data;
     const block = new Block(buffer);
     this.bodies = data.bodies.map((told) => bodyFrom(data, told, block));
+    this.levels = new Float32Array(Math.max(...data.bodies.map((body) => body.nodes)));
     this.canvas = document.getElementById("bodies");
     this.state = 0; this.shade = data.shades.length ? data.shades[0].key : ""; this.magnify = 1;
     this.picture = null; this.moving = false; this.waits = false; this.gauge = null;
@@ -196,22 +211,26 @@ class Stage {
     const colours = shade ? this.colours(shade) : this.one(plain);
     const row = shade ? body.values[shade.key][this.state] : null;
     const from = shade ? shade.least : 0, span = shade ? (shade.most - shade.least) / 65535 : 0;
-    const level = (q) => shade ?
-      255.99 * (from + q * span - shade.low) / (shade.high - shade.low) : 0;
-    const t = body.triangles;
+    const t = body.triangles, levels = this.levels;
+    for (let k = 0; row && k < body.nodes; k++) {
+      levels[k] = levelOf(shade, from + row[k] * span);
+    }
     for (let k = 0; k < t.length; k += 3) {
-      const a = t[k], b = t[k + 1], c = t[k + 2], light = this.light(s, a, b, c) * 256;
-      const part = colours.subarray(light, light + 256);
-      picture.triangle(s, a, b, c, part, row ? level(row[a]) : 0, row ? level(row[b]) : 0,
-        row ? level(row[c]) : 0);
+      const a = t[k], b = t[k + 1], c = t[k + 2], first = this.light(s, a, b, c) * 256;
+      if (row) picture.triangle(s, a, b, c, colours, first, levels[a], levels[b], levels[c]);
+      else picture.triangle(s, a, b, c, colours, first, 0, 0, 0);
     }
   }
   one(colour) {
     if (!this.tables[colour]) this.tables[colour] = table(() => channels(colour));
     return this.tables[colour];
   }
+  stops(shade) {  // nothing looks like the ground
+    const {plain, signed, signed_dark} = this.data.ramps;
+    return shade.low >= 0 ? plain : scheme.matches ? signed_dark : signed;
+  }
   colours(shade) {
-    const stops = this.data.ramps[shade.low < 0 ? "signed" : "plain"];
+    const stops = this.stops(shade);
     if (!this.tables[shade.key]) this.tables[shade.key] = table((t) => rampColour(stops, t));
     return this.tables[shade.key];
   }
@@ -224,7 +243,7 @@ class Stage {
       length += Math.hypot(s[3 * e[k]] - s[3 * e[k + 1]], s[3 * e[k] + 1] - s[3 * e[k + 1] + 1]);
     }
     if (!seen || (length / seen < 5 * ratio && !body.strip)) return;
-    const bias = 1e-3 * this.picture.width;
+    const bias = 3e-3 * this.picture.width;  // lines are on whole pixels, beside their facets
     for (let k = 0; k < e.length; k += 2) this.picture.line(s, e[k], e[k + 1], bias, 0.72,
       !body.triangles.length);
   }

@@ -10,7 +10,7 @@ from abut_tools.motion import Motion, Shade
 from abut_tools.raster import Picture, ramp, stops_of
 from abut_tools.run_figures import figures_of, force_figure
 from abut_tools.run_folder import Run
-from abut_tools.tables import COLOURS, RAMPS, Figure, ToolError, few, measured, scaled_unit
+from abut_tools.tables import COLOURS, Figure, ToolError, few, measured, ramp_of, scaled_unit
 
 matplotlib.use("Agg")  # before pyplot would look for a display, which nothing here needs
 from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: E402
@@ -82,7 +82,7 @@ class Scene:
             plain = COLOURS[k % len(COLOURS)] if not self.shade else "#9aa4b2"
             return numpy.repeat(stops_of((plain,)), count, 0)
         scale = self.motion.scales[self.shade.key]
-        stops = RAMPS["signed" if scale.low < 0.0 else "plain"]
+        stops = ramp_of(scale.low, self.look.dark)
         return ramp(stops, (numpy.frombuffer(row) - scale.low) / (scale.high - scale.low))
 
     def picture(self, state: int, width: int, height: int, ground: str) -> numpy.ndarray:
@@ -103,6 +103,31 @@ class Scene:
         return picture.image(FINER)
 
 
+def space_time(scene: Scene, width: int, height: int, ground: str) -> numpy.ndarray:
+    """Places of bars over time: between two states their cells are parallelograms."""
+    motion = scene.motion
+    width, height = FINER * width, FINER * height
+    picture = Picture(width, height, tuple(int(ground[k: k + 2], 16) for k in (1, 3, 5)))
+    times = numpy.array(motion.times)
+    across = (times - times[0]) / ((times[-1] - times[0]) or 1.0) * width
+    span = (motion.high[0] - motion.low[0]) or 1.0
+    for k, body in enumerate(motion.bodies):
+        n = len(body.rest) // 2  # the other half is the other edge of the strip
+        if body.surface.dimension != 1 or n < 2:
+            continue
+        places = numpy.array([scene.rest[k][:n, 0] + numpy.frombuffer(moved)[: 3 * n: 3]
+                              for moved in body.displacements])
+        points = numpy.zeros((len(times) * n, 3))
+        points[:, 0] = numpy.repeat(across, n)
+        points[:, 1] = (motion.high[0] - places.ravel()) / span * height
+        colours = numpy.concatenate([scene.colours(k, s)[:n] for s in range(len(times))])
+        first = (numpy.arange(len(times) - 1)[:, None] * n + numpy.arange(n - 1)).ravel()
+        corners = numpy.concatenate([numpy.stack([first, first + 1, first + n], 1),
+                                     numpy.stack([first + 1, first + n + 1, first + n], 1)])
+        picture.triangles(points, corners, colours, False)
+    return picture.image(FINER)
+
+
 class Curve(NamedTuple):
     """The force over time, in the units of its axes."""
 
@@ -117,7 +142,8 @@ def curve_of(run: Run) -> Curve | None:
         return None
     largest = max((abs(y) for curve in figure.curves for y in curve["y"]), default=0.0)
     factor, unit = scaled_unit(largest, figure.unit)
-    return Curve(figure, factor, f"{figure.quantity} [{unit}]" if unit else figure.quantity)
+    quantity = figure.quantity.split(",")[0]  # axes of films are short
+    return Curve(figure, factor, f"{quantity} [{unit}]" if unit else quantity)
 
 
 class Frames:
@@ -153,6 +179,8 @@ class Frames:
             bodies, curve = (0.02, foot, 0.57, 1.0 - top - foot), (0.675, 0.16, 0.305, 0.70)
         elif self.curve is not None:
             share = 0.55 if self.scene.aspect() < 3.0 else 0.3
+            if self.motion.dimension == 1:  # strips, above space and time
+                share = 0.14
             bodies = (0.02, 1.0 - top - share, 0.96, share)
             room = 1.0 - top - share - foot
             curve = (70.0 / width, 50.0 / height, 1.0 - 90.0 / width,
@@ -165,10 +193,16 @@ class Frames:
         self.scale_bar(bodies, small)
         self.clock = self.sheet.text(bodies[0], bodies[1] - 14.0 / height, "", fontsize=10,
                                      color=theme["ink"], va="center", animated=True)
-        self.plot, self.mark, self.ground = None, None, None
+        self.marks, self.ground = [], None
+        if self.motion.dimension == 1 and len(self.motion.times) > 2:
+            left, low, across, high = curve or (70.0 / width, 50.0 / height, 1.0 - 90.0 / width,
+                                                0.45)
+            gap = (52.0 if curve else 0.0) / height
+            share = 0.55 * (high - gap) if curve else high
+            self.draw_space_time((left, low + high - share, across, share), small)
+            curve = (left, low, across, high - gap - share) if curve else None
         if curve:
-            self.plot = self.sheet.add_axes(curve, facecolor=theme["ground"])
-            self.draw_curve(small)
+            self.draw_curve(self.sheet.add_axes(curve, facecolor=theme["ground"]), small)
 
     def scale_bar(self, bodies: tuple, small: int) -> None:
         if not self.shade:
@@ -176,7 +210,7 @@ class Frames:
         scale, theme = self.motion.scales[self.shade.key], self.theme
         width, height = (pixels / self.finer for pixels in self.look.size)
         factor, unit = scaled_unit(max(abs(scale.low), abs(scale.high)), self.shade.unit)
-        stops = RAMPS["signed" if scale.low < 0.0 else "plain"]
+        stops = ramp_of(scale.low, self.look.dark)
         strip = ramp(stops, numpy.linspace(0.0, 1.0, 256))[None] / 255.0
         left = bodies[0] + 130.0 / width
         bar = self.sheet.add_axes((left, bodies[1] - 20.0 / height, bodies[0] + bodies[2] - left,
@@ -200,8 +234,35 @@ class Frames:
             return colour
         return "#" + "".join(f"{round(v + 0.38 * (255 - v)):02x}" for v in stops_of((colour,))[0])
 
-    def draw_curve(self, small: int) -> None:
-        plot, theme, figure = self.plot, self.theme, self.curve.figure
+    def draw_space_time(self, place: tuple, small: int) -> None:
+        theme = self.theme
+        plot = self.sheet.add_axes(place, facecolor=theme["ground"])
+        image = space_time(self.scene, max(8, round(place[2] * self.look.size[0])),
+                           max(8, round(place[3] * self.look.size[1])), theme["ground"])
+        times, (low, high) = self.motion.times, (self.motion.low[0], self.motion.high[0])
+        factor, unit = scaled_unit(max(abs(low), abs(high)), "m")
+        plot.imshow(image, aspect="auto", extent=(times[0] * self.time_factor,
+                                                  times[-1] * self.time_factor,
+                                                  low * factor, high * factor))
+        plot.set_title("Space and time", fontsize=10, color=theme["ink"], loc="left")
+        plot.set_ylabel(f"place [{unit}]", fontsize=small, color=theme["soft"])
+        self.finish(plot, small)
+
+    def finish(self, plot, small: int) -> None:
+        """What all axes over time have."""
+        theme = self.theme
+        plot.tick_params(labelsize=small, colors=theme["soft"])
+        for spine in plot.spines.values():
+            spine.set_color(theme["line"])
+        if self.motion.dimension == 1:  # two of them, one above the other
+            plot.set_xlim(self.motion.times[0] * self.time_factor,
+                          self.motion.times[-1] * self.time_factor)
+        mark = plot.axvline(self.motion.times[0] * self.time_factor, color=theme["ink"],
+                            linewidth=1.2, animated=True)
+        self.marks.append((plot, mark))
+
+    def draw_curve(self, plot, small: int) -> None:
+        theme, figure = self.theme, self.curve.figure
         for curve in figure.curves:
             exact = curve["exact"]
             plot.plot([t * self.time_factor for t in curve["x"]],
@@ -213,15 +274,11 @@ class Frames:
         plot.set_xlabel(f"time [{self.time_unit}]", fontsize=small, color=theme["soft"])
         plot.set_ylabel(self.curve.label, fontsize=small, color=theme["soft"])
         plot.set_title(figure.title, fontsize=10, color=theme["ink"], loc="left")
-        plot.tick_params(labelsize=small, colors=theme["soft"])
         plot.grid(color=theme["line"], linewidth=0.6)
-        for spine in plot.spines.values():
-            spine.set_color(theme["line"])
         if len(figure.curves) > 1:
             plot.legend(fontsize=small - 1, frameon=False, labelcolor=theme["soft"],
                         loc="upper right")
-        self.mark = plot.axvline(self.motion.times[0] * self.time_factor, color=theme["ink"],
-                                 linewidth=1.2, animated=True)
+        self.finish(plot, small)
 
     def draw(self, state: int) -> numpy.ndarray:
         """(height, width, 3) bytes of the frame. What stays is drawn once."""
@@ -232,9 +289,9 @@ class Frames:
         time = self.motion.times[state]
         self.clock.set_text(f"t = {measured(round_off(time, self.motion.times), 's')}")
         self.sheet.draw_artist(self.clock)
-        if self.mark:
-            self.mark.set_xdata([time * self.time_factor] * 2)
-            self.plot.draw_artist(self.mark)
+        for plot, mark in self.marks:
+            mark.set_xdata([time * self.time_factor] * 2)
+            plot.draw_artist(mark)
         frame = numpy.asarray(self.canvas.buffer_rgba())[:, :, :3].copy()
         (x, y), (width, height) = self.corner, self.pixels
         image = self.scene.picture(state, width, height, self.theme["panel"])

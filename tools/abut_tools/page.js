@@ -26,7 +26,8 @@ function dataset(figure, curve) {
     label: curve.label, data: curve.x.map((x, i) => ({x: x, y: curve.y[i]})),
     borderColor: colour, backgroundColor: colour, borderWidth: curve.exact ? 1.25 : width,
     borderJoinStyle: "round",  // pointed joins of zigzags would reach beyond the values
-    borderDash: curve.exact ? [4, 6] : DASHES[curve.dash || 0], pointRadius: radius, pointHitRadius: 8,
+    borderDash: curve.exact ? [4, 6] : DASHES[curve.dash || 0], pointRadius: radius,
+    pointHitRadius: 8,
     pointHoverRadius: 4, showLine: !figure.points, order: curve.exact ? 0 : 1, tension: 0,
   };
 }

@@ -106,7 +106,7 @@ class Picture:
         x, y = numpy.rint(places[:, 0]).astype(int), numpy.rint(places[:, 1]).astype(int)
         there = (x >= 0) & (y >= 0) & (x < self.width) & (y < self.height)
         pixels = y[there] * self.width + x[there]
-        near = places[there, 2] + 1e-3 * self.width >= self.depth[pixels]
+        near = places[there, 2] + 3e-3 * self.width >= self.depth[pixels]
         there = near & ~numpy.isinf(self.depth[pixels])
         self.colour[numpy.unique(pixels[there])] *= 0.75
         if bare:

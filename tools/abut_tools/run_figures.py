@@ -92,17 +92,18 @@ def add_components(figure: Figure, run: Run, vectors: dict[str, str],
               if largest(column) > bound]
     if len(curves) > MOST_CURVES:
         return False
+    axes = sorted({axis for _, axis, _ in curves})
     for label, axis, column in curves:
         name = f"{label} {axis}".strip()
         figure.add(name, colours.get(label, COLOURS[0]), run.history["time"], column,
-                   dash="xyz".index(axis))
+                   dash="xyz".index(axis) if len(axes) > 1 else 0)
     return True
 
 
 def vector_figure(run: Run, figure: Figure, vectors: dict[str, str],
                   colours: dict[str, str], scale: float = 0.0) -> Figure:
     if not add_components(figure, run, vectors, colours, scale):
-        figure.quantity = f"magnitude of the {figure.quantity}"
+        figure.title += ", magnitude"
         add_sizes(figure, run, vectors, colours)
     return figure
 
@@ -218,12 +219,12 @@ def whole_energy(run: Run) -> list[Figure]:
     bodies, figure = alone(run), Figure("energy", "Energy of all bodies", "energy", "J")
     if len(bodies) < 2:
         return []
-    for colour, kind in zip(COLOURS, ("kinetic", "stored", "total", "dissipated",
-                                      "external_work")):
-        columns = [run.history[f"{body}.{kind}"] for body in bodies
-                   if f"{body}.{kind}" in run.history]
-        values = sum_of(columns)
-        if columns and largest(values) > 0.0:
+    sums = {kind: sum_of([run.history[f"{body}.{kind}"] for body in bodies
+                          if f"{body}.{kind}" in run.history])
+            for kind in ("kinetic", "stored", "total", "dissipated", "external_work")}
+    bound = NOTHING * largest(sums["total"])
+    for colour, (kind, values) in zip(COLOURS, sums.items()):
+        if largest(values) > bound:
             figure.add(kind.replace("_", " "), colour, run.history["time"], values)
     return [figure]
 

@@ -134,7 +134,8 @@ def warnings_of(run: Run) -> list[str]:
             lines.setdefault(event["text"], f"{when}: {event['text']}" if when else event["text"])
     told = [f"{name} never closed, though its sides went past each other"
             for name in run.summary.get("never_closed", [])]
-    told += [note for note in sorted_notes(run)[0] if note not in lines]
+    told += [note for note in sorted_notes(run)[0]
+             if note not in lines and note not in reasons_of(run)]
     return [*lines.values(), *told]
 
 
@@ -307,10 +308,11 @@ def status_of(run: Run) -> tuple[str, str]:
     return "completed", "ok"
 
 
-def reason_of(run: Run) -> str:
+def reasons_of(run: Run) -> list[str]:
     """Why a run is no success: what ended it, or else what it missed."""
-    if status_of(run)[1] != "failed":
-        return ""
+    missed = [result for result in run.summary.get("expectations", []) if not result["pass"]]
+    if run.summary.get("status", "unfinished") == "completed" and not missed:
+        return []
     failures = [event for event in run.events if event.get("kind") == "failure"]
     lines = [f"{shown_few(event.get('time'))} s: {event.get('text', '')}"
              for event in failures[-1:]]
@@ -319,7 +321,11 @@ def reason_of(run: Run) -> str:
         lines.append(reason)
     if run.summary.get("status") != "completed":
         lines += [note for note in run.summary.get("notes", []) if "finite" in note or not lines]
-    lines += [f"{result['measure']} is {shown(result['got'])}, expected {result['expected']}"
-              for result in run.summary.get("expectations", [])
-              if not result["pass"] and run.summary.get("status") == "completed"]
-    return "".join(f'<p class="reason">{html.escape(line)}</p>' for line in lines)
+    if run.summary.get("status") == "completed":
+        lines += [f"{result['measure']} is {shown(result['got'])}, expected {result['expected']}"
+                  for result in missed]
+    return lines
+
+
+def reason_of(run: Run) -> str:
+    return "".join(f'<p class="reason">{html.escape(line)}</p>' for line in reasons_of(run))

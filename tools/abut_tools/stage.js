@@ -14,7 +14,7 @@ function drawScale(stage) {
   if (!shade) return;
   const ramp = element("ramp"), context = ramp.getContext("2d");
   ramp.width = 256; ramp.height = 1;
-  const stops = stage.data.ramps[shade.low < 0 ? "signed" : "plain"];
+  const stops = stage.stops(shade);
   for (let k = 0; k < 256; k++) {
     context.fillStyle = "rgb(" + rampColour(stops, k / 255).join(",") + ")";
     context.fillRect(k, 0, 1, 1);
@@ -201,18 +201,18 @@ function paintSpaceTime(stage, chart) {
     const shade = stage.shadeOf(body), n = body.nodes / 2;
     const colours = shade ? stage.colours(shade) : stage.one(themed(body.colour));
     const from = shade ? shade.least : 0, span = shade ? (shade.most - shade.least) / 65535 : 0;
-    const level = (state, k) => shade ? 255.99 * (from + body.values[shade.key][state][k] * span -
-      shade.low) / (shade.high - shade.low) : 0;
+    const level = (state, k) => shade ?
+      levelOf(shade, from + body.values[shade.key][state][k] * span) : 0;
     const place = (state, k) => row(body.rest[3 * k] + body.means[state][0] +
       body.reach * (body.moved[0][state][k] / 32767.5 - 1));
-    const part = colours.subarray((LEVELS - 1) * 256), p = new Float32Array(12);
+    const first = (LEVELS - 1) * 256, p = new Float32Array(12);
     for (let s = 0; s + 1 < times.length; s++) {
       for (let k = 0; k + 1 < n; k++) {
         p.set([columns[s], place(s, k), 0, columns[s], place(s, k + 1), 0,
           columns[s + 1], place(s + 1, k), 0, columns[s + 1], place(s + 1, k + 1), 0]);
         const v = [level(s, k), level(s, k + 1), level(s + 1, k), level(s + 1, k + 1)];
-        picture.triangle(p, 0, 1, 2, part, v[0], v[1], v[2]);
-        picture.triangle(p, 1, 3, 2, part, v[1], v[3], v[2]);
+        picture.triangle(p, 0, 1, 2, colours, first, v[0], v[1], v[2]);
+        picture.triangle(p, 1, 3, 2, colours, first, v[1], v[3], v[2]);
       }
     }
   }
@@ -262,6 +262,7 @@ async function openStage(data) {
   new ResizeObserver(() => stage.redraw()).observe(stage.canvas);
   followTheme(() => {
     stage.tables = {};
+    drawScale(stage);
     showBodies(stage);
     drawSpaceTime(stage);
     drawGauge(stage);

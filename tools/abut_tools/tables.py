@@ -7,9 +7,17 @@ import re
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d1f", "#5b5b5b")
 # Of quantities of one sign from low to high, each lighter than the one before, and of both signs.
 RAMPS = {"plain": ("#403a8c", "#3a6ab4", "#2898b8", "#38b890", "#a0d058", "#fde04c"),
-         "signed": ("#143f94", "#5f9bd8", "#e9ecef", "#ea9164", "#9c2b0c")}
+         "signed": ("#143f94", "#5f9bd8", "#e9ecef", "#ea9164", "#9c2b0c"),
+         "signed_dark": ("#7ab8ff", "#3d70b8", "#2b3440", "#b8663c", "#ffa478")}
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 PREFIXED_UNITS = ("s", "m", "N", "J", "Pa", "N s", "Hz")
+
+
+def ramp_of(low: float, dark: bool = False) -> tuple[str, ...]:
+    """Nothing looks like the ground: light on a light one, dark on a dark one."""
+    if low >= 0.0:
+        return RAMPS["plain"]
+    return RAMPS["signed_dark" if dark else "signed"]
 
 
 class ToolError(Exception):
