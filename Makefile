@@ -1,15 +1,20 @@
 # The front door. Every target checks what it needs first, skips what is done, and may be run again.
 .DEFAULT_GOAL := help
-.PHONY: help demo build test fuzz bench results extremes robustness clean dependencies-build dependencies-test dependencies-bench
+.PHONY: help demo build install uninstall package test fuzz bench results extremes robustness clean dependencies-build dependencies-test dependencies-bench dependencies-package
 
 PRESET ?= release
 WITH ?=
 export PRESET WITH
+export DESTDIR
 BIN := build/$(PRESET)/bin
+PREFIX ?= /usr/local
 
 help:
 	@echo "make demo    two bars collide, one process each; result table and a page of plots"
 	@echo "make build   the two programs, in $(BIN)"
+	@echo "make install PREFIX=/usr/local   programs, tools, man pages, completion, scenes; DESTDIR as usual"
+	@echo "make uninstall PREFIX=/usr/local   removes what make install has put there"
+	@echo "make package  Debian packages, in build/$(PRESET)/packages"
 	@echo "make test    every test"
 	@echo "make fuzz SECONDS=600   random scenes of new seeds; what fails is told (docs/ROBUSTNESS.md)"
 	@echo "make bench   the measured figures"
@@ -29,6 +34,22 @@ dependencies-bench:
 
 build: dependencies-build
 	@sh scripts/build.sh programs
+
+# realpath and not abspath: a PREFIX may contain blanks.
+install: build
+	@prefix=$$(realpath -m -- "$(PREFIX)") && \
+	  cmake --install build/$(PRESET) --prefix "$$prefix" >build/$(PRESET)/install.log && \
+	  echo "installed in $(DESTDIR)$$prefix"
+
+uninstall:
+	@prefix=$$(realpath -m -- "$(PREFIX)") && \
+	  cmake -Dprefix="$$prefix" -P packaging/uninstall.cmake
+
+package: build
+	@sh scripts/install_dependencies.sh package
+	@rm -f build/$(PRESET)/packages/*.deb
+	@cd build/$(PRESET) && cpack >package.log || { cat package.log; exit 1; }
+	@ls build/$(PRESET)/packages/*.deb
 
 demo: build
 	$(BIN)/abut run configs/two_bars.yaml --out runs/two_bars --force

@@ -110,8 +110,8 @@ class Fields {
     leave();
   }
 
-  /// A one-key map `{name: {keys}}`, or the name alone when all its keys have defaults. Each
-  /// alternative has `static constexpr std::string_view name` and `fields`.
+  /// A one-key map `{name: {keys}}`, or the name alone when all its keys have defaults.
+  /// Alternatives have `static constexpr std::string_view name` and `fields`.
   template <HasFields... A>
   void choice(std::string_view key, std::variant<A...>& value, std::string_view help,
               Presence presence = Presence::required) {
@@ -127,14 +127,13 @@ class Fields {
     if (purpose_ == Purpose::read) value = present ? std::move(sample) : std::nullopt;
   }
 
-  /// A rule across keys of this map; `key` is the one to blame. `what` follows the key path ("is
-  /// before begin"), `remedy` is a sentence. Only a reader looks at it, and only when no key is
-  /// missing.
+  /// A rule across keys of this map; `key` is the one to blame. `what` follows the key path,
+  /// `remedy` is a sentence. Only a reader looks at it, and only when no key is missing.
   void check(bool ok, std::string_view key, const std::string& what, const std::string& remedy) {
     if (purpose_ == Purpose::read && !ok) broken(key, what, remedy);
   }
-  /// Where `is_idle`, a key has no effect, whatever its value: a reader refuses it where it is
-  /// given, a writer leaves it out. `why` follows "has no effect: ".
+  /// Where `is_idle`, a key has no effect: a reader refuses it where it is given, a writer leaves
+  /// it out. `why` follows "has no effect: ".
   virtual void idle(bool is_idle, std::string_view key, std::string_view why) = 0;
   /// This key belongs to another reader of the same map.
   virtual void ignore(std::string_view key) = 0;
@@ -181,9 +180,7 @@ class Fields {
   bool choose(const Key& key, std::variant<A...>* value) {
     constexpr std::array<std::string_view, sizeof...(A)> names{A::name...};
     const std::string_view current = value != nullptr ? names[value->index()] : std::string_view();
-    std::span<const Preset> presets;
-    ((presets.empty() ? void(presets = presets_of<A>()) : void()), ...);
-    const std::string name = enter_choice(key, names, current, presets);
+    const std::string name = enter_choice(key, names, current, presets_of_any<A...>());
     if (purpose_ == Purpose::document) {
       (document(A{}), ...);
       leave();

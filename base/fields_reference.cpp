@@ -170,7 +170,7 @@ std::string preset_table(const KeyNode& choice) {
     std::vector<std::string> values;
     for (const auto& [key, value] : preset.values)
       values.push_back(fmt::format("{}: {}", key, value));
-    out += fmt::format("| `{}` | `{{{}: {{{}}}}}` | {} |\n", preset.name, preset.choice,
+    out += fmt::format("| {} | `{{{}: {{{}}}}}` | {} |\n", preset.name, preset.choice,
                        fmt::join(values, ", "), preset.source);
   }
   return out + '\n';

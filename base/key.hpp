@@ -92,4 +92,12 @@ std::span<const Preset> presets_of() {
   return {};
 }
 
+/// Of several: those of the first that has any.
+template <class... S>
+std::span<const Preset> presets_of_any() {
+  std::span<const Preset> presets;
+  ((presets.empty() ? void(presets = presets_of<S>()) : void()), ...);
+  return presets;
+}
+
 }  // namespace abut

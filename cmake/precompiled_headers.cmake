@@ -4,8 +4,8 @@
 option(ABUT_PRECOMPILED_HEADERS "Read the headers of libraries once for each kind of target" ON)
 
 # Gives targets the headers that their kind reads.
-#   kind: its name; TARGETS: who reads them; HEADERS: <of libraries> or by full path; LIBRARIES: whose
-#   include directories and definitions the headers need
+#   kind: its name; TARGETS: who reads them; HEADERS: <of libraries> or by full path;
+#   LIBRARIES: whose include directories and definitions the headers need
 function(abut_precompile_headers kind)
   if(NOT ABUT_PRECOMPILED_HEADERS)
     return()

@@ -5,11 +5,22 @@
 #include <array>
 #include <sstream>
 #include <string_view>
+#include <utility>
+
+#include "base/build_info.hpp"
 
 namespace abut {
 namespace {
 
 constexpr int most_parts = 64;  // as many as processes of a run
+
+/// Verbs that are programs of their own beside this one.
+const std::array<std::pair<std::string, std::string>, 4> tools{{
+    {"report", "make a page of a run: tables, figures, moving bodies"},
+    {"film", "draw a run's bodies as they move: a GIF or MP4"},
+    {"picture", "draw a run's bodies at one time: a PNG"},
+    {"study", "run a scene with many settings: cost against accuracy"},
+}};
 
 constexpr std::array<std::string_view, 5> own_verbs{"run", "check", "split", "init", "reference"};
 
@@ -31,9 +42,10 @@ void add_scene(CLI::App& verb, std::string& scene, std::vector<std::string>& ove
 CLI::App& add_split(CLI::App& app, SplitCommand& split) {
   CLI::App& verb = *app.add_subcommand("split", "write a scene with one body as several tied ones");
   add_scene(verb, split.scene, split.overrides);
-  verb.add_option("--bodies", split.bodies, "number of bodies that it becomes")
+  verb.add_option("--bodies", split.bodies, "number of bodies that it becomes, 2 to 64")
       ->required()
-      ->check(CLI::Range(2, most_parts));
+      ->type_name("N")
+      ->check(CLI::Range(2, most_parts).description(""));
   verb.add_option("--body", split.body, "body to divide; default the only one that can be")
       ->type_name("NAME");
   verb.add_option("--out", split.out, "folder of the new scene; default <scene name>_split_N")
@@ -81,9 +93,9 @@ Command parse_command_line(int argc, const char* const* argv) {
     return ExternalCommand{std::string(verb), {argv + 2, argv + argc}};
 
   CLI::App app("abut: collision of solids that are solved by separate programs", "abut");
-  app.set_version_flag("--version", "abut " ABUT_VERSION);
+  app.set_version_flag("--version", version_text("abut"),
+                       "Print version, commit and options of the build, and exit");
   app.require_subcommand(1);
-  app.footer("Any other verb V runs the program abut-V, for example: abut report DIR");
 
   RunCommand run;
   CLI::App& run_verb = *app.add_subcommand("run", "run a scene and evaluate its expectations");
@@ -109,6 +121,15 @@ Command parse_command_line(int argc, const char* const* argv) {
 
   ReferenceCommand reference;
   const CLI::App& reference_verb = add_reference(app, reference);
+
+  // For the list alone: their command lines are read by programs of their own.
+  for (const auto& [name, purpose] : tools) app.add_subcommand(name, purpose);
+
+  // Last: verbs take over the footer that is there when they are added.
+  app.footer(
+      "abut VERB --help tells what a verb takes. Any other verb V runs the program abut-V.\n"
+      "Exit codes: 0 when the scene's expectations hold, 1 when they do not or the numbers failed, "
+      "2 when the input is refused, 3 when something outside failed.");
 
   try {
     app.parse(argc, argv);

@@ -166,4 +166,15 @@ void ContactEvents::settle(const TimeWindow& window, double energy) {
   }
 }
 
+void ContactEvents::settle_passively(const TimeWindow& window, double energy) {
+  for (Joint& joint : joints_) {
+    if (ContactAccount* account = joint.watch->account()) {
+      if (joint.closed()) account->settle_passively(joint, window, run_, bodies_, changes_);
+    } else {
+      joint.watch->settle(joint, window, energy, run_, bodies_, changes_);
+    }
+    narrate(joint);
+  }
+}
+
 }  // namespace abut

@@ -53,6 +53,8 @@ class ContactEvents {
   /// What contact did in a window that was accepted: its account, the impulse that pays it, and
   /// what observers hear of it.
   void settle(const TimeWindow& window, double energy);
+  /// The same of a window that was gone passively.
+  void settle_passively(const TimeWindow& window, double energy);
 
   void state(Archive& archive) { run_.state(archive); }
 

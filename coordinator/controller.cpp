@@ -13,7 +13,6 @@
 #include "base/denormals.hpp"
 #include "base/index.hpp"
 #include "base/without_remedy.hpp"
-#include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/horizon.hpp"
 #include "coordinator/coupling/velocity_start.hpp"
@@ -53,7 +52,8 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       events_(joints_, bodies_, roles_, narrator_, scene.schwarz.tolerance, scene.time.window),
       guard_(
           make_energy_guard(scene.schwarz.energy_guard, joints_, !broad_phase_.empty(), bodies_)),
-      passive_(touching_pairs(scene, joints_, bodies_), passive_ties(scene, joints_), bodies_),
+      passive_(touching_pairs(scene, joints_, bodies_), passive_ties(scene, joints_, bodies_),
+               bodies_),
       crossing_(touching_pairs(scene, joints_, bodies_), bodies_),
       folds_(touching_pairs(scene, joints_, bodies_), bodies_),
       reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {

@@ -117,6 +117,7 @@ class Controller {
   bool may_refuse() const;
   std::string folded();
   bool must_go_passively(const TimeWindow& window);
+  std::optional<Failed> give_impulses(double time);
   bool go_passively(double time, const std::string& reason);
   void step_passively();
   void repay();

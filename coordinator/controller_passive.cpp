@@ -74,10 +74,25 @@ bool Controller::must_go_passively(const TimeWindow& window) {
   return near;
 }
 
+/// What contact owed the bodies at the end of the last accurate window: their records have told of
+/// it.
+std::optional<Failed> Controller::give_impulses(double time) {
+  const auto owes = [](const Joint& joint) { return joint.contact.impulse != 0.0; };
+  if (std::ranges::none_of(joints_, owes)) return std::nullopt;
+  prepare({0, time, time}, 1, Sampling::substeps);
+  std::optional<Failed> failed = bodies_.advance_all();
+  for (Joint& joint : joints_) joint.contact.impulse = 0.0;
+  return failed;
+}
+
 /// All bodies stand at the begin of a window. `reason`: why the accurate method has failed; empty:
 /// it was not tried. False: the scene cannot go on so, or does not want to.
 bool Controller::go_passively(double time, const std::string& reason) {
   if (!passive_.hindrance().empty() || (!reason.empty() && !may_go_passively())) return false;
+  if (std::optional<Failed> failed = give_impulses(time)) {
+    fail(failed->time, failed->detail);
+    return true;
+  }
   if (std::optional<Failed> failed = passive_.enter(time, !reason.empty())) {
     fail(failed->time, failed->detail);
     return true;
@@ -133,7 +148,7 @@ void Controller::accept_passively(const TimeWindow& window) {
   for (const Joint& joint : joints_)
     if (joint.closed() && index(joint.interface) >= scene_.interfaces.size())
       pairs_.push_back(pair_report(joint));
-  events_.settle(window, guard_.most());
+  events_.settle_passively(window, guard_.most());
   end_window(window, guard_.look(bodies_.responses()));
 }
 

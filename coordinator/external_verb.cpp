@@ -36,7 +36,7 @@ void become_external_verb(const std::string& verb, const std::vector<std::string
       absent ? fmt::format("there is no verb {}, and no program {} beside abut or on PATH", verb,
                            program)
              : fmt::format("{} cannot be started: {}", program, std::strerror(errno)),
-      "", "Use run, check, split, init, reference, report or study; abut --help describes them.");
+      "", "The verbs are listed by abut --help.");
 }
 
 }  // namespace abut

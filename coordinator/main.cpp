@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "base/build_info.hpp"
 #include "base/denormals.hpp"
 #include "base/error.hpp"
 #include "base/input_errors.hpp"
@@ -80,6 +81,7 @@ struct Placement {
 
 std::map<std::string, std::string> versions() {
   return {{"abut", build_version()},
+          {"commit", std::string(build_info.commit)},
           {"protocol", fmt::format("{}", protocol_version)},
           {"compiler", __VERSION__}};
 }

@@ -27,9 +27,10 @@ namespace fs = std::filesystem;
 constexpr const char* scene_file = "scene.resolved.yaml";  // written first, removed last;
 constexpr const char* summary_file = "summary.json";       // either tells of a run
 constexpr const char* list_of_fields = "fields.pvd";
-constexpr std::array<const char*, 7> run_files{
-    summary_file,  "history.csv",  "closed_form.csv", "events.jsonl",
-    "report.html", list_of_fields, scene_file};
+constexpr const char* state_of_paraview = "fields.pvsm";
+constexpr std::array<const char*, 11> run_files{
+    summary_file, "history.csv", "closed_form.csv", "events.jsonl",    "report.html", "film.mp4",
+    "film.gif",   "picture.png", list_of_fields,    state_of_paraview, scene_file};
 
 fs::file_status status_of(const fs::path& path) {
   std::error_code ignored;

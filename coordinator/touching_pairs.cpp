@@ -7,6 +7,7 @@
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/tie.hpp"
 #include "coordinator/coupling/tied_wholes.hpp"
+#include "coordinator/coupling/watch.hpp"
 
 namespace abut {
 
@@ -95,9 +96,11 @@ void add_own(double friction, const Bodies& bodies, std::vector<TouchingPair>& p
 std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joint> joints,
                                          const Bodies& bodies) {
   std::vector<TouchingPair> pairs;
+  const bool published = std::ranges::any_of(
+      joints, [](const Joint& joint) { return joint.watch->decision() == Decision::window_begin; });
+  if (published) return pairs;  // what was published knows no other way
   for (const Joint& joint : joints) {
     if (joint.exchange == nullptr || joint.tied()) continue;
-    if (bodies.port(joint.sides[0]).geometry.dim == 1) continue;
     const InterfaceSpec& spec = scene.interfaces[index(joint.interface)].second;
     pairs.push_back({joint.sides, spec.contact ? sliding(*spec.contact) : 0.0});
   }
@@ -108,18 +111,30 @@ std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joi
 }
 
 std::optional<std::vector<PassiveTie>> passive_ties(const Scene& scene,
-                                                    std::span<const Joint> joints) {
+                                                    std::span<const Joint> joints,
+                                                    const Bodies& bodies) {
   std::vector<PassiveTie> ties;
+  const std::vector<bool> share = share_nodes(joints);
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const Joint& joint = joints[j];
     if (!joint.tied()) continue;
     const InterfaceSpec& spec = scene.interfaces[index(joint.interface)].second;
+    if (share[j] && is_unilateral(spec.transmission)) {
+      ties.push_back({.sides = joint.sides,
+                      .node = make_tie_rows(bodies.port(joint.sides[0]).geometry,
+                                            bodies.port(joint.sides[1]).geometry, 0),
+                      .kinematic = joint.role.kinematic});
+      continue;
+    }
     KnownExchanges known;
     joint.exchange->enter(joint, j, known);
     const bool plain = known.ties.size() == 1 && spec.tied && !spec.tied->overlap &&
                        !is_dashpot(spec.transmission);
     if (!plain) return std::nullopt;
-    ties.push_back({joint.sides, known.ties.front().exchange, joint.role.kinematic});
+    ties.push_back({.sides = joint.sides,
+                    .tie = known.ties.front().exchange,
+                    .node = {},
+                    .kinematic = joint.role.kinematic});
   }
   return ties;
 }

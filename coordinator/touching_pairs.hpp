@@ -16,7 +16,8 @@ std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joi
                                          const Bodies& bodies);
 /// All surfaces of a run that are one; none where bodies overlap, or dashpots join them.
 std::optional<std::vector<PassiveTie>> passive_ties(const Scene& scene,
-                                                    std::span<const Joint> joints);
+                                                    std::span<const Joint> joints,
+                                                    const Bodies& bodies);
 /// Whether neither side can find the contact of two surfaces but in its passive form.
 bool only_passive(const Joint& joint, const Bodies& bodies);
 

@@ -86,6 +86,9 @@ using TransmissionSpec = std::variant<UnilateralTransmission, DirichletNeumannTr
 inline bool is_inside(const TransmissionSpec& how) {
   return std::holds_alternative<InternalTransmission>(how);
 }
+inline bool is_unilateral(const TransmissionSpec& how) {
+  return std::holds_alternative<UnilateralTransmission>(how);
+}
 /// Accelerations are exchanged beside motions.
 inline bool is_dashpot(const TransmissionSpec& how) {
   return std::holds_alternative<RobinTransmission>(how);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/build_info.hpp"
 #include "base/denormals.hpp"
 #include "base/error.hpp"
 #include "messaging/descriptors.hpp"
@@ -82,19 +83,23 @@ int main(int argc, char** argv) {
   CLI::App app("Bodies of an abut scene; started by abut, or by hand for `launch: connect`.",
                "abut-solver");
   Command command;
+  const std::string protocol = fmt::format(", protocol {}", abut::protocol_version);
   app.add_option("--connect", command.endpoint,
                  "the coordinator's endpoint, e.g. tcp://127.0.0.1:5555")
-      ->required();
+      ->required()
+      ->type_name("ENDPOINT");
   app.add_option("--body", command.bodies,
                  "name of the body in the scene; with --process of each of its bodies")
-      ->required();
+      ->required()
+      ->type_name("NAME");
   app.add_option("--process", command.process,
-                 "of several bodies: the name by which the coordinator that starts it knows it");
-  app.add_option("--patience", command.patience, "how long to wait for a coordinator [s]")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 86'400.0));
-  app.set_version_flag("--version", fmt::format("abut-solver {}, protocol {}",
-                                                abut::build_version(), abut::protocol_version));
+                 "of several bodies: the name by which the coordinator that starts it knows it")
+      ->type_name("NAME");
+  app.add_option("--patience", command.patience, "time to wait for a coordinator [s]; default 60")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.1, 86'400.0).description(""));
+  app.set_version_flag("--version", abut::version_text("abut-solver", protocol),
+                       "Print version, commit and options of the build, and exit");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -10,6 +10,7 @@
 #include "subdomain_solver/materials/crush_guard.hpp"
 #include "subdomain_solver/solid_interior.hpp"
 #include "subdomain_solver/solve/matrix_sum.hpp"
+#include "subdomain_solver/time/massless_layer.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -42,11 +43,10 @@ void stay_below(double most, const Vector& plain, std::vector<double>& v, const 
 
 }  // namespace
 
-/// Of solids in the plane and in space, with inertia. Reactions of modes are told by their schemes
-/// alone.
+/// Of solids with inertia. Reactions of modes are told by their schemes alone.
 void SolidInterior::find_passive() {
   const bool modal = parts_.reduced != nullptr && parts_.rigid == nullptr;
-  if (description_.dim == 1 || (modal && parts_.reactions)) return;
+  if (modal && parts_.reactions) return;
   if (parts_.pressed_over) return;  // its rows know of distances alone, not of what is wanted
   able_.passive = this;
   description_.can.passive = true;
@@ -279,6 +279,8 @@ std::optional<Failed> SolidInterior::restart(double time, double& work) {
   parts_.problem->contact = nullptr;
   if (port_forces_ != nullptr) port_forces_->impose({}, {});
   parts_.problem->set_rates(time, parts_.scheme.step, motion);
+  // What it kept is of before the passive windows, and a run that was resumed in them has nothing.
+  if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->renew();
   if (auto failed = parts_.scheme.integrator->begin(motion, time)) return failed;
   std::ranges::fill(state_.port_force, 0.0);
   state_.time = time;

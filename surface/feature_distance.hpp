@@ -11,11 +11,12 @@
 namespace abut {
 
 /// What can be closest to each other of two surfaces. In the plane a facet is a segment, and nodes
-/// and facets say all.
+/// and facets say all; on a line it is a point.
 enum class FeatureKind : std::uint8_t { node_facet, edge_edge };
 
 /// Two features of a skin, by their points: a node and then its facet (in the plane the last is
-/// -1), or two edges. The node, or the first edge, is the pair's first side.
+/// -1, on a line the last two), or two edges. The node, or the first edge, is the pair's first
+/// side.
 struct FeaturePair {
   FeatureKind kind = FeatureKind::node_facet;
   std::array<std::int32_t, 4> points{-1, -1, -1, -1};

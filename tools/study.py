@@ -29,6 +29,7 @@ from abut_tools.study_page import page_of
 from abut_tools.study_results import Result, cheapest, cost_key, nearest_miss, results_of
 from abut_tools.study_runs import Progress, Runner, check_measures
 from abut_tools.tables import ToolError, shown
+from abut_tools.version import TellVersion
 
 HERE = Path(__file__).resolve()
 CURVE_POINTS = 800
@@ -50,10 +51,12 @@ def options_of() -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true",
                         help="a short form: the first values of every knob, one repeat")
     parser.add_argument("--quiet", action="store_true", help="print errors and targets only")
-    parser.add_argument("--abut", type=Path, default=HERE.with_name("abut"), metavar="PROGRAM",
+    beside = Path(sys.argv[0]).resolve().with_name("abut")
+    parser.add_argument("--abut", type=Path, default=beside, metavar="PROGRAM",
                         help="default: abut beside this program")
     parser.add_argument("--chart-library", type=Path, metavar="FILE", default=CHART_LIBRARY,
                         help="Chart.js 3 (default: that of Debian's package libjs-chart.js)")
+    parser.add_argument("--version", action=TellVersion)
     options = parser.parse_args()
     if options.serial and options.jobs not in (None, 1):
         parser.error("--serial runs one after another: leave --jobs out")

@@ -94,6 +94,33 @@ void ContactAccount::pay(Joint& joint, double energy, Bodies& bodies) {
   for (const Side& side : joint.sides) bodies.strike_record(side, joint.contact.impulse);
 }
 
+void ContactAccount::settle_passively(Joint& joint, const TimeWindow& window, ContactRun& run,
+                                      const Bodies& bodies, ContactChanges& changes) {
+  debt_ = rebound_impulse_ = 0.0;
+  const Waveform& own = trace_of(bodies, joint.kinematic_side());
+  const Waveform& other = trace_of(bodies, joint.neumann_side());
+  const double outward = joint.normal_of(joint.role.kinematic);
+  const double peak = largest_force(joint, bodies);
+  joint.contact.force_scale = std::max(joint.contact.force_scale, peak);
+  run.force_reference = std::max(run.force_reference, peak);
+  if (!(peak > 0.0)) {
+    const double apart = joint.gap(trace_of(bodies, joint.sides[0]).u.back(),
+                                   trace_of(bodies, joint.sides[1]).u.back());
+    if (apart <= grazing_share * run.fastest_touch * window.length()) return;
+    if (joint.pressing()) changes.push_back({false, own.time.front(), 0.0});
+    joint.release();
+    return;
+  }
+  if (joint.pressing()) return;
+  std::size_t first = 1;  // a force acts over the step that ends at its time
+  while (first + 1 < own.size() && -outward * own.f[first] <= 0.0) ++first;
+  const double speed = std::max(0.0, outward * (own.v[first - 1] - other.v[first - 1]));
+  run.fastest_touch = std::max(run.fastest_touch, speed);
+  joint.press();
+  joint.contact.closing_speed = std::max(speed, run.still());
+  changes.push_back({true, own.time[first - 1], speed});
+}
+
 /// Pushes that begin and end in the window.
 void ContactAccount::see_pushes(Joint& joint, ContactRun& run, ContactChanges& changes) {
   const double floor = std::max(least_force(joint, run), history_.rounding());

@@ -46,6 +46,11 @@ class ContactAccount {
   void settle(Joint& joint, const TimeWindow& window, double energy, ContactRun& run,
               Bodies& bodies, ContactChanges& changes);
 
+  /// Of a window that was gone passively: its bodies own what they have, nothing is owed. A push
+  /// ends with a window in which nothing pressed and the sides part.
+  void settle_passively(Joint& joint, const TimeWindow& window, ContactRun& run,
+                        const Bodies& bodies, ContactChanges& changes);
+
   void state(Archive& archive);
 
  private:

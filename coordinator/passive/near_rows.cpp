@@ -44,7 +44,8 @@ NearRows::NearRows(const TouchingSurfaces& surfaces, double thickness)
       trees_(surfaces.skin(), surfaces.reference()),
       surroundings_(surfaces.skin()),
       own_(surfaces, thickness),
-      behind_(surfaces, thickness, own_.others()) {}
+      behind_(surfaces, thickness, own_.others()),
+      ends_(surfaces, thickness) {}
 
 bool NearRows::leaves_out(const FeaturePair& pair, const Places& from) const {
   return own_.leaves_out(pair) || behind_.leaves_out(pair, from);
@@ -61,6 +62,7 @@ void NearRows::find(const Places& from, std::vector<DistanceRow>& rows) {
       add_if_closest(pair, from, from, 0.0, rows);
   }
   behind_.find(trees_, from, rows);
+  ends_.find(from, reach, rows);
 }
 
 void NearRows::find_on_ways(const Places& from, const Places& to, std::vector<DistanceRow>& rows) {
@@ -75,6 +77,7 @@ void NearRows::find_on_ways(const Places& from, const Places& to, std::vector<Di
         first_time_within(pair.kind, dim, before, after, thickness_, resolved * thickness_);
     if (part < 1.0) add_if_closest(pair, from, to, part, rows);
   }
+  ends_.find_on_ways(from, to, rows);
 }
 
 NearRows::Crossed NearRows::check(const Places& from, const Places& to,
@@ -95,8 +98,9 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
     if (add(pair, from, to, part, rows)) ++crossed.added;
   }
   const int deeper = behind_.check(trees_, from, to, rows);
-  crossed.pairs += deeper;
-  crossed.added += deeper;
+  const EndRows::Crossed ends = ends_.check(from, to, rows);
+  crossed.pairs += deeper + ends.pairs;
+  crossed.added += deeper + ends.added;
   return crossed;
 }
 

@@ -6,6 +6,7 @@
 
 #include "coordinator/passive/behind_rows.hpp"
 #include "coordinator/passive/distance_row.hpp"
+#include "coordinator/passive/end_rows.hpp"
 #include "coordinator/passive/own_gaps.hpp"
 #include "coordinator/passive/touching_surfaces.hpp"
 #include "surface/feature_surroundings.hpp"
@@ -62,6 +63,7 @@ class NearRows {
   FeatureSurroundings surroundings_;
   OwnGaps own_;
   BehindRows behind_;
+  EndRows ends_;
   std::vector<FeaturePair> pairs_;
   std::multimap<DistanceRow::Key, std::size_t> named_;  // places of the step's rows
 };

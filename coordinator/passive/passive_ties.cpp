@@ -230,11 +230,13 @@ void PassiveTies::accept() {
 }
 
 void PassiveTies::begin_window(double time) const {
-  for (const PassiveTie& tie : ties_) tie.tie->begin_passive(time);
+  for (const PassiveTie& tie : ties_)
+    if (tie.tie != nullptr) tie.tie->begin_passive(time);
 }
 
 void PassiveTies::tell(double end) const {
   for (std::size_t t = 0; t < ties_.size(); ++t) {
+    if (ties_[t].tie == nullptr) continue;
     const Eigen::VectorXd force = (ties_[t].kinematic == 0 ? 1.0 : -1.0) * forces_[t],
                           parted = parted_[t] + length_ * velocity_[t];
     const std::size_t count = index(static_cast<int>(force.size()));

@@ -16,10 +16,11 @@ namespace abut {
 /// Two surfaces that are one, and the rows in which their motions are compared.
 struct PassiveTie {
   std::array<Side, 2> sides;
-  Tie* tie = nullptr;  // is told of forces
+  Tie* tie = nullptr;  // is told of forces; null: two ends of bars that share a node
+  TieRows node;        // then these are its rows
   int kinematic = 0;   // its side on which they act as they are told
 
-  const TieRows& rows() const { return tie->rows(); }
+  const TieRows& rows() const { return tie != nullptr ? tie->rows() : node; }
 };
 
 /// Joined bodies in a passive step [M.139]: impulses L of rows T that make both sides move alike,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <variant>
 
@@ -163,7 +162,7 @@ bool PassiveWay::hold_rigid() {
   level_ = most_halvings / 2;
   for (int b = 0; b < bodies_.count(); ++b) {
     if (!std::isfinite(bodies_.describe(b).mass)) continue;
-    const double taken = bodies_[b].passive()->damp(std::numeric_limits<double>::infinity());
+    const double taken = bodies_[b].passive()->damp(step_->record(b).energy.kinetic);
     ledger_.damped += taken;
     PassiveLedger::add(ledger_.taken, b, taken);
     step_->lower(b, taken);
@@ -219,7 +218,8 @@ bool PassiveWay::leave(double time) {
 
 void PassiveWay::rejoin(double lost) {
   ledger_.switched += lost;
-  for (const PassiveTie& tie : *ties_) tie.tie->rejoin();
+  for (const PassiveTie& tie : *ties_)
+    if (tie.tie != nullptr) tie.tie->rejoin();
 }
 
 void PassiveWay::state(Archive& archive) {

@@ -16,7 +16,8 @@ Eigen::Vector3d vector_at(const std::vector<double>& values, std::size_t point, 
 
 }  // namespace
 
-TouchingSurfaces::TouchingSurfaces(std::span<const TouchingPair> pairs, const Bodies& bodies) {
+TouchingSurfaces::TouchingSurfaces(std::span<const TouchingPair> pairs, const Bodies& bodies)
+    : bodies_(bodies) {
   if (!pairs.empty()) dim_ = bodies.port(pairs.front().sides[0]).geometry.dim;
   std::vector<std::array<int, 2>> groups;
   for (const TouchingPair& pair : pairs)
@@ -61,6 +62,10 @@ void TouchingSurfaces::find_shortest_edge(const Bodies& bodies) {
   for (const auto& edge : skin_.edges) see(edge[0], edge[1]);
   if (dim_ == 2)
     for (const auto& facet : skin_.facets) see(facet[0], facet[1]);
+  for (const Side& side : ports_) {
+    const double spacing = bodies.port(side).geometry.spacing;
+    if (dim_ == 1 && spacing > 0.0) soft = std::min(soft, spacing);
+  }
   shortest_edge_ = std::isfinite(soft) ? soft : std::isfinite(any) ? any : 0.0;
 }
 
@@ -101,16 +106,15 @@ void TouchingSurfaces::place_within(std::span<const Response> responses, double 
                                     std::vector<Eigen::Vector3d>& places) const {
   std::vector<std::vector<double>> moved(ports_.size());
   for (std::size_t g = 0; g < ports_.size(); ++g) {
-    const Waveform& trace =
-        responses[index(ports_[g].body)].ports[index(ports_[g].port)].trace;
+    const Waveform& trace = responses[index(ports_[g].body)].ports[index(ports_[g].port)].trace;
     const double begin = trace.time.front(), end = trace.time.back();
     moved[g].resize(index(trace.width));
     trace.interpolate(trace.u, std::min(end, begin + part * (end - begin)), moved[g]);
   }
   places.resize(points_.size());
   for (std::size_t k = 0; k < points_.size(); ++k)
-    places[k] = reference_[k] +
-                vector_at(moved[index(skin_.group[k])], index(points_[k].point), dim_);
+    places[k] =
+        reference_[k] + vector_at(moved[index(skin_.group[k])], index(points_[k].point), dim_);
 }
 
 double TouchingSurfaces::longest_way(std::span<const Response> responses) const {

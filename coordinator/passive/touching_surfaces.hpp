@@ -27,7 +27,7 @@ class TouchingSurfaces {
     std::int32_t point = 0;  // of the port
   };
 
-  /// The bodies' descriptions must outlive it.
+  /// The bodies must outlive it.
   TouchingSurfaces(std::span<const TouchingPair> pairs, const Bodies& bodies);
 
   const Skin& skin() const { return skin_; }
@@ -57,9 +57,14 @@ class TouchingSurfaces {
   }
   /// Whether nothing that presses on a point moves it.
   bool stands(std::int32_t point) const { return stands_[point] != 0; }
+  /// Along x, +1 or -1: of a skin of one dimension.
+  double outward(std::int32_t point) const {
+    return bodies_.port(ports_[index(skin_.group[index(point)])]).geometry.normals.front();
+  }
   int groups() const { return static_cast<int>(ports_.size()); }
   const Side& port(int group) const { return ports_[group]; }
-  /// [m] the shortest edge of surfaces that deform; of all where none does.
+  /// [m] the shortest edge of surfaces that deform, of bars the shortest element at an end; of all
+  /// where none does.
   double shortest_edge() const { return shortest_edge_; }
 
  private:
@@ -69,6 +74,7 @@ class TouchingSurfaces {
   int group_of(const Side& side, const Bodies& bodies);
   void find_shortest_edge(const Bodies& bodies);
 
+  const Bodies& bodies_;
   int dim_ = 3;
   Skin skin_;
   std::vector<Point> points_;

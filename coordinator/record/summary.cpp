@@ -120,6 +120,7 @@ Json interfaces_object(const RunStart& start) {
   Json object = Json::object();
   for (const InterfaceInfo& info : start.interfaces) {
     if (info.many) object[info.name]["sides"] = Json::array();
+    object[info.name]["tied"] = info.tied;
     for (const int side : {0, 1}) {
       if (info.many) continue;
       const Description& body = *start.bodies[info.body[side]];

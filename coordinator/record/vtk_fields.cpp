@@ -1,5 +1,6 @@
 #include "coordinator/record/vtk_fields.hpp"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -16,6 +17,16 @@ constexpr const char* list_begin =
     "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n <Collection>\n";
 constexpr const char* list_end = " </Collection>\n</VTKFile>\n";
 
+/// The box of a view becomes one around this grid as well.
+void include(const Grid& grid, bool first, ParaviewView& view) {
+  for (std::size_t k = 0; k < grid.points.size(); ++k) {
+    const double x = grid.points[k];
+    double &low = view.low[k % 3], &high = view.high[k % 3];
+    low = first && k < 3 ? x : std::min(low, x);
+    high = first && k < 3 ? x : std::max(high, x);
+  }
+}
+
 }  // namespace
 
 VtkFields::VtkFields(const std::filesystem::path& directory, std::vector<Subdomain*> bodies,
@@ -27,12 +38,17 @@ VtkFields::VtkFields(const std::filesystem::path& directory, std::vector<Subdoma
 void VtkFields::on_start(const RunStart&) {
   for (Subdomain* body : bodies_) {
     if (body->describe().fields.empty()) continue;
-    shown_.push_back({body, VtuFile(body->grid(), body->describe().fields)});
+    const Grid grid = body->grid();
+    shown_.push_back({body, VtuFile(grid, body->describe().fields)});
+    include(grid, shown_.size() == 1, view_);
+    // Bodies that deform decide: a wall in front of them has no stress.
+    const std::optional<FieldInfo> colour = colour_among(body->describe().fields);
+    if (colour && (!view_.colour || view_.colour->name == "velocity")) view_.colour = colour;
   }
   std::error_code error, ignored;
   std::filesystem::create_directory(directory_ / folder, error);
-  const bool made = std::filesystem::is_directory(
-      std::filesystem::symlink_status(directory_ / folder, ignored));
+  const bool made =
+      std::filesystem::is_directory(std::filesystem::symlink_status(directory_ / folder, ignored));
   if (error || !made)
     throw RunError(fmt::format("cannot be made: {}", error ? error.message() : "it is no folder"),
                    (directory_ / folder).string(),
@@ -40,6 +56,7 @@ void VtkFields::on_start(const RunStart&) {
   list_.emplace(directory_ / "fields.pvd");
   list_->append(list_begin);
   list_->append_ended("", list_end);
+  write_view();
 }
 
 void VtkFields::on_window(const WindowReport& report) {
@@ -54,6 +71,13 @@ void VtkFields::on_end(const RunEnd& end) {
   const bool there = end.state_hash.has_value() && end.status != "failed";
   if (there && end.time > written_) write(end.time);
   if (list_) list_->close();
+  if (there) write_view();
+}
+
+void VtkFields::write_view() const {
+  // A file that is moved with its folder is looked for where it was: ParaView asks for the place.
+  write_whole(directory_ / "fields.pvsm",
+              paraview_state(std::filesystem::absolute(directory_ / "fields.pvd"), view_));
 }
 
 void VtkFields::write(double time) {
@@ -68,6 +92,10 @@ void VtkFields::write(double time) {
                      "Take smaller steps, and look at the states before this one");
     const std::string name = fmt::format("{}/{}_{:06}.vtu", folder, body.name, windows_);
     shown_[b].file.write(directory_ / name, time, values);
+    for (std::size_t k = 0; view_.colour && k < values.size(); ++k)
+      if (body.fields[k].name == view_.colour->name)
+        view_.largest =
+            std::max(view_.largest, largest_magnitude(values[k], body.fields[k].components));
     lines += fmt::format("  <DataSet timestep=\"{}\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", time,
                          b, body.name, name);
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coordinator/record/observer.hpp"
+#include "coordinator/record/paraview_state.hpp"
 #include "coordinator/record/text_file.hpp"
 #include "coordinator/record/vtu_file.hpp"
 
@@ -15,7 +16,8 @@ namespace abut {
 /// Fields of all bodies that have some, for ParaView: fields/BODY_WINDOWS.vtu for every state
 /// written, and fields.pvd, which lists them with their times and can be opened at any time of the
 /// run (docs/OUTPUT.md). States: the begin, after every so many accepted windows, and the end of a
-/// run that did not fail. Asks the bodies itself, in states that the run has accepted.
+/// run that did not fail. Beside them fields.pvsm, with which ParaView shows all of it at once.
+/// Asks the bodies itself, in states that the run has accepted.
 class VtkFields : public Observer {
  public:
   /// The bodies, in the scene's order, must outlive this. `every` [windows] is positive.
@@ -33,11 +35,13 @@ class VtkFields : public Observer {
   };
 
   void write(double time);
+  void write_view() const;  // fields.pvsm
 
   std::filesystem::path directory_;
   std::vector<Subdomain*> bodies_;
   std::int64_t every_;
   std::vector<Shown> shown_;
+  ParaviewView view_;
   std::optional<TextFile> list_;  // fields.pvd
   std::int64_t windows_ = 0;      // accepted so far
   double written_ = 0.0;          // [s] time of the last state

@@ -35,8 +35,7 @@ BarInterior::BarInterior(std::string name, std::unique_ptr<Bar> bar, Scheme sche
   set_fields(extras);
   describe(std::move(name), ends);
   for (const End& e : ends)  // held from the begin, which its energy knows
-    if (e.tied && bar_->data().layer[e.end] == ContactLayer::kick)
-      state_.end[e.end].closed = true;
+    if (e.tied && bar_->data().layer[e.end] == ContactLayer::kick) state_.end[e.end].closed = true;
 }
 
 void BarInterior::set_fields(const Extras& extras) {
@@ -119,11 +118,13 @@ void BarInterior::describe(std::string name, const std::vector<End>& ends) {
   if (ends.empty()) return;
   able_.probed = this;
   able_.obstructed = this;
+  able_.passive = this;
+  can.passive = true;
 }
 
 std::size_t BarInterior::coordinates() const {
   const std::size_t n = state_.u.size();
-  return state_.v.size() == n && state_.a.size() == n ? n : 0;
+  return state_.v.size() == n && (is_passive() || state_.a.size() == n) ? n : 0;
 }
 
 double BarInterior::compliance(std::size_t port) const {
@@ -379,9 +380,15 @@ void BarInterior::react(std::size_t port, std::size_t, std::vector<double>& forc
 
 std::optional<Failed> BarInterior::record(BodyRecord& r) {
   r.energy = {};
+  r.energy.external_work = external_work();
+  if (is_passive()) {
+    r.energy.kinetic = midpoint_->kinetic(state_.v);
+    r.energy.stored = bar_->stored(state_.u);
+    r.momentum.assign(1, midpoint_->momentum(state_.v));
+    return std::nullopt;
+  }
   r.energy.kinetic = scheme_.integrator->kinetic(state_);
   r.energy.stored = scheme_.integrator->stored(state_);
-  r.energy.external_work = external_work();
   r.momentum.assign(1, bar_->momentum(state_.v) + scheme_.integrator->momentum_lag(state_));
   return std::nullopt;
 }

@@ -8,13 +8,15 @@
 
 #include "subdomain_solver/bars/bar_integrator.hpp"
 #include "subdomain_solver/bars/bar_loads.hpp"
+#include "subdomain_solver/bars/bar_midpoint.hpp"
 #include "subdomain_solver/contact/point_obstacle.hpp"
 #include "subdomain_solver/interior.hpp"
+#include "subdomain_solver/passive/passive_body.hpp"
 
 namespace abut {
 
 /// A bar, its integrator and its ends: tells the integrator what acts on the ends in each substep.
-class BarInterior final : public Interior, private Probed, private Obstructed {
+class BarInterior final : public Interior, private Probed, private Obstructed, private PassiveBody {
  public:
   struct End {
     std::string name;
@@ -40,6 +42,7 @@ class BarInterior final : public Interior, private Probed, private Obstructed {
 
   void state(Archive& archive) override;
   std::size_t coordinates() const override;
+  void restored() override;
   std::optional<Failed> begin(const Window& window) override;
   void set_off(const Window& window) override;
   std::optional<Failed> step(const Window& window, int i, bool whole) override;
@@ -54,6 +57,17 @@ class BarInterior final : public Interior, private Probed, private Obstructed {
   double light_force(std::size_t) const override { return 1.0; }
   bool rest(std::size_t port) override;
   void wake() override { probed_ = -1; }
+
+  double enter() override;
+  std::optional<Failed> leave(double time, double& lost) override;
+  double damp(double joules) override;
+  std::optional<Failed> pass(const PassiveStep& step, PassiveReply& reply) override;
+  /// Then it has no accelerations.
+  bool is_passive() const { return state_.a.empty(); }
+  double energy() const;  // [J] kinetic and stored
+  void stay_below(double most);
+  void let_go();
+  void pass_loads(const PassiveStep& step, std::vector<double>& force);
 
   std::string misfit(int port, const PortKernel& kernel) const override;
   const std::vector<std::int32_t>* reacting(std::size_t, std::size_t) const override {
@@ -115,6 +129,7 @@ class BarInterior final : public Interior, private Probed, private Obstructed {
   double load_work_ = 0.0;           // [J] done by the loads
   double lifted_ = 0.0;              // [kg m] M u of the start, from which weight's work counts
   std::vector<double> worked_;       // [m] (nodes) places up to which the loads' work is told
+  std::unique_ptr<BarMidpoint> midpoint_;  // null: it was never passive
 };
 
 }  // namespace abut

@@ -127,7 +127,7 @@ class FeModel final : public Model {
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
   int layer_place(int dof) const;                        // among the massless; -1: it is none
   bool is_bare(std::int32_t node, int direction) const;  // it has no mass in it
-  bool can_be_crushed() const;  // by a law that is not linear, of plane strain or in space
+  bool can_be_crushed() const;
   bool takes_mass(std::int32_t node, int direction) const;  // of bare ones: it is free
   void find_layer();
   void find_heirs(int direction);

@@ -75,8 +75,12 @@ bool FeModel::definite_tangent(std::span<const double> q, std::span<const double
   return true;
 }
 
+
+/// Where volume can be taken from all sides, laws resist too little; where the section is free to
+/// swell, those that give way.
 bool FeModel::can_be_crushed() const {
-  return !is_linear() && (mesh_.dim == 3 || (mesh_.dim == 2 && options_.plane == Plane::strain));
+  const bool free = mesh_.dim == 1 || (mesh_.dim == 2 && options_.plane == Plane::stress);
+  return !is_linear() && (!free || !material().resists_crushing());
 }
 
 bool FeModel::guard(bool on) {

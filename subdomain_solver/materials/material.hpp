@@ -39,6 +39,9 @@ class Material {
   virtual Moduli moduli() const = 0;   // at the undeformed state: wave speeds, stable step
   /// P is linear in F: one assembly and one factorisation serve a whole run (small strain).
   virtual bool is_linear() const { return false; }
+  /// Whether compression to nothing takes more and more force: a law that gives way turns inside
+  /// out.
+  virtual bool resists_crushing() const { return true; }
   /// Numbers per point that change with the deformation; all zero at the start.
   virtual int history_size() const { return 0; }
   /// Those among them that are told as fields; below history_size().

@@ -9,6 +9,7 @@ namespace abut {
 class SaintVenantKirchhoff final : public IsotropicMaterial {
  public:
   using IsotropicMaterial::IsotropicMaterial;
+  bool resists_crushing() const override { return false; }
   [[nodiscard]] bool evaluate(const Matrix3& f, std::span<const double> before,
                               std::span<double> after, Need want,
                               PointResponse& out) const override;

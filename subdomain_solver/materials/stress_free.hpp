@@ -18,6 +18,7 @@ class StressFree : public Material {
   double density() const override { return law_->density(); }
   Moduli moduli() const override { return law_->moduli(); }  // of space: a bound on wave speeds
   bool is_linear() const override { return law_->is_linear(); }
+  bool resists_crushing() const override { return law_->resists_crushing(); }
   int history_size() const override { return law_->history_size() + (is_linear() ? 0 : 1); }
   [[nodiscard]] bool evaluate(const Matrix3& f, std::span<const double> before,
                               std::span<double> after, Need want,

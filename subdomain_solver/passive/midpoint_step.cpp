@@ -104,7 +104,10 @@ double MidpointStep::potential() {
     given += 0.25 * given_(i) * change_(i);
   }
   const double inner = response_.stored + response_.dissipation;
-  rounding_ = body_.noise + digits * (moving + std::abs(given) + std::abs(inner));
+  // Places are rounded too: of cells that are crushed to nearly nothing forces work on that.
+  double placed = 0.0;
+  for (const int i : free_.list()) placed += std::abs(response_.force(i) * middle_[i]);
+  rounding_ = body_.noise + digits * (moving + std::abs(given) + std::abs(inner) + placed);
   return moving - given + inner;
 }
 

@@ -11,9 +11,14 @@ RigidWall::RigidWall(std::string name, double position, std::string port, double
   description_.mass = std::numeric_limits<double>::infinity();
   description_.stable_step = std::numeric_limits<double>::infinity();
   description_.conserves = true;
-  description_.can = {
-      .motion = false, .force = true, .obstacle = false, .impulse = true, .kernel = true};
+  description_.can = {.motion = false,
+                      .force = true,
+                      .obstacle = false,
+                      .impulse = true,
+                      .kernel = true,
+                      .passive = true};
   able_.probed = this;
+  able_.passive = this;
   Port p;
   p.name = std::move(port);
   p.geometry.points = {position};
@@ -43,6 +48,18 @@ const PortValues& RigidWall::see(const Window& window, double time, bool) {
 std::optional<Failed> RigidWall::record(BodyRecord& record) {
   record.energy = {};
   record.momentum.assign(1, 0.0);
+  return std::nullopt;
+}
+
+std::optional<Failed> RigidWall::leave(double, double& lost) {
+  lost = 0.0;
+  return std::nullopt;
+}
+
+std::optional<Failed> RigidWall::pass(const PassiveStep& step, PassiveReply& reply) {
+  reply.ports = {{{0.0}, {0.0}}};
+  reply.compliance.assign(step.pressed.empty() ? 0 : step.pressed[0].size(), 0.0);
+  reply.bulge = 0.0;
   return std::nullopt;
 }
 

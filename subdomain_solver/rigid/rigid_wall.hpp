@@ -3,11 +3,12 @@
 #include <string>
 
 #include "subdomain_solver/interior.hpp"
+#include "subdomain_solver/passive/passive_body.hpp"
 
 namespace abut {
 
 /// An immovable rigid surface: takes any force and never moves. Has no step of its own.
-class RigidWall final : public Interior, private Probed {
+class RigidWall final : public Interior, private Probed, private PassiveBody {
  public:
   RigidWall(std::string name, double position, std::string port, double normal);
 
@@ -25,6 +26,12 @@ class RigidWall final : public Interior, private Probed {
   double light_force(std::size_t) const override { return 1.0; }
   bool rest(std::size_t) override { return false; }
   void wake() override {}
+
+  // Nothing it has is other in its passive form.
+  double enter() override { return 0.0; }
+  std::optional<Failed> leave(double, double& lost) override;
+  double damp(double) override { return 0.0; }
+  std::optional<Failed> pass(const PassiveStep& step, PassiveReply& reply) override;
 
   PortValues seen_;
 };

@@ -17,6 +17,7 @@ from pathlib import Path
 
 ABUT = Path(sys.argv[1]).resolve()
 SOLVER = ABUT.with_name("abut-solver")
+PACKAGE = ABUT.parents[1] / "share" / "abut" / "python"  # with abut_tools
 ROOT = Path(sys.argv[2]).resolve()
 SECONDS = 120  # the longest run takes a few seconds; only a hang takes longer
 CONNECTED = "two_bars_processes"  # the scene whose solvers somebody else starts
@@ -162,7 +163,7 @@ class SystemTest(unittest.TestCase):
         tables = ["history.csv"] + (["closed_form.csv"] if "closed_form" in summary else [])
         resolved = (folder / "scene.resolved.yaml").read_text(encoding="utf-8")
         pictures = re.search(r"^output:\n(?:  .*\n)*?  fields:", resolved, re.MULTILINE)
-        fields = {"fields", "fields.pvd"} if pictures else set()
+        fields = {"fields", "fields.pvd", "fields.pvsm"} if pictures else set()
         self.assertEqual(names, FILES | fields | set(tables))
         self.events(folder)
         columns = []

@@ -6,8 +6,6 @@ usage: test_damaged_runs.py ABUT ROOT RUNS
 """
 
 import contextlib
-import importlib.machinery
-import importlib.util
 import io
 import json
 import os
@@ -20,22 +18,16 @@ from pathlib import Path
 from unittest import mock
 
 sys.dont_write_bytecode = True
-from support import ABUT, SystemTest, main, shared_run, strict_json  # noqa: E402
+from support import ABUT, PACKAGE, SystemTest, main, shared_run, strict_json  # noqa: E402
 
-PROGRAM = ABUT.with_name("abut-report")
-sys.path.insert(0, str(ABUT.parent))
+sys.path.insert(0, str(PACKAGE))
+from abut_tools import report  # noqa: E402
+
 SCENES = ("two_bars", "bars/three_bars_with_gap")  # one contact in closed form, and several
 NAMES = ("summary.json", "history.csv", "closed_form.csv", "events.jsonl")
 ROUNDS = 60  # of every scene and file
 EVERY = 20  # of the rows of a table is kept: what a damage does to one it does to any
 NOBODY = 65534
-
-
-def program():
-    loader = importlib.machinery.SourceFileLoader("abut_report", str(PROGRAM))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("abut_report", loader))
-    loader.exec_module(module)
-    return module
 
 
 def whole_file(scene: str, name: str) -> bytes:
@@ -126,7 +118,6 @@ def damaged(chance: random.Random, name: str, data: bytes) -> bytes:
 class DamagedRuns(SystemTest):
     def setUp(self):
         super().setUp()
-        self.report = program()
         self.library = self.folder / "library.js"  # a short one: it is copied into every page
         self.library.write_text("", encoding="utf-8")
 
@@ -145,7 +136,7 @@ class DamagedRuns(SystemTest):
         words = ["abut-report", str(folder), "--chart-library", str(self.library)]
         with mock.patch.object(sys, "argv", words), contextlib.redirect_stderr(said), \
                 contextlib.redirect_stdout(io.TextIOWrapper(io.BytesIO())):
-            code = self.report.main()
+            code = report.main()
         return code, said.getvalue()
 
     def assert_told(self, outcome: tuple[int, str], folder: Path, name: str):
@@ -213,8 +204,8 @@ class DamagedRuns(SystemTest):
         if os.geteuid() == 0:  # whom no permission stops
             self.folder.chmod(0o755)
         who = {"user": NOBODY} if os.geteuid() == 0 else {}
-        result = subprocess.run([PROGRAM, folder], text=True, capture_output=True, check=False,
-                                timeout=60, **who)
+        result = subprocess.run([ABUT.with_name("abut-report"), folder], text=True, check=False,
+                                capture_output=True, timeout=60, **who)
         self.assertEqual(result.returncode, 2, result.stderr)
         self.assertRegex(result.stderr, r"\A[^\n]*run/\S+: cannot be read: Permission[^\n]*\n\Z")
 

@@ -130,6 +130,16 @@ class Fields(SystemTest):
         self.assertAlmostEqual(at_cells["stress"][0] / 343902157.23, 1.0, delta=1e-8)
         self.assertAlmostEqual(at_cells["von_mises"][0] / 343902157.23, 1.0, delta=1e-8)
 
+    def test_the_state_of_paraview_names_the_list_and_the_largest_stress(self):
+        folder = self.run_in("run", TWO_BARS, "--local", "--set", "output.fields.every=10")
+        state = ElementTree.parse(folder / "fields.pvsm").getroot()
+        words = {element.get("id"): [each.get("value") for each in element]
+                 for element in state.iter("Property")}
+        self.assertEqual(words["1.FileName"], [str(folder / "fields.pvd")])
+        largest = max(max(arrays(ElementTree.parse(path).getroot().find(
+            "UnstructuredGrid/Piece/CellData"))["von_mises"]) for _, _, path in self.listed(folder))
+        self.assertAlmostEqual(float(words["3.RGBPoints"][20]) / largest, 1.0, delta=1e-12)
+
     def test_a_forced_run_leaves_no_state_of_the_last_one(self):
         self.run_in("run", TWO_BARS, "--local", "--set", "output.fields.every=10")
         folder = self.run_in("run", TWO_BARS, "--local", "--force")

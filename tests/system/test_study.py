@@ -22,9 +22,9 @@ from pathlib import Path
 from types import SimpleNamespace
 
 sys.dont_write_bytecode = True
-from support import ABUT, ROOT, SystemTest, main  # noqa: E402
+from support import ABUT, PACKAGE, ROOT, SystemTest, main  # noqa: E402
 
-sys.path.insert(0, str(ABUT.parent))
+sys.path.insert(0, str(PACKAGE))
 from abut_tools.study_results import check_of, front, series_of  # noqa: E402
 from abut_tools.expressions import Expression  # noqa: E402
 from abut_tools.study_file import read_study  # noqa: E402

@@ -188,7 +188,7 @@ class Units(SystemTest):
 
     def test_materials_are_listed_with_their_sources(self):
         page = (ROOT / "docs" / "REFERENCE.md").read_text(encoding="utf-8")
-        self.assertIn("| `steel` | `{linear_elastic: {youngs_modulus: 210 GPa, poissons_ratio: "
+        self.assertIn("| steel | `{linear_elastic: {youngs_modulus: 210 GPa, poissons_ratio: "
                       "0.3, density: 7850 kg/m^3}}` | structural steel: EN 1993-1-1:2005", page)
 
 

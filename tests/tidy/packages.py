@@ -8,6 +8,7 @@ from pathlib import Path
 from findings import Finding, project_files, read_lines, run
 
 LIST = "scripts/packages.txt"
+NAMES = {"PIL": "pil"}  # modules that their package is not named after
 OPTIONAL = {"vtkmodules"}  # an independent reader: its tests are skipped where it is missing
 
 
@@ -37,9 +38,10 @@ def check(root: Path) -> list[Finding]:
     for name in sources:
         for line, module in imported((root / name).read_text(encoding="utf-8")):
             known = module in sys.stdlib_module_names | ours | OPTIONAL
-            if not known and f"python3-{module}" not in packages:
+            package = f"python3-{NAMES.get(module, module)}"
+            if not known and package not in packages:
                 found.append(Finding(name, line, f"imports '{module}', which {LIST} lacks",
-                                     f"add python3-{module} there with its reason"))
+                                     f"add {package} there with its reason"))
     return found
 
 

@@ -70,10 +70,17 @@ TEST(CommandLine, OtherVerbsKeepTheirArgumentsUntouched) {
 TEST(CommandLine, VersionAndHelpAreNoErrors) {
   const PrintCommand version = std::get<PrintCommand>(parsed({"--version"}));
   EXPECT_TRUE(version.text.starts_with("abut ")) << version.text;
+  EXPECT_NE(version.text.find("\ncommit   "), std::string::npos) << version.text;
   EXPECT_EQ(version.exit_code, 0);
   const PrintCommand help = std::get<PrintCommand>(parsed({"run", "--help"}));
   EXPECT_NE(help.text.find("--force"), std::string::npos) << help.text;
   EXPECT_EQ(help.exit_code, 0);
+}
+
+TEST(CommandLine, HelpListsEveryVerb) {
+  const std::string help = std::get<PrintCommand>(parsed({"--help"})).text;
+  for (const char* verb : {"run", "check", "split", "reference", "report", "study"})
+    EXPECT_NE(help.find(std::string("\n  ") + verb + ' '), std::string::npos) << verb << help;
 }
 
 TEST(CommandLine, WhatIsWrongEndsWithCodeTwo) {

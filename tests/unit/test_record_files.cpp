@@ -220,9 +220,21 @@ TEST_F(RecordFiles, SummaryHoldsMeasuresTimingHashAndClosedForm) {
   EXPECT_EQ(json["exchanges"], 142);
   EXPECT_EQ(json["ports"]["left.tip"]["position"], -0.1);
   EXPECT_EQ(json["interfaces"]["impact"]["sides"][1], "right.tip");
+  EXPECT_EQ(json["interfaces"]["impact"]["tied"], false);
   EXPECT_EQ(json["expectations"][0]["pass"], true);
   EXPECT_EQ(json["expectations"][0]["expected"], "at most 2");
   EXPECT_FALSE(std::filesystem::exists(directory_ / "summary.json.tmp"));
+}
+
+TEST_F(RecordFiles, SummarySaysWhichInterfacesAreTies) {
+  HandMadeRun run;
+  run.start.interfaces[0].tied = true;
+  MeasureRecorder recorder(nullptr);
+  Summary summary_file(directory_, {"", {}, {}}, recorder, nullptr);
+  run.play(recorder);
+  run.index = 0;
+  run.play(summary_file);
+  EXPECT_EQ(summary()["interfaces"]["impact"]["tied"], true);
 }
 
 TEST_F(RecordFiles, SummaryHoldsTheFrequenciesOfBodiesThatMoveInModes) {

@@ -59,7 +59,8 @@ TEST_F(RunFolder, ThatHoldsARunIsRefusedAndKept) {
 }
 
 TEST_F(RunFolder, ForcedLosesTheFilesOfTheRunAndNoOther) {
-  for (const char* name : {"summary.json", "history.csv", "report.html", "notes.txt",
+  for (const char* name : {"summary.json", "history.csv", "report.html", "film.gif", "fields.pvsm",
+                           "picture.png", "picture_of_mine.png", "notes.txt",
                            "fields/bar_000010.vtu", "fields/mine_000010.vtu", "notes.vtu"})
     put(root / name);
   // What a run has written is what its list names, and a list that was tampered with names no more.
@@ -71,6 +72,9 @@ TEST_F(RunFolder, ForcedLosesTheFilesOfTheRunAndNoOther) {
   RunDirectory(root, true).clear();
   EXPECT_FALSE(fs::exists(root / "summary.json") || fs::exists(root / "history.csv") ||
                fs::exists(root / "report.html"));
+  EXPECT_FALSE(fs::exists(root / "film.gif") || fs::exists(root / "picture.png") ||
+               fs::exists(root / "fields.pvsm"));
+  EXPECT_TRUE(fs::exists(root / "picture_of_mine.png"));
   EXPECT_FALSE(fs::exists(root / "fields.pvd") || fs::exists(root / "fields" / "bar_000010.vtu"));
   EXPECT_TRUE(fs::exists(root / "notes.txt") && fs::exists(root / "notes.vtu"));
   EXPECT_TRUE(fs::exists(root / "fields" / "mine_000010.vtu"));

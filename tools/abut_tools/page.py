@@ -49,22 +49,24 @@ def script_json(data: object) -> str:
     return text.replace("</", "<\\/")
 
 
-def filled(template: Path, library: str, **parts: str) -> str:
+def filled(template: Path, library: str, scripts: tuple[str, ...], **parts: str) -> str:
     text = string.Template(template.read_text(encoding="utf-8"))
     return text.substitute(
         parts, style=(HERE / "page.css").read_text(encoding="utf-8"),
-        script=(HERE / "page.js").read_text(encoding="utf-8"),
+        script="".join((HERE / name).read_text(encoding="utf-8") for name in scripts),
         library=library.replace("</script", "<\\/script"))
 
 
-def fitting_page(make: Callable[[str, int], str], library_path: Path, points: int) -> str:
-    """The page with as many points per curve, at most `points`, as the limit of its size allows."""
+def fitting_page(make: Callable[[str, int], str], library_path: Path, points: int,
+                 beside: int = 0) -> str:
+    """The page with as many points per curve, at most `points`, as the limit of its size allows;
+    `beside` are bytes that count elsewhere."""
     if not library_path.is_file():
         raise ToolError(f"the chart library {library_path} is not there. Install Debian's "
                         "package libjs-chart.js, or name a copy with --chart-library.", 3)
     library = library_path.read_text(encoding="utf-8")
     page = make(library, points)
-    while len(page.encode()) > PAGE_LIMIT and points > 50:
+    while len(page.encode()) - beside > PAGE_LIMIT and points > 50:
         points //= 2
         page = make(library, points)
     return page

@@ -125,7 +125,7 @@ CONTACT = {"begin": VALUE, "end": VALUE, "duration": VALUE, "force": VALUE, "imp
 # read; a map whose only key is * has entries of one kind under names of their own.
 SUMMARY = {
     "status": TEXT, "title": TEXT, "notes": [TEXT], "measures": {"*": VALUE},
-    "time": {"reached": VALUE},
+    "time": {"begin": VALUE, "end": VALUE, "reached": VALUE}, "reason": TEXT,
     "expectations": [{"!measure": TEXT, "!expected": TEXT, "!got": VALUE, "!pass": FLAG,
                       "because": TEXT}],
     "energy_scales": {"total": VALUE, "bodies": {"*": VALUE}},
@@ -133,13 +133,13 @@ SUMMARY = {
                     "interfaces": {"*": CONTACT},
                     "bodies": {"*": {"!wall": FLAG, "mean_velocity_end": VALUE}}},
     "ports": {"*": {"position": NUMBER, "normal": NUMBER, "body": TEXT}},
-    "interfaces": {"*": {"sides": [TEXT]}},
+    "interfaces": {"*": {"sides": [TEXT], "tied": FLAG}}, "never_closed": [TEXT],
     "state_hash": Maybe(TEXT), "windows": NUMBER, "contact_windows": NUMBER, "exchanges": NUMBER,
     "timing": {"wall_s": VALUE, "compute_s": {"*": VALUE},
                "overhead_per_exchange_us_median": VALUE},
     "estimate": {"windows": COUNTS, "contact_windows": COUNTS, "exchanges": COUNTS,
                  "in_use": [TEXT], "not_built": [TEXT]},
-    "bodies": [{"!name": TEXT, "!model": TEXT, "members": [{"!name": TEXT}]}],
+    "bodies": [{"!name": TEXT, "!model": TEXT, "mass": VALUE, "members": [{"!name": TEXT}]}],
     "versions": {"*": TEXT},
     "overlaps": [{"!bodies": [TEXT], "!depth": VALUE, "!time": VALUE, "place": [VALUE]}],
     "accuracy": {"given_up": {

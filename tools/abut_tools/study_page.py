@@ -269,7 +269,7 @@ def page_of(study: Study, results: list[Result], facts: dict, out: Path, templat
             "histories": [each for group in groups for each in group.data(limit)]}
     about = "".join(f"<p>{html.escape(text)}</p>" for text in study.about.split("\n\n") if text)
     return filled(
-        template, library, title=html.escape(study.title), status=html.escape(status),
+        template, library, ("page.js",), title=html.escape(study.title), status=html.escape(status),
         kind="ok" if facts["status"].get("completed") else "failed", about=about,
         claims=claims_html(facts), tables=tables_html(facts),
         trade=trade_html(study, facts, results),

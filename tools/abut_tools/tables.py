@@ -5,8 +5,19 @@ import re
 
 # Told apart by all eyes.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d1f", "#5b5b5b")
+# Of quantities of one sign from low to high, each lighter than the one before, and of both signs.
+RAMPS = {"plain": ("#403a8c", "#3a6ab4", "#2898b8", "#38b890", "#a0d058", "#fde04c"),
+         "signed": ("#143f94", "#5f9bd8", "#e9ecef", "#ea9164", "#9c2b0c"),
+         "signed_dark": ("#7ab8ff", "#3d70b8", "#2b3440", "#b8663c", "#ffa478")}
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
-PREFIXED_UNITS = ("s", "m", "N", "J")
+PREFIXED_UNITS = ("s", "m", "N", "J", "Pa", "N s", "Hz")
+
+
+def ramp_of(low: float, dark: bool = False) -> tuple[str, ...]:
+    """Nothing looks like the ground: light on a light one, dark on a dark one."""
+    if low >= 0.0:
+        return RAMPS["plain"]
+    return RAMPS["signed_dark" if dark else "signed"]
 
 
 class ToolError(Exception):
@@ -46,13 +57,21 @@ class Figure:
         self.points = points  # values of windows: dots, not a line
         self.curves = []
 
-    def add(self, label, colour, times, values, exact=False):
+    def add(self, label, colour, times, values, exact=False, dash=0):
         # Differences of the largest numbers are none.
         pairs = [(t, v) for t, v in zip(times, values)
                  if t is not None and v is not None and math.isfinite(v)]
         if pairs:
-            self.curves.append({"label": label, "colour": colour, "exact": exact,
+            self.curves.append({"label": label, "colour": colour, "exact": exact, "dash": dash,
                                 "x": [t for t, _ in pairs], "y": [v for _, v in pairs]})
+
+    def words(self, factor: float, unit: str, time_scale: tuple[float, str]) -> str:
+        """What the curves show, for those who do not see them."""
+        ends = [t * time_scale[0] for curve in self.curves for t in (curve["x"][0], curve["x"][-1])]
+        told = [f"{curve['label'] or self.quantity} from {few(factor * min(curve['y']))} to "
+                f"{few(factor * max(curve['y']))}" for curve in self.curves[:8]]
+        span = f"from {few(min(ends))} to {few(max(ends))} {time_scale[1]}" if ends else ""
+        return f"{self.title} [{unit}] {span}: {'; '.join(told)}".replace(" []", "")
 
     def data(self, limit: int, time_scale: tuple[float, str]) -> dict:
         largest = max((abs(y) for curve in self.curves for y in curve["y"]), default=0.0)
@@ -67,7 +86,8 @@ class Figure:
         # Round-off below zero must not open half a figure of empty space.
         floor = 0 if -0.005 * largest < lowest <= 0.0 else None
         return {"name": self.name, "label": label, "unit": unit, "points": self.points,
-                "time": time_scale[1], "floor": floor, "curves": curves}
+                "words": self.words(factor, unit, time_scale), "time": time_scale[1],
+                "floor": floor, "curves": curves}
 
 
 def scaled_unit(largest: float, unit: str) -> tuple[float, str]:
@@ -132,6 +152,19 @@ def sum_of(columns: list[list]) -> list:
 def colour_of(names: list[str], name: str) -> str:
     place = names.index(name) if name in names else len(names)
     return COLOURS[place % len(COLOURS)]
+
+
+def few(value: float) -> str:
+    """Four digits: as many as a person takes in."""
+    return f"{value:.4g}"
+
+
+def measured(value: float | None, unit: str) -> str:
+    """Few digits, and a unit with a prefix that keeps them short."""
+    if value is None:
+        return ""
+    factor, prefixed = scaled_unit(abs(value), unit)
+    return f"{few(value * factor)} {prefixed}".strip()
 
 
 def shown(value) -> str:

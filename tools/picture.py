@@ -1,0 +1,93 @@
+#!/usr/bin/python3
+"""A picture of a run's bodies at one time, the force curve beside them, as a PNG file.
+
+Reads the fields and the history of the run; draws without a display. Needs Debian's packages
+python3-matplotlib and python3-numpy. Ends with 2 when the user can help (no fields in the folder),
+with 3 when the machine must (a package is missing, the picture cannot be written).
+"""
+
+import argparse
+import math
+import os
+import sys
+from pathlib import Path
+
+from abut_tools.motion import motion_of
+from abut_tools.picture_options import add_options, joined, require_fields, require_packages
+from abut_tools.run_folder import Run
+from abut_tools.tables import ToolError, measured
+from abut_tools.version import TellVersion
+from abut_tools.vtu import listed_states
+
+
+def moment(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"is '{text}': write seconds, for example 2.5e-4")
+    return value
+
+
+def time_of(folder: Path, wanted: float | None) -> float:
+    """The state nearest to the wanted time; where none is named, the last."""
+    times = [entry.time for entry in listed_states(folder)]
+    if wanted is None:
+        return max(times)
+    slack = 1e-6 * (max(times) - min(times))
+    if not min(times) - slack <= wanted <= max(times) + slack:
+        raise ToolError(f"--time {wanted:.6g} is outside of the run's states, which go from "
+                        f"{min(times):.6g} to {max(times):.6g} s. Name a time between these.", 2)
+    return min(times, key=lambda time: abs(time - wanted))
+
+
+def make_picture(options: argparse.Namespace, out: Path) -> str:
+    """Writes the picture; says at what time it is."""
+    run = Run(options.directory)
+    require_fields(options.directory)
+    require_packages()
+    from abut_tools.frames import Frames, Look  # after it is known that its packages are there
+    from PIL import Image
+    time = time_of(options.directory, options.time)
+    # Colours that mean the same at all times: the scale is that of a part of the run's states.
+    motion = motion_of(options.directory, 20, also=time)
+    if motion.dimension == 1:  # a diagram of space and time needs more, and bars are small
+        motion = motion_of(options.directory, 150, also=time)
+    look = Look(options.size, options.field, options.view, options.deformation, options.dark)
+    image = Frames(run, motion, look).draw(motion.times.index(time))
+    temporary = out.with_name(out.name + ".tmp")
+    temporary.unlink(missing_ok=True)
+    with temporary.open("xb") as file:  # never through a symbolic link
+        Image.fromarray(image).save(file, format="PNG", optimize=True)
+    os.replace(temporary, out)
+    return measured(time, "s")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="abut picture",
+                                     description="Draws a run's bodies at one time.")
+    add_options(parser, "DIR/picture.png")
+    parser.add_argument("--time", type=moment, metavar="SECONDS",
+                        help="the state nearest to it is drawn; default: the last")
+    parser.add_argument("--version", action=TellVersion)
+    options = parser.parse_args(joined(sys.argv[1:]))
+    sys.stdout.reconfigure(errors="backslashreplace")  # names of files may be no text
+    out = options.out or options.directory / "picture.png"
+    try:
+        if out.suffix.lower() != ".png":
+            raise ToolError(f"--out {out}: pictures are PNG files. Give it the ending .png.", 2)
+        make_picture(options, out)
+    except ToolError as error:
+        print(f"abut picture: {error}", file=sys.stderr)
+        return error.code
+    except OSError as error:
+        print(f"abut picture: {error.filename}: {error.strerror}. Check that it can be read and "
+              "written.", file=sys.stderr)
+        return 3
+    print(out)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
