@@ -153,11 +153,17 @@ void Controller::accept_passively(const TimeWindow& window) {
   end_window(window, guard_.look(bodies_.responses()));
 }
 
-/// Bodies have left their passive forms; false: one came upon itself by that, and all are back.
+/// Bodies have left their passive forms; false: one came upon itself by that, or an end upon
+/// another one's, and all are back: nodes without mass go to where they are in balance.
 bool Controller::leave_apart() {
-  if (!folds_.any()) return true;
+  if (!folds_.any() && !passive_.on_a_line()) return true;
   prepare({0, clock_.time(), clock_.time()}, 1, Sampling::substeps);
-  if (!bodies_.advance_all() && folds_.still_apart()) return true;
+  const bool answered = !bodies_.advance_all();
+  const bool apart = !passive_.on_a_line() || std::ranges::all_of(joints_, [&](Joint& joint) {
+    return joint.exchange == nullptr || joint.tied() ||
+           joint.watch->approach(joint, bodies_).apart > 0.0;
+  });
+  if (answered && apart && (!folds_.any() || folds_.still_apart())) return true;
   bodies_.restore_all();
   passive_.stay();
   waiting_.left = soon;

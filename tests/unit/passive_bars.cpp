@@ -10,7 +10,7 @@ namespace {
 /// Bars of one law are the bars' own, of the other one solids in one dimension.
 std::vector<PassiveText> bars() {
   std::vector<PassiveText> all;
-  PassiveText text = {1, "bar2", 5};
+  PassiveText text = {1, "bar2", 12};
   for (const char* law :
        {"linear_elastic: {youngs_modulus: 100.0, density: 2.0}",
         "neo_hookean: {youngs_modulus: 100.0, poissons_ratio: 0.3, density: 2.0}",
