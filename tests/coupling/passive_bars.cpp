@@ -52,14 +52,16 @@ struct Crush {
 };
 
 std::vector<Crush> crushes() {
-  std::vector<Crush> all;
-  for (const char* law : {"neo_hookean", "saint_venant_kirchhoff"})
-    for (const char* scheme : {"newmark: {step: 2.0e-5}", "central_difference: {step: 1.0e-5}"})
-      for (const bool wall : {false, true})
-        all.push_back({.law = law, .scheme = scheme, .wall = wall});
-  all.push_back({.beside = "newmark: {step: 2.0e-5}"});
-  all.push_back({.beside = "generalized_alpha: {step: 2.0e-5}", .cells = 6});
-  return all;
+  const std::string implicit = "newmark: {step: 2.0e-5}";
+  const std::string step_by_step = "central_difference: {step: 1.0e-5}";
+  const std::string soft = "neo_hookean", gives_way = "saint_venant_kirchhoff";
+  return {{.law = soft, .scheme = implicit},
+          {.law = soft, .scheme = step_by_step},
+          {.law = soft, .scheme = step_by_step, .wall = true},
+          {.law = gives_way, .scheme = implicit},
+          {.law = gives_way, .scheme = implicit, .wall = true},
+          {.law = gives_way, .scheme = step_by_step, .wall = true},
+          {.law = soft, .scheme = implicit, .beside = implicit}};
 }
 
 TEST(PassiveBars, AreCrushedToTheEndAndGainNothing) {
