@@ -40,8 +40,8 @@ class Fields {
 
   /// A word out of a list. T is a string, or a bool or enum whose value is the index into the list.
   template <class T, class Words = std::initializer_list<std::string_view>>
-  void word(std::string_view key, T& value, const Words& words,
-            std::string_view help, Presence presence = Presence::optional) {
+  void word(std::string_view key, T& value, const Words& words, std::string_view help,
+            Presence presence = Presence::optional) {
     const std::span<const std::string_view> list(std::data(words), std::size(words));
     if constexpr (std::is_same_v<T, std::string>) {
       word_leaf({key, "", help, presence}, value, list);
@@ -110,8 +110,8 @@ class Fields {
     leave();
   }
 
-  /// A one-key map `{name: {keys}}`, or the name alone when all its keys have defaults. Each
-  /// alternative has `static constexpr std::string_view name` and `fields`.
+  /// A one-key map `{name: {keys}}`, or the name alone when all its keys have defaults.
+  /// Alternatives have `static constexpr std::string_view name` and `fields`.
   template <HasFields... A>
   void choice(std::string_view key, std::variant<A...>& value, std::string_view help,
               Presence presence = Presence::required) {
@@ -127,14 +127,13 @@ class Fields {
     if (purpose_ == Purpose::read) value = present ? std::move(sample) : std::nullopt;
   }
 
-  /// A rule across keys of this map; `key` is the one to blame. `what` follows the key path ("is
-  /// before begin"), `remedy` is a sentence. Only a reader looks at it, and only when no key is
-  /// missing.
+  /// A rule across keys of this map; `key` is the one to blame. `what` follows the key path,
+  /// `remedy` is a sentence. Only a reader looks at it, and only when no key is missing.
   void check(bool ok, std::string_view key, const std::string& what, const std::string& remedy) {
     if (purpose_ == Purpose::read && !ok) broken(key, what, remedy);
   }
-  /// Where `is_idle`, a key has no effect, whatever its value: a reader refuses it where it is
-  /// given, a writer leaves it out. `why` follows "has no effect: ".
+  /// Where `is_idle`, a key has no effect: a reader refuses it where it is given, a writer leaves
+  /// it out. `why` follows "has no effect: ".
   virtual void idle(bool is_idle, std::string_view key, std::string_view why) = 0;
   /// This key belongs to another reader of the same map.
   virtual void ignore(std::string_view key) = 0;
@@ -154,8 +153,9 @@ class Fields {
   virtual void enter_map(const Key& key, std::vector<std::string>& names) = 0;
   /// Empty: absent. A reader returns the name found, the others the `current` one.
   virtual std::string enter_choice(const Key& key, std::span<const std::string_view> names,
-                                   std::string_view current) = 0;
-  virtual void descend(std::string_view name, std::string_view shorthand = {}) = 0;
+                                   std::string_view current, std::span<const Preset> presets) = 0;
+  virtual void descend(std::string_view name, std::string_view shorthand,
+                       std::span<const Preset> presets) = 0;
   virtual void leave() = 0;
   virtual void broken(std::string_view key, const std::string& what, const std::string& remedy) = 0;
 
@@ -168,7 +168,7 @@ class Fields {
   }
   template <class S>
   void item(std::string_view name, S& value) {
-    descend(name, shorthand_of<S>());
+    descend(name, shorthand_of<S>(), presets_of<S>());
     value.fields(*this);
     leave();
   }
@@ -180,7 +180,7 @@ class Fields {
   bool choose(const Key& key, std::variant<A...>* value) {
     constexpr std::array<std::string_view, sizeof...(A)> names{A::name...};
     const std::string_view current = value != nullptr ? names[value->index()] : std::string_view();
-    const std::string name = enter_choice(key, names, current);
+    const std::string name = enter_choice(key, names, current, presets_of_any<A...>());
     if (purpose_ == Purpose::document) {
       (document(A{}), ...);
       leave();

@@ -105,16 +105,20 @@ class Documenter final : public Fields {
     stack_.push_back(&add(key, Kind::names, "{}"));
   }
   std::string enter_choice(const Key& key, std::span<const std::string_view>,
-                           std::string_view current) override {
-    stack_.push_back(&add(key, Kind::choice, current.empty() ? "absent" : std::string(current)));
+                           std::string_view current, std::span<const Preset> presets) override {
+    KeyNode& node = add(key, Kind::choice, current.empty() ? "absent" : std::string(current));
+    node.presets.assign(presets.begin(), presets.end());
+    stack_.push_back(&node);
     return std::string(current);
   }
   /// Items of lists and maps have their keys in the list's own node, alternatives in one each.
-  void descend(std::string_view name, std::string_view shorthand) override {
+  void descend(std::string_view name, std::string_view shorthand,
+               std::span<const Preset> presets) override {
     KeyNode* node = stack_.back();
     if (node->kind == Kind::choice)
       node = &add({name, "", "", Presence::optional}, Kind::map, "optional");
     node->shorthand = shorthand;
+    node->presets.assign(presets.begin(), presets.end());
     stack_.push_back(node);
   }
   void broken(std::string_view, const std::string&, const std::string&) override {}
@@ -144,9 +148,35 @@ std::string KeyNode::type() const {
     std::vector<std::string> names;
     for (const KeyNode& key : keys) names.push_back(key.name);
     text += fmt::format(" {}", fmt::join(names, ", "));
+    names.clear();
+    for (const Preset& preset : presets) names.emplace_back(preset.name);
+    if (!names.empty()) text += fmt::format("; or the name {}", fmt::join(names, ", "));
   }
   return range.empty() ? text : text + ", " + range;
 }
+
+namespace {
+
+/// Choices below a node for whose keys names stand.
+void find_presets(const KeyNode& node, std::vector<const KeyNode*>& found) {
+  if (node.kind == Kind::choice && !node.presets.empty()) found.push_back(&node);
+  for (const KeyNode& key : node.keys) find_presets(key, found);
+}
+
+std::string preset_table(const KeyNode& choice) {
+  std::string out = fmt::format("## Names that stand for a {}\n\n", choice.name);
+  out += "| name | stands for | source |\n|---|---|---|\n";
+  for (const Preset& preset : choice.presets) {
+    std::vector<std::string> values;
+    for (const auto& [key, value] : preset.values)
+      values.push_back(fmt::format("{}: {}", key, value));
+    out += fmt::format("| {} | `{{{}: {{{}}}}}` | {} |\n", preset.name, preset.choice,
+                       fmt::join(values, ", "), preset.source);
+  }
+  return out + '\n';
+}
+
+}  // namespace
 
 std::unique_ptr<Fields> Reference::documenter_of(std::string_view heading, std::string_view path) {
   sections_.push_back({std::string(heading), std::string(path), {}});
@@ -163,6 +193,9 @@ std::string Reference::markdown() const {
                          row.fallback, row.help);
     out += '\n';
   }
+  std::vector<const KeyNode*> choices;
+  for (const KeySection& section : sections_) find_presets(section.root, choices);
+  for (const KeyNode* choice : choices) out += preset_table(*choice);
   return out;
 }
 

@@ -30,8 +30,9 @@ struct KeyNode {
   Kind kind = Kind::map;
   Rule rule;
   std::vector<std::string> words;
-  std::string shorthand;  // of a map, or of items: the key that a plain value is meant for
-  bool open = false;      // of a map, or of items: other keys belong to another reader
+  std::string shorthand;        // of a map, or of items: the key that a plain value is meant for
+  bool open = false;            // of a map, or of items: other keys belong to another reader
+  std::vector<Preset> presets;  // of a choice or a map: names that may stand in its place
   std::vector<KeyNode> keys;
 
   /// "number, at least 0", "one of red, green", "map from names to maps".

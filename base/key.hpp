@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -44,6 +45,14 @@ struct Key {
   Presence presence = Presence::required;
 };
 
+/// A name that stands for a map of keys, as that of a material: `{choice: {key: value, ...}}`.
+/// Values are texts as in a scene, with their units.
+struct Preset {
+  std::string_view name, choice;
+  std::vector<std::pair<std::string_view, std::string_view>> values;
+  std::string_view source;
+};
+
 /// Where one value lives.
 using Slot =
     std::variant<double*, int*, std::int64_t*, bool*, std::string*, std::optional<double>*,
@@ -73,6 +82,22 @@ template <class S>
 constexpr std::string_view shorthand_of() {
   if constexpr (requires { S::shorthand; }) return S::shorthand;
   return {};
+}
+
+/// Names that stand for the keys of S: where S has a static function `presets`, `{name: preset}`,
+/// or the preset alone where the choice is the preset's own. Empty: none.
+template <class S>
+std::span<const Preset> presets_of() {
+  if constexpr (requires { S::presets(); }) return S::presets();
+  return {};
+}
+
+/// Of several: those of the first that has any.
+template <class... S>
+std::span<const Preset> presets_of_any() {
+  std::span<const Preset> presets;
+  ((presets.empty() ? void(presets = presets_of<S>()) : void()), ...);
+  return presets;
 }
 
 }  // namespace abut

@@ -177,7 +177,7 @@ YAML::Node Copies::written_out(const Document& document) const {
         if (!place.position.empty()) own["position"] = numbers_of(place.position);
         if (!place.velocity.empty()) own["velocity"] = numbers_of(place.velocity);
       }
-      bodies.force_insert(body.names[i], moved_copy(pair.second, own));
+      bodies.force_insert(body.names[i], moved_copy(pair.second, own, document.units()));
     }
   }
   for (const auto& pair : document.root())

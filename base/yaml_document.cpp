@@ -207,6 +207,7 @@ void Document::write_out(const YAML::Node& text) {
     later.push_back(override_text);
   }
   tree_ = std::make_unique<YamlTree>(root);
+  read_units();
   write_out_likes();
   write_out_copies();
   if (later.empty()) return;
@@ -220,6 +221,19 @@ void Document::write_out(const YAML::Node& text) {
     if (!body.empty()) check_copy(override_text, root);
   }
   tree_ = std::make_unique<YamlTree>(root);
+}
+
+void Document::read_units() {
+  const std::optional<YAML::Node> node = tree_->find("units");
+  if (!node || !node->IsScalar() || node->Scalar().empty()) return;  // another type: told later
+  const std::optional<UnitSystem> system = UnitSystem::parse(node->Scalar());
+  if (!system)
+    throw InputError(fmt::format("is {}, which is no system of units", node->Scalar()),
+                     place_of("units", "units"),
+                     "Write SI, or a length, a mass and a time: m kg s (N, Pa), mm t s (N, MPa), "
+                     "mm kg ms (kN, GPa).");
+  units_ = *system;
+  declares_units_ = true;
 }
 
 void Document::write_out_likes() {
@@ -245,10 +259,8 @@ bool Document::has(std::string_view path) const { return tree_->find(path).has_v
 bool Document::says(std::string_view path) const {
   if (has(path)) return true;
   const std::vector<std::string> steps = split_path(path);
-  std::string parent;
-  for (std::size_t k = 0; k + 1 < steps.size(); ++k) parent = join_path(parent, steps[k]);
-  const std::optional<YAML::Node> node = tree_->find(parent);
-  return node && !node->IsMap();
+  const std::vector<Found> way = tree_->walk(steps);
+  return !way.empty() && !way.back().node.IsMap();
 }
 
 std::vector<std::string> Document::keys(std::string_view path) const {

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/units.hpp"
+
 namespace YAML {
 class Node;
 }
@@ -13,6 +15,11 @@ namespace abut {
 
 class Copies;
 class YamlTree;
+
+/// First keys of a document that were read with a unit of their own and without one.
+struct UnitsRead {
+  std::string with, without;  // key paths; empty: none
+};
 
 /// One parsed YAML file with the values that the command line puts in place (`key.path=value`, the
 /// value in YAML; null takes the key out; `*` stands for every key at its place). Text, name and
@@ -56,12 +63,19 @@ class Document {
   /// "ball_1 to ball_9": the copies for which a name stands in the text; empty: none.
   std::string copies_of(std::string_view body) const;
 
+  /// What the scene says under `units`; SI where it says nothing.
+  const UnitSystem& units() const { return units_; }
+  bool declares_units() const { return declares_units_; }
+  /// Filled by whoever reads keys.
+  UnitsRead& units_read() const { return *units_read_; }
+
   const YAML::Node& root() const;
   const YamlTree& tree() const { return *tree_; }
 
  private:
   Document(std::string name, std::string text, std::vector<std::string> overrides);
   void write_out(const YAML::Node& text);
+  void read_units();
   void write_out_likes();
   void write_out_copies();
   bool is_set_at(std::string_view path) const;
@@ -69,6 +83,9 @@ class Document {
 
   std::string name_, text_;
   std::vector<std::string> overrides_;
+  UnitSystem units_;
+  bool declares_units_ = false;
+  std::unique_ptr<UnitsRead> units_read_ = std::make_unique<UnitsRead>();
   std::unique_ptr<YamlTree> tree_;
   std::unique_ptr<YamlTree> written_;  // before bodies were written out; null: it is the same
   std::unique_ptr<Copies> copies_;     // null: there are none

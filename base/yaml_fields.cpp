@@ -10,6 +10,7 @@
 
 #include "base/assert.hpp"
 #include "base/input_errors.hpp"
+#include "base/yaml_quantity.hpp"
 #include "base/yaml_tree.hpp"
 #include "base/yaml_values.hpp"
 
@@ -38,8 +39,9 @@ class Reader final : public Fields {
   std::size_t enter_list(const Key& key, std::size_t count) override;
   void enter_map(const Key& key, std::vector<std::string>& names) override;
   std::string enter_choice(const Key& key, std::span<const std::string_view> names,
-                           std::string_view current) override;
-  void descend(std::string_view name, std::string_view shorthand) override;
+                           std::string_view current, std::span<const Preset> presets) override;
+  void descend(std::string_view name, std::string_view shorthand,
+               std::span<const Preset> presets) override;
   void broken(std::string_view key, const std::string& what, const std::string& remedy) override;
 
  private:
@@ -62,7 +64,8 @@ class Reader final : public Fields {
   std::string path_of(std::string_view key) const { return join_path(frames_.back().path, key); }
   std::optional<YAML::Node> find(const Key& key, const std::string& form, const Rule& rule = any);
   std::string chosen(const Key& key, const std::string& path, const YAML::Node& node,
-                     std::span<const std::string_view> names) const;
+                     std::span<const std::string_view> names,
+                     std::span<const Preset> presets) const;
   [[noreturn]] void fail(const std::string& path, const std::string& what,
                          const std::string& remedy_text) const {
     throw InputError(what, document_.where(path), remedy_text);
@@ -126,7 +129,10 @@ std::optional<YAML::Node> Reader::find(const Key& key, const std::string& form, 
   return std::nullopt;
 }
 
-void Reader::leaf(const Key& key, Slot slot, const Rule& rule) {
+/// In the scene's units, in which messages speak as well.
+void Reader::leaf(const Key& declared, Slot slot, const Rule& rule) {
+  const std::string unit = document_.units().word(declared.unit);
+  const Key key{declared.name, unit, declared.help, declared.presence};
   std::visit(
       [this, &key, &rule](auto* value) {
         const std::optional<YAML::Node> node = find(key, form_of(value), rule);
@@ -202,21 +208,25 @@ void Reader::enter_map(const Key& key, std::vector<std::string>& names) {
 }
 
 std::string Reader::enter_choice(const Key& key, std::span<const std::string_view> names,
-                                 std::string_view) {
+                                 std::string_view, std::span<const Preset> presets) {
   const std::string choices = one_of(names);
   const std::optional<YAML::Node> node = find(key, "one of " + choices);
   if (!node) return {};
   std::string name;
-  errors_.gather([&] { name = chosen(key, path_of(key.name), *node, names); });
+  errors_.gather([&] { name = chosen(key, path_of(key.name), *node, names, presets); });
   if (name.empty()) return {};
   YAML::Node map(YAML::NodeType::Map);
-  if (!node->IsMap()) map[name] = YAML::Node(YAML::NodeType::Map);
+  if (!node->IsMap()) {
+    const bool preset = node->Scalar() != name;
+    map[name] = preset ? YAML::Node(node->Scalar()) : YAML::Node(YAML::NodeType::Map);
+  }
   push(path_of(key.name), node->IsMap() ? *node : map, true);
   return name;
 }
 
 std::string Reader::chosen(const Key& key, const std::string& path, const YAML::Node& node,
-                           std::span<const std::string_view> names) const {
+                           std::span<const std::string_view> names,
+                           std::span<const Preset> presets) const {
   const std::string form =
       fmt::format("Give {} as {{name: {{its keys}}}}, with one of {}.", noun(key), one_of(names));
   const bool bare = is_plain(node);
@@ -233,7 +243,11 @@ std::string Reader::chosen(const Key& key, const std::string& path, const YAML::
   }
   const std::string name = bare ? node.Scalar() : node.begin()->first.Scalar();
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    const std::vector<std::string> known(names.begin(), names.end());
+    const Preset* preset = bare ? preset_named(name, presets) : nullptr;
+    if (preset != nullptr) return std::string(preset->choice);
+    std::vector<std::string> known(names.begin(), names.end());
+    for (const Preset& one : presets)
+      if (bare) known.emplace_back(one.name);
     fail(bare ? path : join_path(path, name),
          bare ? fmt::format("is {}, which is not a known choice", name) : "is not a known choice",
          suggestion(name, known, "Choose one of"));
@@ -241,7 +255,8 @@ std::string Reader::chosen(const Key& key, const std::string& path, const YAML::
   return name;
 }
 
-void Reader::descend(std::string_view name, std::string_view shorthand) {
+void Reader::descend(std::string_view name, std::string_view shorthand,
+                     std::span<const Preset> presets) {
   const Frame& parent = frames_.back();
   const std::string path = join_path(parent.path, name);
   YAML::Node node;
@@ -255,8 +270,13 @@ void Reader::descend(std::string_view name, std::string_view shorthand) {
     node.reset(map);
   }
   const std::size_t earlier = errors_.count();
+  const Preset* preset = node.IsScalar() ? preset_named(node.Scalar(), presets) : nullptr;
+  if (preset != nullptr) node.reset(map_of(*preset));
   if (!node.IsMap()) {
     errors_.gather([&] {
+      if (!presets.empty() && is_plain(node) && !parse<double>(node.Scalar()))
+        fail(path, fmt::format("is {}, which is not a known choice", node.Scalar()),
+             suggestion(node.Scalar(), names_of(presets), "Give a map of keys, or one of"));
       wrong_type(path, "a map of keys", node,
                  "Write its keys as {key: value}; {} stands for its defaults.");
     });
@@ -312,7 +332,9 @@ void Reader::check_range(const Key& key, const std::string& path, const YAML::No
                          double value, std::string_view form, const Rule& rule) const {
   if (!rule.holds(value))
     fail(path,
-         fmt::format("must be {}, but is {}", rule.words(), with_unit(node.Scalar(), key.unit)),
+         fmt::format(
+             "must be {}, but is {}", rule.words(),
+             split_quantity(node.Scalar()) ? node.Scalar() : with_unit(node.Scalar(), key.unit)),
          remedy(key, form, rule));
 }
 
@@ -320,8 +342,10 @@ double Reader::number(const Key& key, const std::string& path, const YAML::Node&
                       const Rule& rule) const {
   if (is_plain(node) && is_not_finite(node.Scalar()))
     fail(path, fmt::format("must be finite, but is {}", node.Scalar()), remedy(key, "", rule));
-  const std::optional<double> value =
+  std::optional<double> value =
       is_plain(node) ? parse<double>(node.Scalar()) : std::optional<double>();
+  if (value && *value != 0.0) note_plain(document_, key, path);
+  if (!value && node.IsScalar()) value = quantity_in(document_, key, path, node.Scalar(), rule);
   if (!value || !std::isfinite(*value)) wrong_type(path, "a number", node, remedy(key, "", rule));
   check_range(key, path, node, *value, "", rule);
   return *value;
@@ -338,7 +362,16 @@ std::int64_t Reader::whole(const Key& key, const std::string& path, const YAML::
 
 std::string Reader::text(const Key& key, const std::string& path, const YAML::Node& node) const {
   if (!node.IsScalar()) wrong_type(path, "text", node, remedy(key, "text"));
-  return node.Scalar();
+  const std::string& text = node.Scalar();
+  if (key.unit.empty()) return text;
+  // An expression in the scene's units, or a number with a unit of its own.
+  const std::optional<Quantity> parts = split_quantity(text);
+  const std::optional<double> value = parts && parse_unit(parts->unit)
+                                          ? quantity_in(document_, key, path, text)
+                                          : std::optional<double>();
+  if (value) return fmt::format("{}", *value);
+  if (text.find_first_of("123456789") != std::string::npos) note_plain(document_, key, path);
+  return text;
 }
 
 const YAML::Node& Reader::list_of(const Key& key, const std::string& path, const YAML::Node& node,
@@ -387,7 +420,8 @@ void Reader::fill(std::optional<double>& value, const Key& key, const std::strin
 void Reader::fill(std::vector<double>& value, const Key& key, const std::string& path,
                   const YAML::Node& node, const Rule& rule) {
   value.clear();
-  if (is_plain(node) && parse<double>(node.Scalar())) {  // a list of one
+  const bool one = is_plain(node) && parse<double>(node.Scalar());
+  if (one || (node.IsScalar() && split_quantity(node.Scalar()))) {  // a list of one
     value.push_back(number(key, path, node, rule));
     return;
   }
@@ -399,7 +433,7 @@ void Reader::fill(std::vector<std::string>& value, const Key& key, const std::st
                   const YAML::Node& node, const Rule&) {
   value.clear();
   if (node.IsScalar()) {  // a list of one
-    value.push_back(node.Scalar());
+    value.push_back(text(key, path, node));
     return;
   }
   for (const YAML::Node& item : list_of(key, path, node, "a list of words"))

@@ -16,18 +16,26 @@
 namespace abut {
 namespace {
 
-std::optional<double> number_in(const YAML::Node& node) {
-  return is_plain(node) ? parse<double>(node.Scalar()) : std::nullopt;
+std::optional<double> number_in(const YAML::Node& node, const std::string& unit) {
+  if (!node.IsScalar()) return std::nullopt;
+  const std::optional<double> plain =
+      is_plain(node) ? parse<double>(node.Scalar()) : std::optional<double>();
+  const std::optional<Quantity> quantity = split_quantity(node.Scalar());
+  if (plain || !quantity) return plain;
+  const std::optional<Unit> from = parse_unit(quantity->unit), to = parse_unit(unit);
+  if (!from || !to || from->dimension != to->dimension) return std::nullopt;
+  return converted(quantity->number, *from, *to);
 }
 
-/// Nothing where a value is neither a number nor a list of numbers.
-std::optional<std::vector<double>> numbers_in(const YAML::Node& node) {
-  const std::optional<double> alone = number_in(node);
+/// In the unit. Nothing where a value is neither a number nor a list of numbers, or has another
+/// unit.
+std::optional<std::vector<double>> numbers_in(const YAML::Node& node, const std::string& unit) {
+  const std::optional<double> alone = number_in(node, unit);
   if (alone) return std::vector<double>{*alone};
   if (!node.IsSequence()) return std::nullopt;
   std::vector<double> values;
   for (const YAML::Node& item : node) {
-    const std::optional<double> value = number_in(item);
+    const std::optional<double> value = number_in(item, unit);
     if (!value) return std::nullopt;
     values.push_back(*value);
   }
@@ -35,8 +43,8 @@ std::optional<std::vector<double>> numbers_in(const YAML::Node& node) {
 }
 
 /// Of lists of different lengths, the shorter one is 0 beyond its end.
-YAML::Node sum(const YAML::Node& list, const std::vector<double>& more) {
-  std::optional<std::vector<double>> values = numbers_in(list);
+YAML::Node sum(const YAML::Node& list, const std::vector<double>& more, const std::string& unit) {
+  std::optional<std::vector<double>> values = numbers_in(list, unit);
   if (!values) return YAML::Clone(list);
   values->resize(std::max(values->size(), more.size()));
   for (std::size_t i = 0; i < more.size(); ++i) (*values)[i] += more[i];
@@ -69,32 +77,34 @@ YAML::Node moved_fields(const YAML::Node& texts, const std::vector<double>& way)
   return list;
 }
 
-YAML::Node moved_points(const YAML::Node& points, const std::vector<double>& way) {
+YAML::Node moved_points(const YAML::Node& points, const std::vector<double>& way,
+                        const std::string& metre) {
   if (!points.IsMap()) return YAML::Clone(points);
   YAML::Node out(YAML::NodeType::Map);
   for (const auto& pair : points) {
     YAML::Node point = YAML::Clone(pair.second);
     const std::optional<Found> at = child(point, "at");
-    if (at) point["at"] = sum(at->node, way);
-    if (!point.IsMap()) point = sum(point, way);  // the place alone
+    if (at) point["at"] = sum(at->node, way, metre);
+    if (!point.IsMap()) point = sum(point, way, metre);  // the place alone
     out.force_insert(pair.first.Scalar(), point);
   }
   return out;
 }
 
 /// The point about which a tool turns is a place as well.
-YAML::Node moved_model(const YAML::Node& model, const std::vector<double>& way) {
+YAML::Node moved_model(const YAML::Node& model, const std::vector<double>& way,
+                       const std::string& metre) {
   YAML::Node out = YAML::Clone(model);
   const std::optional<Found> tool = child(out, "rigid_tool");
   const std::optional<Found> turn = tool ? child(tool->node, "turn") : std::nullopt;
   if (!turn || !child(turn->node, "about")) return out;
   YAML::Node turned = turn->node;
-  turned["about"] = sum(child(turn->node, "about")->node, way);
+  turned["about"] = sum(child(turn->node, "about")->node, way, metre);
   return out;
 }
 
 YAML::Node moved_initial(const YAML::Node& initial, const YAML::Node& own,
-                         const std::vector<double>& way) {
+                         const std::vector<double>& way, const UnitSystem& units) {
   YAML::Node out(YAML::NodeType::Map);
   const auto put = [&out, &way](const std::string& key, const YAML::Node& value) {
     const bool field = key == "displacement_field" || key == "velocity_field";
@@ -106,7 +116,8 @@ YAML::Node moved_initial(const YAML::Node& initial, const YAML::Node& own,
     if (!other) {
       put(key, pair.second);
     } else if (key == "position" || key == "velocity") {
-      out.force_insert(key, sum(pair.second, numbers_in(other->node).value_or(way)));
+      const std::string unit = units.word(key == "position" ? "m" : "m/s");
+      out.force_insert(key, sum(pair.second, numbers_in(other->node, unit).value_or(way), unit));
     } else if (!other->node.IsNull()) {
       put(key, other->node);
     }
@@ -125,10 +136,12 @@ YAML::Node numbers_of(const std::vector<double>& values) {
   return list;
 }
 
-YAML::Node moved_copy(const YAML::Node& body, const YAML::Node& own) {
+YAML::Node moved_copy(const YAML::Node& body, const YAML::Node& own, const UnitSystem& units) {
+  const std::string metre = units.word("m");
   const std::optional<Found> position = child(own, "position");
   const std::vector<double> way =
-      position ? numbers_in(position->node).value_or(std::vector<double>()) : std::vector<double>();
+      position ? numbers_in(position->node, metre).value_or(std::vector<double>())
+               : std::vector<double>();
   YAML::Node out(YAML::NodeType::Map);
   bool begins = false;
   for (const auto& pair : body) {
@@ -136,13 +149,13 @@ YAML::Node moved_copy(const YAML::Node& body, const YAML::Node& own) {
     if (key == "copies") continue;
     const bool initial = key == "initial" && pair.second.IsMap();
     begins = begins || key == "initial";
-    out.force_insert(key, initial           ? moved_initial(pair.second, own, way)
-                          : key == "points" ? moved_points(pair.second, way)
-                          : key == "model"  ? moved_model(pair.second, way)
+    out.force_insert(key, initial           ? moved_initial(pair.second, own, way, units)
+                          : key == "points" ? moved_points(pair.second, way, metre)
+                          : key == "model"  ? moved_model(pair.second, way, metre)
                                             : YAML::Clone(pair.second));
   }
   if (!begins)
-    out.force_insert("initial", moved_initial(YAML::Node(YAML::NodeType::Map), own, way));
+    out.force_insert("initial", moved_initial(YAML::Node(YAML::NodeType::Map), own, way, units));
   return out;
 }
 

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "base/units.hpp"
+
 namespace YAML {
 class Node;
 }
@@ -15,6 +17,6 @@ YAML::Node numbers_of(const std::vector<double>& values);
 /// velocity are added to the body's, anything else is in the place of what the body has, and null
 /// leaves a key out. Points and initial fields, those of the copy too, are the body's before it was
 /// moved by that position. What is not as it should be stays for the body's reader.
-YAML::Node moved_copy(const YAML::Node& body, const YAML::Node& own);
+YAML::Node moved_copy(const YAML::Node& body, const YAML::Node& own, const UnitSystem& units);
 
 }  // namespace abut

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <optional>
+#include <utility>
 
 #include "base/assert.hpp"
 #include "base/yaml_document.hpp"
@@ -112,7 +113,7 @@ std::string flow(const YAML::Node& node) {
 
 class Writer final : public Fields {
  public:
-  explicit Writer(Node& at) : Fields(Purpose::write), stack_{&at} {}
+  Writer(Node& at, const UnitSystem& units) : Fields(Purpose::write), units_(units), stack_{&at} {}
 
   void ignore(std::string_view) override {}
   void ignore_rest() override {}
@@ -141,21 +142,21 @@ class Writer final : public Fields {
     put(key, value);
   }
   bool enter(const Key& key, bool present) override {
-    if (present) descend(key.name);
+    if (present) descend(key.name, {}, {});
     return present;
   }
   std::size_t enter_list(const Key& key, std::size_t count) override {
-    descend(key.name);
+    descend(key.name, {}, {});
     stack_.back()->kind = Node::Kind::list;
     return count;
   }
-  void enter_map(const Key& key, std::vector<std::string>&) override { descend(key.name); }
+  void enter_map(const Key& key, std::vector<std::string>&) override { descend(key.name, {}, {}); }
   std::string enter_choice(const Key& key, std::span<const std::string_view>,
-                           std::string_view current) override {
-    if (!current.empty()) descend(key.name);
+                           std::string_view current, std::span<const Preset>) override {
+    if (!current.empty()) descend(key.name, {}, {});
     return std::string(current);
   }
-  void descend(std::string_view name, std::string_view = {}) override {
+  void descend(std::string_view name, std::string_view, std::span<const Preset>) override {
     Node& child = stack_.back()->child(name);
     stack_.push_back(&child);
   }
@@ -167,12 +168,13 @@ class Writer final : public Fields {
     Node& node = stack_.back()->child(key.name);
     node.kind = Node::Kind::text;
     node.text = written(value);
-    node.unit = key.unit;
+    node.unit = units_.word(key.unit);
   }
   void put(const Key& key, const std::optional<double>& value) {
     if (value) put(key, *value);
   }
 
+  const UnitSystem& units_;
   std::vector<Node*> stack_;
 };
 
@@ -203,13 +205,14 @@ void print(const Node& node, std::size_t indent, bool first_inline, std::string&
 
 }  // namespace
 
-ResolvedYaml::ResolvedYaml() : root_(std::make_unique<Node>()) {}
+ResolvedYaml::ResolvedYaml(UnitSystem units)
+    : units_(std::move(units)), root_(std::make_unique<Node>()) {}
 ResolvedYaml::~ResolvedYaml() = default;
 
 std::unique_ptr<Fields> ResolvedYaml::writer_at(std::string_view path) {
   Node* at = root_.get();
   for (const std::string& step : split_path(path)) at = &at->child(step);
-  return std::make_unique<Writer>(*at);
+  return std::make_unique<Writer>(*at, units_);
 }
 
 void ResolvedYaml::copy(std::string_view path, const Document& document) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/fields.hpp"
+#include "base/units.hpp"
 
 namespace YAML {
 class Node;
@@ -21,7 +22,8 @@ class Document;
 /// shortest form that round-trips, units beside them. Structs that share a map are merged in it.
 class ResolvedYaml {
  public:
-  ResolvedYaml();
+  /// `units`: in which the values are, and the units beside them.
+  explicit ResolvedYaml(UnitSystem units = {});
   ResolvedYaml(const ResolvedYaml&) = delete;
   ResolvedYaml& operator=(const ResolvedYaml&) = delete;
   ~ResolvedYaml();
@@ -43,6 +45,7 @@ class ResolvedYaml {
 
  private:
   std::unique_ptr<Fields> writer_at(std::string_view path);
+  UnitSystem units_;
   std::unique_ptr<Node> root_;
 };
 

@@ -29,8 +29,10 @@ bool is_name(const std::string& text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), allowed);
 }
 
+std::string_view bare_unit(std::string_view unit) { return unit.substr(0, unit.find(" (")); }
+
 std::string with_unit(const std::string& text, std::string_view unit) {
-  return unit.empty() ? text : fmt::format("{} {}", text, unit);
+  return unit.empty() ? text : fmt::format("{} {}", text, bare_unit(unit));
 }
 
 std::string noun(const Key& key) {
@@ -42,7 +44,7 @@ std::string noun(const Key& key) {
 std::string remedy(const Key& key, std::string_view form, const Rule& rule) {
   std::string text = fmt::format("Give {}", noun(key));
   if (!form.empty()) text += fmt::format(" as {}", form);
-  if (!key.unit.empty()) text += fmt::format(" in {}", key.unit);
+  if (!key.unit.empty()) text += fmt::format(" in {}", bare_unit(key.unit));
   const std::string range = rule.range();
   if (!range.empty()) text += fmt::format(", {}", range);
   return text + '.';

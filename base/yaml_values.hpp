@@ -35,6 +35,8 @@ std::optional<T> parse(std::string_view text) {
   return value;
 }
 
+/// Without what is said of it in brackets: "s" of "s (clock)".
+std::string_view bare_unit(std::string_view unit);
 std::string with_unit(const std::string& text, std::string_view unit);
 
 template <class Strings>

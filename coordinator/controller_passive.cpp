@@ -53,8 +53,9 @@ void Controller::try_window(const TimeWindow& window) {
   }
 }
 
-/// Whether windows that have an answer may be refused all the same.
-bool Controller::may_refuse() const { return may_go_passively(); }
+/// Whether windows that have an answer may be refused all the same. Contact of ends of bars keeps
+/// an account, which pays later what a window seems to gain.
+bool Controller::may_refuse() const { return may_go_passively() && !passive_.on_a_line(); }
 
 /// Which body comes upon itself, where passive forms can keep it off itself; empty: none.
 std::string Controller::folded() { return may_refuse() ? folds_.look() : std::string(); }
@@ -152,11 +153,17 @@ void Controller::accept_passively(const TimeWindow& window) {
   end_window(window, guard_.look(bodies_.responses()));
 }
 
-/// Bodies have left their passive forms; false: one came upon itself by that, and all are back.
+/// Bodies have left their passive forms; false: one came upon itself by that, or an end upon
+/// another one's, and all are back: nodes without mass go to where they are in balance.
 bool Controller::leave_apart() {
-  if (!folds_.any()) return true;
+  if (!folds_.any() && !passive_.on_a_line()) return true;
   prepare({0, clock_.time(), clock_.time()}, 1, Sampling::substeps);
-  if (!bodies_.advance_all() && folds_.still_apart()) return true;
+  const bool answered = !bodies_.advance_all();
+  const bool apart = !passive_.on_a_line() || std::ranges::all_of(joints_, [&](Joint& joint) {
+    return joint.exchange == nullptr || joint.tied() ||
+           joint.watch->approach(joint, bodies_).apart > 0.0;
+  });
+  if (answered && apart && (!folds_.any() || folds_.still_apart())) return true;
   bodies_.restore_all();
   passive_.stay();
   waiting_.left = soon;

@@ -37,6 +37,21 @@ Json number(const Rule& rule) {
   return schema;
 }
 
+/// A number, or where the key has a unit, a number with a unit of its own.
+Json number_of(const KeyNode& key) {
+  if (key.unit.empty()) return number(key.rule);
+  return {{"anyOf",
+           {number(key.rule),
+            {{"type", "string"},
+             {"pattern", "^[-+]?[0-9.]+([eE][-+]?[0-9]+)? ?[A-Za-z\u00b5\u03bc]"}}}}};
+}
+
+Json names_of(const std::vector<Preset>& presets) {
+  Json names = Json::array();
+  for (const Preset& preset : presets) names.push_back(preset.name);
+  return names;
+}
+
 Json text() { return {{"type", {"string", "number", "boolean"}}}; }
 
 Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
@@ -108,7 +123,7 @@ class Schemas {
   Json value(const KeyNode& key) const {
     switch (key.kind) {
       case Kind::number:
-        return number(key.rule);
+        return number_of(key);
       case Kind::whole: {
         Json schema = {{"type", "integer"}};
         limit(key.rule, schema);
@@ -119,7 +134,7 @@ class Schemas {
       case Kind::text:
         return text();
       case Kind::numbers:
-        return one_or_list_of(number(key.rule));
+        return one_or_list_of(number_of(key));
       case Kind::words:
         return one_or_list_of(text());
       case Kind::two_words: {
@@ -147,13 +162,15 @@ class Schemas {
   /// A map of a node's keys, or the plain value that may stand in its place.
   Json items_of(const KeyNode& node) const {
     Json map = map_of(node.keys, node.open);
+    if (!node.presets.empty())
+      return {{"anyOf", {{{"enum", names_of(node.presets)}}, std::move(map)}}};
     const KeyNode* plain = node.shorthand.empty() ? nullptr : find(node.keys, node.shorthand);
     if (plain == nullptr) return map;
     return {{"anyOf", {value(*plain), std::move(map)}}};
   }
 
   Json choice(const KeyNode& key) const {
-    Json alone = Json::array(), properties = Json::object();
+    Json alone = names_of(key.presets), properties = Json::object();
     for (const KeyNode& alternative : key.keys) {
       const bool needs = std::ranges::any_of(alternative.keys, &KeyNode::required);
       if (!needs) alone.push_back(alternative.name);

@@ -21,6 +21,7 @@
 #include "base/error.hpp"
 #include "base/input_errors.hpp"
 #include "base/log.hpp"
+#include "base/unit_words.hpp"
 #include "base/yaml_fields.hpp"
 #include "coordinator/command_line.hpp"
 #include "coordinator/controller.hpp"
@@ -141,12 +142,27 @@ std::vector<Estimate::Ties> validate_coupling(const Scene& scene, const Placemen
   }
 }
 
+/// Numbers with units beside others that have none: of what, the scene must say.
+void check_units(const Document& document) {
+  const UnitsRead& read = document.units_read();
+  if (document.declares_units() || read.with.empty() || read.without.empty()) return;
+  std::string with = read.with;
+  const bool named = !document.has(with) && document.says(with);  // a material, whose keys it has
+  while (named && !document.has(with)) with.resize(with.rfind('.'));
+  throw InputError(
+      fmt::format("is a number without a unit, but {} {}", with,
+                  named ? "stands for numbers with units" : "has one"),
+      document.where(read.without),
+      "Give it a unit, or say what numbers without one are in: units: SI, or units: mm t s.");
+}
+
 /// Scene and bodies are read by readers of their own: what both refuse is told at once.
 Scene read_all_keys(const Document& document) {
   InputErrors errors;
   Scene scene = read_scene(document, errors);
   errors.gather([&] { check_body_keys(scene, document); });
   errors.raise();
+  check_units(document);
   return scene;
 }
 
@@ -196,28 +212,29 @@ std::string resolved_text(const Scene& scene, const Document& document) {
   text += fmt::format("# scene: {}\n", document.name());
   for (const std::string& override_text : document.overrides())
     text += fmt::format("# --set {}\n", override_text);
-  ResolvedYaml resolved;
+  ResolvedYaml resolved(document.units());
   resolved.add("", scene);
   resolve_body_keys(scene, document, resolved);
   return text + resolved.text();
 }
 
 /// The contact and the bodies beside the exact solution; empty when the scene names none.
-std::string against_closed_form(const ClosedForm* form, const Measures& measures,
-                                const RunEnd& end) {
+std::string against_closed_form(const ClosedForm* form, const Measures& measures, const RunEnd& end,
+                                const UnitSystem& units) {
   if (form == nullptr) return "";
-  return closed_form_table(*form, end.time, measures) + "\n";
+  return in_words_of(units, closed_form_table(*form, end.time, measures)) + "\n";
 }
 
 /// The result for people; 0, or 1 when an expectation or the run failed.
 int report(const Scene& scene, const ClosedForm* form, const Measures& measures, const RunEnd& end,
-           const std::string& status, const fs::path& directory, bool quiet) {
+           const std::string& status, const fs::path& directory, bool quiet,
+           const UnitSystem& units) {
   const std::vector<ExpectationResult> results = evaluate(scene.meta.expect, measures);
   bool pass = status == "completed";
   for (const ExpectationResult& result : results) pass = pass && result.pass;
   if (!quiet || (!pass && status != "interrupted")) {
     fmt::print("\n{}\n\n", scene.meta.title);  // apart from the log lines above
-    if (status == "completed") fmt::print("{}", against_closed_form(form, measures, end));
+    if (status == "completed") fmt::print("{}", against_closed_form(form, measures, end, units));
     // A run cut short misses expectations for that reason alone.
     if (status == "completed" && !results.empty()) fmt::print("{}\n", to_table(results));
     fmt::print("{} after {:.3f} s: {} windows, {} of them in contact, {} exchanges\n", status,
@@ -280,10 +297,12 @@ int run_verb(const RunCommand& command) {
   write_whole(directory / "scene.resolved.yaml", resolved_text(scene, document));
   const ClosedForm* form = valid.form ? &*valid.form : nullptr;
   MeasureRecorder recorder(form, scene.output.force_filter, scene.output.steady_after);
-  CsvHistory history(directory, form);
+  CsvHistory history(directory, form, document.units());
   EventLog events(directory);
   Summary summary(directory,
-                  {scene.meta.title, versions(), scene.meta.expect, began, valid.estimate},
+                  {scene.meta.title, versions(), scene.meta.expect, began, valid.estimate,
+                   document.units().is_si() ? std::map<std::string, std::string>()
+                                            : unit_words(document.units())},
                   recorder, form);
   ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !command.quiet);
   std::vector<Observer*> observers{&recorder, &history, &events, &progress, &summary};
@@ -294,8 +313,8 @@ int run_verb(const RunCommand& command) {
   const RunEnd end = conduct(scene, placement, observers, interrupted, directory);
   // Bodies in the middle of a solve hear no orderly end; they are ended when the launch goes.
   if (placement.launch && end.status != "interrupted") placement.launch->finish();
-  const int code =
-      report(scene, form, recorder.measures(), end, summary.status(), directory, command.quiet);
+  const int code = report(scene, form, recorder.measures(), end, summary.status(), directory,
+                          command.quiet, document.units());
   return interrupt_exit_code() != 0 ? interrupt_exit_code() : code;
 }
 

@@ -21,6 +21,7 @@ namespace abut {
 namespace {
 
 /// Of deadlines [s]: a week is for ever, and milliseconds are counted.
+constexpr const char* clock_seconds = "s (clock)";
 constexpr Rule patience_rule{.low = 0.0, .high = 604'800.0, .above_low = true};
 
 }  // namespace
@@ -40,7 +41,8 @@ void SpawnLaunch::fields(Fields& f) {
 }
 
 void ConnectLaunch::fields(Fields& f) {
-  f.optional("patience", patience, "s", "time to wait for the body to connect", patience_rule);
+  f.optional("patience", patience, clock_seconds, "time to wait for the body to connect",
+             patience_rule);
 }
 
 void GroupLaunch::fields(Fields& f) {
@@ -155,10 +157,10 @@ void OutputSpec::fields(Fields& f) {
 void NetworkSpec::fields(Fields& f) {
   f.optional("endpoint", endpoint, "",
              "address at which bodies with launch: connect find the coordinator");
-  f.optional("request_deadline", request_deadline, "s",
+  f.optional("request_deadline", request_deadline, clock_seconds,
              "time without a reply or a sign of progress after which a body is lost",
              patience_rule);
-  f.optional("startup_deadline", startup_deadline, "s",
+  f.optional("startup_deadline", startup_deadline, clock_seconds,
              "time within which a started process must report", patience_rule);
   f.optional("processes", processes, "",
              "number of processes to which the bodies are dealt in turns that the coordinator "
@@ -170,6 +172,10 @@ void NetworkSpec::fields(Fields& f) {
 }
 
 void Scene::fields(Fields& f) {
+  if (f.purpose() != Fields::Purpose::write || !units.empty())
+    f.optional("units", units, "",
+               "what numbers without a unit are in: SI, or a length, a mass and a time, as mm t s; "
+               "numbers may have units of their own, as 210 GPa, which are converted");
   f.defaulted("meta", meta, "what the scene is and what it must produce");
   f.section("time", time, "interval of the run and its windows");
   f.map("bodies", bodies, "bodies, in the order of every table");

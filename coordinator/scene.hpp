@@ -113,7 +113,7 @@ struct FieldOutputSpec {
 };
 
 struct OutputSpec {
-  int records_per_window = 1;  // rows of history.csv per controller window
+  int records_per_window = 1;                   // rows of history.csv per controller window
   std::optional<FieldOutputSpec> field_output;  // key fields; absent: no body is asked
   std::optional<ForceFilterSpec> force_filter;  // absent: no measure of filtered forces
   std::optional<double> steady_after;           // [s] absent: no measure of ripple
@@ -130,6 +130,7 @@ struct NetworkSpec {
 };
 
 struct Scene {
+  std::string units;  // empty: not told
   Meta meta;
   TimeSpec time;
   std::vector<std::pair<std::string, BodyEntry>> bodies;

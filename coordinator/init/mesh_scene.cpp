@@ -31,11 +31,9 @@ constexpr double of_limit = 0.8;      // of the stable step: strain lowers it
 constexpr int window_steps = 4;       // of the body with the longest ones
 constexpr double transits = 10.0;     // of the longest body, from the first touch to the end
 constexpr double pictures = 50.0;     // of a run
-constexpr const char* steel = "{youngs_modulus: 2.1e11, poissons_ratio: 0.3, density: 7850.0}";
-
 /// For large rotations where it is cheap: quadratic cells are not found in batches.
 std::string law_of(const RowBody& body) {
-  return fmt::format("{{{}: {}}}", body.quadratic ? "linear_elastic" : "neo_hookean", steel);
+  return body.quadratic ? "steel" : "{neo_hookean: steel}";
 }
 
 struct Times {
@@ -62,15 +60,23 @@ int parts_of(double window, double longest) {
                    "Mesh the bodies with cells of more equal size.");
 }
 
+std::string material_names() {
+  std::vector<std::string_view> names;
+  for (const Preset& preset : ElasticSpec::presets()) names.push_back(preset.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 std::string list(const std::vector<double>& values) {
   return fmt::format("[{:.9g}]", fmt::join(values, ", "));
 }
 
+/// What no reader of YAML takes for anything but text.
 std::string quoted(const std::string& name) {
   const auto plain = [](unsigned char c) {
     return std::isalnum(c) || c == '_' || c == '/' || c == '.';
   };
-  return std::all_of(name.begin(), name.end(), plain) ? name : fmt::format("\"{}\"", name);
+  const bool word = name != "null" && std::all_of(name.begin(), name.end(), plain);
+  return word ? name : fmt::format("\"{}\"", name);
 }
 
 class SceneWriter {
@@ -81,6 +87,7 @@ class SceneWriter {
 
   std::string text(const Times& times) const {
     std::string out = head();
+    out += "units: SI   # of numbers; others may have units of their own, as 5 mm\n";
     out += fmt::format("meta: {{title: {}}}\n", title());
     out += fmt::format(
         "time: {{begin: 0.0, end: {:.9g}, window: {:.9g}}}   # [s] bodies are coupled once per "
@@ -109,7 +116,8 @@ class SceneWriter {
     return fmt::format(
         "# {}. Made of {} by `abut init`; speeds, materials, places and friction are yours to "
         "change.\n"
-        "# Units are SI. docs/REFERENCE.md, or `abut reference KEY`, tells every key.\n#\n"
+        "# `abut reference KEY` tells every key, as `abut reference bodies.b.material`, and so "
+        "does docs/REFERENCE.md.\n#\n"
         "#   abut check {}     valid? what will it pay for?\n"
         "#   abut run {}       into runs/{}; ParaView opens fields.pvd there\n"
         "#   abut report runs/{}     a page of plots\n",
@@ -132,19 +140,20 @@ class SceneWriter {
     if (i == 0) velocity[0] = speed;
     std::string out = fmt::format("  {}:   # {}\n", one.name, one.words());
     out += fmt::format(
-        "    model: {{fe: {{dimension: {}, {}mesh: {{gmsh: {{file: {}, scale: {:g}}}}}}}}}   # [m] "
-        "per unit of the file\n",
-        row_.dim, row_.dim == 2 ? "plane: strain, " : "", quoted(path_to(one.file)), row_.scale);
-    out += fmt::format("    material: {}   # steel: [Pa] [kg/m^3]\n", law_of(one));
+        "    model: {{fe: {{dimension: {}, {}mesh: {{gmsh: {{file: {}, scale: {}}}}}}}}}   # the "
+        "file's unit\n",
+        row_.dim, row_.dim == 2 ? "plane: strain, " : "", quoted(path_to(one.file)),
+        row_.scale == 1.0 ? "1 m" : "1 mm");
+    out += fmt::format("    material: {}   # there are {}\n", law_of(one), material_names());
     out += fmt::format(
         "    integrator: {{central_difference: {{step: {:.9g}, above_limit: clamp}}}}   # [s]\n",
         step);
     out += fmt::format(
         "    initial: {{position: {}, velocity: {}}}   # [m] of the file's origin, [m/s]\n",
         list(one.position), list(velocity));
-    out += "    ports:\n      skin: {side: boundary}   # all of its surface\n";
+    out += "    ports:\n      skin: boundary   # all of its surface\n";
     for (const auto& [port, side] : one.ports)
-      out += fmt::format("      {}: {{side: {}}}\n", port, quoted(side));
+      out += fmt::format("      {}: {}\n", port, quoted(side));
     if (!one.node_sets.empty())
       out +=
           fmt::format("    # sets of nodes, for constraints: {}\n", fmt::join(one.node_sets, ", "));
@@ -157,7 +166,7 @@ class SceneWriter {
     return fmt::format(
         "  wall:\n    model: {{rigid_tool: {{dimension: {}, mesh: {{{}: {{lengths: {}, elements: "
         "{}}}}}}}}}\n"
-        "    initial: {{position: {}}}\n    ports: {{face: {{side: left}}}}\n",
+        "    initial: {{position: {}}}\n    ports: {{face: left}}\n",
         row_.dim, flat ? "rectangle" : "box", list(wall.lengths), flat ? "[1, 1]" : "[1, 1, 1]",
         list(wall.position));
   }

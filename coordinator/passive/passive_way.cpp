@@ -44,6 +44,10 @@ std::string PassiveWay::find_hindrance() const {
   return {};
 }
 
+bool PassiveWay::on_a_line() const {
+  return !pairs_.empty() && bodies_.port(pairs_.front().sides[0]).geometry.dim == 1;
+}
+
 void PassiveWay::make() {
   if (step_ != nullptr) return;
   nominal_ = bodies_.shortest_step();

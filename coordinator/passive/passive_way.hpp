@@ -29,6 +29,8 @@ class PassiveWay {
   /// Why the scene cannot take this way, for people; empty: it can.
   const std::string& hindrance() const { return hindrance_; }
   bool active() const { return active_; }
+  /// Whether its surfaces are ends of bars.
+  bool on_a_line() const;
   /// Whether ties hold bodies together.
   bool joins() const { return ties_ && !ties_->empty(); }
   const PassiveLedger& ledger() const { return ledger_; }

@@ -4,15 +4,16 @@
 #include <iterator>
 
 #include "base/index.hpp"
+#include "base/unit_words.hpp"
 #include "coordinator/record/csv_history.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 
 namespace abut {
 
 ClosedFormCsv::ClosedFormCsv(const std::filesystem::path& file, const ClosedForm& form,
-                             const RunStart& start)
+                             const RunStart& start, const UnitSystem& units)
     : form_(form), file_(file) {
-  file_.append(header(start));
+  file_.append(in_words_of(units, header(start)));
 }
 
 std::string ClosedFormCsv::header(const RunStart& start) {

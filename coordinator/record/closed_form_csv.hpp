@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/units.hpp"
 #include "coordinator/exact/closed_form.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/text_file.hpp"
@@ -17,7 +18,8 @@ namespace abut {
 class ClosedFormCsv {
  public:
   /// The form must outlive this.
-  ClosedFormCsv(const std::filesystem::path& file, const ClosedForm& form, const RunStart& start);
+  ClosedFormCsv(const std::filesystem::path& file, const ClosedForm& form, const RunStart& start,
+                const UnitSystem& units);
 
   void write_row(double time);
   void flush() { file_.flush(); }

@@ -9,6 +9,7 @@
 
 #include "base/assert.hpp"
 #include "base/index.hpp"
+#include "base/unit_words.hpp"
 
 namespace abut {
 
@@ -45,8 +46,9 @@ void add_body_names(std::string& header, const RecordedBody& body) {
     header += fmt::format(",{}.mean_velocity{} [m/s]", body.name, axis_ending(body.dim, axis));
 }
 
-CsvHistory::CsvHistory(const std::filesystem::path& directory, const ClosedForm* form)
-    : directory_(directory), form_(form) {}
+CsvHistory::CsvHistory(const std::filesystem::path& directory, const ClosedForm* form,
+                       UnitSystem units)
+    : directory_(directory), form_(form), units_(std::move(units)) {}
 
 void CsvHistory::on_start(const RunStart& start) {
   start_ = start;
@@ -71,8 +73,8 @@ void CsvHistory::on_start(const RunStart& start) {
                            port.geometry.dim == 1});
   }
   history_.emplace(directory_ / "history.csv");
-  history_->append(header());
-  if (form_ != nullptr) exact_.emplace(directory_ / "closed_form.csv", *form_, start_);
+  history_->append(in_words_of(units_, header()));
+  if (form_ != nullptr) exact_.emplace(directory_ / "closed_form.csv", *form_, start_, units_);
 }
 
 std::string CsvHistory::header() const {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/clock.hpp"
+#include "base/units.hpp"
 #include "coordinator/exact/closed_form.hpp"
 #include "coordinator/record/closed_form_csv.hpp"
 #include "coordinator/record/observer.hpp"
@@ -24,7 +25,7 @@ namespace abut {
 class CsvHistory : public Observer {
  public:
   /// `form` may be null; else it must outlive the history.
-  CsvHistory(const std::filesystem::path& directory, const ClosedForm* form);
+  CsvHistory(const std::filesystem::path& directory, const ClosedForm* form, UnitSystem units = {});
 
   void on_start(const RunStart& start) override;
   void on_window(const WindowReport& report) override;
@@ -50,6 +51,7 @@ class CsvHistory : public Observer {
 
   std::filesystem::path directory_;
   const ClosedForm* form_;
+  UnitSystem units_;
   RunStart start_;
   std::vector<RecordedBody> recorded_;
   std::vector<PortColumn> ports_;  // by body, then by port

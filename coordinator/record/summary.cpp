@@ -252,6 +252,7 @@ std::string Summary::text(const RunEnd& end) const {
   if (!end.reason.empty()) summary["reason"] = end.reason;
   summary["title"] = heading_.title;
   summary["time"] = {{"begin", start_.begin}, {"end", start_.end}, {"reached", number(end.time)}};
+  if (!heading_.units.empty()) summary["units"] = heading_.units;
   summary["measures"] = measures_object(recorder_.measures(), notes);
   summary["expectations"] = expectations_array(heading_.expectations, recorder_.measures(), notes);
   summary["energy_scales"] = energy_scales_object(recorder_.measures());

@@ -26,6 +26,7 @@ class Summary : public Observer {
     std::vector<Expectation> expectations;
     std::optional<Clock::Time> program_began = std::nullopt;  // for timing.startup_s
     std::optional<Estimate> estimate = std::nullopt;          // told before the run
+    std::map<std::string, std::string> units = {};  // by SI's, of a scene in others; empty: SI
   };
 
   /// `form` may be null. The recorder is told of every event before this, and outlives it.

@@ -178,7 +178,7 @@ class Splitter {
   }
 
   std::string text() const {
-    ResolvedYaml resolved;
+    ResolvedYaml resolved(document_.units());
     resolved.add("", scene_);
     const fs::path from = fs::absolute(document_.name()).parent_path();
     const std::string folder = (from.lexically_proximate(fs::absolute(options_.out)) / "").string();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -66,6 +67,8 @@ struct ElasticSpec {
   std::optional<double> youngs_modulus, poissons_ratio, bulk_modulus, lame_modulus, shear_modulus;
   double density = 0.0;  // [kg/m^3]
   void fields(Fields& f);
+  /// Materials by name, each with its source.
+  static std::span<const Preset> presets();
 };
 struct LinearElasticSpec : ElasticSpec {
   static constexpr std::string_view name = "linear_elastic";

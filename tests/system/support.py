@@ -22,6 +22,7 @@ ROOT = Path(sys.argv[2]).resolve()
 SECONDS = 120  # the longest run takes a few seconds; only a hang takes longer
 CONNECTED = "two_bars_processes"  # the scene whose solvers somebody else starts
 FILES = {"scene.resolved.yaml", "history.csv", "events.jsonl", "summary.json"}
+MOST_CURVES = 8  # of a figure of a page (tools/abut_tools/run_figures.py)
 MARK = "ABUT_SYSTEM_TEST"  # in the environment of every process that a test starts
 
 
@@ -193,11 +194,15 @@ class SystemTest(unittest.TestCase):
         told = {match[1]: name for name in measures
                 if (match := re.fullmatch(r"energy\.(.+)\.relative_(error|drift)_max", name))}
         self.assertIn("total", told)
+        least = min((max(map(abs, values)) for body, values in drawn.items()
+                     if body != "all bodies"), default=0.0)
         for body, name in told.items():
             of = "all bodies" if body == "total" else body
             percent = [abs(value) for value in drawn.get(of, [])]
             if measures[name] is None:
                 self.assertEqual(percent, [], f"{name} has no value, so {of} has no curve")
+            elif not percent and len(drawn) >= MOST_CURVES - 1:
+                self.assertLessEqual(100.0 * measures[name], least * (1.0 + 1e-6), name)
             elif percent or measures[name] > 1e-15:
                 # Cells of the history are exact; pages round to seven digits, differences of
                 # energies to an eps of the energy itself.

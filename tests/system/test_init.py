@@ -65,7 +65,8 @@ class Init(SystemTest):
                                       *(MESHES / f"{name}.msh" for name in names))).stdout
         self.assertIn("gear_12_2: 243 nodes, 180 quad4, 0.007866 x 0.01071 m\n", said)
         text = (self.folder / "three.yaml").read_text(encoding="utf-8")
-        for line in ("      teeth: {side: teeth}\n", "      hole: {side: hole}\n"):
+        for line in ("      teeth: teeth\n", "      hole: hole\n", "scale: 1 mm}",
+                     "    material: {neo_hookean: steel}   # there are steel, aluminium, "):
             self.assertIn(line, text)
         measures = self.run_scene("three.yaml")
         contact = "contact.gear_12_plate_with_hole"
@@ -84,7 +85,7 @@ class Init(SystemTest):
         self.succeed(self.init("scenes/part", "--from", "gmsh", "part of it.msh"))
         text = (self.folder / "scenes" / "part.yaml").read_text(encoding="utf-8")
         self.assertIn('file: "../part of it.msh"', text)
-        self.assertIn('top_of_it: {side: "top of it"}', text)
+        self.assertIn('top_of_it: "top of it"', text)
         self.assertIn("# sets of nodes, for constraints: between, edge, origin", text)
         self.succeed(self.abut("check", "scenes/part.yaml"))
 

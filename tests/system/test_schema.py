@@ -25,7 +25,7 @@ except ImportError:
 INVALID = ROOT / "configs" / "invalid"
 # What a schema can know of a key alone, in the words of the messages.
 FORM = re.compile(r"is not a known key\.|is missing\. (Give|Write its|Choose)|not a known choice|"
-                  r": must be (?!after|finite|given|a multiple)")
+                  r": must be (?!after|finite|given|a multiple)|: is stel, ")
 # And what is told in the same words, but follows from other keys, or from the number's last bits.
 ACROSS = {"density_of_nothing", "body_against_itself", "internal_between_bodies",
           "copies_listed_with_a_wrong_key", "tool_turned_about_no_axis",

@@ -7,7 +7,7 @@ import sys
 import unittest
 
 sys.dont_write_bytecode = True
-from support import SystemTest, main  # noqa: E402
+from support import ROOT, SystemTest, main  # noqa: E402
 
 LONG = """\
 meta: {title: Two bars collide}
@@ -43,6 +43,21 @@ interfaces:
   impact: {sides: [left.tip, right.tip], contact: {}}
 """
 
+WITH_UNITS = """\
+meta: {title: Two bars collide}
+time: {end: 150 us, window: 1 us}
+bodies:
+  left:
+    model: {fe: {dimension: 1, mesh: {bar: {length: 250 mm, elements: 100, area: 1 mm^2}}}}
+    material: steel
+    integrator: {central_difference: {step: 0.25 us}}
+    initial: {position: -250.1 mm, velocity: 10 m/s}
+    ports: {tip: right}
+  right: {like: left, initial: {position: 0.1 mm, velocity: -10 m/s}, ports: {tip: left}}
+interfaces:
+  impact: {sides: [left.tip, right.tip], contact: {}}
+"""
+
 COPIES = """\
 time: {end: 1.0e-5, window: 1.0e-6}
 bodies:
@@ -70,6 +85,9 @@ class ShortScenes(SystemTest):
     def test_two_bars_in_twelve_lines_are_the_long_scene(self):
         self.assertLessEqual(len(SCALARS.splitlines()), 12)
         self.assertEqual(self.state("short", SCALARS), self.state("long", LONG))
+        self.assertEqual(len(WITH_UNITS.splitlines()), 12)
+        self.assertEqual(self.state("units", WITH_UNITS), self.state("long", LONG))
+        self.assertIn(WITH_UNITS, (ROOT / "README.md").read_text(encoding="utf-8"))
 
     def test_what_is_resolved_is_the_long_form_and_runs_as_the_short_one(self):
         state = self.state("short", SCALARS)

@@ -199,23 +199,13 @@ TEST(PassiveSwitch, AMassiveLayerIsChosenForSurfaces) {
   EXPECT_TRUE(without.obstacle);
 }
 
-TEST(PassiveSwitch, WhatHasNoInertiaOrOneDimensionHasNoPassiveForm) {
+TEST(PassiveSwitch, WhatHasNoInertiaHasNoPassiveForm) {
   PassiveText still;
   still.scheme = "quasi_static: {step: 0.1}";
   still.more = "constraints: {base: {on: left, fixed: true}}";
   const std::unique_ptr<Subdomain> statics = still.build();
   EXPECT_FALSE(statics->describe().can.passive);
   EXPECT_EQ(statics->passive(), nullptr);
-  for (const char* scheme : {"newmark: {step: 0.01}", "central_difference: {step: 1.0e-3}"}) {
-    const std::string text = fmt::format(
-        "bodies: {{it: {{model: {{fe: {{dimension: 1, mesh: {{bar: {{length: 1.0, elements: 4, "
-        "area: 1.0}}}}}}}}, material: {{linear_elastic: {{youngs_modulus: 1.0, density: 1.0}}}}, "
-        "integrator: {{{}}}, ports: {{face: {{side: right}}}}}}}}",
-        scheme);
-    const auto bar = make_body(Document::from_text("test", text), "bodies.it");
-    EXPECT_FALSE(bar->describe().can.passive);
-    EXPECT_EQ(bar->passive(), nullptr);
-  }
 }
 
 }  // namespace

@@ -227,9 +227,12 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"QuotedNumber", "length: \"2\"\nmaterial: void\n",
             "s.yaml:1: length: must be a number, but is \"2\". Give the length of the bar in m, "
             "greater than 0."},
-        Bad{"NumberWithUnit", "length: 2 m\nmaterial: void\n",
-            "s.yaml:1: length: must be a number, but is 2 m. Give the length of the bar in m, "
-            "greater than 0."},
+        Bad{"NumberWithUnitOfAnotherKind", "length: 2 s\nmaterial: void\n",
+            "s.yaml:1: length: is 2 s, a time, but must be a length. Give the length of the bar in "
+            "m, greater than 0."},
+        Bad{"NumberWithUnknownUnit", "length: 2 parsec\nmaterial: void\n",
+            "s.yaml:1: length: is 2 parsec, but parsec is not a known unit. Give the length of the "
+            "bar in m, greater than 0."},
         Bad{"Nan", "length: .nan\nmaterial: void\n",
             "s.yaml:1: length: must be finite, but is .nan. Give the length of the bar in m, "
             "greater "

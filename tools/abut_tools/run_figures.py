@@ -243,12 +243,18 @@ def energy_error_figure(run: Run) -> Figure:
     figure = Figure("energy_error", "Energy error", "error", "%")
     scales = run.summary.get("energy_scales", {})
     times = run.history["time"]
-    for body, scale in list(scales.get("bodies", {}).items())[:MOST_CURVES - 1]:
+    errors = []
+    for body, scale in scales.get("bodies", {}).items():
         exact = run.exact is not None and f"{body}.total" in run.exact
         error = (less(run.history[f"{body}.total"], run.exact[f"{body}.total"]) if exact
                  else since_begin(own_energy(run, body)))
         if scale and any(error):
-            figure.add(body, colour_of(run.bodies(), body), times, plus(error, 0.0, 100.0 / scale))
+            errors.append((body, plus(error, 0.0, 100.0 / scale)))
+    if len(errors) >= MOST_CURVES:
+        figure.title += f", {MOST_CURVES - 1} largest of {len(errors)}"
+        errors.sort(key=lambda error: -largest(error[1]))
+    for body, error in errors[:MOST_CURVES - 1]:
+        figure.add(body, colour_of(run.bodies(), body), times, error)
     held = [own_energy(run, body) for body in alone(run)]
     held += [run.history[match[0]] for match in run.history.matching(r"(.+)\.whole")]
     if scales.get("total") and held:
