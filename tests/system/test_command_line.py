@@ -1,6 +1,6 @@
 """Goal: `abut run` keeps its promises to shells: exit codes, silence, files, and no process left.
 
-Oracles: the exit codes of the README, the run directory, the process table.
+Oracles: the exit codes of docs/USE.md, the run directory, the process table.
 usage: test_command_line.py ABUT ROOT
 """
 

@@ -1,7 +1,7 @@
 """Goal: no input ends in an abort, a crash or an appetite without bound: what cannot be read or
 computed is refused, or fails, in words, with little memory and in little time.
 
-Oracle: exit codes of the README, a limit of memory set by the system, and the words of the message.
+Oracle: exit codes of docs/USE.md, a limit of memory set by the system, words of the message.
 usage: test_hostile_input.py ABUT ROOT
 """
 
