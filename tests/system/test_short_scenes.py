@@ -87,7 +87,7 @@ class ShortScenes(SystemTest):
         self.assertEqual(self.state("short", SCALARS), self.state("long", LONG))
         self.assertEqual(len(WITH_UNITS.splitlines()), 12)
         self.assertEqual(self.state("units", WITH_UNITS), self.state("long", LONG))
-        self.assertIn(WITH_UNITS, (ROOT / "README.md").read_text(encoding="utf-8"))
+        self.assertIn(WITH_UNITS, (ROOT / "docs" / "USE.md").read_text(encoding="utf-8"))
 
     def test_what_is_resolved_is_the_long_form_and_runs_as_the_short_one(self):
         state = self.state("short", SCALARS)
