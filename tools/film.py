@@ -18,6 +18,7 @@ from abut_tools.motion import motion_of
 from abut_tools.picture_options import add_options, joined, require_fields, require_packages
 from abut_tools.run_folder import Run
 from abut_tools.tables import ToolError
+from abut_tools.verb import ended
 from abut_tools.version import TellVersion
 
 ENDINGS = (".gif", ".mp4")
@@ -124,18 +125,14 @@ def main() -> int:
     parser.add_argument("--version", action=TellVersion)
     options = parser.parse_args(joined(sys.argv[1:]))
     sys.stdout.reconfigure(errors="backslashreplace")  # names of files may be no text
-    try:
+
+    def work() -> int:
         out = chosen_out(options)
         make_film(options, out)
-    except ToolError as error:
-        print(f"abut film: {error}", file=sys.stderr)
-        return error.code
-    except OSError as error:
-        print(f"abut film: {error.filename}: {error.strerror}. Check that it can be read and "
-              "written.", file=sys.stderr)
-        return 3
-    print(out)
-    return 0
+        print(out)
+        return 0
+
+    return ended("film", work)
 
 
 if __name__ == "__main__":

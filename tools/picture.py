@@ -16,6 +16,7 @@ from abut_tools.motion import motion_of
 from abut_tools.picture_options import add_options, joined, require_fields, require_packages
 from abut_tools.run_folder import Run
 from abut_tools.tables import ToolError, measured
+from abut_tools.verb import ended
 from abut_tools.version import TellVersion
 from abut_tools.vtu import listed_states
 
@@ -74,19 +75,15 @@ def main() -> int:
     options = parser.parse_args(joined(sys.argv[1:]))
     sys.stdout.reconfigure(errors="backslashreplace")  # names of files may be no text
     out = options.out or options.directory / "picture.png"
-    try:
+
+    def work() -> int:
         if out.suffix.lower() != ".png":
             raise ToolError(f"--out {out}: pictures are PNG files. Give it the ending .png.", 2)
         make_picture(options, out)
-    except ToolError as error:
-        print(f"abut picture: {error}", file=sys.stderr)
-        return error.code
-    except OSError as error:
-        print(f"abut picture: {error.filename}: {error.strerror}. Check that it can be read and "
-              "written.", file=sys.stderr)
-        return 3
-    print(out)
-    return 0
+        print(out)
+        return 0
+
+    return ended("picture", work)
 
 
 if __name__ == "__main__":

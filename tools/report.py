@@ -20,7 +20,8 @@ from abut_tools.run_folder import Run
 from abut_tools.run_tables import (closed_form_table, details, expectations_table, given_up_table,
                                    overlaps_table, reason_of, status_of, warnings_list,
                                    what_happened)
-from abut_tools.tables import Figure, ToolError, scaled_unit
+from abut_tools.tables import Figure, scaled_unit
+from abut_tools.verb import ended
 from abut_tools.version import TellVersion
 
 TEMPLATE = Path(__file__).resolve().with_suffix(".html")
@@ -104,18 +105,13 @@ def main() -> int:
     options = parser.parse_args()
     sys.stdout.reconfigure(errors="backslashreplace")  # names of files may be no text
     out = options.out or options.directory / "report.html"
-    try:
-        page = make_page(options.directory, options.chart_library)
-        write_whole(out, page)
-    except ToolError as error:
-        print(f"abut report: {error}", file=sys.stderr)
-        return error.code
-    except OSError as error:
-        print(f"abut report: {error.filename}: {error.strerror}. Check that it can be read and "
-              "written.", file=sys.stderr)
-        return 3
-    print(out)
-    return 0
+
+    def work() -> int:
+        write_whole(out, make_page(options.directory, options.chart_library))
+        print(out)
+        return 0
+
+    return ended("report", work)
 
 
 if __name__ == "__main__":

@@ -29,6 +29,7 @@ from abut_tools.study_page import page_of
 from abut_tools.study_results import Result, cheapest, cost_key, nearest_miss, results_of
 from abut_tools.study_runs import Progress, Runner, check_measures
 from abut_tools.tables import ToolError, shown
+from abut_tools.verb import ended
 from abut_tools.version import TellVersion
 
 HERE = Path(__file__).resolve()
@@ -153,17 +154,10 @@ def main() -> int:
     options = options_of()
     signal.signal(signal.SIGTERM, interrupted)
     try:
-        return run_study(options)
-    except ToolError as error:
-        print(f"abut study: {error}", file=sys.stderr)
-        return error.code
+        return ended("study", lambda: run_study(options))
     except KeyboardInterrupt:
         print("abut study: interrupted; the same command goes on from here", file=sys.stderr)
         return 130
-    except OSError as error:
-        print(f"abut study: {error.filename}: {error.strerror}. Check that it can be read and "
-              "written.", file=sys.stderr)
-        return 3
 
 
 if __name__ == "__main__":

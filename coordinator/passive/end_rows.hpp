@@ -24,11 +24,11 @@ class EndRows {
   void find(const Places& from, double reach, std::vector<DistanceRow>& rows) const;
   /// The same of ends whose ways bring them nearer than the thickness.
   void find_on_ways(const Places& from, const Places& to, std::vector<DistanceRow>& rows) const;
-  /// Pairs whose ways bring them into each other, or deeper, by more than rows are missed, and how
-  /// many of them had no row; that is added.
+  /// Pairs that come too near, and how many of them had no row; that is added.
   struct Crossed {
     int pairs = 0, added = 0;
   };
+  /// Of those whose ways bring them into each other, or deeper, by more than rows are missed.
   Crossed check(const Places& from, const Places& to, std::vector<DistanceRow>& rows) const;
 
  private:

@@ -35,11 +35,9 @@ class NearRows {
   void find(const Places& from, std::vector<DistanceRow>& rows);
   /// and of what free ways bring near.
   void find_on_ways(const Places& from, const Places& to, std::vector<DistanceRow>& rows);
+  using Crossed = EndRows::Crossed;
   /// Pairs whose ways bring them closer than may be, and what goes deeper behind a surface; adds
   /// rows of the moments at which they do.
-  struct Crossed {
-    int pairs = 0, added = 0;
-  };
   Crossed check(const Places& from, const Places& to, std::vector<DistanceRow>& rows);
   /// The step was taken.
   void accept(const Places& places) { behind_.accept(trees_, places); }
