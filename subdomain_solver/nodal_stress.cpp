@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <Eigen/Cholesky>
-
+#include "base/dense.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/solid_measures.hpp"
 
@@ -55,7 +54,7 @@ MatrixXd extrapolation(const Element& element, const Tabulation& rule, int point
   for (int a = 0; a < element.nodes; ++a)
     at_nodes.row(a) = polynomial(element, corners.col(a)).transpose();
   const MatrixXd weighted = at_points.transpose() * weight.asDiagonal();
-  return at_nodes * (weighted * at_points).ldlt().solve(weighted);
+  return at_nodes * solve_symmetric(weighted * at_points, weighted);
 }
 
 NodalStress nodal_stress(FeModel& model, std::span<const double> q,

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
+#include "base/dense.hpp"
 #include "subdomain_solver/fe/rigid_motions.hpp"
 #include "subdomain_solver/materials/crush_guard.hpp"
 #include "subdomain_solver/solid_interior.hpp"
@@ -210,7 +209,7 @@ void SolidInterior::keep_momentum(const Eigen::MatrixXd& motions, const Vector& 
   if (motions.cols() == 0) return;
   const Eigen::MatrixXd heavy = motions.transpose() * (mass_of_form() * motions);
   const Vector missing = motions.transpose() * (momentum - nodal_momentum());
-  view(state_.motion.v) += motions * heavy.ldlt().solve(missing).eval();
+  view(state_.motion.v) += motions * solve_symmetric(heavy, missing);
 }
 
 /// What is left of velocities beside the rigid motions that supports leave is scaled down.
@@ -229,7 +228,8 @@ double SolidInterior::take_from_deformation(double joules) {
     const Eigen::MatrixXd rigid = free_motions(true);
     if (rigid.cols() > 0) {
       const Eigen::MatrixXd heavy = whole * rigid;
-      rest -= rigid * (rigid.transpose() * heavy).ldlt().solve(heavy.transpose() * rest);
+      const Vector momentum = heavy.transpose() * rest;
+      rest -= rigid * solve_symmetric(rigid.transpose() * heavy, momentum);
     }
     for (const Prescribed& p : parts_.problem->supports) rest(p.dof) = 0.0;
     for (const int dof : is_passive() ? std::vector<int>{} : parts_.model->massless())

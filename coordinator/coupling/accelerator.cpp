@@ -1,9 +1,11 @@
 #include "coordinator/coupling/accelerator.hpp"
-#include "coordinator/coupling/state_fields.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "base/dense.hpp"
+#include "coordinator/coupling/state_fields.hpp"
 
 namespace abut {
 
@@ -93,7 +95,7 @@ Eigen::VectorXd QuasiNewton::next(const Eigen::VectorXd& iterate, const Eigen::V
   ++updates_;
   const Selection secants = select();
   if (secants.residuals.cols() == 0) return iterate + inverse_.apply(residual, inverses);
-  const Eigen::VectorXd weights = secants.weighted.householderQr().solve(-weighted(residual));
+  const Eigen::VectorXd weights = qr_solve(secants.weighted, -weighted(residual));
   const Eigen::VectorXd rest = residual + secants.residuals * weights;
   return iterate + (secants.images - secants.residuals) * weights + inverse_.apply(rest, inverses);
 }

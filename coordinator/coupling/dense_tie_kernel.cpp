@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/dense.hpp"
 #include "coordinator/coupling/tie_kernel.hpp"
 #include "coordinator/coupling/tie_probes.hpp"
 
@@ -56,7 +57,7 @@ class DenseTieKernel final : public TieKernel {
   std::vector<Eigen::MatrixXd> turns_;   // (all ends of parts that turn) that blocks are made for
   std::vector<Eigen::MatrixXd> blocks_;  // [m/N] by lag
   // Of the first block: factors, or where rows are redundant the inverse of least size.
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+  DenseFactors factors_{Factoring::lu};
   Eigen::MatrixXd inverse_;
   Eigen::VectorXd scale_;  // of its unknowns, by which what each does is of the size of one
   Rounding rounding_;
@@ -257,11 +258,9 @@ void DenseTieKernel::find_blocks(const TieLayout& layout, int lags) {
   const Eigen::MatrixXd first = scale_.asDiagonal() * blocks_[0] * scale_.asDiagonal();
   factors_.compute(first);
   // Not by rcond(): of a matrix without some pivots its estimate is any number.
-  const Eigen::ArrayXd pivots = factors_.matrixLU().diagonal().array().abs();
+  const Eigen::ArrayXd pivots = factors_.pivots().array().abs();
   if (pivots.minCoeff() > rounding_.singular * pivots.maxCoeff()) return;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least;
-  least.setThreshold(rounding_.nothing);
-  inverse_ = least.compute(first).pseudoInverse();
+  inverse_ = pseudo_inverse(first, rounding_.nothing);
 }
 
 Eigen::VectorXd DenseTieKernel::invert(const Eigen::VectorXd& jump) const {

@@ -17,7 +17,7 @@ bool same(double a, double b) { return std::abs(a - b) <= 1.0e-9 * b; }
 }  // namespace
 
 Eigen::VectorXd KernelInverse::Entry::solve(const Eigen::VectorXd& r) const {
-  return column.empty() ? Eigen::VectorXd(factors.solve(r)) : solve_toeplitz(column, r);
+  return column.empty() ? factors.solve(r) : solve_toeplitz(column, r);
 }
 
 const KernelInverse::Entry* KernelInverse::find(double length) const {
@@ -48,15 +48,17 @@ const KernelInverse::Entry* KernelInverse::add(Entry entry) {
 }
 
 const KernelInverse::Entry* KernelInverse::store(double length, const Eigen::MatrixXd& jacobian) {
-  return add({length, {}, jacobian.partialPivLu(), {}});
+  Entry entry{.length = length};
+  entry.factors.compute(jacobian);
+  return add(std::move(entry));
 }
 
 const KernelInverse::Entry* KernelInverse::store(double length, ContactMaps maps) {
-  return add({length, {}, {}, std::move(maps)});
+  return add({.length = length, .maps = std::move(maps)});
 }
 
 const KernelInverse::Entry* KernelInverse::store(double length, std::vector<double> column) {
-  return add({length, std::move(column), {}, {}});
+  return add({.length = length, .column = std::move(column)});
 }
 
 }  // namespace abut

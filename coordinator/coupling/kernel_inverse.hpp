@@ -3,9 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "base/archive.hpp"
+#include "base/dense.hpp"
 #include "contract/time_window.hpp"
 #include "coordinator/coupling/port_jacobian.hpp"
 
@@ -17,9 +18,9 @@ class KernelInverse {
  public:
   struct Entry {
     double length = 0.0;  // [s] of the window
-    std::vector<double> column;
-    Eigen::PartialPivLU<Eigen::MatrixXd> factors;
-    ContactMaps maps;  // where the substeps are unlike; of the parallel form overlap alone
+    std::vector<double> column = {};
+    DenseFactors factors{Factoring::lu};
+    ContactMaps maps = {};  // where the substeps are unlike; of the parallel form overlap alone
 
     Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
   };

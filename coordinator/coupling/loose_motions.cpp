@@ -5,8 +5,8 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
+#include "base/dense.hpp"
 #include "base/error.hpp"
 #include "coordinator/coupling/tie.hpp"
 
@@ -81,10 +81,10 @@ void check_supports(std::span<const Joint> joints, const Bodies& bodies) {
     const Eigen::MatrixXd apart = parted(*joint, tie->rows(), columns, count, bodies);
     square.noalias() += apart.transpose() * apart;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> motions(square);
-  if (motions.eigenvalues()(0) > nothing * motions.eigenvalues()(count - 1)) return;
+  const EigenPairs motions = symmetric_eigen(square);
+  if (motions.values(0) > nothing * motions.values(count - 1)) return;
   std::string names;
-  const Eigen::VectorXd free = motions.eigenvectors().col(0);
+  const Eigen::VectorXd free = motions.vectors.col(0);
   for (const auto& [body, first] : columns) {
     const Description& told = bodies.describe(body);
     if (free.segment(first, loose_motions(told)).norm() < 1.0e-6) continue;

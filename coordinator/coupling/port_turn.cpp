@@ -1,7 +1,6 @@
 #include "coordinator/coupling/port_turn.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
+#include "base/dense.hpp"
 
 namespace abut {
 
@@ -12,11 +11,10 @@ Eigen::MatrixXd turn_of(const PortGeometry& port, std::span<const double> displa
   const Eigen::MatrixXd after = before + Points(displacement.data(), dim, n);
   const Eigen::MatrixXd spread = (after.colwise() - after.rowwise().mean()) *
                                  (before.colwise() - before.rowwise().mean()).transpose();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const SingularValues svd = singular_values(spread, SingularVectors::both);
   Eigen::MatrixXd mirror = Eigen::MatrixXd::Identity(dim, dim);
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0)
-    mirror(dim - 1, dim - 1) = -1.0;
-  return svd.matrixU() * mirror * svd.matrixV().transpose();
+  if (determinant_of(svd.u * svd.v.transpose()) < 0.0) mirror(dim - 1, dim - 1) = -1.0;
+  return svd.u * mirror * svd.v.transpose();
 }
 
 }  // namespace abut

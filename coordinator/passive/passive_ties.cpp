@@ -218,7 +218,7 @@ PassiveTies::Answer PassiveTies::answer(int lead,
 void PassiveTies::follow(int lead, const Eigen::VectorXd& change) {
   const Cluster& cluster = clusters_[index(lead)];
   Eigen::VectorXd more = cluster.before;
-  if (change.size() > 0) more -= cluster.stiffness.solve(cluster.contact * change);
+  if (change.size() > 0) more -= cluster.stiffness.solve(Eigen::VectorXd(cluster.contact * change));
   for (std::size_t k = 0; k < cluster.ties.size(); ++k) {
     Eigen::VectorXd& impulse = impulses_[index(cluster.ties[k])];
     impulse += more.segment(cluster.first[k], impulse.size());

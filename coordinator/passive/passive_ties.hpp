@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "base/dense.hpp"
 #include "contract/passive.hpp"
 #include "coordinator/coupling/bodies.hpp"
 #include "coordinator/coupling/tie.hpp"
@@ -76,10 +76,10 @@ class PassiveTies {
     std::vector<std::array<std::int32_t, 3>> values;  // body, port, point of every dim values
     std::vector<Eigen::Index> first;                  // (ties) of their rows
     Eigen::Index rows = 0;
-    Eigen::MatrixXd across;                  // [1/kg] (rows, values) T C
-    Eigen::MatrixXd contact;                 // [1/kg] (rows, contact values) of it
-    Eigen::LDLT<Eigen::MatrixXd> stiffness;  // of T C T^T
-    Eigen::VectorXd before;                  // impulses that make ties hold without more contact
+    Eigen::MatrixXd across;                   // [1/kg] (rows, values) T C
+    Eigen::MatrixXd contact;                  // [1/kg] (rows, contact values) of it
+    DenseFactors stiffness{Factoring::ldlt};  // of T C T^T
+    Eigen::VectorXd before;                   // impulses that make ties hold without more contact
   };
   Eigen::VectorXd part(const PassiveTie& tie, std::size_t side,
                        const std::vector<double>& values) const;

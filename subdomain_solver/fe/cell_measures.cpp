@@ -3,9 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/LU>
-
 #include "base/assert.hpp"
+#include "base/dense.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/fe/hourglass.hpp"
 
@@ -86,7 +85,7 @@ Eigen::VectorXd shares_at_points(const CellBlock& cells, int cell, const Tabulat
   if (t.points == 1) return Eigen::VectorXd::Constant(1, share.dot(whole) / whole.sum());
   ABUT_ASSERT(t.points == t.nodes);
   const Eigen::MatrixXd sums = n.transpose() * weight.asDiagonal();
-  return sums.partialPivLu().solve(Eigen::VectorXd(share.cwiseProduct(whole)));
+  return solve_square(sums, Eigen::VectorXd(share.cwiseProduct(whole)));
 }
 
 }  // namespace
@@ -133,9 +132,9 @@ void measure_cell(const Mesh& mesh, const CellBlock& cells, int cell, const Tabu
     const Eigen::Map<const Eigen::VectorXd> n(t.n.data() + index(p * t.nodes), t.nodes);
     const Eigen::MatrixXd jacobian = x.transpose() * dn;  // dX/dxi
     const double radius = round ? n.dot(x.col(0)) : 0.0;
-    out.volume.push_back(share(p) * t.weight[p] * jacobian.determinant() *
+    out.volume.push_back(share(p) * t.weight[p] * determinant_of(jacobian) *
                          options.depth(dim, radius));
-    const Rows gradient = dn * jacobian.inverse();
+    const Rows gradient = dn * inverse_of(jacobian);
     out.gradient.insert(out.gradient.end(), gradient.data(), gradient.data() + gradient.size());
     if (!round) continue;
     for (int a = 0; a < t.nodes; ++a) out.hoop.push_back(n(a) / radius);

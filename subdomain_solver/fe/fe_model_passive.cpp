@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "base/dense.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 
@@ -15,9 +14,8 @@ namespace {
 
 /// Negative eigenvalues become zero.
 void make_definite(Eigen::MatrixXd& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
-  matrix = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
-           eigen.eigenvectors().transpose();
+  const auto [values, vectors] = symmetric_eigen(matrix);
+  matrix = vectors * values.cwiseMax(0.0).asDiagonal() * vectors.transpose();
 }
 
 }  // namespace
@@ -67,14 +65,13 @@ bool FeModel::definite_tangent(std::span<const double> q, std::span<const double
       if (!respond(static_cast<int>(k), c, q, history)) return false;
       Eigen::MatrixXd whole = local_.tangent;
       for (Eigen::Index a = 0; a < whole.rows(); ++a) whole(a, a) += inertia * (*mass)(a / dim);
-      if (whole.llt().info() != Eigen::Success) make_definite(local_.tangent);
+      if (!is_definite(whole)) make_definite(local_.tangent);
       turn(nodes_of(mesh_.blocks[k], c), nullptr, &local_.tangent);
       add_matrix(k, c, reference, local_.tangent, tangent);
     }
   }
   return true;
 }
-
 
 /// Where volume can be taken from all sides, laws resist too little; where the section is free to
 /// swell, those that give way.

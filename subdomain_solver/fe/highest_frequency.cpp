@@ -4,10 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-
+#include "base/dense.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/fe/cell_keys.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
@@ -18,9 +15,7 @@ namespace {
 
 /// Largest eigenvalue of B^-1 A, both symmetric and B positive definite.
 double largest_ratio(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-      a, b, Eigen::EigenvaluesOnly | Eigen::Ax_lBx);
-  return solver.eigenvalues().tail(1)(0);
+  return generalized_eigenvalues(a, b).tail(1)(0);
 }
 
 /// S of [M.58]: of the linear part of the map from the reference shape, (dim, dim).
@@ -35,7 +30,7 @@ Eigen::MatrixXd metric_of(const Mesh& mesh, const CellBlock& cells, int cell) {
   Eigen::MatrixXd corner = Eigen::Map<const Eigen::MatrixXd>(element.corners.data(), dim, n);
   corner.colwise() -= corner.rowwise().mean().eval();
   const Eigen::MatrixXd moment = corner * corner.transpose();
-  const Eigen::MatrixXd linear = x * corner.transpose() * moment.inverse();
+  const Eigen::MatrixXd linear = x * corner.transpose() * inverse_of(moment);
   return linear * moment * linear.transpose() / n;
 }
 
@@ -173,8 +168,7 @@ std::optional<FrequencyWatch::Bound> HighestFrequency::cell_bound(std::span<cons
       const double* mass = masses_.data() + first_mass_[b] + index(c) * index(nodes);
       shifted_ = -stiffness_;
       for (int i = 0; i < shifted_.rows(); ++i) shifted_(i, i) += best.square * mass[i / mesh.dim];
-      const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(shifted_);
-      if (factor.info() == Eigen::Success) continue;
+      if (is_definite(shifted_)) continue;
       if (!compute(block, c, q, history, best)) return std::nullopt;
     }
   }

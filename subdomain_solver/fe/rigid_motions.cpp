@@ -1,12 +1,11 @@
 #include "subdomain_solver/fe/rigid_motions.hpp"
-#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
+#include "base/dense.hpp"
+#include "base/index.hpp"
 
 namespace abut {
 
@@ -15,12 +14,11 @@ namespace {
 /// Part of a motion's size below which a component of it is round-off.
 constexpr double nothing = 1.0e-10;
 
-/// Of values of motions at some coordinates.
-Eigen::Index rank_of(const Eigen::JacobiSVD<Eigen::MatrixXd>& parts) {
-  const double largest = std::sqrt(static_cast<double>(parts.rows()));
+/// Of motions whose values at so many coordinates have these singular values.
+Eigen::Index rank_of(const Vector& values, Eigen::Index coordinates) {
+  const double largest = std::sqrt(static_cast<double>(coordinates));
   Eigen::Index rank = 0;
-  while (rank < parts.singularValues().size() && parts.singularValues()(rank) > nothing * largest)
-    ++rank;
+  while (rank < values.size() && values(rank) > nothing * largest) ++rank;
   return rank;
 }
 
@@ -70,8 +68,8 @@ Eigen::MatrixXd vanishing_on(const std::vector<int>& rows, const Eigen::MatrixXd
   const Vector sizes = motions.cwiseAbs().colwise().maxCoeff();
   const Eigen::MatrixXd scaled = motions * sizes.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd there = scaled(rows, Eigen::all);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> parts(there, Eigen::ComputeFullV);
-  Eigen::MatrixXd out = scaled * parts.matrixV().rightCols(count - rank_of(parts));
+  const SingularValues parts = singular_values(there, SingularVectors::right);
+  Eigen::MatrixXd out = scaled * parts.v.rightCols(count - rank_of(parts.values, there.rows()));
   for (int row : rows) out.row(row).setZero();
   return out;
 }
@@ -111,9 +109,11 @@ std::optional<LoosePiece> find_loose_piece(const FeModel& model, const std::vect
         if (std::binary_search(held.begin(), held.end(), i)) rows.push_back(i);
     }
     int rank = 0;
-    if (!rows.empty() && count > 0)
-      rank =
-          static_cast<int>(rank_of(Eigen::JacobiSVD<Eigen::MatrixXd>(motions(rows, Eigen::all))));
+    if (!rows.empty() && count > 0) {
+      const Eigen::MatrixXd there = motions(rows, Eigen::all);
+      const Vector values = singular_values(there, SingularVectors::none).values;
+      rank = static_cast<int>(rank_of(values, there.rows()));
+    }
     if (rank < count)
       return LoosePiece{static_cast<int>(k), static_cast<int>(pieces.size()), count - rank};
   }
@@ -122,10 +122,8 @@ std::optional<LoosePiece> find_loose_piece(const FeModel& model, const std::vect
 
 Eigen::MatrixXd loose_motions(const FeModel& model, const std::vector<int>& held) {
   const Eigen::MatrixXd left = vanishing_on(held, rigid_motions(model));
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(left);
   const double others = static_cast<double>(left.rows()) - static_cast<double>(held.size());
-  Eigen::MatrixXd out = Eigen::MatrixXd::Identity(left.rows(), left.cols());
-  out.applyOnTheLeft(qr.householderQ());
+  Eigen::MatrixXd out = orthogonal_columns(left);
   for (const int row : held) out.row(row).setZero();  // to the last bit
   return std::sqrt(others) * out;
 }
@@ -144,14 +142,13 @@ std::vector<double> translations_and_rotations(const FeModel& model,
   }
   for (Eigen::Index k = 0; k < units.cols(); ++k)
     model.to_frames({units.col(k).data(), index(units.rows())});
-  const Eigen::MatrixXd found = units.colPivHouseholderQr().solve(motions);  // (dim + r, k)
+  const Eigen::MatrixXd found = least_squares(units, motions);  // (dim + r, k)
   return {found.data(), found.data() + found.size()};
 }
 
 std::vector<int> determining_rows(const Eigen::MatrixXd& motions, Eigen::Index rank) {
   if (rank == 0) return {};
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(motions.transpose());
-  const Eigen::VectorXi& order = qr.colsPermutation().indices();
+  const Eigen::VectorXi order = pivot_order(motions.transpose());
   std::vector<int> out(order.data(), order.data() + rank);
   std::sort(out.begin(), out.end());
   return out;

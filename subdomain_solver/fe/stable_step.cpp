@@ -5,8 +5,7 @@
 #include <limits>
 #include <unordered_set>
 
-#include <Eigen/Eigenvalues>
-
+#include "base/dense.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/fe/cell_keys.hpp"
 
@@ -26,8 +25,7 @@ double highest_square(Eigen::MatrixXd stiffness, const Vector& mass) {
     stiffness.row(i) *= root;
     stiffness.col(i) *= root;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(stiffness, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues().tail(1)(0);
+  return symmetric_eigenvalues(stiffness).tail(1)(0);
 }
 
 double stable_step(FeModel& model, std::span<const double> q, std::span<const double> history) {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include "base/assert.hpp"
+#include "base/dense.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/fe/rigid_motions.hpp"
@@ -123,13 +123,13 @@ void diagonalise(const SparseMatrix& stiffness, const SparseMatrix& mass, const 
     const Columns force = stiffness * elastic;
     Columns reduced(elastic.cols(), elastic.cols());
     reduced.triangularView<Eigen::Lower>() = elastic.transpose() * force;  // the half looked at
-    const Eigen::SelfAdjointEigenSolver<Columns> eigen(reduced);
+    const EigenPairs eigen = symmetric_eigen(reduced);
     // Where a frequency is round-off of the highest one, the motion has no stiffness.
     const double highest = stiffness.diagonal().cwiseQuotient(mass.diagonal()).maxCoeff();
-    if (!(eigen.eigenvalues()(0) > stiffless * highest)) refuse_singular(where);
+    if (!(eigen.values(0) > stiffless * highest)) refuse_singular(where);
     out.shapes.conservativeResize(Eigen::NoChange, rigid.cols() + elastic.cols());
-    out.shapes.rightCols(elastic.cols()) = elastic * eigen.eigenvectors();
-    out.frequencies.tail(elastic.cols()) = eigen.eigenvalues().cwiseSqrt();
+    out.shapes.rightCols(elastic.cols()) = elastic * eigen.vectors;
+    out.frequencies.tail(elastic.cols()) = eigen.values.cwiseSqrt();
   }
   fix_signs(out.shapes);
 }

@@ -4,8 +4,7 @@
 #include <span>
 #include <utility>
 
-#include <Eigen/LU>
-
+#include "base/dense.hpp"
 #include "base/index.hpp"
 
 namespace abut {
@@ -52,7 +51,7 @@ void add_integrals(const Mesh& mesh, CellPlace place, const Simplex& part,
         for (std::size_t k = 0; k < dim; ++k)
           jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) +=
               mesh.points[index(own[a]) * dim + i] * dn[a * dim + k];
-    const double weight = unit * measure(part) * rule.weights[p] / jacobian.determinant();
+    const double weight = unit * measure(part) * rule.weights[p] / determinant_of(jacobian);
     for (std::size_t a = 0; a < nodes; ++a) out[a] += weight * n[a];
   }
 }
@@ -62,8 +61,7 @@ std::vector<double> whole_integrals(const Element& element) {
   const Tabulation t = tabulate(element, quadrature(element.shape, 2));
   std::vector<double> out(index(t.nodes), 0.0);
   for (int p = 0; p < t.points; ++p)
-    for (int a = 0; a < t.nodes; ++a)
-      out[a] += t.weight[p] * t.n[p * t.nodes + a];
+    for (int a = 0; a < t.nodes; ++a) out[a] += t.weight[p] * t.n[p * t.nodes + a];
   return out;
 }
 
@@ -106,8 +104,7 @@ CommonParts common_parts(const MeshSimplices& own, const MeshSimplices& other) {
   }
   for (auto& [at, part] : by_cell) {
     if (common[at] > 0.0) {
-      const std::vector<double> whole =
-          whole_integrals(*mesh.blocks[part.cell.block].element);
+      const std::vector<double> whole = whole_integrals(*mesh.blocks[part.cell.block].element);
       for (std::size_t a = 0; a < whole.size(); ++a) part.of[a] /= whole[a];
     }
     out.parts.push_back(std::move(part));

@@ -9,8 +9,7 @@
 #include <span>
 #include <utility>
 
-#include <Eigen/LU>
-
+#include "base/dense.hpp"
 #include "base/index.hpp"
 #include "surface/closest_point.hpp"
 
@@ -95,7 +94,7 @@ Eigen::MatrixXd means(const Mesh& mesh, CellPlace cell, Corners corners) {
     mass += weight * n * n.transpose();
     sums += weight * n * shapes.transpose();
   }
-  return mass.partialPivLu().solve(sums);
+  return solve_square(mass, sums);
 }
 
 class Embedder {
@@ -108,8 +107,7 @@ class Embedder {
   void add(Corners part, CellPlace cell) {
     const Eigen::MatrixXd values = means(cells_.mesh(), cell, part);
     for (Eigen::Index i = values.rows() - 1; i >= 0; --i)  // seen from inside this body
-      out_.facets.push_back(
-          point(part[i], row_of(cells_.mesh(), cell, values.row(i).transpose())));
+      out_.facets.push_back(point(part[i], row_of(cells_.mesh(), cell, values.row(i).transpose())));
     out_.offsets.push_back(static_cast<std::int32_t>(out_.facets.size()));
   }
 
@@ -195,8 +193,7 @@ namespace {
 /// The corners of the quadrilateral that a triangle and the next one are; nothing: of another kind.
 std::optional<std::array<Eigen::Vector3d, 4>> quadrilateral(const BoundarySimplices& boundary,
                                                             int f) {
-  const bool next =
-      f + 1 < boundary.count() && boundary.facet[f] == boundary.facet[index(f) + 1];
+  const bool next = f + 1 < boundary.count() && boundary.facet[f] == boundary.facet[index(f) + 1];
   const bool first = f == 0 || boundary.facet[f] != boundary.facet[index(f) - 1];
   if (!next || !first || boundary.mesh.dim != 3) return std::nullopt;
   const Simplex one = boundary.simplex(f), two = boundary.simplex(f + 1);  // a fan

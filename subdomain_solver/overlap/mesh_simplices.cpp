@@ -5,8 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include <Eigen/LU>
-
+#include "base/dense.hpp"
 #include "base/index.hpp"
 
 namespace abut {
@@ -112,7 +111,7 @@ std::vector<double> reference_place(const Mesh& mesh, CellPlace place, const Eig
     const Eigen::Map<const Rows> slopes(dn.data(), element.nodes, dim);
     const Eigen::VectorXd left = at.head(dim) - x.transpose() * values;
     const Eigen::MatrixXd jacobian = x.transpose() * slopes;
-    const Eigen::VectorXd step = jacobian.partialPivLu().solve(left);
+    const Eigen::VectorXd step = solve_square(jacobian, left);
     place_in += step;
     if (step.lpNorm<Eigen::Infinity>() < 1.0e-14) break;
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace abut {
 
 namespace {
@@ -160,7 +159,7 @@ class Linearised {
       at += rows_[r].parts;
     }
     b_.factors.compute(b_.matrix);
-    b_.step = b_.factors.solve(b_.rest);
+    b_.factors.solve(b_.rest, b_.step);
     if (!b_.step.allFinite()) return false;
     z.setZero();
     for (Eigen::Index k = 0; k < n; ++k) z(b_.active[k]) = b_.step(k);

@@ -3,8 +3,7 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/LU>
-
+#include "base/dense.hpp"
 #include "subdomain_solver/model.hpp"
 
 namespace abut {
@@ -24,7 +23,7 @@ struct FrictionBuffers {
   std::vector<Eigen::Index> active;
   Eigen::MatrixXd matrix, part, softened;
   Vector slip, step, rest, trial, best, path;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors;
+  DenseFactors factors{Factoring::lu};
 };
 
 /// The forces z = (lambda, tau) of rows with Coulomb's friction, w = b + A z:

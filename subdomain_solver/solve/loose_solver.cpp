@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include <Eigen/QR>
-
 namespace abut {
 
 LooseSolver::LooseSolver(std::unique_ptr<LinearSolver> inner, Eigen::MatrixXd motions)
     : inner_(std::move(inner)), motions_(std::move(motions)) {
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(motions_.transpose());
-  const Eigen::VectorXi& order = qr.colsPermutation().indices();
+  const Eigen::VectorXi order = pivot_order(motions_.transpose());
   held_.assign(order.data(), order.data() + motions_.cols());
 }
 
@@ -46,7 +43,7 @@ bool LooseSolver::solve(const Vector& b, const Vector& a, Vector& x, Vector& m) 
   values_.resize(2 * k);
   values_.head(k) = x(held_);
   values_.tail(k) = motions_.transpose() * x / static_cast<double>(motions_.rows()) - a;
-  values_ = closing_.solve(values_).eval();
+  values_ = closing_.solve(values_);
   x += answers_ * values_;
   m = -values_.tail(k);
   return x.allFinite();

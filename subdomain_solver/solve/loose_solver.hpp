@@ -2,8 +2,7 @@
 
 #include <memory>
 
-#include <Eigen/Dense>
-
+#include "base/dense.hpp"
 #include "subdomain_solver/solve/linear_solver.hpp"
 
 namespace abut {
@@ -31,7 +30,7 @@ class LooseSolver final : public LinearSolver {
   std::vector<int> held_;  // coordinates with springs, which determine R
   SparseMatrix sprung_;
   Eigen::MatrixXd answers_;  // (n, 2k) of the inner solver: to the springs' forces, to C
-  Eigen::PartialPivLU<Eigen::MatrixXd> closing_;  // (2k, 2k)
+  DenseFactors closing_{Factoring::lu};  // (2k, 2k)
   Vector values_, none_, left_;
 };
 

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include <Eigen/Eigenvalues>
-
+#include "base/dense.hpp"
 #include "subdomain_solver/solve/orthonormal.hpp"
 
 namespace abut {
@@ -24,12 +23,12 @@ constexpr double growth = 1.15;
 
 Modes dense_modes(const Pencil& pencil, const WantedModes& wanted) {
   const Eigen::MatrixXd stiffness = pencil.stiffness, mass = pencil.mass;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(stiffness, mass);
-  const Vector values = eigen.eigenvalues().tail(stiffness.rows() - pencil.null);
+  const EigenPairs eigen = generalized_eigen(stiffness, mass);
+  const Vector values = eigen.values.tail(stiffness.rows() - pencil.null);
   const Eigen::Index below =
       std::lower_bound(values.begin(), values.end(), wanted.below) - values.begin();
   const Eigen::Index count = std::min<Eigen::Index>(below, wanted.count);
-  return {values.head(count), eigen.eigenvectors().middleCols(pencil.null, count)};
+  return {values.head(count), eigen.vectors.middleCols(pencil.null, count)};
 }
 
 Eigen::MatrixXd random_columns(Eigen::Index rows, Eigen::Index columns) {
@@ -71,9 +70,9 @@ class KrylovSpace {
   /// has converged too: none is missing below it.
   Modes modes(const WantedModes& wanted, bool& enough) const {
     const Eigen::Index m = projected_.rows();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(projected_);
-    const Vector inverse = eigen.eigenvalues().reverse();
-    const Eigen::MatrixXd parts = eigen.eigenvectors().rowwise().reverse();
+    const EigenPairs eigen = symmetric_eigen(projected_);
+    const Vector inverse = eigen.values.reverse();
+    const Eigen::MatrixXd parts = eigen.vectors.rowwise().reverse();
     const Eigen::MatrixXd residuals = coupling_ * parts.bottomRows(m - coupled_);
     Eigen::Index sound = 0, count = 0;
     const auto settled = [&](Eigen::Index k) {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include <Eigen/Eigenvalues>
+#include "base/dense.hpp"
 
 namespace abut {
 
@@ -20,8 +20,7 @@ Eigen::MatrixXd orthonormal(Eigen::MatrixXd x, const SparseMatrix& mass, double 
     const Eigen::MatrixXd momentum = mass * x;
     Eigen::MatrixXd gram(x.cols(), x.cols());
     gram.triangularView<Eigen::Lower>() = x.transpose() * momentum;  // the half that is looked at
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
-    const Vector& squares = eigen.eigenvalues();  // ascending
+    const auto [squares, vectors] = symmetric_eigen(gram);
     const double roundoff =
         std::numeric_limits<double>::epsilon() * squares(squares.size() - 1) * double(x.cols());
     const double least = std::max(roundoff, smallest * smallest);
@@ -29,7 +28,7 @@ Eigen::MatrixXd orthonormal(Eigen::MatrixXd x, const SparseMatrix& mass, double 
     while (first < squares.size() && !(squares(first) > least)) ++first;
     const Eigen::Index kept = squares.size() - first;
     const Vector scale = squares.tail(kept).cwiseSqrt().cwiseInverse();
-    x = (x * eigen.eigenvectors().rightCols(kept)).eval() * scale.asDiagonal();
+    x = (x * vectors.rightCols(kept)).eval() * scale.asDiagonal();
     smallest = 0.0;
   }
   return x;

@@ -32,11 +32,10 @@ bool close(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& for
     b.part(k, k) += soft;
     b.rest(k) = -gap(column);
   }
-  b.factors.compute(b.part);
-  if (b.factors.info() != Eigen::Success) return false;
-  b.factors.solveInPlace(b.rest);
-  if (!b.rest.allFinite()) return false;
-  for (Eigen::Index k = 0; k < n; ++k) force(b.pressed[k]) = b.rest(k);
+  if (!b.factors.compute(b.part)) return false;
+  b.factors.solve(b.rest, b.answer);
+  if (!b.answer.allFinite()) return false;
+  for (Eigen::Index k = 0; k < n; ++k) force(b.pressed[k]) = b.answer(k);
   return true;
 }
 

@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include <Eigen/Cholesky>
-
+#include "base/dense.hpp"
 #include "subdomain_solver/model.hpp"
 
 namespace abut {
@@ -13,8 +12,8 @@ struct UnilateralBuffers {
   std::vector<Eigen::Index> pressed;
   std::vector<char> is_pressed;
   Eigen::MatrixXd part;
-  Vector rest, gap, guess, from;
-  Eigen::LLT<Eigen::MatrixXd> factors;
+  Vector rest, answer, gap, guess, from;
+  DenseFactors factors{Factoring::cholesky};
 };
 
 /// The forces of one-sided rows:  0 <= f _|_ gap + A f >= 0,  A [m/N] symmetric and positive

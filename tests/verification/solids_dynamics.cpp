@@ -4,8 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
-
+#include "base/dense.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
@@ -37,11 +36,11 @@ struct Plate {
     const std::vector<int> free = FreeCoordinates(s.model.dofs(), s.problem.supports).list();
     const Eigen::MatrixXd mass =
         lumped ? Eigen::MatrixXd(s.model.lumped_mass().asDiagonal()) : s.model.mass().toDense();
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-        rest.tangent.toDense()(free, free), mass(free, free));
-    frequency = std::sqrt(eigen.eigenvalues()(0));
+    const EigenPairs eigen =
+        generalized_eigen(rest.tangent.toDense()(free, free), mass(free, free));
+    frequency = std::sqrt(eigen.values(0));
     mode = Vector::Zero(s.model.dofs());
-    mode(free) = eigen.eigenvectors().col(0) / eigen.eigenvectors().col(0).norm();
+    mode(free) = eigen.vectors.col(0).normalized();
     store(mode, s.motion.q);
   }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/dense.hpp"
+
 namespace abut {
 
 namespace {
@@ -29,7 +31,7 @@ void RemainingWay::see(const Eigen::VectorXd& y, const Eigen::VectorXd& r) {
     moved.col(k) = y - before.y;
     changed.col(k) = r - before.r;
   }
-  const Eigen::VectorXd shares = changed.colPivHouseholderQr().solve(-r);
+  const Eigen::VectorXd shares = least_squares(changed, Eigen::VectorXd(-r));
   const Eigen::VectorXd rest = r + changed * shares;
   left_ = std::max(last, (moved * shares + rest).lpNorm<Eigen::Infinity>());
 }
