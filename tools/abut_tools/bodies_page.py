@@ -125,7 +125,7 @@ def packed(motion: Motion, time_scale: tuple[float, str]) -> dict:
 
 
 def fitting_motion(folder: Path, time_scale: tuple[float, str],
-                   units: Units) -> tuple[Motion, dict] | None:
+                   units: Units = Units()) -> tuple[Motion, dict] | None:
     """The run's bodies and their data, thinned until these fit."""
     if not listed_states(folder):
         return None
