@@ -129,6 +129,8 @@ function attempt(name, action) {
 function tell() {
   const canvases = Array.from(document.querySelectorAll("main canvas")).filter(
     (canvas) => canvas.clientWidth > 0);  // what is hidden is not drawn yet
+  const page = document.documentElement;
+  if (page.scrollWidth > page.clientWidth + 1) failures.push("the page is wider than its window");
   document.body.dataset.figures = String(canvases.length);
   document.body.dataset.drawn = String(canvases.filter(inked).length);
   document.body.dataset.failures = failures.join("; ");
