@@ -11,7 +11,6 @@ import json
 import math
 import os
 import re
-import shutil
 import signal
 import statistics
 import subprocess
@@ -22,20 +21,15 @@ from pathlib import Path
 from types import SimpleNamespace
 
 sys.dont_write_bytecode = True
-from support import ABUT, PACKAGE, ROOT, SystemTest, main  # noqa: E402
-
+import browser  # noqa: E402
 from made_studies import BAR, SCENE, STUDY, write  # noqa: E402
+from support import ABUT, PACKAGE, ROOT, SystemTest, main  # noqa: E402
 
 sys.path.insert(0, str(PACKAGE))
 from abut_tools.study_results import check_of, front, series_of  # noqa: E402
 from abut_tools.expressions import Expression  # noqa: E402
 from abut_tools.study_file import read_study  # noqa: E402
 from abut_tools.study_runs import check_measures  # noqa: E402
-
-SKIPPED = 77
-CHROMIUM = ("chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
-            "--no-first-run", "--disable-background-networking", "--disable-component-update",
-            "--disable-sync", "--hide-scrollbars", "--allow-file-access-from-files")
 
 
 def columns(path: Path) -> dict:
@@ -422,9 +416,9 @@ class Arithmetic(SystemTest):
 
 def browse() -> int:
     """Every figure is drawn, at desktop and phone width, and nothing is complained of."""
-    if shutil.which(CHROMIUM[0]) is None:
+    if not browser.is_there():
         print("skipped: chromium is not installed")
-        return SKIPPED
+        return browser.SKIPPED
     with tempfile.TemporaryDirectory() as name:
         # With runs that are refused, and names and values that have little room.
         text = STUDY.replace("values: [5.0e-6,", "values: [1.0e-4, 5.0e-6,").replace(
@@ -435,31 +429,11 @@ def browse() -> int:
                                 f"{name}/out", "--quiet"], check=False, timeout=120)
         if ended.returncode != 1:
             return 1
-        # Windows have at least 500 pixels: a phone is a frame, which tells what its page tells.
-        phone = Path(name, "out", "phone.html")
-        phone.write_text("""<body><iframe id="phone" src="index.html" width="390" height="900">
-</iframe><script>
-const frame = document.getElementById("phone");
-frame.onload = () => setTimeout(() => {
-  Object.assign(document.body.dataset, frame.contentDocument.body.dataset);
-  document.body.dataset.width = frame.contentWindow.innerWidth;
-}, 2000);
-</script>""", encoding="utf-8")
-        for width, page in ((1280, "index.html"), (500, "phone.html")):
-            result = subprocess.run(
-                [*CHROMIUM, f"--user-data-dir={name}/profile", f"--window-size={width},900",
-                 "--enable-logging=stderr", "--virtual-time-budget=5000", "--dump-dom",
-                 Path(name, "out", page).as_uri()],
-                capture_output=True, text=True, timeout=120, check=True)
-            drawn = {key: re.search(f'data-{key}="([^"]*)"', result.stdout)
-                     for key in ("figures", "drawn", "failures")}
-            found = {key: match[1] if match else None for key, match in drawn.items()}
-            complaints = [line for line in result.stderr.splitlines() if ":CONSOLE" in line]
-            if found != {"figures": "9", "drawn": "9", "failures": ""} or complaints or (
-                    page == "phone.html" and 'data-width="390"' not in result.stdout):
-                print(f"{page}: {found}", *complaints, sep="\n")
-                return 1
-    return 0
+        page = Path(name, "out", "index.html")
+        wanted = {"figures": "9", "drawn": "9", "failures": ""}
+        views = ((390, False), (390, True), (1440, False))
+        fine = [browser.look_at(page, width, dark, wanted) for width, dark in views]
+    return 0 if all(fine) else 1
 
 
 if __name__ == "__main__":
