@@ -10,7 +10,7 @@ BIN := build/$(PRESET)/bin
 PREFIX ?= /usr/local
 
 help:
-	@echo "make demo    two bars collide, one process each; result table and a page of plots"
+	@echo "make demo    two bars collide, one process each; result table and a page that shows them"
 	@echo "make build   the two programs, in $(BIN)"
 	@echo "make install PREFIX=/usr/local   programs, tools, man pages, completion, scenes; DESTDIR as usual"
 	@echo "make uninstall PREFIX=/usr/local   removes what make install has put there"
@@ -52,7 +52,7 @@ package: build
 	@ls build/$(PRESET)/packages/*.deb
 
 demo: build
-	$(BIN)/abut run configs/two_bars.yaml --out runs/two_bars --force
+	$(BIN)/abut run configs/two_bars.yaml --out runs/two_bars --force --set output.fields.every=1
 	@$(BIN)/abut report runs/two_bars >/dev/null
 	@echo "page   file://$(CURDIR)/runs/two_bars/report.html"
 

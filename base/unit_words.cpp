@@ -1,6 +1,22 @@
 #include "base/unit_words.hpp"
 
+#include <algorithm>
+
 namespace abut {
+namespace {
+
+std::string with(std::string text, char old, char fresh) {
+  std::replace(text.begin(), text.end(), old, fresh);
+  return text;
+}
+
+/// Products are written with a blank here, kg m/s, and so is their word.
+std::string word_of(const UnitSystem& system, const std::string& unit) {
+  const std::string product = with(unit, ' ', '*'), word = system.word(product);
+  return word == product ? unit : with(word, '*', ' ');
+}
+
+}  // namespace
 
 std::string in_words_of(const UnitSystem& system, const std::string& text) {
   std::string out;
@@ -8,7 +24,8 @@ std::string in_words_of(const UnitSystem& system, const std::string& text) {
   for (std::size_t open = text.find('['); open != std::string::npos; open = text.find('[', at)) {
     const std::size_t close = text.find(']', open);
     if (close == std::string::npos) break;
-    out += text.substr(at, open + 1 - at) + system.word(text.substr(open + 1, close - open - 1));
+    out +=
+        text.substr(at, open + 1 - at) + word_of(system, text.substr(open + 1, close - open - 1));
     at = close;
   }
   return out + text.substr(at);

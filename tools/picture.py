@@ -15,7 +15,7 @@ from pathlib import Path
 from abut_tools.motion import motion_of
 from abut_tools.picture_options import add_options, joined, require_fields, require_packages
 from abut_tools.run_folder import Run
-from abut_tools.tables import ToolError, measured
+from abut_tools.tables import ToolError
 from abut_tools.verb import ended
 from abut_tools.version import TellVersion
 from abut_tools.vtu import listed_states
@@ -27,11 +27,11 @@ def moment(text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"is '{text}': write seconds, for example 2.5e-4")
+        raise argparse.ArgumentTypeError(f"is '{text}': write a time of the run, as 2.5e-4")
     return value
 
 
-def time_of(folder: Path, wanted: float | None) -> float:
+def time_of(folder: Path, wanted: float | None, unit: str) -> float:
     """The state nearest to the wanted time; where none is named, the last."""
     times = [entry.time for entry in listed_states(folder)]
     if wanted is None:
@@ -39,18 +39,18 @@ def time_of(folder: Path, wanted: float | None) -> float:
     slack = 1e-6 * (max(times) - min(times))
     if not min(times) - slack <= wanted <= max(times) + slack:
         raise ToolError(f"--time {wanted:.6g} is outside of the run's states, which go from "
-                        f"{min(times):.6g} to {max(times):.6g} s. Name a time between these.", 2)
+                        f"{min(times):.6g} to {max(times):.6g} {unit}. Name a time between them.",
+                        2)
     return min(times, key=lambda time: abs(time - wanted))
 
 
-def make_picture(options: argparse.Namespace, out: Path) -> str:
-    """Writes the picture; says at what time it is."""
+def make_picture(options: argparse.Namespace, out: Path) -> None:
     run = Run(options.directory)
     require_fields(options.directory)
     require_packages()
     from abut_tools.frames import Frames, Look  # after it is known that its packages are there
     from PIL import Image
-    time = time_of(options.directory, options.time)
+    time = time_of(options.directory, options.time, run.units.word("s"))
     # Colours that mean the same at all times: the scale is that of a part of the run's states.
     motion = motion_of(options.directory, 20, also=time)
     if motion.dimension == 1:  # a diagram of space and time needs more, and bars are small
@@ -62,15 +62,15 @@ def make_picture(options: argparse.Namespace, out: Path) -> str:
     with temporary.open("xb") as file:  # never through a symbolic link
         Image.fromarray(image).save(file, format="PNG", optimize=True)
     os.replace(temporary, out)
-    return measured(time, "s")
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="abut picture",
                                      description="Draws a run's bodies at one time.")
     add_options(parser, "DIR/picture.png")
-    parser.add_argument("--time", type=moment, metavar="SECONDS",
-                        help="the state nearest to it is drawn; default: the last")
+    parser.add_argument("--time", type=moment, metavar="T",
+                        help="in the scene's unit of time: the state nearest to it is drawn; "
+                        "default: the last")
     parser.add_argument("--version", action=TellVersion)
     options = parser.parse_args(joined(sys.argv[1:]))
     sys.stdout.reconfigure(errors="backslashreplace")  # names of files may be no text

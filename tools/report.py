@@ -20,17 +20,12 @@ from abut_tools.run_folder import Run
 from abut_tools.run_tables import (closed_form_table, details, expectations_table, given_up_table,
                                    overlaps_table, reason_of, status_of, warnings_list,
                                    what_happened)
-from abut_tools.tables import Figure, scaled_unit
+from abut_tools.tables import Figure
 from abut_tools.verb import ended
 from abut_tools.version import TellVersion
 
 TEMPLATE = Path(__file__).resolve().with_suffix(".html")
 CURVE_POINTS = 2000     # more than a screen has columns
-
-
-def time_scale_of(run: Run) -> tuple[float, str]:
-    times = [abs(t) for t in run.history["time"] if t is not None]
-    return scaled_unit(max(times, default=0.0), "s")
 
 
 def bodies_section(run: Run, moving: tuple | None, beside: list[Figure]) -> str:
@@ -66,7 +61,7 @@ def page_of(run: Run, moving: tuple | None, library: str, limit: int) -> str:
     figures = figures_of(run)
     beside = beside_bodies(figures, moving)
     status, kind = status_of(run)
-    scale, told = time_scale_of(run), what_happened(run)
+    scale, told = run.time_scale(), what_happened(run)
     data = [figure.data(limit, scale) for figure in figures]
     for figure in data:
         figure["moment"] = figure["name"] in [each.name for each in beside]
@@ -89,7 +84,7 @@ def page_of(run: Run, moving: tuple | None, library: str, limit: int) -> str:
 
 def make_page(folder: Path, library_path: Path) -> str:
     run = Run(folder)
-    moving = fitting_motion(folder, time_scale_of(run))
+    moving = fitting_motion(folder, run.time_scale(), run.units)
     size = len(moving[1]["block"]) if moving else 0
     return fitting_page(lambda library, limit: page_of(run, moving, library, limit), library_path,
                         CURVE_POINTS, size)

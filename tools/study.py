@@ -2,9 +2,9 @@
 """Measures speed against accuracy: runs a scene with many settings, compares cost with error.
 
 docs/STUDIES.md tells how to write a study file. Needs Python's standard library, Debian's PyYAML
-and, for the page, its Chart.js. Ends with 0 when the study is done (runs that were refused or
-failed are results), 1 when no run meets the target, 2 when the user can help, 3 when the machine
-must, 130 when interrupted: the same command goes on from there.
+and, for the page, its Chart.js. Ends with 0 when every run ended as the study expects, 1 when one
+was refused or failed that was not to, or when no run meets the target, 2 when the user can help, 3
+when the machine must, 130 when interrupted: the same command goes on from there.
 """
 
 import argparse
@@ -23,11 +23,13 @@ except ImportError:
 
 from abut_tools.page import CHART_LIBRARY, fitting_page, named, write_whole
 from abut_tools.scene_keys import nearest
+from abut_tools.study_ends import command_of, exit_code, surprises, told
 from abut_tools.study_file import Study, read_study
 from abut_tools.study_output import facts_of, target_scene, write_results
-from abut_tools.study_page import page_of
+from abut_tools.study_page import Shown, page_of
 from abut_tools.study_results import Result, cheapest, cost_key, nearest_miss, results_of
 from abut_tools.study_runs import Progress, Runner, check_measures
+from abut_tools.study_units import units_of
 from abut_tools.tables import ToolError, shown
 from abut_tools.verb import ended
 from abut_tools.version import TellVersion
@@ -129,21 +131,34 @@ def run_study(options: argparse.Namespace) -> int:
     finally:
         progress.close()
     results = results_of(study, records, reference, options.serial)
+    for result in results:
+        result.command = command_of(study, result, abut, out)
+    units = units_of(study, [record["summary"] for record in records])
     facts = facts_of(study, results, reference, time.monotonic() - started, progress.timed,
-                     options.serial)
-    write_results(out, study, results, facts)
+                     options.serial, units)
+    write_results(out, study, results, facts, units)
     template = HERE.with_name(f"{HERE.stem}.html")
+    content = Shown(study, results, facts, units)
     page = fitting_page(
-        lambda library, limit: page_of(study, results, facts, out, template, library, limit),
+        lambda library, limit: page_of(content, out, template, library, limit),
         options.chart_library, CURVE_POINTS)
     write_whole(out / "index.html", page)
     if not options.quiet:
-        counts = ", ".join(f"{count} {word}" for word, count in facts["status"].items())
-        print(f"{study.title}\n{counts}; {facts['seconds']:g} s")
-        for claim in facts["claims"]:
-            print(f"  {claim['verdict']:<14}{claim['text']}")
-        print(f"files  {out}\npage   {out / 'index.html'}")
-    return tell_target(out, study, results, targets) if targets else 0
+        tell(out, study, facts)
+    off = surprises(results)
+    if off:
+        print(f"{len(off)} of {len(results)} runs did not end as the study expects "
+              "(docs/STUDIES.md, key expected):", *told(off), sep="\n", file=sys.stderr)
+    code = tell_target(out, study, results, targets) if targets else 0
+    return exit_code(results) or code
+
+
+def tell(out: Path, study: Study, facts: dict) -> None:
+    counts = ", ".join(f"{count} {word}" for word, count in facts["status"].items())
+    print(f"{study.title}\n{counts}; {facts['seconds']:g} s")
+    for claim in facts["claims"]:
+        print(f"  {claim['verdict']:<14}{claim['text']}")
+    print(f"files  {out}\npage   {out / 'index.html'}", flush=True)
 
 
 def interrupted(number, frame):

@@ -25,6 +25,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 sys.dont_write_bytecode = True
 from abut_tools import bodies_page  # noqa: E402
 from abut_tools.motion import motion_of  # noqa: E402
+from abut_tools.run_folder import Run  # noqa: E402
 from abut_tools.surfaces import clustered, surface_of  # noqa: E402
 from abut_tools.vtu import Grid, State  # noqa: E402
 
@@ -340,6 +341,28 @@ class Pictures(Made):
         (fake / "matplotlib.py").write_text("raise ImportError('not here')\n")
         said = self.refused(3, PICTURE, self.folder, env={"PYTHONPATH": str(fake), "PATH": "/bin"})
         self.assertIn("apt-get install --no-install-recommends python3-matplotlib\n", said)
+
+
+class Words(Made):
+    def test_pages_and_pictures_have_the_words_of_a_scene_that_declares_its_system(self):
+        from abut_tools.frames import Frames, Look
+        make_run(self.folder, 2)
+        path = self.folder / "summary.json"
+        summary = json.loads(path.read_text(encoding="utf-8"))
+        summary["units"] = {"m": "mm", "s": "ms", "m/s": "mm/ms", "N": "kN", "Pa": "GPa"}
+        path.write_text(json.dumps(summary), encoding="utf-8")
+        run = Run(self.folder)
+        motion, data = bodies_page.fitting_motion(self.folder, run.time_scale(), run.units)
+        self.assertEqual((data["time"], data["length"]["unit"]), ("ms", "mm"))
+        self.assertEqual({shade["key"]: shade["unit"] for shade in data["shades"]},
+                         {"stress": "GPa", "displacement": "mm"})
+        self.assertIn(" GPa; displacement from ", bodies_page.alternative(motion))
+        frames = Frames(run, motion_of(self.folder, 2), Look((400, 300), "", None, 1.0, False))
+        self.assertEqual((frames.time_unit, frames.curve.label), ("ms", "force [kN]"))
+        frames.draw(1)
+        self.assertEqual(frames.clock.get_text(), "t = 0.003 ms")
+        told = self.refused(2, PICTURE, self.folder, "--time", "5")
+        self.assertIn("which go from 0 to 0.003 ms. ", told)
 
 
 class Motions(Made):

@@ -11,7 +11,6 @@ import json
 import math
 import os
 import re
-import shutil
 import signal
 import statistics
 import subprocess
@@ -22,6 +21,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 sys.dont_write_bytecode = True
+import browser  # noqa: E402
+from made_studies import BAR, SCENE, STUDY, write  # noqa: E402
 from support import ABUT, PACKAGE, ROOT, SystemTest, main  # noqa: E402
 
 sys.path.insert(0, str(PACKAGE))
@@ -29,62 +30,6 @@ from abut_tools.study_results import check_of, front, series_of  # noqa: E402
 from abut_tools.expressions import Expression  # noqa: E402
 from abut_tools.study_file import read_study  # noqa: E402
 from abut_tools.study_runs import check_measures  # noqa: E402
-
-SKIPPED = 77
-CHROMIUM = ("chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
-            "--no-first-run", "--disable-background-networking", "--disable-component-update",
-            "--disable-sync", "--hide-scrollbars", "--allow-file-access-from-files")
-BAR = """\
-  {name}:
-    model: {{fe: {{dimension: 1, mesh: {{bar: {{length: 0.25, elements: 10, area: 1.0e-6}}}}}}}}
-    material: {{linear_elastic: {{youngs_modulus: 1.0e9, density: 1000.0}}}}
-    integrator: {{central_difference: {{step: 5.0e-6}}}}
-    initial: {{position: [{x}], velocity: [{v}]}}
-    ports: {{tip: {{side: {side}}}}}
-"""
-SCENE = """\
-meta:
-  title: Two bars of ten elements
-  closed_form: {bar_impact: {interface: impact}}
-  expect:
-    - {measure: momentum.total, at_most: 1.0e-30, because: "fails: a study must not mind"}
-time: {begin: -2.0e-4, end: 8.0e-4, window: 1.0e-5}
-bodies:
-""" + BAR.format(name="left", x=-0.27, v=100.0, side="right") \
-    + BAR.format(name="right", x=0.02, v=-100.0, side="left") + """\
-interfaces:
-  impact: {sides: [left.tip, right.tip], contact: {}}
-"""
-STUDY = """\
-title: Small <bars>
-base: scene.yaml
-knobs:
-  step: {values: [5.0e-6, 2.5e-6, 1e-6], set: [bodies.*.integrator.*.step]}
-  elements:
-    range: {from: 5, to: 20, points: 3, scale: log}
-    set: [bodies.*.model.*.mesh.bar.elements]
-errors:
-  release: {measure: contact.impact.release_error, abs: true}
-  kinetic: {history: left.kinetic, norm: rms, relative_to: 1.25}
-repeats: 3
-figures:
-  - histories: [position, velocity, force, mean_velocity, kinetic, total_error]
-    of: left.tip
-    runs: "*elements 20"
-  - {convergence: kinetic, knob: elements}
-  - {table: {release: 100 * release, n: schwarz.iterations_max}, knob: elements, title: Spread}
-  - {table: {release: release, wall: wall_s_median}, runs: "*elements 10", title: By run}
-claims:
-  - text: Released within a tenth
-    checks: [{value: release, at_most: 0.1, percent: true}]
-"""
-
-
-def write(folder: Path, study: str = STUDY, scene: str = SCENE) -> Path:
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "scene.yaml").write_text(scene, encoding="utf-8")
-    (folder / "study.yaml").write_text(study, encoding="utf-8")
-    return folder / "study.yaml"
 
 
 def columns(path: Path) -> dict:
@@ -267,12 +212,16 @@ class Studies(SystemTest):
         text = STUDY.replace("5.0e-6, 2.5e-6, 1e-6", "1.0e-4, 5.0e-6, 1.0e-9").replace(
             "set: [bodies.*.integrator.*.step]",
             "set: {bodies.*.integrator.*.step: null, time.end: [8.0e-4, 8.0e-4, 0.9998]}")
-        self.succeed(self.study(text=text + "time_limit: 3.0\n"))
+        expected = 'time_limit: 3.0\nexpected: {refused: "step 0.0001*", failed: ["step 1e-09*"]}\n'
+        self.succeed(self.study(text=text + expected))
         status = [row["status"] for row in self.rows()]
         self.assertEqual(status, 3 * ["refused"] + 3 * ["completed"] + 3 * ["failed"])
         self.assertIn("step", self.rows()[0]["message"])
         self.assertIn("time_limit", self.rows()[-1]["message"])
         self.assertEqual(self.rows()[0]["errors"], {"release": None, "kinetic": None})
+        facts = json.loads((self.out / "study.json").read_text(encoding="utf-8"))
+        self.assertEqual((facts["status"], facts["unexpected"]), (
+            {"refused as expected": 3, "completed": 3, "failed as expected": 3}, []))
 
     def test_reference_run_is_made_and_stated(self):
         text = STUDY + "reference: {set: {bodies.*.integrator.*.step: 1.0e-6}}\n"
@@ -371,6 +320,12 @@ errors: {speed: {measure: mean_velocity.bar_1.end}}
                 ("to: 20, points: 3, scale: log", "to: 90000, points: 9000",
                  ["knobs: make 27000 runs", "at most 20000"]),
                 ("from: 5", "from: 1.0e+999", ["knobs.elements.range.from: must be a number"]),
+                ("repeats: 3", "repeats: 3\nexpected: {refuse: x}",
+                 ["expected.refuse: is not a known key", "Did you mean refused?"]),
+                ("repeats: 3", "repeats: 3\nexpected: {failed: step 7}",
+                 ["expected.failed: no run is labelled 'step 7'"]),
+                ("repeats: 3", "repeats: 3\nexpected: {failed: 'step 5*', refused: '*'}",
+                 ["expected.refused: run 'step 5e-06, elements 5' is expected to be failed"]),
                 ("repeats: 3", "repeats: 1.0e+9", ["repeats: is 1e+09", "from 1 to 1000"]),
                 ("release: 100 * release", "release: 9**9**9**9 * release",
                  ["figures[2].table.release: '9 ** 9 ** 9 ** 9' has no value"]),
@@ -461,27 +416,24 @@ class Arithmetic(SystemTest):
 
 def browse() -> int:
     """Every figure is drawn, at desktop and phone width, and nothing is complained of."""
-    if shutil.which(CHROMIUM[0]) is None:
+    if not browser.is_there():
         print("skipped: chromium is not installed")
-        return SKIPPED
+        return browser.SKIPPED
     with tempfile.TemporaryDirectory() as name:
-        path = write(Path(name) / "s")
-        subprocess.run([ABUT, "study", path, "--out", f"{name}/out", "--quiet"], check=True,
-                       timeout=120)
-        for width in (1280, 390):
-            result = subprocess.run(
-                [*CHROMIUM, f"--user-data-dir={name}/profile", f"--window-size={width},900",
-                 "--enable-logging=stderr", "--virtual-time-budget=5000", "--dump-dom",
-                 Path(name, "out", "index.html").as_uri()],
-                capture_output=True, text=True, timeout=120, check=True)
-            drawn = {key: re.search(f'data-{key}="([^"]*)"', result.stdout)
-                     for key in ("figures", "drawn", "failures")}
-            found = {key: match[1] if match else None for key, match in drawn.items()}
-            complaints = [line for line in result.stderr.splitlines() if ":CONSOLE" in line]
-            if found != {"figures": "9", "drawn": "9", "failures": ""} or complaints:
-                print(f"width {width}: {found}", *complaints, sep="\n")
-                return 1
-    return 0
+        # With runs that are refused, and names and values that have little room.
+        text = STUDY.replace("values: [5.0e-6,", "values: [1.0e-4, 5.0e-6,").replace(
+            "  elements:", "  number_of_elements_of_both_bars_alike:").replace(
+            "knob: elements", "knob: number_of_elements_of_both_bars_alike").replace(
+            '"*elements ', '"step [!0]*, *alike ')
+        ended = subprocess.run([ABUT, "study", write(Path(name) / "s", text), "--out",
+                                f"{name}/out", "--quiet"], check=False, timeout=120)
+        if ended.returncode != 1:
+            return 1
+        page = Path(name, "out", "index.html")
+        wanted = {"figures": "9", "drawn": "9", "failures": ""}
+        views = ((390, False), (390, True), (1440, False))
+        fine = [browser.look_at(page, width, dark, wanted) for width, dark in views]
+    return 0 if all(fine) else 1
 
 
 if __name__ == "__main__":

@@ -5,11 +5,15 @@ usage: test_units.py ABUT ROOT
 """
 
 import math
+import re
 import sys
 import unittest
 
 sys.dont_write_bytecode = True
-from support import ROOT, SystemTest, main  # noqa: E402
+from support import PACKAGE, ROOT, SystemTest, main  # noqa: E402
+
+sys.path.insert(0, str(PACKAGE))
+from abut_tools import units as unit_words  # noqa: E402
 
 PLAIN = """\
 meta: {title: A steel bar hits a wall}
@@ -130,6 +134,28 @@ class Units(SystemTest):
                      "      neo_hookean:\n        youngs_modulus: 70000000000.0", "y: \"1e-05\"",
                      "thickness: 0.001"):
             self.assertIn(line, text)
+
+    def test_pages_have_the_units_that_the_document_of_the_output_tells_of_measures(self):
+        """Of the first name of every row of its table."""
+        text = (ROOT / "docs" / "OUTPUT.md").read_text(encoding="utf-8")
+        table = text[text.index("| `contact.INTERFACE.begin` |"):]
+        rows = re.findall(r"^\| `([^`]+)`[^|]*\|([^|,]*)[^|]*\|",
+                          table[:table.index("\n\n")], re.MULTILINE)
+        units = [unit for _, unit in rows if unit.strip(" -")]
+        self.assertGreater(len(units), 35, "the table is found")
+        self.assertGreater(len(rows), len(units) + 15, "and what has no unit")
+        for name, unit in rows:
+            with self.subTest(name):
+                self.assertEqual(unit_words.measure_unit(name), unit.strip(" -"))
+
+    def test_words_of_units_that_no_summary_lists_are_made_of_those_that_it_does(self):
+        units = unit_words.Units({
+            "m": "mm", "s": "s", "kg": "t", "N*s": "t*mm/s", "Pa": "MPa"})
+        for unit, word in (("m", "mm"), ("N s", "t mm/s"), ("kg m^2/s", "t mm^2/s"), ("Pa", "MPa"),
+                           ("rad", "rad"), ("%", "%"), ("", ""), ("s (clock)", "s (clock)")):
+            self.assertEqual(units.word(unit), word)
+        self.assertEqual(units.text("depth [m], share [%]"), "depth [mm], share [%]")
+        self.assertEqual(unit_words.Units().word("kg m^2/s"), "kg m^2/s")
 
     def test_a_divided_scene_keeps_the_system(self):
         block = "units: mm t s\n" + BLOCK.replace("    copies: {grid: {count: [2, 1], "

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "base/unit_words.hpp"
 #include "base/units.hpp"
 
 namespace abut {
@@ -76,6 +77,13 @@ TEST(UnitSystems, EveryWordOfASystemIsAUnitThatReadsBack) {
       EXPECT_EQ(parse_unit(system.word(si)).value().dimension, parse_unit(si).value().dimension)
           << system.word(si);
   }
+}
+
+TEST(UnitSystems, AreSpokenBetweenBrackets) {
+  const UnitSystem system = UnitSystem::parse("mm t s").value();
+  EXPECT_EQ(in_words_of(system, "p [kg m/s], l [kg m^2/s], u [m], t [s (clock)], e [%], N [m"),
+            "p [t mm/s], l [t mm^2/s], u [mm], t [s (clock)], e [%], N [m");
+  EXPECT_EQ(in_words_of(UnitSystem(), "p [kg m/s]"), "p [kg m/s]");
 }
 
 TEST(UnitSystems, AreALengthAMassAndATime) {

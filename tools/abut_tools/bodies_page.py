@@ -10,6 +10,7 @@ from pathlib import Path
 
 from abut_tools.motion import Motion, MovingBody, motion_of
 from abut_tools.tables import COLOURS, RAMPS, few, rounded, scaled_unit
+from abut_tools.units import Units
 from abut_tools.vtu import listed_states
 
 LIMIT = 3_000_000    # bytes of a page that bodies may take
@@ -114,7 +115,7 @@ def packed(motion: Motion, time_scale: tuple[float, str]) -> dict:
     bodies = [packed_body(motion, body, pack) for body in motion.bodies]
     for k, body in enumerate(bodies):
         body["colour"] = COLOURS[k % len(COLOURS)]
-    factor, unit = scaled_unit(max(map(abs, motion.low + motion.high)), "m")
+    factor, unit = scaled_unit(max(map(abs, motion.low + motion.high)), motion.length)
     return {"dimension": motion.dimension, "length": {"factor": factor, "unit": unit},
             "ramps": RAMPS, "aspect": aspect(motion), "start": motion.state_of_most(),
             "times": [rounded(t * time_scale[0], 8) for t in motion.times], "time": time_scale[1],
@@ -123,7 +124,8 @@ def packed(motion: Motion, time_scale: tuple[float, str]) -> dict:
             "bodies": bodies, "block": pack.text()}
 
 
-def fitting_motion(folder: Path, time_scale: tuple[float, str]) -> tuple[Motion, dict] | None:
+def fitting_motion(folder: Path, time_scale: tuple[float, str],
+                   units: Units = Units()) -> tuple[Motion, dict] | None:
     """The run's bodies and their data, thinned until these fit."""
     if not listed_states(folder):
         return None
@@ -132,7 +134,7 @@ def fitting_motion(folder: Path, time_scale: tuple[float, str]) -> tuple[Motion,
     states = min(STATES, max(LEAST_STATES, READ // max(nodes, 1)))
     most = READ // states
     while True:
-        motion = motion_of(folder, states, most)
+        motion = motion_of(folder, states, most).in_words_of(units)
         data = packed(motion, time_scale)
         if len(data["block"]) <= LIMIT or most < 100:
             return motion, data

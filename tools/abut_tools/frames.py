@@ -150,7 +150,7 @@ class Frames:
     """One sheet, drawn again for every state."""
 
     def __init__(self, run: Run, motion: Motion, look: Look):
-        self.run, self.motion, self.look = run, motion, look
+        self.run, self.motion, self.look = run, motion.in_words_of(run.units), look
         self.theme = DARK if look.dark else LIGHT
         self.shade = chosen_shade(motion, look.field)
         self.scene = Scene(motion, self.shade, look)
@@ -162,7 +162,7 @@ class Frames:
         self.canvas = FigureCanvasAgg(self.sheet)
         self.curve = curve_of(run)
         times = [abs(t) for t in motion.times] + [abs(t) for t in run.history["time"] if t]
-        self.time_factor, self.time_unit = scaled_unit(max(times, default=0.0), "s")
+        self.time_factor, self.time_unit = scaled_unit(max(times, default=0.0), motion.time)
         self.lay_out()
 
     def lay_out(self) -> None:
@@ -240,7 +240,7 @@ class Frames:
         image = space_time(self.scene, max(8, round(place[2] * self.look.size[0])),
                            max(8, round(place[3] * self.look.size[1])), theme["ground"])
         times, (low, high) = self.motion.times, (self.motion.low[0], self.motion.high[0])
-        factor, unit = scaled_unit(max(abs(low), abs(high)), "m")
+        factor, unit = scaled_unit(max(abs(low), abs(high)), self.motion.length)
         plot.imshow(image, aspect="auto", extent=(times[0] * self.time_factor,
                                                   times[-1] * self.time_factor,
                                                   low * factor, high * factor))
@@ -287,7 +287,8 @@ class Frames:
             self.ground = self.canvas.copy_from_bbox(self.sheet.bbox)
         self.canvas.restore_region(self.ground)
         time = self.motion.times[state]
-        self.clock.set_text(f"t = {measured(round_off(time, self.motion.times), 's')}")
+        now = measured(round_off(time, self.motion.times), self.motion.time)
+        self.clock.set_text(f"t = {now}")
         self.sheet.draw_artist(self.clock)
         for plot, mark in self.marks:
             mark.set_xdata([time * self.time_factor] * 2)

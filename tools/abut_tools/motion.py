@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from abut_tools.run_files import damaged
 from abut_tools.surfaces import Surface, clustered, surface_of
+from abut_tools.units import Units
 from abut_tools.vtu import LIST, Entry, Grid, State, listed_states
 
 SAMPLES = 200_000
@@ -119,6 +120,13 @@ class Motion:
             if scale:
                 self.scales[shade.key] = scale
         self.shades = [shade for shade in shades if shade.key in self.scales]
+        self.length, self.time = "m", "s"
+
+    def in_words_of(self, units: Units) -> "Motion":
+        """Units as the scene calls them."""
+        self.shades = [shade._replace(unit=units.word(shade.unit)) for shade in self.shades]
+        self.length, self.time = units.word(self.length), units.word(self.time)
+        return self
 
     def state_of_most(self) -> int:
         """The state at which the first quantity is largest over all nodes."""

@@ -42,8 +42,16 @@ function stacked(sets) {
 function axis(title, more) {
   return Object.assign({
     type: "linear", title: {display: true, text: title}, grid: {color: style("--line")},
-    ticks: {maxTicksLimit: 7, maxRotation: 0},
+    ticks: {maxTicksLimit: 7, maxRotation: 0, callback: tickText},
   }, more);
+}
+// Axes of round-off: 2e-13, not all the zeros that Chart.js would write.
+function tickText(value, index, ticks) {
+  const largest = Math.max(...ticks.map((tick) => Math.abs(tick.value)));
+  if (largest === 0 || (largest >= 1e-3 && largest < 1e7)) {
+    return Chart.Ticks.formatters.numeric.call(this, value, index, ticks);
+  }
+  return value === 0 ? "0" : Number(value.toPrecision(6)).toExponential().replace("e+", "e");
 }
 function digits(value, unit) {
   return Number(value.toPrecision(6)).toString() + (unit ? " " + unit : "");
@@ -64,7 +72,7 @@ function draw(figure) {
   };
   const alone = figure.curves.length === 1 && !figure.curves[0].label;
   const legend = {display: figure.legend !== false && !alone, position: "bottom", labels: labels};
-  const counts = {beginAtZero: true, suggestedMax: 3, ticks: {precision: 0}};
+  const counts = {beginAtZero: true, suggestedMax: 3, ticks: {precision: 0, callback: tickText}};
   const canvas = document.getElementById(figure.name);
   if (figure.words) canvas.setAttribute("aria-label", figure.words);
   const chart = new Chart(canvas, {
@@ -78,7 +86,7 @@ function draw(figure) {
         if (figure.moment && moment.go) moment.go(one, event);
       },
       scales: {
-        x: axis("time [" + figure.time + "]", {}),
+        x: axis(figure.time ? "time [" + figure.time + "]" : "time", {}),
         y: axis(figure.label, figure.points ? counts : figure.floor === null ? {} : {min: 0}),
       },
     },
@@ -121,6 +129,8 @@ function attempt(name, action) {
 function tell() {
   const canvases = Array.from(document.querySelectorAll("main canvas")).filter(
     (canvas) => canvas.clientWidth > 0);  // what is hidden is not drawn yet
+  const page = document.documentElement;
+  if (page.scrollWidth > page.clientWidth + 1) failures.push("the page is wider than its window");
   document.body.dataset.figures = String(canvases.length);
   document.body.dataset.drawn = String(canvases.filter(inked).length);
   document.body.dataset.failures = failures.join("; ");

@@ -22,13 +22,22 @@ def named(text: str) -> Path:
     return Path(text)
 
 
+class Html(str):
+    """A cell that is HTML already."""
+
+
+def escaped(cell: str) -> str:
+    return cell if isinstance(cell, Html) else html.escape(cell)
+
+
 def table_of(headings: list[str], rows: list[list[str]], classes: list[str] | None = None) -> str:
     """Cells are text; only the class of a row may change how it looks."""
-    head = "".join(f"<th>{html.escape(text)}</th>" for text in headings)
+    head = "".join(f"<th>{escaped(text)}</th>" for text in headings)
     body = ""
     for k, row in enumerate(rows):
         kind = f' class="{classes[k]}"' if classes and classes[k] else ""
-        body += f"<tr{kind}>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>\n"
+        body += f"<tr{kind}>" + "".join(
+            f"<td>{escaped(cell)}</td>" for cell in row) + "</tr>\n"
     return (f'<div class="scroll"><table><thead><tr>{head}</tr></thead>'
             f"<tbody>{body}</tbody></table></div>")
 

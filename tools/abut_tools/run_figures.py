@@ -288,6 +288,8 @@ def figures_of(run: Run) -> list[Figure]:
     figures = (port_figures(run) + joint_figures(run) + [reaction_figure(run)] +
                vector_figures(run) + [mean_velocity_figure(run)] + energy_figures(run) +
                [energy_error_figure(run)] + interface_figures(run))
+    for figure in figures:
+        figure.unit = run.units.word(figure.unit)
     return [figure for figure in figures if figure.curves]
 
 

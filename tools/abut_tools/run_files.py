@@ -8,6 +8,7 @@ import re
 from pathlib import Path
 
 from abut_tools.tables import Table, ToolError
+from abut_tools.units import Units
 
 MOST_BYTES = 4_000_000_000
 AGAIN = "Run the scene again, or take the file from a copy of the run"
@@ -97,7 +98,8 @@ def cut_short(table: Table, summary: dict) -> str:
     last = max(table["time"], default=-math.inf)
     if reached is None or last >= reached - 1e-9 * abs(reached):
         return ""
-    return f"{table.where} ends before the run did, at {reached:.6g} s: curves are cut short"
+    unit = Units(summary.get("units")).word("s")
+    return f"{table.where} ends before the run did, at {reached:.6g} {unit}: curves are cut short"
 
 
 # ---- JSON ------------------------------------------------------------
@@ -124,7 +126,7 @@ CONTACT = {"begin": VALUE, "end": VALUE, "duration": VALUE, "force": VALUE, "imp
 # A map names its keys, those with ! in front must be there, and those that are not named are not
 # read; a map whose only key is * has entries of one kind under names of their own.
 SUMMARY = {
-    "status": TEXT, "title": TEXT, "notes": [TEXT], "measures": {"*": VALUE},
+    "status": TEXT, "title": TEXT, "units": {"*": TEXT}, "notes": [TEXT], "measures": {"*": VALUE},
     "time": {"begin": VALUE, "end": VALUE, "reached": VALUE}, "reason": TEXT,
     "expectations": [{"!measure": TEXT, "!expected": TEXT, "!got": VALUE, "!pass": FLAG,
                       "because": TEXT}],

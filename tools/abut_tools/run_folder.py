@@ -5,7 +5,8 @@ from pathlib import Path
 
 from abut_tools.run_files import (SUMMARY, cut_short, is_there, read_events, read_json,
                                   read_table)
-from abut_tools.tables import Table, ToolError
+from abut_tools.tables import Table, ToolError, measured, scaled_unit
+from abut_tools.units import Units
 
 AXES = ("x", "y", "z")
 
@@ -26,6 +27,7 @@ class Run:
                         "notes": ["there is no summary.json: the run was ended from outside"]}
         if "summary.json" in there:
             self.summary = read_json(paths["summary.json"], SUMMARY)
+        self.units = Units(self.summary.get("units"))
         self.history, self.exact, self.events = Table(["time"], []), None, []
         if "history.csv" in there:
             self.history = read_table(paths["history.csv"])
@@ -39,6 +41,15 @@ class Run:
 
     def title(self) -> str:
         return self.summary.get("title") or "Run"
+
+    def told(self, value: float | None, unit: str) -> str:
+        """A number in the scene's word for a unit of SI, with few digits."""
+        return measured(value, self.units.word(unit))
+
+    def time_scale(self) -> tuple[float, str]:
+        """Factor and unit of axes of time."""
+        times = [abs(t) for t in self.history["time"] if t is not None]
+        return scaled_unit(max(times, default=0.0), self.units.word("s"))
 
     def measures(self) -> dict:
         return self.summary.get("measures", {})

@@ -7,6 +7,7 @@ import re
 from abut_tools.page import table_of
 from abut_tools.run_folder import Run
 from abut_tools.tables import few, measured, shown
+from abut_tools.units import measure_unit
 
 MOST_ROWS = 24       # of bodies and of contacts that are told one by one
 MOST_WARNINGS = 20
@@ -26,12 +27,17 @@ def table_without_gaps(headings: list[str], rows: list[list[str]]) -> str:
     return table_of([headings[k] for k in kept], [[row[k] for k in kept] for row in rows])
 
 
+def units_table(run: Run, headings: list[str], rows: list[list[str]]) -> str:
+    """Headings name units of SI; shown are the scene's."""
+    return table_of([run.units.text(text) for text in headings], rows)
+
+
 def moment_words(run: Run, value: float | None) -> str:
     """A time; round-off of the run's length is zero."""
     times = [abs(t) for t in run.history["time"] if t is not None]
     if value is not None and abs(value) < 1e-9 * max(times, default=0.0):
         value = 0.0
-    return measured(value, "s")
+    return run.told(value, "s")
 
 
 def joints_table(run: Run) -> str:
@@ -42,7 +48,7 @@ def joints_table(run: Run) -> str:
             value = run.measure(f"contact.{name}.{what}")
             if unit == "s":
                 return moment_words(run, value)
-            return measured(value, unit) if value else ""
+            return run.told(value, unit) if value else ""
         sides = " and ".join(run.interfaces()[name].get("sides", []))
         if run.is_tie(name):
             rows.append([name, sides, "tied", "", "", "", of("force_peak", "N"), "", ""])
@@ -63,9 +69,9 @@ def joints_table(run: Run) -> str:
 def speed(run: Run, body: str, at: int, scale: float) -> str:
     """In one dimension with its sign."""
     if f"{body}.mean_velocity" in run.history:
-        return measured(clean(run.history[f"{body}.mean_velocity"][at], scale), "m/s")
+        return run.told(clean(run.history[f"{body}.mean_velocity"][at], scale), "m/s")
     parts = [column[at] for _, column in run.vector(f"{body}.mean_velocity")]
-    return measured(clean(math.hypot(*parts), scale), "m/s") if parts and None not in parts else ""
+    return run.told(clean(math.hypot(*parts), scale), "m/s") if parts and None not in parts else ""
 
 
 def bodies_table(run: Run) -> str:
@@ -81,7 +87,7 @@ def bodies_table(run: Run) -> str:
         most = max((v for column in kinds for v in column if v is not None), default=0.0)
         energies = (kinetic[0], kinetic[-1], max(filter(None, stored), default=0.0))
         rows.append([body, speed(run, body, 0, scale), speed(run, body, -1, scale)] +
-                    [measured(clean(value, most), "J") for value in energies])
+                    [run.told(clean(value, most), "J") for value in energies])
     if not rows or len(rows) > MOST_ROWS:
         return ""
     flat = any(f"{body}.mean_velocity" in run.history for body in run.bodies())
@@ -156,7 +162,8 @@ def overlaps_table(run: Run) -> str:
     rows = [[" and ".join(overlap["bodies"]), shown(overlap["depth"]),
              ", ".join(shown(x) for x in overlap.get("place", [])), shown(overlap["time"])]
             for overlap in run.summary.get("overlaps", [])]
-    return table_of(["bodies", "depth [m]", "at [m]", "time [s]"], rows) if rows else ""
+    heads = ["bodies", "depth [m]", "at [m]", "time [s]"]
+    return units_table(run, heads, rows) if rows else ""
 
 
 def given_up_table(run: Run) -> str:
@@ -187,18 +194,28 @@ def given_up_table(run: Run) -> str:
                        ("refused_by_body", "steps refused by {}")):
         rows += [[words.format(body), shown(value), ""] for body, value in up.get(key, {}).items()]
     words = html.escape(up.get("words", ""))
+    rows = [[run.units.text(row[0]), *row[1:]] for row in rows]
     return f"<p>{words}.</p>" + table_of(["", "", "share"], rows)
 
 
 # ---- against what was expected --------------------------------------------
 
 
+def with_word(run: Run, measure: str, value: float | None) -> str:
+    """A measure with its unit in the scene's words."""
+    unit = run.units.word(measure_unit(measure))
+    return shown(value) if value is None else f"{shown(value)} {unit}".strip()
+
+
 def expectations_table(run: Run) -> str:
     results = run.summary.get("expectations", [])
-    rows = [[result["measure"], result["expected"].replace("+-", "±"), shown(result["got"]),
-             "ok" if result["pass"] else "failed", result.get("because", "")] for result in results]
+    rows = [[result["measure"], result["expected"].replace("+-", "±"),
+             with_word(run, result["measure"], result["got"]),
+             "ok" if result["pass"] else "failed", result.get("because", "")]
+            for result in results]
     kinds = ["ok" if result["pass"] else "failed" for result in results]
-    return table_of(["measure", "expected", "got", "", "because"], rows, kinds) if rows else ""
+    headings = ["measure", "expected", "got", "", "because"]
+    return table_of(headings, rows, kinds) if rows else ""
 
 
 def clean(value: float | None, scale: float | None) -> float | None:
@@ -236,7 +253,7 @@ def closed_form_table(run: Run) -> str:
         exact, got = (clean(value, scale) for value in (exact, got))
         error = ("" if got is None or exact is None or not scale
                  else f"{100.0 * (got - exact) / scale:.3g} %")
-        rows.append([f"{quantity} [{unit}]", shown(exact), shown(got), error])
+        rows.append([f"{quantity} [{run.units.word(unit)}]", shown(exact), shown(got), error])
     note = ("<p class='note'>Errors are relative: times to the exact duration of contact, "
             "velocities to the closing speed.</p>")
     return table_of(["quantity", "exact", "computed", "error"], rows) + note
@@ -279,12 +296,14 @@ def details(run: Run) -> str:
     rows = run_rows(run)
     events = [[shown_few(event.get("time")), event.get("kind", "").replace("_", " "),
                event.get("subject", ""), event.get("text", "")] for event in run.events[:200]]
-    measures = [[name, shown(value)] for name, value in run.measures().items()]
+    measures = [[name, shown(value), run.units.word(measure_unit(name))]
+                for name, value in run.measures().items()]
     notes = "".join(f"<li>{html.escape(note)}</li>" for note in sorted_notes(run)[1])
+    heads = ["time [s]", "event", "of", ""]
     parts = [("The run", table_of(["", ""], rows) if rows else ""),
-             ("Events", table_of(["time [s]", "event", "of", ""], events) if events else ""),
+             ("Events", units_table(run, heads, events) if events else ""),
              ("Measures without a value", f"<ul>{notes}</ul>" if notes else ""),
-             ("All measures", table_of(["measure", "value"], measures) if measures else "")]
+             ("All measures", table_of(["measure", "value", "unit"], measures) if measures else "")]
     return "".join(f"<details><summary>{title}</summary>{content}</details>"
                    for title, content in parts if content)
 
@@ -314,7 +333,8 @@ def reasons_of(run: Run) -> list[str]:
     if run.summary.get("status", "unfinished") == "completed" and not missed:
         return []
     failures = [event for event in run.events if event.get("kind") == "failure"]
-    lines = [f"{shown_few(event.get('time'))} s: {event.get('text', '')}"
+    second = run.units.word("s")
+    lines = [f"{shown_few(event.get('time'))} {second}: {event.get('text', '')}"
              for event in failures[-1:]]
     reason = run.summary.get("reason", "")
     if reason and not any(reason in line for line in lines):
@@ -322,8 +342,8 @@ def reasons_of(run: Run) -> list[str]:
     if run.summary.get("status") != "completed":
         lines += [note for note in run.summary.get("notes", []) if "finite" in note or not lines]
     if run.summary.get("status") == "completed":
-        lines += [f"{result['measure']} is {shown(result['got'])}, expected {result['expected']}"
-                  for result in missed]
+        lines += [f"{result['measure']} is {with_word(run, result['measure'], result['got'])}, "
+                  f"expected {result['expected']}" for result in missed]
     return lines
 
 

@@ -21,19 +21,40 @@ def has_body(bodies: dict, name: str) -> bool:
     return name in bodies or isinstance(copied, dict) and "copies" in copied
 
 
+def may_be(key: str, path: str) -> bool:
+    """Whether a key of a setting may be that of a row of the reference: <name>, * and {a,b} there,
+    * in the key."""
+    parts, rows = key.split("."), path.split(".")
+    return len(parts) == len(rows) and all(
+        "*" in (part, row) or row.startswith("<") or
+        re.sub(r"\[\w*\]$", "", part) in row.strip("{}").split(",")
+        for part, row in zip(parts, rows))
+
+
 class KeyList:
     """What the program calls a key; <name> stands for the scene's own names. What a `*` in a key
     stands for the program alone knows: it is asked."""
 
     def __init__(self, abut: Path):
-        self.abut = abut
+        self.abut, self.units = abut, {}
+        self.keys = list(dict.fromkeys(self.reference("--keys").split()))
+
+    def reference(self, *options: str) -> str:
         try:
-            text = subprocess.run([abut, "reference", "--keys"], capture_output=True, text=True,
-                                  check=True, timeout=30).stdout
+            return subprocess.run([self.abut, "reference", *options], capture_output=True,
+                                  text=True, check=True, timeout=30).stdout
         except (OSError, subprocess.SubprocessError) as error:
-            raise ToolError(f"{abut} does not answer ({error}). Build the programs first.",
+            raise ToolError(f"{self.abut} does not answer ({error}). Build the programs first.",
                             3) from error
-        self.keys = list(dict.fromkeys(text.split()))
+
+    def unit(self, key: str) -> str:
+        """Of the key's values, in SI; empty: none, or several that the key may stand for."""
+        if not self.units:
+            rows = re.findall(r"^\| `([^`]+)` \| [^|]* \| ([^|]*) \|", self.reference(),
+                              re.MULTILINE)
+            self.units = {path: unit.strip() for path, unit in rows}
+        found = {unit for path, unit in self.units.items() if unit and may_be(key, path)}
+        return found.pop() if len(found) == 1 else ""
 
     def refuse_unknown(self, key: str, bodies: dict, where: str) -> None:
         parts = key.split(".")

@@ -21,10 +21,11 @@ LARGEST = 1e300  # numbers with room for sums and ratios
 MOST_RUNS, MOST_REPEATS = 20_000, 1000
 KEYS = {
     "": ("title", "about", "base", "set", "knobs", "variants", "sweeps", "errors", "reference",
-         "repeats", "placement", "time_limit", "figures", "claims", "quick"),
+         "repeats", "placement", "time_limit", "expected", "figures", "claims", "quick"),
+    "expected": ("refused", "failed"),
     "variant": ("label", "scene", "set"),
     "sweep": ("title", "variants", "set", "knobs", "repeats"),
-    "error": ("measure", "history", "norm", "abs", "minus", "relative_to", "against"),
+    "error": ("measure", "history", "norm", "abs", "minus", "relative_to", "against", "unit"),
     "reference": ("scene", "set"),
     "histories": ("histories", "of", "runs", "title"),
     "convergence": ("convergence", "knob", "runs", "title"),
@@ -45,6 +46,7 @@ class Error:
     minus: float = 0.0
     relative_to: float | None = None
     against: str = ""
+    unit: str | None = None  # as the study says; None: that of the measure
 
 
 @dataclass
@@ -58,6 +60,7 @@ class Point:
     settings: dict
     kind: str = "run"
     repeats: int = 1  # timed runs with --serial
+    expected: str = "completed"  # how it is to end
 
 
 @dataclass
@@ -73,6 +76,7 @@ class Study:
     time_limit: float
     figures: list[dict]
     claims: list[dict]
+    knob_units: dict[str, str]  # as the study says, or in SI
     reference: Point | None = None
 
 
@@ -82,6 +86,7 @@ class Reader:
     def __init__(self, path: Path, keys: KeyList):
         self.path, self.keys, self.scenes = path, keys, {}
         self.known, self.asked = {}, set()
+        self.knob_units = {}
 
     def refuse(self, key: str, what: str):
         raise ToolError(f"{self.path}: {key}: {what}" if key else f"{self.path}: {what}", 2)
@@ -161,6 +166,11 @@ class Reader:
 
     def points_of(self, spec: dict, sweep: dict, key: str, quick: dict | None) -> list[Point]:
         knobs = study_knobs.read(self, sweep.get("knobs", {}), f"{key}knobs")
+        for knob in knobs:
+            own = {self.keys.unit(name) for name, values in knob.keys.items() if values is None}
+            words = any(isinstance(value, str) for value in knob.values)  # 5 mm has its unit
+            self.knob_units[knob.name] = knob.unit or (
+                own.pop() if len(own) == 1 and not words else "")
         if quick is not None:
             for knob in knobs:
                 knob.values = knob.values[:quick.get("keep", 2)]
@@ -227,6 +237,22 @@ class Reader:
         return [point for point in points
                 if any(fnmatchcase(point.label, str(pattern)) for pattern in patterns)]
 
+    def expect(self, points: list[Point], found: dict, is_quick: bool) -> None:
+        """Notes which runs are to be refused or to fail; the others are to complete."""
+        for status, patterns in self.a_map(found, "expected", "expected").items():
+            key = f"expected.{status}"
+            patterns = [patterns] if isinstance(patterns, str) else self.a_list(patterns, key)
+            for pattern in patterns:
+                own = [point for point in points if fnmatchcase(point.label, str(pattern))]
+                if not own and not is_quick:  # the short form has not all runs
+                    self.refuse(key, f"no run is labelled '{pattern}'."
+                                f"{nearest(str(pattern), [point.label for point in points])}")
+                for point in own:
+                    if point.expected not in ("completed", status):
+                        self.refuse(key, f"run '{point.label}' is expected to be "
+                                    f"{point.expected} as well.")
+                    point.expected = status
+
     # ---- what is measured ------------------------------------------------------------
 
     def errors(self, found: dict, has_reference: bool) -> list[Error]:
@@ -254,6 +280,8 @@ class Reader:
             if error.against == "reference" and not has_reference:
                 self.refuse(f"{key}.against", "the study has no reference run; say reference: "
                             "{set: {...}} with finer settings.")
+            if "unit" in spec:
+                error.unit = self.a_text(spec["unit"], f"{key}.unit")
             error.minus = self.a_number(spec.get("minus", 0.0), f"{key}.minus")
             if "relative_to" in spec:
                 error.relative_to = self.a_number(spec["relative_to"], f"{key}.relative_to")
@@ -348,6 +376,7 @@ def read_study(path: Path, abut: Path, is_quick: bool) -> Study:
         knobs += [name for name in sweep.get("knobs", {}) if name not in knobs]
     if quick is not None and "runs" in quick:
         points = reader.kept(points, quick["runs"])
+    reader.expect(points, spec.get("expected", {}), is_quick)
     reference = None
     if "reference" in spec:
         found = reader.a_map(spec["reference"], "reference", "reference")
@@ -363,7 +392,7 @@ def read_study(path: Path, abut: Path, is_quick: bool) -> Study:
         reader.choice(spec.get("placement", "local"), "placement", ("local", "processes")),
         reader.a_number(spec.get("time_limit", 600.0), "time_limit", 0.0),
         reader.figures(spec.get("figures", []), errors, knobs),
-        reader.claims(spec.get("claims", [])), reference)
+        reader.claims(spec.get("claims", [])), reader.knob_units, reference)
     if not is_quick:  # the short form has not all runs
         refuse_idle_patterns(reader, study)
     return study

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from abut_tools.scene_keys import nearest
 
 MOST_VALUES = 10_000  # of one knob
-KNOB = ("values", "range", "set")
+KNOB = ("values", "range", "set", "unit")
 RANGE = ("from", "to", "points", "scale")
 
 
@@ -15,6 +15,7 @@ class Knob:
     name: str
     values: list
     keys: dict  # scene key -> None (the knob's value), or a list with one value each
+    unit: str = ""  # as the study says; empty: that of the keys
 
     def settings(self, i: int) -> dict:
         return {key: self.values[i] if own is None else own[i] for key, own in self.keys.items()}
@@ -70,5 +71,6 @@ def read(reader, found: dict, key: str) -> list[Knob]:
             if own is not None and len(own) != len(values):
                 reader.refuse(f"{place}.set.{scene_key}",
                               f"has {len(own)} values, the knob has {len(values)}.")
-        knobs.append(Knob(name, list(values), keys))
+        unit = reader.a_text(spec["unit"], f"{place}.unit") if "unit" in spec else ""
+        knobs.append(Knob(name, list(values), keys, unit))
     return knobs

@@ -11,10 +11,13 @@ from pathlib import Path
 
 from abut_tools.page import write_whole
 from abut_tools.study_file import COSTS, Study
-from abut_tools.study_results import (Result, by_status, by_sweep, claims_of, cost_key, fronts_of,
+from abut_tools.study_ends import counts_of, end_words, surprises
+from abut_tools.study_results import (Result, by_sweep, claims_of, cost_key, fronts_of,
                                       series_of)
 from abut_tools.study_tables import tables_of
+from abut_tools.study_units import StudyUnits
 from abut_tools.tables import ToolError
+from abut_tools.units import COSTS as COST_UNITS, with_unit
 
 
 MANY_RUNS = 6  # more in one cell of a table are not read
@@ -62,7 +65,7 @@ def definition_of(study: Study) -> list[dict]:
 
 
 def facts_of(study: Study, results: list[Result], reference: dict | None, seconds: float,
-             made: int, timed: bool) -> dict:
+             made: int, timed: bool, units: StudyUnits) -> dict:
     """`made`: runs of this time, the others were there before."""
     versions = next((result.record["summary"]["versions"] for result in results
                      if "versions" in result.record["summary"]), {})
@@ -72,30 +75,33 @@ def facts_of(study: Study, results: list[Result], reference: dict | None, second
     cost = cost_key(results)
     return {
         "title": study.title, "study": study.path.name, "runs": len(results), "runs_made": made,
-        "status": by_status(results), "timed": timed, "repeats": study.repeats if timed else 1,
+        "status": counts_of(results), "unexpected": [result.label for result in surprises(results)],
+        "timed": timed, "repeats": study.repeats if timed else 1,
         "placement": study.placement, "seconds": round(seconds, 1), "machine": machine(),
         "versions": versions, "commit": commit_of(study.path.parent),
-        "errors": definition_of(study),
+        "errors": definition_of(study), "units": {"knobs": units.knobs, "errors": units.errors},
         "reference": reference and {"settings": study.reference.settings,
                                     "scene": study.reference.scene.name,
                                     "folder": reference["folder"]},
         "cost_of_fronts": cost,
         "fronts": fronts_of(study, results, cost),
-        "orders": orders, "claims": claims_of(study, results),
-        "tables": tables_of(study, results)}
+        "orders": orders, "claims": claims_of(study, results, units),
+        "tables": tables_of(study, results, units)}
 
 
 def csv_of(study: Study, results: list[Result]) -> str:
     text, names = io.StringIO(), [error.name for error in study.errors]
     keys = sorted({key for result in results for key in result.point.settings})
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["label", "status", *study.knobs, *COSTS, *names, *keys, "message"])
+    writer.writerow(["label", "status", "expected", *study.knobs, *COSTS, *names, *keys, "key",
+                     "reason", "message", "command"])
     for result in results:
         cells = [result.point.knobs.get(knob) for knob in study.knobs]
         cells += [result.cost[name] for name in COSTS] + [result.errors[n] for n in names]
         cells += [result.point.settings.get(key) for key in keys]
         writer.writerow(["" if cell is None else cell for cell in
-                         (result.label, result.status, *cells, result.record["message"])])
+                         (result.label, result.status, result.point.expected, *cells, result.key,
+                          result.reason, result.record["message"], result.command)])
     return text.getvalue()
 
 
@@ -143,14 +149,15 @@ def with_values(results: list[Result], names: list[str], kind: str) -> list[str]
             if any(getattr(result, kind).get(name) is not None for result in results)]
 
 
-def runs_md(study: Study, results: list[Result]) -> str:
+def runs_md(study: Study, results: list[Result], units: StudyUnits) -> str:
     costs = with_values(results, [c for c in COSTS if c not in ("wall_s_min", "wall_s_max")],
                         "cost")
     errors = with_values(results, [error.name for error in study.errors], "errors")
     return md_table(
-        ["run", "status", *costs, *errors],
-        [[result.label, result.status + (f": {result.record['message']}"
-                                         if result.record["message"] else ""),
+        ["run", "status", *(with_unit(key, COST_UNITS.get(key, "")) for key in costs),
+         *(with_unit(name, units.errors[name]) for name in errors)],
+        [[result.label, end_words(result) + (f": {result.record['message']}"
+                                             if result.record["message"] else ""),
           *(result.cost[key] for key in costs), *(result.errors[name] for name in errors)]
          for result in results])
 
@@ -172,14 +179,14 @@ def timing_text(facts: dict) -> str:
             "that bodies spent computing. Time them with --serial.")
 
 
-def md_of(study: Study, results: list[Result], facts: dict) -> str:
+def md_of(study: Study, results: list[Result], facts: dict, units: StudyUnits) -> str:
     sweeps = len(by_sweep(results))
     parts = [f"# {study.title}\n\n{study.about.strip()}\n" if study.about else f"# {study.title}\n"]
     if facts["claims"]:
         parts.append("## Claims\n\n" + claims_md(facts))
     parts += [f"## {table['title']}\n\n{md_table(table['headings'], table['rows'])}"
               for table in facts["tables"]]
-    parts += [f"## Runs{f': {name}' if name else ''}\n\n{runs_md(study, own)}"
+    parts += [f"## Runs{f': {name}' if name else ''}\n\n{runs_md(study, own, units)}"
               for name, own in by_sweep(results).items()]
     if facts["orders"]:
         parts.append("## Orders\n\n" + orders_md(facts))
@@ -191,12 +198,13 @@ def md_of(study: Study, results: list[Result], facts: dict) -> str:
     return "\n".join(parts)
 
 
-def write_results(out: Path, study: Study, results: list[Result], facts: dict) -> None:
+def write_results(out: Path, study: Study, results: list[Result], facts: dict,
+                  units: StudyUnits) -> None:
     rows = [result.row(study) for result in results]
     write_whole(out / "results.json", json.dumps(rows, indent=1, allow_nan=False) + "\n")
     write_whole(out / "study.json", json.dumps(facts, indent=1, allow_nan=False) + "\n")
     write_whole(out / "results.csv", csv_of(study, results))
-    write_whole(out / "results.md", md_of(study, results, facts))
+    write_whole(out / "results.md", md_of(study, results, facts, units))
 
 
 def target_scene(out: Path, study: Study, result: Result, targets: dict[str, float]) -> Path:

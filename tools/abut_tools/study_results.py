@@ -1,12 +1,16 @@
 """What a study found: costs and errors of its runs, the front, orders, claims, the cheapest run."""
 
 import math
+import re
 import statistics
 
 from abut_tools.study_file import Point, Study
 from abut_tools.study_take import matches
+from abut_tools.study_units import StudyUnits
 
 CLEARLY = 0.01
+# Between the place and what is wrong: bodies.left.integrator.newmark.step
+KEY = re.compile(r": ([a-z_]\w*(?:\.[\w<>*-]+|\[\d+\])*): ")
 
 
 def costs_of(record: dict, timed: bool) -> dict:
@@ -20,12 +24,25 @@ def costs_of(record: dict, timed: bool) -> dict:
             "memory_mib": record["memory_mib"] and round(record["memory_mib"], 2)}
 
 
+def reason_of(message: str) -> str:
+    """The first of a run's complaints."""
+    return message.split("\n", 1)[0]
+
+
+def key_of(message: str) -> str:
+    """The key of the scene that the first complaint names; empty where it names none."""
+    found = KEY.search(reason_of(message))
+    return found[1] if found else ""
+
+
 class Result:
     """A run of the study with its numbers by name."""
 
     def __init__(self, point: Point, record: dict, timed: bool):
         self.point, self.record = point, record
         self.label, self.status = point.label, record["status"]
+        self.reason, self.key = reason_of(record["message"]), key_of(record["message"])
+        self.command = ""  # that repeats it
         self.cost = costs_of(record, timed)
         self.errors = {}
 
@@ -43,13 +60,14 @@ class Result:
         return summary.get("measures", {}).get(name)
 
     def row(self, study: Study) -> dict:
-        row = {"label": self.label, "status": self.status, "message": self.record["message"],
+        row = {"label": self.label, "status": self.status, "expected": self.point.expected,
+               "reason": self.reason, "key": self.key, "message": self.record["message"],
                "sweep": self.point.sweep, "variant": self.point.variant,
                "scene": self.point.scene.name, "knobs": self.point.knobs,
                "settings": self.point.settings, "cost": self.cost, "errors": self.errors,
-               "folder": self.record["folder"]}
+               "folder": self.record["folder"], "command": self.command}
         return {key: value for key, value in row.items()
-                if key not in ("sweep", "variant") or value}
+                if key not in ("sweep", "variant", "reason", "key") or value}
 
 
 def results_of(study: Study, records: list[dict], reference: dict | None,
@@ -149,8 +167,15 @@ def series_of(results: list[Result], figure: dict) -> list[dict]:
 # ---- claims ------------------------------------------------------------
 
 
-def check_of(check: dict, results: list[Result]) -> dict:
+def check_of(check: dict, results: list[Result], unit: str = "") -> dict:
     """The measured values of a check's runs, each with whether it stands."""
+    def shown_as(value: float | None) -> str:
+        if value is None:
+            return "no value"
+        if check.get("percent"):
+            return f"{100.0 * value:.3g} %"
+        return f"{value:.4g} {unit}".strip()
+
     own = [result for result in results if matches(result.label, check.get("runs", "*"))]
     values = [(result.label, check["value"].value(result.number)) for result in own
               if result.status == "completed"]
@@ -162,18 +187,18 @@ def check_of(check: dict, results: list[Result]) -> dict:
 
     bounds = []
     if "at_most" in check:
-        bounds.append((f"at most {shown_as(check, check['at_most'])}",
+        bounds.append((f"at most {shown_as(check['at_most'])}",
                        lambda value: value <= check["at_most"]))
     if "at_least" in check:
-        bounds.append((f"at least {shown_as(check, check['at_least'])}",
+        bounds.append((f"at least {shown_as(check['at_least'])}",
                        lambda value: value >= check["at_least"]))
     for word, edge, test in (("below", min, float.__lt__), ("above", max, float.__gt__)):
         if word in check and others(word):
             bound = edge(others(word))
             names = check[word] if isinstance(check[word], str) else ", ".join(check[word])
-            bounds.append((f"{word} {names} ({shown_as(check, bound)})",
+            bounds.append((f"{word} {names} ({shown_as(bound)})",
                            lambda value, bound=bound, test=test: test(float(value), float(bound))))
-    measured = [{"run": label, "value": value, "shown": shown_as(check, value),
+    measured = [{"run": label, "value": value, "shown": shown_as(value),
                  "holds": None if value is None or not bounds
                  else all(test(value) for _, test in bounds)}
                 for label, value in values]
@@ -181,16 +206,10 @@ def check_of(check: dict, results: list[Result]) -> dict:
             "measured": measured}
 
 
-def shown_as(check: dict, value: float | None) -> str:
-    if value is None:
-        return "no value"
-    return f"{100.0 * value:.3g} %" if check.get("percent") else f"{value:.4g}"
-
-
-def claims_of(study: Study, results: list[Result]) -> list[dict]:
+def claims_of(study: Study, results: list[Result], units: StudyUnits) -> list[dict]:
     found = []
     for claim in study.claims:
-        checks = [check_of(check, results) for check in claim["checks"]]
+        checks = [check_of(check, results, units.of(check["value"])) for check in claim["checks"]]
         holds = [each["holds"] for check in checks for each in check["measured"]
                  if each["holds"] is not None]
         empty = any(not check["measured"] for check in checks)
@@ -219,10 +238,3 @@ def nearest_miss(results: list[Result], targets: dict[str, float]) -> Result | N
             if all(result.errors[name] is not None for name in targets)]
     return min(able, default=None, key=lambda result: max(
         abs(result.errors[name]) / value for name, value in targets.items()))
-
-
-def by_status(results: list[Result]) -> dict[str, int]:
-    found = {}
-    for result in results:
-        found[result.status] = found.get(result.status, 0) + 1
-    return found

@@ -3,7 +3,9 @@
 from abut_tools.study_file import Study
 from abut_tools.study_results import Result
 from abut_tools.study_take import matches
+from abut_tools.study_units import StudyUnits
 from abut_tools.tables import shown
+from abut_tools.units import with_unit
 
 
 def cells(result: Result, columns: dict) -> list[str]:
@@ -22,7 +24,8 @@ def row_name(result: Result, knob: str) -> str:
     return ", ".join(words) or "base"
 
 
-def spread(title: str, chosen: list[Result], columns: dict, knob: str) -> dict:
+def spread(title: str, chosen: list[Result], columns: dict, knob: str,
+           units: StudyUnits) -> dict:
     """A column per value of the knob; several values in a cell stand behind each other."""
     heads, rows = [], {}
     for result in chosen:
@@ -30,12 +33,18 @@ def spread(title: str, chosen: list[Result], columns: dict, knob: str) -> dict:
         heads += [head] if head not in heads else []
         text = " / ".join(cell for cell in cells(result, columns) if cell)
         rows.setdefault(row_name(result, knob), {})[head] = text
-    return {"title": title, "headings": [knob.replace("_", " "), *heads],
+    head = with_unit(knob.replace("_", " "), units.of_name(knob))
+    return {"title": title, "note": " / ".join(headings_of(columns, units)),
+            "headings": [head, *heads],
             "rows": [[name, *(found.get(head, "") for head in heads)]
                      for name, found in rows.items()]}
 
 
-def tables_of(study: Study, results: list[Result]) -> list[dict]:
+def headings_of(columns: dict, units: StudyUnits) -> list[str]:
+    return [with_unit(name, units.of(expression)) for name, expression in columns.items()]
+
+
+def tables_of(study: Study, results: list[Result], units: StudyUnits) -> list[dict]:
     """Title, headings and rows of texts; a column without any value is left out."""
     found = []
     for figure in study.figures:
@@ -46,11 +55,12 @@ def tables_of(study: Study, results: list[Result]) -> list[dict]:
                   and (knob is None or knob in result.point.knobs)]
         title = figure.get("title", ", ".join(columns))
         if knob is not None:
-            found.append(spread(title, chosen, columns, knob))
+            found.append(spread(title, chosen, columns, knob, units))
             continue
         rows = [cells(result, columns) for result in chosen]
         kept = [k for k in range(len(columns)) if any(row[k] for row in rows)]
-        found.append({"title": title, "headings": ["run", *(list(columns)[k] for k in kept)],
+        names = headings_of(columns, units)
+        found.append({"title": title, "headings": ["run", *(names[k] for k in kept)],
                       "rows": [[result.label, *(row[k] for k in kept)]
                                for result, row in zip(chosen, rows)]})
     return found

@@ -156,7 +156,8 @@ def colour_of(names: list[str], name: str) -> str:
 
 def few(value: float) -> str:
     """Four digits: as many as a person takes in."""
-    return f"{value:.4g}"
+    text = f"{value:.4g}"
+    return f"{float(text):.0f}" if "e+" in text and abs(value) < 1e6 else text
 
 
 def measured(value: float | None, unit: str) -> str:
