@@ -40,7 +40,9 @@ CURVE_POINTS = 800
 
 def options_of() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="abut study", description="Runs a scene with many settings; cost against error.")
+        prog="abut study", description="Runs a scene with many settings; cost against error.",
+        epilog="Ends with 0 when every run ended as the study expects, 1 when one did not or none "
+        "meets the target, 2 when the study is refused, 3 when the machine failed.")
     parser.add_argument("study", type=Path, metavar="FILE", help="study file (docs/STUDIES.md)")
     parser.add_argument("--out", type=named, metavar="DIR", help="default: runs/<study name>")
     parser.add_argument("--serial", action="store_true",

@@ -53,7 +53,9 @@ class Ends(SystemTest):
         self.assertIn("Did not complete, as expected",
                       (self.out / "index.html").read_text(encoding="utf-8"))
         ended = self.study(text=said.replace('"step 0.0001*"', '"*"'))
-        self.assertEqual((ended.returncode, "3 completed, not refused;" in ended.stdout), (1, True))
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn("3 completed, not refused;", ended.stdout)
+        self.assertRegex(ended.stderr, "  completed step 5e-06, elements 5 and 2 more\n +was to be")
 
     def test_command_of_a_run_repeats_it(self):
         text = STUDY.replace("values: [5.0e-6, 2.5e-6, 1e-6]", "values: [5.0e-6]").replace(
@@ -103,6 +105,16 @@ errors:
             for heading in ("peak [N]", f"energy [{energy}]", "micro [us]"):
                 self.assertIn(f"<th>{heading}</th>", page)
             self.assertIn(f'"label":"velocity [{"m/s" if energy == "J" else "mm/s"}]"', page)
+
+    def test_scenes_of_several_systems_have_no_unit_in_common(self):
+        text = ("title: Two\nvariants:\n  - {label: metres, scene: scene.yaml}\n"
+                "  - {label: millimetres, scene: scene.yaml, set: {units: mm t s}}\n"
+                "knobs: {time.window: [1.0e-5, 2.0e-5]}\n"
+                "errors: {late: contact.impact.end, told: {measure: windows, unit: pieces}}\n")
+        self.succeed(self.study(text=text))
+        facts = json.loads((self.out / "study.json").read_text(encoding="utf-8"))
+        self.assertEqual(facts["units"], {"knobs": {"time.window": ""},
+                                          "errors": {"late": "", "told": "pieces"}})
 
 
 if __name__ == "__main__":

@@ -24,7 +24,8 @@ def exit_code(results: list[Result]) -> int:
 
 
 def why(result: Result) -> str:
-    return result.reason or f"was expected to be {result.point.expected}"
+    return result.reason or ("was to fail" if result.point.expected == "failed" else
+                             "was to be refused")
 
 
 def told(results: list[Result]) -> list[str]:
