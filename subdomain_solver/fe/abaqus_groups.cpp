@@ -1,6 +1,7 @@
 #include "subdomain_solver/fe/abaqus_groups.hpp"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <utility>
 
@@ -88,15 +89,20 @@ class Grouper {
       }
       for (std::int32_t e : pieces_.elements(piece, row.picked, surface.name)) {
         const AbaqusPieces::Element& element = pieces_.elements()[index(e)];
+        const int count = static_cast<int>(element.type->faces.size());
         if (index(row.face) > element.type->faces.size())
           throw InputError(
               fmt::format("names the face S{} of element {} ({}), which has {}", row.face,
                           element.number, element.name, element.type->faces.size()),
               file_.where(row.line), "Name a face that the element has.");
-        if (kept_[index(e)] == 0 || !seen.insert({e, row.face - 1}).second) continue;
-        group.faces.push_back({e, row.face - 1});
-        for (int a : element.type->faces[index(row.face) - 1])
-          nodes.push_back(pieces_.nodes_of(element)[a]);
+        const int first = row.face == 0 ? 0 : row.face - 1, end = row.face == 0 ? count : row.face;
+        for (int face = first; face < end && kept_[index(e)] != 0; ++face) {
+          if (row.face == 0 && !is_free(element, face)) continue;
+          if (!seen.insert({e, face}).second) continue;
+          group.faces.push_back({e, face});
+          for (int a : element.type->faces[index(face)])
+            nodes.push_back(pieces_.nodes_of(element)[a]);
+        }
       }
     }
     std::ranges::sort(nodes);
@@ -105,6 +111,30 @@ class Grouper {
     if (surface.of_nodes) group.nodes = nodes;
     group.name = free_name(surface.name, piece, "_surface");
     keep(std::move(group), std::move(nodes), piece);
+  }
+
+  using Corners = std::array<std::int32_t, 4>;  // sorted, -1 in front where there are fewer
+
+  Corners corners_of(const AbaqusPieces::Element& element, int face) const {
+    const std::vector<int>& local = element.type->faces[index(face)];
+    const std::size_t nodes = element.type->dim == 2    ? 2
+                              : element.type->quadratic ? local.size() / 2
+                                                        : local.size();
+    Corners corners = {-1, -1, -1, -1};
+    for (std::size_t k = 0; k < nodes; ++k) corners[k] = pieces_.nodes_of(element)[local[k]];
+    std::ranges::sort(corners);
+    return corners;
+  }
+
+  /// Whether no other cell of the body has this face.
+  bool is_free(const AbaqusPieces::Element& element, int face) {
+    for (std::size_t e = 0; e < kept_.size() && !counted_; ++e) {
+      const AbaqusPieces::Element& one = pieces_.elements()[e];
+      for (int f = 0; f < static_cast<int>(one.type->faces.size()) && kept_[e] != 0; ++f)
+        if (one.type->dim == element.type->dim) ++cells_at_[corners_of(one, f)];
+    }
+    counted_ = true;
+    return cells_at_[corners_of(element, face)] == 1;
   }
 
   void add_elements(std::size_t piece, const AbaqusModel::Set& set) {
@@ -149,6 +179,8 @@ class Grouper {
   std::map<std::string, std::size_t> owner_;  // pieces of the same
   AbaqusGroups out_;
   std::size_t left_out_ = 0;
+  std::map<Corners, int> cells_at_;  // of faces
+  bool counted_ = false;
 };
 
 }  // namespace

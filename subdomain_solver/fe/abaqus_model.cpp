@@ -292,11 +292,12 @@ class Parser {
 
   int face_of(const Fields& fields) const {
     const std::string face = fields.size() < 2 ? "" : in_capitals(fields[1]);
+    if (face.empty()) return 0;
     if (face.size() == 2 && face[0] == 'S' && face[1] >= '1' && face[1] <= '6')
       return face[1] - '0';
-    file_.refuse(face.empty() ? std::string("names no face of a surface")
-                              : fmt::format("names the face {} of a surface", face),
-                 "Write a face S1 to S6 behind the set or number of the elements.");
+    file_.refuse(fmt::format("names the face {} of a surface", face),
+                 "Write a face S1 to S6 behind the set or number of the elements, or none for all "
+                 "that no other cell shares.");
   }
 
   void instance() {

@@ -39,7 +39,7 @@ struct AbaqusModel {
   struct Surface {
     struct Row {
       std::vector<Picked> picked;
-      int face = 0;  // 1 for S1; 0 of sets of nodes
+      int face = 0;  // 1 for S1; 0: all that no other cell shares, and of sets of nodes
       AbaqusLine line;
     };
     std::string name;

@@ -240,6 +240,17 @@ TEST(AbaqusFile, HasItsSetsAndSurfacesAndTellsWhatItSkips) {
                       "1 nodes of no cell left out of sets"});
 }
 
+TEST(AbaqusFile, OfASurfaceWithoutFacesHasThoseThatNoOtherCellShares) {
+  const Mesh mesh = mesh_of_text(plate + "*SURFACE, NAME=rim\nplate\n*SURFACE, NAME=half\n12\n");
+  EXPECT_EQ(mesh.side("rim").size(), 6u);
+  EXPECT_EQ(mesh.side("half").size(), 3u);
+  EXPECT_EQ(mesh.nodes_of("half"), mesh.nodes_of("right one"));
+  for (const Cell& cell : cells()) {
+    const Mesh one = mesh_of_text(text_of(cell) + "*Surface, name=skin\nAll\n");
+    EXPECT_EQ(one.side("skin").size(), one.side("boundary").size()) << cell.type;
+  }
+}
+
 TEST(AbaqusFile, IsTheSameWithLinesOfDosAndLongOnes) {
   const Mesh mesh = mesh_of_text(plate);
   std::string dos, wide = plate;
