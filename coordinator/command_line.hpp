@@ -30,7 +30,7 @@ struct SplitCommand {
 struct InitCommand {
   std::string name;
   std::string from = "bars";
-  std::vector<std::string> meshes;  // of gmsh
+  std::vector<std::string> meshes;  // of mesh and gmsh
   bool force = false;
 };
 struct ReferenceCommand {

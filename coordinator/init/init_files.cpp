@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 6> kinds = {"bars",   "contact", "friction",
-                                                   "joined", "study",   "gmsh"};
+constexpr std::array<std::string_view, 7> kinds = {"bars",  "contact", "friction", "joined",
+                                                   "study", "mesh",    "gmsh"};
 
 fs::path scene_path(const std::string& name) {
   fs::path path = name;
@@ -48,15 +48,16 @@ InitFiles init_files(const InitOptions& options) {
   if (std::find(kinds.begin(), kinds.end(), options.from) == kinds.end())
     throw InputError(fmt::format("is {}, which is not known", options.from), "--from",
                      fmt::format("Choose one of {}.", fmt::join(kinds, ", ")));
-  const bool gmsh = options.from == "gmsh";
-  if (gmsh && options.meshes.empty())
-    throw InputError("names no mesh", "--from gmsh",
-                     "Give one .msh file or several: abut init NAME --from gmsh a.msh b.msh.");
-  if (!gmsh && !options.meshes.empty())
+  const bool meshed = options.from == "mesh" || options.from == "gmsh";
+  if (meshed && options.meshes.empty())
+    throw InputError(
+        "names no mesh", "--from " + options.from,
+        "Give one .msh or .inp file or several: abut init NAME --from mesh a.msh b.inp.");
+  if (!meshed && !options.meshes.empty())
     throw InputError("is more than the scene's name", options.meshes.front(),
-                     "Give a single name; meshes belong to --from gmsh.");
+                     "Give a single name; meshes belong to --from mesh.");
   const fs::path scene = scene_path(options.name);
-  if (gmsh) {
+  if (meshed) {
     MeshScene made = mesh_scene(scene, options.meshes);
     return {{{scene, std::move(made.text)}}, std::move(made.words)};
   }

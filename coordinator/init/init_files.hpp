@@ -10,8 +10,8 @@ namespace abut {
 /// What `abut init` is asked for.
 struct InitOptions {
   std::string name;                 // of the scene's file, with or without .yaml
-  std::string from;                 // bars, contact, friction, joined, study, gmsh
-  std::vector<std::string> meshes;  // of gmsh
+  std::string from;                 // bars, contact, friction, joined, study, mesh or gmsh
+  std::vector<std::string> meshes;  // of mesh and gmsh
 };
 
 /// Files that are to be written, the scene the first, and what to tell of them.

@@ -13,6 +13,7 @@
 #include "base/index.hpp"
 #include "base/input_errors.hpp"
 #include "coordinator/init/facing_distance.hpp"
+#include "subdomain_solver/fe/abaqus_file.hpp"
 #include "subdomain_solver/fe/gmsh_file.hpp"
 
 namespace abut {
@@ -64,11 +65,19 @@ std::string cell_words(const Mesh& mesh) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+bool is_abaqus(const fs::path& file) {
+  std::string ending = file.extension().string();
+  for (char& letter : ending)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return ending == ".inp";
+}
+
 RowBody body_of(const Mesh& mesh, const fs::path& file, std::vector<std::string>& taken) {
   RowBody body;
   body.name = fresh_name(file.stem().string(), taken);
   taken.push_back(body.name);
   body.file = file;
+  body.reader = is_abaqus(file) ? "abaqus" : "gmsh";
   body.nodes = mesh.node_count();
   body.cells = cell_words(mesh);
   body.quadratic = std::ranges::any_of(
@@ -87,10 +96,18 @@ RowBody body_of(const Mesh& mesh, const fs::path& file, std::vector<std::string>
   return body;
 }
 
-std::vector<Mesh> meshes_of(const std::vector<std::string>& files) {
+/// `notes`: of each file.
+std::vector<Mesh> meshes_of(const std::vector<std::string>& files,
+                            std::vector<std::vector<std::string>>& notes) {
   std::vector<Mesh> meshes;
   InputErrors errors;
-  for (const std::string& file : files) errors.gather([&] { meshes.push_back(read_gmsh(file)); });
+  for (const std::string& file : files) {
+    notes.emplace_back();
+    errors.gather([&] {
+      meshes.push_back(is_abaqus(file) ? read_abaqus(file, 1.0, "", 0, &notes.back())
+                                       : read_gmsh(file, 1.0, 0, &notes.back()));
+    });
+  }
   errors.raise();
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (meshes[i].dim < 2)
@@ -111,7 +128,8 @@ std::string RowBody::words() const {
 }
 
 MeshRow mesh_row(const std::vector<std::string>& files) {
-  const std::vector<Mesh> meshes = meshes_of(files);
+  std::vector<std::vector<std::string>> notes;
+  const std::vector<Mesh> meshes = meshes_of(files, notes);
   MeshRow row;
   row.dim = meshes[0].dim;
   const std::size_t dim = index(row.dim);
@@ -127,6 +145,7 @@ MeshRow mesh_row(const std::vector<std::string>& files) {
   double front = row.scale * boxes[0].low[0];  // where the next body may begin
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     RowBody body = body_of(meshes[i], files[i], names);
+    body.notes = std::move(notes[i]);
     for (std::size_t d = 0; d < dim; ++d) {
       body.lengths.push_back(row.scale * boxes[i].length(d));
       body.position.push_back(row.scale * (boxes[0].middle(d) - boxes[i].middle(d)));

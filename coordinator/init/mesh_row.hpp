@@ -12,6 +12,8 @@ namespace abut {
 struct RowBody {
   std::string name;
   std::filesystem::path file;
+  std::string reader;              // key of the scene that reads it: gmsh, abaqus
+  std::vector<std::string> notes;  // of the reader
   int nodes = 0;
   std::string cells;                                       // "5678 tet4"
   bool quadratic = false;                                  // some of them
@@ -39,8 +41,9 @@ struct MeshRow {
   double first_gap = 0.0;       // [m] from the first body to what it meets, along x
 };
 
-/// Files of larger numbers than those of a machine in metres are taken to be in millimetres. Throws
-/// InputError: what cannot be read, meshes of different dimensions, or of lines.
+/// Files are of Gmsh, or of Abaqus and CalculiX where their names end in .inp. Those of larger
+/// numbers than those of a machine in metres are taken to be in millimetres. Throws InputError:
+/// what cannot be read, meshes of different dimensions, or of lines.
 MeshRow mesh_row(const std::vector<std::string>& files);
 
 }  // namespace abut

@@ -56,7 +56,7 @@ int parts_of(double window, double longest) {
       while (rest % prime == 0) rest /= prime;
     if (rest == 1 && window / count <= longest) return count;
   }
-  throw InputError("needs more than a million steps in a window", "--from gmsh",
+  throw InputError("needs more than a million steps in a window", "--from mesh",
                    "Mesh the bodies with cells of more equal size.");
 }
 
@@ -121,7 +121,7 @@ class SceneWriter {
         "#   abut check {}     valid? what will it pay for?\n"
         "#   abut run {}       into runs/{}; ParaView opens fields.pvd there\n"
         "#   abut report runs/{}     a page of plots\n",
-        title(), row_.bodies.size() == 1 ? "a Gmsh mesh" : "Gmsh meshes", scene_.string(),
+        title(), row_.bodies.size() == 1 ? "a mesh file" : "mesh files", scene_.string(),
         scene_.string(), scene_.stem().string(), scene_.stem().string());
   }
 
@@ -140,9 +140,9 @@ class SceneWriter {
     if (i == 0) velocity[0] = speed;
     std::string out = fmt::format("  {}:   # {}\n", one.name, one.words());
     out += fmt::format(
-        "    model: {{fe: {{dimension: {}, {}mesh: {{gmsh: {{file: {}, scale: {}}}}}}}}}   # the "
+        "    model: {{fe: {{dimension: {}, {}mesh: {{{}: {{file: {}, scale: {}}}}}}}}}   # the "
         "file's unit\n",
-        row_.dim, row_.dim == 2 ? "plane: strain, " : "", quoted(path_to(one.file)),
+        row_.dim, row_.dim == 2 ? "plane: strain, " : "", one.reader, quoted(path_to(one.file)),
         row_.scale == 1.0 ? "1 m" : "1 mm");
     out += fmt::format("    material: {}   # there are {}\n", law_of(one), material_names());
     out += fmt::format(
@@ -223,8 +223,11 @@ MeshScene mesh_scene(const fs::path& scene, const std::vector<std::string>& mesh
   const Times times = times_of(row, stable_steps(scene, row));
   MeshScene out;
   out.text = writer.text(times);
-  for (const RowBody& body : row.bodies)
+  for (const RowBody& body : row.bodies) {
     out.words.push_back(fmt::format("{}: {}", body.name, body.words()));
+    for (const std::string& note : body.notes)
+      out.words.push_back(fmt::format("{}: {}", body.name, note));
+  }
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/index.hpp"
+#include "subdomain_solver/fe/divide_cells.hpp"
 #include "subdomain_solver/fe/gmsh_cursor.hpp"
 
 namespace abut {
@@ -19,20 +20,32 @@ const char* const as_version =
     "Export as version 4.1 (in Gmsh: `gmsh -format msh41`, or Mesh.MshFileVersion = 4.1), or 2.2 "
     "as text.";
 
-/// Nothing: we do not have it.
-const Element* element_of(int gmsh) {
+/// A type of elements: one of ours, or cells that are divided.
+struct Kind {
+  int gmsh = 0;  // its number
+  int dim = 0, nodes = 0;
+  std::string_view name;
+  const Element* element = nullptr;
+  const DividedShape* shape = nullptr;  // where there is no element
+};
+
+/// Without element and shape: we do not have it.
+Kind kind_of(int gmsh) {
   for (const Element& element : all_elements())
-    if (element.gmsh == gmsh) return &element;
-  return nullptr;
+    if (element.gmsh == gmsh) return {gmsh, element.dim, element.nodes, element.name, &element};
+  const bool prism = gmsh == 6 || gmsh == 18, pyramid = gmsh == 7 || gmsh == 19;
+  if (!prism && !pyramid) return {};
+  const DividedShape& shape = prism ? prism_shape() : pyramid_shape();
+  return {gmsh, 3, shape.nodes(gmsh > 7), shape.name, nullptr, &shape};
 }
 
 /// What to do about elements that we do not have.
 std::string other_element(int type) {
-  const bool complete = type == 12;  // hex27
-  const bool wedge = type == 6 || type == 7 || type == 13 || type == 14 || type == 18 || type == 19;
-  if (complete) return "Set Mesh.SecondOrderIncomplete = 1 in Gmsh: hex20 is supported.";
-  if (wedge) return "Prisms and pyramids are not supported: mesh with tetrahedra or hexahedra.";
-  return "Use elements of order 1 or 2: bars, triangles, quadrilaterals, tetrahedra, hexahedra.";
+  const bool complete = type == 12 || type == 13 || type == 14;  // with nodes inside of faces
+  if (complete)
+    return "Set Mesh.SecondOrderIncomplete = 1 in Gmsh: nodes on edges are supported, as of hex20.";
+  return "Use elements of order 1 or 2: bars, triangles, quadrilaterals, tetrahedra, hexahedra, "
+         "prisms, pyramids.";
 }
 
 class Parser {
@@ -41,7 +54,7 @@ class Parser {
     data_.name = name;
   }
 
-  GmshData parse() {
+  FileMesh parse() {
     format();
     while (!file_.at_end()) {
       const std::string section(file_.line());
@@ -170,23 +183,24 @@ class Parser {
     file_.natural();
     std::size_t read = 0;
     for (std::size_t b = 0; b < blocks; ++b) {
-      GmshData::Elements block;
       const int dim = dimension();
-      block.entity = {dim, file_.integer()};
-      block.type = element_type();
-      if (block.type->dim != dim)
-        file_.refuse(fmt::format("has {} on an entity of {} dimensions", block.type->name, dim),
+      const FileMesh::Entity entity = {dim, file_.integer()};
+      const Kind kind = element_kind();
+      if (kind.dim != dim)
+        file_.refuse(fmt::format("has {} on an entity of {} dimensions", kind.name, dim),
                      "Export the file again.");
-      const auto nodes = index(block.type->nodes);
+      const auto nodes = index(kind.nodes);
       const std::size_t count = file_.count("elements", nodes + 1);
-      block.where = file_.where();
-      block.nodes.reserve(count * nodes);
-      for (std::size_t i = 0; i < count; ++i) {
-        block.tags.push_back(file_.natural());
-        for (std::size_t a = 0; a < nodes; ++a) block.nodes.push_back(node(block.tags.back()));
-      }
+      const std::string where = file_.where();
+      const auto take = [&](auto& block) {
+        block.nodes.reserve(count * nodes);
+        for (std::size_t i = 0; i < count; ++i) {
+          block.tags.push_back(file_.natural());
+          for (std::size_t a = 0; a < nodes; ++a) block.nodes.push_back(node(block.tags.back()));
+        }
+      };
+      in_block(kind, entity, where, take);
       read += count;
-      data_.elements.push_back(std::move(block));
     }
     if (read != total)
       file_.refuse(fmt::format("announces {} elements and has {}", total, read),
@@ -200,12 +214,24 @@ class Parser {
     data_.node_tags.push_back(tag);
   }
 
-  const Element* element_type() {
+  Kind element_kind() {
     const int type = file_.integer();
-    const Element* found = element_of(type);
-    if (found == nullptr)
+    const Kind found = kind_of(type);
+    if (found.gmsh == 0)
       file_.refuse(fmt::format("has elements of Gmsh's type {}", type), other_element(type));
     return found;
+  }
+
+  /// Calls `take` with a new block of elements, or of cells that are divided.
+  template <typename Take>
+  void in_block(const Kind& kind, FileMesh::Entity entity, const std::string& where, Take take) {
+    if (kind.element != nullptr) {
+      take(data_.elements.emplace_back(FileMesh::Elements{kind.element, entity, where, {}, {}}));
+    } else {
+      const bool quadratic = kind.nodes > kind.shape->corners;
+      take(data_.divided.emplace_back(
+          FileMesh::Divided{kind.shape, quadratic, entity, where, {}, {}}));
+    }
   }
 
   /// Of version 2.2: a line per node.
@@ -232,23 +258,23 @@ class Parser {
       Listed next;
       next.where = file_.where();
       next.tag = file_.natural();
-      next.type = element_type();
+      next.kind = element_kind();
       const std::size_t tags = file_.count("tags", 1);
       for (std::size_t k = 0; k < tags; ++k) {
         const int value = static_cast<int>(std::llabs(file_.integer()));
         if (k == 0 && value != 0) next.groups.push_back(value);
       }
-      next.nodes.push_back(next.type->gmsh);
-      for (int a = 0; a < next.type->nodes; ++a) next.nodes.push_back(node(next.tag));
+      next.nodes.push_back(next.kind.gmsh);
+      for (int a = 0; a < next.kind.nodes; ++a) next.nodes.push_back(node(next.tag));
       const auto [entry, fresh] = place.try_emplace(next.nodes, all.size());
       if (fresh || !all[entry->second].join(next.groups)) all.push_back(std::move(next));
     }
-    for (const Listed& element : all) add(element);
+    add(all);
     has_elements_ = true;
   }
 
   struct Listed {
-    const Element* type = nullptr;
+    Kind kind;
     std::string where;
     std::uint64_t tag = 0;
     std::vector<int> groups;
@@ -261,20 +287,28 @@ class Parser {
     }
   };
 
-  void add(const Listed& element) {
-    const auto [entry, fresh] =
-        blocks_.try_emplace({element.type, element.groups}, data_.elements.size());
-    if (fresh) {
-      GmshData::Elements block;
-      block.type = element.type;
-      block.entity = {element.type->dim, static_cast<int>(blocks_.size())};
-      block.where = element.where;
-      data_.groups[block.entity] = element.groups;
-      data_.elements.push_back(std::move(block));
+  /// What is of one type and in the same groups becomes a block, in the order of the first ones.
+  void add(const std::vector<Listed>& all) {
+    std::map<std::pair<int, std::vector<int>>, std::size_t> place;
+    std::vector<std::vector<const Listed*>> blocks;
+    for (const Listed& element : all) {
+      const auto [entry, fresh] =
+          place.try_emplace({element.kind.gmsh, element.groups}, blocks.size());
+      if (fresh) blocks.emplace_back();
+      blocks[entry->second].push_back(&element);
     }
-    GmshData::Elements& block = data_.elements[entry->second];
-    block.tags.push_back(element.tag);
-    block.nodes.insert(block.nodes.end(), element.nodes.begin() + 1, element.nodes.end());
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const Listed& first = *blocks[b].front();
+      const FileMesh::Entity entity = {first.kind.dim, static_cast<int>(b) + 1};
+      data_.groups[entity] = first.groups;
+      const auto take = [&blocks, b](auto& block) {
+        for (const Listed* one : blocks[b]) {
+          block.tags.push_back(one->tag);
+          block.nodes.insert(block.nodes.end(), one->nodes.begin() + 1, one->nodes.end());
+        }
+      };
+      in_block(first.kind, entity, first.where, take);
+    }
   }
 
   std::int32_t node(std::uint64_t element) {
@@ -287,15 +321,14 @@ class Parser {
   }
 
   GmshCursor file_;
-  GmshData data_;
-  std::unordered_map<std::uint64_t, std::int32_t> number_;                     // of a node tag
-  std::map<std::pair<const Element*, std::vector<int>>, std::size_t> blocks_;  // of version 2.2
+  FileMesh data_;
+  std::unordered_map<std::uint64_t, std::int32_t> number_;       // of a node tag
   bool binary_ = false, listed_ = false, has_elements_ = false;  // listed: version 2.2
 };
 
 }  // namespace
 
-GmshData parse_gmsh(std::string bytes, const std::string& name) {
+FileMesh parse_gmsh(std::string bytes, const std::string& name) {
   return Parser(std::move(bytes), name).parse();
 }
 

@@ -1,217 +1,30 @@
 #include "subdomain_solver/fe/gmsh_file.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <map>
-#include <set>
-#include <span>
 #include <utility>
-#include <vector>
 
-#include <fmt/format.h>
-
-#include "base/error.hpp"
-#include "base/index.hpp"
 #include "base/input_file.hpp"
 #include "base/machine_memory.hpp"
-#include "subdomain_solver/fe/facet_index.hpp"
+#include "subdomain_solver/fe/divide_cells.hpp"
 #include "subdomain_solver/fe/gmsh_data.hpp"
-#include "subdomain_solver/fe/named_sides.hpp"
-#include "subdomain_solver/fe/surface_shape.hpp"
 
 namespace abut {
-namespace {
 
-std::span<const std::int32_t> nodes_of(const GmshData::Elements& block, std::size_t element) {
-  const auto count = index(block.type->nodes);
-  return std::span(block.nodes).subspan(element * count, count);
+Mesh gmsh_mesh(std::string bytes, const std::string& name, double scale, int surface_in,
+               std::vector<std::string>* notes) {
+  FileMesh file = parse_gmsh(std::move(bytes), name);
+  divide_cells(file);
+  if (notes != nullptr) notes->insert(notes->end(), file.notes.begin(), file.notes.end());
+  return mesh_of(std::move(file), scale, surface_in);
 }
 
-class Builder {
- public:
-  Builder(GmshData data, double scale, int surface_in)
-      : data_(std::move(data)), scale_(scale), surface_in_(surface_in) {}
-
-  Mesh build() {
-    for (const GmshData::Elements& block : data_.elements)
-      if (!block.tags.empty()) mesh_.dim = std::max(mesh_.dim, block.type->dim);
-    if (mesh_.dim == 0)
-      throw InputError("has no elements but points", data_.name, "Mesh the part in Gmsh.");
-    check_names();
-    if (mesh_.dim + 1 == surface_in_) return surface_shape(surface(), data_.name);
-    add_points();
-    add_cells();
-    refuse_repeated_cells(mesh_, data_.name);
-    const FacetIndex facets(mesh_);
-    for (const GmshData::Elements& block : data_.elements) {
-      for (const std::string& group : groups_of(block)) {
-        if (block.type->dim == mesh_.dim - 1) add_side(group, block, facets);
-        if (block.type->dim != mesh_.dim - 1) add_node_set(group, block);
-      }
-    }
-    settle_names(mesh_, data_.name);
-    return std::move(mesh_);
-  }
-
- private:
-  std::string group_name(GmshData::Entity group) const {
-    const auto found = data_.group_names.find(group);
-    if (found != data_.group_names.end()) return found->second;
-    constexpr const char* kinds[] = {"point", "curve", "surface", "volume"};
-    return fmt::format("{}_{}", kinds[group.first], group.second);
-  }
-
-  std::vector<std::string> groups_of(const GmshData::Elements& block) const {
-    std::vector<std::string> names;
-    const auto found = data_.groups.find(block.entity);
-    if (found == data_.groups.end()) return names;
-    for (int tag : found->second) names.push_back(group_name({block.entity.first, tag}));
-    return names;
-  }
-
-  void check_names() const {
-    std::set<GmshData::Entity> groups;
-    for (const GmshData::Elements& block : data_.elements) {
-      const auto found = data_.groups.find(block.entity);
-      if (found == data_.groups.end()) continue;
-      for (int tag : found->second) groups.insert({block.entity.first, tag});
-    }
-    std::set<std::string> names;
-    for (const GmshData::Entity& group : groups) {
-      if (!names.insert(group_name(group)).second)
-        throw InputError("has two physical groups called '" + group_name(group) + "'", data_.name,
-                         "Give them different names in Gmsh.");
-    }
-  }
-
-  SurfaceFacets surface() {
-    SurfaceFacets out;
-    out.dim = surface_in_;
-    for (std::size_t n = 0; n < data_.node_tags.size(); ++n)
-      for (int d = 0; d < out.dim; ++d)
-        out.points.push_back(scale_ * data_.points[3 * n + index(d)]);
-    for (const GmshData::Elements& block : data_.elements) {
-      if (block.type->dim != mesh_.dim) continue;
-      const std::vector<std::string> groups = groups_of(block);
-      for (std::size_t e = 0; e < block.tags.size(); ++e)
-        out.add(nodes_of(block, e), fmt::format("element {} ({})", block.tags[e], block.type->name),
-                groups);
-    }
-    return out;
-  }
-
-  /// Nodes of cells, in the file's order.
-  void add_points() {
-    number_.assign(data_.node_tags.size(), -1);
-    for (const GmshData::Elements& block : data_.elements) {
-      if (block.type->dim != mesh_.dim) continue;
-      for (std::int32_t node : block.nodes) number_[node] = 0;
-    }
-    std::int32_t next = 0;
-    double lowest[3] = {}, highest[3] = {}, extent = 0.0;
-    for (std::size_t n = 0; n < number_.size(); ++n) {
-      if (number_[n] < 0) continue;
-      const double* x = &data_.points[3 * n];
-      for (int d = 0; d < 3; ++d) {
-        if (d < mesh_.dim) mesh_.points.push_back(scale_ * x[d]);
-        lowest[d] = next == 0 ? x[d] : std::min(lowest[d], x[d]);
-        highest[d] = next == 0 ? x[d] : std::max(highest[d], x[d]);
-        extent = std::max(extent, highest[d] - lowest[d]);
-      }
-      number_[n] = next++;
-    }
-    for (int d = mesh_.dim; d < 3; ++d) {
-      // what rotating a plane part with printed coordinates may leave
-      if (highest[d] - lowest[d] <= 1e-9 * extent) continue;
-      throw InputError(fmt::format("has cells of {} dimensions that leave the {}", mesh_.dim,
-                                   mesh_.dim == 2 ? "plane z = constant" : "line y, z = constant"),
-                       data_.name,
-                       "Mesh the volume (`gmsh -3`, with a physical volume), or move the part.");
-    }
-  }
-
-  void add_cells() {
-    std::map<std::pair<std::string, const Element*>, std::size_t> place;
-    for (const GmshData::Elements& block : data_.elements) {
-      if (block.type->dim != mesh_.dim) continue;
-      const std::vector<std::string> groups = groups_of(block);
-      const std::string name = groups.empty() ? "" : groups.front();
-      const auto [entry, is_new] = place.try_emplace({name, block.type}, mesh_.blocks.size());
-      if (is_new) mesh_.blocks.push_back({block.type, {}, name, {}});
-      std::vector<std::int32_t>& cells = mesh_.blocks[entry->second].nodes;
-      for (std::int32_t node : block.nodes) cells.push_back(number_[node]);
-    }
-  }
-
-  /// Numbers in the mesh of an element's nodes; all must be nodes of cells.
-  std::vector<std::int32_t> renumbered(const std::string& group, const GmshData::Elements& block,
-                                       std::size_t element) const {
-    std::vector<std::int32_t> nodes;
-    for (std::int32_t node : nodes_of(block, element)) {
-      nodes.push_back(number_[node]);
-      if (nodes.back() >= 0) continue;
-      throw InputError(
-          fmt::format("has element {} ({}) of group '{}' with node {}, which is in no cell",
-                      block.tags[element], block.type->name, group, data_.node_tags[node]),
-          block.where, "Embed the entity in the part, or drop the group.");
-    }
-    return nodes;
-  }
-
-  void add_node_set(const std::string& group, const GmshData::Elements& block) {
-    std::vector<std::int32_t>& set = mesh_.node_sets[group];
-    for (std::size_t e = 0; e < block.tags.size(); ++e) {
-      const std::vector<std::int32_t> nodes = renumbered(group, block, e);
-      set.insert(set.end(), nodes.begin(), nodes.end());
-    }
-  }
-
-  void add_side(const std::string& group, const GmshData::Elements& block,
-                const FacetIndex& facets) {
-    std::vector<Facet>& side = mesh_.sides[group];
-    for (std::size_t e = 0; e < block.tags.size(); ++e) {
-      std::vector<std::int32_t> nodes = renumbered(group, block, e);
-      const auto corners = index(block.type->corner_count());
-      const std::vector<Facet> found = facets.find(std::span(nodes).first(corners));
-      std::sort(nodes.begin(), nodes.end());
-      for (const Facet& facet : found) {
-        std::vector<std::int32_t> own = mesh_.nodes_of(facet);
-        std::sort(own.begin(), own.end());
-        if (own != nodes) refuse_side(group, block, e, "but for nodes between corners");
-      }
-      if (found.empty()) refuse_side(group, block, e, "");
-      side.push_back(found.front());
-    }
-  }
-
-  [[noreturn]] void refuse_side(const std::string& group, const GmshData::Elements& block,
-                                std::size_t element, const std::string& but) const {
-    throw InputError(
-        fmt::format("has element {} ({}) of group '{}', which is a facet of no cell{}",
-                    block.tags[element], block.type->name, group, but.empty() ? "" : " " + but),
-        block.where, "Mesh sides and inside together, in one order, and export both.");
-  }
-
-  GmshData data_;
-  double scale_;
-  int surface_in_;
-  Mesh mesh_;
-  std::vector<std::int32_t> number_;  // in the mesh, of a node of the file; -1: in no cell
-};
-
-}  // namespace
-
-Mesh gmsh_mesh(std::string bytes, const std::string& name, double scale, int surface_in) {
-  return Builder(parse_gmsh(std::move(bytes), name), scale, surface_in).build();
-}
-
-Mesh read_gmsh(const std::string& path, double scale, int surface_in) {
+Mesh read_gmsh(const std::string& path, double scale, int surface_in,
+               std::vector<std::string>* notes) {
   // The mesh takes about as much memory as the text that it was read from.
   const std::size_t most = static_cast<std::size_t>(0.5 * machine_memory());
   constexpr const char* remedy = "Check the path of the mesh.";
   check_input_file(path, most, remedy);
-  return gmsh_mesh(read_input_file(path, most, remedy), path, scale, surface_in);
+  return gmsh_mesh(read_input_file(path, most, remedy), path, scale, surface_in, notes);
 }
 
 }  // namespace abut

@@ -39,7 +39,7 @@ void SolidShapeSpec::fields(Fields& f) {
   const bool flat =
       std::holds_alternative<RectangleSpec>(mesh) || std::holds_alternative<DiskSpec>(mesh);
   const bool file =
-      std::holds_alternative<GmshSpec>(mesh) || std::holds_alternative<ExodusSpec>(mesh);
+      std::visit([](const auto& kind) { return requires { kind.file; }; }, mesh);
   const int wanted = bar ? 1 : flat ? 2 : 3;
   f.check(file ? dimension > 1 : dimension == wanted, "dimension",
           fmt::format("is {}, but the mesh has {}", dimension,

@@ -13,6 +13,7 @@
 
 #include "base/count.hpp"
 #include "base/index.hpp"
+#include "subdomain_solver/fe/abaqus_file.hpp"
 #include "subdomain_solver/fe/exodus_file.hpp"
 #include "subdomain_solver/fe/file_digest.hpp"
 #include "subdomain_solver/fe/gmsh_file.hpp"
@@ -53,6 +54,7 @@ struct MeshMaker {
   const Place& place;
   const std::string& model;
   int surface_in = 0;
+  std::vector<std::string>* notes = nullptr;
 
   Mesh operator()(const BarMeshSpec& s) const {
     return generate(BarMesh{0.0, s.length, s.elements, s.grading}, where("mesh.bar"));
@@ -95,7 +97,11 @@ struct MeshMaker {
   }
   Mesh operator()(const GmshSpec& s) const {
     return told_of(where("mesh.gmsh.file"),
-                   [&, this] { return read_gmsh(s.file, s.scale, surface_in); });
+                   [&, this] { return read_gmsh(s.file, s.scale, surface_in, notes); });
+  }
+  Mesh operator()(const AbaqusSpec& s) const {
+    return told_of(where("mesh.abaqus.file"),
+                   [&, this] { return read_abaqus(s.file, s.scale, s.part, surface_in, notes); });
   }
   Mesh operator()(const ExodusSpec& s) const {
     return told_of(where("mesh.exodus.file"), [&s] { return read_exodus(s.file, s.scale); });
@@ -181,14 +187,19 @@ void name_points(const BodySpec& spec, const Place& place, Mesh& mesh) {
   }
 }
 
-std::string on_file(const SolidShapeSpec& spec) {
+std::uint64_t digest_of(const MeshFileSpec& mesh) { return digest_of_file(mesh.file); }
+std::uint64_t digest_of(const AbaqusSpec& mesh) { return digest_of_abaqus(mesh.file); }
+
+std::string on_file(const SolidShapeSpec& spec, const std::vector<std::string>& notes) {
   return std::visit(
-      [](const auto& mesh) -> std::string {
-        if constexpr (!requires { mesh.file; })
+      [&notes](const auto& mesh) -> std::string {
+        if constexpr (!requires { mesh.file; }) {
           return "";
-        else
-          return fmt::format(" on {} (digest {:016x})", mesh.file.substr(mesh.file.rfind('/') + 1),
-                             digest_of_file(mesh.file));
+        } else {
+          return fmt::format(" on {} (digest {:016x}{}{})",
+                             mesh.file.substr(mesh.file.rfind('/') + 1), digest_of(mesh),
+                             notes.empty() ? "" : "; ", fmt::join(notes, "; "));
+        }
       },
       spec.mesh);
 }
@@ -198,7 +209,7 @@ void require_same_file(const SolidShapeSpec& spec, const Place& place, const std
   const auto check = [&](const auto& mesh) {
     if constexpr (requires { mesh.file; }) {
       const std::string where = place.where(fmt::format("{}.mesh.{}.file", model, mesh.name));
-      const std::uint64_t own = told_of(where, [&mesh] { return digest_of_file(mesh.file); });
+      const std::uint64_t own = told_of(where, [&mesh] { return digest_of(mesh); });
       if (own == spec.digest) return;
       throw InputError(
           fmt::format("{}: is another file than the one beside the scene: their digests are "
@@ -211,10 +222,10 @@ void require_same_file(const SolidShapeSpec& spec, const Place& place, const std
 }
 
 Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,
-               const std::string& model) {
+               const std::string& model, std::vector<std::string>* notes) {
   require_same_file(spec, place, model);
-  Mesh mesh =
-      std::visit(MeshMaker{place, model, spec.surface_alone ? spec.dimension : 0}, spec.mesh);
+  Mesh mesh = std::visit(MeshMaker{place, model, spec.surface_alone ? spec.dimension : 0, notes},
+                         spec.mesh);
   map_nodes(spec, place, model, mesh);
   check_mesh(mesh, place.where(model + ".mesh"));
   if (mesh.dim != spec.dimension) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,17 +10,23 @@
 namespace abut {
 
 /// The checked mesh of a solid, moved to its position (dim; otherwise not moved). `model` is the
-/// key of the spec, e.g. "model.fe". Throws InputError.
+/// key of the spec, e.g. "model.fe"; `notes` gets lines for people on what its file has otherwise.
+/// Throws InputError.
 Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,
-               const std::string& model);
+               const std::string& model, std::vector<std::string>* notes = nullptr);
 
 /// A mesh file on another machine is that of the spec's digest, where one is known. Throws
 /// InputError.
 void require_same_file(const SolidShapeSpec& spec, const Place& place, const std::string& model);
 
-/// For the line that tells people of a body: " on part.msh (digest 0123456789abcdef)", the digest
-/// that of the file's bytes; empty where the mesh is generated. Throws InputError.
-std::string on_file(const SolidShapeSpec& spec);
+/// Of the bytes of a mesh's file, and of those that it includes. Throws InputError.
+std::uint64_t digest_of(const MeshFileSpec& mesh);
+std::uint64_t digest_of(const AbaqusSpec& mesh);
+
+/// For the line that tells people of a body: " on part.msh (digest 0123456789abcdef; 2 prisms
+/// divided into 6 tetrahedra)", with the notes of make_mesh; empty where the mesh is generated.
+/// Throws InputError.
+std::string on_file(const SolidShapeSpec& spec, const std::vector<std::string>& notes);
 
 /// Adds the scene's named points to a mesh, as sets of one node. Throws InputError where no node
 /// is.

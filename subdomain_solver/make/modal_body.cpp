@@ -97,7 +97,8 @@ Motion modal_start(Motion nodes, const std::vector<Prescribed>& supports, const 
 
 std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
   const ModalModelSpec& modal = std::get<ModalModelSpec>(spec.model);
-  Mesh mesh = make_mesh(modal, spec.initial.position, place, "model.modal");
+  std::vector<std::string> notes;
+  Mesh mesh = make_mesh(modal, spec.initial.position, place, "model.modal", &notes);
   name_points(spec, place, mesh);
   const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
   const Constraints constraints = make_constraints(spec, place, mesh);
@@ -133,7 +134,7 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
   const std::size_t nodal = index(nodes.dofs());
   for (std::unique_ptr<Load>& load : make_loads(spec, place, nodes))
     parts.problem->loads.push_back(std::make_unique<LiftedLoad>(std::move(load), *map, nodal));
-  parts.rung = words_of(basis) + on_file(modal) + adjusted;
+  parts.rung = words_of(basis) + on_file(modal, notes) + adjusted;
   parts.motion = modal_start(initial_motion(spec, place, nodes), constraints.supports,
                              mass_matrix(nodes, form), basis, nodes, *model, parts.rung);
   parts.scheme =

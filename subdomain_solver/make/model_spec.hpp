@@ -25,7 +25,7 @@ struct BarMeshSpec {
 struct SolidShapeSpec {
   int dimension = 1;
   std::variant<BarMeshSpec, RectangleSpec, DiskSpec, BoxSpec, CylinderSpec, SphereSpec, GmshSpec,
-               ExodusSpec>
+               AbaqusSpec, ExodusSpec>
       mesh;
   Plane plane = Plane::strain;
   double thickness = 1.0;        // [m]

@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/yaml_fields.hpp"
-#include "subdomain_solver/fe/file_digest.hpp"
+#include "subdomain_solver/make/mesh.hpp"
 
 namespace abut {
 
@@ -58,7 +58,7 @@ std::uint64_t mesh_digest(BodySpec spec, const Document& scene) {
   if (shape == nullptr) return 0;
   const auto digest = [](const auto& mesh) -> std::uint64_t {
     if constexpr (requires { mesh.file; }) {
-      return digest_of_file(mesh.file);
+      return digest_of(mesh);
     } else {
       return 0;
     }

@@ -61,7 +61,8 @@ Motion rigid_start(const Motion& nodes, const FeModel& mesh, MassForm form, cons
 std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Place& place) {
   const RigidModelSpec& model = std::get<RigidModelSpec>(spec.model);
   const RigidMotionSpec& integrator = std::get<RigidMotionSpec>(*spec.integrator);
-  Mesh mesh = make_mesh(model, spec.initial.position, place, "model.rigid");
+  std::vector<std::string> notes;
+  Mesh mesh = make_mesh(model, spec.initial.position, place, "model.rigid", &notes);
   name_points(spec, place, mesh);
   const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
   const std::string adjusted = adjust_ports(spec, place, ports, {}, mesh);
@@ -91,7 +92,7 @@ std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Place& place) {
                   fmt::format("exact free motion, step {:g} s", integrator.step)};
   parts.rigid = body.get();
   parts.reduced = std::move(body);
-  parts.rung = "rigid" + on_file(model) + adjusted;
+  parts.rung = "rigid" + on_file(model, notes) + adjusted;
   parts.deforms = false;
   return std::make_unique<SolidInterior>(place.name(), std::move(parts), ports);
 }

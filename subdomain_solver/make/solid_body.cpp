@@ -116,7 +116,8 @@ std::optional<double> interference_of(const BodySpec& spec, bool massive_surface
 
 std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   const FeModelSpec& fe = std::get<FeModelSpec>(spec.model);
-  Mesh mesh = make_mesh(fe, spec.initial.position, place, "model.fe");
+  std::vector<std::string> notes;
+  Mesh mesh = make_mesh(fe, spec.initial.position, place, "model.fe", &notes);
   name_points(spec, place, mesh);
   std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
   Constraints constraints = make_constraints(spec, place, mesh);
@@ -159,7 +160,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   const auto limit = [&] {
     return stable_step(model, parts.motion.q, std::vector<double>(model.history_size(), 0.0));
   };
-  parts.rung += on_file(fe) + adjusted;
+  parts.rung += on_file(fe, notes) + adjusted;
   if (parts.pressed_over)
     parts.rung +=
         fmt::format(", pressed in over {:g} s, without a passive form", *parts.pressed_over);

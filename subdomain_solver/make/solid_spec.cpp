@@ -96,8 +96,14 @@ void SphereSpec::fields(Fields& f) {
 
 void MeshFileSpec::fields(Fields& f) {
   f.required("file", file, "",
-             "mesh file, relative to the scene file: MSH 4.1 or 2.2, or Exodus II");
+             "mesh file, relative to the scene file: MSH 4.1 or 2.2, an .inp file, or Exodus II");
   f.optional("scale", scale, "m", "length of the file's unit", positive);
+}
+
+void AbaqusSpec::fields(Fields& f) {
+  MeshFileSpec::fields(f);
+  f.optional("part", part, "",
+             "instance, part or set of elements of the file that is the body; empty: all of it");
 }
 
 void ElasticSpec::fields(Fields& f) {

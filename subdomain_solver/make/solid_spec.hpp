@@ -58,6 +58,11 @@ struct MeshFileSpec {
 struct GmshSpec : MeshFileSpec {
   static constexpr std::string_view name = "gmsh";
 };
+struct AbaqusSpec : MeshFileSpec {
+  static constexpr std::string_view name = "abaqus";
+  std::string part;  // of the file; empty: all of it
+  void fields(Fields& f);
+};
 struct ExodusSpec : MeshFileSpec {
   static constexpr std::string_view name = "exodus";
 };

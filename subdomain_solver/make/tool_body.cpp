@@ -41,7 +41,8 @@ std::optional<ToolTurn> turn_of(const RigidToolSpec& tool, const std::vector<dou
 
 std::unique_ptr<Interior> make_tool(const BodySpec& spec, const Place& place) {
   const RigidToolSpec& tool = std::get<RigidToolSpec>(spec.model);
-  Mesh mesh = make_mesh(tool, spec.initial.position, place, "model.rigid_tool");
+  std::vector<std::string> notes;
+  Mesh mesh = make_mesh(tool, spec.initial.position, place, "model.rigid_tool", &notes);
   name_points(spec, place, mesh);
   const std::vector<SolidInterior::PortNodes> ports = make_ports(spec, place, mesh);
   const std::string adjusted = adjust_ports(spec, place, ports, {}, mesh);
@@ -58,7 +59,7 @@ std::unique_ptr<Interior> make_tool(const BodySpec& spec, const Place& place) {
   const std::string words = (tool.turn          ? "rigid tool that turns"
                              : tool.way.empty() ? "rigid tool that stands"
                                                 : "rigid tool on its way") +
-                            on_file(tool) + adjusted;
+                            on_file(tool, notes) + adjusted;
   FeOptions options;
   options.plane = tool.plane;
   auto shape = std::make_unique<FeModel>(

@@ -79,6 +79,15 @@ class Init(SystemTest):
         self.assertGreaterEqual(measures["contact.block_block_2.closings"], 1)
         self.assertGreater(measures["mean_velocity.block_2.end_x"], 1.0)
 
+    def test_an_input_file_of_abaqus_is_a_body_with_its_surfaces_as_ports(self):
+        said = self.succeed(self.init("part", "--from", "mesh", MESHES / "two_parts.inp")).stdout
+        self.assertIn("two_parts: 3 hexahedra and 2 prisms divided into 24 tetrahedra\n", said)
+        self.assertIn("two_parts: skipped, not applied: *MATERIAL, *ELASTIC, ", said)
+        text = (self.folder / "part.yaml").read_text(encoding="utf-8")
+        for line in ("mesh: {abaqus: {file: ", "scale: 1 m}", "      wedge_top: wedge.top\n"):
+            self.assertIn(line, text)
+        self.succeed(self.abut("check", "part.yaml"))
+
     def test_names_of_groups_and_files_become_names_of_a_scene(self):
         part = self.folder / "part of it.msh"
         part.write_bytes((MESHES / "block.msh").read_bytes())
@@ -101,7 +110,7 @@ class Init(SystemTest):
         surface, block, gear = (MESHES / f"{name}.msh" for name in names)
         for arguments, words in (
                 (["a", "--from", "bar"], "--from: is bar, which is not known. Choose one of bars,"),
-                (["a", "--from", "gmsh"], "--from gmsh: names no mesh. Give one .msh file or "),
+                (["a", "--from", "gmsh"], "--from gmsh: names no mesh. Give one .msh or .inp "),
                 (["a", "b"], "b: is more than the scene's name. Give a single name; "),
                 (["", "--from", "bars"], "names no file"),
                 (["a", "--from", "gmsh", "none.msh"], "none.msh: "),

@@ -276,7 +276,8 @@ TEST(GmshFile, OtherVersionsPartitionsAndElementsAreRefusedWithARemedy) {
   expect_words(of_file("missing.msh"), {"missing.msh", "cannot be opened"});
   expect_words(of_file("block.geo"), {"block.geo:1", "not a Gmsh mesh"});
   expect_words(refusal_of(""), {"part.msh:1", "not a Gmsh mesh"});
-  expect_words(refusal_of(with("2 1 2 2\n", "2 1 6 2\n")), {"part.msh:39", "type 6", "Prisms"});
+  expect_words(refusal_of(with("2 1 2 2\n", "2 1 13 2\n")),
+               {"part.msh:39", "type 13", "SecondOrder"});
   expect_words(refusal_of(with("4.1 0 8", "4.1 0 4")), {"part.msh:2", "4.1 0 4"});
 }
 
@@ -357,7 +358,7 @@ TEST(GmshFile, OfVersion22ListsAnElementOnceForEachOfItsGroups) {
 TEST(GmshFile, WhatIsWrongInVersion22IsRefusedWithItsPlace) {
   expect_words(refusal_of(listed_with("2.2 0 8", "2.2 1 8")), {"part.msh:2", "binary", "text"});
   expect_words(refusal_of(listed_with("2.2 0 8", "2.2 0 4")), {"part.msh:2", "2.2 0 4"});
-  expect_words(refusal_of(listed_with("4 2 2 7", "4 6 2 7")), {"part.msh:23", "type 6", "Prisms"});
+  expect_words(refusal_of(listed_with("4 2 2 7", "4 13 2 7")), {"part.msh:23", "type 13", "Order"});
   expect_words(refusal_of(listed_with("1 1 2 3", "1 1 2 8")), {"part.msh:23", "node 8", "$Nodes"});
   expect_words(refusal_of(listed_with("9 7 7 0", "4 7 7 0")), {"part.msh:16", "node 4 twice"});
   expect_words(refusal_of(listed_with("1 1 2\n", "1 2 4\n")),
@@ -386,7 +387,7 @@ TEST(GmshFile, WhatIsNoPartIsRefusedWithItsPlace) {
   expect_words(refusal_of(with("1 1\n1 1 1 1", "1 9\n1 1 1 1")), {"group 'here'", "node 9"});
   expect_words(refusal_of(with("4 1 2 3", "4 1 2 8")), {"part.msh:40", "node 8", "$Nodes"});
   expect_words(refusal_of(with("1 6 \"below\"", "1 6 \"inside\"")),
-               {"two physical groups", "inside"});
+               {"two groups", "inside"});
   expect_words(refusal_of(with("1 1 0\n0 1 0", "1 1 0.5\n0 1 0")), {"plane z", "volume"});
   expect_words(refusal_of(with("3\n4\n9", "3\n3\n9")), {"node 3 twice"});
   expect_words(refusal_of(with("1 5 1 9", "1 6 1 9")), {"announces 6 nodes and has 5"});
