@@ -12,7 +12,8 @@
 namespace abut {
 namespace {
 
-constexpr int most_parts = 64;  // as many as processes of a run
+constexpr double longest_probe = 60.0;  // [s]
+constexpr int most_parts = 64;          // as many as processes of a run
 
 /// Verbs that are programs of their own beside this one.
 const std::array<std::pair<std::string, std::string>, 4> tools{{
@@ -110,10 +111,17 @@ Command parse_command_line(int argc, const char* const* argv) {
   run_verb.add_flag("--force", run.force, "replace the run that DIR holds");
 
   CheckCommand check;
-  CLI::App& check_verb = *app.add_subcommand("check", "say whether a scene is valid");
+  CLI::App& check_verb =
+      *app.add_subcommand("check", "say whether a scene is valid, and what its run will be");
   add_scene(check_verb, check.scene, check.overrides);
 
   check_verb.add_flag("--verbose", check.verbose, "tell as well what the scene leaves unused");
+  check_verb
+      .add_option("--probe", check.probe,
+                  "try the run for so long, writing nothing, to predict its time and memory; "
+                  "default 2, 0 for not at all")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, longest_probe).description(""));
 
   SplitCommand split;
   const CLI::App& split_verb = add_split(app, split);

@@ -18,6 +18,7 @@ struct CheckCommand {
   std::string scene;
   std::vector<std::string> overrides;
   bool verbose = false;
+  double probe = 2.0;  // [s] for which the run is tried; 0: it is not
 };
 struct SplitCommand {
   std::string scene;

@@ -185,8 +185,8 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
   const std::int64_t windows = cuts * e.contact_windows_high;
   // The begin, and at least one call in every window in contact; ports may need no kernel.
   e.exchanges_low = count * (1 + std::max<std::int64_t>(1, e.contact_windows_low));
-  e.exchanges_high =
-      start + count * (flights + most_sweeps(scene, known) * windows + 2 * per_event * joints);
+  e.sweeps = most_sweeps(scene, known);
+  e.exchanges_high = start + count * (flights + e.sweeps * windows + 2 * per_event * joints);
   e.exchanges_high += e.exchanges_high / 20;  // contact that lasts a little longer, chatter
   if (joints == 0) {  // the begin, and free flight as far as one request goes
     std::int64_t at_once =

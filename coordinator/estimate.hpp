@@ -67,6 +67,7 @@ struct Estimate {
   std::int64_t windows = 0;
   std::int64_t contact_windows_low = 0, contact_windows_high = 0;
   std::int64_t exchanges_low = 0, exchanges_high = 0;
+  std::int64_t sweeps = 1;                     // most iterations of a window in contact, on average
   std::vector<std::string> in_use, not_built;  // optional features
 };
 

@@ -16,6 +16,7 @@
 #include "base/yaml_fields.hpp"
 #include "coordinator/external_body.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
+#include "subdomain_solver/make/body_facts.hpp"
 #include "subdomain_solver/make/body_spec.hpp"
 #include "subdomain_solver/make/read_body.hpp"
 
@@ -183,7 +184,7 @@ void check_speeds(const Scene& scene, const Document& document) {
     const std::array<PortName, 2> names = {split_port(interface.sides[0]),
                                            split_port(interface.sides[1])};
     const std::array<ImpactSide, 2> sides = {meeting_of(scene, document, names[0]),
-                                          meeting_of(scene, document, names[1])};
+                                             meeting_of(scene, document, names[1])};
     if (!sides[0].known || !sides[1].known) continue;
     for (const std::size_t s : {0u, 1u})
       if (sides[s].bar)
@@ -210,6 +211,15 @@ std::vector<std::unique_ptr<Subdomain>> launch_local(const Scene& scene, const D
   }
   errors.raise();
   return bodies;
+}
+
+std::vector<std::optional<BodyFacts>> local_facts(const Scene& scene, const Document& document) {
+  std::vector<std::optional<BodyFacts>> facts;
+  for (const auto& [name, entry] : scene.bodies) {
+    facts.emplace_back();
+    if (!entry.external) facts.back() = body_facts(document, path_of(name), entry.context);
+  }
+  return facts;
 }
 
 void check_body_keys(const Scene& scene, const Document& document) {

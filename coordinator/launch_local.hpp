@@ -8,6 +8,7 @@
 #include "base/fields_reference.hpp"
 #include "base/yaml_document.hpp"
 #include "base/yaml_resolved.hpp"
+#include "contract/body_facts.hpp"
 #include "contract/subdomain.hpp"
 #include "coordinator/exact/closed_form.hpp"
 #include "coordinator/scene.hpp"
@@ -21,6 +22,10 @@ namespace abut {
 /// is given, a body that is advancing when it turns true throws RunError: a solve may take minutes.
 std::vector<std::unique_ptr<Subdomain>> launch_local(
     const Scene& scene, const Document& document, const std::atomic<bool>* interrupted = nullptr);
+
+/// What people want to know of every body of a scene that launch_local takes, in its order; none of
+/// bodies of other programs. Throws InputError.
+std::vector<std::optional<BodyFacts>> local_facts(const Scene& scene, const Document& document);
 
 /// Reads the keys of every body entry that the document has. Throws InputError.
 void check_body_keys(const Scene& scene, const Document& document);

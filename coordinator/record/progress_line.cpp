@@ -7,44 +7,82 @@
 #include <cstdio>
 
 #include "base/log.hpp"
+#include "coordinator/record/shares.hpp"
+#include "coordinator/record/time_words.hpp"
 
 namespace abut {
+
+namespace {
+
+constexpr std::size_t most_samples = 2000;
+constexpr std::size_t named_bodies = 2;  // the line is to fit a terminal
+constexpr std::size_t most_columns = 99;
+
+double seconds(Clock::Duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+/// How long elsewhere than on a terminal after so many seconds: ten seconds, and then a twentieth
+/// of the time so far.
+Clock::Duration interval(double wall) {
+  const std::chrono::duration<double> length(std::max(10.0, wall / 20.0));
+  return std::chrono::duration_cast<Clock::Duration>(length);
+}
+
+}  // namespace
 
 void ProgressLine::on_start(const RunStart& start) {
   begin_ = start.begin;
   end_ = start.end;
-  for (const InterfaceInfo& interface : start.interfaces) names_.push_back(interface.name);
+  for (const Description* body : start.bodies) bodies_.push_back(body->name);
+  began_ = clock_.now();
+  if (!terminal_) next_ = began_ + interval(0.0);
 }
 
 void ProgressLine::on_window(const WindowReport& report) {
-  int iterations = 1;
-  for (const InterfaceReport& interface : report.interfaces)
-    iterations = std::max(iterations, interface.iterations);
-  solves_ += iterations * static_cast<std::int64_t>(report.responses.size());
-  if (!terminal_ || clock_.now() < next_) return;
-  next_ = clock_.now() + std::chrono::milliseconds(100);
-  std::fprintf(stderr, "\r\x1b[K%s", text(report).c_str());
+  const Clock::Time now = clock_.now();
+  if (now < next_) return;
+  const double wall = seconds(now - began_);
+  const std::string line = text(report, wall);
+  samples_.push_back({wall, part_of(report.window.end)});
+  if (samples_.size() > most_samples)  // every other one of them is enough
+    for (std::size_t k = 0; k < samples_.size(); ++k)
+      samples_.erase(samples_.begin() + static_cast<std::ptrdiff_t>(k));
+  if (!terminal_) {
+    next_ = now + interval(wall);
+    return log_info(line);
+  }
+  next_ = now + std::chrono::milliseconds(100);
+  std::fprintf(stderr, "\r\x1b[K%s", line.substr(0, most_columns).c_str());
   std::fflush(stderr);
   shown_ = true;
 }
 
-std::string ProgressLine::text(const WindowReport& report) const {
-  std::string state;
-  for (std::size_t i = 0; i < report.interfaces.size(); ++i)
-    if (report.interfaces[i].closed) state += (state.empty() ? "" : ", ") + names_[i];
-  state = state.empty() ? "free" : "contact at " + state;
-  const double part = (report.window.end - begin_) / (end_ - begin_);
-  return fmt::format("{:5.1f} %  time {:.4e} s  {}  {} solves", 100.0 * part, report.window.end,
-                     state, solves_);
+/// As fast as in the last half of the time, for which early windows no longer count.
+std::string ProgressLine::left(const Sample& now) const {
+  const auto at = std::ranges::lower_bound(samples_, 0.5 * now.wall, {}, &Sample::wall);
+  const Sample from = at == samples_.end() ? Sample{} : *at;
+  const double rate = (now.part - from.part) / (now.wall - from.wall);
+  if (!(rate > 0.0) || !(now.wall > 1.0)) return "";
+  return fmt::format("  {} left", time_words((1.0 - now.part) / rate));
+}
+
+std::string ProgressLine::text(const WindowReport& report, double wall) const {
+  const double part = part_of(report.window.end);
+  const std::string contacts =
+      closed_ == 0 ? "free" : fmt::format("{} contact{}", closed_, closed_ == 1 ? "" : "s");
+  return fmt::format("{:5.1f} %  time {:.4e} s{}  {}  {}", 100.0 * part, report.window.end,
+                     left({wall, part}), contacts,
+                     shares_words(shares_of(waited_, wall), bodies_, named_bodies));
 }
 
 void ProgressLine::on_event(const RunEvent& event) {
   erase();
+  if (event.kind == RunEvent::Kind::contact_closed) ++closed_;
+  if (event.kind == RunEvent::Kind::contact_opened && closed_ > 0) --closed_;
   if (event.thrown) return;
-  const bool named = event.subject.empty() ||
-                     event.text.find("'" + event.subject + "'") != std::string::npos;
-  const std::string line = fmt::format("{:.6e} s: {}{}", event.time,
-                                       named ? "" : event.subject + ": ", event.text);
+  const bool named =
+      event.subject.empty() || event.text.find("'" + event.subject + "'") != std::string::npos;
+  const std::string line =
+      fmt::format("{:.6e} s: {}{}", event.time, named ? "" : event.subject + ": ", event.text);
   if (event.kind == RunEvent::Kind::failure)
     log_error(line);
   else if (event.kind == RunEvent::Kind::warning)

@@ -2,17 +2,21 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/clock.hpp"
 #include "coordinator/record/observer.hpp"
 
 namespace abut {
 
-/// Tells people how a run is going: on a terminal one line that is written over, ten times a
-/// second; elsewhere a log line per event.
+/// Tells people how a run is going: how far it is, what is left, how many contacts are closed, who
+/// takes the time. On a terminal one line that is written over, ten times a second; elsewhere log
+/// lines, after ten seconds and then ever more rarely. Events are log lines everywhere.
 class ProgressLine : public Observer {
  public:
-  ProgressLine(const Clock& clock, bool terminal) : clock_(clock), terminal_(terminal) {}
+  /// `waited` [s] by body: wall time so far for which each was waited for; must outlive this.
+  ProgressLine(const Clock& clock, bool terminal, const std::vector<double>& waited)
+      : clock_(clock), terminal_(terminal), waited_(waited) {}
   ~ProgressLine() override { erase(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
@@ -23,16 +27,23 @@ class ProgressLine : public Observer {
   void on_end(const RunEnd& end) override;
 
  private:
-  std::string text(const WindowReport& report) const;
+  struct Sample {                   // of the way so far
+    double wall = 0.0, part = 0.0;  // [s] since the start, and of all the scene's time from 0 to 1
+  };
+  std::string text(const WindowReport& report, double wall) const;
+  std::string left(const Sample& now) const;
+  double part_of(double time) const { return (time - begin_) / (end_ - begin_); }
   void erase();
 
   const Clock& clock_;
   bool terminal_;
+  const std::vector<double>& waited_;
   bool shown_ = false;
-  Clock::Time next_{};
-  double begin_ = 0.0, end_ = 0.0;  // [s] of the run
-  std::vector<std::string> names_;  // of the interfaces
-  std::int64_t solves_ = 0;         // at least so many exchanges
+  Clock::Time began_{}, next_{};
+  double begin_ = 0.0, end_ = 0.0;   // [s] of the run
+  std::vector<std::string> bodies_;  // names
+  std::vector<Sample> samples_;      // ascending
+  std::int64_t closed_ = 0;          // contacts, as events tell them
 };
 
 }  // namespace abut

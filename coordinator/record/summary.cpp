@@ -1,5 +1,6 @@
 #include "coordinator/record/summary.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -137,10 +138,16 @@ Json energy_scales_object(const Measures& measures) {
   return object;
 }
 
-Json timing_object(const RunEnd& end, const RunStart& start) {
+Json timing_object(const RunEnd& end, const RunStart& start, const std::vector<double>* waited) {
   Json timing = {{"wall_s", number(end.wall_seconds)}, {"compute_s", Json::object()}};
   for (std::size_t b = 0; b < std::min(start.bodies.size(), end.compute_seconds.size()); ++b)
     timing["compute_s"][start.bodies[b]->name] = number(end.compute_seconds[b]);
+  double coupling = end.wall_seconds;
+  for (std::size_t b = 0; waited != nullptr && b < start.bodies.size(); ++b) {
+    timing["waited_s"][start.bodies[b]->name] = number((*waited)[b]);
+    coupling -= (*waited)[b];
+  }
+  if (waited != nullptr) timing["coupling_s"] = number(std::max(0.0, coupling));
   timing["overhead_per_exchange_us_median"] = number(1e6 * end.overhead_median_seconds);
   return timing;
 }
@@ -267,7 +274,7 @@ std::string Summary::text(const RunEnd& end) const {
   summary["overlaps"] = overlaps_array(end, start_);
   summary["never_closed"] = end.never_met;
   summary["accuracy"]["given_up"] = given_up_object(end, start_);
-  summary["timing"] = timing_object(end, start_);
+  summary["timing"] = timing_object(end, start_, heading_.waited);
   if (heading_.program_began) summary["timing"]["startup_s"] = number(startup_seconds_);
   if (heading_.estimate) summary["estimate"] = estimate_object(*heading_.estimate);
   summary["bodies"] = bodies_array(start_);

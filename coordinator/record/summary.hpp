@@ -27,6 +27,8 @@ class Summary : public Observer {
     std::optional<Clock::Time> program_began = std::nullopt;  // for timing.startup_s
     std::optional<Estimate> estimate = std::nullopt;          // told before the run
     std::map<std::string, std::string> units = {};  // by SI's, of a scene in others; empty: SI
+    // [s] by body: wall time for which each was waited for; null: not known
+    const std::vector<double>* waited = nullptr;
   };
 
   /// `form` may be null. The recorder is told of every event before this, and outlives it.

@@ -161,7 +161,7 @@ class HostileInput(SystemTest):
                              ("output={records_per_window: 4294967297}",
                               "output.records_per_window")):
             with self.subTest(setting=setting):
-                result = self.limited(500, "check", bars, "--set", setting)
+                result = self.limited(500, "check", bars, "--probe", "0", "--set", setting)
                 self.refused(result, key)
                 self.assertNotIn("-9", result.stdout)
 

@@ -1,0 +1,96 @@
+#include "coordinator/probed_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "base/error.hpp"
+#include "coordinator/controller.hpp"
+#include "coordinator/metered_body.hpp"
+#include "coordinator/record/observer.hpp"
+
+namespace abut {
+
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr int enough_windows = 3;
+constexpr double times_as_long = 2.5;  // for so many
+
+double seconds_since(SteadyClock::time_point time) {
+  return std::chrono::duration<double>(SteadyClock::now() - time).count();
+}
+
+/// Notes what windows cost.
+class Notes : public Observer {
+ public:
+  void on_start(const RunStart& start) override {
+    probe.begin = probe.reached = start.begin;
+    last_ = SteadyClock::now();
+  }
+  void on_window(const WindowReport& report) override {
+    const double wall = seconds_since(last_);
+    last_ = SteadyClock::now();
+    probe.reached = report.window.end;
+    if (report.window.length() <= 0.0) return;
+    ProbedRun::Stretch stretch{report.window.length(), wall, false, 1};
+    for (const InterfaceReport& interface : report.interfaces) {
+      stretch.closed = stretch.closed || interface.closed || interface.iterations > 0;
+      stretch.iterations = std::max(stretch.iterations, interface.iterations);
+    }
+    probe.stretches.push_back(stretch);
+    ended = static_cast<int>(probe.stretches.size());
+  }
+  void on_event(const RunEvent& event) override {
+    if (event.kind == RunEvent::Kind::failure) probe.failure = event.text;
+  }
+
+  ProbedRun probe;
+  std::atomic<int> ended = 0;  // windows, for who watches the clock
+
+ private:
+  SteadyClock::time_point last_;
+};
+
+}  // namespace
+
+ProbedRun probe_run(const Scene& scene, const std::vector<Subdomain*>& bodies, double seconds,
+                    std::atomic<bool>& stop, const std::atomic<bool>& interrupted) {
+  Notes notes;
+  BodyMeter meter(bodies.size());
+  const std::vector<std::unique_ptr<Subdomain>> measured = metered(bodies, meter);
+  std::vector<Subdomain*> all;
+  for (const std::unique_ptr<Subdomain>& body : measured) all.push_back(body.get());
+  const SteadyClock::time_point began = SteadyClock::now();
+  std::atomic<bool> over = false;
+  std::thread watch([&] {
+    while (!over) {
+      const double time = seconds_since(began);
+      const bool enough = notes.ended >= enough_windows;
+      if (interrupted || time > (enough ? seconds : times_as_long * seconds)) stop = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  });
+  try {
+    const RunEnd end = Controller(scene, all, {&notes}, &stop).run();
+    notes.probe.whole = end.status == "completed";
+  } catch (const RunError& error) {
+    if (!stop) notes.probe.failure = error.what();
+  } catch (const InputError& error) {
+    notes.probe.failure = error.what();
+  } catch (...) {
+    over = true;
+    watch.join();
+    throw;
+  }
+  over = true;
+  watch.join();
+  if (stop) notes.probe.failure.clear();  // it was broken off, wherever it was
+  notes.probe.wall = seconds_since(began);
+  notes.probe.waited_seconds = meter.waited_seconds();
+  return notes.probe;
+}
+
+}  // namespace abut

@@ -1,0 +1,185 @@
+#include "coordinator/record/run_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "coordinator/record/shares.hpp"
+#include "coordinator/record/text_table.hpp"
+
+namespace abut {
+
+namespace {
+
+constexpr std::size_t most_rows = 10;  // of a table; all numbers are in the files
+constexpr std::size_t most_processes = 4;
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// "clamp" of the column "clamp.reaction_x [N]"; empty: another column.
+std::string constraint_of(const std::string& column) {
+  const std::size_t at = column.rfind(".reaction");
+  return at == std::string::npos ? "" : column.substr(0, at);
+}
+
+/// In a table a missing number is a dash.
+std::string shown(const Measures& measures, const std::string& name) {
+  const auto found = measures.values.find(name);
+  if (found == measures.values.end() || std::isnan(found->second)) return "-";
+  return fmt::format("{:.5g}", found->second);
+}
+
+/// A time of 1e-18 s beside a run of 1e-3 s is zero.
+std::string time_shown(const Measures& measures, const std::string& name, const RunStart& start) {
+  const auto found = measures.values.find(name);
+  const bool zero = found != measures.values.end() &&
+                    std::abs(found->second) < 1.0e-12 * (start.end - start.begin);
+  return zero ? "0" : shown(measures, name);
+}
+
+/// The first rows, and how many there are beside them.
+std::string shortened(Rows rows, const char* more) {
+  const std::size_t all = rows.size() - 1;
+  if (all > most_rows) rows.resize(1 + most_rows);
+  std::string text = text_table(rows);
+  if (all > most_rows) text += fmt::format("and {} more: {}\n", all - most_rows, more);
+  return text + "\n";
+}
+
+Energy sum_of(const std::vector<Energy>& energies) {
+  Energy sum;
+  for (const Energy& energy : energies) {
+    sum.kinetic += energy.kinetic;
+    sum.stored += energy.stored;
+    sum.dissipated += energy.dissipated;
+    sum.external_work += energy.external_work;
+  }
+  return sum;
+}
+
+}  // namespace
+
+void RunTable::on_start(const RunStart& start) {
+  start_ = start;
+  first_.assign(start.bodies.size(), {});
+  last_ = first_;
+  for (std::size_t b = 0; b < start.bodies.size(); ++b) {
+    const std::vector<std::string>& columns = start.bodies[b]->columns;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const std::string name = constraint_of(columns[c]);
+      if (name.empty()) continue;
+      const std::string full = start.bodies[b]->name + "." + name;
+      if (held_.empty() || held_.back().name != full)
+        held_.push_back({b, c, 0, full, 0.0, 0.0, {}});
+      ++held_.back().axes;
+    }
+  }
+}
+
+void RunTable::read(const BodyRecord& record, std::size_t body) {
+  for (Held& held : held_) {
+    const std::size_t axes = static_cast<std::size_t>(held.axes);
+    if (held.body != body || held.column + axes > record.columns.size()) continue;
+    const auto from = record.columns.begin() + static_cast<std::ptrdiff_t>(held.column);
+    held.last.assign(from, from + held.axes);
+    double force = 0.0;
+    for (const double component : held.last) force = std::hypot(force, component);
+    if (!(force > held.peak)) continue;
+    held.peak = force;
+    held.time = record.time;
+  }
+}
+
+void RunTable::on_window(const WindowReport& report) {
+  for (std::size_t b = 0; b < report.responses.size(); ++b) {
+    for (const BodyRecord& record : report.responses[b].records) {
+      read(record, b);
+      last_[b] = record.energy;
+    }
+    if (report.window.length() <= 0.0) first_[b] = last_[b];
+  }
+}
+
+std::string RunTable::contacts(const Measures& measures) const {
+  Rows rows = {
+      {"contact", "begin [s]", "end [s]", "closings", "impulse [N*s]", "peak [N]", "friction [J]"}};
+  Rows ties = {{"tie", "largest force [N]", "largest gap [m]"}};
+  for (const InterfaceInfo& info : start_.interfaces) {
+    const auto of = [&](const char* what) {
+      return shown(measures, fmt::format("contact.{}.{}", info.name, what));
+    };
+    const auto at = [&](const char* what) {
+      return time_shown(measures, fmt::format("contact.{}.{}", info.name, what), start_);
+    };
+    if (info.tied)
+      ties.push_back({info.name, of("force_peak"), of("jump_max")});
+    else
+      rows.push_back({info.name, at("begin"), at("end"), of("closings"), of("impulse"),
+                      of("force_peak"), of("dissipated")});
+  }
+  constexpr const char* more = "measures contact.* of summary.json";
+  return (rows.size() > 1 ? shortened(std::move(rows), more) : "") +
+         (ties.size() > 1 ? shortened(std::move(ties), more) : "");
+}
+
+std::string RunTable::reactions() const {
+  Rows rows = {{"reaction", "peak [N]", "at [s]", "at the end [N]"}};
+  for (const Held& held : held_) {
+    std::vector<std::string> last;
+    for (const double component : held.last) last.push_back(fmt::format("{:.5g}", component));
+    rows.push_back({held.name, fmt::format("{:.5g}", held.peak), fmt::format("{:.5g}", held.time),
+                    fmt::format("{}", fmt::join(last, ", "))});
+  }
+  return rows.size() > 1 ? shortened(std::move(rows), "columns of history.csv") : "";
+}
+
+std::string RunTable::energies(const Measures& measures) const {
+  Rows rows = {{"energy [J]", "kinetic", "stored", "work done on it", "dissipated", "error"}};
+  const auto row = [&rows](const char* name, const Energy& e, std::string error) {
+    std::vector<std::string> cells = {name};
+    for (const double value : {e.kinetic, e.stored, e.external_work, e.dissipated})
+      cells.push_back(fmt::format("{:.5g}", value));
+    cells.push_back(std::move(error));
+    rows.push_back(std::move(cells));
+  };
+  const auto drift = measures.values.find("energy.total.relative_drift_end");
+  const bool known = drift != measures.values.end() && std::isfinite(drift->second);
+  row("begin", sum_of(first_), "");
+  row("end", sum_of(last_), known ? fmt::format("{:.2g} %", 100.0 * drift->second) : "-");
+  return text_table(rows) + "\n";
+}
+
+std::string RunTable::text(const Measures& measures) const {
+  return contacts(measures) + reactions() + energies(measures);
+}
+
+std::string RunTable::times(std::span<const double> waited,
+                            const std::vector<std::vector<std::size_t>>& processes) const {
+  std::vector<std::string> names;
+  for (const Description* body : start_.bodies) names.push_back(body->name);
+  const double wall = end_.wall_seconds;
+  std::string text = fmt::format("time   {}\n", shares_words(shares_of(waited, wall), names));
+  if (processes.size() < 2 || !(wall > 0.0)) return text;
+  std::vector<std::pair<double, std::string>> idle;  // the process that waited least comes first
+  for (const std::vector<std::size_t>& bodies : processes) {
+    double computed = 0.0;
+    for (const std::size_t b : bodies)
+      if (b < end_.compute_seconds.size()) computed += end_.compute_seconds[b];
+    std::string name = bodies.empty() ? "" : names[bodies.front()];
+    if (bodies.size() > 1) name += fmt::format(" and {} more", bodies.size() - 1);
+    idle.emplace_back(std::max(0.0, 1.0 - computed / wall), std::move(name));
+  }
+  std::ranges::stable_sort(idle, {}, &std::pair<double, std::string>::first);
+  text += "waited ";
+  for (std::size_t k = 0; k < std::min(idle.size(), most_processes); ++k)
+    text += fmt::format("{}{} {:.0f} %", k == 0 ? "" : ", ", idle[k].second, 100.0 * idle[k].first);
+  if (idle.size() > most_processes)
+    text += fmt::format(", {} more {:.0f} % and more", idle.size() - most_processes,
+                        100.0 * idle[most_processes].first);
+  return text + " of it\n";
+}
+
+}  // namespace abut

@@ -1,0 +1,135 @@
+#include "coordinator/verbs/placed_scene.hpp"
+
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "base/input_errors.hpp"
+#include "coordinator/couple.hpp"
+#include "coordinator/external_body.hpp"
+#include "coordinator/frame_check.hpp"
+#include "coordinator/launch_local.hpp"
+#include "coordinator/record/measure_names.hpp"
+#include "coordinator/record/recorded_bodies.hpp"
+#include "coordinator/tied_estimate.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Every expectation names a measure that a run of this scene reports.
+void validate_expectations(const Scene& scene, const std::vector<const Description*>& bodies,
+                           const Document& document) {
+  MeasureScope scope;
+  scope.dim = bodies.front()->dim;
+  for (const RecordedBody& body : recorded_bodies(bodies)) scope.bodies.push_back(body.name);
+  for (const auto& [name, interface] : scene.interfaces) {
+    scope.interfaces.push_back(name);
+    scope.ports.insert(scope.ports.end(), interface.sides.begin(), interface.sides.end());
+  }
+  if (scene.everything() != nullptr) scope.interfaces.emplace_back(everything_name);
+  scope.filtered = scene.output.force_filter.has_value();
+  scope.steady = scene.output.steady_after.has_value();
+  scope.exact = exact_interfaces(scene);
+  scope.told = told_measures(bodies);
+  InputErrors errors;
+  for (std::size_t i = 0; i < scene.meta.expect.size(); ++i) {
+    try {
+      require_measure(scene.meta.expect[i].measure, scope);
+    } catch (const InputError& error) {
+      errors.add({error.what_is_wrong, document.where(fmt::format("meta.expect[{}].measure", i)),
+                  error.remedy});
+    }
+  }
+  errors.raise();
+}
+
+/// Every interface can be joined as the scene says; tells what ties will pay for.
+std::vector<Estimate::Ties> validate_coupling(const Scene& scene, const Placement& placement,
+                                              const Document& document) {
+  try {
+    const Bodies bodies(placement.pointers(), scene.time.window);
+    std::vector<Joint> joints = make_joints(scene, bodies);
+    make_broad_phase(scene, joints, bodies);
+    return estimate_ties(scene, joints, bodies);
+  } catch (const InputError& error) {
+    throw InputError(error.what_is_wrong, document.where(error.where), error.remedy);
+  }
+}
+
+/// Numbers with units beside others that have none: of what, the scene must say.
+void check_units(const Document& document) {
+  const UnitsRead& read = document.units_read();
+  if (document.declares_units() || read.with.empty() || read.without.empty()) return;
+  std::string with = read.with;
+  const bool named = !document.has(with) && document.says(with);  // a material, whose keys it has
+  while (named && !document.has(with)) with.resize(with.rfind('.'));
+  throw InputError(
+      fmt::format("is a number without a unit, but {} {}", with,
+                  named ? "stands for numbers with units" : "has one"),
+      document.where(read.without),
+      "Give it a unit, or say what numbers without one are in: units: SI, or units: mm t s.");
+}
+
+/// Of the fields that a scene wants, by body.
+std::vector<FieldSize> field_sizes(const Scene& scene, const Placement& placement) {
+  std::vector<FieldSize> sizes(placement.bodies.size());
+  for (std::size_t b = 0; scene.output.field_output && b < sizes.size(); ++b) {
+    Subdomain* body = placement.bodies[b].get();
+    if (body == nullptr || body->describe().fields.empty()) continue;
+    const Grid grid = body->grid();
+    sizes[b] = {grid.nodes(), grid.cells()};
+  }
+  return sizes;
+}
+
+}  // namespace
+
+Placement place(const Scene& scene, const Document& document, bool local,
+                const std::atomic<bool>& interrupted) {
+  Placement placement;
+  if (local) {
+    refuse_external_bodies(scene, document);
+    placement.bodies = launch_local(scene, document, &interrupted);
+    return placement;
+  }
+  LaunchOptions options;
+  options.interrupted = &interrupted;
+  const Specification text{document.name(), document.text(), document.overrides_elsewhere(), ""};
+  placement.launch = std::make_unique<Launch>(scene, text, options);
+  placement.bodies = placement.launch->take_bodies();
+  return placement;
+}
+
+Scene read_all_keys(const Document& document) {
+  InputErrors errors;
+  Scene scene = read_scene(document, errors);
+  errors.gather([&] { check_body_keys(scene, document); });
+  errors.raise();
+  check_units(document);
+  return scene;
+}
+
+Validated validate_all(const Scene& scene, const Document& document, const Placement& placement,
+                       bool processes) {
+  const std::vector<const Description*> bodies = placement.descriptions();
+  validate_bodies(scene, bodies, document);
+  if (processes)
+    check_frames(scene, bodies, field_sizes(scene, placement), Limits{}.frame_bytes, document);
+  std::vector<Estimate::Ties> ties;
+  if (placement.whole()) {
+    ties = validate_coupling(scene, placement, document);
+    validate_expectations(scene, bodies, document);
+  }
+  check_speeds(scene, document);
+  Validated valid{make_closed_form(scene, bodies, document), {}};
+  std::optional<double> contact;
+  if (valid.form) contact = valid.form->contact_time();
+  valid.estimate = estimate(scene, bodies, contact);
+  valid.estimate.ties = std::move(ties);
+  return valid;
+}
+
+}  // namespace abut

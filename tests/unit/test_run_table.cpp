@@ -1,0 +1,84 @@
+// Goal: when a run has ended people are told what happened: contacts, reactions, energies, who
+// waited. Oracle: the text of made-up runs.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "coordinator/record/run_table.hpp"
+
+namespace abut {
+namespace {
+
+class RunTableText : public testing::Test {
+ protected:
+  RunTableText() {
+    left.name = "left";
+    right.name = "right";
+    right.columns = {"clamp.reaction_x [N]", "clamp.reaction_y [N]"};
+    start.end = 2.0;
+    start.bodies = {&left, &right};
+    start.interfaces = {{.name = "impact"}, {.name = "weld", .tied = true}};
+    for (const char* of : {"begin", "end", "closings", "impulse", "force_peak", "dissipated"})
+      measures.set(std::string("contact.impact.") + of, 0.25);
+    measures.none("contact.impact.end", "the interface was closed when the run ended");
+    measures.set("contact.weld.force_peak", 12.5);
+    measures.set("energy.total.relative_drift_end", -0.001);
+    table.on_start(start);
+    window(0.0, 0.0, {5.0, 0.0, 0.0, 0.0}, {0.0, 0.0});
+    window(0.0, 1.0, {4.0, 1.0, 0.0, 0.0}, {3.0, -4.0});
+    window(1.0, 2.0, {3.0, 1.0, 1.0, 0.5}, {1.0, 2.0});
+  }
+  /// Both bodies have the energy, the right one the reaction, at the end.
+  void window(double begin, double end, const Energy& energy, std::vector<double> reaction) {
+    std::vector<Response> responses(2);
+    for (Response& response : responses) response.records = {{end, energy, {}}};
+    responses[1].records[0].columns = std::move(reaction);
+    table.on_window({{0, begin, end}, responses, {}});
+  }
+
+  Description left, right;
+  RunStart start;
+  Measures measures;
+  RunTable table;
+};
+
+TEST_F(RunTableText, TellsContactsReactionsAndEnergies) {
+  EXPECT_EQ(table.text(measures),
+            "contact  begin [s]  end [s]  closings  impulse [N*s]  peak [N]  friction [J]\n"
+            "impact        0.25        -      0.25           0.25      0.25          0.25\n"
+            "\n"
+            "tie   largest force [N]  largest gap [m]\n"
+            "weld               12.5                -\n"
+            "\n"
+            "reaction     peak [N]  at [s]  at the end [N]\n"
+            "right.clamp         5       1            1, 2\n"
+            "\n"
+            "energy [J]  kinetic  stored  work done on it  dissipated   error\n"
+            "begin            10       0                0           0\n"
+            "end               6       2                1           2  -0.1 %\n"
+            "\n");
+}
+
+TEST_F(RunTableText, TellsTenContactsAndHowManyMoreThereAre) {
+  start.interfaces.assign(12, InterfaceInfo{.name = "impact"});
+  RunTable many;
+  many.on_start(start);
+  EXPECT_NE(many.text(measures).find("and 2 more: measures contact.* of summary.json\n"),
+            std::string::npos);
+}
+
+TEST_F(RunTableText, TellsWhoTookTheTimeAndWhoWaited) {
+  RunEnd end;
+  end.wall_seconds = 10.0;
+  const std::vector<double> waited = {2.0, 5.0};
+  end.compute_seconds = {4.0, 6.0};
+  table.on_end(end);
+  EXPECT_EQ(table.times(waited, {{0}, {1}}),
+            "time   right 50 %, left 20 %, coupling 30 %\nwaited right 40 %, left 60 % of it\n");
+  EXPECT_EQ(table.times(waited, {}), "time   right 50 %, left 20 %, coupling 30 %\n");
+  EXPECT_EQ(table.times(waited, {{0, 1}}), table.times(waited, {}));  // nobody to wait for
+}
+
+}  // namespace
+}  // namespace abut
