@@ -18,7 +18,6 @@
 #include "coordinator/coupling/velocity_start.hpp"
 #include "coordinator/energy_account.hpp"
 #include "coordinator/flight_work.hpp"
-#include "coordinator/record/validity_notes.hpp"
 #include "coordinator/touching_pairs.hpp"
 
 namespace abut {
@@ -472,8 +471,7 @@ RunEnd Controller::finish(double wall_seconds) {
   }
   for (int b = 0; b < bodies_.count(); ++b) {
     end_.body_measures.push_back(bodies_[b].measure());
-    for (const std::string& note : validity_notes(bodies_.describe(b), end_.body_measures.back()))
-      narrator_.warning(clock_.time(), bodies_.describe(b).name, note);
+    judge(b);
   }
   end_.given_up = given_up();
   narrator_.given_up(end_);

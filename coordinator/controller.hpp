@@ -113,6 +113,7 @@ class Controller {
   void watch_passing(std::int64_t windows_before);
   void look_for_overlaps();
   void look_for_passed();
+  void judge(int body);
   bool may_go_passively() const;
   bool may_refuse() const;
   std::string folded();

@@ -11,6 +11,7 @@
 #include "subdomain_solver/contact/surface_contact.hpp"
 #include "subdomain_solver/port_geometry.hpp"
 #include "subdomain_solver/solid_fields.hpp"
+#include "subdomain_solver/stabilisation_measures.hpp"
 #include "subdomain_solver/time/inertia.hpp"
 #include "subdomain_solver/time/massless_layer.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
@@ -192,6 +193,7 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   also(reaction_measure_names(mesh.dim, parts_.constraints));
   if (scheme.held != nullptr) also(StableSteps::measure_names());
   also(validity_measure_names(*parts_.model, parts_.deforms));
+  if (stabilised()) also(stabilisation_measure_names(mesh.dim));
   description_.columns = reaction_columns(mesh.dim, parts_.constraints);
   description_.frequencies = parts_.frequencies;
   description_.fields = solid_fields(parts_.model->material(), parts_.deforms);
@@ -427,6 +429,11 @@ std::vector<double> SolidInterior::measure() {
         held != nullptr ? held->measure(state_.motion) : std::vector<double>{},
         validity_measures(*parts_.model, parts_.deforms, u_, state_.motion.stored, state_.turned)})
     out.insert(out.end(), more.begin(), more.end());
+  if (stabilised()) {
+    const std::vector<double> held = stabilisation_measures(
+        *parts_.model, *parts_.scheme.integrator->able().statics, state_.motion);
+    out.insert(out.end(), held.begin(), held.end());
+  }
   if (surfaces_ != nullptr) touch_measures(touched_, *surfaces_, state_.port_force, places_, out);
   if (crossings_) out.push_back(state_.crossed);
   return out;

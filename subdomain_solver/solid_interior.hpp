@@ -133,6 +133,10 @@ class SolidInterior final : public Interior,
     double crossed = 0.0;            // most pairs of facets that crossed each other, at records
   };
 
+  bool stabilised() const {  // because contact alone holds it
+    const QuasiStatic* statics = parts_.scheme.integrator->able().statics;
+    return statics != nullptr && statics->stabilisation() != nullptr;
+  }
   void describe(std::string name, const std::vector<PortNodes>& ports);
   void find_traits();
   void find_abilities();

@@ -21,7 +21,8 @@ QUAD8 = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1)]
 HEX20 = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2),
          (1, 0, 0), (0, 1, 0), (0, 0, 1), (2, 1, 0), (2, 0, 1), (1, 2, 0), (2, 2, 1), (0, 2, 1),
          (1, 0, 2), (0, 1, 2), (2, 1, 2), (1, 2, 2)]
-GMSH_TYPES = {2: 1, 4: 3, 3: 8, 8: 16, 20: 17}  # nodes of a cell: Gmsh's number of it
+# Dimension and nodes of a cell: Gmsh's number of it.
+GMSH_TYPES = {(1, 2): 1, (2, 4): 3, (1, 3): 8, (2, 8): 16, (3, 8): 5, (3, 20): 17}
 
 
 def graded(half, count):
@@ -111,7 +112,7 @@ def write(path, points, groups):
     lines += ["$EndNodes", "$Elements", f"{len(groups)} {total} 1 {total}"]
     element = 0
     for tag, (dim, _, cells) in enumerate(groups, 1):
-        lines.append(f"{dim} {tag} {GMSH_TYPES[len(cells[0])]} {len(cells)}")
+        lines.append(f"{dim} {tag} {GMSH_TYPES[dim, len(cells[0])]} {len(cells)}")
         for cell in cells:
             element += 1
             lines.append(" ".join(str(n) for n in [element] + [number[p] for p in cell]))

@@ -24,7 +24,33 @@ double told(const Description& body, std::span<const double> values, const std::
   return found != body.measures.end() && at < values.size() ? values[at] : 0.0;
 }
 
+/// The motion along which a body was held, for people.
+std::string stabilised_motion(const Description& body, std::span<const double> values) {
+  std::string words;
+  double most = 0.0;
+  for (const char axis : std::string("xyz")) {
+    const double force = told(body, values, std::string("stabilisation.force.") + axis);
+    if (std::abs(force) <= most) continue;
+    most = std::abs(force);
+    words = fmt::format("moving along {}{}", force > 0.0 ? '-' : '+', axis);
+  }
+  const bool turns = most < 0.5 * told(body, values, "stabilisation.force");
+  return turns ? "turning as a whole" : words;
+}
+
 }  // namespace
+
+std::string unheld(const Description& body, std::span<const double> values) {
+  const double share = told(body, values, "stabilisation.share");
+  const double allowed = told(body, values, "stabilisation.at_most");
+  if (share <= allowed) return "";
+  return fmt::format(
+      "body '{0}' is held against {1} by nothing: its stabilisation bears {2:.3g} % of the forces "
+      "on it at the end, {3:g} % are allowed. Hold it by a constraint, lay something in its way, "
+      "let the load stand for some more steps, or lower stabilisation.stiffness of its integrator "
+      "where partners move it far (bodies.{0}.integrator.quasi_static.stabilisation)",
+      body.name, stabilised_motion(body, values), 100.0 * share, 100.0 * allowed);
+}
 
 std::vector<std::string> validity_notes(const Description& body, std::span<const double> values) {
   std::vector<std::string> notes;
@@ -45,6 +71,13 @@ std::vector<std::string> validity_notes(const Description& body, std::span<const
                     "which contact.self, schwarz.on_nonconvergence or a body without a passive "
                     "form has kept away",
                     body.name));
+  if (told(body, values, "stabilisation.at_most") > 0.0)
+    notes.push_back(fmt::format(
+        "{} is held as a whole by contact alone and was stabilised: at the end that bears {:.2g} % "
+        "of the forces on it, {:.2g} % at most on the way; it took {:.3g} J",
+        body.name, 100.0 * told(body, values, "stabilisation.share"),
+        100.0 * told(body, values, "stabilisation.share_max"),
+        told(body, values, "stabilisation.work")));
   const double share = told(body, values, "energy.hourglass_share");
   const double stored = told(body, values, "energy.stored");
   const double all = stored + told(body, values, "energy.kinetic");

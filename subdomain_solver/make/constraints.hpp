@@ -25,9 +25,4 @@ ConstraintSpec mirrored(const Mesh& mesh, ConstraintSpec spec);
 /// What a scene's constraints prescribe on a mesh. Throws InputError.
 Constraints make_constraints(const BodySpec& spec, const Place& place, const Mesh& mesh);
 
-/// Rigid motions that its supports leave a quasi-static body, as QuasiStatic::Options has them.
-/// Throws InputError where there are any and no port is joined: nothing else would stop them.
-Eigen::MatrixXd check_statics(const BodySpec& spec, const Place& place, const FeModel& model,
-                              const std::vector<Prescribed>& supports, bool joined);
-
 }  // namespace abut

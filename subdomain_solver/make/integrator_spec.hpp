@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <variant>
 
 #include <fmt/format.h>
 
 #include "base/fields.hpp"
+#include "subdomain_solver/make/stabilisation_spec.hpp"
 #include "subdomain_solver/mass_form.hpp"
 
 namespace abut {
@@ -106,11 +108,15 @@ struct QuasiStaticSpec {  // of solids only
   static constexpr SchemeKind kind = SchemeKind::statics;
   double step = 0.0;
   int halvings = 8;
+  std::optional<StabilisationSpec> stabilisation;
   void fields(Fields& f) {
     f.required("step", step, "s", step_help, positive);
     f.optional("halvings", halvings, "",
                "number of times that a step may be halved where Newton's method fails",
                between(0, 30));
+    f.optional_section("stabilisation", stabilisation,
+                       "what holds a body as a whole until contact does; absent: the same with its "
+                       "defaults, where constraints and ties leave the body free");
   }
 };
 struct RigidMotionSpec {  // of rigid bodies only

@@ -13,6 +13,7 @@
 #include "subdomain_solver/make/material.hpp"
 #include "subdomain_solver/make/mesh.hpp"
 #include "subdomain_solver/make/scheme.hpp"
+#include "subdomain_solver/make/statics.hpp"
 #include "subdomain_solver/modal/modal_basis.hpp"
 #include "subdomain_solver/modal/modal_map.hpp"
 #include "subdomain_solver/modal/modal_model.hpp"
@@ -115,7 +116,7 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
       constraints.frames);
   FeModel& nodes = *parts.model;
   check_mass(nodes.lumped_mass().minCoeff(), nodes.lumped_mass().maxCoeff(), spec, place);
-  check_statics(spec, place, nodes, constraints.supports, false);
+  check_statics(spec, place, nodes, constraints.supports, {});
   std::vector<int> supports;
   for (const Prescribed& p : constraints.supports) supports.push_back(p.dof);
   const MassForm form = mass_form(*spec.integrator);

@@ -28,7 +28,7 @@ struct SchemeMaker {
   bool alike;   // ... to bodies that integrate alike
   const std::function<double()>& stable_limit;
   const MakeWatch& watch;
-  const Eigen::MatrixXd& loose;
+  const LooseMotions& loose;
 
   SolidInterior::Scheme operator()(const CentralDifferenceSpec& s) const {
     const double limit = stable_limit();
@@ -77,11 +77,17 @@ struct SchemeMaker {
                     "generalised alpha");
   }
   SolidInterior::Scheme operator()(const QuasiStaticSpec& s) const {
-    return {std::make_unique<QuasiStatic>(problem,
-                                          QuasiStatic::Options{newton(), s.halvings, loose, joined},
-                                          linear(Pivots::with_digits)),
+    const double held = loose.stiffness;
+    return {std::make_unique<QuasiStatic>(
+                problem,
+                QuasiStatic::Options{newton(), s.halvings, loose.motions, held, loose.most, joined},
+                linear(Pivots::with_digits)),
             s.step, std::numeric_limits<double>::infinity(), MassForm::lumped,
-            fmt::format("quasi-static, step {:g} s", s.step)};
+            fmt::format("quasi-static, step {:g} s{}", s.step,
+                        held > 0.0 ? fmt::format(", stabilised by {:.4g} N/m as contact alone "
+                                                 "holds it",
+                                                 held)
+                                   : "")};
   }
   template <class Other>
   SolidInterior::Scheme operator()(const Other&) const {
@@ -94,8 +100,7 @@ struct SchemeMaker {
     using Accelerations = ImplicitDynamics::Accelerations;
     Accelerations accelerations = Accelerations::balanced;
     if (joined && weights.is_trapezoidal()) accelerations = Accelerations::summed;
-    if (joined && weights.gamma > 0.5 && alike)
-      accelerations = Accelerations::steady;
+    if (joined && weights.gamma > 0.5 && alike) accelerations = Accelerations::steady;
     return {std::make_unique<ImplicitDynamics>(
                 problem, ImplicitDynamics::Options{weights, mass, newton(), accelerations},
                 linear(Pivots::every)),
@@ -145,7 +150,7 @@ MassForm mass_form(const BodySpec::Integrator& integrator) {
 SolidInterior::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
                                   const std::vector<SolidInterior::PortNodes>& ports,
                                   const std::function<double()>& stable_limit,
-                                  const MakeWatch& watch, const Eigen::MatrixXd& loose) {
+                                  const MakeWatch& watch, const LooseMotions& loose) {
   const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
   const bool alike = std::ranges::all_of(ports, [&spec](const SolidInterior::PortNodes& port) {
     return spec.context.role(port.name).alike;

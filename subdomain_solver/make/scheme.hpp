@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "subdomain_solver/make/body_spec.hpp"
+#include "subdomain_solver/make/statics.hpp"
 #include "subdomain_solver/place.hpp"
 #include "subdomain_solver/solid_interior.hpp"
 #include "subdomain_solver/time/frequency_watch.hpp"
@@ -11,7 +12,7 @@ namespace abut {
 
 /// The ports that a scene gives a solid: sides or node sets of its mesh. Throws InputError.
 std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Place& place,
-                                             const Mesh& mesh);
+                                                 const Mesh& mesh);
 
 /// The mass matrix that a scheme takes.
 MassForm mass_form(const BodySpec::Integrator& integrator);
@@ -27,6 +28,6 @@ using MakeWatch = std::function<std::unique_ptr<FrequencyWatch>()>;
 SolidInterior::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
                                   const std::vector<SolidInterior::PortNodes>& ports,
                                   const std::function<double()>& stable_limit,
-                                  const MakeWatch& watch = {}, const Eigen::MatrixXd& loose = {});
+                                  const MakeWatch& watch = {}, const LooseMotions& loose = {});
 
 }  // namespace abut

@@ -17,6 +17,7 @@
 #include "subdomain_solver/make/mesh.hpp"
 #include "subdomain_solver/make/overlap.hpp"
 #include "subdomain_solver/make/scheme.hpp"
+#include "subdomain_solver/make/statics.hpp"
 #include "subdomain_solver/place.hpp"
 #include "subdomain_solver/port_geometry.hpp"
 #include "subdomain_solver/solid_interior.hpp"
@@ -145,9 +146,13 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   for (const Prescribed& p : constraints.supports) held.push_back(p.dof);
   if (!layer.empty())
     parts.massive_surface = !give_layer(model, std::move(layer), held, spec, place);
-  const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
-  const Eigen::MatrixXd loose = check_statics(spec, place, model, constraints.supports, joined);
-  if (loose.cols() > 0) parts.loose = translations_and_rotations(model, loose);
+  const bool touched =
+      model.mesh().dim > 1 && std::ranges::any_of(ports, &SolidInterior::PortNodes::touched);
+  const LooseMotions loose =
+      check_statics(spec, place, model, constraints.supports,
+                    {std::ranges::any_of(ports, &SolidInterior::PortNodes::joined), touched});
+  if (loose.stiffness == 0.0 && loose.motions.cols() > 0)
+    parts.loose = translations_and_rotations(model, loose.motions);
   parts.pressed_over = interference_of(spec, parts.massive_surface, place);
   parts.map = std::make_unique<IdentityMap>();
   parts.problem = std::make_unique<Problem>();

@@ -5,8 +5,8 @@
 
 namespace abut {
 
-LooseSolver::LooseSolver(std::unique_ptr<LinearSolver> inner, Eigen::MatrixXd motions)
-    : inner_(std::move(inner)), motions_(std::move(motions)) {
+LooseSolver::LooseSolver(std::unique_ptr<LinearSolver> inner, Eigen::MatrixXd motions, double give)
+    : inner_(std::move(inner)), motions_(std::move(motions)), give_(give) {
   const Eigen::VectorXi order = pivot_order(motions_.transpose());
   held_.assign(order.data(), order.data() + motions_.cols());
 }
@@ -23,11 +23,12 @@ bool LooseSolver::factor(const SparseMatrix& matrix) {
   for (Eigen::Index i = 0; i < k; ++i) columns(held_[static_cast<std::size_t>(i)], i) = spring;
   columns.rightCols(k) = motions_ / static_cast<double>(n);
   if (!inner_->solve_columns(columns, answers_)) return false;
-  // x = y + answers [w; -m] with w = x at the springs, and nothing of the motions.
+  // x = y + answers [w; -m] with w = x at the springs, and of the motions what m / s is.
   Eigen::MatrixXd closing(2 * k, 2 * k);
   closing.topRows(k) = -answers_(held_, Eigen::all);
   closing.topLeftCorner(k, k).diagonal().array() += 1.0;
   closing.bottomRows(k) = -(motions_.transpose() * answers_) / static_cast<double>(n);
+  closing.bottomRightCorner(k, k).diagonal().array() -= give_;
   closing_.compute(closing);
   return true;
 }

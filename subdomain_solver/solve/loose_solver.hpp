@@ -12,21 +12,25 @@ namespace abut {
 ///
 ///   K x + C m = b,  C^T x = 0,   C = R / n,  R^T C = 1
 ///
+/// or, where they are stabilised by a stiffness s, C^T x = m / s  [M.143].
+///
 /// The inner solver factors K with springs at as many coordinates as there are motions; what these
 /// do wrong is taken back exactly.
 class LooseSolver final : public LinearSolver {
  public:
-  /// `motions`: R (n, k), columns of length sqrt(n) at right angles; n: coordinates of K.
-  LooseSolver(std::unique_ptr<LinearSolver> inner, Eigen::MatrixXd motions);
+  /// `motions`: R (n, k), columns of length sqrt(n) at right angles; n: coordinates of K. `give`:
+  /// 1 / s [m/N]; 0: nothing gives way.
+  LooseSolver(std::unique_ptr<LinearSolver> inner, Eigen::MatrixXd motions, double give = 0.0);
 
   [[nodiscard]] bool factor(const SparseMatrix& matrix) override;
   [[nodiscard]] bool solve(const Vector& b, Vector& x) override;
-  /// The same for C^T x = a (k); and m (k).
+  /// The same for C^T x - m / s = a (k); and m (k).
   [[nodiscard]] bool solve(const Vector& b, const Vector& a, Vector& x, Vector& m);
 
  private:
   std::unique_ptr<LinearSolver> inner_;
   Eigen::MatrixXd motions_;
+  double give_;
   std::vector<int> held_;  // coordinates with springs, which determine R
   SparseMatrix sprung_;
   Eigen::MatrixXd answers_;  // (n, 2k) of the inner solver: to the springs' forces, to C

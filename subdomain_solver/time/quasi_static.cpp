@@ -42,7 +42,7 @@ class QuasiStatic::Balance final : public Equations {
 
   /// Rigidly to where the loose motions are to be.
   void carry(Vector& x) const {
-    if (o_.loose_.cols() > 0)
+    if (o_.carries())
       x += o_.loose_ * (o_.place_ - o_.loose_.transpose() * x / static_cast<double>(x.size()));
   }
 
@@ -70,7 +70,8 @@ class QuasiStatic::Balance final : public Equations {
     o_.contact_.add_to(b_.external);
     b_.sum = b_.response.force - b_.external;
     o_.free_.pick(b_.sum, r);
-    if (o_.loose_.cols() > 0) {
+    if (o_.stabilisation_) o_.stabilisation_->add_force(x, r);
+    if (o_.carries()) {
       o_.unbalanced_ = -(o_.loose_.transpose() * r);
       r += o_.loose_ * o_.unbalanced_ / static_cast<double>(x.size());
     }
@@ -207,16 +208,20 @@ QuasiStatic::QuasiStatic(const Problem& problem, const Options& options,
       problem_(problem),
       options_(options),
       free_(problem.model->dofs(), problem.supports),
-      loose_(options.loose.cols() > 0 ? Eigen::MatrixXd(options.loose(free_.list(), Eigen::all))
-                                      : Eigen::MatrixXd()),
       solver_(with_motions(std::move(solver))),
       contact_(free_, *solver_) {
   unbalanced_.setZero(loose_.cols());
 }
 
 std::unique_ptr<LinearSolver> QuasiStatic::with_motions(std::unique_ptr<LinearSolver> solver) {
-  if (loose_.cols() == 0) return solver;
-  auto wrapped = std::make_unique<LooseSolver>(std::move(solver), loose_);
+  if (options_.loose.cols() == 0) return solver;
+  const Eigen::MatrixXd motions = options_.loose(free_.list(), Eigen::all);
+  const double give = options_.stabilised > 0.0 ? 1.0 / options_.stabilised : 0.0;
+  if (give > 0.0)
+    stabilisation_.emplace(motions, options_.stabilised, options_.at_most);
+  else
+    loose_ = motions;
+  auto wrapped = std::make_unique<LooseSolver>(std::move(solver), motions, give);
   loose_solver_ = wrapped.get();
   return wrapped;
 }
@@ -236,11 +241,24 @@ bool QuasiStatic::give(const Motion& motion, double time, const Vector& force, c
   return Balance(*this, motion, time).give(force, place, moved, left);
 }
 
+void QuasiStatic::stabilising_force(const Motion& motion, Vector& out) const {
+  out.setZero(static_cast<Eigen::Index>(motion.q.size()));
+  if (stabilisation_) free_.add(stabilisation_->held(motion), out);
+}
+
+/// Puts down what held the loose motions in a step.
+void QuasiStatic::settle(Motion& motion) {
+  Vector& acting = buffers_.pull;
+  free_.pick(view(motion.q), buffers_.x);
+  free_.pick(buffers_.external, acting);
+  stabilisation_->settle(buffers_.x, acting.lpNorm<1>(), motion);
+}
+
 std::optional<Failed> QuasiStatic::begin(Motion& motion, double time) {
   motion.history.resize(problem_.model->history_size(), 0.0);
   motion.a.assign(motion.q.size(), 0.0);
   motion.force.assign(motion.q.size(), 0.0);
-  if (options_.joined) return stand(motion, time);
+  if (options_.joined || stabilisation_) return stand(motion, time);
   const NewtonReport report = part(motion, time, nullptr);
   if (!report.converged()) return failed_newton(report, time);
   return std::nullopt;
@@ -284,14 +302,18 @@ std::optional<Failed> QuasiStatic::step(Motion& motion, double time, double dt) 
   const double smallest = std::ldexp(dt, -options_.most_halvings);
   double done = 0.0, length = dt;
   Vector from, to;
-  if (loose_.cols() > 0) {
+  if (stabilisation_) {
+    free_.pick(view(before_.q), buffers_.x);
+    stabilisation_->begin(buffers_.x);
+  }
+  if (carries()) {
     from = place_of(before_);
     to = carried_.size() > 0 ? carried_ : from;
   }
   while (done < dt) {
     const bool last = done + length >= dt * (1.0 - 1.0e-12);
     const double end = last ? time + dt : time + done + length;
-    if (loose_.cols() > 0) place_ = last ? to : from + (end - time) / dt * (to - from);
+    if (carries()) place_ = last ? to : from + (end - time) / dt * (to - from);
     const NewtonReport report = part(motion, end, problem_.contact);
     if (report.converged()) {
       done = last ? dt : done + length;
@@ -305,6 +327,7 @@ std::optional<Failed> QuasiStatic::step(Motion& motion, double time, double dt) 
       return failed_newton(report, end, problem_.contact);
     }
   }
+  if (stabilisation_) settle(motion);
   view(motion.v) = (view(motion.q) - view(before_.q)) / dt;
   return std::nullopt;
 }

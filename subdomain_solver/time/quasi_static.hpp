@@ -4,6 +4,7 @@
 #include "subdomain_solver/solve/newton.hpp"
 #include "subdomain_solver/time/contact_turns.hpp"
 #include "subdomain_solver/time/integrator.hpp"
+#include "subdomain_solver/time/stabilisation.hpp"
 
 namespace abut {
 
@@ -14,7 +15,8 @@ namespace abut {
 ///
 /// A body that its supports leave rigid motions is carried by them where it is told (carry_to), and
 /// the rest of its balance is solved; what is left over of the forces along these motions is told
-/// (unbalanced), for partners to make it nothing  [M.112].
+/// (unbalanced), for partners to make it nothing  [M.112]. Where contact alone holds them they are
+/// stabilised instead  [M.143].
 class QuasiStatic final : public Integrator {
  public:
   struct Options {
@@ -23,7 +25,9 @@ class QuasiStatic final : public Integrator {
     // (dofs, k) rigid motions that its supports leave it, 0 there; columns of length sqrt(n) at
     // right angles, n: free coordinates
     Eigen::MatrixXd loose = {};
-    bool joined = false;  // the first equilibrium is that of the first step, with its partners
+    double stabilised = 0.0;  // [N/m] stiffness that holds the loose motions; 0: they are carried
+    double at_most = 0.0;     // share of all that presses on the body, that it may bear at the end
+    bool joined = false;      // the first equilibrium is that of the first step, with its partners
   };
 
   QuasiStatic(const Problem& problem, const Options& options, std::unique_ptr<LinearSolver> solver);
@@ -36,7 +40,12 @@ class QuasiStatic final : public Integrator {
 
   /// [m] (k) where its loose motions are at the end of the next step; empty: where they are.
   void carry_to(std::span<const double> place);
-  /// [N] (k) of what acts, along the loose motions, in the last step.
+  /// What holds the loose motions; null: nothing has to.
+  const Stabilisation* stabilisation() const { return stabilisation_ ? &*stabilisation_ : nullptr; }
+  /// [N] (dofs) with which it held the body at the end of the last step.
+  void stabilising_force(const Motion& motion, Vector& out) const;
+  /// [N] (k) of what acts, along the loose motions, in the last step; of what is stabilised
+  /// nothing.
   std::span<const double> unbalanced() const {
     return {unbalanced_.data(), index(unbalanced_.size())};
   }
@@ -61,11 +70,14 @@ class QuasiStatic final : public Integrator {
   [[nodiscard]] std::optional<Failed> stand(Motion& motion, double time);
   std::unique_ptr<LinearSolver> with_motions(std::unique_ptr<LinearSolver> solver);
   Vector place_of(const Motion& motion) const;
+  bool carries() const { return loose_.cols() > 0; }
+  void settle(Motion& motion);
 
   const Problem& problem_;
   Options options_;
   FreeCoordinates free_;
-  Eigen::MatrixXd loose_;                // of the free coordinates
+  std::optional<Stabilisation> stabilisation_;
+  Eigen::MatrixXd loose_;                // of the free coordinates: those that are carried
   Vector carried_, place_, unbalanced_;  // to where in the step, and in a part of it
   LooseSolver* loose_solver_ = nullptr;  // the solver, where there are loose motions
   std::unique_ptr<LinearSolver> solver_;

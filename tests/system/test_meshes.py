@@ -17,6 +17,7 @@ class Meshes(unittest.TestCase):
     SCRIPTS = {
         "elliptic_rings.py": ["elliptic_membrane.msh", "elliptic_plate.msh"],
         "bolt.py": ["bolt.msh"],
+        "flange_bolt.py": ["flange_bolt.msh"],
         "plate_with_hole.py": ["plate_with_hole.msh"],
         "gears.py": ["gear_12.msh", "gear_18.msh"],
     }

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vector>
+
+#include "subdomain_solver/model.hpp"
+
+namespace abut {
+
+/// What holds rigid motions of a body without inertia that nothing but contact holds: springs that
+/// begin every step where the body is, so that their force vanishes as the body settles  [M.143]
+///
+///   r(q) - f + C m = 0,   m = s (C^T q - a),   C = R / n
+///
+/// a: C^T q at the step's begin. What they bore is kept in the motion, so that it can be told.
+class Stabilisation {
+ public:
+  /// `motions`: R (n, k) of the free coordinates, columns of length sqrt(n) at right angles;
+  /// `stiffness`: s [N/m]; `at_most`: of all that presses on the body, that it may bear at the end.
+  Stabilisation(Eigen::MatrixXd motions, double stiffness, double at_most)
+      : motions_(std::move(motions)), stiffness_(stiffness), at_most_(at_most) {}
+
+  double at_most() const { return at_most_; }
+
+  /// A step begins at x [m] (n).
+  void begin(const Vector& x) { anchor_ = place_of(x); }
+  /// Adds C m to a balance (n), at x.
+  void add_force(const Vector& x, Vector& balance) const;
+  /// A step ends at x, where forces [N] of these magnitudes act on the body, summed over all
+  /// coordinates: puts down what was borne, and the work that it took.
+  void settle(const Vector& x, double loads, Motion& motion) const;
+
+  /// What a motion remembers.
+  struct Told {
+    double force = 0.0;       // [N] at the end of the last step, summed over all coordinates
+    double share = 0.0;       // of all that presses on the body then
+    double share_most = 0.0;  // at the end of any step
+    double work = 0.0;        // [J] since the run began
+  };
+  static Told told(const Motion& motion);
+  /// [N] (n) with which it held the body at the end of the last step.
+  Vector held(const Motion& motion) const;
+
+ private:
+  Vector place_of(const Vector& x) const {
+    return motions_.transpose() * x / static_cast<double>(x.size());
+  }
+  Vector spread(const Vector& along) const {
+    return motions_ * along / static_cast<double>(motions_.rows());
+  }
+
+  Eigen::MatrixXd motions_;
+  double stiffness_, at_most_;
+  Vector anchor_;  // [m] (k)
+};
+
+}  // namespace abut

@@ -1,0 +1,171 @@
+// Goal: bodies without inertia that contact alone holds come to rest in equilibrium, whatever
+// stabilises them on the way, and a run says how much of the forces that bears.
+// Oracles: columns under pressure in closed form, balance of forces, Coulomb's law, other
+// stiffnesses of the stabilisation.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/refusal.hpp"
+#include "tests/support/runs.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace abut {
+namespace {
+
+/// Blocks of 1 m on each other, the lowest held, pressed by a load on the last one that grows until
+/// half of the time.
+struct Column {
+  int dim = 2, floating = 1;
+  double friction = 0.0, push = 0.0;  // [Pa] on the left of the last one
+  double gap = 0.0;                   // [m] below each
+  std::string stabilisation = {};     // its keys
+  std::string law = "linear_elastic";
+  bool upper_first = false;
+  double pressure = 2.0e3;  // [Pa]
+
+  static constexpr double youngs = 1.0e6;  // [Pa]
+  static constexpr int windows = 8;
+
+  SolidText block(int k) const {
+    std::vector<double> position(index(dim), 0.0);
+    position[1] = k * (1.0 + gap);
+    SolidText out{.name = fmt::format("b{}", k),
+                  .material = fmt::format("{}: {{youngs_modulus: {}, poissons_ratio: 0.0, "
+                                          "density: 1000.0}}",
+                                          law, youngs),
+                  .integrator = "quasi_static: {step: 1.0}",
+                  .position = position,
+                  .sides = {"bottom", "top"},
+                  .block = block_in(dim, {1.0, 1.0, 1.0}, {2 + k % 2, 2, 2})};
+    if (k == 0) {
+      out.sides = {"top"};
+      out.more = "    constraints: {floor: {on: bottom, fixed: true}}\n";
+      return out;
+    }
+    if (!stabilisation.empty())
+      out.integrator =
+          fmt::format("quasi_static: {{step: 1.0, stabilisation: {{{}}}}}", stabilisation);
+    if (k < floating) return out;
+    const char* grows = "min(t / 4, 1)";
+    const char* none = dim == 3 ? ", '0'" : "";
+    out.sides = {"bottom"};
+    out.more = fmt::format(
+        "    loads:\n      lid: {{on: top, traction: ['0', '{} * {}'{}]}}\n"
+        "      push: {{on: left, traction: ['{} * {}', '0'{}]}}\n",
+        -pressure, grows, none, push, grows, none);
+    return out;
+  }
+  ResultPtr run() const {
+    std::vector<SolidText> bodies;
+    std::string joints;
+    for (int k = 0; k <= floating; ++k) bodies.push_back(block(k));
+    for (int k = 0; k < floating; ++k)
+      joints += fmt::format("  j{0}: {{sides: [b{1}.{2}, b{3}.{4}], contact: {{friction: {5}}}}}\n",
+                            k, upper_first ? k + 1 : k, upper_first ? "bottom" : "top",
+                            upper_first ? k : k + 1, upper_first ? "top" : "bottom", friction);
+    return run_solids(windows, 1.0, bodies, joints);
+  }
+};
+
+double reaction(const RunResult& run, const std::string& axis) {
+  return run.measure("body.b0.floor.reaction." + axis);
+}
+
+TEST(StabilisedStatics, ColumnsShortenAsHeldOnesDo) {
+  for (const int dim : {2, 3}) {
+    for (const int floating : {1, 2}) {
+      for (const bool upper_first : {false, true}) {
+        for (const double gap : {0.0, 1.0e-3}) {
+          const Column column{
+              .dim = dim, .floating = floating, .gap = gap, .upper_first = upper_first};
+          SCOPED_TRACE(fmt::format("{}D, {} floating, upper first {}, gap {}", dim, floating,
+                                   upper_first, gap));
+          const auto run = column.run();
+          ASSERT_TRUE(run->completed()) << run->end.reason;
+          // What stabilises falls to a thousandth of it with every step of constant load.
+          EXPECT_NEAR(reaction(*run, "y"), column.pressure, 1.0e-8 * column.pressure);
+          for (int k = 1; k <= floating; ++k) {
+            // Each block is shortened by p L / E, and its mean node has gone down by half of that
+            // and by all of those below.
+            const double down = column.pressure / Column::youngs * (k + 0.5) + k * gap;
+            const std::string body = fmt::format("body.b{}.", k);
+            // The sweeps' tolerance.
+            EXPECT_NEAR(run->measure(body + "displacement.y.mean"), -down, 1.0e-6 * down);
+            // Four such steps, and round-off.
+            EXPECT_LT(run->measure(body + "stabilisation.share"), 1.0e-8);
+          }
+          // Across a gap the force of a step's end does work of the mean of none and itself.
+          const double drift = run->measure("energy.total.relative_drift_end");
+          if (gap == 0.0) EXPECT_NEAR(drift, 0.0, 1.0e-6);  // sweeps' tolerance
+        }
+      }
+    }
+  }
+}
+
+TEST(StabilisedStatics, AnswersDoNotDependOnTheStiffness) {
+  Column column{.floating = 2, .friction = 0.3, .push = 400.0};
+  const auto given = column.run();
+  column.stabilisation = "stiffness: 5.0e-4";
+  const auto half = column.run();
+  ASSERT_TRUE(given->completed() && half->completed()) << given->end.reason << half->end.reason;
+  for (const char* measure : {"body.b2.displacement.y.mean", "body.b2.displacement.x.mean"}) {
+    const double value = given->measure(measure);
+    // The load stands for the last four steps: what is left is what stuck while it grew, and the
+    // sweeps' tolerance. Measured 3e-6.
+    EXPECT_NEAR(half->measure(measure), value, 1.0e-5 * std::abs(value)) << measure;
+  }
+}
+
+TEST(StabilisedStatics, BodiesOfFiniteStrainSettleToo) {
+  const Column column{.stabilisation = "stiffness: 1.0e-2", .law = "neo_hookean"};
+  const auto run = column.run();
+  ASSERT_TRUE(run->completed()) << run->end.reason;
+  // A hundredth of what stabilises is left after every step of constant load: four.
+  EXPECT_NEAR(reaction(*run, "y"), column.pressure, 1.0e-7 * column.pressure);
+  EXPECT_LT(run->measure("body.b1.stabilisation.share"), 1.0e-7);  // as above
+}
+
+TEST(StabilisedStatics, FrictionBearsAPush) {
+  for (const int dim : {2, 3}) {
+    const Column column{.dim = dim, .floating = 2, .friction = 0.5, .push = 400.0};
+    const auto run = column.run();
+    ASSERT_TRUE(run->completed()) << dim << run->end.reason;
+    // Of a column that sticks all goes down to the floor; stabilisation as above.
+    EXPECT_NEAR(reaction(*run, "x"), -400.0, 1.0e-5 * 400.0) << dim;                     // sweeps
+    EXPECT_NEAR(reaction(*run, "y"), column.pressure, 1.0e-6 * column.pressure) << dim;  // alike
+  }
+}
+
+TEST(StabilisedStatics, WhatNothingHoldsEndsTheRun) {
+  // More than friction can bear: 0.1 times 2 kN, and the rest is left to the stabilisation.
+  const auto slides =
+      Column{.friction = 0.1, .push = 400.0, .stabilisation = "stiffness: 0.1"}.run();
+  EXPECT_EQ(slides->end.status, "failed");
+  EXPECT_NE(slides->end.reason.find("body 'b1' is held against moving along +x by nothing"),
+            std::string::npos)
+      << slides->end.reason;
+  const auto pulled = Column{.pressure = -2.0e3}.run();
+  EXPECT_EQ(pulled->end.status, "failed");
+  EXPECT_NE(pulled->end.reason.find("moving along +y"), std::string::npos) << pulled->end.reason;
+  const auto asked =
+      Column{.friction = 0.1, .push = 400.0, .stabilisation = "stiffness: 0.1, at_most: 1.0"}.run();
+  EXPECT_TRUE(asked->completed()) << asked->end.reason;
+}
+
+TEST(StabilisedStatics, KeysWithoutEffectAreRefused) {
+  Column column;
+  SolidText held = column.block(1);
+  held.integrator = "quasi_static: {step: 1.0, stabilisation: {}}";
+  held.more = "    constraints: {lid: {on: top, fixed: true}}\n";
+  const std::string message = refusal([&] {
+    run_solids(1.0, 1.0, {column.block(0), held},
+               "  j: {sides: [b0.top, b1.bottom], contact: {}}\n");
+  });
+  EXPECT_NE(message.find("stabilisation: has no effect"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace abut
