@@ -113,6 +113,15 @@ std::optional<double> interference_of(const BodySpec& spec, bool massive_surface
   return over;
 }
 
+void check_threads(const FeModelSpec& fe, const FeModel& model, const Place& place) {
+  if (fe.threads <= 1 || model.threads() != nullptr) return;
+  const bool shares = std::ranges::any_of(
+      model.mesh().blocks, [](const CellBlock& block) { return !block.shares.empty(); });
+  throw InputError(fmt::format("have no effect: one thread computes the elements of {}",
+                               shares ? "bodies that overlap" : "this law or formulation"),
+                   place.where("model.fe.threads"), "Leave threads out.");
+}
+
 }  // namespace
 
 std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
@@ -134,13 +143,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
                                 constraints.frames);
   FeModel& model = *parts.model;
   check_mass(model.lumped_mass().minCoeff(), model.lumped_mass().maxCoeff(), spec, place);
-  if (fe.threads > 1 && model.threads() == nullptr) {
-    const bool shares = std::ranges::any_of(
-        model.mesh().blocks, [](const CellBlock& block) { return !block.shares.empty(); });
-    throw InputError(fmt::format("have no effect: one thread computes the elements of {}",
-                                 shares ? "bodies that overlap" : "this law or formulation"),
-                     place.where("model.fe.threads"), "Leave threads out.");
-  }
+  check_threads(fe, model, place);
   std::vector<int> layer = layer_coordinates(model, spec, ports, constraints, place);
   std::vector<int> held;  // coordinates, ascending
   for (const Prescribed& p : constraints.supports) held.push_back(p.dof);
