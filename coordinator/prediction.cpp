@@ -64,9 +64,8 @@ std::optional<Prediction> predict(const ProbedRun& probe, double end, double sta
   const double free = rates.free.value_or(rates.closed.value_or(0.0) / rates.iterations);
   const double closed = rates.closed.value_or(free * outlook.sweeps);
   Prediction out{0.0, with(std::min(free, closed)), with(std::max(free, closed)), false};
-  const bool stays = outlook.lasting && probe.stretches.back().closed;
-  out.seconds = stays ? with(closed) : std::sqrt(out.low * out.high);
-  if (stays) out.low = out.high = out.seconds;
+  if (outlook.lasting && probe.stretches.back().closed) out.low = out.high = with(closed);
+  out.seconds = std::sqrt(out.low * out.high);
   return out;
 }
 
@@ -78,7 +77,7 @@ std::string to_text(const Prediction& prediction, const ProbedRun& probe, double
                     double memory_mib, std::size_t processes) {
   std::string text = fmt::format("  time       about {}", time_words(prediction.seconds));
   if (prediction.high > 1.3 * prediction.low)
-    text += fmt::format(", {} to {} as contact lasts", time_words(prediction.low),
+    text += fmt::format(", {} to {} as contact goes on", time_words(prediction.low),
                         time_words(prediction.high));
   const auto closed = std::ranges::count_if(probe.stretches, &ProbedRun::Stretch::closed);
   const std::string seen =

@@ -45,9 +45,9 @@ std::string shares_words(const Shares& shares, std::span<const std::string> name
       others += share;
     }
   }
-  if (named < order.size())
-    text += fmt::format("{} {} {:.0f} %, ", order.size() - named, named == 0 ? "bodies" : "others",
-                        100.0 * others);
+  const std::size_t left = order.size() - named;
+  const char* word = named == 0 ? "bodies" : left == 1 ? "other" : "others";
+  if (left > 0) text += fmt::format("{} {} {:.0f} %, ", left, word, 100.0 * others);
   return text + fmt::format("coupling {:.0f} %", 100.0 * shares.coupling);
 }
 

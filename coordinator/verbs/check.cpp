@@ -98,7 +98,9 @@ std::string predicted(const Scene& scene, const Document& document, const Estima
   const std::optional<Prediction> prediction = predict(
       probe, scene.time.end, startup.count(), outlook_of(scene, document, estimate, bodies));
   if (!prediction)
-    return fmt::format("  time       not predicted: no window has ended in {:.2g} s\n", probe.wall);
+    return fmt::format(
+        "  time       not predicted: no window has ended in {:.2g} s; give a longer --probe\n",
+        probe.wall);
   std::vector<std::string> names;
   for (const Description* body : bodies) names.push_back(body->name);
   return to_text(*prediction, probe, scene.time.end, memory, processes.size() + 1) +
