@@ -113,7 +113,7 @@ std::optional<double> interference_of(const BodySpec& spec, bool massive_surface
   return over;
 }
 
-void check_threads(const FeModelSpec& fe, const FeModel& model, const Place& place) {
+void check_threads(const FeModelSpec& fe, FeModel& model, const Place& place) {
   if (fe.threads <= 1 || model.threads() != nullptr) return;
   const bool shares = std::ranges::any_of(
       model.mesh().blocks, [](const CellBlock& block) { return !block.shares.empty(); });
