@@ -42,7 +42,7 @@ class FirstHour(SystemTest):
 
     def save(self, content: str):
         """A file whose first line tells its name."""
-        name = re.match(r"# file: (\S+)\n", content)
+        name = re.match(r"(?:#|\*\*) file: (\S+)\n", content)
         if name:
             (self.folder / name[1]).write_text(content, encoding="utf-8")
 
