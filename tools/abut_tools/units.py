@@ -25,6 +25,8 @@ MEASURES = [(re.compile(pattern), unit) for pattern, unit in (
     (r"body\..+\.(nodal_)?(stress\.[xyz]{2}|von_mises)(\.\w+)?", "Pa"),
     (r"body\..+\.displacement\.[xyz](\.\w+)?", "m"),
     (r"body\..+\.velocity\.[xyz](\.\w+)?", "m/s"),
+    (r"body\..+\.stabilisation\.force", "N"),
+    (r"body\..+\.stabilisation\.work", "J"),
     (r"body\..+\.(reaction|force)\.[xyz]", "N"),
     (r"body\..+\.energy\.(kinetic|stored|dissipated|external_work|hourglass)", "J"),
     (r"body\..+\.stable_step\.min", "s"),
