@@ -83,7 +83,9 @@ Matrix inverse_of(const Matrix& matrix) { return matrix.inverse(); }
 
 double determinant_of(const Matrix& matrix) { return matrix.determinant(); }
 
-bool is_definite(const Matrix& matrix) { return matrix.llt().info() == Eigen::Success; }
+bool factor_definite(Matrix& matrix) {
+  return Eigen::LLT<Eigen::Ref<Matrix>>(matrix).info() == Eigen::Success;
+}
 
 Matrix solve_symmetric(const Matrix& matrix, const Matrix& right) {
   return matrix.ldlt().solve(right);

@@ -47,8 +47,8 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double threshold);
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 double determinant_of(const Eigen::MatrixXd& matrix);
 
-/// A symmetric matrix whose Cholesky factors exist.
-bool is_definite(const Eigen::MatrixXd& matrix);
+/// Whether a symmetric matrix has Cholesky factors, which take its place: no memory is asked for.
+[[nodiscard]] bool factor_definite(Eigen::MatrixXd& matrix);
 /// x of matrix x = right, the matrix symmetric and not indefinite (LDL^T with pivots).
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);

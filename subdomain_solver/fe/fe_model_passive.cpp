@@ -65,7 +65,7 @@ bool FeModel::definite_tangent(std::span<const double> q, std::span<const double
       if (!respond(static_cast<int>(k), c, q, history)) return false;
       Eigen::MatrixXd whole = local_.tangent;
       for (Eigen::Index a = 0; a < whole.rows(); ++a) whole(a, a) += inertia * (*mass)(a / dim);
-      if (!is_definite(whole)) make_definite(local_.tangent);
+      if (!factor_definite(whole)) make_definite(local_.tangent);
       turn(nodes_of(mesh_.blocks[k], c), nullptr, &local_.tangent);
       add_matrix(k, c, reference, local_.tangent, tangent);
     }

@@ -168,7 +168,7 @@ std::optional<FrequencyWatch::Bound> HighestFrequency::cell_bound(std::span<cons
       const double* mass = masses_.data() + first_mass_[b] + index(c) * index(nodes);
       shifted_ = -stiffness_;
       for (int i = 0; i < shifted_.rows(); ++i) shifted_(i, i) += best.square * mass[i / mesh.dim];
-      if (is_definite(shifted_)) continue;
+      if (factor_definite(shifted_)) continue;
       if (!compute(block, c, q, history, best)) return std::nullopt;
     }
   }

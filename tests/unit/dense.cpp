@@ -109,10 +109,11 @@ TEST(Dense, EverySolverSolves) {
 }
 
 TEST(Dense, WhatIsNotDefiniteIsTold) {
-  Matrix a = Matrix::Identity(3, 3);
-  EXPECT_TRUE(is_definite(a));
-  a(2, 2) = -1.0;
-  EXPECT_FALSE(is_definite(a));
+  Matrix a = Matrix::Identity(3, 3), its = 4.0 * a;
+  EXPECT_TRUE(factor_definite(its));
+  EXPECT_EQ(its, 2.0 * a) << "factors take its place";
+  a(2, 2) = its(2, 2) = -1.0;
+  EXPECT_FALSE(factor_definite(its));
   EXPECT_FALSE(DenseFactors(Factoring::cholesky).compute(a));
   EXPECT_TRUE(DenseFactors(Factoring::ldlt).compute(a));
 }
