@@ -1,6 +1,9 @@
-"""A small scene and a study of it, for tests."""
+"""A small scene and a study of it, for tests, which begin with StudyTest."""
 
+import json
 from pathlib import Path
+
+from support import SystemTest
 
 BAR = """\
   {name}:
@@ -53,3 +56,12 @@ def write(folder: Path, study: str = STUDY, scene: str = SCENE) -> Path:
     (folder / "scene.yaml").write_text(scene, encoding="utf-8")
     (folder / "study.yaml").write_text(study, encoding="utf-8")
     return folder / "study.yaml"
+
+
+class StudyTest(SystemTest):
+    def study(self, *arguments: object, text: str = STUDY):
+        path = write(self.folder / "s", text)
+        return self.abut("study", path, "--out", self.out, *arguments)
+
+    def rows(self) -> list:
+        return json.loads((self.out / "results.json").read_text(encoding="utf-8"))

@@ -22,7 +22,7 @@ from types import SimpleNamespace
 
 sys.dont_write_bytecode = True
 import browser  # noqa: E402
-from made_studies import BAR, SCENE, STUDY, write  # noqa: E402
+from made_studies import BAR, SCENE, STUDY, StudyTest, write  # noqa: E402
 from support import ABUT, PACKAGE, ROOT, SystemTest, main  # noqa: E402
 
 sys.path.insert(0, str(PACKAGE))
@@ -38,14 +38,7 @@ def columns(path: Path) -> dict:
     return {name.split(" [")[0]: [float(row[i]) for row in rows] for i, name in enumerate(head)}
 
 
-class Studies(SystemTest):
-    def study(self, *arguments: object, text: str = STUDY):
-        path = write(self.folder / "s", text)
-        return self.abut("study", path, "--out", self.out, *arguments)
-
-    def rows(self) -> list:
-        return json.loads((self.out / "results.json").read_text(encoding="utf-8"))
-
+class Studies(StudyTest):
     def stamps(self) -> dict:
         return {path.parent.name: path.stat().st_mtime_ns
                 for path in self.out.glob("runs/*/run.json")}

@@ -11,18 +11,11 @@ import sys
 from pathlib import Path
 
 sys.dont_write_bytecode = True
-from made_studies import SCENE, STUDY, write  # noqa: E402
-from support import SystemTest, main  # noqa: E402
+from made_studies import SCENE, STUDY, StudyTest, write  # noqa: E402
+from support import main  # noqa: E402
 
 
-class Ends(SystemTest):
-    def study(self, *arguments: object, text: str = STUDY):
-        path = write(self.folder / "s", text)
-        return self.abut("study", path, "--out", self.out, *arguments)
-
-    def rows(self) -> list:
-        return json.loads((self.out / "results.json").read_text(encoding="utf-8"))
-
+class Ends(StudyTest):
     def test_run_that_ends_otherwise_is_told_everywhere_with_its_reason(self):
         text = STUDY.replace("5.0e-6, 2.5e-6, 1e-6", "1.0e-4, 5.0e-6")
         key, reason = "bodies.left.integrator.central_difference.step", "0.0001 s is above the"
