@@ -25,6 +25,8 @@ const char* type_name(char type) {
       return "truth value";
     case 'v':
       return "list of numbers";
+    case 's':
+      return "text";
     default:
       return "unknown type";
   }
@@ -81,6 +83,23 @@ void Archive::field(std::string_view name, std::vector<double>& values) {
     values.resize(count);
   }
   raw(values.data(), count * sizeof(double));
+}
+
+void Archive::field(std::string_view name, std::string& text) {
+  label(name, 's');
+  std::uint64_t count = text.size();
+  raw(&count, sizeof count);
+  if (mode_ == Mode::read) {
+    if (count > in_.size() - at_) fail(name, "is longer than the archive");
+    text.resize(count);
+  }
+  raw(text.data(), count);
+}
+
+void Archive::check_count(std::string_view name, std::int64_t count) const {
+  if (writing()) return;
+  if (count < 0 || static_cast<std::uint64_t>(count) > in_.size() - at_)
+    fail(name, "is longer than the archive");
 }
 
 void Archive::finish() {

@@ -25,11 +25,14 @@ class Archive {
   static Archive reader(std::span<const std::byte> in, Form form);
 
   bool writing() const { return mode_ == Mode::write; }
+  /// Makes sure, when reading, that a list of so many items can be held by what is left.
+  void check_count(std::string_view name, std::int64_t count) const;
 
   void field(std::string_view name, double& value);
   void field(std::string_view name, std::int64_t& value);
   void field(std::string_view name, bool& value);
   void field(std::string_view name, std::vector<double>& values);
+  void field(std::string_view name, std::string& text);
 
   /// Cuts what a longer earlier writing left behind. Throws RunError when a read has left bytes
   /// behind: the archive belongs to another state.

@@ -23,7 +23,8 @@ const std::array<std::pair<std::string, std::string>, 4> tools{{
     {"study", "run a scene with many settings: cost against accuracy"},
 }};
 
-constexpr std::array<std::string_view, 5> own_verbs{"run", "check", "split", "init", "reference"};
+constexpr std::array<std::string_view, 6> own_verbs{"run",   "resume", "check",
+                                                    "split", "init",   "reference"};
 
 /// An empty path is most often a variable of a script that was never set.
 const CLI::Validator named_folder(
@@ -32,12 +33,43 @@ const CLI::Validator named_folder(
     },
     "", "named_folder");
 
-void add_scene(CLI::App& verb, std::string& scene, std::vector<std::string>& overrides) {
-  verb.add_option("scene", scene, "scene file")->required()->type_name("SCENE");
+void add_overrides(CLI::App& verb, std::vector<std::string>& overrides) {
   verb.add_option("--set", overrides,
                   "use this value in place of the scene's, null for none; repeatable")
       ->type_name("key.path=value")
       ->allow_extra_args(false);
+}
+
+void add_scene(CLI::App& verb, std::string& scene, std::vector<std::string>& overrides) {
+  verb.add_option("scene", scene, "scene file")->required()->type_name("SCENE");
+  add_overrides(verb, overrides);
+}
+
+CLI::App& add_run(CLI::App& app, RunCommand& run) {
+  CLI::App& verb = *app.add_subcommand("run", "run a scene and evaluate its expectations");
+  add_scene(verb, run.scene, run.overrides);
+  verb.add_option("--out", run.out, "run directory; default runs/<scene name>")
+      ->type_name("DIR")
+      ->check(named_folder);
+  verb.add_flag("--local", run.local, "all bodies in this process");
+  verb.add_flag("--quiet", run.quiet, "print errors and failed expectations only");
+  verb.add_flag("--force", run.force, "replace the run that DIR holds");
+  return verb;
+}
+
+CLI::App& add_resume(CLI::App& app, ResumeCommand& resume) {
+  CLI::App& verb = *app.add_subcommand("resume", "go on with a run from its latest checkpoint");
+  verb.add_option("directory", resume.directory, "run directory")
+      ->required()
+      ->type_name("DIR")
+      ->check(named_folder);
+  verb.add_option("--scene", resume.scene, "the scene as it is now; default as the run has it")
+      ->type_name("SCENE");
+  verb.add_option("--end", resume.end, "go on up to this time of the scene")->type_name("TIME");
+  add_overrides(verb, resume.overrides);
+  verb.add_flag("--local", resume.local, "all bodies in this process");
+  verb.add_flag("--quiet", resume.quiet, "print errors and failed expectations only");
+  return verb;
 }
 
 CLI::App& add_split(CLI::App& app, SplitCommand& split) {
@@ -101,14 +133,10 @@ Command parse_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
 
   RunCommand run;
-  CLI::App& run_verb = *app.add_subcommand("run", "run a scene and evaluate its expectations");
-  add_scene(run_verb, run.scene, run.overrides);
-  run_verb.add_option("--out", run.out, "run directory; default runs/<scene name>")
-      ->type_name("DIR")
-      ->check(named_folder);
-  run_verb.add_flag("--local", run.local, "all bodies in this process");
-  run_verb.add_flag("--quiet", run.quiet, "print errors and failed expectations only");
-  run_verb.add_flag("--force", run.force, "replace the run that DIR holds");
+  const CLI::App& run_verb = add_run(app, run);
+
+  ResumeCommand resume;
+  const CLI::App& resume_verb = add_resume(app, resume);
 
   CheckCommand check;
   CLI::App& check_verb =
@@ -149,6 +177,7 @@ Command parse_command_line(int argc, const char* const* argv) {
     return code == 0 ? PrintCommand{out.str(), 0} : PrintCommand{"error: " + err.str(), 2};
   }
   if (run_verb.parsed()) return run;
+  if (resume_verb.parsed()) return resume;
   if (check_verb.parsed()) return check;
   if (split_verb.parsed()) return split;
   if (init_verb.parsed()) return init;

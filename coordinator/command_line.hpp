@@ -14,6 +14,14 @@ struct RunCommand {
   bool quiet = false;
   bool force = false;
 };
+struct ResumeCommand {
+  std::string directory;
+  std::string scene;  // empty: as the run has it
+  std::string end;    // empty: the scene's; else in YAML
+  std::vector<std::string> overrides;
+  bool local = false;
+  bool quiet = false;
+};
 struct CheckCommand {
   std::string scene;
   std::vector<std::string> overrides;
@@ -50,8 +58,8 @@ struct PrintCommand {
   int exit_code = 0;  // other than 0: for standard error
 };
 
-using Command = std::variant<RunCommand, CheckCommand, SplitCommand, InitCommand, ReferenceCommand,
-                             ExternalCommand, PrintCommand>;
+using Command = std::variant<RunCommand, ResumeCommand, CheckCommand, SplitCommand, InitCommand,
+                             ReferenceCommand, ExternalCommand, PrintCommand>;
 
 /// Never throws: a command line that is wrong becomes a PrintCommand with exit code 2.
 Command parse_command_line(int argc, const char* const* argv);

@@ -72,14 +72,15 @@ RunEnd Controller::run() {
   try {
     if (!resumed_) start();
     while (running()) {
-      if (between_windows) between_windows();
+      pause();
       join_near();
       if (passive_.active())
         step_passively();
       else if (!fly_free())
         step_window();
     }
-    if (interrupted_ != nullptr && interrupted_->load()) end_.status = "interrupted";
+    if (end_.status == "completed") pause();
+    if (goes_on()) end_.status = "interrupted";
     return finish(wall());  // asks the bodies for their states: they may be lost there as well
   } catch (const std::exception& error) {  // RunError, an InputError of a body, lack of memory
     const bool interrupted = interrupted_ != nullptr && interrupted_->load();
@@ -89,10 +90,18 @@ RunEnd Controller::run() {
   }
 }
 
-bool Controller::running() const {
-  const bool interrupted = interrupted_ != nullptr && interrupted_->load();
-  return end_.status == "completed" && !interrupted && !clock_.at_end();
+void Controller::pause() {
+  if (between_windows)
+    between_windows({clock_.time(), clock_.windows(), clock_.at_end(), goes_on() && !running()});
 }
+
+bool Controller::running() const {
+  return goes_on() && !(interrupted_ != nullptr && interrupted_->load());
+}
+
+/// Whether anything but an interruption ends it: all that a run does between two looks at that is
+/// done whole, so that it resumes as if it had gone on.
+bool Controller::goes_on() const { return end_.status == "completed" && !clock_.at_end(); }
 
 /// What bodies are told before the first window: whom they may meet, and what replies are to hold.
 void Controller::introduce() {
@@ -209,7 +218,7 @@ void Controller::step_window() {
   if (must_go_passively(window)) return step_passively();
   events_.begin(window);
   bodies_.save_all();
-  while (running()) {
+  while (goes_on()) {
     try_window(window);
     const Judgement judgement = judge(window);
     if (judgement.verdict == Judgement::Verdict::accept) return accept(window);

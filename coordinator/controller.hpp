@@ -24,6 +24,14 @@
 
 namespace abut {
 
+/// Between two windows of a run.
+struct Pause {
+  double time = 0.0;         // [s]
+  std::int64_t windows = 0;  // accepted so far
+  bool last = false;         // the end is reached
+  bool interrupted = false;  // no window follows for now
+};
+
 /// The time loop: walks controller windows from the scene's begin to its end.
 ///
 ///   run           observe the start, then fly free or step until the end
@@ -37,7 +45,8 @@ namespace abut {
 /// a window is that of Schwarz; what is told of all this, the Narrator's.
 class Controller {
  public:
-  /// The bodies must outlive the controller. `interrupted` may be null.
+  /// The bodies must outlive the controller. `interrupted`: the run is to end between two windows;
+  /// may be null.
   Controller(const Scene& scene, std::vector<Subdomain*> bodies, std::vector<Observer*> observers,
              const std::atomic<bool>* interrupted = nullptr);
 
@@ -52,8 +61,9 @@ class Controller {
   /// whom they have met; afterwards they must be given their states of that time. Throws RunError
   /// where bytes are of another scene.
   void load(std::span<const std::byte> bytes);
-  /// Called by `run` before every window or flight; may call `save`.
-  std::function<void()> between_windows;
+  /// Called by `run` before every window or flight, and after the last one of a run that has not
+  /// failed; may call `save`.
+  std::function<void(const Pause&)> between_windows;
 
  private:
   struct Attempt {  // of one window
@@ -92,6 +102,8 @@ class Controller {
   void want_opening_accelerations(bool wanted);
   void unite_start();
   bool running() const;
+  bool goes_on() const;
+  void pause();
   void join_near();
   void join(std::span<const PortPair> pairs);
   bool fly_free();
@@ -130,6 +142,7 @@ class Controller {
   void fail(double time, const std::string& text);
   void state(Archive& archive);
   void memory(Archive& archive);
+  void counts(Archive& archive);
   void state_of_pairs(Archive& archive);
   RunEnd finish(double wall_seconds);
   void give_up(const std::exception& error, bool interrupted, double wall_seconds);

@@ -107,7 +107,7 @@ bool Controller::go_passively(double time, const std::string& reason) {
 }
 
 void Controller::step_passively() {
-  if (!running()) return;
+  if (!goes_on()) return;
   const TimeWindow window = clock_.next();
   for (Joint& joint : joints_)  // some came near since
     if (joint.exchange != nullptr && !joint.exchange->met())
@@ -203,7 +203,7 @@ bool Controller::rejoin() {
 /// the midst of contact costs a part of the energy.
 void Controller::go_accurately() {
   if (waiting_.left > 0) --waiting_.left;
-  if (!passive_.quiet() || waiting_.left > 0 || !running()) return;
+  if (!passive_.quiet() || waiting_.left > 0 || !goes_on()) return;
   const bool apart = std::ranges::all_of(joints_, [&](Joint& joint) {
     if (joint.exchange == nullptr || joint.tied()) return true;
     const auto [distance, speed] = joint.watch->approach(joint, bodies_);

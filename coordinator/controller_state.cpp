@@ -15,6 +15,7 @@ std::vector<std::byte> Controller::save() {
   state_of_pairs(archive);
   state(archive);
   memory(archive);
+  counts(archive);
   archive.finish();
   return bytes;
 }
@@ -26,8 +27,9 @@ void Controller::load(std::span<const std::byte> bytes) {
   state_of_pairs(archive);
   state(archive);
   memory(archive);
+  counts(archive);
   archive.finish();
-  narrator_.start(clock_.time(), scene_.time.end,
+  narrator_.start(scene_.time.begin, scene_.time.end,
                   std::span(joints_).first(scene_.interfaces.size()), !broad_phase_.empty());
 }
 
@@ -42,7 +44,7 @@ void Controller::state(Archive& archive) {
 
 /// What the windows to come depend on beside: how far is flown at once, what the guard saw at the
 /// ends of flights, the latest replies, and what iterations learned. What the next window fills
-/// anew is not listed, nor what a run counts for its end alone.
+/// anew is not listed.
 void Controller::memory(Archive& archive) {
   guard_.state(archive);
   bodies_.state(archive);
@@ -56,6 +58,24 @@ void Controller::memory(Archive& archive) {
   whole(archive, "left", waiting_.left);
   whole(archive, "accurate", waiting_.accurate);
   schwarz_.state(archive);
+}
+
+/// What a run counts and tells at its end, of all its windows; and how long these were, which a
+/// resumed run may change.
+void Controller::counts(Archive& archive) {
+  double window = scene_.time.window;
+  archive.field("window", window);
+  if (window != scene_.time.window) clock_.anchor();
+  bodies_.counts(archive);
+  archive.field("contact_windows", end_.contact_windows);
+  list(archive, "overlaps", end_.overlaps, [](Archive& a, Overlap& overlap) {
+    for (int& body : overlap.body) whole(a, "body", body);
+    a.field("depth", overlap.depth);
+    field(a, "place", overlap.place);
+    a.field("time", overlap.time);
+  });
+  overlaps_.state(archive);
+  narrator_.state(archive);
 }
 
 /// Joints of pairs that came near during the run, and in which order the bodies met.

@@ -1,40 +1,52 @@
 #include "coordinator/interrupt.hpp"
 
+#include <unistd.h>
+
 #include <csignal>
 
 namespace abut {
 namespace {
 
-std::atomic<bool> interrupted{false};
+std::atomic<bool> asked{false}, at_once{false};
 std::atomic<int> caught{0};
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
+std::atomic<unsigned> patience{0};  // [s]
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
+                  std::atomic<unsigned>::is_always_lock_free,
               "a signal handler may touch these only when no lock is involved");
 
 void on_signal(int signal) {
-  caught.store(signal);
-  interrupted.store(true);
+  if (signal == SIGALRM) return at_once.store(true);
+  int none = 0;
+  caught.compare_exchange_strong(none, signal);
+  const bool again = asked.exchange(true);
+  const unsigned seconds = patience.load();
+  if (again || seconds == 0) {
+    at_once.store(true);
+    if (signal != SIGPIPE) std::signal(signal, SIG_DFL);
+  } else {
+    alarm(seconds);
+  }
 }
 
 /// What somebody chose to ignore, as nohup does, stays ignored.
-void watch(int signal, int flags) {
-  struct sigaction action {}, present {};
+void watch(int signal) {
+  struct sigaction action {
+  }, present{};
   if (sigaction(signal, nullptr, &present) == 0 && present.sa_handler == SIG_IGN) return;
   action.sa_handler = on_signal;
-  action.sa_flags = flags;
   sigaction(signal, &action, nullptr);
 }
 
 }  // namespace
 
-const std::atomic<bool>& watch_for_interrupts() {
-  // The handler serves once, then the system's own comes back; waits return early.
-  watch(SIGINT, static_cast<int>(SA_RESETHAND));
-  watch(SIGTERM, static_cast<int>(SA_RESETHAND));
-  watch(SIGHUP, static_cast<int>(SA_RESETHAND));
+Interrupts watch_for_interrupts() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGALRM}) watch(signal);
   // Whoever reads our output is gone; the next lines for them must not end the program either.
-  watch(SIGPIPE, 0);
-  return interrupted;
+  watch(SIGPIPE);
+  return {asked, at_once};
 }
+
+void grant_patience(unsigned seconds) { patience.store(seconds); }
 
 int interrupt_exit_code() {
   const int signal = caught.load();

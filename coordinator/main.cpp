@@ -28,6 +28,7 @@
 #include "coordinator/split/split_scene.hpp"
 #include "coordinator/verbs/check.hpp"
 #include "coordinator/verbs/placed_scene.hpp"
+#include "coordinator/verbs/resume.hpp"
 #include "coordinator/verbs/run.hpp"
 
 namespace abut {
@@ -118,6 +119,7 @@ int reference_verb(const ReferenceCommand& command) {
 
 struct Verbs {
   int operator()(const RunCommand& command) const { return run_verb(command); }
+  int operator()(const ResumeCommand& command) const { return resume_verb(command); }
   int operator()(const CheckCommand& command) const { return check_verb(command); }
   int operator()(const SplitCommand& command) const { return split_verb(command); }
   int operator()(const InitCommand& command) const { return init_verb(command); }

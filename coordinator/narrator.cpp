@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/archive_lists.hpp"
 #include "base/index.hpp"
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/interface_spec.hpp"
@@ -35,6 +36,8 @@ void Narrator::start(double begin, double end, std::span<const Joint> joints, bo
   for (const InterfaceInfo& info : start.interfaces) interfaces_.push_back(info.name);
   for (Observer* observer : observers_) observer->on_start(start);
 }
+
+void Narrator::state(Archive& archive) { whole(archive, "told_passive", told_passive_); }
 
 void Narrator::window(const WindowReport& report) {
   for (Observer* observer : observers_) observer->on_window(report);

@@ -23,6 +23,7 @@ class Narrator {
   /// `joints`: one of every interface that the scene writes. `everything`: there is an interface of
   /// any two surfaces beside them.
   void start(double begin, double end, std::span<const Joint> joints, bool everything);
+  void state(Archive& archive);
   void window(const WindowReport& report);
   void end(const RunEnd& end);
   /// The same after an error: all observers still write what they can.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/archive_lists.hpp"
 #include "base/index.hpp"
 #include "surface/overlap_places.hpp"
 
@@ -129,6 +130,16 @@ std::vector<Overlap> OverlapSearch::look(Bodies& bodies, std::span<const Joint> 
     }
   }
   return found;
+}
+
+void OverlapSearch::state(Archive& archive) {
+  std::vector<std::pair<std::pair<int, int>, double>> told(told_.begin(), told_.end());
+  list(archive, "told", told, [](Archive& a, auto& overlap) {
+    whole(a, "body", overlap.first.first);
+    whole(a, "body", overlap.first.second);
+    a.field("depth", overlap.second);
+  });
+  told_ = {told.begin(), told.end()};
 }
 
 }  // namespace abut

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "coordinator/body_hull.hpp"
 #include "coordinator/coupling/joint.hpp"
 #include "coordinator/record/observer.hpp"
@@ -21,6 +22,8 @@ class OverlapSearch {
   /// that overlapped in the reference as well. Of bodies of more than a million unknowns the
   /// largest port is looked at.
   std::vector<Overlap> look(Bodies& bodies, std::span<const Joint> joints, double time);
+
+  void state(Archive& archive);  // what was told
 
  private:
   void make(Bodies& bodies);

@@ -18,6 +18,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "coordinator/record/checkpoint_file.hpp"
 
 namespace abut {
 namespace {
@@ -28,9 +29,17 @@ constexpr const char* scene_file = "scene.resolved.yaml";  // written first, rem
 constexpr const char* summary_file = "summary.json";       // either tells of a run
 constexpr const char* list_of_fields = "fields.pvd";
 constexpr const char* state_of_paraview = "fields.pvsm";
-constexpr std::array<const char*, 11> run_files{
-    summary_file, "history.csv", "closed_form.csv", "events.jsonl",    "report.html", "film.mp4",
-    "film.gif",   "picture.png", list_of_fields,    state_of_paraview, scene_file};
+constexpr std::array<const char*, 5> of_its_end{summary_file, "report.html", "film.mp4", "film.gif",
+                                                "picture.png"};
+constexpr std::array<const char*, 9> of_its_way{
+    "history.csv",     "closed_form.csv",  "events.jsonl",        list_of_fields, state_of_paraview,
+    latest_checkpoint, earlier_checkpoint, unfinished_checkpoint, scene_file};
+
+std::vector<const char*> run_files() {
+  std::vector<const char*> all(of_its_end.begin(), of_its_end.end());
+  all.insert(all.end(), of_its_way.begin(), of_its_way.end());
+  return all;
+}
 
 fs::file_status status_of(const fs::path& path) {
   std::error_code ignored;
@@ -78,7 +87,8 @@ int lock(const fs::path& directory) {
     log_warning(fmt::format("{}: cannot be locked ({}): see to it that no other run writes there",
                             directory.string(), std::strerror(errno)));
   }
-  struct stat held {}, named {};
+  struct stat held {
+  }, named{};
   const bool same = fstat(descriptor, &held) == 0 && stat(directory.c_str(), &named) == 0 &&
                     held.st_dev == named.st_dev && held.st_ino == named.st_ino;
   if (same) return descriptor;
@@ -90,6 +100,13 @@ int lock(const fs::path& directory) {
 
 fs::path default_run_directory(const std::string& scene_path) {
   return fs::path("runs") / fs::path(scene_path).stem();
+}
+
+RunDirectory RunDirectory::of_run(fs::path directory) {
+  if (!is_there(directory / scene_file))
+    throw InputError("holds no run", directory.string(),
+                     "Give the directory of a run, as abut run has named it at its end.");
+  return RunDirectory(std::move(directory), true);
 }
 
 RunDirectory::RunDirectory(fs::path directory, bool force) : path_(std::move(directory)) {
@@ -119,7 +136,7 @@ void RunDirectory::refuse_what_stays(bool force) const {
   if (holds_run && !force)
     throw InputError("holds a run already", path_.string(),
                      "Give another directory with --out, or --force to replace that run.");
-  for (const char* name : run_files) {
+  for (const char* name : run_files()) {
     const fs::file_status status = status_of(path_ / name);
     if (!fs::exists(status)) continue;
     if (!fs::is_regular_file(status))
@@ -136,10 +153,17 @@ void RunDirectory::clear() {
   }
   if (fs::is_directory(status_of(path_ / "fields")))
     fs::remove(path_ / "fields", error);  // stays where it holds something else
-  for (const char* name : run_files) {
-    fs::remove(path_ / name, error);
-    if (error) refuse(path_, fmt::format("cannot lose {}: {}", name, error.message()));
-  }
+  for (const char* name : run_files()) remove(name);
+}
+
+void RunDirectory::go_on() {
+  for (const char* name : of_its_end) remove(name);
+}
+
+void RunDirectory::remove(const char* name) {
+  std::error_code error;
+  fs::remove(path_ / name, error);
+  if (error) refuse(path_, fmt::format("cannot lose {}: {}", name, error.message()));
 }
 
 void RunDirectory::abandon() {

@@ -17,6 +17,8 @@ class RunDirectory {
   /// `force`) or files of a run's names that are no run's, when another run uses it, or when it
   /// cannot be written; then nothing has been changed.
   RunDirectory(std::filesystem::path directory, bool force);
+  /// That of a run which is to go on. Throws InputError when it holds none, or is in use.
+  static RunDirectory of_run(std::filesystem::path directory);
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;
@@ -25,11 +27,14 @@ class RunDirectory {
   /// Takes out the files of an earlier run, so that none is taken for the new one's. Throws
   /// InputError.
   void clear();
+  /// Takes out what an earlier end of this run has left: summary, page, films. Throws InputError.
+  void go_on();
   /// The run never begins: takes the directory away again if it was made here and is empty.
   void abandon();
 
  private:
   void refuse_what_stays(bool force) const;
+  void remove(const char* name);
 
   std::filesystem::path path_;
   int lock_ = -1;  // descriptor of the directory

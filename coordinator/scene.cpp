@@ -140,6 +140,20 @@ void FieldOutputSpec::fields(Fields& f) {
              between(1, 1000000));
 }
 
+void WindowsBetween::fields(Fields& f) {
+  f.required("every", every, "", "number of windows from one checkpoint to the next",
+             between(1, 1000000000));
+}
+
+void TimeBetween::fields(Fields& f) {
+  f.required("every", every, "s", "time of the scene from one checkpoint to the next", positive);
+}
+
+void WallTimeBetween::fields(Fields& f) {
+  f.required("every", every, clock_seconds, "time on the clock from one checkpoint to the next",
+             positive);
+}
+
 void OutputSpec::fields(Fields& f) {
   f.optional("records_per_window", records_per_window, "",
              "number of rows of history.csv per controller window", between(1, 1000));
@@ -152,6 +166,9 @@ void OutputSpec::fields(Fields& f) {
   f.optional("steady_after", steady_after, "s",
              "time from which contact forces should not change: how much they do is the measure "
              "contact.INTERFACE.force_ripple");
+  f.choice("checkpoint", checkpoint,
+           "how often the whole run is kept, so that abut resume can go on from there, whatever "
+           "ends it; the latest two stay. Without it the run is kept where a signal ends it");
 }
 
 void NetworkSpec::fields(Fields& f) {

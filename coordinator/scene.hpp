@@ -112,11 +112,33 @@ struct FieldOutputSpec {
   void fields(Fields& f);
 };
 
+// From one checkpoint to the next.
+struct WindowsBetween {
+  static constexpr std::string_view name = "windows";
+  static constexpr std::string_view shorthand = "every";
+  int every = 1;
+  void fields(Fields& f);
+};
+struct TimeBetween {
+  static constexpr std::string_view name = "time";
+  static constexpr std::string_view shorthand = "every";
+  double every = 0.0;  // [s] of the scene
+  void fields(Fields& f);
+};
+struct WallTimeBetween {
+  static constexpr std::string_view name = "wall";
+  static constexpr std::string_view shorthand = "every";
+  double every = 0.0;  // [s] of a clock
+  void fields(Fields& f);
+};
+using CheckpointSpec = std::variant<WindowsBetween, TimeBetween, WallTimeBetween>;
+
 struct OutputSpec {
   int records_per_window = 1;                   // rows of history.csv per controller window
   std::optional<FieldOutputSpec> field_output;  // key fields; absent: no body is asked
   std::optional<ForceFilterSpec> force_filter;  // absent: no measure of filtered forces
   std::optional<double> steady_after;           // [s] absent: no measure of ripple
+  std::optional<CheckpointSpec> checkpoint;     // absent: one alone, where a signal ends the run
   void fields(Fields& f);
 };
 

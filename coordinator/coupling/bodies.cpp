@@ -329,6 +329,8 @@ double Bodies::overhead_median() const {
   return static_cast<double>(*middle);
 }
 
+void Bodies::counts(Archive& archive) { archive.field("exchanges", exchanges_); }
+
 void Bodies::state(Archive& archive) {
   archive.field("taken_back", taken_back_);
   archive.field("struck", struck_);

@@ -103,6 +103,7 @@ class Bodies {
 
   /// Latest responses and what was told of the bodies, between windows.
   void state(Archive& archive);
+  void counts(Archive& archive);  // of the run for its end alone
 
   double shortest_step() const;              // [s] of all bodies, at most a window
   double window() const { return window_; }  // [s] a whole one

@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "base/archive.hpp"
+#include "base/archive_lists.hpp"
 #include "contract/outcome.hpp"
 #include "contract/port.hpp"
 #include "contract/waveform.hpp"
@@ -36,23 +36,6 @@ inline void field(Archive& archive, std::string_view name, std::vector<Eigen::Ve
   places.resize(list.size() / 3);
   for (std::size_t k = 0; k < list.size(); ++k)
     places[k / 3](static_cast<Eigen::Index>(k % 3)) = list[k];
-}
-
-/// A whole number or a choice.
-template <class Integer>
-void whole(Archive& archive, std::string_view name, Integer& value) {
-  std::int64_t number = static_cast<std::int64_t>(value);
-  archive.field(name, number);
-  value = static_cast<Integer>(number);
-}
-
-/// A list of anything that has its own fields: `each(archive, item)`.
-template <class List, class Each>
-void list(Archive& archive, std::string_view name, List& items, const Each& each) {
-  std::int64_t count = static_cast<std::int64_t>(items.size());
-  archive.field(name, count);
-  items.resize(static_cast<std::size_t>(count));
-  for (auto& item : items) each(archive, item);
 }
 
 inline void field(Archive& archive, std::string_view name, Waveform& wave) {

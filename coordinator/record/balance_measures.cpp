@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/archive_lists.hpp"
 #include "coordinator/record/port_reader.hpp"
 
 namespace abut {
@@ -208,6 +209,23 @@ void BalanceMeasures::write(Measures& out) const {
     out.set("momentum.total", scale > 0.0 ? momentum_change_ / scale : 0.0);
   }
   write_angular(out);
+}
+
+void BalanceMeasures::state(Archive& archive) {
+  for (Body& body : bodies_) {
+    for (double* value : {&body.first, &body.reference, &body.peak, &body.error, &body.error_max,
+                          &body.momentum_max, &body.angular_max})
+      archive.field("value", *value);
+    field(archive, "momentum", body.momentum);
+    field(archive, "angular", body.angular);
+    archive.field("exchanged", body.exchanged);
+  }
+  archive.field("begun", begun_);
+  for (double* value :
+       {&total_first_, &total_peak_, &drift_, &drift_max_, &momentum_change_, &angular_change_})
+    archive.field("value", *value);
+  field(archive, "momentum", momentum_first_);
+  field(archive, "angular", angular_first_);
 }
 
 }  // namespace abut

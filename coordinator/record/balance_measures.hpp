@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "coordinator/exact/closed_form.hpp"
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/observer.hpp"
@@ -21,6 +22,8 @@ class BalanceMeasures {
 
   void on_window(const WindowReport& report);
   void write(Measures& out) const;
+
+  void state(Archive& archive);
 
  private:
   using Vector = std::array<double, 3>;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/archive_lists.hpp"
+
 namespace abut {
 
 ChannelClassFilter::ChannelClassFilter(int channel_class) : step_(1.0e-3 / channel_class) {
@@ -83,6 +85,15 @@ double ChannelClassFilter::peak() {
   impulse_ = 0.0;
   while (running_) sample(0.0);
   return peak_;
+}
+
+void ChannelClassFilter::state(Archive& archive) {
+  archive.field("running", running_);
+  archive.field("samples", samples_);
+  whole(archive, "silent", silent_);
+  for (double* value : {&origin_, &now_, &impulse_, &x1_, &x2_, &y1_, &y2_, &peak_})
+    archive.field("value", *value);
+  archive.field("forward", forward_);
 }
 
 }  // namespace abut

@@ -18,6 +18,7 @@ class ChannelClassFilter : public ForceFilter {
 
   void add(double from, double to, double force_from, double force_to) override;
   double peak() override;
+  void state(Archive& archive) override;
   /// Samples held now.
   std::size_t held() const { return forward_.size(); }
 

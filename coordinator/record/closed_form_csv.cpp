@@ -11,9 +11,11 @@
 namespace abut {
 
 ClosedFormCsv::ClosedFormCsv(const std::filesystem::path& file, const ClosedForm& form,
-                             const RunStart& start, const UnitSystem& units)
-    : form_(form), file_(file) {
-  file_.append(in_words_of(units, header(start)));
+                             const RunStart& start, const UnitSystem& units,
+                             TextFile::Opening opening)
+    : form_(form), file_(file, opening) {
+  const std::string names = in_words_of(units, header(start));
+  if (opening == TextFile::Opening::made) file_.append(names);
 }
 
 std::string ClosedFormCsv::header(const RunStart& start) {

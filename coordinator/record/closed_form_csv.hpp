@@ -19,11 +19,12 @@ class ClosedFormCsv {
  public:
   /// The form must outlive this.
   ClosedFormCsv(const std::filesystem::path& file, const ClosedForm& form, const RunStart& start,
-                const UnitSystem& units);
+                const UnitSystem& units, TextFile::Opening opening = TextFile::Opening::made);
 
   void write_row(double time);
   void flush() { file_.flush(); }
   void close() { file_.close(); }
+  void state(Archive& archive) { file_.state(archive); }
   void check_in_place() const { file_.check_in_place(); }
 
  private:

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/archive_lists.hpp"
+
 namespace abut {
 
 void ClosedVelocity::change(bool closes, double time) { changes_.push_back({closes, time}); }
@@ -67,6 +69,22 @@ void ClosedVelocity::turn() {
 double ClosedVelocity::rms() const {
   if (closed_.covered() <= 0.0) return std::numeric_limits<double>::quiet_NaN();
   return std::sqrt(closed_.sum() / closed_.covered());
+}
+
+void ClosedVelocity::state(Archive& archive) {
+  times_.state(archive);
+  list(archive, "changes", changes_, [](Archive& a, Change& change) {
+    a.field("closes", change.closes);
+    a.field("time", change.time);
+  });
+  for (Window::Side& side : pending_.sides) {
+    archive.field("time", side.time);
+    archive.field("velocity", side.velocity);
+  }
+  whole(archive, "kinematic", pending_.kinematic);
+  archive.field("known", pending_.known);
+  closed_.state(archive);
+  pause_.state(archive);
 }
 
 }  // namespace abut

@@ -4,6 +4,7 @@
 #include <deque>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "contract/waveform.hpp"
 #include "coordinator/record/contact_errors.hpp"
 #include "coordinator/record/contact_times.hpp"
@@ -33,6 +34,8 @@ class ClosedVelocity {
 
   /// [m/s] root mean square; NaN when nothing is known.
   double rms() const;
+
+  void state(Archive& archive);
 
  private:
   struct Change {

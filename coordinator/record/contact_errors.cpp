@@ -120,4 +120,16 @@ void ContactErrors::write_times(const std::string& prefix, const SeenContact& se
   }
 }
 
+void ContactErrors::state(Archive& archive) {
+  force_.state(archive);
+  force_tail_.state(archive);
+  velocity_.state(archive);
+  archive.field("time", last_.time);
+  archive.field("force", last_.force);
+  archive.field("known", last_.known);
+  archive.field("step", step_);
+  archive.field("half_force_time", half_force_time_);
+  archive.field("half_force_seen", half_force_seen_);
+}
+
 }  // namespace abut

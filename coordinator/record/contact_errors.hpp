@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "base/archive.hpp"
 #include "coordinator/exact/bar_row.hpp"
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/square_integral.hpp"
@@ -35,6 +36,8 @@ class ContactErrors {
   /// `interface`: name in the run.
   void write(const std::string& interface, const SeenContact& seen, double run_end,
              Measures& out) const;
+
+  void state(Archive& archive);
 
  private:
   struct Sample {

@@ -212,4 +212,15 @@ void ContactMeasures::write_times(Measures& out) const {
   }
 }
 
+void ContactMeasures::state(Archive& archive) {
+  times_.state(archive);
+  pushes_.state(archive);
+  velocity_.state(archive);
+  for (double* value : {&missed_, &impulse_, &peak_, &dissipated_, &gap_min_})
+    archive.field("value", *value);
+  if (errors_) errors_->state(archive);
+  if (filter_) filter_->state(archive);
+  if (ripple_) ripple_->state(archive);
+}
+
 }  // namespace abut

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "base/archive.hpp"
 #include "coordinator/record/closed_velocity.hpp"
 #include "coordinator/record/contact_errors.hpp"
 #include "coordinator/record/contact_times.hpp"
@@ -30,6 +31,8 @@ class ContactMeasures {
   void on_event(const RunEvent& event);
   /// Once, at the end.
   void write(double run_end, Measures& out);
+
+  void state(Archive& archive);
 
  private:
   void read_gap(const WindowReport& report, const std::array<const Waveform*, 2>& traces);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/archive_lists.hpp"
+
 namespace abut {
 
 void ContactTimes::join(double time) {
@@ -33,6 +35,16 @@ void ContactTimes::open(double time) {
 
 double ContactTimes::closed(double run_end) const {
   return finished_ + (closed_ ? run_end - since_ : 0.0);
+}
+
+void ContactTimes::state(Archive& archive) {
+  whole(archive, "count", count_);
+  whole(archive, "closings", closings_);
+  archive.field("closed", closed_);
+  archive.field("begin", begin_);
+  archive.field("end", end_);
+  archive.field("since", since_);
+  archive.field("finished", finished_);
 }
 
 }  // namespace abut

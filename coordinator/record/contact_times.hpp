@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/archive.hpp"
+
 namespace abut {
 
 /// What closes again within so many element transits of a release has not parted: neither is
@@ -27,6 +29,8 @@ class ContactTimes {
   bool goes_on(double time) const { return count_ > 0 && time - end_ < together_; }
   /// [s] from the begins of all contacts, and of the tie, to their ends.
   double closed(double run_end) const;
+
+  void state(Archive& archive);
 
  private:
   double together_;

@@ -47,8 +47,8 @@ void add_body_names(std::string& header, const RecordedBody& body) {
 }
 
 CsvHistory::CsvHistory(const std::filesystem::path& directory, const ClosedForm* form,
-                       UnitSystem units)
-    : directory_(directory), form_(form), units_(std::move(units)) {}
+                       UnitSystem units, TextFile::Opening opening)
+    : directory_(directory), form_(form), units_(std::move(units)), opening_(opening) {}
 
 void CsvHistory::on_start(const RunStart& start) {
   start_ = start;
@@ -72,9 +72,15 @@ void CsvHistory::on_start(const RunStart& start) {
                            {index[info.body[0]][info.port[0]], index[info.body[1]][info.port[1]]},
                            port.geometry.dim == 1});
   }
-  history_.emplace(directory_ / "history.csv");
-  history_->append(in_words_of(units_, header()));
-  if (form_ != nullptr) exact_.emplace(directory_ / "closed_form.csv", *form_, start_, units_);
+  history_.emplace(directory_ / "history.csv", opening_);
+  if (opening_ == TextFile::Opening::made) history_->append(in_words_of(units_, header()));
+  if (form_ != nullptr)
+    exact_.emplace(directory_ / "closed_form.csv", *form_, start_, units_, opening_);
+}
+
+void CsvHistory::state(Archive& archive) {
+  history_->state(archive);
+  if (exact_) exact_->state(archive);
 }
 
 std::string CsvHistory::header() const {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -25,8 +26,11 @@ namespace abut {
 class CsvHistory : public Observer {
  public:
   /// `form` may be null; else it must outlive the history.
-  CsvHistory(const std::filesystem::path& directory, const ClosedForm* form, UnitSystem units = {});
+  CsvHistory(const std::filesystem::path& directory, const ClosedForm* form, UnitSystem units = {},
+             TextFile::Opening opening = TextFile::Opening::made);
 
+  std::string_view kept_as() const override { return "history"; }
+  void state(Archive& archive) override;
   void on_start(const RunStart& start) override;
   void on_window(const WindowReport& report) override;
   void on_end(const RunEnd& end) override;
@@ -52,6 +56,7 @@ class CsvHistory : public Observer {
   std::filesystem::path directory_;
   const ClosedForm* form_;
   UnitSystem units_;
+  TextFile::Opening opening_;
   RunStart start_;
   std::vector<RecordedBody> recorded_;
   std::vector<PortColumn> ports_;  // by body, then by port

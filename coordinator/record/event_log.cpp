@@ -4,7 +4,8 @@
 
 namespace abut {
 
-EventLog::EventLog(const std::filesystem::path& directory) : file_(directory / "events.jsonl") {}
+EventLog::EventLog(const std::filesystem::path& directory, TextFile::Opening opening)
+    : file_(directory / "events.jsonl", opening) {}
 
 void EventLog::on_event(const RunEvent& event) {
   nlohmann::ordered_json line;

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "base/archive.hpp"
 #include "coordinator/force_filter_spec.hpp"
 
 namespace abut {
@@ -17,6 +18,7 @@ class ForceFilter {
   virtual void add(double from, double to, double force_from, double force_to) = 0;
   /// [N]; 0 when the force never pressed. Nothing is added after it.
   virtual double peak() = 0;
+  virtual void state(Archive& archive) = 0;
 };
 
 std::unique_ptr<ForceFilter> make_force_filter(const ForceFilterSpec& spec);

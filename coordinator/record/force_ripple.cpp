@@ -25,4 +25,11 @@ double ForceRipple::value() const {
   return std::sqrt(std::max(0.0, square_ / time_ - away * away)) / std::abs(mean);
 }
 
+void ForceRipple::state(Archive& archive) {
+  archive.field("first", first_);
+  archive.field("time", time_);
+  archive.field("sum", sum_);
+  archive.field("square", square_);
+}
+
 }  // namespace abut

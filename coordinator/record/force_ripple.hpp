@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/archive.hpp"
+
 namespace abut {
 
 /// How much a force changes while it should not: its standard deviation over the magnitude of its
@@ -12,6 +14,8 @@ class ForceRipple {
   void add(double from, double to, double before, double now);
   /// NaN where nothing was told or the mean is zero.
   double value() const;
+
+  void state(Archive& archive);
 
  private:
   double after_;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "base/archive_lists.hpp"
 #include "base/index.hpp"
 
 namespace abut {
@@ -32,8 +34,7 @@ void ManyContacts::on_window(const WindowReport& report) {
     const std::size_t partner = index(pair.partner[k]);
     if (partner >= reply.reactions.size() || reply.reactions[partner].force.empty()) continue;
     const Reaction& reaction = reply.reactions[partner];
-    read_force(reaction.force,
-               PortReader(start_.bodies[pair.body[k]]->ports[pair.port[k]]));
+    read_force(reaction.force, PortReader(start_.bodies[pair.body[k]]->ports[pair.port[k]]));
     dissipated_[{pair.body[0], pair.port[0], pair.body[1], pair.port[1]}] = reaction.dissipated;
   }
 }
@@ -77,6 +78,18 @@ void ManyContacts::write(Measures& out) const {
   }
   for (const char* what : {"force_mean", "velocity_rms", "gap_min", "jump_max"})
     out.none(name(what), many);
+}
+
+void ManyContacts::state(Archive& archive) {
+  std::vector<std::pair<std::array<int, 4>, double>> rubbed(dissipated_.begin(), dissipated_.end());
+  list(archive, "dissipated", rubbed, [](Archive& a, auto& pair) {
+    for (int& side : pair.first) whole(a, "side", side);
+    a.field("dissipated", pair.second);
+  });
+  dissipated_ = {rubbed.begin(), rubbed.end()};
+  whole(archive, "closings", closings_);
+  whole(archive, "open", open_);
+  for (double* value : {&begin_, &end_, &impulse_, &peak_}) archive.field("value", *value);
 }
 
 }  // namespace abut

@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/port_reader.hpp"
@@ -20,15 +21,17 @@ class ManyContacts {
   void on_event(const RunEvent& event);
   void write(Measures& out) const;
 
+  void state(Archive& archive);
+
  private:
   void read_force(const Waveform& force, const PortReader& reader);
 
   const RunStart& start_;
   int index_;
   std::map<std::array<int, 4>, double> dissipated_;  // [J] so far, by bodies and ports
-  int closings_ = 0, open_ = 0;               // open_: pairs that press now
-  double begin_ = 0.0, end_ = 0.0;            // [s] first touch, last release
-  double impulse_ = 0.0, peak_ = 0.0;         // [N s], [N]
+  int closings_ = 0, open_ = 0;                      // open_: pairs that press now
+  double begin_ = 0.0, end_ = 0.0;                   // [s] first touch, last release
+  double impulse_ = 0.0, peak_ = 0.0;                // [N s], [N]
 };
 
 }  // namespace abut

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/archive_lists.hpp"
+
 namespace abut {
 
 void MeanFilter::add(double from, double to, double force_from, double force_to) {
@@ -69,6 +71,21 @@ void MeanFilter::sum_anew(double now) {
 double MeanFilter::peak() {
   flush();
   return largest_ / time_;
+}
+
+void MeanFilter::state(Archive& archive) {
+  list(archive, "held", held_, [](Archive& a, Stretch& stretch) {
+    a.field("from", stretch.from);
+    a.field("to", stretch.to);
+    a.field("force_from", stretch.force_from);
+    a.field("force_to", stretch.force_to);
+  });
+  archive.field("from", gathered_.from);
+  archive.field("to", gathered_.to);
+  archive.field("gathered", gathered_.impulse);
+  archive.field("impulse", impulse_);
+  whole(archive, "since_sum", since_sum_);
+  archive.field("largest", largest_);
 }
 
 }  // namespace abut

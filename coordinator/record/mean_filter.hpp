@@ -17,6 +17,7 @@ class MeanFilter : public ForceFilter {
 
   void add(double from, double to, double force_from, double force_to) override;
   double peak() override;
+  void state(Archive& archive) override;
   /// Stretches held now.
   std::size_t held() const { return held_.size(); }
 

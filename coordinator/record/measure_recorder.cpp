@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/archive_lists.hpp"
 #include "base/index.hpp"
 #include "coordinator/record/port_reader.hpp"
 
@@ -142,6 +143,18 @@ void MeasureRecorder::on_end(const RunEnd& end) {
   for (auto& [name, value] : measures_.values)
     if (!std::isfinite(value) && !measures_.notes.contains(name))
       measures_.none(name, non_finite_.empty() ? "not a finite number" : non_finite_);
+}
+
+void MeasureRecorder::state(Archive& archive) {
+  for (ContactMeasures& contact : contacts_) contact.state(archive);
+  for (ManyContacts& contact : many_) contact.state(archive);
+  balance_->state(archive);
+  for (PositionMax& position : positions_) archive.field("most", position.most);
+  archive.field("contact_windows", contact_windows_);
+  archive.field("iterations", iterations_);
+  whole(archive, "iterations_max", iterations_max_);
+  archive.field("last_time", last_time_);
+  archive.field("non_finite", non_finite_);
 }
 
 }  // namespace abut

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "coordinator/exact/closed_form.hpp"
@@ -25,6 +26,8 @@ class MeasureRecorder : public Observer {
                            std::optional<double> steady_after = {})
       : form_(form), filter_(filter), steady_after_(steady_after) {}
 
+  std::string_view kept_as() const override { return "measures"; }
+  void state(Archive& archive) override;
   void on_start(const RunStart& start) override;
   void on_window(const WindowReport& report) override;
   void on_event(const RunEvent& event) override;

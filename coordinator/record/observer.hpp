@@ -6,8 +6,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "contract/subdomain.hpp"
 
 namespace abut {
@@ -124,6 +126,10 @@ struct RunEnd {
 class Observer {
  public:
   virtual ~Observer() = default;
+  /// Name of its part of a checkpoint; empty: it has none.
+  virtual std::string_view kept_as() const { return {}; }
+  /// All that it has gathered of the windows so far; read after on_start of a resumed run.
+  virtual void state(Archive&) {}
   virtual void on_start(const RunStart&) {}
   virtual void on_window(const WindowReport&) {}
   /// Events of a window come before it or after it, and before the next one.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/clock.hpp"
@@ -21,6 +22,8 @@ class ProgressLine : public Observer {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
+  std::string_view kept_as() const override { return "progress"; }
+  void state(Archive& archive) override { archive.field("closed", closed_); }
   void on_start(const RunStart& start) override;
   void on_window(const WindowReport& report) override;
   void on_event(const RunEvent& event) override;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/archive_lists.hpp"
+
 namespace abut {
 
 namespace {
@@ -50,6 +52,15 @@ int Pushes::count() const {
   const double least = least_of(all);
   return static_cast<int>(
       std::count_if(all.begin(), all.end(), [least](const Push& c) { return c.impulse >= least; }));
+}
+
+void Pushes::state(Archive& archive) {
+  archive.field("peak", peak_);
+  list(archive, "pushes", pushes_, [](Archive& a, Push& push) {
+    a.field("begin", push.begin);
+    a.field("end", push.end);
+    a.field("impulse", push.impulse);
+  });
 }
 
 }  // namespace abut

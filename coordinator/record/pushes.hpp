@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "base/archive.hpp"
+
 namespace abut {
 
 /// Contacts as the force tells them: it goes from nothing to something and back. Judged on
@@ -20,6 +22,8 @@ class Pushes {
 
   bool any() const { return !pushes_.empty(); }
   int count() const;
+
+  void state(Archive& archive);
 
  private:
   struct Push {

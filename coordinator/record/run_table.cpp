@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/archive_lists.hpp"
 #include "coordinator/record/shares.hpp"
 #include "coordinator/record/text_table.hpp"
 
@@ -180,6 +181,20 @@ std::string RunTable::times(std::span<const double> waited,
     text += fmt::format(", {} more {:.0f} % and more", idle.size() - most_processes,
                         100.0 * idle[most_processes].first);
   return text + " of it\n";
+}
+
+void RunTable::state(Archive& archive) {
+  for (Held& held : held_) {
+    archive.field("peak", held.peak);
+    archive.field("time", held.time);
+    archive.field("last", held.last);
+  }
+  for (std::vector<Energy>* energies : {&first_, &last_})
+    list(archive, "energies", *energies, [](Archive& a, Energy& energy) {
+      for (double* part :
+           {&energy.kinetic, &energy.stored, &energy.dissipated, &energy.external_work})
+        a.field("energy", *part);
+    });
 }
 
 }  // namespace abut

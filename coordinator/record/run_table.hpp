@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "coordinator/record/measure_names.hpp"
@@ -13,6 +14,8 @@ namespace abut {
 /// and on whom the others waited. Contacts are those of the measures; the rest is seen here.
 class RunTable : public Observer {
  public:
+  std::string_view kept_as() const override { return "table"; }
+  void state(Archive& archive) override;
   void on_start(const RunStart& start) override;
   void on_window(const WindowReport& report) override;
   void on_end(const RunEnd& end) override { end_ = end; }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/archive_lists.hpp"
+
 namespace abut {
 
 void SquareIntegral::add(double begin, double end, double at_begin, double at_end) {
@@ -67,6 +69,17 @@ double StepError::rms_of_covered() const {
     covered += piece.integral.covered();
   }
   return covered > 0.0 ? std::sqrt(sum / covered) : std::numeric_limits<double>::quiet_NaN();
+}
+
+void SquareIntegral::state(Archive& archive) {
+  archive.field("sum", sum_);
+  archive.field("covered", covered_);
+  archive.field("largest", largest_);
+}
+
+void StepError::state(Archive& archive) {
+  for (Piece& piece : pieces_) piece.integral.state(archive);
+  whole(archive, "next", next_);
 }
 
 }  // namespace abut

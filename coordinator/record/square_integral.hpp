@@ -3,6 +3,8 @@
 #include <limits>
 #include <vector>
 
+#include "base/archive.hpp"
+
 namespace abut {
 
 /// Integral of a square over the part of an interval of time that a run covers, and
@@ -22,6 +24,8 @@ class SquareIntegral {
   double covered() const { return covered_; }  // [s]
   double largest() const { return largest_; }
   double bare() const;  // [s] of the interval where nothing was added
+
+  void state(Archive& archive);
 
  private:
   double from_ = -std::numeric_limits<double>::infinity();
@@ -45,6 +49,8 @@ class StepError {
   double largest(double scale) const;
   /// Over what was added; NaN when nothing was.
   double rms_of_covered() const;
+
+  void state(Archive& archive);
 
  private:
   struct Piece {

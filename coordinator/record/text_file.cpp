@@ -27,10 +27,20 @@ std::FILE* create(const std::filesystem::path& path) {
   return file;
 }
 
+/// A file, and never the target of a symbolic link.
+std::FILE* open_again(const std::filesystem::path& path) {
+  const int descriptor = open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (descriptor < 0) return nullptr;
+  std::FILE* file = fdopen(descriptor, "wb");
+  if (file == nullptr) close(descriptor);
+  return file;
+}
+
 }  // namespace
 
-TextFile::TextFile(std::filesystem::path path) : path_(std::move(path)), file_(create(path_)) {
-  if (!file_) fail("made");
+TextFile::TextFile(std::filesystem::path path, Opening opening)
+    : path_(std::move(path)), file_(opening == Opening::made ? create(path_) : open_again(path_)) {
+  if (!file_) fail(opening == Opening::made ? "made" : "opened");
   if (std::setvbuf(file_.get(), nullptr, _IOFBF, piece) != 0) fail("buffered");
 }
 
@@ -52,6 +62,26 @@ void TextFile::append_ended(std::string_view text, std::string_view ending) {
 void TextFile::close() {
   if (!file_) return;
   if (std::fclose(file_.release()) != 0) fail("written");
+}
+
+void TextFile::state(Archive& archive) {
+  std::int64_t bytes = 0;
+  if (archive.writing()) {
+    flush();
+    bytes = std::ftell(file_.get());
+    if (bytes < 0 || fdatasync(fileno(file_.get())) != 0) fail("written");
+  }
+  archive.field("bytes", bytes);
+  if (archive.writing()) return;
+  struct stat held {};
+  if (fstat(fileno(file_.get()), &held) != 0) fail("read");
+  if (bytes < 0 || held.st_size < bytes)
+    throw RunError(
+        fmt::format("has {} bytes; the checkpoint was written when it had {}", held.st_size, bytes),
+        path_.string(), "Put the run's files back as they were, or run again.");
+  if (ftruncate(fileno(file_.get()), bytes) != 0 ||
+      std::fseek(file_.get(), static_cast<long>(bytes), SEEK_SET) != 0)
+    fail("written");
 }
 
 void TextFile::check_in_place() const {

@@ -30,8 +30,8 @@ void include(const Grid& grid, bool first, ParaviewView& view) {
 }  // namespace
 
 VtkFields::VtkFields(const std::filesystem::path& directory, std::vector<Subdomain*> bodies,
-                     int every)
-    : directory_(directory), bodies_(std::move(bodies)), every_(every) {
+                     int every, TextFile::Opening opening)
+    : directory_(directory), bodies_(std::move(bodies)), every_(every), opening_(opening) {
   ABUT_ASSERT(every > 0);
 }
 
@@ -53,10 +53,20 @@ void VtkFields::on_start(const RunStart&) {
     throw RunError(fmt::format("cannot be made: {}", error ? error.message() : "it is no folder"),
                    (directory_ / folder).string(),
                    "Check that the folder above is writable and has space left.");
-  list_.emplace(directory_ / "fields.pvd");
-  list_->append(list_begin);
-  list_->append_ended("", list_end);
+  list_.emplace(directory_ / "fields.pvd", opening_);
+  if (opening_ == TextFile::Opening::made) {
+    list_->append(list_begin);
+    list_->append_ended("", list_end);
+  }
   write_view();
+}
+
+void VtkFields::state(Archive& archive) {
+  archive.field("windows", windows_);
+  archive.field("written", written_);
+  archive.field("largest", view_.largest);
+  list_->state(archive);
+  if (!archive.writing()) list_->append_ended("", list_end);
 }
 
 void VtkFields::on_window(const WindowReport& report) {

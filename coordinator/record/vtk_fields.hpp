@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "coordinator/record/observer.hpp"
@@ -21,7 +22,11 @@ namespace abut {
 class VtkFields : public Observer {
  public:
   /// The bodies, in the scene's order, must outlive this. `every` [windows] is positive.
-  VtkFields(const std::filesystem::path& directory, std::vector<Subdomain*> bodies, int every);
+  VtkFields(const std::filesystem::path& directory, std::vector<Subdomain*> bodies, int every,
+            TextFile::Opening opening = TextFile::Opening::made);
+
+  std::string_view kept_as() const override { return "fields"; }
+  void state(Archive& archive) override;
 
   /// All of these throw RunError: files that cannot be written, bodies lost, values not finite.
   void on_start(const RunStart& start) override;
@@ -40,6 +45,7 @@ class VtkFields : public Observer {
   std::filesystem::path directory_;
   std::vector<Subdomain*> bodies_;
   std::int64_t every_;
+  TextFile::Opening opening_;
   std::vector<Shown> shown_;
   ParaviewView view_;
   std::optional<TextFile> list_;  // fields.pvd

@@ -80,7 +80,7 @@ std::string why_no_probe(const Scene& scene) {
 /// Runs the scene for a moment, as `abut run` would, and tells what all of it will take.
 std::string predicted(const Scene& scene, const Document& document, const Estimate& estimate,
                       double seconds) {
-  const std::atomic<bool>& interrupted = watch_for_interrupts();
+  const std::atomic<bool>& interrupted = watch_for_interrupts().asked;
   std::atomic<bool> stop = false;
   const double before = memory_of("self", "VmRSS");
   const auto began = std::chrono::steady_clock::now();

@@ -35,7 +35,9 @@ class Whole {
     return kept;
   }
   RunEnd run(const std::function<void()>& between = {}) {
-    controller_->between_windows = between;
+    controller_->between_windows = [between](const Pause& pause) {
+      if (between && !pause.last) between();
+    };
     return controller_->run();
   }
   RunEnd run_from(const Kept& kept) {

@@ -267,7 +267,7 @@ Kept keep_middle(const Scene& scene, const Document& document, double patience) 
   Judge judge(nobody_asks, placed.pointers, wholes_of(scene), patience);
   Controller controller(scene, placed.pointers, {&judge}, &judge.stop);
   Kept kept;
-  controller.between_windows = [&] {
+  controller.between_windows = [&](const Pause&) {
     if (!kept.run.empty() || judge.time < 0.5 * (scene.time.begin + scene.time.end)) return;
     kept.run = controller.save();
     for (Subdomain* body : placed.pointers) kept.bodies.push_back(body->checkpoint());

@@ -1,0 +1,125 @@
+#include "coordinator/verbs/checkpoints.hpp"
+
+#include <chrono>
+#include <span>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "base/build_info.hpp"
+#include "base/error.hpp"
+#include "base/log.hpp"
+
+namespace abut {
+namespace {
+
+std::string text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::span<const std::byte> bytes_of(const std::string& text) {
+  return std::as_bytes(std::span<const char>(text));
+}
+
+/// What has been left since the last checkpoint.
+struct Since {
+  std::int64_t windows = 0;
+  double time = 0.0, wall = 0.0;  // [s]
+
+  bool reach(const WindowsBetween& spec) const { return windows >= spec.every; }
+  bool reach(const TimeBetween& spec) const {
+    constexpr double rounding = 1.0e-9;  // of sums of windows
+    return time >= (1.0 - rounding) * spec.every;
+  }
+  bool reach(const WallTimeBetween& spec) const { return wall >= spec.every; }
+};
+
+void check_bodies(const Checkpoint& from, const std::vector<Subdomain*>& bodies) {
+  const bool alike = from.bodies.size() == bodies.size();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Description& body = bodies[b]->describe();
+    if (!alike || from.bodies[b].name != body.name)
+      throw InputError("has other bodies than the checkpoint, or in another order", "the scene",
+                       "Resume with the scene of the run.");
+    if (from.bodies[b].fingerprint != fingerprint(body))
+      throw InputError(
+          "is another than the checkpoint's: its mesh, mass or names have changed since",
+          fmt::format("body '{}'", body.name),
+          "Resume with the files and programs that the run began with, or run again.");
+  }
+}
+
+}  // namespace
+
+Checkpoints::Checkpoints(std::filesystem::path directory, std::optional<CheckpointSpec> when,
+                         std::string scene, std::vector<Subdomain*> bodies,
+                         std::vector<Observer*> observers, const Clock& clock)
+    : directory_(std::move(directory)),
+      when_(std::move(when)),
+      scene_(std::move(scene)),
+      bodies_(std::move(bodies)),
+      observers_(std::move(observers)),
+      clock_(clock),
+      written_(clock.now()) {}
+
+bool Checkpoints::due(const Pause& pause) const {
+  if (latest_ && pause.windows == windows_) return false;  // it has this state already
+  if (pause.interrupted) return true;
+  if (!when_ || pause.windows == windows_) return false;
+  if (pause.last) return true;
+  const std::chrono::duration<double> wall = clock_.now() - written_;
+  const Since since{pause.windows - windows_, pause.time - time_, wall.count()};
+  return std::visit([&since](const auto& spec) { return since.reach(spec); }, *when_);
+}
+
+void Checkpoints::look(const Pause& pause, Controller& controller) {
+  if (!std::exchange(begun_, true)) time_ = pause.time, windows_ = pause.windows;
+  if (!due(pause)) return;
+  try {
+    write(pause, controller);
+  } catch (const RunError& error) {
+    if (!pause.interrupted) throw;
+    log_warning(fmt::format("this end of the run is not kept: {}", error.what()));
+  }
+}
+
+void Checkpoints::write(const Pause& pause, Controller& controller) {
+  Checkpoint kept;
+  kept.version = build_info.version;
+  kept.scene = scene_;
+  kept.time = pause.time;
+  kept.windows = pause.windows;
+  kept.run = text_of(controller.save());
+  for (Subdomain* body : bodies_)
+    kept.bodies.push_back(
+        {body->describe().name, text_of(body->checkpoint()), fingerprint(body->describe())});
+  for (Observer* observer : observers_) {
+    if (observer->kept_as().empty()) continue;
+    std::vector<std::byte> bytes;
+    Archive archive = Archive::writer(bytes, Archive::Form::named);
+    observer->state(archive);
+    archive.finish();
+    kept.records.push_back({std::string(observer->kept_as()), text_of(bytes)});
+  }
+  write_checkpoint(directory_, kept);
+  latest_ = time_ = pause.time;
+  windows_ = pause.windows;
+  written_ = clock_.now();
+}
+
+void Checkpoints::resume(const Checkpoint& from, Controller& controller) {
+  check_bodies(from, bodies_);
+  controller.load(bytes_of(from.run));
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    bodies_[b]->resume(bytes_of(from.bodies[b].state));
+  for (Observer* observer : observers_) {
+    const Checkpoint::Part* part = from.record(observer->kept_as());
+    if (part == nullptr) continue;
+    Archive archive = Archive::reader(bytes_of(part->state), Archive::Form::named);
+    observer->state(archive);
+    archive.finish();
+  }
+  latest_ = from.time;
+}
+
+}  // namespace abut

@@ -1,0 +1,180 @@
+#include "coordinator/verbs/recorded_run.hpp"
+
+#include <unistd.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/build_info.hpp"
+#include "base/error.hpp"
+#include "base/unit_words.hpp"
+#include "coordinator/controller.hpp"
+#include "coordinator/launch_local.hpp"
+#include "coordinator/metered_body.hpp"
+#include "coordinator/record/closed_form_table.hpp"
+#include "coordinator/record/csv_history.hpp"
+#include "coordinator/record/event_log.hpp"
+#include "coordinator/record/expectations.hpp"
+#include "coordinator/record/measure_recorder.hpp"
+#include "coordinator/record/progress_line.hpp"
+#include "coordinator/record/run_table.hpp"
+#include "coordinator/record/summary.hpp"
+#include "coordinator/record/vtk_fields.hpp"
+#include "coordinator/solver_processes.hpp"
+#include "coordinator/verbs/checkpoints.hpp"
+
+namespace abut {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int exit_expectation = 1;
+
+std::map<std::string, std::string> versions() {
+  return {{"abut", build_version()},
+          {"commit", std::string(build_info.commit)},
+          {"protocol", fmt::format("{}", protocol_version)},
+          {"compiler", __VERSION__}};
+}
+
+/// The contact and the bodies beside the exact solution; empty when the scene names none.
+std::string against_closed_form(const ClosedForm* form, const Measures& measures, const RunEnd& end,
+                                const UnitSystem& units) {
+  if (form == nullptr) return "";
+  return in_words_of(units, closed_form_table(*form, end.time, measures)) + "\n";
+}
+
+using Processes = std::vector<std::vector<std::size_t>>;  // bodies of each
+
+/// Bodies that others start have one each.
+Processes processes_of(const Scene& scene) {
+  Processes processes;
+  for (const SolverProcess& process : solver_processes(scene)) processes.push_back(process.bodies);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    if (std::holds_alternative<ConnectLaunch>(scene.bodies[b].second.launch))
+      processes.push_back({b});
+  return processes;
+}
+
+/// The result for people; 0, or 1 when an expectation or the run failed.
+int report(const RunPlan& plan, const ClosedForm* form, const Measures& measures, const RunEnd& end,
+           const RunTable& table, const std::vector<double>& waited, const std::string& status,
+           std::optional<double> kept) {
+  const Scene& scene = plan.scene;
+  const UnitSystem& units = plan.document.units();
+  const std::vector<ExpectationResult> results = evaluate(scene.meta.expect, measures);
+  bool pass = status == "completed";
+  for (const ExpectationResult& result : results) pass = pass && result.pass;
+  if (!plan.quiet || (!pass && status != "interrupted")) {
+    fmt::print("\n{}\n\n", scene.meta.title);  // apart from the log lines above
+    if (status == "completed") fmt::print("{}", against_closed_form(form, measures, end, units));
+    fmt::print("{}", in_words_of(units, table.text(measures)));
+    // A run cut short misses expectations for that reason alone.
+    if (status == "completed" && !results.empty()) fmt::print("{}\n", to_table(results));
+    fmt::print("{} after {:.3f} s: {} windows, {} of them in contact, {} exchanges\n", status,
+               end.wall_seconds, end.windows, end.contact_windows, end.exchanges);
+    fmt::print("{}", table.times(waited, plan.local ? Processes() : processes_of(scene)));
+    if (end.state_hash) fmt::print("state  {:016x}\n", *end.state_hash);
+    fmt::print("files  {0}\nplots  abut report {0}\n", plan.directory.string());
+    if (scene.output.field_output) fmt::print("fields {}/fields.pvd\n", plan.directory.string());
+    if (kept && status != "completed")
+      fmt::print("go on  abut resume {}, from {:.6g} s\n", plan.directory.string(), *kept);
+  }
+  return pass ? 0 : exit_expectation;
+}
+
+/// The same error, which says where the run's files are as well, and how to go on.
+template <class Error>
+Error with_place_of_files(const Error& error, const fs::path& directory,
+                          std::optional<double> kept) {
+  std::string remedy = error.remedy;
+  if (remedy.ends_with('.')) remedy.pop_back();
+  remedy += fmt::format(". The run up to there is in {}", directory.string());
+  if (kept)
+    remedy += fmt::format("; abut resume {} goes on from {:.6g} s", directory.string(), *kept);
+  return Error(error.what_is_wrong, error.where, remedy);
+}
+
+/// To the end, from the begin or a checkpoint.
+RunEnd conduct(Controller& controller, Checkpoints& checkpoints, const Checkpoint* from,
+               const fs::path& directory) {
+  controller.between_windows = [&](const Pause& pause) { checkpoints.look(pause, controller); };
+  try {
+    if (from != nullptr) checkpoints.resume(*from, controller);
+    return controller.run();
+  } catch (const RunError& error) {
+    throw with_place_of_files(error, directory, checkpoints.latest());
+  } catch (const InputError& error) {  // of a body: what it was given does not go together
+    throw with_place_of_files(error, directory, checkpoints.latest());
+  }
+}
+
+/// Where a file that observers write begins; of one that a checkpoint knows, it goes on.
+TextFile::Opening opening_of(const Checkpoint* from, std::string_view kept_as) {
+  const bool there = from != nullptr && from->record(kept_as) != nullptr;
+  return there ? TextFile::Opening::goes_on : TextFile::Opening::made;
+}
+
+constexpr unsigned patience = 5;  // [s] for the window under way, where a run is to end
+
+}  // namespace
+
+std::string resolved_text(const Scene& scene, const Document& document) {
+  std::string text = "# Every value that this run used.\n";
+  for (const auto& [what, version] : versions()) text += fmt::format("# {}: {}\n", what, version);
+  text += fmt::format("# scene: {}\n", document.name());
+  for (const std::string& override_text : document.overrides())
+    text += fmt::format("# --set {}\n", override_text);
+  ResolvedYaml resolved(document.units());
+  resolved.add("", scene);
+  resolve_body_keys(scene, document, resolved);
+  return text + resolved.text();
+}
+
+int record_run(const RunPlan& plan, Placement& placement, const Validated& valid,
+               const Interrupts& interrupts, const Checkpoint* from) {
+  const Scene& scene = plan.scene;
+  const fs::path& directory = plan.directory;
+  const UnitSystem& units = plan.document.units();
+  const SystemClock clock;
+  const ClosedForm* form = valid.form ? &*valid.form : nullptr;
+  BodyMeter meter(placement.bodies.size());
+  const std::vector<std::unique_ptr<Subdomain>> bodies = metered(placement.pointers(), meter);
+  MeasureRecorder recorder(form, scene.output.force_filter, scene.output.steady_after);
+  CsvHistory history(directory, form, units, opening_of(from, "history"));
+  EventLog events(directory, opening_of(from, "events"));
+  Summary summary(directory,
+                  {scene.meta.title, versions(), scene.meta.expect, plan.began, valid.estimate,
+                   units.is_si() ? std::map<std::string, std::string>() : unit_words(units),
+                   &meter.waited_seconds()},
+                  recorder, form);
+  ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !plan.quiet, meter.waited_seconds());
+  RunTable table;
+  std::vector<Observer*> observers{&recorder, &history, &events, &progress, &table, &summary};
+  std::optional<VtkFields> fields;
+  if (const std::optional<FieldOutputSpec>& wanted = scene.output.field_output)
+    observers.push_back(&fields.emplace(directory, placement.pointers(), wanted->every,
+                                        opening_of(from, "fields")));
+  std::vector<Subdomain*> pointers;
+  for (const std::unique_ptr<Subdomain>& body : bodies) pointers.push_back(body.get());
+  Controller controller(scene, pointers, observers, &interrupts.asked);
+  Checkpoints checkpoints(directory, scene.output.checkpoint, plan.resolved, pointers, observers,
+                          clock);
+  grant_patience(patience);
+  const RunEnd end = conduct(controller, checkpoints, from, directory);
+  // Bodies in the middle of a solve hear no orderly end; they are ended when the launch goes.
+  if (placement.launch && end.status != "interrupted") placement.launch->finish();
+  const int code = report(plan, form, recorder.measures(), end, table, meter.waited_seconds(),
+                          summary.status(), checkpoints.latest());
+  return interrupt_exit_code() != 0 ? interrupt_exit_code() : code;
+}
+
+}  // namespace abut
