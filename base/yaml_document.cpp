@@ -11,6 +11,7 @@
 #include "base/input_file.hpp"
 #include "base/yaml_copies.hpp"
 #include "base/yaml_like.hpp"
+#include "base/yaml_stages.hpp"
 #include "base/yaml_stars.hpp"
 #include "base/yaml_text.hpp"
 #include "base/yaml_tree.hpp"
@@ -207,6 +208,10 @@ void Document::write_out(const YAML::Node& text) {
     later.push_back(override_text);
   }
   tree_ = std::make_unique<YamlTree>(root);
+  if (has("stages")) {
+    before_ = std::make_unique<YamlTree>(root);
+    later_ = later;
+  }
   read_units();
   write_out_likes();
   write_out_copies();
@@ -250,6 +255,13 @@ void Document::write_out_copies() {
   if (written_ == nullptr) written_ = std::move(tree_);
   tree_ = std::move(all);
   copies_ = std::move(copies);
+}
+
+std::optional<Document> Document::next_stage() const {
+  if (before_ == nullptr) return std::nullopt;
+  std::optional<NextStage> next = abut::next_stage(before_->root());
+  if (!next) return std::nullopt;
+  return from_text(fmt::format("{}, stage {}", name_, next->name), std::move(next->text), later_);
 }
 
 const YAML::Node& Document::root() const { return tree_->root(); }

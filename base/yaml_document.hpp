@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,6 +59,10 @@ class Document {
   /// written once.
   std::string where(std::string_view path) const;
 
+  /// The scene of the stage that follows this one, where `stages` has one: text, places and
+  /// overrides are its own.
+  std::optional<Document> next_stage() const;
+
   /// The body that another one is a copy of; empty: none.
   std::string body_of_copy(std::string_view name) const;
   /// "ball_1 to ball_9": the copies for which a name stands in the text; empty: none.
@@ -89,6 +94,9 @@ class Document {
   std::unique_ptr<YamlTree> tree_;
   std::unique_ptr<YamlTree> written_;  // before bodies were written out; null: it is the same
   std::unique_ptr<Copies> copies_;     // null: there are none
+  // Of a scene with stages: with the overrides that have their place there, and the others.
+  std::unique_ptr<YamlTree> before_;
+  std::vector<std::string> later_;
 };
 
 /// "bodies.left[0]" into "bodies", "left", "[0]".

@@ -117,8 +117,10 @@ bool Controller::wants_accelerations() const {
 }
 
 void Controller::start() {
-  introduce();
-  narrator_.start(scene_.time.begin, scene_.time.end, joints_, !broad_phase_.empty());
+  if (!staged_) {
+    introduce();
+    narrator_.start(scene_.time.begin, scene_.time.end, joints_, !broad_phase_.empty());
+  }
   for (const Joint& joint : joints_) {
     if (energy_account_of(joint) != EnergyAccount::doubled) continue;
     narrator_.warning(clock_.time(), joint.name,
@@ -137,7 +139,7 @@ void Controller::start() {
   for (const Joint& joint : joints_) narrator_.pressed_in(joint, clock_.time());
   watch_energy(guard_.look(bodies_.responses(), bodies_.struck()));
   fill_reports(true);
-  narrator_.window({instant, bodies_.responses(), reports_, 0, {}});
+  if (!staged_) narrator_.window({instant, bodies_.responses(), reports_, 0, {}});
   want_opening_accelerations(wants_accelerations());
   unite_start();
 }

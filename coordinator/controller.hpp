@@ -61,6 +61,11 @@ class Controller {
   /// whom they have met; afterwards they must be given their states of that time. Throws RunError
   /// where bytes are of another scene.
   void load(std::span<const std::byte> bytes);
+  /// The same of the run whose end is the begin of this stage: it begins as a scene does, where
+  /// bodies stand, and with those that have met.
+  void load_end(std::span<const std::byte> bytes);
+  /// Whether bodies are in their passive forms.
+  bool passive() const { return passive_.active(); }
   /// Called by `run` before every window or flight, and after the last one of a run that has not
   /// failed; may call `save`.
   std::function<void(const Pause&)> between_windows;
@@ -170,7 +175,7 @@ class Controller {
   std::vector<InterfaceReport> reports_;
   std::vector<PairReport> pairs_;
   RunEnd end_;
-  bool resumed_ = false;
+  bool resumed_ = false, staged_ = false;
 };
 
 }  // namespace abut

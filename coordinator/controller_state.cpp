@@ -33,6 +33,17 @@ void Controller::load(std::span<const std::byte> bytes) {
                   std::span(joints_).first(scene_.interfaces.size()), !broad_phase_.empty());
 }
 
+void Controller::load_end(std::span<const std::byte> bytes) {
+  staged_ = true;
+  introduce();
+  Archive archive = Archive::reader(bytes, Archive::Form::named);
+  state_of_pairs(archive);
+  clock_.state(archive);  // files are numbered by windows
+  clock_.anchor();
+  narrator_.start(scene_.time.begin, scene_.time.end,
+                  std::span(joints_).first(scene_.interfaces.size()), !broad_phase_.empty());
+}
+
 /// What the run has done on this side of the messages, of which the state hash is: the same however
 /// often records and fields are wanted.
 void Controller::state(Archive& archive) {

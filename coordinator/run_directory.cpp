@@ -156,6 +156,10 @@ void RunDirectory::clear() {
   for (const char* name : run_files()) remove(name);
 }
 
+bool RunDirectory::has_checkpoint() const {
+  return is_there(path_ / latest_checkpoint) || is_there(path_ / earlier_checkpoint);
+}
+
 void RunDirectory::go_on() {
   for (const char* name : of_its_end) remove(name);
 }

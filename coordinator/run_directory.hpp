@@ -24,6 +24,7 @@ class RunDirectory {
   RunDirectory& operator=(const RunDirectory&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  bool has_checkpoint() const;
   /// Takes out the files of an earlier run, so that none is taken for the new one's. Throws
   /// InputError.
   void clear();

@@ -13,6 +13,7 @@
 #include "base/yaml_fields.hpp"
 #include "coordinator/external_body.hpp"
 #include "coordinator/port_roles.hpp"
+#include "coordinator/scene_changes.hpp"
 #include "coordinator/scene_times.hpp"
 #include "coordinator/solver_processes.hpp"
 
@@ -183,6 +184,9 @@ void NetworkSpec::fields(Fields& f) {
              "number of processes to which the bodies are dealt in turns that the coordinator "
              "starts and that have neither a group nor a program of their own; 0: one for each",
              between(0, most_processes));
+  f.word("on_lost_body", on_lost_body, {"stop", "restart"},
+         "answer to a body that does not answer any more: end the run, or start all bodies again "
+         "and go on from the latest checkpoint");
   f.check(endpoint.starts_with("tcp://") || endpoint.starts_with("ipc://"), "endpoint",
           fmt::format("must begin with tcp:// or ipc://, but is {}", endpoint),
           "Give for example tcp://127.0.0.1:5555.");
@@ -201,6 +205,13 @@ void Scene::fields(Fields& f) {
   f.defaulted("schwarz", schwarz, "iteration inside a window in contact");
   f.defaulted("output", output, "what the run writes");
   f.defaulted("network", network, "addresses and deadlines");
+  if (f.purpose() != Fields::Purpose::write)
+    f.map("stages", stages,
+          "stages that follow the scene as it is written, such as an impact after a preload: each "
+          "begins with the state in which the one before it ends, and has keys of its own in place "
+          "of the scene's: time.end, time.window, integrators, schwarz, output, and "
+          "initial.velocity of bodies that were in a static state",
+          Presence::optional);
   idle_keys(f);
 }
 
@@ -292,6 +303,13 @@ void validate_interface(const Scene& scene, const InterfaceSpec& interface,
   if (const auto* d = std::get_if<DirichletNeumannTransmission>(&interface.transmission))
     require_side(interface, d->dirichlet, path + ".transmission.dirichlet_neumann.dirichlet",
                  document);
+}
+
+void validate_restart(const Scene& scene, const Document& document) {
+  if (scene.network.on_lost_body == OnLostBody::stop || scene.output.checkpoint) return;
+  throw InputError("is restart, but nothing is kept to go on from",
+                   document.where("network.on_lost_body"),
+                   "Give output: {checkpoint: {windows: N}}, or {wall: SECONDS}.");
 }
 
 void validate_steady_after(const Scene& scene, const Document& document) {
@@ -396,6 +414,8 @@ void validate(const Scene& scene, const Document& document) {
   errors.gather([&] { validate_pairs(scene, document); });
   errors.gather([&] { validate_force_filter(scene, document); });
   errors.gather([&] { validate_steady_after(scene, document); });
+  errors.gather([&] { validate_restart(scene, document); });
+  errors.gather([&] { check_stages(document); });
   if (scene.meta.closed_form) {
     for (const std::string& name : exact_interfaces(scene))
       if (!has_name(scene.interfaces, name))

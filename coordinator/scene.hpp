@@ -142,13 +142,21 @@ struct OutputSpec {
   void fields(Fields& f);
 };
 
+enum class OnLostBody { stop, restart };
+
 struct NetworkSpec {
   // Where bodies with launch: connect find the coordinator.
   std::string endpoint = "tcp://127.0.0.1:5555";
   double request_deadline = 60.0;  // [s] without reply or sign of progress
   double startup_deadline = 10.0;  // [s] for processes that the coordinator starts
   int processes = 0;               // that bodies without a group are dealt to; 0: one for each
+  OnLostBody on_lost_body = OnLostBody::stop;
   void fields(Fields& f);
+};
+
+/// Keys of the scene that another stage has in another way (Document::next_stage).
+struct StageSpec {
+  void fields(Fields& f) { f.ignore_rest(); }
 };
 
 struct Scene {
@@ -161,6 +169,7 @@ struct Scene {
   SchwarzSpec schwarz;
   OutputSpec output;
   NetworkSpec network;
+  std::vector<std::pair<std::string, StageSpec>> stages;  // that follow
   void fields(Fields& f);
 
   /// The law where everything may touch everything; null: interfaces are written one by one.

@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/input_errors.hpp"
 #include "base/yaml_differences.hpp"
+#include "base/yaml_document.hpp"
 
 namespace abut {
 namespace {
@@ -28,6 +29,37 @@ const std::regex& free_by_command() {
       R"(time\.window|bodies\.[^.]+\.integrator\.[^.]+\.step|)"
       R"(schwarz\.(tolerance|max_iterations|on_nonconvergence|energy_guard))");
   return keys;
+}
+
+const std::regex& free_in_stages() {
+  static const std::regex keys(
+      R"(time\.(end|window)|bodies\.[^.]+\.(integrator(\..*)?|initial\.velocity)|)"
+      R"(schwarz(\..*)?|output\.(records_per_window|fields|checkpoint)(\..*)?)");
+  return keys;
+}
+
+/// Whether a key that a stage may have lies below this one.
+const std::regex& on_the_way() {
+  static const std::regex keys(R"(time|bodies(\.[^.]+(\.initial)?)?|output)");
+  return keys;
+}
+
+/// Of one stage: `path` from the document's root, `key` as the scene has it.
+void check_stage(const Document& document, const std::string& path, const std::string& key,
+                 InputErrors& errors) {
+  for (const std::string& name : document.keys(path)) {
+    const std::string below = join_path(path, name), own = join_path(key, name);
+    if (std::regex_match(own, free_in_stages())) continue;
+    if (key == "bodies" && !document.has(own)) {
+      errors.add({"is no body of the scene", document.where(below), "Name one of its bodies."});
+    } else if (std::regex_match(own, on_the_way()) && !document.keys(below).empty()) {
+      check_stage(document, below, own, errors);
+    } else {
+      errors.add({"cannot be another in a stage", document.where(below),
+                  "Give time.end, time.window, integrators, schwarz, output, or initial.velocity "
+                  "alone; all else is the scene's, and may be functions of time."});
+    }
+  }
 }
 
 bool named(const std::string& key, std::span<const std::string> overrides) {
@@ -52,6 +84,20 @@ void check_changes(const std::string& before, const std::string& now,
     errors.add({fmt::format("was {} when the checkpoint was written, and is {}",
                             shown(change.before), shown(change.now)),
                 change.key, remedy});
+  }
+  errors.raise();
+}
+
+void check_stages(const Document& document) {
+  InputErrors errors;
+  if (document.has("stages") && document.keys("stages").empty())
+    errors.add({"has no stage", document.where("stages"), "Leave it out, or give name: {keys}."});
+  for (const std::string& name : document.keys("stages")) {
+    const std::string path = join_path("stages", name);
+    if (!document.has(path + ".time.end"))
+      errors.add({"does not say when it ends", document.where(path),
+                  "Give time: {end: ...}, after the end of the stage before."});
+    check_stage(document, path, "", errors);
   }
   errors.raise();
 }

@@ -10,6 +10,7 @@
 #include "base/printable.hpp"
 #include "messaging/codec.hpp"
 #include "messaging/codec/wire.hpp"
+#include "messaging/lost_body.hpp"
 
 namespace abut {
 
@@ -185,7 +186,7 @@ void Caller::heard(TimePoint when) {
 
 void Caller::greeted_again(const v1::Hello& hello) {
   if (hello.session() != session_) {
-    throw RunError(fmt::format("a second solver with the name of body '{}' has connected", body_),
+    throw LostBody(fmt::format("a second solver with the name of body '{}' has connected", body_),
                    "", "start one solver per body; after the loss of a solver start the run again");
   }
   repeat();  // the connection is new: what was on the old one is lost
@@ -203,7 +204,7 @@ void Caller::look_around() {
   }
   const std::string loss = context_.liveness.loss(begun_);
   if (!loss.empty()) {
-    throw RunError(fmt::format("body '{}' {} while at {}", body_, loss, under_way_text()), "",
+    throw LostBody(fmt::format("body '{}' {} while at {}", body_, loss, under_way_text()), "",
                    "look at the solver's own messages above, then start the run again");
   }
   const TimePoint sign = context_.liveness.last_sign();
@@ -215,7 +216,7 @@ void Caller::look_around() {
       noise += fmt::format("; {} corrupt frames came, the last one of {} bytes", corrupt_,
                            corrupt_bytes_);
     if (foreign_ > 0) noise += fmt::format("; {} replies of another session came", foreign_);
-    throw RunError(fmt::format("body '{}' has not answered {} within {} s, nor shown progress{}",
+    throw LostBody(fmt::format("body '{}' has not answered {} within {} s, nor shown progress{}",
                                body_, under_way_text(), seconds(context_.deadlines.request), noise),
                    "", "raise network.request_deadline if one solve may take longer");
   }

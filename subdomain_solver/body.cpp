@@ -96,8 +96,34 @@ void Body::restore() {
 
 std::vector<std::byte> Body::checkpoint() {
   std::vector<std::byte> bytes;
-  write(*interior_, bytes, Archive::Form::named);
+  Archive archive = Archive::writer(bytes, Archive::Form::named);
+  std::string scheme = interior_->scheme();
+  bool statics = describe().quasi_static;
+  archive.field("scheme", scheme);
+  archive.field("statics", statics);
+  interior_->state(archive);
+  archive.finish();
   return bytes;
+}
+
+void Interior::take_over(Archive&, bool) {
+  throw RunError(fmt::format("cannot go on by {} from where another scheme has left it", scheme()),
+                 fmt::format("body '{}'", describe().name),
+                 "Give its integrator the same name in all stages");
+}
+
+/// Throws RunError.
+void Body::read_checkpoint(std::span<const std::byte> bytes) {
+  Archive archive = Archive::reader(bytes, Archive::Form::named);
+  std::string scheme;
+  bool statics = false;
+  archive.field("scheme", scheme);
+  archive.field("statics", statics);
+  if (scheme == interior_->scheme())
+    interior_->state(archive);
+  else
+    interior_->take_over(archive, statics);
+  archive.finish();
 }
 
 void Body::resume(std::span<const std::byte> bytes) {
@@ -105,7 +131,7 @@ void Body::resume(std::span<const std::byte> bytes) {
   std::vector<std::byte> before;
   write(*interior_, before, Archive::Form::bare);
   try {
-    read(*interior_, bytes, Archive::Form::named);
+    read_checkpoint(bytes);
     if (interior_->coordinates() != own) {
       throw RunError(fmt::format("the checkpoint holds {} coordinates, but the body has {}",
                                  interior_->coordinates(), own),

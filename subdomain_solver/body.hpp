@@ -49,6 +49,7 @@ class Body final : public Subdomain {
     const PassiveStep* step_ = nullptr;
   };
 
+  void read_checkpoint(std::span<const std::byte> bytes);
   PortKernel probe_dynamics(const Probing& asked, std::span<const int> seen);
   PortKernel probe_statics(const Probing& asked, std::span<const int> seen);
   /// A port as substeps see it.
@@ -116,8 +117,8 @@ class Body final : public Subdomain {
   std::vector<double> at_begin_;   // [m] of the ports that respond() was asked for, at the begin
   std::vector<double> peeked_;     // [m] (steps, values of all ports) told without going there
   std::vector<std::int32_t> pressed_;  // points of a reaction
-  double step_effort_ = 0.0;  // of a substep
-  double effort_ = 0.0;       // since the last sign of life
+  double step_effort_ = 0.0;           // of a substep
+  double effort_ = 0.0;                // since the last sign of life
 };
 
 }  // namespace abut

@@ -86,7 +86,7 @@ class Interior {
     std::vector<ForceSupport> reaction;  // by port, of reactions to obstacles; empty: as its forces
     double effort = 0.0;                 // parts of 10 ms that a substep takes, about
     bool slow = false;                   // a single substep may take seconds
-    bool looks_ahead = true;  // where it goes without its partners is worth the way
+    bool looks_ahead = true;             // where it goes without its partners is worth the way
   };
 
   Interior() = default;
@@ -105,6 +105,11 @@ class Interior {
 
   /// The one list of all that changes during a step.
   virtual void state(Archive& archive) = 0;
+  /// What moves it, as states of another one have other parts: "newmark". Empty: always the same.
+  virtual std::string scheme() const { return {}; }
+  /// Reads the state that the same body has come to by another scheme, and goes on from there;
+  /// `statics`: it stood in balance. Throws RunError where it cannot.
+  virtual void take_over(Archive& archive, bool statics);
   /// Coordinates of the state; 0: its parts do not fit each other.
   virtual std::size_t coordinates() const = 0;
   /// The state came back: what follows from it.

@@ -65,14 +65,16 @@ class SolidInterior final : public Interior,
     std::vector<double> loose;             // Description::loose
     // The body's own loads where all mass is on the nodes; empty: those of the problem.
     std::vector<std::unique_ptr<Load>> whole_loads;
-    const RigidModel* rigid = nullptr;  // the problem's model, of a rigid body
-    bool massive_surface = false;       // it has no layer, and takes obstacles when passive alone
+    const RigidModel* rigid = nullptr;   // the problem's model, of a rigid body
+    bool massive_surface = false;        // it has no layer, and takes obstacles when passive alone
     std::optional<double> pressed_over;  // [s] in which wanted interference grows; absent: none
   };
 
   SolidInterior(std::string name, Parts parts, const std::vector<PortNodes>& ports);
 
   void state(Archive& archive) override;
+  std::string scheme() const override;
+  void take_over(Archive& archive, bool statics) override;
   std::size_t coordinates() const override { return state_.motion.q.size(); }
   void restored() override;
   std::optional<Failed> begin(const Window& window) override;

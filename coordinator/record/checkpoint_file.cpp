@@ -99,6 +99,7 @@ void Checkpoint::state(Archive& archive) {
   archive.field("scene", scene);
   archive.field("time", time);
   archive.field("windows", windows);
+  archive.field("stage_ends", stage_ends);
   archive.field("run", run);
   for (std::vector<Part>* parts : {&bodies, &records}) {
     list(archive, "parts", *parts, [](Archive& a, Part& part) {
@@ -122,7 +123,6 @@ std::int64_t fingerprint(const Description& body) {
   archive.field("mass", mass);
   archive.field("dofs", dofs);
   std::string names;
-  for (const std::string& name : body.measures) names += name + '\n';
   for (const std::string& name : body.columns) names += name + '\n';
   for (const Port& port : body.ports) {
     names += port.name + '\n';

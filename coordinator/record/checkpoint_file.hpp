@@ -22,6 +22,7 @@ struct Checkpoint {
   std::string scene;         // resolved: every value in use
   double time = 0.0;         // [s]
   std::int64_t windows = 0;  // accepted so far
+  bool stage_ends = false;   // at the end of a stage that another one follows
   std::string run;           // Controller::save
   std::vector<Part> bodies;
   std::vector<Part> records;  // of observers, by Observer::kept_as
@@ -30,8 +31,8 @@ struct Checkpoint {
   const Part* record(std::string_view name) const;  // null: it was not kept
 };
 
-/// Of what a body tells of itself: its unknowns, its mass, the names of its columns and measures,
-/// and where the points of its ports are.
+/// Of what a body tells of itself: its unknowns, its mass, the names of its columns, and where the
+/// points of its ports are.
 std::int64_t fingerprint(const Description& body);
 
 /// The latest checkpoint of a run and the one before it are kept in its directory.

@@ -1,6 +1,7 @@
 #include "coordinator/record/vtk_fields.hpp"
 
 #include <algorithm>
+#include <regex>
 #include <system_error>
 #include <utility>
 
@@ -66,7 +67,24 @@ void VtkFields::state(Archive& archive) {
   archive.field("written", written_);
   archive.field("largest", view_.largest);
   list_->state(archive);
-  if (!archive.writing()) list_->append_ended("", list_end);
+  if (archive.writing()) return;
+  list_->append_ended("", list_end);
+  remove_later();
+}
+
+/// States that the run before wrote after its checkpoint: not all of them come again.
+void VtkFields::remove_later() const {
+  const std::regex name(R"((.+)_(\d{6,18})\.vtu)");
+  for (const auto& entry : std::filesystem::directory_iterator(directory_ / folder)) {
+    const std::string file = entry.path().filename().string();
+    std::smatch parts;
+    if (!std::regex_match(file, parts, name) || std::stoll(parts[2]) <= windows_) continue;
+    const bool ours = std::ranges::any_of(shown_, [&parts](const Shown& shown) {
+      return shown.body->describe().name == parts[1].str();
+    });
+    std::error_code ignored;
+    if (ours && entry.is_regular_file(ignored)) std::filesystem::remove(entry.path(), ignored);
+  }
 }
 
 void VtkFields::on_window(const WindowReport& report) {

@@ -40,6 +40,7 @@ class VtkFields : public Observer {
   };
 
   void write(double time);
+  void remove_later() const;
   void write_view() const;  // fields.pvsm
 
   std::filesystem::path directory_;

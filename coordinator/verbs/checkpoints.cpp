@@ -51,25 +51,23 @@ void check_bodies(const Checkpoint& from, const std::vector<Subdomain*>& bodies)
 
 }  // namespace
 
-Checkpoints::Checkpoints(std::filesystem::path directory, std::optional<CheckpointSpec> when,
-                         std::string scene, std::vector<Subdomain*> bodies,
+Checkpoints::Checkpoints(Keeping keeping, std::vector<Subdomain*> bodies,
                          std::vector<Observer*> observers, const Clock& clock)
-    : directory_(std::move(directory)),
-      when_(std::move(when)),
-      scene_(std::move(scene)),
+    : keeping_(std::move(keeping)),
       bodies_(std::move(bodies)),
       observers_(std::move(observers)),
       clock_(clock),
       written_(clock.now()) {}
 
 bool Checkpoints::due(const Pause& pause) const {
+  if (pause.last && keeping_.more) return true;
   if (latest_ && pause.windows == windows_) return false;  // it has this state already
   if (pause.interrupted) return true;
-  if (!when_ || pause.windows == windows_) return false;
+  if (!keeping_.when || pause.windows == windows_) return false;
   if (pause.last) return true;
   const std::chrono::duration<double> wall = clock_.now() - written_;
   const Since since{pause.windows - windows_, pause.time - time_, wall.count()};
-  return std::visit([&since](const auto& spec) { return since.reach(spec); }, *when_);
+  return std::visit([&since](const auto& spec) { return since.reach(spec); }, *keeping_.when);
 }
 
 void Checkpoints::look(const Pause& pause, Controller& controller) {
@@ -86,9 +84,13 @@ void Checkpoints::look(const Pause& pause, Controller& controller) {
 void Checkpoints::write(const Pause& pause, Controller& controller) {
   Checkpoint kept;
   kept.version = build_info.version;
-  kept.scene = scene_;
+  kept.scene = keeping_.scene;
   kept.time = pause.time;
   kept.windows = pause.windows;
+  kept.stage_ends = pause.last && keeping_.more;
+  if (kept.stage_ends && controller.passive())
+    throw RunError("ends while bodies go passively, where no other scheme can go on", "the stage",
+                   "Let it end at another time");
   kept.run = text_of(controller.save());
   for (Subdomain* body : bodies_)
     kept.bodies.push_back(
@@ -101,7 +103,7 @@ void Checkpoints::write(const Pause& pause, Controller& controller) {
     archive.finish();
     kept.records.push_back({std::string(observer->kept_as()), text_of(bytes)});
   }
-  write_checkpoint(directory_, kept);
+  write_checkpoint(keeping_.directory, kept);
   latest_ = time_ = pause.time;
   windows_ = pause.windows;
   written_ = clock_.now();
@@ -109,7 +111,10 @@ void Checkpoints::write(const Pause& pause, Controller& controller) {
 
 void Checkpoints::resume(const Checkpoint& from, Controller& controller) {
   check_bodies(from, bodies_);
-  controller.load(bytes_of(from.run));
+  if (from.stage_ends)
+    controller.load_end(bytes_of(from.run));
+  else
+    controller.load(bytes_of(from.run));
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     bodies_[b]->resume(bytes_of(from.bodies[b].state));
   for (Observer* observer : observers_) {

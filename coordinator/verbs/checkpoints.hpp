@@ -17,10 +17,14 @@ namespace abut {
 /// When a run is kept, and all that is kept of it.
 class Checkpoints {
  public:
-  /// `when`: absent: where a run is interrupted alone. `scene`: resolved. Bodies, observers and the
-  /// clock must outlive this.
-  Checkpoints(std::filesystem::path directory, std::optional<CheckpointSpec> when,
-              std::string scene, std::vector<Subdomain*> bodies, std::vector<Observer*> observers,
+  struct Keeping {
+    std::filesystem::path directory;
+    std::optional<CheckpointSpec> when;  // absent: where a run is interrupted alone
+    bool more = false;                   // a stage follows: the end of this one is kept
+    std::string scene;                   // resolved
+  };
+  /// Bodies, observers and the clock must outlive this.
+  Checkpoints(Keeping keeping, std::vector<Subdomain*> bodies, std::vector<Observer*> observers,
               const Clock& clock);
 
   /// Controller::between_windows. Writes a checkpoint where one is due. Throws RunError.
@@ -36,9 +40,7 @@ class Checkpoints {
   bool due(const Pause& pause) const;
   void write(const Pause& pause, Controller& controller);
 
-  std::filesystem::path directory_;
-  std::optional<CheckpointSpec> when_;
-  std::string scene_;
+  Keeping keeping_;
   std::vector<Subdomain*> bodies_;
   std::vector<Observer*> observers_;
   const Clock& clock_;

@@ -14,6 +14,7 @@
 
 #include "base/build_info.hpp"
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/unit_words.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/launch_local.hpp"
@@ -29,6 +30,7 @@
 #include "coordinator/record/vtk_fields.hpp"
 #include "coordinator/solver_processes.hpp"
 #include "coordinator/verbs/checkpoints.hpp"
+#include "messaging/lost_body.hpp"
 
 namespace abut {
 
@@ -65,28 +67,31 @@ Processes processes_of(const Scene& scene) {
 }
 
 /// The result for people; 0, or 1 when an expectation or the run failed.
-int report(const RunPlan& plan, const ClosedForm* form, const Measures& measures, const RunEnd& end,
-           const RunTable& table, const std::vector<double>& waited, const std::string& status,
+int report(const RunPlan& plan, const RunOptions& options, const fs::path& directory,
+           const Measures& measures, const RunEnd& end, const RunTable& table,
+           const std::vector<double>& waited, const std::string& status,
            std::optional<double> kept) {
   const Scene& scene = plan.scene;
   const UnitSystem& units = plan.document.units();
   const std::vector<ExpectationResult> results = evaluate(scene.meta.expect, measures);
   bool pass = status == "completed";
   for (const ExpectationResult& result : results) pass = pass && result.pass;
-  if (!plan.quiet || (!pass && status != "interrupted")) {
+  if (!options.quiet || (!pass && status != "interrupted")) {
     fmt::print("\n{}\n\n", scene.meta.title);  // apart from the log lines above
-    if (status == "completed") fmt::print("{}", against_closed_form(form, measures, end, units));
+    if (status == "completed")
+      fmt::print("{}", against_closed_form(plan.valid.form ? &*plan.valid.form : nullptr, measures,
+                                           end, units));
     fmt::print("{}", in_words_of(units, table.text(measures)));
     // A run cut short misses expectations for that reason alone.
     if (status == "completed" && !results.empty()) fmt::print("{}\n", to_table(results));
     fmt::print("{} after {:.3f} s: {} windows, {} of them in contact, {} exchanges\n", status,
                end.wall_seconds, end.windows, end.contact_windows, end.exchanges);
-    fmt::print("{}", table.times(waited, plan.local ? Processes() : processes_of(scene)));
+    fmt::print("{}", table.times(waited, options.local ? Processes() : processes_of(scene)));
     if (end.state_hash) fmt::print("state  {:016x}\n", *end.state_hash);
-    fmt::print("files  {0}\nplots  abut report {0}\n", plan.directory.string());
-    if (scene.output.field_output) fmt::print("fields {}/fields.pvd\n", plan.directory.string());
+    fmt::print("files  {0}\nplots  abut report {0}\n", directory.string());
+    if (scene.output.field_output) fmt::print("fields {}/fields.pvd\n", directory.string());
     if (kept && status != "completed")
-      fmt::print("go on  abut resume {}, from {:.6g} s\n", plan.directory.string(), *kept);
+      fmt::print("go on  abut resume {}, from {:.6g} s\n", directory.string(), *kept);
   }
   return pass ? 0 : exit_expectation;
 }
@@ -110,6 +115,8 @@ RunEnd conduct(Controller& controller, Checkpoints& checkpoints, const Checkpoin
   try {
     if (from != nullptr) checkpoints.resume(*from, controller);
     return controller.run();
+  } catch (const LostBody& error) {
+    throw with_place_of_files(error, directory, checkpoints.latest());
   } catch (const RunError& error) {
     throw with_place_of_files(error, directory, checkpoints.latest());
   } catch (const InputError& error) {  // of a body: what it was given does not go together
@@ -125,6 +132,71 @@ TextFile::Opening opening_of(const Checkpoint* from, std::string_view kept_as) {
 
 constexpr unsigned patience = 5;  // [s] for the window under way, where a run is to end
 
+/// What a stage has come to.
+struct StageEnd {
+  int code = 0;
+  bool completed = false;
+};
+
+/// One stage. `more`: another one follows, and tells of the end.
+StageEnd record_stage(RunPlan& plan, const RunOptions& options, const fs::path& directory,
+                      const Interrupts& interrupts, const Checkpoint* from, bool more) {
+  const Scene& scene = plan.scene;
+  Placement& placement = plan.placement;
+  const UnitSystem& units = plan.document.units();
+  const SystemClock clock;
+  const ClosedForm* form = plan.valid.form ? &*plan.valid.form : nullptr;
+  BodyMeter meter(placement.bodies.size());
+  const std::vector<std::unique_ptr<Subdomain>> bodies = metered(placement.pointers(), meter);
+  MeasureRecorder recorder(form, scene.output.force_filter, scene.output.steady_after);
+  CsvHistory history(directory, form, units, opening_of(from, "history"));
+  EventLog events(directory, opening_of(from, "events"));
+  Summary summary(
+      directory,
+      {scene.meta.title, versions(), scene.meta.expect, options.began, plan.valid.estimate,
+       units.is_si() ? std::map<std::string, std::string>() : unit_words(units),
+       &meter.waited_seconds()},
+      recorder, form);
+  ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !options.quiet,
+                        meter.waited_seconds());
+  RunTable table;
+  std::vector<Observer*> observers{&recorder, &history, &events, &progress, &table, &summary};
+  std::optional<VtkFields> fields;
+  if (const std::optional<FieldOutputSpec>& wanted = scene.output.field_output)
+    observers.push_back(&fields.emplace(directory, placement.pointers(), wanted->every,
+                                        opening_of(from, "fields")));
+  std::vector<Subdomain*> pointers;
+  for (const std::unique_ptr<Subdomain>& body : bodies) pointers.push_back(body.get());
+  Controller controller(scene, pointers, observers, &interrupts.asked);
+  Checkpoints checkpoints(
+      {directory, scene.output.checkpoint, more, resolved_text(scene, plan.document)}, pointers,
+      observers, clock);
+  grant_patience(patience);
+  const RunEnd end = conduct(controller, checkpoints, from, directory);
+  // Bodies in the middle of a solve hear no orderly end; they are ended when the launch goes.
+  if (placement.launch && end.status != "interrupted") placement.launch->finish();
+  const bool completed = summary.status() == "completed";
+  if (more && completed) return {0, true};
+  const int code = report(plan, options, directory, recorder.measures(), end, table,
+                          meter.waited_seconds(), summary.status(), checkpoints.latest());
+  return {interrupt_exit_code() != 0 ? interrupt_exit_code() : code, completed};
+}
+
+/// Bodies that are lost again where they were lost before are not waited for without end.
+class Restarts {
+ public:
+  bool allowed(double time) {
+    constexpr int most_without_progress = 3;
+    count_ = last_ && *last_ == time ? count_ + 1 : 1;
+    last_ = time;
+    return count_ <= most_without_progress;
+  }
+
+ private:
+  std::optional<double> last_;  // [s] of the checkpoint
+  int count_ = 0;
+};
+
 }  // namespace
 
 std::string resolved_text(const Scene& scene, const Document& document) {
@@ -136,45 +208,47 @@ std::string resolved_text(const Scene& scene, const Document& document) {
   ResolvedYaml resolved(document.units());
   resolved.add("", scene);
   resolve_body_keys(scene, document, resolved);
+  if (document.has("stages")) resolved.copy("stages", document);
   return text + resolved.text();
 }
 
-int record_run(const RunPlan& plan, Placement& placement, const Validated& valid,
-               const Interrupts& interrupts, const Checkpoint* from) {
-  const Scene& scene = plan.scene;
-  const fs::path& directory = plan.directory;
-  const UnitSystem& units = plan.document.units();
-  const SystemClock clock;
-  const ClosedForm* form = valid.form ? &*valid.form : nullptr;
-  BodyMeter meter(placement.bodies.size());
-  const std::vector<std::unique_ptr<Subdomain>> bodies = metered(placement.pointers(), meter);
-  MeasureRecorder recorder(form, scene.output.force_filter, scene.output.steady_after);
-  CsvHistory history(directory, form, units, opening_of(from, "history"));
-  EventLog events(directory, opening_of(from, "events"));
-  Summary summary(directory,
-                  {scene.meta.title, versions(), scene.meta.expect, plan.began, valid.estimate,
-                   units.is_si() ? std::map<std::string, std::string>() : unit_words(units),
-                   &meter.waited_seconds()},
-                  recorder, form);
-  ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !plan.quiet, meter.waited_seconds());
-  RunTable table;
-  std::vector<Observer*> observers{&recorder, &history, &events, &progress, &table, &summary};
-  std::optional<VtkFields> fields;
-  if (const std::optional<FieldOutputSpec>& wanted = scene.output.field_output)
-    observers.push_back(&fields.emplace(directory, placement.pointers(), wanted->every,
-                                        opening_of(from, "fields")));
-  std::vector<Subdomain*> pointers;
-  for (const std::unique_ptr<Subdomain>& body : bodies) pointers.push_back(body.get());
-  Controller controller(scene, pointers, observers, &interrupts.asked);
-  Checkpoints checkpoints(directory, scene.output.checkpoint, plan.resolved, pointers, observers,
-                          clock);
-  grant_patience(patience);
-  const RunEnd end = conduct(controller, checkpoints, from, directory);
-  // Bodies in the middle of a solve hear no orderly end; they are ended when the launch goes.
-  if (placement.launch && end.status != "interrupted") placement.launch->finish();
-  const int code = report(plan, form, recorder.measures(), end, table, meter.waited_seconds(),
-                          summary.status(), checkpoints.latest());
-  return interrupt_exit_code() != 0 ? interrupt_exit_code() : code;
+RunPlan plan_run(Document document, const RunOptions& options, const Interrupts& interrupts) {
+  RunPlan plan{std::move(document), {}, {}, {}};
+  plan.scene = read_all_keys(plan.document);
+  for (std::optional<Document> stage = plan.document.next_stage(); stage;
+       stage = stage->next_stage())
+    read_all_keys(*stage);
+  if (!options.local) check_processes(plan.scene, plan.document);
+  plan.placement = place(plan.scene, plan.document, options.local, interrupts.at_once);
+  plan.valid = validate_all(plan.scene, plan.document, plan.placement, !options.local);
+  return plan;
+}
+
+int record_run(RunPlan plan, const RunOptions& options, RunDirectory& held,
+               const Interrupts& interrupts, std::optional<Checkpoint> from) {
+  std::vector<std::string> warnings;
+  Restarts restarts;
+  for (;;) {
+    std::optional<Document> next = plan.document.next_stage();
+    bool lost = false;
+    try {
+      const StageEnd end = record_stage(plan, options, held.path(), interrupts,
+                                        from ? &*from : nullptr, next.has_value());
+      if (!end.completed || !next) return end.code;
+    } catch (const LostBody& error) {
+      if (plan.scene.network.on_lost_body != OnLostBody::restart || !held.has_checkpoint()) throw;
+      from = read_checkpoint(held.path(), warnings);
+      if (!restarts.allowed(from->time)) throw;
+      log_warning(
+          fmt::format("{}: all bodies go on from {:.6g} s", error.what_is_wrong, from->time));
+      lost = true;
+    }
+    plan.placement = {};  // ends the processes before others of their names begin
+    if (!lost) from = read_checkpoint(held.path(), warnings);
+    held.go_on();
+    plan = plan_run(lost ? std::move(plan.document) : std::move(*next), options, interrupts);
+    if (!lost) log_info(fmt::format("next stage, from {:.6g} s", from->time));
+  }
 }
 
 }  // namespace abut

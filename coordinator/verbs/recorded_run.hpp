@@ -1,35 +1,43 @@
 #pragma once
 
-#include <atomic>
-#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "base/clock.hpp"
 #include "base/yaml_document.hpp"
 #include "coordinator/interrupt.hpp"
 #include "coordinator/record/checkpoint_file.hpp"
+#include "coordinator/run_directory.hpp"
 #include "coordinator/scene.hpp"
 #include "coordinator/verbs/placed_scene.hpp"
 
 namespace abut {
 
-/// A scene that is run, and where it leaves what it tells.
+/// A scene that can be run: read, placed and found valid.
 struct RunPlan {
-  const Document& document;
-  const Scene& scene;
-  std::filesystem::path directory;  // locked for this run
-  std::string resolved;             // scene.resolved.yaml
+  Document document;
+  Scene scene;
+  Placement placement;
+  Validated valid;
+};
+
+struct RunOptions {
   bool local = false;
   bool quiet = false;
   Clock::Time began;  // of the program
 };
 
+/// Reads a scene, with all stages that follow, and places its bodies. Throws InputError, RunError.
+RunPlan plan_run(Document document, const RunOptions& options, const Interrupts& interrupts);
+
 /// The resolved scene, with who has read it.
 std::string resolved_text(const Scene& scene, const Document& document);
 
-/// Runs the scene from its begin, or from a checkpoint of this directory, to its end, writes all
-/// files and prints the result. The exit code of the verb. Throws InputError, RunError.
-int record_run(const RunPlan& plan, Placement& placement, const Validated& valid,
-               const Interrupts& interrupts, const Checkpoint* from);
+/// Runs the scene and the stages that follow it, from its begin or from a checkpoint of this
+/// directory: writes all files, and prints the result. The exit code of the verb. Where a body is
+/// lost and the scene says so, all bodies begin again from the latest checkpoint. Throws
+/// InputError, RunError.
+int record_run(RunPlan plan, const RunOptions& options, RunDirectory& held,
+               const Interrupts& interrupts, std::optional<Checkpoint> from);
 
 }  // namespace abut

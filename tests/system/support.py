@@ -19,6 +19,7 @@ ABUT = Path(sys.argv[1]).resolve()
 SOLVER = ABUT.with_name("abut-solver")
 PACKAGE = ABUT.parents[1] / "share" / "abut" / "python"  # with abut_tools
 ROOT = Path(sys.argv[2]).resolve()
+CHECKPOINTS = {"checkpoint.abut", "checkpoint.before.abut"}  # of runs that were kept
 SECONDS = 120  # the longest run takes a few seconds; only a hang takes longer
 CONNECTED = "two_bars_processes"  # the scene whose solvers somebody else starts
 FILES = {"scene.resolved.yaml", "history.csv", "events.jsonl", "summary.json"}
@@ -160,7 +161,7 @@ class SystemTest(unittest.TestCase):
 
         A run that was cut short may have no more than the row of its begin.
         """
-        names = {path.name for path in folder.iterdir()}
+        names = {path.name for path in folder.iterdir()} - CHECKPOINTS
         summary = self.summary(folder)
         tables = ["history.csv"] + (["closed_form.csv"] if "closed_form" in summary else [])
         resolved = (folder / "scene.resolved.yaml").read_text(encoding="utf-8")

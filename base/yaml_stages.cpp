@@ -1,0 +1,78 @@
+#include "base/yaml_stages.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "base/yaml_document.hpp"
+#include "base/yaml_like.hpp"
+#include "base/yaml_tree.hpp"
+
+namespace abut {
+namespace {
+
+/// Beside those of bodies, as body_choices() has them.
+constexpr std::array<std::string_view, 2> choices = {"schwarz.accelerator", "output.checkpoint"};
+
+bool fits(const std::vector<std::string>& path, std::string_view pattern) {
+  return std::ranges::equal(path, split_path(pattern), [](const auto& step, const auto& part) {
+    return part == "*" || step == part;
+  });
+}
+
+bool is_choice(const std::vector<std::string>& path) {
+  const auto here = [&path](std::string_view choice) { return fits(path, choice); };
+  if (std::ranges::any_of(choices, here)) return true;
+  return std::ranges::any_of(body_choices(), [&path](std::string_view choice) {
+    return fits(path, "bodies.*." + std::string(choice));
+  });
+}
+
+YAML::Node merged(const YAML::Node& before, const YAML::Node& own, std::vector<std::string>& path) {
+  if (!before.IsMap() || !own.IsMap()) return own;
+  const bool other = own.size() == 1 && !child(before, own.begin()->first.Scalar());
+  if (other && is_choice(path)) return own;
+  YAML::Node out(YAML::NodeType::Map);
+  for (const auto& pair : before) {
+    const std::string& key = pair.first.Scalar();
+    if (path.empty() && key == "stages") continue;
+    const std::optional<Found> mine = child(own, key);
+    if (mine && mine->node.IsNull()) continue;
+    path.push_back(key);
+    out.force_insert(pair.first, mine ? merged(pair.second, mine->node, path) : pair.second);
+    path.pop_back();
+  }
+  for (const auto& pair : own)
+    if (!child(before, pair.first.Scalar())) out.force_insert(pair.first, pair.second);
+  return out;
+}
+
+}  // namespace
+
+std::optional<NextStage> next_stage(const YAML::Node& scene) {
+  const std::optional<Found> stages = child(scene, "stages");
+  if (!stages || !stages->node.IsMap() || stages->node.size() == 0) return std::nullopt;
+  YAML::Node first, rest(YAML::NodeType::Map);
+  std::string name;
+  for (const auto& pair : stages->node) {
+    if (name.empty()) {
+      name = pair.first.Scalar();
+      first.reset(pair.second);
+    } else {
+      rest.force_insert(pair.first, pair.second);
+    }
+  }
+  std::vector<std::string> path;
+  // A copy: what is shared with the scene at hand must not change there.
+  YAML::Node out = YAML::Clone(merged(scene, first, path));
+  if (const std::optional<Found> time = child(scene, "time"))
+    if (const std::optional<Found> end = child(time->node, "end"); end && out["time"].IsMap())
+      out["time"]["begin"] = YAML::Clone(end->node);
+  if (rest.size() > 0) out["stages"] = YAML::Clone(rest);
+  return NextStage{name, YAML::Dump(out)};
+}
+
+}  // namespace abut

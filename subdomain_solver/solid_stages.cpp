@@ -1,0 +1,46 @@
+// How a solid goes on where another scheme has left it: stages of a scene.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "subdomain_solver/solid_interior.hpp"
+#include "subdomain_solver/time/quasi_static.hpp"
+
+namespace abut {
+
+std::string SolidInterior::scheme() const {
+  const std::string& words = parts_.scheme.words;
+  return words.substr(0, words.find(','));
+}
+
+/// From statics: displacements, history and what was pressed stay, accelerations are none, since
+/// all forces are in balance, and velocities are those that the body was built with, its
+/// initial.velocity. A massless surface stays where contact has pressed it.
+/// From another scheme of motion: displacements and velocities stay.
+void SolidInterior::take_over(Archive& archive, bool statics) {
+  const std::string of = fmt::format("body '{}'", description_.name);
+  const std::vector<double> start = state_.motion.v;
+  state(archive);
+  Motion& motion = state_.motion;
+  if (description_.quasi_static && !statics)
+    throw RunError("moves, and a stage without inertia cannot go on from there", of,
+                   "Give statics before motion, or an implicit integrator");
+  if (is_passive())
+    throw RunError("is in its passive form where the stage before ends", of,
+                   "Let that stage end at another time");
+  if (statics) motion.v = start;
+  const Motion before = motion;
+  motion.control.clear();
+  motion.step = 0.0;
+  if (std::optional<Failed> failed = parts_.scheme.integrator->begin(motion, state_.time))
+    throw RunError("cannot begin the stage: " + failed->detail, of, "Give another integrator");
+  if (!statics) return;
+  motion.q = before.q;
+  motion.force = before.force;
+  motion.stored = before.stored;
+  std::ranges::fill(motion.a, 0.0);
+}
+
+}  // namespace abut

@@ -1,0 +1,244 @@
+"""Goal: nothing of a long run is lost: whatever ends it, it goes on from its latest checkpoint.
+
+Oracle: the files of the run that nothing has ended, byte for byte, its measures and state hash.
+usage: test_resume.py ABUT ROOT [CLASS]
+"""
+
+import os
+import re
+import resource
+import shutil
+import signal
+import time
+from pathlib import Path
+
+from support import ABUT, ROOT, SystemTest, is_solver, main, marked
+
+# A scene of each kind, windows from one checkpoint to the next, and shares of its time at which it
+# is killed: bars, unlike steps, plasticity, friction, many bodies that join and part, statics,
+# ties, an overlap, passive windows.
+SCENES = [
+    ("two_bars", 7, (0.3, 0.6)),
+    ("bars/steps_three_to_two", 5, (0.6,)),
+    ("bars/plastic_bar_meets_a_wall", 9, (0.5,)),
+    ("contact/belt_stick_slip", 101, (0.2, 0.7)),
+    ("contact/bars_2d", 11, (0.5,)),
+    ("contact/balls", 61, (0.4, 0.8)),
+    ("contact/cattaneo_mindlin", 1, (0.4,)),
+    ("joined/blocks_2x2x2", 5, (0.5,)),
+    ("joined/weld_overlap", 2, (0.5,)),
+    ("robust/dominoes", 41, (0.3, 0.7)),
+]
+BELT = ROOT / "configs" / "contact" / "belt_stick_slip.yaml"
+OF_THE_PROGRAM = {"timing"}  # of a summary; all else is the run's
+
+
+def checkpoints(windows: int) -> list:
+    return ["--set", f"output.checkpoint={{windows: {windows}}}"]
+
+
+def row_time(row: bytes) -> float:
+    return float(row.split(b",")[0])
+
+
+class Resume(SystemTest):
+    def setUp(self):
+        super().setUp()
+        # A third of the shipped scene, which expects nothing.
+        text = re.sub(r"\n  expect:\n(    - .*\n)+", "\n", BELT.read_text(encoding="utf-8"))
+        text = text.replace("end: 36.775552", "end: 12.0")
+        self.scene = self.folder / "belt.yaml"
+        self.scene.write_text(text, encoding="utf-8")
+
+    def run_whole(self, scene: Path, *arguments: object) -> Path:
+        whole = self.folder / "whole"
+        self.end(self.start(ABUT, "run", scene, "--out", whole, "--quiet", *arguments))
+        return whole
+
+    def begin(self, scene: Path, *arguments: object):
+        return self.start(ABUT, "run", scene, "--out", self.out, "--quiet", *arguments)
+
+    def resume(self, *arguments: object, **options):
+        return self.start(ABUT, "resume", self.out, "--quiet", *arguments, **options)
+
+    def come_to(self, run, until: float) -> bool:
+        """Waits until the history has come to a time of the scene; false: the run has ended."""
+        deadline = time.monotonic() + 60.0
+        while run.poll() is None:
+            self.assertLess(time.monotonic(), deadline)
+            try:
+                rows = (self.out / "history.csv").read_bytes().rsplit(b"\n", 2)
+                if len(rows) == 3 and row_time(rows[1]) >= until:
+                    return True
+            except (OSError, ValueError):  # not there yet, or the header
+                pass
+            time.sleep(0.003)
+        return False
+
+    def kill(self, run):
+        self.leaves_sockets = True
+        run.kill()
+        self.end(run)
+        self.assertEqual(self.marked_after(3.0), [], "solvers end with their coordinator")
+
+    def assert_same(self, whole: Path, out: Path):
+        for path in sorted(whole.rglob("*")):
+            if path.suffix in (".csv", ".jsonl", ".vtu", ".pvd"):
+                name = path.relative_to(whole)
+                self.assertTrue((out / name).read_bytes() == path.read_bytes(), name)
+        self.assertEqual({path.name for path in (out / "fields").glob("*")},
+                         {path.name for path in (whole / "fields").glob("*")})
+        one, other = self.summary(whole), self.summary(out)
+        for key in one.keys() - OF_THE_PROGRAM:
+            self.assertEqual(other[key], one[key], key)
+
+
+class Kills(Resume):
+    def test_a_run_that_is_killed_again_and_again_ends_in_the_same_bits(self):
+        killed = 0
+        for name, every, shares in SCENES:
+            scene = ROOT / "configs" / f"{name}.yaml"
+            whole = self.run_whole(scene, *checkpoints(every))
+            end = row_time((whole / "history.csv").read_bytes().rsplit(b"\n", 2)[1])
+            run = self.begin(scene, *checkpoints(every))
+            for share in shares:
+                if self.come_to(run, share * end):
+                    self.kill(run)
+                    killed += 1
+                    run = self.resume()
+            self.assertIn(self.end(run).returncode, (0, 1))  # expectations are another test's
+            with self.subTest(scene=name):
+                self.assert_same(whole, self.out)
+            shutil.rmtree(whole)
+            shutil.rmtree(self.out)
+        self.assertGreater(killed, len(SCENES) // 2, "runs end before they can be killed")
+
+    def test_a_killed_solver_costs_what_came_since_the_checkpoint(self):
+        whole = self.run_whole(self.scene, *checkpoints(50))
+        run = self.begin(self.scene, *checkpoints(50))
+        self.assertTrue(self.come_to(run, 5.0))
+        os.kill(next(pid for pid in marked(self.mark) if is_solver(pid)), signal.SIGKILL)
+        ended = self.end(run)
+        self.assertEqual(ended.returncode, 3)
+        self.assertRegex(ended.stderr, rf"abut resume {re.escape(str(self.out))} goes on from \d")
+        self.succeed(self.end(self.resume()))
+        self.assert_same(whole, self.out)
+
+    def test_where_the_scene_says_so_a_lost_body_is_started_again(self):
+        whole = self.run_whole(self.scene, *checkpoints(50))
+        run = self.begin(self.scene, *checkpoints(50), "--set", "network.on_lost_body=restart")
+        for until in (3.0, 8.0):
+            self.assertTrue(self.come_to(run, until))
+            os.kill(next(pid for pid in marked(self.mark) if is_solver(pid)), signal.SIGKILL)
+            time.sleep(0.3)
+        ended = self.end(run)
+        self.succeed(ended)
+        self.assert_same(whole, self.out)
+
+
+class Signals(Resume):
+    def test_a_run_that_is_asked_to_end_is_kept_without_a_key(self):
+        whole = self.run_whole(self.scene)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            run = self.begin(self.scene)
+            self.assertTrue(self.come_to(run, 4.0))
+            run.send_signal(number)
+            self.assertEqual(self.end(run, 10.0).returncode, 128 + number)
+            self.assertEqual(self.summary()["status"], "interrupted")
+            self.succeed(self.end(self.resume()))
+            self.assert_same(whole, self.out)
+            shutil.rmtree(self.out)
+
+    def test_it_goes_on_in_one_process_as_well(self):
+        whole = self.run_whole(self.scene)
+        run = self.begin(self.scene)
+        self.assertTrue(self.come_to(run, 4.0))
+        run.send_signal(signal.SIGINT)
+        self.end(run, 10.0)
+        self.succeed(self.end(self.resume("--local")))
+        self.assert_same(whole, self.out)
+
+
+class Changes(Resume):
+    def setUp(self):
+        super().setUp()
+        self.succeed(self.end(self.begin(self.scene, *checkpoints(100), "--set", "time.end=5.0")))
+
+    def refused(self, *arguments: object) -> str:
+        ended = self.end(self.resume(*arguments))
+        self.assertEqual(ended.returncode, 2, ended.stderr)
+        return ended.stderr
+
+    def test_a_run_at_its_end_goes_on_to_a_later_one(self):
+        self.assertIn("Give a later end: --end TIME", self.refused())
+        before = (self.out / "history.csv").read_bytes()
+        self.succeed(self.end(self.resume("--end", "6.0")))
+        after = (self.out / "history.csv").read_bytes()
+        self.assertTrue(after.startswith(before))
+        self.assertEqual(row_time(after.rsplit(b"\n", 2)[1]), 6.0)
+
+    def test_what_changes_the_motion_is_refused_with_both_values(self):
+        words = self.refused("--end", "6.0", "--set", "bodies.block.material.youngs_modulus=1.0")
+        self.assertIn("error", words)
+        words = self.refused("--end", "6.0", "--set", "interfaces.sole.contact.friction=0.1")
+        self.assertRegex(words, r"friction: was .+ when the checkpoint was written, and is .*0\.1")
+        self.assertTrue((self.out / "checkpoint.abut").is_file())
+
+    def test_what_is_written_may_change(self):
+        self.succeed(self.end(self.resume("--end", "6.0", "--set", "output.records_per_window=2",
+                                          "--set", "output.fields=null")))
+
+    def test_steps_may_change_where_the_command_says_so(self):
+        half = ["--set", "time.window=0.00625",
+                "--set", "bodies.block.integrator.generalized_alpha.step=0.00625"]
+        self.succeed(self.end(self.resume("--end", "6.0", *half)))
+
+
+class Damage(Resume):
+    def setUp(self):
+        super().setUp()
+        self.whole = self.run_whole(self.scene, *checkpoints(100))
+        run = self.begin(self.scene, *checkpoints(100))
+        self.assertTrue(self.come_to(run, 6.0))
+        self.kill(run)
+        self.latest = self.out / "checkpoint.abut"
+
+    def test_of_a_damaged_checkpoint_the_one_before_it_is_used(self):
+        held = bytearray(self.latest.read_bytes())
+        held[len(held) // 2] ^= 1
+        self.latest.write_bytes(held)
+        ended = self.end(self.start(ABUT, "resume", self.out))
+        self.succeed(ended)
+        self.assertIn("is damaged", ended.stderr)
+        self.assert_same(self.whole, self.out)
+
+    def test_without_a_whole_one_nothing_is_touched(self):
+        for path in self.out.glob("checkpoint*"):
+            path.write_bytes(path.read_bytes()[:-1])
+        before = {path: path.read_bytes() for path in self.out.rglob("*") if path.is_file()}
+        ended = self.end(self.resume())
+        self.assertEqual(ended.returncode, 2)
+        self.assertIn("is damaged", ended.stderr)
+        self.assertEqual({path: path.read_bytes() for path in before}, before)
+
+    def test_a_history_that_was_cut_is_refused(self):
+        history = self.out / "history.csv"
+        history.write_bytes(history.read_bytes()[:100])
+        ended = self.end(self.resume())
+        self.assertEqual(ended.returncode, 3)
+        self.assertIn("has 100 bytes; the checkpoint was written when it had", ended.stderr)
+
+    def test_a_full_disk_leaves_a_usable_checkpoint(self):
+        most = 3 * self.latest.stat().st_size + (self.out / "history.csv").stat().st_size
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+        ended = self.end(self.resume(preexec_fn=limit))
+        self.assertEqual(ended.returncode, 3, ended.stderr)
+        self.assertIn("File too large", ended.stderr)
+        self.succeed(self.end(self.resume()))
+        self.assert_same(self.whole, self.out)
+
+
+if __name__ == "__main__":
+    main()
