@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -210,7 +211,9 @@ void Document::write_out(const YAML::Node& text) {
   tree_ = std::make_unique<YamlTree>(root);
   if (has("stages")) {
     before_ = std::make_unique<YamlTree>(root);
-    later_ = later;
+    std::ranges::copy_if(later, std::back_inserter(later_), [](const std::string& text) {
+      return !is_at_or_below(override_path(text), "stages");
+    });
   }
   read_units();
   write_out_likes();

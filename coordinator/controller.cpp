@@ -138,9 +138,12 @@ void Controller::start() {
     narrator_.found(*joint, clock_.time());
   for (const Joint& joint : joints_) narrator_.pressed_in(joint, clock_.time());
   watch_energy(guard_.look(bodies_.responses(), bodies_.struck()));
-  fill_reports(true);
-  if (!staged_) narrator_.window({instant, bodies_.responses(), reports_, 0, {}});
+  if (!staged_) {  // else this instant was told as an end
+    fill_reports(true);
+    narrator_.window({instant, bodies_.responses(), reports_, 0, {}});
+  }
   want_opening_accelerations(wants_accelerations());
+  if (staged_) bodies_.restore_all();  // what is pressed stays pressed: the instant had no forces
   unite_start();
 }
 

@@ -38,7 +38,10 @@ void Controller::load_end(std::span<const std::byte> bytes) {
   introduce();
   Archive archive = Archive::reader(bytes, Archive::Form::named);
   state_of_pairs(archive);
-  clock_.state(archive);  // files are numbered by windows
+  std::vector<Role> roles;  // chosen anew, for the schemes of this stage
+  for (const Joint& joint : joints_) roles.push_back(joint.role);
+  state(archive);  // what presses goes on pressing, and files are numbered by all windows
+  for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].role = roles[j];
   clock_.anchor();
   narrator_.start(scene_.time.begin, scene_.time.end,
                   std::span(joints_).first(scene_.interfaces.size()), !broad_phase_.empty());

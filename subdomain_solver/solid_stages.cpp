@@ -17,7 +17,7 @@ std::string SolidInterior::scheme() const {
 
 /// From statics: displacements, history and what was pressed stay, accelerations are none, since
 /// all forces are in balance, and velocities are those that the body was built with, its
-/// initial.velocity. A massless surface stays where contact has pressed it.
+/// initial.velocity: work is done to give them. A massless surface stays where contact has pressed it.
 /// From another scheme of motion: displacements and velocities stay.
 void SolidInterior::take_over(Archive& archive, bool statics) {
   const std::string of = fmt::format("body '{}'", description_.name);
@@ -41,6 +41,7 @@ void SolidInterior::take_over(Archive& archive, bool statics) {
   motion.force = before.force;
   motion.stored = before.stored;
   std::ranges::fill(motion.a, 0.0);
+  motion.external_work += parts_.scheme.integrator->kinetic(motion);  // of what sets it in motion
 }
 
 }  // namespace abut

@@ -118,9 +118,7 @@ const Checkpoint::Part* Checkpoint::record(std::string_view name) const {
 std::int64_t fingerprint(const Description& body) {
   std::vector<std::byte> bytes;
   Archive archive = Archive::writer(bytes, Archive::Form::bare);
-  double mass = body.mass;
   std::int64_t dofs = body.dofs;
-  archive.field("mass", mass);
   archive.field("dofs", dofs);
   std::string names;
   for (const std::string& name : body.columns) names += name + '\n';

@@ -31,8 +31,8 @@ struct Checkpoint {
   const Part* record(std::string_view name) const;  // null: it was not kept
 };
 
-/// Of what a body tells of itself: its unknowns, its mass, the names of its columns, and where the
-/// points of its ports are.
+/// Of what a body tells of itself: its unknowns, the names of its columns, and where the points of
+/// its ports are. Not of its mass, a sum that schemes round in their own ways.
 std::int64_t fingerprint(const Description& body);
 
 /// The latest checkpoint of a run and the one before it are kept in its directory.

@@ -43,7 +43,7 @@ void check_bodies(const Checkpoint& from, const std::vector<Subdomain*>& bodies)
                        "Resume with the scene of the run.");
     if (from.bodies[b].fingerprint != fingerprint(body))
       throw InputError(
-          "is another than the checkpoint's: its mesh, mass or names have changed since",
+          "is another than the checkpoint's: its mesh or names have changed since",
           fmt::format("body '{}'", body.name),
           "Resume with the files and programs that the run began with, or run again.");
   }

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.hpp"
 #include "base/input_errors.hpp"
 #include "base/yaml_differences.hpp"
 #include "coordinator/scene_changes.hpp"
@@ -37,6 +38,8 @@ std::string refusal(const std::string& now, const std::vector<std::string>& over
     check_changes(scene, now, overrides);
   } catch (const InputErrorList& errors) {
     return errors.all.at(0).what();
+  } catch (const InputError& error) {
+    return error.what();
   }
   return "accepted";
 }
