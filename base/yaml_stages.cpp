@@ -31,6 +31,12 @@ bool is_choice(const std::vector<std::string>& path) {
   });
 }
 
+/// A body that solves no equations any more has no settings of them: the stage before had.
+bool is_explicit(const YAML::Node& body) {
+  const std::optional<Found> integrator = child(body, "integrator");
+  return integrator && child(integrator->node, "central_difference");
+}
+
 YAML::Node merged(const YAML::Node& before, const YAML::Node& own, std::vector<std::string>& path) {
   if (!before.IsMap() || !own.IsMap()) return own;
   const bool other = own.size() == 1 && !child(before, own.begin()->first.Scalar());
@@ -41,6 +47,7 @@ YAML::Node merged(const YAML::Node& before, const YAML::Node& own, std::vector<s
     if (path.empty() && key == "stages") continue;
     const std::optional<Found> mine = child(own, key);
     if (mine && mine->node.IsNull()) continue;
+    if (!mine && path.size() == 2 && key == "equations" && is_explicit(own)) continue;
     path.push_back(key);
     out.force_insert(pair.first, mine ? merged(pair.second, mine->node, path) : pair.second);
     path.pop_back();

@@ -209,8 +209,8 @@ void Scene::fields(Fields& f) {
     f.map("stages", stages,
           "stages that follow the scene as it is written, such as an impact after a preload: each "
           "begins with the state in which the one before it ends, and has keys of its own in place "
-          "of the scene's: time.end, time.window, integrators, schwarz, output, and "
-          "initial.velocity of bodies that were in a static state",
+          "of the scene's: time.end, time.window, schwarz, output, and of bodies integrator, "
+          "equations, contact_layer, and initial.velocity after a static state",
           Presence::optional);
   idle_keys(f);
 }

@@ -33,7 +33,7 @@ const std::regex& free_by_command() {
 
 const std::regex& free_in_stages() {
   static const std::regex keys(
-      R"(time\.(end|window)|bodies\.[^.]+\.(integrator(\..*)?|initial\.velocity)|)"
+      R"(time\.(end|window)|bodies\.[^.]+\.((integrator|equations|contact_layer)(\..*)?|initial\.velocity)|)"
       R"(schwarz(\..*)?|output\.(records_per_window|fields|checkpoint)(\..*)?)");
   return keys;
 }
@@ -55,9 +55,11 @@ void check_stage(const Document& document, const std::string& path, const std::s
     } else if (std::regex_match(own, on_the_way()) && !document.keys(below).empty()) {
       check_stage(document, below, own, errors);
     } else {
-      errors.add({"cannot be another in a stage", document.where(below),
-                  "Give time.end, time.window, integrators, schwarz, output, or initial.velocity "
-                  "alone; all else is the scene's, and may be functions of time."});
+      errors.add(
+          {"cannot be another in a stage", document.where(below),
+           "Give time.end, time.window, schwarz, output, or of bodies integrator, equations, "
+           "contact_layer and initial.velocity; all else is the scene's, and may be "
+           "functions of time."});
     }
   }
 }

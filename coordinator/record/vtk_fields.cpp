@@ -1,6 +1,8 @@
 #include "coordinator/record/vtk_fields.hpp"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <regex>
 #include <system_error>
 #include <utility>
@@ -74,16 +76,21 @@ void VtkFields::state(Archive& archive) {
 
 /// States that the run before wrote after its checkpoint: not all of them come again.
 void VtkFields::remove_later() const {
-  const std::regex name(R"((.+)_(\d{6,18})\.vtu)");
+  std::ifstream file(directory_ / "fields.pvd");
+  const std::string listed{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::regex name(R"((.+)_\d{6,}\.vtu)");
   for (const auto& entry : std::filesystem::directory_iterator(directory_ / folder)) {
-    const std::string file = entry.path().filename().string();
+    const std::string state = entry.path().filename().string();
     std::smatch parts;
-    if (!std::regex_match(file, parts, name) || std::stoll(parts[2]) <= windows_) continue;
+    if (!std::regex_match(state, parts, name) ||
+        listed.find(fmt::format("\"{}/{}\"", folder, state)) != std::string::npos)
+      continue;
     const bool ours = std::ranges::any_of(shown_, [&parts](const Shown& shown) {
       return shown.body->describe().name == parts[1].str();
     });
     std::error_code ignored;
-    if (ours && entry.is_regular_file(ignored)) std::filesystem::remove(entry.path(), ignored);
+    if (ours && std::filesystem::is_regular_file(entry.symlink_status(ignored)))
+      std::filesystem::remove(entry.path(), ignored);
   }
 }
 

@@ -109,6 +109,7 @@ Scene read_all_keys(const Document& document) {
   errors.gather([&] { check_body_keys(scene, document); });
   errors.raise();
   check_units(document);
+  if (const std::optional<Document> stage = document.next_stage()) read_all_keys(*stage);
   return scene;
 }
 

@@ -50,8 +50,8 @@ struct Validated {
   Estimate estimate;
 };
 
-/// Scene and bodies are read by readers of their own: what both refuse is told at once. Throws
-/// InputErrorList.
+/// Scene and bodies are read by readers of their own: what both refuse is told at once; stages that
+/// follow after it. Throws InputErrorList.
 Scene read_all_keys(const Document& document);
 
 /// All that can be said of a scene with the bodies that are there. `processes`: what they send goes

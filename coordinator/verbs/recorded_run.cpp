@@ -215,9 +215,6 @@ std::string resolved_text(const Scene& scene, const Document& document) {
 RunPlan plan_run(Document document, const RunOptions& options, const Interrupts& interrupts) {
   RunPlan plan{std::move(document), {}, {}, {}};
   plan.scene = read_all_keys(plan.document);
-  for (std::optional<Document> stage = plan.document.next_stage(); stage;
-       stage = stage->next_stage())
-    read_all_keys(*stage);
   if (!options.local) check_processes(plan.scene, plan.document);
   plan.placement = place(plan.scene, plan.document, options.local, interrupts.at_once);
   plan.valid = validate_all(plan.scene, plan.document, plan.placement, !options.local);

@@ -61,15 +61,19 @@ class Resume(SystemTest):
     def resume(self, *arguments: object, **options):
         return self.start(ABUT, "resume", self.out, "--quiet", *arguments, **options)
 
-    def come_to(self, run, until: float) -> bool:
-        """Waits until the history has come to a time of the scene; false: the run has ended."""
+    def come_to(self, run, until: float, kept: bool = True) -> bool:
+        """Waits until the history has come to a time of the scene; false: the run has ended.
+
+        `kept`: there is a checkpoint.
+        """
         deadline = time.monotonic() + 60.0
         while run.poll() is None:
             self.assertLess(time.monotonic(), deadline)
             try:
                 rows = (self.out / "history.csv").read_bytes().rsplit(b"\n", 2)
                 if len(rows) == 3 and row_time(rows[1]) >= until:
-                    return True
+                    if not kept or (self.out / "checkpoint.abut").is_file():
+                        return True
             except (OSError, ValueError):  # not there yet, or the header
                 pass
             time.sleep(0.003)
@@ -141,7 +145,7 @@ class Signals(Resume):
         whole = self.run_whole(self.scene)
         for number in (signal.SIGINT, signal.SIGTERM):
             run = self.begin(self.scene)
-            self.assertTrue(self.come_to(run, 4.0))
+            self.assertTrue(self.come_to(run, 4.0, kept=False))
             run.send_signal(number)
             self.assertEqual(self.end(run, 10.0).returncode, 128 + number)
             self.assertEqual(self.summary()["status"], "interrupted")
@@ -152,7 +156,7 @@ class Signals(Resume):
     def test_it_goes_on_in_one_process_as_well(self):
         whole = self.run_whole(self.scene)
         run = self.begin(self.scene)
-        self.assertTrue(self.come_to(run, 4.0))
+        self.assertTrue(self.come_to(run, 4.0, kept=False))
         run.send_signal(signal.SIGINT)
         self.end(run, 10.0)
         self.succeed(self.end(self.resume("--local")))
@@ -185,7 +189,7 @@ class Changes(Resume):
         self.assertTrue((self.out / "checkpoint.abut").is_file())
 
     def test_what_is_written_may_change(self):
-        self.succeed(self.end(self.resume("--end", "6.0", "--set", "output.records_per_window=2",
+        self.succeed(self.end(self.resume("--end", "6.0", "--set", "output.checkpoint={wall: 10}",
                                           "--set", "output.fields=null")))
 
     def test_steps_may_change_where_the_command_says_so(self):
@@ -238,6 +242,74 @@ class Damage(Resume):
         self.assertIn("File too large", ended.stderr)
         self.succeed(self.end(self.resume()))
         self.assert_same(self.whole, self.out)
+
+
+class Stages(Resume):
+    SCENE = ROOT / "configs" / "contact" / "preload_then_impact.yaml"
+
+    def test_a_run_is_resumed_in_any_stage_and_at_its_end(self):
+        every = ["--set", "output.checkpoint={windows: 3}", "--set",
+                 "stages.impact.output.checkpoint={windows: 20}"]
+        whole = self.run_whole(self.SCENE, *every)
+        for until in (0.2, 0.999, 1.0002):
+            run = self.begin(self.SCENE, *every)
+            if self.come_to(run, until):
+                self.kill(run)
+                run = self.resume()
+            self.succeed(self.end(run))
+            self.assert_same(whole, self.out)
+            shutil.rmtree(self.out)
+
+    def test_the_end_of_a_stage_is_always_kept(self):
+        self.succeed(self.end(self.begin(self.SCENE)))
+        self.assertTrue((self.out / "checkpoint.abut").is_file())
+        resolved = (self.out / "scene.resolved.yaml").read_text(encoding="utf-8")
+        self.assertRegex(resolved, r"(?m)^stages: .*impact")
+        again = self.folder / "again"
+        self.succeed(self.abut("run", self.out / "scene.resolved.yaml", "--out", again, "--quiet"))
+        self.assert_same(self.out, again)
+
+    def test_history_goes_on_over_the_stages(self):
+        self.succeed(self.end(self.begin(self.SCENE)))
+        times = [row_time(row) for row in
+                 (self.out / "history.csv").read_bytes().splitlines()[1:]]
+        self.assertEqual(times, sorted(set(times)), "each time once")
+        self.assertEqual((times[0], times[-1]), (0.0, 1.0007))
+
+    def test_what_no_stage_can_change_is_refused_where_it_stands(self):
+        text = self.SCENE.read_text(encoding="utf-8")
+        for wrong, words in (
+                ("bodies:\n      held: {material: steel}",
+                 "stages.impact.bodies.held.material: cannot be another in a stage"),
+                ("bodies:\n      gone: {integrator: {central_difference: {step: 1}}}",
+                 "stages.impact.bodies.gone: is no body of the scene"),
+                ("interfaces: {}", "stages.impact.interfaces: cannot be another in a stage")):
+            scene = self.folder / "wrong.yaml"
+            begin = text.index("    bodies:", text.index("stages:"))
+            scene.write_text(text[:begin] + "    " + wrong + "\n", encoding="utf-8")
+            said = self.abut("check", scene)
+            self.assertEqual(said.returncode, 2, said.stdout)
+            self.assertIn(words, said.stderr)
+            self.assertRegex(said.stderr, r"wrong\.yaml:\d+: stages")
+        scene.write_text(text.replace("time: {end: 1.0007, window", "time: {window"),
+                         encoding="utf-8")
+        self.assertIn("stages.impact: does not say when it ends", self.abut("check", scene).stderr)
+        scene.write_text(text.replace("time: {end: 1.0007", "time: {end: 0.5"), encoding="utf-8")
+        self.assertIn("stage impact", self.abut("check", scene).stderr)
+
+    def test_a_stage_without_inertia_does_not_follow_motion(self):
+        text = self.SCENE.read_text(encoding="utf-8")
+        static, moving = "{quasi_static: {step: 0.1}}", "{central_difference: {step: 2.5e-6}}"
+        scene = self.folder / "back.yaml"
+        begin = text.index("stages:")
+        head = re.sub(r"\n  expect:\n(    - .*\n)+", "\n", text[:begin])
+        scene.write_text(head.replace(static, moving).replace("window: 0.1", "window: 2.5e-6")
+                         .replace("end: 1.0,", "end: 1.0e-4,").replace("min(t, 1)", "0")
+                         + "stages: {rest: {time: {end: 1.0, window: 0.1}, bodies: "
+                         + "{held: {integrator: " + static + "}}}}\n", encoding="utf-8")
+        ended = self.end(self.begin(scene))
+        self.assertEqual(ended.returncode, 3, ended.stderr)
+        self.assertIn("a stage without inertia cannot go on from there", ended.stderr)
 
 
 if __name__ == "__main__":
