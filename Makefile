@@ -1,6 +1,6 @@
 # The front door. Every target checks what it needs first, skips what is done, and may be run again.
 .DEFAULT_GOAL := help
-.PHONY: help demo build install uninstall package test fuzz bench results extremes robustness clean dependencies-build dependencies-test dependencies-bench dependencies-package
+.PHONY: help demo build install uninstall package test fuzz bench results extremes robustness reliability clean dependencies-build dependencies-test dependencies-bench dependencies-package
 
 PRESET ?= release
 WITH ?=
@@ -21,6 +21,7 @@ help:
 	@echo "make results   docs/RESULTS.md, measured anew (minutes)"
 	@echo "make extremes  docs/EXTREMES.md, measured anew"
 	@echo "make robustness  the tables of docs/ROBUSTNESS.md, measured anew (minutes)"
+	@echo "make reliability  docs/RELIABILITY.md: runs killed at random moments and resumed (an hour)"
 	@echo "make clean   removes build/ (runs/ is yours and stays)"
 	@echo "Optional libraries are used when they are named: make build WITH=\"cholmod exodus\""
 	@echo "Missing Debian packages are installed first, with sudo when you are not root."
@@ -75,6 +76,9 @@ results extremes: build
 robustness: dependencies-test
 	@sh scripts/build.sh tests
 	/usr/bin/python3 scripts/robustness_document.py $(BIN)
+
+reliability: build
+	/usr/bin/python3 bench/reliability.py $(BIN) >build/RELIABILITY.md && mv build/RELIABILITY.md docs/
 
 clean:
 	rm -rf build

@@ -1,11 +1,14 @@
 #include "coordinator/verbs/resume.hpp"
 
+#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -34,8 +37,15 @@ Document scene_of(const ResumeCommand& command, const Checkpoint& from) {
   return std::move(*next);
 }
 
+/// A run may have been ended after its last window, before it had told of its end.
+bool has_ended(const std::string& directory) {
+  std::ifstream file(std::filesystem::path(directory) / "summary.json");
+  const nlohmann::json summary = nlohmann::json::parse(file, nullptr, false);
+  return summary.is_object() && summary.contains("status") && summary["status"] == "completed";
+}
+
 void check_time(const Checkpoint& from, const Scene& scene, const std::string& directory) {
-  if (from.time < scene.time.end - 1.0e-9 * scene.time.window) return;
+  if (from.time < scene.time.end - 1.0e-9 * scene.time.window || !has_ended(directory)) return;
   throw InputError(
       fmt::format("has come to {:.6g} s, and its end is {:.6g} s", from.time, scene.time.end),
       directory, "Give a later end: --end TIME.");

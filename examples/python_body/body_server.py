@@ -1,6 +1,7 @@
 """Speaks the protocol of proto/README.md for one body; any body in Python can use it as it is."""
 
 import argparse
+import ast
 import random
 import struct
 import sys
@@ -38,6 +39,11 @@ def execute(body, make, ask, reply):
         body.probe(ask.probe, reply.kernel)
     elif kind == "hash":
         reply.hash.hash = xxhash.xxh3_64_intdigest(repr(body.state))
+    elif kind == "checkpoint":  # numbers in their shortest exact form
+        reply.checkpoint.state = repr(body.state).encode()
+    elif kind == "resume":
+        body.state = ast.literal_eval(ask.resume.state.decode())
+        reply.resumed.SetInParent()
     elif kind in EMPTY:
         getattr(reply, EMPTY[kind]).SetInParent()
     else:

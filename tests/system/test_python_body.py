@@ -115,6 +115,25 @@ class Motion(PythonTest):
         self.succeed(self.end(self.run_scene()))
         self.assertEqual(self.end(body).returncode, 0)
 
+    def test_a_run_with_it_goes_on_from_its_checkpoint(self):
+        body = self.body()
+        self.succeed(self.end(self.run_scene("--set", "output.checkpoint={windows: 100}")))
+        self.end(body)
+        whole, self.out = self.out, self.folder / "again"
+        body = self.body()
+        self.end(self.run_scene("--set", "output.checkpoint={windows: 100}",
+                                "--set", "time.end=1.0e-3", "--set", "meta.expect=[]"))
+        self.end(body)
+        # The last window of that run ends on a window of the whole one, which goes on as it did.
+        resume = self.start(ABUT, "resume", self.out, "--scene", SCENE,
+                            "--set", f"network.endpoint={self.endpoint}")
+        body = self.body()
+        self.succeed(self.end(resume))
+        self.end(body)
+        self.assertEqual((self.out / "history.csv").read_bytes(),
+                         (whole / "history.csv").read_bytes())
+        self.assertEqual(self.summary()["state_hash"], self.summary(whole)["state_hash"])
+
     def test_a_group_lives_beside_it(self):
         alone = self.body()
         self.succeed(self.end(self.run_scene()))
