@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What becomes of runs that end at any moment: killed, out of space, and resumed until they are done.
+"""What becomes of runs that end at any moment: killed or out of space, and resumed until done.
 
 Each trial runs a scene with checkpoints, ends the coordinator or a solver by SIGKILL at a random
 moment, or lets the files grow no further, and resumes it; the end is held against the run that

@@ -12,7 +12,6 @@
 #include "base/count.hpp"
 #include "base/denormals.hpp"
 #include "base/index.hpp"
-#include "base/without_remedy.hpp"
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/horizon.hpp"
 #include "coordinator/coupling/velocity_start.hpp"
@@ -461,52 +460,6 @@ void Controller::fail(double time, const std::string& text) {
   end_.status = "failed";
   end_.reason = text;
   narrator_.failure(time, text);
-}
-
-RunEnd Controller::finish(double wall_seconds) {
-  end_.time = clock_.time();
-  end_.windows = clock_.windows();
-  end_.wall_seconds = wall_seconds;
-  end_.exchanges = bodies_.exchanges();
-  end_.compute_seconds = bodies_.compute_seconds();
-  end_.overhead_median_seconds = bodies_.overhead_median();
-  std::uint64_t hash = 0;
-  for (int b = 0; b < bodies_.count(); ++b) {
-    end_.body_hashes.push_back(bodies_[b].state_hash());
-    hash = hash_combine(hash, end_.body_hashes.back());
-  }
-  std::vector<std::byte> bytes;
-  Archive archive = Archive::writer(bytes, Archive::Form::bare);
-  state(archive);
-  end_.state_hash = hash_combine(hash, hash_bytes(bytes));
-  if (end_.status != "failed") {
-    look_for_overlaps();
-    look_for_passed();
-  }
-  for (int b = 0; b < bodies_.count(); ++b) {
-    end_.body_measures.push_back(bodies_[b].measure());
-    judge(b);
-  }
-  end_.given_up = given_up();
-  narrator_.given_up(end_);
-  narrator_.end(end_);
-  return end_;
-}
-
-/// The bodies are in the middle of a solve, or gone: there is no state to hash.
-void Controller::give_up(const std::exception& error, bool interrupted, double wall_seconds) {
-  end_.status = interrupted ? "interrupted" : "failed";  // a wait that the user ends is no failure
-  if (!interrupted) {
-    end_.reason = without_remedy(error);
-    narrator_.thrown(clock_.time(), end_.reason);
-  }
-  end_.compute_seconds = bodies_.compute_seconds();
-  end_.wall_seconds = wall_seconds;
-  end_.exchanges = bodies_.exchanges();
-  end_.windows = clock_.windows();
-  end_.time = clock_.time();
-  end_.given_up = given_up();
-  narrator_.end_after_error(end_);
 }
 
 }  // namespace abut

@@ -1,5 +1,6 @@
-// What a run's end says of its bodies.
+// How a run ends, and what its end says of its bodies.
 
+#include "base/without_remedy.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/record/validity_notes.hpp"
 
@@ -12,6 +13,52 @@ void Controller::judge(int body) {
     narrator_.warning(clock_.time(), about.name, note);
   const std::string why = unheld(about, end_.body_measures.back());
   if (end_.status == "completed" && !why.empty()) fail(clock_.time(), why);
+}
+
+RunEnd Controller::finish(double wall_seconds) {
+  end_.time = clock_.time();
+  end_.windows = clock_.windows();
+  end_.wall_seconds = wall_seconds;
+  end_.exchanges = bodies_.exchanges();
+  end_.compute_seconds = bodies_.compute_seconds();
+  end_.overhead_median_seconds = bodies_.overhead_median();
+  std::uint64_t hash = 0;
+  for (int b = 0; b < bodies_.count(); ++b) {
+    end_.body_hashes.push_back(bodies_[b].state_hash());
+    hash = hash_combine(hash, end_.body_hashes.back());
+  }
+  std::vector<std::byte> bytes;
+  Archive archive = Archive::writer(bytes, Archive::Form::bare);
+  state(archive);
+  end_.state_hash = hash_combine(hash, hash_bytes(bytes));
+  if (end_.status != "failed") {
+    look_for_overlaps();
+    look_for_passed();
+  }
+  for (int b = 0; b < bodies_.count(); ++b) {
+    end_.body_measures.push_back(bodies_[b].measure());
+    judge(b);
+  }
+  end_.given_up = given_up();
+  narrator_.given_up(end_);
+  narrator_.end(end_);
+  return end_;
+}
+
+/// The bodies are in the middle of a solve, or gone: there is no state to hash.
+void Controller::give_up(const std::exception& error, bool interrupted, double wall_seconds) {
+  end_.status = interrupted ? "interrupted" : "failed";  // a wait that the user ends is no failure
+  if (!interrupted) {
+    end_.reason = without_remedy(error);
+    narrator_.thrown(clock_.time(), end_.reason);
+  }
+  end_.compute_seconds = bodies_.compute_seconds();
+  end_.wall_seconds = wall_seconds;
+  end_.exchanges = bodies_.exchanges();
+  end_.windows = clock_.windows();
+  end_.time = clock_.time();
+  end_.given_up = given_up();
+  narrator_.end_after_error(end_);
 }
 
 }  // namespace abut

@@ -141,20 +141,6 @@ void FieldOutputSpec::fields(Fields& f) {
              between(1, 1000000));
 }
 
-void WindowsBetween::fields(Fields& f) {
-  f.required("every", every, "", "number of windows from one checkpoint to the next",
-             between(1, 1000000000));
-}
-
-void TimeBetween::fields(Fields& f) {
-  f.required("every", every, "s", "time of the scene from one checkpoint to the next", positive);
-}
-
-void WallTimeBetween::fields(Fields& f) {
-  f.required("every", every, clock_seconds, "time on the clock from one checkpoint to the next",
-             positive);
-}
-
 void OutputSpec::fields(Fields& f) {
   f.optional("records_per_window", records_per_window, "",
              "number of rows of history.csv per controller window", between(1, 1000));

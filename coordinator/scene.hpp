@@ -15,6 +15,7 @@
 #include "base/yaml_document.hpp"
 #include "contract/port_role.hpp"
 #include "contract/subdomain.hpp"
+#include "coordinator/checkpoint_spec.hpp"
 #include "coordinator/force_filter_spec.hpp"
 #include "coordinator/interface_spec.hpp"
 #include "coordinator/scene_meta.hpp"
@@ -111,27 +112,6 @@ struct FieldOutputSpec {
   int every = 1;  // windows
   void fields(Fields& f);
 };
-
-// From one checkpoint to the next.
-struct WindowsBetween {
-  static constexpr std::string_view name = "windows";
-  static constexpr std::string_view shorthand = "every";
-  int every = 1;
-  void fields(Fields& f);
-};
-struct TimeBetween {
-  static constexpr std::string_view name = "time";
-  static constexpr std::string_view shorthand = "every";
-  double every = 0.0;  // [s] of the scene
-  void fields(Fields& f);
-};
-struct WallTimeBetween {
-  static constexpr std::string_view name = "wall";
-  static constexpr std::string_view shorthand = "every";
-  double every = 0.0;  // [s] of a clock
-  void fields(Fields& f);
-};
-using CheckpointSpec = std::variant<WindowsBetween, TimeBetween, WallTimeBetween>;
 
 struct OutputSpec {
   int records_per_window = 1;                   // rows of history.csv per controller window

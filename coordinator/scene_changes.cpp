@@ -33,7 +33,8 @@ const std::regex& free_by_command() {
 
 const std::regex& free_in_stages() {
   static const std::regex keys(
-      R"(time\.(end|window)|bodies\.[^.]+\.((integrator|equations|contact_layer)(\..*)?|initial\.velocity)|)"
+      R"(time\.(end|window)|bodies\.[^.]+\.initial\.velocity|)"
+      R"(bodies\.[^.]+\.(integrator|equations|contact_layer)(\..*)?|)"
       R"(schwarz(\..*)?|output\.(records_per_window|fields|checkpoint)(\..*)?)");
   return keys;
 }

@@ -97,19 +97,13 @@ void Body::restore() {
 std::vector<std::byte> Body::checkpoint() {
   std::vector<std::byte> bytes;
   Archive archive = Archive::writer(bytes, Archive::Form::named);
-  std::string scheme = interior_->scheme();
+  std::string scheme = interior_->traits().scheme;
   bool statics = describe().quasi_static;
   archive.field("scheme", scheme);
   archive.field("statics", statics);
   interior_->state(archive);
   archive.finish();
   return bytes;
-}
-
-void Interior::take_over(Archive&, bool) {
-  throw RunError(fmt::format("cannot go on by {} from where another scheme has left it", scheme()),
-                 fmt::format("body '{}'", describe().name),
-                 "Give its integrator the same name in all stages");
 }
 
 /// Throws RunError.
@@ -119,10 +113,15 @@ void Body::read_checkpoint(std::span<const std::byte> bytes) {
   bool statics = false;
   archive.field("scheme", scheme);
   archive.field("statics", statics);
-  if (scheme == interior_->scheme())
+  const std::string& own = interior_->traits().scheme;
+  if (scheme != own && interior_->able().successor == nullptr)
+    throw RunError(fmt::format("cannot go on by {} where {} has left it", own, scheme),
+                   fmt::format("body '{}'", describe().name),
+                   "Give its integrator the same name in all stages");
+  if (scheme == own)
     interior_->state(archive);
   else
-    interior_->take_over(archive, statics);
+    interior_->able().successor->take_over(archive, statics);
   archive.finish();
 }
 

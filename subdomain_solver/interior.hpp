@@ -69,6 +69,16 @@ class Obstructed {
   ~Obstructed() = default;
 };
 
+/// A body that goes on where the same body has come to by another scheme.
+class Successor {
+ public:
+  /// Reads that state. `statics`: it stood in balance. Throws RunError where it cannot go on.
+  virtual void take_over(Archive& archive, bool statics) = 0;
+
+ protected:
+  ~Successor() = default;
+};
+
 /// What makes one body differ from another; the rest is Body's. Called as Body::advance shows.
 class Interior {
  public:
@@ -79,6 +89,7 @@ class Interior {
     PortForecast* forecast = nullptr;  // tells where ports go without going there
     PortStatics* statics = nullptr;    // answers of a body without inertia
     PassiveBody* passive = nullptr;    // it has a passive form
+    Successor* successor = nullptr;    // it may have another scheme in every stage
   };
   /// What never changes, beside the description.
   struct Traits {
@@ -86,7 +97,8 @@ class Interior {
     std::vector<ForceSupport> reaction;  // by port, of reactions to obstacles; empty: as its forces
     double effort = 0.0;                 // parts of 10 ms that a substep takes, about
     bool slow = false;                   // a single substep may take seconds
-    bool looks_ahead = true;             // where it goes without its partners is worth the way
+    std::string scheme;  // what moves it: states of others are not read; empty: always the same
+    bool looks_ahead = true;  // where it goes without its partners is worth the way
   };
 
   Interior() = default;
@@ -105,11 +117,6 @@ class Interior {
 
   /// The one list of all that changes during a step.
   virtual void state(Archive& archive) = 0;
-  /// What moves it, as states of another one have other parts: "newmark". Empty: always the same.
-  virtual std::string scheme() const { return {}; }
-  /// Reads the state that the same body has come to by another scheme, and goes on from there;
-  /// `statics`: it stood in balance. Throws RunError where it cannot.
-  virtual void take_over(Archive& archive, bool statics);
   /// Coordinates of the state; 0: its parts do not fit each other.
   virtual std::size_t coordinates() const = 0;
   /// The state came back: what follows from it.

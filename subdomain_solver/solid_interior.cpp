@@ -66,6 +66,8 @@ void SolidInterior::find_traits() {
     traits_.support.push_back(joined != 0 ? ForceSupport::step : ForceSupport::nodal);
     traits_.reaction.push_back(description_.dim == 1 ? ForceSupport::nodal : ForceSupport::linear);
   }
+  const std::string& words = parts_.scheme.words;
+  traits_.scheme = words.substr(0, words.find(','));
   traits_.effort = parts_.model->mesh().cell_count() / usual_work;
   // It may factor a large matrix.
   traits_.slow = !explicit_in_time && description_.dofs >= long_factorisation;
@@ -77,6 +79,7 @@ void SolidInterior::find_traits() {
 void SolidInterior::find_abilities() {
   if (ports_.empty()) return;
   able_.probed = this;
+  able_.successor = this;
   if (contact_) able_.obstructed = this;
   const Integrator::Abilities& scheme = parts_.scheme.integrator->able();
   if (scheme.foreseeing != nullptr && joins_ && !contact_) {

@@ -33,6 +33,7 @@ namespace abut {
 class SolidInterior final : public Interior,
                             private Probed,
                             private Obstructed,
+                            private Successor,
                             private PassiveBody {
  public:
   struct PortNodes {
@@ -73,8 +74,6 @@ class SolidInterior final : public Interior,
   SolidInterior(std::string name, Parts parts, const std::vector<PortNodes>& ports);
 
   void state(Archive& archive) override;
-  std::string scheme() const override;
-  void take_over(Archive& archive, bool statics) override;
   std::size_t coordinates() const override { return state_.motion.q.size(); }
   void restored() override;
   std::optional<Failed> begin(const Window& window) override;
@@ -98,6 +97,8 @@ class SolidInterior final : public Interior,
   const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override {
     return surfaces_ != nullptr ? surfaces_->reacting(port, partner) : nullptr;
   }
+
+  void take_over(Archive& archive, bool statics) override;
 
   double enter() override;
   std::optional<Failed> leave(double time, double& lost) override;

@@ -10,15 +10,10 @@
 
 namespace abut {
 
-std::string SolidInterior::scheme() const {
-  const std::string& words = parts_.scheme.words;
-  return words.substr(0, words.find(','));
-}
-
 /// From statics: displacements, history and what was pressed stay, accelerations are none, since
 /// all forces are in balance, and velocities are those that the body was built with, its
-/// initial.velocity: work is done to give them. A massless surface stays where contact has pressed it.
-/// From another scheme of motion: displacements and velocities stay.
+/// initial.velocity: work is done to give them. A massless surface stays where contact has pressed
+/// it. From another scheme of motion: displacements and velocities stay.
 void SolidInterior::take_over(Archive& archive, bool statics) {
   const std::string of = fmt::format("body '{}'", description_.name);
   const std::vector<double> start = state_.motion.v;

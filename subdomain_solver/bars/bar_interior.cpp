@@ -115,6 +115,7 @@ void BarInterior::describe(std::string name, const std::vector<End>& ends) {
   for (std::vector<double>* values : {&seen_.u, &seen_.v, &seen_.a, &seen_.f})
     values->resize(ends.size());
   traits_.effort = data.elements / usual_work;
+  traits_.scheme = scheme_.words.substr(0, scheme_.words.find(','));
   if (ends.empty()) return;
   able_.probed = this;
   able_.obstructed = this;

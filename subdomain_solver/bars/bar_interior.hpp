@@ -41,7 +41,6 @@ class BarInterior final : public Interior, private Probed, private Obstructed, p
               const std::vector<End>& ends, Extras extras);
 
   void state(Archive& archive) override;
-  std::string scheme() const override { return scheme_.words.substr(0, scheme_.words.find(',')); }
   std::size_t coordinates() const override;
   void restored() override;
   std::optional<Failed> begin(const Window& window) override;
