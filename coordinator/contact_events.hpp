@@ -26,8 +26,9 @@ class ContactEvents {
         window_(window),
         run_{.tolerance = tolerance} {}
 
-  /// Before the first window: settles the roles that are not open, and closes tied joints.
-  void start();
+  /// Before the first window, at a time [s]: settles the roles that are not open, closes tied
+  /// joints, and those whose sides have sprung into each other.
+  void start(double time);
   /// Before a window: what begins or ends with it.
   void begin(const TimeWindow& window);
 

@@ -132,7 +132,7 @@ void Controller::start() {
   prepare(instant, 1, Sampling::substeps);
   if (std::optional<Failed> failed = bodies_.advance_all())
     return fail(failed->time, failed->detail);
-  events_.start();
+  events_.start(clock_.time());
   for (const auto& [joint, contact, part] : known_exchanges(joints_).obstacles)
     narrator_.found(*joint, clock_.time());
   for (const Joint& joint : joints_) narrator_.pressed_in(joint, clock_.time());

@@ -130,7 +130,7 @@ TextFile::Opening opening_of(const Checkpoint* from, std::string_view kept_as) {
   return there ? TextFile::Opening::goes_on : TextFile::Opening::made;
 }
 
-constexpr unsigned patience = 5;  // [s] for the window under way, where a run is to end
+constexpr unsigned patience = 3;  // [s] for the window under way, where a run is to end
 
 /// What a stage has come to.
 struct StageEnd {
@@ -233,18 +233,20 @@ int record_run(RunPlan plan, const RunOptions& options, RunDirectory& held,
                                         from ? &*from : nullptr, next.has_value());
       if (!end.completed || !next) return end.code;
     } catch (const LostBody& error) {
-      if (plan.scene.network.on_lost_body != OnLostBody::restart || !held.has_checkpoint()) throw;
+      const bool restarts_it = plan.scene.network.on_lost_body == OnLostBody::restart;
+      if (!restarts_it || interrupts.asked || !held.has_checkpoint()) throw;
       from = read_checkpoint(held.path(), warnings);
       if (!restarts.allowed(from->time)) throw;
       log_warning(
           fmt::format("{}: all bodies go on from {:.6g} s", error.what_is_wrong, from->time));
-      lost = true;
+      // Lost at the very end of a stage: that one is over.
+      lost = !from->stage_ends || from->scene != resolved_text(plan.scene, plan.document);
     }
     plan.placement = {};  // ends the processes before others of their names begin
     if (!lost) from = read_checkpoint(held.path(), warnings);
+    if (!lost) log_info(fmt::format("next stage, from {:.6g} s", from->time));
     held.go_on();
     plan = plan_run(lost ? std::move(plan.document) : std::move(*next), options, interrupts);
-    if (!lost) log_info(fmt::format("next stage, from {:.6g} s", from->time));
   }
 }
 

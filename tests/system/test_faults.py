@@ -32,6 +32,7 @@ LONG = ["--set", "time={begin: 0.0, end: 1.0, window: 1.0e-3}",
 DEADLINE = 1.0  # [s] of the scenes here
 # To end processes: 0.5 s to SIGKILL, and what a loaded machine takes on top.
 ENDING = 3.0
+PATIENCE = 3.0  # [s] that a run has for its window when it is asked to end
 
 
 def limit(what: int, count: int):
@@ -259,7 +260,13 @@ class Endings(FaultTest):
                         else:
                             time.sleep(1.0)  # in the middle of a solve
                         run.send_signal(sent)
-                        result = self.end(run, ENDING)
+                        # The window under way is waited for; with a second Ctrl-C it is not.
+                        twice = arguments is LONG and sent == signal.SIGINT
+                        if twice:
+                            time.sleep(0.1)
+                            run.send_signal(sent)
+                        waits = arguments is LONG and not twice
+                        result = self.end(run, ENDING + (PATIENCE if waits else 0.0))
                         self.assertEqual(result.returncode, 128 + sent, result.stderr)
                         self.assertEqual(marked(self.mark), [])
                         self.assertEqual(self.summary()["status"], "interrupted")

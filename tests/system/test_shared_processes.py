@@ -10,7 +10,7 @@ import signal
 import time
 
 from support import SOLVER, free_port, main, marked
-from test_faults import BUSY, DEADLINE, ENDING, LONG, FaultTest
+from test_faults import BUSY, DEADLINE, ENDING, LONG, PATIENCE, FaultTest
 
 
 class SharedProcesses(FaultTest):
@@ -52,7 +52,7 @@ class SharedProcesses(FaultTest):
                 else:
                     time.sleep(1.0)  # in the middle of a solve
                 run.send_signal(signal.SIGINT)
-                result = self.end(run, ENDING)
+                result = self.end(run, ENDING + PATIENCE)
                 self.assertEqual(result.returncode, 128 + signal.SIGINT, result.stderr)
                 self.assertEqual(marked(self.mark), [])
                 self.assertEqual(self.summary()["status"], "interrupted")
