@@ -65,8 +65,8 @@ class SolidInterior final : public Interior,
     std::vector<double> loose;             // Description::loose
     // The body's own loads where all mass is on the nodes; empty: those of the problem.
     std::vector<std::unique_ptr<Load>> whole_loads;
-    const RigidModel* rigid = nullptr;  // the problem's model, of a rigid body
-    bool massive_surface = false;       // it has no layer, and takes obstacles when passive alone
+    const RigidModel* rigid = nullptr;   // the problem's model, of a rigid body
+    bool massive_surface = false;        // it has no layer, and takes obstacles when passive alone
     std::optional<double> pressed_over;  // [s] in which wanted interference grows; absent: none
   };
 
@@ -112,6 +112,7 @@ class SolidInterior final : public Interior,
   double store_guarded();
   std::optional<Failed> restart(double time, double& work);
   void spread_velocities();
+  void hand_on(Vector& impulse);
   void gather_velocities();
   void keep_momentum(const Eigen::MatrixXd& motions, const Vector& momentum);
   template <class Energy>
