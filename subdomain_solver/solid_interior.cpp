@@ -259,7 +259,9 @@ void SolidInterior::set_off(const Window& window) {
                       before_.begin() + static_cast<std::ptrdiff_t>(port_map_->first(p)));
   change_.setZero(parts_.problem->model->dofs());
   port_map_->lift(state_.motion.q, before_, change_);
+  hand_on(change_);
   parts_.scheme.integrator->able().inertia->strike(state_.motion, change_);
+  spread_velocities();
   for (const Prescribed& p : parts_.problem->supports)  // they withstand it, and go on as told
     state_.motion.external_work -= change_(p.dof) * state_.motion.v[p.dof];
 }

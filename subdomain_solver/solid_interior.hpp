@@ -115,6 +115,7 @@ class SolidInterior final : public Interior,
   double store_guarded();
   std::optional<Failed> restart(double time, double& work);
   void spread_velocities();
+  void hand_on(Vector& impulse);
   void gather_velocities();
   void keep_momentum(const Eigen::MatrixXd& motions, const Vector& momentum);
   template <class Energy>

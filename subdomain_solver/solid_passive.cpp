@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/dense.hpp"
 #include "subdomain_solver/fe/rigid_motions.hpp"
@@ -188,6 +189,18 @@ void SolidInterior::spread_velocities() {
   std::vector<double>& v = state_.motion.v;
   const Vector momentum = given_mass_ * view(v), mass = given_mass_ * Vector::Ones(momentum.size());
   for (const int dof : parts_.model->massless()) v[dof] = momentum(dof) / mass(dof);
+}
+
+/// Impulses on nodes of the layer strike what has their mass, in the shares in which they have its
+/// velocity: none is lost.
+void SolidInterior::hand_on(Vector& impulse) {
+  if (parts_.reduced != nullptr || parts_.model->massless().empty()) return;
+  if (given_mass_.size() == 0) given_mass_ = parts_.model->given_mass();
+  const Vector mass = given_mass_ * Vector::Ones(impulse.size());
+  Vector speed = Vector::Zero(impulse.size());
+  for (const int dof : parts_.model->massless())
+    speed(dof) = std::exchange(impulse(dof), 0.0) / mass(dof);
+  impulse += given_mass_.transpose() * speed;
 }
 
 /// From nodes of the layer, to what takes their mass: nothing that is held.

@@ -217,8 +217,17 @@ std::optional<Failed> unite_velocities(std::span<const Joint> joints, double tim
   find_unlike(rows, joints, bodies, unlike);
   if (rows.empty()) return std::nullopt;
   Eigen::VectorXd apart;
-  const double speed = rows.differ(apart);
-  if (apart.lpNorm<Eigen::Infinity>() <= rounding * speed) return std::nullopt;
+  double speed = rows.differ(apart);
+  const auto alike = [&] { return apart.lpNorm<Eigen::Infinity>() <= rounding * speed; };
+  if (alike()) return std::nullopt;
+  bodies.save_all();
+  // Nodes without mass are seen from here on as what has theirs, which is what impulses move.
+  if (std::optional<Failed> failed = rows.strike(Eigen::VectorXd::Zero(rows.size()))) {
+    bodies.restore_all();
+    return failed;
+  }
+  speed = rows.differ(apart);
+  if (alike()) return std::nullopt;
   bodies.save_all();
   Mobility mobility(rows, apart, speed, bodies);
   Eigen::VectorXd impulse;

@@ -35,6 +35,9 @@ constexpr double rounding_of_places = 1.0e-6;
 
 /// Of the thickness: ties that are missed by less hold.
 constexpr double holds = 1.0e-3;
+/// Of the largest energy: what ties may do in a step. They take back what sides part by, on which
+/// their forces do some work, to and fro.
+constexpr double work_of_ties = 1.0e-6;
 
 std::vector<int> owners_of(const PassiveTies& ties, int bodies) {
   std::vector<int> owners;
@@ -45,6 +48,13 @@ std::vector<int> owners_of(const PassiveTies& ties, int bodies) {
 double own_energy(const BodyRecord& record) {
   const Energy& e = record.energy;
   return e.kinetic + e.stored + e.dissipated - e.external_work;
+}
+
+/// [J] of all bodies together.
+double motion_of(std::span<const PassiveReply> replies) {
+  double sum = 0.0;
+  for (const PassiveReply& reply : replies) sum += reply.record.energy.total();
+  return sum;
 }
 
 }  // namespace
@@ -108,7 +118,8 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   const double budget = 0.5 * ledger.normal - ledger.push_out;
   pushing_ = budget > 0.0;
   allowed_ = paid_share * std::max(0.0, budget);
-  ties_.aim(length(), displacements_, replies_);
+  ties_.aim(length(), displacements_, replies_,
+            work_of_ties * std::max(most_, motion_of(replies_)));
   near_.find(from_, rows_);
   prepare_rows();
   if (std::optional<Failed> failed = advance(true)) {
@@ -142,7 +153,7 @@ std::optional<CommonStep::Refusal> CommonStep::iterate() {
     rows_ask(unfit, work);
     const std::size_t known = rows_.size();
     if (round > 0 && ((unfit < fits * near_.thickness() && ties_fit()) || last)) {
-      if (work <= allowed_ + rounding_of_work * most_) {
+      if (work <= allowed_ + rounding_of_work * most_ && ties_.passive()) {
         const NearRows::Crossed crossed = near_.check(from_, to_, rows_);
         if (crossed.pairs == 0) return std::nullopt;
         if (last || ++checks > most_checks) {
@@ -151,7 +162,7 @@ std::optional<CommonStep::Refusal> CommonStep::iterate() {
         }
         if (crossed.added > 0) softer_ = 0;
       } else if (last) {
-        why_ = fmt::format("contact would do {:.3g} J", work);
+        why_ = fmt::format("contact would do {:.3g} J, and ties {:.3g} J", work, ties_.work());
         return Refusal::work;
       }
     }
@@ -259,7 +270,7 @@ void CommonStep::see_velocities() {
 }
 
 bool CommonStep::ties_fit() const {
-  return !ties_.any() || ties_.missed() < holds * near_.thickness();
+  return !ties_.any() || (ties_.missed() < holds * near_.thickness() && ties_.passive());
 }
 
 /// By how much rows are missed at most [m], those that press and need not a tenth; and what their
@@ -339,9 +350,7 @@ void CommonStep::follow_ties() {
 /// The account of every body: what its energy gained beside what its ports did.
 std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedger& ledger) {
   share_out_work();
-  double motion = 0.0;
-  for (const PassiveReply& reply : tried_) motion += reply.record.energy.total();
-  const double scale = std::max(most_, motion);
+  const double scale = std::max(most_, motion_of(tried_));
   std::vector<double> gained(accounts_.size());
   for (int b = 0; b < bodies_.count(); ++b) {
     double done = 0.0;

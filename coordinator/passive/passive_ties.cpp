@@ -66,8 +66,10 @@ void PassiveTies::begin(const Displacements& displacements) {
 }
 
 void PassiveTies::aim(double length, const Displacements& displacements,
-                      std::span<const PassiveReply> before) {
+                      std::span<const PassiveReply> before, double rounding) {
   length_ = length;
+  rounding_ = rounding;
+  for (Cluster& cluster : clusters_) cluster.share = 1.0;
   for (std::size_t t = 0; t < ties_.size(); ++t) {
     aim_[t] = taken_back / length * start_[t];
     parted_[t] = -start_[t];
@@ -126,15 +128,36 @@ void PassiveTies::see(std::span<const PassiveReply> replies, std::span<const Pas
 
 double PassiveTies::missed() const {
   double most = 0.0;
-  for (std::size_t t = 0; t < ties_.size(); ++t)
-    most = std::max(most, (velocity_[t] - aim_[t]).lpNorm<Eigen::Infinity>() * length_);
+  for (std::size_t t = 0; t < ties_.size(); ++t) {
+    const double share = clusters_[index(cluster(ties_[t].sides[0].body))].share;
+    most = std::max(most, (velocity_[t] - share * aim_[t]).lpNorm<Eigen::Infinity>() * length_);
+  }
   return most;
+}
+
+bool PassiveTies::passive() const {
+  return std::ranges::all_of(clusters_, [this](const Cluster& cluster) {
+    double work = 0.0;
+    for (const int t : cluster.ties) work += impulses_[index(t)].dot(velocity_[index(t)]);
+    return work <= rounding_;
+  });
 }
 
 double PassiveTies::work() const {
   double sum = 0.0;
   for (std::size_t t = 0; t < ties_.size(); ++t) sum += impulses_[t].dot(velocity_[t]);
   return sum;
+}
+
+/// Of all its ties, one after the other.
+Eigen::VectorXd PassiveTies::of_cluster(const Cluster& cluster,
+                                        std::span<const Eigen::VectorXd> values) const {
+  Eigen::VectorXd out(cluster.rows);
+  for (std::size_t k = 0; k < cluster.ties.size(); ++k) {
+    const Eigen::VectorXd& own = values[index(cluster.ties[k])];
+    out.segment(cluster.first[k], own.size()) = own;
+  }
+  return out;
 }
 
 /// Of all values that the cluster's bodies told of, side by side.
@@ -195,11 +218,12 @@ PassiveTies::Answer PassiveTies::answer(int lead,
   Eigen::MatrixXd own = cluster.across * rows.transpose();
   own.diagonal().array() += regularised * own.diagonal().maxCoeff();
   cluster.stiffness.compute(own);
-  Eigen::VectorXd miss(cluster.rows);
-  for (std::size_t k = 0; k < cluster.ties.size(); ++k) {
-    const std::size_t t = index(cluster.ties[k]);
-    miss.segment(cluster.first[k], velocity_[t].size()) = velocity_[t] - aim_[t];
-  }
+  const Eigen::VectorXd seen = of_cluster(cluster, velocity_), aim = of_cluster(cluster, aim_);
+  // Of a share s of what is aimed at, impulses that reach it do s (s a - b) of work.
+  const Eigen::VectorXd stiff = cluster.stiffness.solve(aim);
+  const double a = aim.dot(stiff), b = seen.dot(stiff) - aim.dot(of_cluster(cluster, impulses_));
+  cluster.share = a - b > rounding_ ? std::clamp(b / a, 0.0, 1.0) : 1.0;
+  const Eigen::VectorXd miss = seen - cluster.share * aim;
   cluster.before = -cluster.stiffness.solve(miss);
   std::vector<Eigen::Index> at;
   for (const std::array<std::int32_t, 3>& point : points) {

@@ -39,8 +39,10 @@ class PassiveTies {
   using Displacements = std::vector<std::vector<std::vector<double>>>;  // [m] (bodies; ports)
   /// Where the sides are when the passive way begins: they part from there on.
   void begin(const Displacements& displacements);
-  /// A step begins, of a length [s], from there and with the velocities of these replies.
-  void aim(double length, const Displacements& displacements, std::span<const PassiveReply> before);
+  /// A step begins, of a length [s], from there and with the velocities of these replies. Work [J]
+  /// below `rounding` is none.
+  void aim(double length, const Displacements& displacements, std::span<const PassiveReply> before,
+           double rounding);
   /// Adds the points of tied ports to those that contact presses on.
   void add_points(int body, std::vector<std::vector<std::int32_t>>& pressed) const;
   /// Adds the impulses [N s] of ties to those of contact.
@@ -49,6 +51,8 @@ class PassiveTies {
   void see(std::span<const PassiveReply> replies, std::span<const PassiveStep> asked);
   /// [m] by which ties are missed at most.
   double missed() const;
+  /// Whether no cluster gains energy by its ties, but for roundings.
+  bool passive() const;
   /// [J] of the impulses, at the velocities that were seen.
   double work() const;
 
@@ -80,7 +84,9 @@ class PassiveTies {
     Eigen::MatrixXd contact;                  // [1/kg] (rows, contact values) of it
     DenseFactors stiffness{Factoring::ldlt};  // of T C T^T
     Eigen::VectorXd before;                   // impulses that make ties hold without more contact
+    double share = 1.0;                       // of what is aimed at
   };
+  Eigen::VectorXd of_cluster(const Cluster& cluster, std::span<const Eigen::VectorXd> values) const;
   Eigen::VectorXd part(const PassiveTie& tie, std::size_t side,
                        const std::vector<double>& values) const;
   Eigen::MatrixXd block_compliance(const Cluster& cluster) const;
@@ -89,7 +95,7 @@ class PassiveTies {
   std::vector<PassiveTie> ties_;
   const Bodies& bodies_;
   int dim_ = 2;
-  double length_ = 0.0;
+  double length_ = 0.0, rounding_ = 0.0;
   std::vector<int> cluster_;               // (bodies)
   std::vector<std::vector<int>> members_;  // (bodies) of the cluster that a body leads
   std::vector<Cluster> clusters_;          // (bodies) the same
@@ -97,7 +103,7 @@ class PassiveTies {
   std::span<const PassiveStep> asked_;
   std::vector<Eigen::VectorXd> start_;     // [m] (ties; rows, dim)
   std::vector<Eigen::VectorXd> parted_;    // [m] when the step begins
-  std::vector<Eigen::VectorXd> aim_;       // [m/s] T w wanted
+  std::vector<Eigen::VectorXd> aim_;       // [m/s] T w wanted, so far as it does no work
   std::vector<Eigen::VectorXd> velocity_;  // [m/s] T w seen
   std::vector<Eigen::VectorXd> impulses_;  // [N s]
   std::vector<Eigen::VectorXd> forces_;    // [N] of the last step

@@ -220,5 +220,33 @@ TEST(TiedStart, LosesAPlasticImpact) {
   }
 }
 
+/// Where a tied side meets one that may be touched, the node of both has no mass: what strikes it
+/// there strikes what has its mass.
+TEST(TiedStartsBesideContact, NoImpulseIsLost) {
+  const auto part = [](const std::string& name, double y, double speed) {
+    return SolidText{
+        .name = name,
+        .material = "linear_elastic: {youngs_modulus: 1.0e7, poissons_ratio: 0.3, density: 1.0e3}",
+        .integrator = "newmark: {step: 2.0e-5}",
+        .position = {0.0, y},
+        .velocity = {speed, 0.5 * speed},
+        .sides = {"left", "top", "bottom"},
+        .block = {{0.1, 0.1}, {3, 3}, "quad4"}};
+  };
+  const auto run =
+      run_scene(2.0e-4, 2.0e-5,
+                part("low", 0.0, 1.0).text() + part("high", 0.1, -2.0).text() +
+                    tool("wall", block_in(2, {0.1, 1.0}, {1, 4}), {-1.0, -0.4}, "right").text(),
+                "interfaces:\n  joint: {sides: [low.top, high.bottom], tied: {}}\n"
+                "  beside: {sides: [low.left, wall.face], contact: {}}\n");
+  ASSERT_TRUE(run->completed());
+  EXPECT_EQ(run->end.given_up.windows, 0);
+  double first = 0.0, last = 0.0;  // the wall stands
+  for (const double energy : run->rows.front().total) first += energy;
+  for (const double energy : run->rows.back().total) last += energy;
+  EXPECT_LT(run->momentum_error(), 1e-12);  // impulses are equal and opposite, but for roundings
+  EXPECT_LT(last, 0.9 * first);             // a plastic impact of halves of unlike velocities
+}
+
 }  // namespace
 }  // namespace abut
