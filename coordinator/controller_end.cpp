@@ -1,9 +1,26 @@
-// What a run's end says of its bodies.
+// Why a run ends, and what its end says of its bodies.
+
+#include <fmt/format.h>
 
 #include "coordinator/controller.hpp"
 #include "coordinator/record/validity_notes.hpp"
 
 namespace abut {
+
+std::string Controller::Attempt::trouble(double tolerance) const {
+  if (failed) return fmt::format("{}: {}", to_string(failed->cause), failed->detail);
+  FieldResiduals residual;
+  int iterations = 0;
+  for (const SchwarzReport& r : reports) {
+    if (r.converged) continue;
+    residual.include(r.residual);
+    iterations = r.iterations;
+  }
+  return fmt::format(
+      "Schwarz iteration not converged after {} iterations: residual{} {:.3g}, tolerance {:.3g}",
+      iterations, residual.force > 0.0 && residual.force == residual.largest() ? " of forces" : "",
+      residual.largest(), tolerance);
+}
 
 /// By the measures that it has told last.
 void Controller::judge(int body) {

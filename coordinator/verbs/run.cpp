@@ -154,7 +154,8 @@ int run_verb(const RunCommand& command) {
     throw;
   }
   for (const Description* body : placement.descriptions())
-    log_info(fmt::format("{}: {}", body->name, body->model));
+    log_info(
+        fmt::format("{}: {}", body->name, quantities_in(declared_units(scene.units), body->model)));
 
   held.clear();
   write_whole(directory / "scene.resolved.yaml", resolved_text(scene, document));
@@ -166,12 +167,10 @@ int run_verb(const RunCommand& command) {
   EventLog events(directory);
   Summary summary(directory,
                   {scene.meta.title, versions(), scene.meta.expect, began, valid.estimate,
-                   document.units().is_si() ? std::map<std::string, std::string>()
-                                            : unit_words(document.units()),
-                   &meter.waited_seconds()},
+                   declared_units(scene.units), &meter.waited_seconds()},
                   recorder, form);
-  ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !command.quiet,
-                        meter.waited_seconds());
+  ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !command.quiet, meter.waited_seconds(),
+                        document.units().word("s"));
   RunTable table;
   std::vector<Observer*> observers{&recorder, &history, &events, &progress, &table, &summary};
   std::optional<VtkFields> fields;
