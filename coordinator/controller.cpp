@@ -12,11 +12,13 @@
 #include "base/count.hpp"
 #include "base/denormals.hpp"
 #include "base/index.hpp"
+#include "base/unit_words.hpp"
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/horizon.hpp"
 #include "coordinator/coupling/velocity_start.hpp"
 #include "coordinator/energy_account.hpp"
 #include "coordinator/flight_work.hpp"
+#include "coordinator/record/validity_notes.hpp"
 #include "coordinator/touching_pairs.hpp"
 
 namespace abut {
@@ -41,7 +43,7 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
     : scene_(scene),
       bodies_(std::move(bodies), scene.time.window),
       interrupted_(interrupted),
-      narrator_(bodies_, std::move(observers)),
+      narrator_(bodies_, std::move(observers), declared_units(scene.units)),
       joints_(make_joints(scene, bodies_)),
       broad_phase_(make_broad_phase(scene, joints_, bodies_)),
       schwarz_(make_schwarz(scene.schwarz, alternating_joints(scene))),
@@ -305,8 +307,8 @@ Controller::Judgement Controller::judge_trouble(const TimeWindow& window) {
     narrator_.warning(window.begin, "", text + "; the window is halved");
     return {Verdict::cut, window.begin + 0.5 * window.length(), {}};
   }
-  constexpr const char* remedy = "; raise schwarz.max_iterations or choose another accelerator";
-  return {Verdict::fail, window.end, attempt_.failed ? text : text + remedy};
+  if (attempt_.failed) return {Verdict::fail, window.end, text};
+  return {Verdict::fail, window.end, text + "; " + sweeps_remedy(descriptions_of(bodies_))};
 }
 
 void Controller::accept(const TimeWindow& window) {
@@ -332,20 +334,6 @@ void Controller::end_window(const TimeWindow& window, EnergyGuard::Verdict energ
 
 bool Controller::Attempt::converged() const {
   return std::ranges::all_of(reports, &SchwarzReport::converged);
-}
-
-std::string Controller::Attempt::trouble(double tolerance) const {
-  if (failed) return fmt::format("{}: {}", to_string(failed->cause), failed->detail);
-  double residual = 0.0;
-  int iterations = 0;
-  for (const SchwarzReport& r : reports) {
-    if (r.converged) continue;
-    residual = std::max(residual, r.residual.largest());
-    iterations = r.iterations;
-  }
-  return fmt::format(
-      "Schwarz iteration not converged after {} iterations: residual {:.3g}, tolerance {:.3g}",
-      iterations, residual, tolerance);
 }
 
 /// As many as the horizon allows, and that do not pass the next windows whose fields are wanted.
@@ -458,7 +446,7 @@ void Controller::look_for_passed() {
 
 void Controller::fail(double time, const std::string& text) {
   end_.status = "failed";
-  end_.reason = text;
+  end_.reason = narrator_.in_units(text);
   narrator_.failure(time, text);
 }
 

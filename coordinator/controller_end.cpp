@@ -1,10 +1,27 @@
-// How a run ends, and what its end says of its bodies.
+// How and why a run ends, and what its end says of its bodies.
+
+#include <fmt/format.h>
 
 #include "base/without_remedy.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/record/validity_notes.hpp"
 
 namespace abut {
+
+std::string Controller::Attempt::trouble(double tolerance) const {
+  if (failed) return fmt::format("{}: {}", to_string(failed->cause), failed->detail);
+  FieldResiduals residual;
+  int iterations = 0;
+  for (const SchwarzReport& r : reports) {
+    if (r.converged) continue;
+    residual.include(r.residual);
+    iterations = r.iterations;
+  }
+  return fmt::format(
+      "Schwarz iteration not converged after {} iterations: residual{} {:.3g}, tolerance {:.3g}",
+      iterations, residual.force > 0.0 && residual.force == residual.largest() ? " of forces" : "",
+      residual.largest(), tolerance);
+}
 
 /// By the measures that it has told last.
 void Controller::judge(int body) {
@@ -49,7 +66,7 @@ RunEnd Controller::finish(double wall_seconds) {
 void Controller::give_up(const std::exception& error, bool interrupted, double wall_seconds) {
   end_.status = interrupted ? "interrupted" : "failed";  // a wait that the user ends is no failure
   if (!interrupted) {
-    end_.reason = without_remedy(error);
+    end_.reason = narrator_.in_units(without_remedy(error));
     narrator_.thrown(clock_.time(), end_.reason);
   }
   end_.compute_seconds = bodies_.compute_seconds();

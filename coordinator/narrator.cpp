@@ -9,6 +9,7 @@
 
 #include "base/archive_lists.hpp"
 #include "base/index.hpp"
+#include "base/unit_words.hpp"
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/interface_spec.hpp"
 #include "coordinator/record/given_up_words.hpp"
@@ -238,8 +239,13 @@ void Narrator::thrown(double time, const std::string& text) {
   tell({RunEvent::Kind::failure, time, blamed(text), text, {}, true});
 }
 
-void Narrator::tell(const RunEvent& event) {
+void Narrator::tell(RunEvent event) {
+  event.text = in_units(event.text);
   for (Observer* observer : observers_) observer->on_event(event);
+}
+
+std::string Narrator::in_units(const std::string& text) const {
+  return quantities_in(units_, text);
 }
 
 std::string Narrator::blamed(const std::string& text) const {

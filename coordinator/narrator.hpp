@@ -16,9 +16,11 @@ namespace abut {
 /// Puts what happens in a run into words, for its observers.
 class Narrator {
  public:
-  /// Bodies and observers must outlive it.
-  Narrator(const Bodies& bodies, std::vector<Observer*> observers)
-      : bodies_(bodies), observers_(std::move(observers)) {}
+  /// Bodies and observers must outlive it. `units`: the scene's words for those of SI (unit_words);
+  /// empty: these.
+  Narrator(const Bodies& bodies, std::vector<Observer*> observers,
+           std::map<std::string, std::string> units)
+      : bodies_(bodies), observers_(std::move(observers)), units_(std::move(units)) {}
 
   /// `joints`: one of every interface that the scene writes. `everything`: there is an interface of
   /// any two surfaces beside them.
@@ -53,16 +55,19 @@ class Narrator {
   void thrown(double time, const std::string& text);
 
   std::string words_of(const EnergyGuard& guard, std::span<const Joint> joints) const;
+  /// A text with the words of the scene's units.
+  std::string in_units(const std::string& text) const;
 
  private:
   std::string remedies(std::span<const Joint> joints) const;
-  void tell(const RunEvent& event);
+  void tell(RunEvent event);
   std::string blamed(const std::string& text) const;  // the body that a text names, or empty
 
   const std::string& interface_of(const Joint& joint) const { return interfaces_[joint.interface]; }
 
   const Bodies& bodies_;
   std::vector<Observer*> observers_;
+  std::map<std::string, std::string> units_;
   std::vector<std::string> interfaces_;
   int told_passive_ = 0;
 };

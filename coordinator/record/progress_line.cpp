@@ -69,8 +69,8 @@ std::string ProgressLine::text(const WindowReport& report, double wall) const {
   const double part = part_of(report.window.end);
   const std::string contacts =
       closed_ == 0 ? "free" : fmt::format("{} contact{}", closed_, closed_ == 1 ? "" : "s");
-  return fmt::format("{:5.1f} %  time {:.4e} s{}  {}  {}", 100.0 * part, report.window.end,
-                     left({wall, part}), contacts,
+  return fmt::format("{:5.1f} %  time {:.4e} {}{}  {}  {}", 100.0 * part, report.window.end,
+                     second_, left({wall, part}), contacts,
                      shares_words(shares_of(waited_, wall), bodies_, named_bodies));
 }
 
@@ -81,8 +81,8 @@ void ProgressLine::on_event(const RunEvent& event) {
   if (event.thrown) return;
   const bool named =
       event.subject.empty() || event.text.find("'" + event.subject + "'") != std::string::npos;
-  const std::string line =
-      fmt::format("{:.6e} s: {}{}", event.time, named ? "" : event.subject + ": ", event.text);
+  const std::string line = fmt::format("{:.6e} {}: {}{}", event.time, second_,
+                                       named ? "" : event.subject + ": ", event.text);
   if (event.kind == RunEvent::Kind::failure)
     log_error(line);
   else if (event.kind == RunEvent::Kind::warning)

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/clock.hpp"
@@ -16,8 +17,10 @@ namespace abut {
 class ProgressLine : public Observer {
  public:
   /// `waited` [s] by body: wall time so far for which each was waited for; must outlive this.
-  ProgressLine(const Clock& clock, bool terminal, const std::vector<double>& waited)
-      : clock_(clock), terminal_(terminal), waited_(waited) {}
+  /// `second`: the scene's unit of time.
+  ProgressLine(const Clock& clock, bool terminal, const std::vector<double>& waited,
+               std::string second = "s")
+      : clock_(clock), terminal_(terminal), waited_(waited), second_(std::move(second)) {}
   ~ProgressLine() override { erase(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
@@ -41,6 +44,7 @@ class ProgressLine : public Observer {
   const Clock& clock_;
   bool terminal_;
   const std::vector<double>& waited_;
+  std::string second_;
   bool shown_ = false;
   Clock::Time began_{}, next_{};
   double begin_ = 0.0, end_ = 0.0;   // [s] of the run

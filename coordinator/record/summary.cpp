@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/unit_words.hpp"
 #include "coordinator/record/expectations.hpp"
 #include "coordinator/record/given_up_words.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
@@ -81,11 +82,11 @@ Json closed_form_object(const ClosedForm& form) {
   return object;
 }
 
-Json bodies_array(const RunStart& start) {
+Json bodies_array(const RunStart& start, const std::map<std::string, std::string>& units) {
   Json array = Json::array();
   for (const Description* body : start.bodies) {
     Json entry = {{"name", body->name},
-                  {"model", body->model},
+                  {"model", quantities_in(units, body->model)},
                   {"dofs", body->dofs},
                   {"mass", number(body->mass)},
                   {"step", number(body->step)}};
@@ -206,7 +207,8 @@ Json by_body(const std::vector<double>& values, const RunStart& start) {
   return object;
 }
 
-Json given_up_object(const RunEnd& end, const RunStart& start) {
+Json given_up_object(const RunEnd& end, const RunStart& start,
+                     const std::map<std::string, std::string>& units) {
   const GivenUp& up = end.given_up;
   Json object = {{"passive_windows", up.windows},
                  {"halved_windows", up.halved_windows},
@@ -228,7 +230,7 @@ Json given_up_object(const RunEnd& end, const RunStart& start) {
                  {"lost_by_body", by_body(up.lost, start)},
                  {"taken_from_body", by_body(up.taken, start)},
                  {"refused_by_body", by_body(up.refused_by, start)},
-                 {"words", given_up_words(up, end.windows, start.bodies)}};
+                 {"words", quantities_in(units, given_up_words(up, end.windows, start.bodies))}};
   if (const std::optional<GivenUpRemedy> remedy = remedy_of(up))
     object["remedy"] = {{"body", start.bodies[static_cast<std::size_t>(remedy->body)]->name},
                         {"change", remedy->finer_mesh ? "finer mesh" : "smaller steps"}};
@@ -273,17 +275,17 @@ std::string Summary::text(const RunEnd& end) const {
   summary["exchanges"] = end.exchanges;
   summary["overlaps"] = overlaps_array(end, start_);
   summary["never_closed"] = end.never_met;
-  summary["accuracy"]["given_up"] = given_up_object(end, start_);
+  summary["accuracy"]["given_up"] = given_up_object(end, start_, heading_.units);
   summary["timing"] = timing_object(end, start_, heading_.waited);
   if (heading_.program_began) summary["timing"]["startup_s"] = number(startup_seconds_);
   if (heading_.estimate) summary["estimate"] = estimate_object(*heading_.estimate);
-  summary["bodies"] = bodies_array(start_);
+  summary["bodies"] = bodies_array(start_, heading_.units);
   summary["ports"] = ports_object(start_);
   summary["interfaces"] = interfaces_object(start_);
   summary["versions"] = heading_.versions;
   for (std::size_t b = 0; b < std::min(start_.bodies.size(), end.body_measures.size()); ++b)
     for (const std::string& note : validity_notes(*start_.bodies[b], end.body_measures[b]))
-      notes.push_back(note);
+      notes.push_back(quantities_in(heading_.units, note));
   summary["notes"] = notes;
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -52,38 +52,50 @@ std::string unheld(const Description& body, std::span<const double> values) {
       body.name, stabilised_motion(body, values), 100.0 * share, 100.0 * allowed);
 }
 
+std::string sweeps_remedy(std::span<const Description* const> bodies) {
+  for (const Description* body : bodies)
+    if (std::ranges::find(body->measures, "stabilisation.share") != body->measures.end())
+      return fmt::format(
+          "let windows be halved (schwarz.on_nonconvergence: halve), or hold the bodies that "
+          "contact alone holds by stiffer springs (bodies.{}.integrator.quasi_static."
+          "stabilisation.stiffness)",
+          body->name);
+  return "raise schwarz.max_iterations or choose another accelerator";
+}
+
 std::vector<std::string> validity_notes(const Description& body, std::span<const double> values) {
   std::vector<std::string> notes;
   const double turned = told(body, values, "rotation.max");
   const double longer = std::hypot(1.0, turned) - 1.0;  // a law of small rotations sees no strain
   if (longer > lengthened) {
     notes.push_back(fmt::format(
-        "{} has turned by up to {:.2g} rad under a law for small rotations, which lengthens it "
+        "'{}' has turned by up to {:.2g} rad under a law for small rotations, which lengthens it "
         "there "
         "by {:.3g} %: use a law of finite strain, saint_venant_kirchhoff for instance, or model: "
         "rigid",
         body.name, turned, 100.0 * longer));
   }
   if (told(body, values, "contact.crossings") > 0.0)
-    notes.push_back(
-        fmt::format("facets of {} have passed through each other on its ports, and what follows is "
-                    "not to be trusted: bodies are kept off themselves by the passive way alone, "
-                    "which contact.self, schwarz.on_nonconvergence or a body without a passive "
-                    "form has kept away",
-                    body.name));
-  if (told(body, values, "stabilisation.at_most") > 0.0)
     notes.push_back(fmt::format(
-        "{} is held as a whole by contact alone and was stabilised: at the end that bears {:.2g} % "
-        "of the forces on it, {:.2g} % at most on the way; it took {:.3g} J",
-        body.name, 100.0 * told(body, values, "stabilisation.share"),
-        100.0 * told(body, values, "stabilisation.share_max"),
-        told(body, values, "stabilisation.work")));
+        "facets of '{}' have passed through each other on its ports, and what follows is "
+        "not to be trusted: bodies are kept off themselves by the passive way alone, "
+        "which contact.self, schwarz.on_nonconvergence or a body without a passive "
+        "form has kept away",
+        body.name));
+  if (told(body, values, "stabilisation.at_most") > 0.0)
+    notes.push_back(
+        fmt::format("'{}' is held as a whole by contact alone and was stabilised: at the end that "
+                    "bears {:.2g} % "
+                    "of the forces on it, {:.2g} % at most on the way; it took {:.3g} J",
+                    body.name, 100.0 * told(body, values, "stabilisation.share"),
+                    100.0 * told(body, values, "stabilisation.share_max"),
+                    told(body, values, "stabilisation.work")));
   const double share = told(body, values, "energy.hourglass_share");
   const double stored = told(body, values, "energy.stored");
   const double all = stored + told(body, values, "energy.kinetic");
   if (share > in_hourglasses && stored > worth_a_look * all) {
     notes.push_back(
-        fmt::format("{} has {:.2g} % of its stored energy in hourglasses at the end: use a finer "
+        fmt::format("'{}' has {:.2g} % of its stored energy in hourglasses at the end: use a finer "
                     "mesh, or formulation: full or mean_dilatation",
                     body.name, 100.0 * share));
   }

@@ -19,4 +19,7 @@ std::vector<std::string> validity_notes(const Description& body, std::span<const
 /// allowed. Empty: it is, or has none.
 std::string unheld(const Description& body, std::span<const double> values);
 
+/// What to do where sweeps do not converge.
+std::string sweeps_remedy(std::span<const Description* const> bodies);
+
 }  // namespace abut

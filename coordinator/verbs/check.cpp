@@ -92,8 +92,8 @@ std::string predicted(const Scene& scene, const Document& document, const Estima
   const std::vector<std::int64_t> processes = placement.launch->process_ids();
   for (const std::int64_t id : processes) memory += memory_of(std::to_string(id), "VmHWM");
   if (!probe.failure.empty())
-    return fmt::format("  time       the run fails at {:.4g} s: {}\n", probe.reached,
-                       probe.failure);
+    return fmt::format("  time       the run fails at {:.4g} {}: {}\n", probe.reached,
+                       document.units().word("s"), probe.failure);
   const std::vector<const Description*> bodies = placement.descriptions();
   const std::optional<Prediction> prediction = predict(
       probe, scene.time.end, startup.count(), outlook_of(scene, document, estimate, bodies));
@@ -130,7 +130,8 @@ int check_verb(const CheckCommand& command) {
     estimate = validate_all(scene, document, here, true).estimate;
     const std::vector<const Description*> bodies = here.descriptions();
     const std::vector<std::optional<BodyFacts>> facts = local_facts(scene, document);
-    fmt::print("{}: valid\n{}", command.scene, to_text(estimate, command.verbose));
+    fmt::print("{}: valid\n{}", command.scene,
+               quantities_in(declared_units(scene.units), to_text(estimate, command.verbose)));
     fmt::print("{}", in_words_of(document.units(), body_table(bodies, facts)));
     for (const InputError& doubt : unit_doubts(bodies, facts, document))
       fmt::print("warning: {}\n", doubt.what());

@@ -151,14 +151,12 @@ StageEnd record_stage(RunPlan& plan, const RunOptions& options, const fs::path& 
   MeasureRecorder recorder(form, scene.output.force_filter, scene.output.steady_after);
   CsvHistory history(directory, form, units, opening_of(from, "history"));
   EventLog events(directory, opening_of(from, "events"));
-  Summary summary(
-      directory,
-      {scene.meta.title, versions(), scene.meta.expect, options.began, plan.valid.estimate,
-       units.is_si() ? std::map<std::string, std::string>() : unit_words(units),
-       &meter.waited_seconds()},
-      recorder, form);
-  ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !options.quiet,
-                        meter.waited_seconds());
+  Summary summary(directory,
+                  {scene.meta.title, versions(), scene.meta.expect, options.began,
+                   plan.valid.estimate, declared_units(scene.units), &meter.waited_seconds()},
+                  recorder, form);
+  ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !options.quiet, meter.waited_seconds(),
+                        units.word("s"));
   RunTable table;
   std::vector<Observer*> observers{&recorder, &history, &events, &progress, &table, &summary};
   std::optional<VtkFields> fields;

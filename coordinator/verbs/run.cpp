@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/log.hpp"
+#include "base/unit_words.hpp"
 #include "coordinator/record/text_file.hpp"
 #include "coordinator/run_directory.hpp"
 #include "coordinator/verbs/recorded_run.hpp"
@@ -32,7 +33,8 @@ int run_verb(const RunCommand& command) {
     throw;
   }
   for (const Description* body : plan->placement.descriptions())
-    log_info(fmt::format("{}: {}", body->name, body->model));
+    log_info(fmt::format("{}: {}", body->name,
+                         quantities_in(declared_units(plan->scene.units), body->model)));
   held.clear();
   write_whole(held.path() / "scene.resolved.yaml", resolved_text(plan->scene, plan->document));
   return record_run(std::move(*plan), options, held, interrupts, std::nullopt);

@@ -149,6 +149,17 @@ const AbaqusElement* abaqus_element(const std::string& name) {
   return found == table.end() ? nullptr : &found->second;
 }
 
+const AbaqusElement* abaqus_shape(int dim, int corners, bool quadratic) {
+  static const AbaqusElement quadratic_pyramid = made(pyramid, true, nullptr, &pyramid_shape());
+  if (dim == 2 && corners == 3) return abaqus_element(quadratic ? "CPS6" : "CPS3");
+  if (dim == 2 && corners == 4) return abaqus_element(quadratic ? "CPS8" : "CPS4");
+  if (dim == 3 && corners == 4) return abaqus_element(quadratic ? "C3D10" : "C3D4");
+  if (dim == 3 && corners == 5) return quadratic ? &quadratic_pyramid : abaqus_element("C3D5");
+  if (dim == 3 && corners == 6) return abaqus_element(quadratic ? "C3D15" : "C3D6");
+  if (dim == 3 && corners == 8) return abaqus_element(quadratic ? "C3D20" : "C3D8");
+  return nullptr;
+}
+
 std::string abaqus_element_remedy(const std::string& name) {
   if (name.starts_with("S") || name.starts_with("M3D"))
     return "Shells and membranes are not supported: mesh the part as a solid, and name its sides "

@@ -25,6 +25,10 @@ struct AbaqusElement {
 /// do not have it.
 const AbaqusElement* abaqus_element(const std::string& name);
 
+/// The element of this shape: triangle, quadrilateral; tetrahedron, pyramid, prism, hexahedron, by
+/// their numbers of corners, of first order or with a node on every edge. Null: there is none.
+const AbaqusElement* abaqus_shape(int dim, int corners, bool quadratic);
+
 /// Why there is no such element, and what to do.
 std::string abaqus_element_remedy(const std::string& name);
 

@@ -58,6 +58,23 @@ class Builder {
     return std::move(out_);
   }
 
+  /// Of cells, by the elements that they come from.
+  CellWords words(std::vector<std::vector<std::int32_t>> origins) const {
+    struct Written {
+      std::int64_t number;
+      AbaqusLine line;
+    };
+    std::vector<Written> elements;
+    for (const AbaqusPieces::Element& element : pieces_.elements())
+      elements.push_back({element.number, element.line});
+    return [origins = std::move(origins), elements = std::move(elements), files = file_.files()](
+               std::size_t block, std::size_t cell) {
+      const Written& own = elements[index(origins[block][cell])];
+      return fmt::format("element {}, {}:{}", own.number, files[index(own.line.file)],
+                         own.line.number);
+    };
+  }
+
  private:
   using Group = AbaqusGroups::Group;
 
@@ -189,6 +206,7 @@ class Builder {
       const auto [entry, fresh] = place.try_emplace({element.type, label_[e]}, count);
       const auto put = [&](auto& block) {
         block.tags.push_back(number);
+        block.origins.push_back(static_cast<std::int32_t>(e));
         for (int a : type.order) block.nodes.push_back(pieces_.nodes_of(element)[a]);
       };
       const std::string where = fresh ? file_.where(element.line) : std::string();
@@ -213,7 +231,7 @@ class Builder {
     std::vector<char> corner(out_.node_tags.size(), 0);
     for (std::size_t e = 0; e < kept_.size() && dim_ == 2; ++e) {
       const AbaqusPieces::Element& element = pieces_.elements()[e];
-      const auto corners = static_cast<std::int32_t>(element.type->faces.size());
+      const std::int32_t corners = element.type->nodes / (element.type->quadratic ? 2 : 1);
       for (std::int32_t a = 0; a < corners; ++a) corner[index(pieces_.nodes_of(element)[a])] = 1;
     }
     for (FileMesh::Elements& block : out_.elements) {
@@ -234,6 +252,12 @@ class Builder {
         read.push_back(fmt::format("{} as {}", name, type.type->name));
     }
     if (!read.empty()) out_.notes.push_back(fmt::format("{}", fmt::join(read, ", ")));
+    std::vector<std::string> collapsed;
+    for (const auto& [shape, count] : pieces_.collapsed_to())
+      collapsed.push_back(fmt::format("{} {}", count, shape));
+    if (!collapsed.empty())
+      out_.notes.push_back(
+          fmt::format("of elements with repeated nodes: {}", fmt::join(collapsed, ", ")));
     if (part_.empty() && model_.instances.size() > 1)
       out_.notes.push_back(
           fmt::format("{} instances are one body: part chooses one", model_.instances.size()));
@@ -259,17 +283,21 @@ class Builder {
 }  // namespace
 
 Mesh abaqus_mesh(std::string bytes, const std::string& name, double scale, const std::string& part,
-                 int surface_in, std::vector<std::string>* notes) {
+                 int surface_in, std::vector<std::string>* notes, CellWords* words) {
   AbaqusCursor cursor(std::move(bytes), name);
   const AbaqusModel model = parse_abaqus(cursor);
-  FileMesh file = Builder(model, cursor, part).build();
+  Builder builder(model, cursor, part);
+  FileMesh file = builder.build();
   if (notes != nullptr) notes->insert(notes->end(), file.notes.begin(), file.notes.end());
-  return mesh_of(std::move(file), scale, surface_in);
+  std::vector<std::vector<std::int32_t>> origins;
+  Mesh mesh = mesh_of(std::move(file), scale, surface_in, &origins);
+  if (words != nullptr && !origins.empty()) *words = builder.words(std::move(origins));
+  return mesh;
 }
 
 Mesh read_abaqus(const std::string& path, double scale, const std::string& part, int surface_in,
-                 std::vector<std::string>* notes) {
-  return abaqus_mesh(file_bytes(path), path, scale, part, surface_in, notes);
+                 std::vector<std::string>* notes, CellWords* words) {
+  return abaqus_mesh(file_bytes(path), path, scale, part, surface_in, notes, words);
 }
 
 std::uint64_t digest_of_abaqus(const std::string& path) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "subdomain_solver/fe/mesh.hpp"
+#include "subdomain_solver/fe/cell_words.hpp"
 
 namespace abut {
 
@@ -19,14 +19,16 @@ namespace abut {
 /// a surface of other nodes is NAME_cells or NAME_nodes.
 ///
 /// `notes` gets lines for people: cells that were divided, keywords that were passed over, names
-/// that were changed. Throws InputError with file and line. Call check_mesh on the result.
+/// that were changed. `words` gets what the file calls every cell, with its line. Throws InputError
+/// with file and line. Call check_mesh on the result.
 Mesh read_abaqus(const std::string& path, double scale = 1.0, const std::string& part = {},
-                 int surface_in = 0, std::vector<std::string>* notes = nullptr);
+                 int surface_in = 0, std::vector<std::string>* notes = nullptr,
+                 CellWords* words = nullptr);
 
 /// The same of a file's bytes; `name` is its path, for messages and for files that it includes.
 Mesh abaqus_mesh(std::string bytes, const std::string& name, double scale = 1.0,
                  const std::string& part = {}, int surface_in = 0,
-                 std::vector<std::string>* notes = nullptr);
+                 std::vector<std::string>* notes = nullptr, CellWords* words = nullptr);
 
 /// Digest of a file and of those that it includes (file_digest.hpp).
 std::uint64_t digest_of_abaqus(const std::string& path);

@@ -97,6 +97,7 @@ class Grouper {
               file_.where(row.line), "Name a face that the element has.");
         const int first = row.face == 0 ? 0 : row.face - 1, end = row.face == 0 ? count : row.face;
         for (int face = first; face < end && kept_[index(e)] != 0; ++face) {
+          if (element.type->faces[index(face)].empty()) continue;  // it has shrunk to nothing
           if (row.face == 0 && !is_free(element, face)) continue;
           if (!seen.insert({e, face}).second) continue;
           group.faces.push_back({e, face});
@@ -131,7 +132,8 @@ class Grouper {
     for (std::size_t e = 0; e < kept_.size() && !counted_; ++e) {
       const AbaqusPieces::Element& one = pieces_.elements()[e];
       for (int f = 0; f < static_cast<int>(one.type->faces.size()) && kept_[e] != 0; ++f)
-        if (one.type->dim == element.type->dim) ++cells_at_[corners_of(one, f)];
+        if (one.type->dim == element.type->dim && !one.type->faces[index(f)].empty())
+          ++cells_at_[corners_of(one, f)];
     }
     counted_ = true;
     return cells_at_[corners_of(element, face)] == 1;

@@ -106,8 +106,7 @@ void AbaqusPieces::add_piece(const AbaqusModel::Scope& scope, const AbaqusModel:
 void AbaqusPieces::add_elements(Piece& piece, const AbaqusModel::Elements& block) {
   const auto count = index(block.type->nodes);
   for (std::size_t e = 0; e < block.numbers.size(); ++e) {
-    const Element element = {block.type, block.name, block.numbers[e], block.lines[e],
-                             nodes_.size()};
+    Element element = {block.type, block.name, block.numbers[e], block.lines[e], nodes_.size()};
     const auto text = [&] {
       return fmt::format("has element {} ({})", element.number, block.name);
     };
@@ -123,15 +122,38 @@ void AbaqusPieces::add_elements(Piece& piece, const AbaqusModel::Elements& block
                "Write the node, or correct the element.");
       nodes_.push_back(piece.first_node + found->second);
     }
-    const auto own = std::span(nodes_).last(count);
-    for (std::size_t a = 0; a < count; ++a)
-      if (std::ranges::count(own.first(a), own[a]) > 0)
-        refuse(element.line,
-               fmt::format("{} with node {} twice", text(), block.nodes[e * count + a]),
-               "Cells that are collapsed to another shape are not supported: write that shape, as "
-               "C3D6 for a wedge.");
+    collapse(element);
     elements_.push_back(element);
   }
+}
+
+/// The last element, where nodes repeat in it: it becomes what it has collapsed to.
+void AbaqusPieces::collapse(Element& element) {
+  const auto own = std::span(nodes_).subspan(element.begin);
+  std::vector<int> alike;
+  for (const std::int32_t node : own)
+    alike.push_back(static_cast<int>(std::ranges::find(own, node) - own.begin()));
+  const auto repeats = [&alike](std::size_t a) { return index(alike[a]) != a; };
+  std::size_t twice = 0;
+  while (twice < alike.size() && !repeats(twice)) ++twice;
+  if (twice == alike.size()) return;
+  const auto [entry, fresh] = shapes_.try_emplace({element.type, alike});
+  if (fresh) entry->second = collapsed(*element.type, alike);
+  if (!entry->second)
+    refuse(element.line,
+           fmt::format("has element {} ({}) with node {} twice", element.number, element.name,
+                       numbers_[index(own[twice])]),
+           "A hexahedron may collapse to a prism (as 1,2,3,3,5,6,7,7), a pyramid (1,2,3,4,5,5,5,5) "
+           "or a tetrahedron (1,2,3,3,5,5,5,5), a quadrilateral to a triangle; middle nodes of "
+           "edges that have gone repeat their corner. Correct the element.");
+  const CollapsedElement& shape = *entry->second;
+  std::vector<std::int32_t> nodes;
+  for (const int a : shape.nodes) nodes.push_back(own[index(a)]);
+  nodes_.resize(element.begin);
+  nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
+  element.type = &shape.type;
+  const DividedShape* divided = shape.type.divided;
+  ++collapsed_to_[std::string(divided != nullptr ? divided->name : shape.type.type->name)];
 }
 
 std::vector<std::int32_t> AbaqusPieces::elements(std::size_t piece,

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include "subdomain_solver/fe/abaqus_collapsed.hpp"
 #include "subdomain_solver/fe/abaqus_model.hpp"
 
 namespace abut {
@@ -20,18 +24,21 @@ class AbaqusPieces {
     std::unordered_map<std::int64_t, std::int32_t> element_of;  // of an element's number
   };
   struct Element {
-    const AbaqusElement* type = nullptr;
-    std::string_view name;  // of the type
+    const AbaqusElement* type = nullptr;  // what it has collapsed to, where nodes repeat
+    std::string_view name;                // of the type, as written
     std::int64_t number = 0;
     AbaqusLine line;
     std::size_t begin = 0;  // of its nodes
   };
 
-  /// Throws InputError: elements of unknown nodes, with a number or a node twice.
+  /// Throws InputError: elements of unknown nodes, with a number twice, or with a node twice where
+  /// that makes no shape.
   AbaqusPieces(const AbaqusModel& model, const AbaqusCursor& file);
 
   const std::vector<Piece>& pieces() const { return pieces_; }
   const std::vector<Element>& elements() const { return elements_; }
+  /// How many elements whose nodes repeat are of which shape.
+  const std::map<std::string, int>& collapsed_to() const { return collapsed_to_; }
   const std::int32_t* nodes_of(const Element& element) const { return &nodes_[element.begin]; }
   const std::vector<double>& points() const { return points_; }           // (nodes, 3)
   const std::vector<std::uint64_t>& numbers() const { return numbers_; }  // (nodes)
@@ -48,6 +55,7 @@ class AbaqusPieces {
   void add_piece(const AbaqusModel::Scope& scope, const AbaqusModel::Instance* instance,
                  const std::string& name);
   void add_elements(Piece& piece, const AbaqusModel::Elements& block);
+  void collapse(Element& element);
   [[noreturn]] void refuse(AbaqusLine line, const std::string& what,
                            const std::string& remedy) const;
 
@@ -57,6 +65,10 @@ class AbaqusPieces {
   std::vector<std::int32_t> nodes_;
   std::vector<double> points_;
   std::vector<std::uint64_t> numbers_;
+  /// What elements are whose nodes repeat in these ways.
+  std::map<std::pair<const AbaqusElement*, std::vector<int>>, std::optional<CollapsedElement>>
+      shapes_;
+  std::map<std::string, int> collapsed_to_;
 };
 
 }  // namespace abut

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "subdomain_solver/fe/mesh.hpp"
+#include "subdomain_solver/fe/cell_words.hpp"
 
 namespace abut {
 namespace {
@@ -103,7 +103,7 @@ void check_shape_of_arrays(const Mesh& mesh, const std::string& where) {
   }
 }
 
-void check_jacobians(const Mesh& mesh, const std::string& where) {
+void check_jacobians(const Mesh& mesh, const std::string& where, const CellWords& words) {
   int bad = 0;
   std::string first;
   for (Index b = 0; b < mesh.blocks.size(); ++b) {
@@ -120,8 +120,8 @@ void check_jacobians(const Mesh& mesh, const std::string& where) {
           std::min(smallest_jacobian(mesh, nodes, nodal), smallest_jacobian(mesh, nodes, inside));
       if (least > rounding_of(mesh, nodes)) continue;
       if (bad++ == 0)
-        first = fmt::format("{}, with a Jacobian of {:.3g} m^{}", cell_text(mesh, b, cell), least,
-                            mesh.dim);
+        first = fmt::format("{}{}{}, with a Jacobian of {:.3g} m^{}", cell_text(mesh, b, cell),
+                            words ? ", " : "", words ? words(b, cell) : "", least, mesh.dim);
     }
   }
   if (bad > 0) {
@@ -203,9 +203,11 @@ std::string cell_text(const Mesh& mesh, std::size_t block, std::size_t cell) {
   return fmt::format("cell {} ({} around {})", number, cells.element->name, position(centre));
 }
 
-void check_mesh(const Mesh& mesh, const std::string& where) {
+void check_mesh(const Mesh& mesh, const std::string& where) { check_mesh(mesh, where, {}); }
+
+void check_mesh(const Mesh& mesh, const std::string& where, const CellWords& words) {
   check_shape_of_arrays(mesh, where);
-  check_jacobians(mesh, where);
+  check_jacobians(mesh, where, words);
   check_nodes(mesh, where);
 }
 

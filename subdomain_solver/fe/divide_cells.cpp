@@ -63,7 +63,8 @@ class Divider {
                                        block.entity,
                                        std::move(block.where),
                                        std::move(block.tags),
-                                       std::move(block.nodes)};
+                                       std::move(block.nodes),
+                                       std::move(block.origins)};
       parts.push_back(divide(whole, index(block.type->nodes)));
     }
     for (const FileMesh::Divided& whole : file_.divided)
@@ -91,6 +92,7 @@ class Divider {
       flat ? add_triangles(out) : add_tetrahedra(out);
       const std::size_t count = (out.nodes.size() - before) / index(out.type->nodes);
       out.tags.insert(out.tags.end(), count, whole.tags[cell]);
+      if (!whole.origins.empty()) out.origins.insert(out.origins.end(), count, whole.origins[cell]);
       if (!flat) ++counts_[whole.shape->plural].second;
       if (!flat) tetrahedra_ += count;
     }

@@ -27,8 +27,10 @@ std::span<const std::int32_t> nodes_of(const FileMesh::Elements& block, std::siz
 
 class Builder {
  public:
-  Builder(FileMesh file, double scale, int surface_in)
-      : file_(std::move(file)), scale_(scale), surface_in_(surface_in) {}
+  using Origins = std::vector<std::vector<std::int32_t>>;
+
+  Builder(FileMesh file, double scale, int surface_in, Origins* origins)
+      : file_(std::move(file)), scale_(scale), surface_in_(surface_in), origins_(origins) {}
 
   Mesh build() {
     for (const FileMesh::Elements& block : file_.elements)
@@ -139,6 +141,10 @@ class Builder {
       if (is_new) mesh_.blocks.push_back({block.type, {}, name, {}});
       std::vector<std::int32_t>& cells = mesh_.blocks[entry->second].nodes;
       for (std::int32_t node : block.nodes) cells.push_back(number_[node]);
+      if (origins_ == nullptr) continue;
+      origins_->resize(mesh_.blocks.size());
+      std::vector<std::int32_t>& own = (*origins_)[entry->second];
+      own.insert(own.end(), block.origins.begin(), block.origins.end());
     }
   }
 
@@ -194,14 +200,16 @@ class Builder {
   FileMesh file_;
   double scale_;
   int surface_in_;
+  Origins* origins_;
   Mesh mesh_;
   std::vector<std::int32_t> number_;  // in the mesh, of a node of the file; -1: in no cell
 };
 
 }  // namespace
 
-Mesh mesh_of(FileMesh file, double scale, int surface_in) {
-  return Builder(std::move(file), scale, surface_in).build();
+Mesh mesh_of(FileMesh file, double scale, int surface_in,
+             std::vector<std::vector<std::int32_t>>* origins) {
+  return Builder(std::move(file), scale, surface_in, origins).build();
 }
 
 }  // namespace abut

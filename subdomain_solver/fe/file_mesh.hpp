@@ -24,6 +24,8 @@ struct FileMesh {
     std::string where;                // in the file, for messages
     std::vector<std::uint64_t> tags;  // (elements)
     std::vector<std::int32_t> nodes;  // (elements, type->nodes)
+    // (elements) numbers by which their reader knows them; empty: it does not
+    std::vector<std::int32_t> origins = {};
   };
   /// Cells that are divided into those that we have (divide_cells.hpp).
   struct Divided {
@@ -32,7 +34,8 @@ struct FileMesh {
     Entity entity;
     std::string where;
     std::vector<std::uint64_t> tags;
-    std::vector<std::int32_t> nodes;  // (cells, corners and edges)
+    std::vector<std::int32_t> nodes;         // (cells, corners and edges)
+    std::vector<std::int32_t> origins = {};  // (cells) as above
   };
 
   std::string name;                           // of the file
@@ -50,7 +53,8 @@ struct FileMesh {
 /// Groups become names: of cells, blocks and node sets; of their facets, sides; of facets between
 /// cells, and of lower dimensions, node sets. A group without a name is called after its dimension
 /// and tag: volume_3, surface_2, curve_1, point_7. Nodes of no cell are dropped. `surface_in`: as
-/// read_gmsh (gmsh_file.hpp). Throws InputError.
-Mesh mesh_of(FileMesh file, double scale, int surface_in);
+/// read_gmsh (gmsh_file.hpp). `origins`: gets those of the cells, by block. Throws InputError.
+Mesh mesh_of(FileMesh file, double scale, int surface_in,
+             std::vector<std::vector<std::int32_t>>* origins = nullptr);
 
 }  // namespace abut

@@ -55,6 +55,7 @@ struct MeshMaker {
   const std::string& model;
   int surface_in = 0;
   std::vector<std::string>* notes = nullptr;
+  CellWords* words = nullptr;
 
   Mesh operator()(const BarMeshSpec& s) const {
     return generate(BarMesh{0.0, s.length, s.elements, s.grading}, where("mesh.bar"));
@@ -100,8 +101,9 @@ struct MeshMaker {
                    [&, this] { return read_gmsh(s.file, s.scale, surface_in, notes); });
   }
   Mesh operator()(const AbaqusSpec& s) const {
-    return told_of(where("mesh.abaqus.file"),
-                   [&, this] { return read_abaqus(s.file, s.scale, s.part, surface_in, notes); });
+    return told_of(where("mesh.abaqus.file"), [&, this] {
+      return read_abaqus(s.file, s.scale, s.part, surface_in, notes, words);
+    });
   }
   Mesh operator()(const ExodusSpec& s) const {
     return told_of(where("mesh.exodus.file"), [&s] { return read_exodus(s.file, s.scale); });
@@ -224,10 +226,11 @@ void require_same_file(const SolidShapeSpec& spec, const Place& place, const std
 Mesh make_mesh(const SolidShapeSpec& spec, const std::vector<double>& position, const Place& place,
                const std::string& model, std::vector<std::string>* notes) {
   require_same_file(spec, place, model);
-  Mesh mesh = std::visit(MeshMaker{place, model, spec.surface_alone ? spec.dimension : 0, notes},
-                         spec.mesh);
+  CellWords words;
+  Mesh mesh = std::visit(
+      MeshMaker{place, model, spec.surface_alone ? spec.dimension : 0, notes, &words}, spec.mesh);
   map_nodes(spec, place, model, mesh);
-  check_mesh(mesh, place.where(model + ".mesh"));
+  check_mesh(mesh, place.where(model + ".mesh"), words);
   if (mesh.dim != spec.dimension) {
     throw InputError(fmt::format("is {}, but the mesh has {} dimensions", spec.dimension, mesh.dim),
                      place.where(model + ".dimension"), "Give the dimension of the mesh.");

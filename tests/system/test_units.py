@@ -116,6 +116,20 @@ class Units(SystemTest):
             self.assertTrue(math.isclose(millimetres[measure], ratio * metres[measure],
                                          rel_tol=1.0e-9), measure)
 
+    def test_what_is_told_of_a_run_has_the_words_of_its_system(self):
+        self.state(MILLIMETRES)
+        closed = [event for event in self.events() if event["kind"] == "contact_closed"]
+        self.assertIn("closes at 10000 mm/s;", closed[0]["text"])
+        milliseconds = MILLIMETRES.replace("mm t s", "mm kg ms").replace(
+            "end: 1.2e-4", "end: 0.12").replace("step: 5.0e-7", "step: 5.0e-4")
+        self.state(milliseconds)
+        bar = next(body for body in self.summary()["bodies"] if body["name"] == "bar")
+        self.assertIn("step 0.0005 ms", bar["model"])
+        checked = self.succeed(self.abut("check", "scene.yaml", "--probe", "0"))
+        self.assertIn("step 0.0005 ms", checked.stdout)
+        told = self.abut("run", "scene.yaml", "--local", "--force", "--out", self.out)
+        self.assertRegex(told.stderr, r"e-02 ms: contact 'impact' closes at 10 mm/ms;")
+
     def test_what_is_resolved_tells_the_systems_words_and_runs_again(self):
         state = self.state(MILLIMETRES)
         text = self.resolved()

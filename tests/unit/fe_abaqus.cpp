@@ -389,8 +389,8 @@ TEST(AbaqusFile, WhatIsWrongIsRefusedWithItsLine) {
   expect_words(refusal_of(with("12, 2,3", "11, 2,3")), {"part.inp:13", "element 11 twice"});
   expect_words(refusal_of(with("11, 1,2,5,4", "11, 1,2,5,8")),
                {"part.inp:12", "element 11 (CPS4) with node 8, which is not there"});
-  expect_words(refusal_of(with("11, 1,2,5,4", "11, 1,2,5,5")),
-               {"part.inp:12", "element 11 (CPS4) with node 5 twice", "C3D6"});
+  expect_words(refusal_of(with("11, 1,2,5,4", "11, 1,2,1,4")),
+               {"part.inp:12", "element 11 (CPS4) with node 1 twice", "a triangle"});
   expect_words(refusal_of(with("11, 1,2,5,4", "11, 1,2,5,4,6")),
                {"part.inp:12", "5 nodes in place of 4"});
   expect_words(refusal_of(with("TYPE=CPS4", "TYPE=S4R")), {"part.inp:11", "S4R", "Shells"});

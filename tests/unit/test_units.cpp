@@ -86,6 +86,18 @@ TEST(UnitSystems, AreSpokenBetweenBrackets) {
   EXPECT_EQ(in_words_of(UnitSystem(), "p [kg m/s]"), "p [kg m/s]");
 }
 
+TEST(UnitSystems, AreSpokenBehindNumbers) {
+  const auto words = unit_words(UnitSystem::parse("mm t s").value());
+  EXPECT_EQ(quantities_in(words, "'m' closes at 1e-3 m/s, 2 m deep at (1, 2) m; 3 J, 4 kg m/s"),
+            "'m' closes at 1e-3 mm/s, 2 mm deep at (1, 2) mm; 3 mJ, 4 t mm/s");
+  for (const char* stays : {"3 more of s", "3 mm", "4 steps m", "2 MiB", "1 s^3", "(digest 1) s2"})
+    EXPECT_EQ(quantities_in(words, stays), stays);
+  EXPECT_EQ(quantities_in(unit_words(UnitSystem::parse("mm kg ms").value()), "5 s. 7 N, 8 N m"),
+            "5 ms. 7 kN, 8 J");
+  EXPECT_EQ(quantities_in(declared_units("SI"), "5 m"), "5 m");
+  EXPECT_EQ(quantities_in(declared_units("mm t s"), "5 m"), "5 mm");
+}
+
 TEST(UnitSystems, AreALengthAMassAndATime) {
   EXPECT_TRUE(UnitSystem::parse("SI").value().is_si());
   EXPECT_TRUE(UnitSystem::parse("kg m s").value().is_si());

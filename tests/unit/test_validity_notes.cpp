@@ -25,14 +25,14 @@ TEST(ValidityNotes, NameTheBodyTheRotationAndWhatItDoes) {
   const auto notes = validity_notes(body_that_tells(), std::vector{1.0, 1.0, 2.0, 0.0});
   ASSERT_EQ(notes.size(), 1u);
   // sqrt(1 + 2^2) - 1
-  for (const char* word : {"arm has turned by up to 2 rad", "by 124 %", "saint_venant_kirchhoff"})
+  for (const char* word : {"'arm' has turned by up to 2 rad", "by 124 %", "saint_venant_kirchhoff"})
     EXPECT_NE(notes[0].find(word), std::string::npos) << notes[0];
 }
 
 TEST(ValidityNotes, NameTheShareOfTheHourglasses) {
   const auto notes = validity_notes(body_that_tells(), std::vector{1.0, 1.0, 0.0, 0.3});
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("arm has 30 % of its stored energy in hourglasses"), std::string::npos)
+  EXPECT_NE(notes[0].find("'arm' has 30 % of its stored energy in hourglasses"), std::string::npos)
       << notes[0];
 }
 
@@ -43,8 +43,8 @@ TEST(ValidityNotes, LeaveOutWhatABodyAtRestInItselfVibratesBy) {
 Description stabilised() {
   Description body;
   body.name = "lid";
-  body.measures = {"stabilisation.share",   "stabilisation.share_max", "stabilisation.at_most",
-                   "stabilisation.work",    "stabilisation.force",     "stabilisation.force.x",
+  body.measures = {"stabilisation.share",  "stabilisation.share_max", "stabilisation.at_most",
+                   "stabilisation.work",   "stabilisation.force",     "stabilisation.force.x",
                    "stabilisation.force.y"};
   return body;
 }
@@ -53,7 +53,7 @@ TEST(ValidityNotes, TellHowMuchABodyWasStabilised) {
   const std::vector settled{2.0e-4, 0.5, 0.01, 3.0e-3, 1.0, 0.9, 0.1};
   const auto notes = validity_notes(stabilised(), settled);
   ASSERT_EQ(notes.size(), 1u);
-  for (const char* word : {"lid is held as a whole by contact alone", "0.02 % of the forces",
+  for (const char* word : {"'lid' is held as a whole by contact alone", "0.02 % of the forces",
                            "50 % at most", "0.003 J"})
     EXPECT_NE(notes[0].find(word), std::string::npos) << notes[0];
   EXPECT_EQ(unheld(stabilised(), settled), "");

@@ -44,7 +44,7 @@ TEST(ModelWarnings, TellOfALinearLawThatHasTurned) {
     EXPECT_NEAR(run->measure("body.square.rotation.max"), 2.0, roundoff(1.0e5, 2.0)) << model;
     EXPECT_NEAR(run->measure("body.square.displacement.x.max"), 0.2, roundoff(1.0e5, 0.2)) << model;
     ASSERT_EQ(warnings(*run).size(), 1u) << model;
-    EXPECT_NE(warnings(*run)[0].find("square has turned by up to 2 rad"), std::string::npos)
+    EXPECT_NE(warnings(*run)[0].find("'square' has turned by up to 2 rad"), std::string::npos)
         << warnings(*run)[0];
   }
 }
