@@ -19,17 +19,20 @@ bool has_shared_node(const Joint& joint, const Bodies& bodies) {
 
 }  // namespace
 
-void ContactEvents::start(double time) {
+void ContactEvents::start() {
   roles_.start(joints_);
   for (Joint& joint : joints_)
     if (joint.tied()) joint.press();
-  for (Joint& joint : joints_) {
-    if (joint.exchange == nullptr || joint.closed() || !sprang_together(joint, bodies_)) continue;
-    engage(joint, {.speed = joint.watch->approach(joint, bodies_).speed}, time);
-  }
   const std::vector<bool> share = share_nodes(joints_);
   for (std::size_t j = 0; j < joints_.size(); ++j)
     if (share[j] && has_shared_node(joints_[j], bodies_)) open(joints_[j]);
+}
+
+void ContactEvents::engage_sprung(double time) {
+  for (Joint& joint : joints_) {
+    if (joint.exchange == nullptr || joint.closed() || !sprang_together(joint, bodies_)) continue;
+    engage(joint, {.speed = joint.watch->approach(joint, bodies_).speed, .presses = true}, time);
+  }
 }
 
 /// A shared node has one velocity. Where it is kicked, it has that half a step before the begin

@@ -26,9 +26,10 @@ class ContactEvents {
         window_(window),
         run_{.tolerance = tolerance} {}
 
-  /// Before the first window, at a time [s]: settles the roles that are not open, closes tied
-  /// joints, and those whose sides have sprung into each other.
-  void start(double time);
+  /// Before the first window: settles the roles that are not open, and closes tied joints.
+  void start();
+  /// The same, at a time [s]: lets sides be iterated that have sprung into each other.
+  void engage_sprung(double time);
   /// Before a window: what begins or ends with it.
   void begin(const TimeWindow& window);
 

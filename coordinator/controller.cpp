@@ -134,7 +134,7 @@ void Controller::start() {
   prepare(instant, 1, Sampling::substeps);
   if (std::optional<Failed> failed = bodies_.advance_all())
     return fail(failed->time, failed->detail);
-  events_.start(clock_.time());
+  events_.start();
   for (const auto& [joint, contact, part] : known_exchanges(joints_).obstacles)
     narrator_.found(*joint, clock_.time());
   for (const Joint& joint : joints_) narrator_.pressed_in(joint, clock_.time());
@@ -142,6 +142,7 @@ void Controller::start() {
   if (!staged_) {  // else this instant was told as an end
     fill_reports(true);
     narrator_.window({instant, bodies_.responses(), reports_, 0, {}});
+    events_.engage_sprung(clock_.time());
   }
   want_opening_accelerations(wants_accelerations());
   if (staged_) bodies_.restore_all();  // what is pressed stays pressed: the instant had no forces
