@@ -17,10 +17,10 @@ std::string Controller::Attempt::trouble(double tolerance) const {
     residual.include(r.residual);
     iterations = r.iterations;
   }
+  const bool forces = residual.force == residual.largest() && residual.displacement <= tolerance;
   return fmt::format(
       "Schwarz iteration not converged after {} iterations: residual{} {:.3g}, tolerance {:.3g}",
-      iterations, residual.force > 0.0 && residual.force == residual.largest() ? " of forces" : "",
-      residual.largest(), tolerance);
+      iterations, forces ? " of forces" : "", residual.largest(), tolerance);
 }
 
 /// By the measures that it has told last.

@@ -119,9 +119,11 @@ void KernelAcceleration::fields(Fields& f) {
 void SchwarzSpec::fields(Fields& f) {
   f.word("form", parallel, {"alternating", "parallel"},
          "order of the bodies in an iteration: one after the other, or both at once");
-  f.optional("tolerance", tolerance, "",
-             "largest residual of an exchanged field, relative to reference velocity x step",
-             positive);
+  f.optional(
+      "tolerance", tolerance, "",
+      "largest residual of an exchanged field, relative to reference velocity x step; of statics "
+      "also to the deformation by what presses",
+      positive);
   f.optional("max_iterations", max_iterations, "",
              "number of iterations after which a window fails", between(1, 10000));
   f.choice("accelerator", accelerator, "choice of the next iterate", Presence::optional);

@@ -10,6 +10,7 @@
 #include "coordinator/coupling/exchange_parts.hpp"
 #include "coordinator/coupling/kernel_bytes.hpp"
 #include "coordinator/coupling/state_fields.hpp"
+#include "coordinator/coupling/static_give.hpp"
 #include "coordinator/coupling/tie_net.hpp"
 
 namespace abut {
@@ -37,6 +38,7 @@ void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodi
   keep_row(trace, trace.u, now, u_begin_);
   keep_row(trace, trace.v, now, v_begin_);
   keep_begin(window, joint, bodies);
+  find_give(joint, bodies);
   find_kernel(window.length(), joint, bodies);
   linear_ = bodies.describe(n.body).linear;
   const bool stands = std::isinf(bodies.describe(n.body).mass) && largest(v_begin_) == 0.0;
@@ -84,6 +86,16 @@ void CompliantObstacle::find_zone(double length, const Joint& joint, const Bodie
   keep_row(trace, trace.u, now, u_k_);
   const double speed = largest(v_begin_) + largest(row(trace, trace.v, now));
   zone_.see(joint, bodies, u_k_, u_begin_, f_begin_, speed * length);
+}
+
+/// Of statics.
+void CompliantObstacle::find_give(const Joint& joint, Bodies& bodies) {
+  give_ = deformation_ = 0.0;
+  for (const Side& side : joint.sides) {
+    const Description& body = bodies.describe(side.body);
+    if (!body.quasi_static && !std::isinf(body.mass)) return;
+  }
+  for (const Side& side : joint.sides) give_ += static_give(side, bodies);
 }
 
 void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& bodies) {
@@ -378,6 +390,24 @@ FieldResiduals CompliantObstacle::measure(const Eigen::Ref<const Eigen::VectorXd
   r.displacement =
       scaled((g - x).lpNorm<Eigen::Infinity>(), scale_.velocity * scale_.step, scale_.roundoff);
   return r;
+}
+
+double CompliantObstacle::pressed(const Joint& joint) const {
+  if (give_ == 0.0) return 0.0;
+  double most = joint.contact.force_scale;
+  for (Eigen::Index i = 0; !zone_.empty() && i < pressed_.cols(); ++i) {
+    double sum = 0.0;
+    for (Eigen::Index v = 0; v < pressed_.rows(); v += static_cast<Eigen::Index>(dim_))
+      sum += pressed_.col(i).segment(v, static_cast<Eigen::Index>(dim_)).norm();
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
+double CompliantObstacle::force_of(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                   const Eigen::Ref<const Eigen::VectorXd>& g) const {
+  if (!(deformation_ > 0.0)) return 0.0;
+  return scaled((g - x).lpNorm<Eigen::Infinity>(), deformation_, scale_.roundoff);
 }
 
 double CompliantObstacle::stray() const {

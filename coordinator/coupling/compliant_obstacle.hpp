@@ -54,6 +54,15 @@ class CompliantObstacle final : public Exchange {
   bool flies() const { return flies_; }
   void release(const Joint& joint, Bodies& bodies);
   void see_flight(const Joint& joint, const Bodies& bodies);
+  /// [N] the largest sum of forces on points in this sweep, and in windows before; 0: the joint is
+  /// not one of statics.
+  double pressed(const Joint& joint) const;
+  /// [N] by which forces are measured in this sweep: what presses most, of all joints that hang
+  /// together.
+  void measure_forces_by(double force) { deformation_ = force * give_; }
+  /// The part of it that a mismatch g - x makes of the force at the joint  [M.144].
+  double force_of(const Eigen::Ref<const Eigen::VectorXd>& x,
+                  const Eigen::Ref<const Eigen::VectorXd>& g) const;
   /// The largest speed by which mismatches of this window were measured over that of this sweep and
   /// the first, >= 1: a sweep that went astray must not loosen the test for those after it.
   double stray() const;
@@ -66,6 +75,7 @@ class CompliantObstacle final : public Exchange {
   void follow(const Eigen::VectorXd& change, Eigen::Ref<Eigen::VectorXd> own) const;
 
  private:
+  void find_give(const Joint& joint, Bodies& bodies);
   void find_kernel(double length, const Joint& joint, Bodies& bodies);
   void find_zone(double length, const Joint& joint, const Bodies& bodies);
   /// Of the port: that of a list of its points which is number k; empty: all are listed.
@@ -106,24 +116,28 @@ class CompliantObstacle final : public Exchange {
   };
   std::array<Eased, 2> eased_;  // of the kinematic side, of the other
   const TieLayout* layout_ = nullptr;
-  Eigen::MatrixXd fits_;  // [N] as taken_: what forces of ties fit, of the sweep before
-  Waveform balanced_;     // [N] f of the kinematic port that forces of ties fit, as fits_
-  int sweeps_ = 0;        // of the window so far
-  std::vector<std::int32_t> slid_;         // points that count as sliding in the next sweep
-  bool linear_ = false;                    // of the Neumann side
-  bool shared_ = false;                    // the Neumann side has other joints
+  Eigen::MatrixXd fits_;            // [N] as taken_: what forces of ties fit, of the sweep before
+  Waveform balanced_;               // [N] f of the kinematic port that forces of ties fit, as fits_
+  int sweeps_ = 0;                  // of the window so far
+  std::vector<std::int32_t> slid_;  // points that count as sliding in the next sweep
+  bool linear_ = false;             // of the Neumann side
+  bool shared_ = false;             // the Neumann side has other joints
   bool flies_ = false;
   double looks_ = 0.0;      // [s] by which the Neumann side looks on after the window
   Eigen::VectorXd flight_;  // [m] as the iterate; empty: none was flown
   Waveform given_;          // the obstacle of this sweep
   ReferenceScales scale_;
   bool swept_ = false;  // in this window
+  // [m/N] by which both sides are deformed where forces on all points sum up to 1 N; 0: not known,
+  // or one of them has inertia.
+  double give_ = 0.0;
+  double deformation_ = 0.0;  // [m] by the forces of this sweep
   // [m/s] Of the closing and of the first sweep; the same, or of the present one.
   double usual_speed_ = 0.0, measured_speed_ = 0.0;
   double first_factor_ = 1.0;
   Eigen::VectorXd moved_;    // [m] (width) by the reaction, at the window's end
   Eigen::MatrixXd pressed_;  // [N] (width, times of the reaction)
-  Eigen::MatrixXd taken_;  // [N] (width, levels) of the reaction by the Neumann side, beyond d's
+  Eigen::MatrixXd taken_;    // [N] (width, levels) of the reaction by the Neumann side, beyond d's
   mutable std::vector<double> level_force_, level_moved_;  // [N], [m] (kernel) at one level
 };
 

@@ -95,6 +95,10 @@ void Net::image(const Eigen::VectorXd& x, const Bodies& bodies, Eigen::VectorXd&
     exchange(i).image(part(x, i), joint(i), bodies, part(g, i));
     exchange(i).scales(part(s, i));
   }
+  double most = 0.0;
+  for (const auto& [own, obstacle, i] : known_.obstacles)
+    most = std::max(most, obstacle->pressed(*own));
+  for (const auto& [own, obstacle, i] : known_.obstacles) obstacle->measure_forces_by(most);
 }
 
 FieldResiduals Net::residual(const Eigen::VectorXd& x, const Eigen::VectorXd& g) const {
@@ -102,7 +106,15 @@ FieldResiduals Net::residual(const Eigen::VectorXd& x, const Eigen::VectorXd& g)
   for (std::size_t i = 0; i < count(); ++i)
     residual.include(exchange(i).measure(part(x, i), part(g, i)),
                      obstacles_[i] == nullptr ? 1.0 : obstacles_[i]->stray());
+  residual.force = std::max(residual.force, force(x, g));
   return residual;
+}
+
+double Net::force(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
+  double most = 0.0;
+  for (const auto& [own, obstacle, i] : known_.obstacles)
+    most = std::max(most, obstacle->force_of(part(from, i), part(to, i)));
+  return most;
 }
 
 double Net::distance(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {

@@ -49,6 +49,9 @@ class Net {
   /// The largest difference of two stacked vectors, by units that only grow in a window, so that
   /// sweeps can be compared.
   double distance(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
+  /// The change of forces that a difference of two stacked vectors makes where bodies have no
+  /// inertia, as a part of what presses most in the last sweep; 0 elsewhere  [M.144].
+  double force(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
   /// Ties that contradict each other, in words; empty: none do, or the sweep does not show it.
   /// `stays_open`: what meshes leave of motions that are given to both sides is not measured.
   std::string contradiction(const Eigen::VectorXd& r, double tolerance, const Bodies& bodies,

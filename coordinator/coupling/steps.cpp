@@ -61,7 +61,8 @@ void Steps::next(Iterate& it, Bodies& bodies) {
 }
 
 bool Steps::arrived(const Iterate& it) const {
-  return it.converged && net_.distance(it.seen, it.x) <= options_.tolerance;
+  return it.converged && net_.distance(it.seen, it.x) <= options_.tolerance &&
+         net_.force(it.seen, it.x) <= options_.tolerance;
 }
 
 bool Steps::back(Iterate& it) {

@@ -6,7 +6,7 @@ namespace abut {
 
 /// Of bodies that contact alone holds.
 struct StabilisationSpec {
-  double stiffness = 1.0e-3;
+  double stiffness = 1.0e-2;
   double at_most = 1.0e-3;
   void fields(Fields& f) {
     f.optional("stiffness", stiffness, "",

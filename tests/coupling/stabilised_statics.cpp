@@ -3,7 +3,9 @@
 // Oracles: columns under pressure in closed form, balance of forces, Coulomb's law, other
 // stiffnesses of the stabilisation.
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -24,30 +26,42 @@ struct Column {
   std::string law = "linear_elastic";
   bool upper_first = false;
   double pressure = 2.0e3;  // [Pa]
+  // [m] By it the last block, held at its top, overlaps the one below, in place of loads.
+  double overlap = 0.0;
+  double unlike = 1.0;  // every other block is so much stiffer
+  double metre = 1.0;   // [1/m] of the scene's lengths
 
   static constexpr double youngs = 1.0e6;  // [Pa]
-  static constexpr int windows = 8;
+  static constexpr int windows = 10;
+
+  double stiffness(int k) const { return k % 2 == 1 ? unlike * youngs : youngs; }  // [Pa]
 
   SolidText block(int k) const {
+    const bool top = k == last();
     std::vector<double> position(index(dim), 0.0);
-    position[1] = k * (1.0 + gap);
+    position[1] = metre * (k * (1.0 + gap) - (top ? overlap : 0.0));
     SolidText out{.name = fmt::format("b{}", k),
                   .material = fmt::format("{}: {{youngs_modulus: {}, poissons_ratio: 0.0, "
                                           "density: 1000.0}}",
-                                          law, youngs),
+                                          law, stiffness(k)),
                   .integrator = "quasi_static: {step: 1.0}",
                   .position = position,
                   .sides = {"bottom", "top"},
-                  .block = block_in(dim, {1.0, 1.0, 1.0}, {2 + k % 2, 2, 2})};
+                  .block = block_in(dim, {metre, metre, metre}, {2 + k % 2, 2, 2})};
     if (k == 0) {
       out.sides = {"top"};
       out.more = "    constraints: {floor: {on: bottom, fixed: true}}\n";
       return out;
     }
+    if (top && overlap > 0.0) {
+      out.sides = {"bottom"};
+      out.more = "    constraints: {ceiling: {on: top, fixed: true}}\n";
+      return out;
+    }
     if (!stabilisation.empty())
       out.integrator =
           fmt::format("quasi_static: {{step: 1.0, stabilisation: {{{}}}}}", stabilisation);
-    if (k < floating) return out;
+    if (!top) return out;
     const char* grows = "min(t / 4, 1)";
     const char* none = dim == 3 ? ", '0'" : "";
     out.sides = {"bottom"};
@@ -57,11 +71,12 @@ struct Column {
         -pressure, grows, none, push, grows, none);
     return out;
   }
+  int last() const { return floating + (overlap > 0.0 ? 1 : 0); }
   ResultPtr run() const {
     std::vector<SolidText> bodies;
     std::string joints;
-    for (int k = 0; k <= floating; ++k) bodies.push_back(block(k));
-    for (int k = 0; k < floating; ++k)
+    for (int k = 0; k <= last(); ++k) bodies.push_back(block(k));
+    for (int k = 0; k < last(); ++k)
       joints += fmt::format("  j{0}: {{sides: [b{1}.{2}, b{3}.{4}], contact: {{friction: {5}}}}}\n",
                             k, upper_first ? k + 1 : k, upper_first ? "bottom" : "top",
                             upper_first ? k : k + 1, upper_first ? "top" : "bottom", friction);
@@ -75,7 +90,7 @@ double reaction(const RunResult& run, const std::string& axis) {
 
 TEST(StabilisedStatics, ColumnsShortenAsHeldOnesDo) {
   for (const int dim : {2, 3}) {
-    for (const int floating : {1, 2}) {
+    for (const int floating : {1, 2, 3}) {
       for (const bool upper_first : {false, true}) {
         for (const double gap : {0.0, 1.0e-3}) {
           const Column column{
@@ -84,8 +99,9 @@ TEST(StabilisedStatics, ColumnsShortenAsHeldOnesDo) {
                                    upper_first, gap));
           const auto run = column.run();
           ASSERT_TRUE(run->completed()) << run->end.reason;
-          // What stabilises falls to a thousandth of it with every step of constant load.
-          EXPECT_NEAR(reaction(*run, "y"), column.pressure, 1.0e-8 * column.pressure);
+          // What stabilises falls to a tenth and less of it with every step of constant load, six,
+          // and forces are as good as the sweeps' tolerance.
+          EXPECT_NEAR(reaction(*run, "y"), column.pressure, 2.0e-6 * column.pressure);
           for (int k = 1; k <= floating; ++k) {
             // Each block is shortened by p L / E, and its mean node has gone down by half of that
             // and by all of those below.
@@ -93,8 +109,8 @@ TEST(StabilisedStatics, ColumnsShortenAsHeldOnesDo) {
             const std::string body = fmt::format("body.b{}.", k);
             // The sweeps' tolerance.
             EXPECT_NEAR(run->measure(body + "displacement.y.mean"), -down, 1.0e-6 * down);
-            // Four such steps, and round-off.
-            EXPECT_LT(run->measure(body + "stabilisation.share"), 1.0e-8);
+            // Six such steps.
+            EXPECT_LT(run->measure(body + "stabilisation.share"), 1.0e-6);
           }
           // Across a gap the force of a step's end does work of the mean of none and itself.
           const double drift = run->measure("energy.total.relative_drift_end");
@@ -105,32 +121,93 @@ TEST(StabilisedStatics, ColumnsShortenAsHeldOnesDo) {
   }
 }
 
+/// Of a column between held blocks: where it presses, as its overlap says, which shortens blocks
+/// like springs in a row; or the run says that it has not found the forces.
+void expect_pressed_or_told(const Column& column, bool to_converge) {
+  SCOPED_TRACE(fmt::format("{}D, {} floating, every other one {} times as stiff, metre {}",
+                           column.dim, column.floating, column.unlike, column.metre));
+  const auto run = column.run();
+  if (to_converge) ASSERT_TRUE(run->completed()) << run->end.reason;
+  if (!run->completed()) {
+    const bool told = run->end.reason.find("not converged") != std::string::npos ||
+                      run->end.reason.find("is held against moving") != std::string::npos;
+    EXPECT_TRUE(told) << run->end.reason;
+    return;
+  }
+  double softness = 0.0;
+  for (int k = 0; k <= column.last(); ++k) softness += 1.0 / column.stiffness(k);
+  const double force = column.overlap / softness * std::pow(column.metre, column.dim - 1);
+  double share = 0.0;
+  for (int k = 1; k <= column.floating; ++k)
+    share = std::max(share, run->measure(fmt::format("body.b{}.stabilisation.share", k)));
+  // The sweeps' tolerance at every contact of the column, and what stabilises, as it is told.
+  const double allowed = force * (1.0e-6 * (column.last() + 1) + column.last() * share);
+  EXPECT_NEAR(reaction(*run, "y"), force, allowed);
+  EXPECT_NEAR(run->measure(fmt::format("body.b{}.ceiling.reaction.y", column.last())), -force,
+              allowed);
+}
+
+TEST(StabilisedStatics, ColumnsBetweenHeldBlocksPressAsTheirOverlapSaysOrTellThatTheyDoNot) {
+  for (const int dim : {2, 3}) {
+    for (const double metre : {1.0, 1000.0}) {
+      for (const int floating : {1, 2, 3})
+        expect_pressed_or_told(
+            {.dim = dim, .floating = floating, .overlap = 1.0e-3, .metre = metre}, true);
+      for (const double unlike : {10.0, 0.1, 1000.0})
+        for (const int floating : {2, 3})
+          expect_pressed_or_told({.dim = dim,
+                                  .floating = floating,
+                                  .overlap = 1.0e-3,
+                                  .unlike = unlike,
+                                  .metre = metre},
+                                 false);
+    }
+  }
+  expect_pressed_or_told({.floating = 5, .overlap = 1.0e-3}, false);
+}
+
+TEST(StabilisedStatics, WhatDoesNotConvergeIsToldWithItsRemedy) {
+  // Springs that are weaker than what presses on a block over its height do not hold it upright
+  // while sweeps look for its contacts.
+  const auto run = Column{.floating = 3, .stabilisation = "stiffness: 1.0e-4"}.run();
+  EXPECT_EQ(run->end.status, "failed");
+  for (const char* words : {"not converged after 20 iterations",
+                            "bodies.b1.integrator.quasi_static.stabilisation.stiffness"})
+    EXPECT_NE(run->end.reason.find(words), std::string::npos) << run->end.reason;
+}
+
 TEST(StabilisedStatics, AnswersDoNotDependOnTheStiffness) {
-  Column column{.floating = 2, .friction = 0.3, .push = 400.0};
+  // A column bends: what stabilises it is to be weak beside that.
+  Column column{
+      .floating = 2, .friction = 0.3, .push = 400.0, .stabilisation = "stiffness: 1.0e-3"};
   const auto given = column.run();
   column.stabilisation = "stiffness: 5.0e-4";
   const auto half = column.run();
   ASSERT_TRUE(given->completed() && half->completed()) << given->end.reason << half->end.reason;
   for (const char* measure : {"body.b2.displacement.y.mean", "body.b2.displacement.x.mean"}) {
     const double value = given->measure(measure);
-    // The load stands for the last four steps: what is left is what stuck while it grew, and the
+    // The load stands for the last six steps: what is left is what stuck while it grew, and the
     // sweeps' tolerance. Measured 3e-6.
     EXPECT_NEAR(half->measure(measure), value, 1.0e-5 * std::abs(value)) << measure;
   }
 }
 
 TEST(StabilisedStatics, BodiesOfFiniteStrainSettleToo) {
-  const Column column{.stabilisation = "stiffness: 1.0e-2", .law = "neo_hookean"};
+  const Column column{.law = "neo_hookean"};
   const auto run = column.run();
   ASSERT_TRUE(run->completed()) << run->end.reason;
-  // A hundredth of what stabilises is left after every step of constant load: four.
+  // A hundredth of what stabilises is left after every step of constant load: six.
   EXPECT_NEAR(reaction(*run, "y"), column.pressure, 1.0e-7 * column.pressure);
   EXPECT_LT(run->measure("body.b1.stabilisation.share"), 1.0e-7);  // as above
 }
 
 TEST(StabilisedStatics, FrictionBearsAPush) {
   for (const int dim : {2, 3}) {
-    const Column column{.dim = dim, .floating = 2, .friction = 0.5, .push = 400.0};
+    const Column column{.dim = dim,
+                        .floating = 2,
+                        .friction = 0.5,
+                        .push = 400.0,
+                        .stabilisation = "stiffness: 1.0e-3"};  // as above
     const auto run = column.run();
     ASSERT_TRUE(run->completed()) << dim << run->end.reason;
     // Of a column that sticks all goes down to the floor; stabilisation as above.
