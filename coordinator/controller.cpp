@@ -145,7 +145,6 @@ void Controller::start() {
     events_.engage_sprung(clock_.time());
   }
   want_opening_accelerations(wants_accelerations());
-  if (staged_) bodies_.restore_all();  // what is pressed stays pressed: the instant had no forces
   unite_start();
 }
 

@@ -1,6 +1,7 @@
 #include "subdomain_solver/solid_interior.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -217,6 +218,10 @@ void SolidInterior::state(Archive& archive) {
 std::optional<Failed> SolidInterior::begin(const Window& window) {
   const double time = window.request.window.begin;
   if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->renew();
+  if (const bool instant = window.grid.count == 0; std::exchange(stands_, instant && stands_)) {
+    if (port_map_) port_map_->displacement(state_.motion.q, places_);
+    if (instant) return std::nullopt;  // nobody gives the forces yet that hold it
+  }
   if (description_.dim == 1) {  // of the window's begin, which is accepted
     see_nodes();
     std::optional<Failed> failed =

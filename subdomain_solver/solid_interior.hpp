@@ -175,6 +175,7 @@ class SolidInterior final : public Interior,
   std::unique_ptr<SelfCrossings> crossings_;  // null: strains are small
   PortForces* port_forces_ = nullptr;         // owned by the problem, the last of its loads
   State state_;
+  bool stands_ = false;  // it has taken over a state in balance, which no window has left
   std::vector<double> places_;  // [m] (port values)
   PortValues seen_;
   int substep_ = 0;  // the last one of the window

@@ -31,6 +31,7 @@ void SolidInterior::take_over(Archive& archive, bool statics) {
   motion.step = 0.0;
   if (std::optional<Failed> failed = parts_.scheme.integrator->begin(motion, state_.time))
     throw RunError("cannot begin the stage: " + failed->detail, of, "Give another integrator");
+  stands_ = statics;
   if (!statics) return;
   motion.q = before.q;
   motion.force = before.force;

@@ -313,7 +313,7 @@ class Stages(Resume):
         begin = text.index("stages:")
         head = re.sub(r"\n  expect:\n(    - .*\n)+", "\n", text[:begin])
         scene.write_text(head.replace(static, moving).replace("window: 0.1", "window: 2.5e-6")
-                         .replace("end: 1.0,", "end: 1.0e-4,").replace("min(t, 1)", "0")
+                         .replace("end: 1.0,", "end: 1.0e-4,").replace("min(t / 0.6, 1)", "0")
                          + "stages: {rest: {time: {end: 1.0, window: 0.1}, bodies: "
                          + "{held: {integrator: " + static + "}}}}\n", encoding="utf-8")
         ended = self.end(self.begin(scene))
