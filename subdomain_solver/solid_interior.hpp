@@ -27,9 +27,8 @@
 namespace abut {
 
 /// A solid in one, two or three dimensions: a mesh, the rung of the fidelity ladder whose
-/// coordinates move it, what acts on it, an integrator, and ports, which are sides or node sets of
-/// the mesh. Ports take forces; linear bodies answer for their port kernels too. Ports without mass
-/// meet obstacles: ends of bars, surfaces in the plane and in space.
+/// coordinates move it, what acts on it, an integrator, and ports, sides or node sets of the mesh.
+/// Ports take forces; linear bodies answer for their kernels; ports without mass meet obstacles.
 class SolidInterior final : public Interior,
                             private Probed,
                             private Obstructed,

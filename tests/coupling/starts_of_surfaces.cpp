@@ -137,7 +137,11 @@ TEST(StartsOfSurfaces, ThatAreStressedAreInContact) {
 time: {{begin: 0.0, end: 0.02, window: 1.0e-3}}
 bodies:
   held:
-    model: {{fe: {{dimension: 2, plane: strain, mesh: {{rectangle: {{lengths: [1.0, 1.0], elements: [8, 2]}}}}}}}}
+    model:
+      fe:
+        dimension: 2
+        plane: strain
+        mesh: {{rectangle: {{lengths: [1.0, 1.0], elements: [8, 2]}}}}
     material: {{linear_elastic: {{youngs_modulus: 1.0e6, poissons_ratio: 0.0, density: 1000.0}}}}
     integrator: {{{0}}}
     initial: {{position: [-1.0, 0.0], displacement_field: ["-0.002 * (x + 1)", "0"]

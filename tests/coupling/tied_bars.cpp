@@ -34,16 +34,27 @@ Field run_displaced(const SceneText& scene, Pulse pulse) {
   const Scene read = read_scene(document);
   const std::vector<std::unique_ptr<Subdomain>> bodies = launch_local(read, document);
   std::vector<Subdomain*> pointers;
-  auto state_of = [](Subdomain& body) {
+  struct Kept {  // a checkpoint of a bar
+    std::string scheme;
+    bool statics = false;
+    BarState state;
+    void fields(Archive& archive) {
+      archive.field("scheme", scheme);
+      archive.field("statics", statics);
+      state.state(archive);
+    }
+  };
+  auto kept_of = [](Subdomain& body) {
     const std::vector<std::byte> bytes = body.checkpoint();
     Archive archive = Archive::reader(bytes, Archive::Form::named);
-    BarState state;
-    state.state(archive);
-    return state;
+    Kept kept;
+    kept.fields(archive);
+    return kept;
   };
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BarText& bar = scene.bars[b];
-    BarState state = state_of(*bodies[b]);
+    Kept kept = kept_of(*bodies[b]);
+    BarState& state = kept.state;
     for (std::size_t i = 0; i < state.u.size(); ++i)
       state.u[i] = pulse(bar.position + static_cast<double>(i) * bar.spacing());
     const double rate = std::pow(bar.wave_speed() / bar.spacing(), 2);
@@ -51,7 +62,7 @@ Field run_displaced(const SceneText& scene, Pulse pulse) {
       state.a[i] = rate * (state.u[i + 1] - 2.0 * state.u[i] + state.u[i - 1]);
     std::vector<std::byte> bytes;
     Archive archive = Archive::writer(bytes, Archive::Form::named);
-    state.state(archive);
+    kept.fields(archive);
     bodies[b]->resume(bytes);
     pointers.push_back(bodies[b].get());
   }
@@ -61,7 +72,7 @@ Field run_displaced(const SceneText& scene, Pulse pulse) {
   Controller(read, pointers, {&recorder, field.run.get()}).run();
   field.run->measures = recorder.measures();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const BarState state = state_of(*bodies[b]);
+    const BarState state = kept_of(*bodies[b]).state;
     for (std::size_t i = b == 0 ? 0 : 1; i < state.u.size(); ++i) {
       field.place.push_back(scene.bars[b].position +
                             static_cast<double>(i) * scene.bars[b].spacing());
