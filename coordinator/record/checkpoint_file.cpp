@@ -173,15 +173,32 @@ Checkpoint parse_checkpoint(std::string_view bytes, const std::string& path) {
   return checkpoint;
 }
 
+namespace {
+
+Checkpoint read_file(const fs::path& path) {
+  const std::size_t most = static_cast<std::size_t>(0.5 * machine_memory());
+  return parse_checkpoint(read_input_file(path.string(), most, start_again), path.string());
+}
+
+}  // namespace
+
+std::optional<Checkpoint> read_earlier_checkpoint(const fs::path& directory) {
+  const fs::path path = directory / earlier_checkpoint;
+  if (!is_file(path)) return std::nullopt;
+  try {
+    return read_file(path);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 Checkpoint read_checkpoint(const fs::path& directory, std::vector<std::string>& warnings) {
   std::optional<InputError> wrong;
   for (const char* name : {latest_checkpoint, earlier_checkpoint}) {
     const fs::path path = directory / name;
     if (!is_file(path)) continue;
     try {
-      const std::size_t most = static_cast<std::size_t>(0.5 * machine_memory());
-      Checkpoint checkpoint =
-          parse_checkpoint(read_input_file(path.string(), most, start_again), path.string());
+      Checkpoint checkpoint = read_file(path);
       if (wrong) warnings.push_back(fmt::format("{}; the one before it is used", wrong->what()));
       return checkpoint;
     } catch (const InputError& error) {

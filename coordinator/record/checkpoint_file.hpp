@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,9 @@ void write_checkpoint(const std::filesystem::path& directory, Checkpoint& checkp
 /// InputError: there is none, or none that is whole or of this format.
 Checkpoint read_checkpoint(const std::filesystem::path& directory,
                            std::vector<std::string>& warnings);
+
+/// The one before the latest; nothing: it is not there, or not whole.
+std::optional<Checkpoint> read_earlier_checkpoint(const std::filesystem::path& directory);
 
 /// What a file holds. Throws InputError.
 Checkpoint parse_checkpoint(std::string_view bytes, const std::string& path);

@@ -44,8 +44,22 @@ bool has_ended(const std::string& directory) {
   return summary.is_object() && summary.contains("status") && summary["status"] == "completed";
 }
 
+bool at_end(const Checkpoint& from, const Scene& scene) {
+  return from.time >= scene.time.end - 1.0e-9 * scene.time.window;
+}
+
+/// Where no window follows, measures of the last step (areas that stick) are not known: the way to
+/// the end is gone once more.
+void go_back(Checkpoint& from, const Scene& scene, const std::string& directory) {
+  if (from.stage_ends || !at_end(from, scene)) return;
+  if (std::optional<Checkpoint> earlier = read_earlier_checkpoint(directory))
+    if (earlier->scene == from.scene && !earlier->stage_ends) from = std::move(*earlier);
+  if (at_end(from, scene))
+    log_warning("the run ends where it is resumed: measures of its last step are not known");
+}
+
 void check_time(const Checkpoint& from, const Scene& scene, const std::string& directory) {
-  if (from.time < scene.time.end - 1.0e-9 * scene.time.window || !has_ended(directory)) return;
+  if (!at_end(from, scene) || !has_ended(directory)) return;
   throw InputError(
       fmt::format("has come to {:.6g} s, and its end is {:.6g} s", from.time, scene.time.end),
       directory, "Give a later end: --end TIME.");
@@ -62,8 +76,9 @@ int resume_verb(const ResumeCommand& command) {
   Checkpoint from = read_checkpoint(held.path(), warnings);
   for (const std::string& warning : warnings) log_warning(warning);
   Document document = scene_of(command, from);
-  check_time(from, read_all_keys(document), command.directory);
   RunPlan plan = plan_run(std::move(document), options, interrupts);
+  check_time(from, plan.scene, command.directory);
+  go_back(from, plan.scene, command.directory);
   log_info(fmt::format("goes on from {:.6g} s, window {}", from.time, from.windows));
   held.go_on();
   return record_run(std::move(plan), options, held, interrupts, std::move(from));
