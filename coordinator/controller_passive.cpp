@@ -119,28 +119,23 @@ void Controller::step_passively() {
 }
 
 /// Energy that an accurate window has gained, beyond what may stand, is taken back at its end from
-/// the bodies that touch. False: they have too little of it, and the window is to be taken back.
-bool Controller::repay() {
-  const auto touch = [](const Joint& joint) { return joint.closed() && !joint.tied(); };
-  if (std::ranges::none_of(joints_, touch)) return true;
-  const double excess = guard_.excess(bodies_.responses(), bodies_.struck());
-  if (!(excess > 0.0)) return true;
+/// the bodies that touch.
+void Controller::repay() {
+  if (!may_refuse()) return;
   std::set<int> touching;
   for (const Joint& joint : joints_)
     for (const Side& side : joint.sides)
-      if (touch(joint) && std::isfinite(bodies_.describe(side.body).mass))
+      if (joint.closed() && !joint.tied() && std::isfinite(bodies_.describe(side.body).mass))
         touching.insert(side.body);
   for (const Joint& joint : joints_)  // sides of one surface move as one
     for (const Side& side : joint.sides)
       if (joint.tied()) touching.erase(side.body);
+  if (touching.empty()) return;
+  const double excess = guard_.excess(bodies_.responses(), bodies_.struck());
+  if (!(excess > 0.0)) return;
   const std::vector<int> bodies(touching.begin(), touching.end());
   const std::vector<double> gave = passive_.repay(bodies, excess);
-  double left = excess;
-  for (const double given : gave) left -= given;
-  if (left > guard_.forgiven()) return false;
   for (std::size_t k = 0; k < bodies.size(); ++k) guard_.repaid(bodies[k], gave[k]);
-  passive_.count_repaid(excess - left);
-  return true;
 }
 
 void Controller::accept_passively(const TimeWindow& window) {

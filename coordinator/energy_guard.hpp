@@ -45,8 +45,6 @@ class EnergyGuard {
   /// Asked of windows in which surfaces touch and of no others: how windows without contact are
   /// joined, which output decides, then changes no result.
   double excess(std::span<const Response> responses, std::span<const double> struck = {});
-  /// [J] of that excess which may stay where bodies have nothing to repay it with.
-  double forgiven() const;
   /// So much [J] of what was gained a body has given back since: what accounts say takes it in.
   void repaid(int body, double joules);
   double growth() const { return growth_; }  // as a fraction, at the last look
@@ -78,7 +76,7 @@ class EnergyGuard {
   double first_ = 0.0;   // [J] at the first look
   double latest_ = 0.0;  // [J] at the latest look
   double most_ = 0.0;    // [J] largest kinetic and stored energy so far, or what numbers resolve
-  double repaid_ = 0.0;  // [J] by all bodies
+  double repaid_ = 0.0;         // [J] by all bodies
   double most_touching_ = 0.0;  // [J] largest energy, or work, at the start and in contact
   double growth_ = 0.0;
   int culprit_ = -1;
