@@ -131,126 +131,38 @@ TEST(StartsOfSurfaces, TellAllPlaces) {
 /// Blocks that the scene puts under a pressure of 2000 Pa by displacements, which a wall and a
 /// traction hold: their surfaces without mass spring into each other at the first instant.
 TEST(StartsOfSurfaces, ThatAreStressedAreInContact) {
-  for (const char* integrator : {"central_difference: {step: 1.0e-3}", "newmark: {step: 1.0e-3}"}) {
-    SCOPED_TRACE(integrator);
-    const auto run = run_text(fmt::format(R"(meta: {{title: stressed}}
-time: {{begin: 0.0, end: 0.02, window: 1.0e-3}}
+  const auto run = run_text(R"yaml(meta: {title: stressed}
+time: {begin: 0.0, end: 0.02, window: 1.0e-3}
 bodies:
   held:
     model:
       fe:
         dimension: 2
         plane: strain
-        mesh: {{rectangle: {{lengths: [1.0, 1.0], elements: [8, 2]}}}}
-    material: {{linear_elastic: {{youngs_modulus: 1.0e6, poissons_ratio: 0.0, density: 1000.0}}}}
-    integrator: {{{0}}}
-    initial: {{position: [-1.0, 0.0], displacement_field: ["-0.002 * (x + 1)", "0"]
-  }
-}
-constraints : {
-  {
-  wall : {
-    {
-    on:
-      left, x : "0"
-    }
-  }
-    , base : {
-      {
-      on:
-        bottom, y : "0"
-      }
-    }
-  }
-}
-ports : {
-  {
-  face : {
-    {
-    side:
-      right
-    }
-  }
-  }
-}
-pressed : model : {
-  {
-  fe : {
-    {
-    dimension:
-      2, plane : strain, mesh : {
-        {
-        rectangle : {
-          {
-          lengths:
-            [ 1.0, 1.0 ], elements : [ 8, 3 ]
-          }
-        }
-        }
-      }
-    }
-  }
-  }
-}
-material : {
-  {
-  linear_elastic : {
-    {
-    youngs_modulus:
-      1.0e6, poissons_ratio : 0.0, density : 1000.0
-    }
-  }
-  }
-}
-integrator : {
-  {
-    { 0 }
-  }
-}
-initial : {
-  {
-  displacement_field:
-    [ "-0.002 - 0.002 * x", "0" ]
-  }
-}
-constraints : {
-  {
-  base : {
-    {
-    on:
-      bottom, y : "0"
-    }
-  }
-  }
-}
-loads : {
-  {
-  press : {
-    {
-    on:
-      right, traction : [ "-2000.0", "0" ]
-    }
-  }
-  }
-}
-ports : {
-  {
-  face : {
-    {
-    side:
-      left
-    }
-  }
-  }
-}
-interfaces: {{met: {{sides: [held.face, pressed.face], contact: {{}}}}}}
-)",
-                                          integrator));
-EXPECT_TRUE(run->end.overlaps.empty());
-EXPECT_EQ(run->measure("contact.met.begin"), 0.0);
-// The mean of what vibrates about 2000 N by the kick of the first step.
-EXPECT_NEAR(run->measure("contact.met.impulse"), 40.0, 8.0);
-}
+        mesh: {rectangle: {lengths: [1.0, 1.0], elements: [8, 2]}}
+    material: {linear_elastic: {youngs_modulus: 1.0e6, poissons_ratio: 0.0, density: 1000.0}}
+    integrator: {central_difference: {step: 1.0e-3}}
+    initial: {position: [-1.0, 0.0], displacement_field: ["-0.002 * (x + 1)", "0"]}
+    constraints: {wall: {on: left, x: "0"}, base: {on: bottom, y: "0"}}
+    ports: {face: {side: right}}
+  pressed:
+    model:
+      fe:
+        dimension: 2
+        plane: strain
+        mesh: {rectangle: {lengths: [1.0, 1.0], elements: [8, 3]}}
+    material: {linear_elastic: {youngs_modulus: 1.0e6, poissons_ratio: 0.0, density: 1000.0}}
+    integrator: {central_difference: {step: 1.0e-3}}
+    initial: {displacement_field: ["-0.002 - 0.002 * x", "0"]}
+    constraints: {base: {on: bottom, y: "0"}}
+    loads: {press: {on: right, traction: ["-2000.0", "0"]}}
+    ports: {face: {side: left}}
+interfaces: {met: {sides: [held.face, pressed.face], contact: {}}}
+)yaml");
+  EXPECT_TRUE(run->end.overlaps.empty());
+  EXPECT_EQ(run->measure("contact.met.begin"), 0.0);
+  // The mean of what vibrates about 2000 N by the kick of the first step.
+  EXPECT_NEAR(run->measure("contact.met.impulse"), 40.0, 8.0);
 }
 
 }  // namespace
