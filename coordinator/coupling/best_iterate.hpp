@@ -4,17 +4,17 @@
 
 namespace abut {
 
-/// The best iterate of a window so far. Secants of other points in contact lead away from where
-/// ties and contact agree, and plain steps beside contact never do for long: then the iteration
-/// goes on from there.
+/// The best iterate of a window so far. Secants of other points in contact lead away from the
+/// answer, and plain steps never do for long: then the iteration goes on from there.
 class BestIterate {
  public:
-  /// After a sweep: whether it, and those before it, have left the best one too far behind.
-  bool left(const Eigen::VectorXd& x, const Eigen::VectorXd& g, double mismatch) {
-    if (worse_ < 0 || mismatch < mismatch_) {
+  /// After a sweep, `miss` by any measure: whether it and the sweeps before it, `patience` of them,
+  /// are worse than the best.
+  bool left(const Eigen::VectorXd& x, const Eigen::VectorXd& g, double miss, int patience) {
+    if (worse_ < 0 || miss < miss_) {
       x_ = x;
       g_ = g;
-      mismatch_ = mismatch;
+      miss_ = miss;
       worse_ = 0;
       return false;
     }
@@ -26,9 +26,8 @@ class BestIterate {
   const Eigen::VectorXd& image() const { return g_; }
 
  private:
-  static constexpr int patience = 3;  // sweeps
   Eigen::VectorXd x_, g_;
-  double mismatch_ = 0.0;
+  double miss_ = 0.0;
   int worse_ = -1;  // sweeps since; below 0: any is taken for the best
 };
 

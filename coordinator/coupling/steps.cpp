@@ -9,6 +9,8 @@ namespace {
 /// Of the mismatch, from sweep to sweep: where several joints wait for each other, secants that
 /// lead to the answer may let it grow before.
 constexpr double most_growth = 10.0;
+/// Sweeps that may be worse than the best one.
+constexpr int patience = 3;
 
 }  // namespace
 
@@ -45,7 +47,7 @@ void Steps::next(Iterate& it, Bodies& bodies) {
     it.x += net_.inverse(it.g - it.x);
     return;
   }
-  if (beside_ties_ && best_.left(it.x, it.g, it.mismatch)) {
+  if (astray(it)) {
     accelerator_.forget();
     it.x = accelerator_.next(best_.iterate(), best_.image(), inverses_);
     return;
@@ -58,6 +60,14 @@ void Steps::next(Iterate& it, Bodies& bodies) {
   Accelerator& steps = careful_ != nullptr ? *careful_ : accelerator_;
   steps.weigh(it.s);
   it.x = steps.next(it.x, it.g, inverses_);
+}
+
+/// Beside ties by way, from the first sweep on; between joints that share bodies by what ends the
+/// iteration, when half of the sweeps have not.
+bool Steps::astray(const Iterate& it) {
+  if (beside_ties_) return best_.left(it.x, it.g, it.mismatch, patience);
+  return shared_ && best_.left(it.x, it.g, it.residual.largest(),
+                               early(it) ? options_.max_iterations : patience);
 }
 
 bool Steps::arrived(const Iterate& it) const {

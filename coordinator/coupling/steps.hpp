@@ -49,6 +49,9 @@ class Steps {
   /// Later it is no bad luck that the iteration has not ended.
   bool early(const Iterate& it) const { return 2 * it.sweep <= options_.max_iterations; }
 
+  /// Secants have led away from the best iterate.
+  bool astray(const Iterate& it);
+
   Net& net_;
   Accelerator& accelerator_;
   const Options& options_;
