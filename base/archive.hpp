@@ -37,6 +37,8 @@ class Archive {
   /// Cuts what a longer earlier writing left behind. Throws RunError when a read has left bytes
   /// behind: the archive belongs to another state.
   void finish();
+  /// Of what is left to read nothing is of use.
+  void leave_rest() { at_ = in_.size(); }
 
  private:
   Archive(Mode mode, Form form) : mode_(mode), form_(form) {}

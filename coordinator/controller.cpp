@@ -19,6 +19,7 @@
 #include "coordinator/energy_account.hpp"
 #include "coordinator/flight_work.hpp"
 #include "coordinator/record/validity_notes.hpp"
+#include "coordinator/settled_end.hpp"
 #include "coordinator/touching_pairs.hpp"
 
 namespace abut {
@@ -58,6 +59,8 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       folds_(touching_pairs(scene, joints_, bodies_), bodies_),
       reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {
   end_.status = "completed";
+  settles_ = std::ranges::any_of(descriptions_of(bodies_),
+                                 [](const Description* body) { return is_stabilised(*body); });
   flight_.longest = flight_.limit =
       windows_at_once(scene.time.window, scene.output.records_per_window, descriptions_of(bodies_));
 }
@@ -219,8 +222,14 @@ bool Controller::fly_free() {
   return true;
 }
 
+TimeWindow Controller::next_window() {
+  TimeWindow next = clock_.next();
+  if (settles_) next = before_settled_end(next, scene_.time.end);
+  return events_.even(next);
+}
+
 void Controller::step_window() {
-  TimeWindow window = events_.even(clock_.next());
+  TimeWindow window = next_window();
   if (must_go_passively(window)) return step_passively();
   events_.begin(window);
   bodies_.save_all();

@@ -113,6 +113,7 @@ class Controller {
   void join(std::span<const PortPair> pairs);
   bool fly_free();
   void step_window();
+  TimeWindow next_window();
   void advance(const TimeWindow& window);
   Judgement judge(const TimeWindow& window);
   void try_window(const TimeWindow& window);
@@ -176,6 +177,7 @@ class Controller {
   std::vector<PairReport> pairs_;
   RunEnd end_;
   bool resumed_ = false, staged_ = false;
+  bool settles_ = false;  // springs stabilise a body
 };
 
 }  // namespace abut

@@ -18,6 +18,7 @@ void SolidInterior::take_over(Archive& archive, bool statics) {
   const std::string of = fmt::format("body '{}'", description_.name);
   const std::vector<double> start = state_.motion.v;
   state(archive);
+  if (surfaces_ == nullptr) archive.leave_rest();  // contact in passive form finds its forces anew
   Motion& motion = state_.motion;
   if (description_.quasi_static && !statics)
     throw RunError("moves, and a stage without inertia cannot go on from there", of,

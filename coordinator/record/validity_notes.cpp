@@ -40,6 +40,10 @@ std::string stabilised_motion(const Description& body, std::span<const double> v
 
 }  // namespace
 
+bool is_stabilised(const Description& body) {
+  return std::ranges::find(body.measures, "stabilisation.share") != body.measures.end();
+}
+
 std::string unheld(const Description& body, std::span<const double> values) {
   const double share = told(body, values, "stabilisation.share");
   const double allowed = told(body, values, "stabilisation.at_most");
@@ -54,7 +58,7 @@ std::string unheld(const Description& body, std::span<const double> values) {
 
 std::string sweeps_remedy(std::span<const Description* const> bodies) {
   for (const Description* body : bodies)
-    if (std::ranges::find(body->measures, "stabilisation.share") != body->measures.end())
+    if (is_stabilised(*body))
       return fmt::format(
           "let windows be halved (schwarz.on_nonconvergence: halve), or hold the bodies that "
           "contact alone holds by stiffer springs (bodies.{}.integrator.quasi_static."

@@ -28,9 +28,19 @@ bool LooseSolver::factor(const SparseMatrix& matrix) {
   closing.topRows(k) = -answers_(held_, Eigen::all);
   closing.topLeftCorner(k, k).diagonal().array() += 1.0;
   closing.bottomRows(k) = -(motions_.transpose() * answers_) / static_cast<double>(n);
-  closing.bottomRightCorner(k, k).diagonal().array() -= give_;
+  closing.bottomRightCorner(k, k).diagonal().array() -= give_of(matrix);
   closing_.compute(closing);
   return true;
+}
+
+/// A body that is pressed falls over by itself: springs below P / L do not hold it, and contact
+/// finds no forces in what gives way the wrong way round. What is solved for then has springs that
+/// do; the equations do not.
+double LooseSolver::give_of(const SparseMatrix& matrix) const {
+  if (give_ == 0.0 || !holds_up_) return give_;
+  const Eigen::MatrixXd own = motions_.transpose() * (matrix * motions_);
+  const double falls = -symmetric_eigenvalues(0.5 * (own + own.transpose()))(0);
+  return falls > 0.0 ? std::min(give_, 0.5 / falls) : give_;
 }
 
 bool LooseSolver::solve(const Vector& b, Vector& x) {

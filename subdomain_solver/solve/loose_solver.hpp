@@ -22,15 +22,21 @@ class LooseSolver final : public LinearSolver {
   /// 1 / s [m/N]; 0: nothing gives way.
   LooseSolver(std::unique_ptr<LinearSolver> inner, Eigen::MatrixXd motions, double give = 0.0);
 
+  /// Whether contact is solved for with the factors to come: springs that a pressed body overcomes
+  /// are stiffened then.
+  void hold_up(bool wanted) { holds_up_ = wanted; }
   [[nodiscard]] bool factor(const SparseMatrix& matrix) override;
   [[nodiscard]] bool solve(const Vector& b, Vector& x) override;
   /// The same for C^T x - m / s = a (k); and m (k).
   [[nodiscard]] bool solve(const Vector& b, const Vector& a, Vector& x, Vector& m);
 
  private:
+  double give_of(const SparseMatrix& matrix) const;
+
   std::unique_ptr<LinearSolver> inner_;
   Eigen::MatrixXd motions_;
   double give_;
+  bool holds_up_ = false;
   std::vector<int> held_;  // coordinates with springs, which determine R
   SparseMatrix sprung_;
   Eigen::MatrixXd answers_;  // (n, 2k) of the inner solver: to the springs' forces, to C

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/index.hpp"
 
@@ -68,7 +69,10 @@ bool press(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& for
   for (Eigen::Index i = 0; i < gap.size(); ++i)
     if (b.is_pressed[i]) b.pressed.push_back(i);
   b.from = force;
-  if (!close(a, gap, soft, force, b)) return true;  // not a number: told by the caller
+  if (!close(a, gap, soft, force, b)) {
+    force.setConstant(std::numeric_limits<double>::quiet_NaN());  // told by the caller
+    return true;
+  }
   double way = 1.0;
   Eigen::Index first = -1;
   for (const Eigen::Index i : b.pressed) {

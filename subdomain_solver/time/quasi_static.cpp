@@ -282,14 +282,21 @@ NewtonReport QuasiStatic::part(Motion& motion, double end, Contact* contact) {
   if (!balance.drag(x)) return {NewtonReport::End::singular};
   balance.carry(x);
   contact_.begin(contact, motion.force);
+  // Contact turns with every iteration: forces that stay while a body that they alone hold balances
+  // let it fall over.
+  const bool turns = contact != nullptr && !problem_.model->is_linear();
+  NewtonOptions newton = options_.newton;
+  if (turns) newton.max_iterations = 1;
+  if (loose_solver_ != nullptr) loose_solver_->hold_up(turns);
   NewtonReport report;
   for (int turn = 0;; ++turn) {
-    report = solve_newton(balance, x, options_.newton, buffers_.newton);
+    report = solve_newton(balance, x, newton, buffers_.newton);
     iterations_ += report.iterations;
-    if (!report.converged() || contact == nullptr) break;
+    const bool goes_on = turns && report.end == NewtonReport::End::not_converged;
+    if (contact == nullptr || !(report.converged() || goes_on)) break;
     double change = 0.0;
     if (!balance.press(x, turn, change)) return {NewtonReport::End::singular};
-    if (change <= options_.newton.tolerance * buffers_.scale) break;
+    if (report.converged() && change <= options_.newton.tolerance * buffers_.scale) break;
     if (turn == ContactTurns::most)
       return {NewtonReport::End::not_converged, turn, change / buffers_.scale};
   }
