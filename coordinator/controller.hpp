@@ -149,6 +149,7 @@ class Controller {
   void state(Archive& archive);
   void memory(Archive& archive);
   void counts(Archive& archive);
+  void tell_start();  // of a run that goes on
   void state_of_pairs(Archive& archive);
   RunEnd finish(double wall_seconds);
   void give_up(const std::exception& error, bool interrupted, double wall_seconds);

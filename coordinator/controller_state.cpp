@@ -29,8 +29,7 @@ void Controller::load(std::span<const std::byte> bytes) {
   memory(archive);
   counts(archive);
   archive.finish();
-  narrator_.start(scene_.time.begin, scene_.time.end,
-                  std::span(joints_).first(scene_.interfaces.size()), !broad_phase_.empty());
+  tell_start();
 }
 
 void Controller::load_end(std::span<const std::byte> bytes) {
@@ -43,6 +42,10 @@ void Controller::load_end(std::span<const std::byte> bytes) {
   state(archive);  // what presses goes on pressing, and files are numbered by all windows
   for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].role = roles[j];
   clock_.anchor();
+  tell_start();
+}
+
+void Controller::tell_start() {
   narrator_.start(scene_.time.begin, scene_.time.end,
                   std::span(joints_).first(scene_.interfaces.size()), !broad_phase_.empty());
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 
 namespace abut {
 
@@ -30,8 +31,7 @@ FeatureSurroundings::FeatureSurroundings(const Skin& skin) : skin_(skin) {
       beside[index(at)].push_back(facet[(i + 2) % 3]);
     }
   for (std::vector<std::int32_t>& list : around) {
-    std::ranges::sort(list);
-    list.erase(std::ranges::unique(list).begin(), list.end());
+    keep_one_each(list);
     around_.add(list);
   }
   for (const std::vector<std::int32_t>& list : beside) beside_.add(list);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 #include "surface/clip.hpp"
 #include "surface/plane_facet.hpp"
 
@@ -90,9 +91,7 @@ void MeetingCorners::find_verdicts(std::span<const FacetPair> pairs) {
       for (const std::int32_t two : n_.wedges->at(pair.n))
         if (has((*n_.wedges)[two], pair.n)) verdicts_.push_back({.k = one, .n = two});
     }
-  std::ranges::sort(verdicts_, {}, wedges);
-  const auto twice = std::ranges::unique(verdicts_, {}, wedges);
-  verdicts_.erase(twice.begin(), twice.end());
+  keep_one_each(verdicts_, wedges);
   for (Verdict& verdict : verdicts_) judge(verdict);
   begins_.assign(index(k_.wedges->count()) + 1, 0);
   for (const Verdict& verdict : verdicts_) ++begins_[index(verdict.k) + 1];

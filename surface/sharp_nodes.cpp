@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <span>
 
+#include "base/one_each.hpp"
+
 namespace abut {
 namespace {
 
@@ -53,8 +55,7 @@ std::vector<std::int32_t> sharp_nodes(const PosedSurface& surface, double angle)
   std::vector<std::int32_t> nodes;
   for (const SharpEdge& edge : sharp_edges(surface, angle))
     nodes.insert(nodes.end(), edge.ends.begin(), edge.ends.end());
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  keep_one_each(nodes);
   return nodes;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/assert.hpp"
+#include "base/one_each.hpp"
 
 namespace abut {
 namespace {
@@ -18,12 +19,6 @@ void add_facets(Skin& skin, const PosedSurface& surface, std::int32_t first_poin
     skin.facets.push_back({point(n[0]), point(n[1]), point(n[2])});
     if (n.size() == 4) skin.facets.push_back({point(n[0]), point(n[2]), point(n[3])});
   }
-}
-
-template <class T>
-void sort_and_keep_one_each(std::vector<T>& values) {
-  std::ranges::sort(values);
-  values.erase(std::ranges::unique(values).begin(), values.end());
 }
 
 }  // namespace
@@ -47,8 +42,8 @@ Skin skin_of(std::span<const PosedSurface> surfaces) {
       skin.edges.push_back({std::min(a, b), std::max(a, b)});
     }
   }
-  sort_and_keep_one_each(skin.nodes);
-  sort_and_keep_one_each(skin.edges);
+  keep_one_each(skin.nodes);
+  keep_one_each(skin.edges);
   return skin;
 }
 

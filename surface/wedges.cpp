@@ -4,16 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/one_each.hpp"
+
 namespace abut {
 namespace {
 
 /// Cosine between edges that are one straight edge.
 const double straight = std::cos(std::numbers::pi / 18.0);
 
-void sort_unique(std::vector<std::int32_t>& numbers) {
-  std::ranges::sort(numbers);
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
+void sort_unique(std::vector<std::int32_t>& numbers) { keep_one_each(numbers); }
 
 std::int32_t other_end(const SharpEdge& edge, std::int32_t node) {
   return edge.ends[edge.ends[0] == node ? 1 : 0];
@@ -32,8 +31,7 @@ Wedges::Wedges(const PosedSurface& surface) {
   if (edges.empty()) return;
   std::vector<std::vector<std::int32_t>> edges_at(index(surface.node_count())), facets_at(edges_at);
   for (std::size_t e = 0; e < edges.size(); ++e)
-    for (const std::int32_t a : edges[e].ends)
-      edges_at[a].push_back(static_cast<std::int32_t>(e));
+    for (const std::int32_t a : edges[e].ends) edges_at[a].push_back(static_cast<std::int32_t>(e));
   for (int f = 0; f < surface.facet_count(); ++f)
     for (const std::int32_t a : surface.nodes(f)) facets_at[a].push_back(f);
   for (const SharpEdge& edge : edges) {
@@ -66,8 +64,7 @@ Wedges::Wedges(const PosedSurface& surface) {
   for (int f = 0; f < surface.facet_count(); ++f) {
     std::vector<std::int32_t> near;
     for (const std::int32_t a : surface.nodes(f))
-      for (const std::int32_t g : facets_at[a])
-        near.insert(near.end(), at(g).begin(), at(g).end());
+      for (const std::int32_t g : facets_at[a]) near.insert(near.end(), at(g).begin(), at(g).end());
     around_.add(std::move(near));
   }
 }

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "base/archive.hpp"
+#include "base/one_each.hpp"
 #include "coordinator/coupling/compliant_obstacle.hpp"
 
 namespace abut {
@@ -51,8 +52,7 @@ std::vector<int> Net::release(std::size_t level, const Eigen::VectorXd& x, Bodie
     obstacles_[end.joint]->release(joint(end.joint), bodies);
     flown.push_back(joint(end.joint).neumann_side().body);
   }
-  std::ranges::sort(flown);
-  flown.erase(std::unique(flown.begin(), flown.end()), flown.end());
+  keep_one_each(flown);
   for (const Island::End& end : island_->ends[level]) {
     const Joint& own = joint(end.joint);
     if (end.side == own.role.kinematic &&

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/one_each.hpp"
 #include "coordinator/coupling/kernel_support.hpp"
 
 namespace abut {
@@ -16,8 +17,7 @@ constexpr double reply_bytes = 3.2e7;
 std::vector<int> joined_ports(const TieLayout& layout, const TieLayout::Part& part) {
   std::vector<int> ports;
   for (const TieLayout::End& end : part.ends) ports.push_back(layout.side(end).port);
-  std::ranges::sort(ports);
-  ports.erase(std::unique(ports.begin(), ports.end()), ports.end());
+  keep_one_each(ports);
   return ports;
 }
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/one_each.hpp"
 #include "coordinator/coupling/state_fields.hpp"
 
 namespace abut {
@@ -202,9 +203,7 @@ std::vector<BehindRows::Behind> BehindRows::edges_through(SkinTrees& trees, cons
       continue;
     add({pair.points[0], pair.points[1]}, skin.group[index(pair.points[2])]);
   }
-  std::ranges::sort(edges, {}, &Behind::key);
-  const auto same = std::ranges::unique(edges, {}, &Behind::key);
-  edges.erase(same.begin(), same.end());
+  keep_one_each(edges, &Behind::key);
   return edges;
 }
 

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "base/one_each.hpp"
+
 namespace abut {
 
 namespace {
@@ -93,8 +95,7 @@ void PassiveTies::add_points(int body, std::vector<std::vector<std::int32_t>>& p
       if (side.body != body || std::isinf(bodies_.describe(body).mass)) continue;
       std::vector<std::int32_t>& points = pressed[index(side.port)];
       for (const std::int32_t point : tie.rows().of[s].columns) points.push_back(point);
-      std::ranges::sort(points);
-      points.erase(std::unique(points.begin(), points.end()), points.end());
+      keep_one_each(points);
     }
   }
 }

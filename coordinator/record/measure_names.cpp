@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/key.hpp"
+#include "base/one_each.hpp"
 #include "coordinator/record/port_reader.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 
@@ -103,8 +104,7 @@ std::vector<std::string> known_measures(const MeasureScope& scope) {
     for (int axis = 0; axis < scope.dim; ++axis)
       names.push_back(fmt::format("position.{}.max{}", port, axis_ending(scope.dim, axis)));
   names.insert(names.end(), scope.told.begin(), scope.told.end());
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
+  keep_one_each(names);
   return names;
 }
 

@@ -12,8 +12,6 @@ const char* to_string(RunEvent::Kind kind) {
       return "failure";
     case RunEvent::Kind::warning:
       return "warning";
-    case RunEvent::Kind::checkpoint:
-      return "checkpoint";
   }
   return "unknown";
 }

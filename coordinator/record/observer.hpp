@@ -62,7 +62,7 @@ struct WindowReport {
 
 /// Something that happened at a time.
 struct RunEvent {
-  enum class Kind { contact_closed, contact_opened, failure, warning, checkpoint };
+  enum class Kind { contact_closed, contact_opened, failure, warning };
   Kind kind = Kind::warning;
   double time = 0.0;                     // [s]; for contact: located inside a window
   std::string subject;                   // interface or body name

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 
 namespace abut {
 
@@ -45,9 +46,7 @@ class Divider {
   }
 
  private:
-  std::size_t cell_of(const Facet& facet) const {
-    return index(first_[facet.block] + facet.cell);
-  }
+  std::size_t cell_of(const Facet& facet) const { return index(first_[facet.block] + facet.cell); }
 
   /// Nodes are those of the whole at first.
   void add_cells() {
@@ -72,8 +71,7 @@ class Divider {
   void number_nodes(MeshPart& part) const {
     for (const CellBlock& block : part.mesh.blocks)
       part.nodes.insert(part.nodes.end(), block.nodes.begin(), block.nodes.end());
-    std::ranges::sort(part.nodes);
-    part.nodes.erase(std::unique(part.nodes.begin(), part.nodes.end()), part.nodes.end());
+    keep_one_each(part.nodes);
     for (CellBlock& block : part.mesh.blocks)
       for (std::int32_t& node : block.nodes) node = part.number_of(node);
     const std::size_t dim = index(mesh_.dim);

@@ -20,7 +20,6 @@ int run_verb(const RunCommand& command) {
   start_log("abut", command.quiet ? LogLevel::error : LogLevel::info);
   const Interrupts interrupts = watch_for_interrupts();
   Document document = Document::load(command.scene, command.overrides);
-  read_all_keys(document);
   // Held until the last file is written.
   RunDirectory held(
       command.out.empty() ? default_run_directory(command.scene) : fs::path(command.out),

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 #include "contract/kernel_misfit.hpp"
 #include "surface/tangents.hpp"
 
@@ -34,8 +35,7 @@ SurfaceContact::SurfaceContact(std::vector<Surface> surfaces, const std::string&
       for (int i = 0; i < dim; ++i) dofs_.push_back(node * dim + i);
     surfaces_.push_back({std::move(surface), {}, {}, {}, 0.0, 0, {}});
   }
-  std::ranges::sort(dofs_);
-  dofs_.erase(std::unique(dofs_.begin(), dofs_.end()), dofs_.end());
+  keep_one_each(dofs_);
   for (Own& own : surfaces_) {
     const int dim = own.surface.geometry->dim;
     for (const std::int32_t node : own.surface.nodes) {

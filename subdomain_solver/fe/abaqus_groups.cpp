@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 
 namespace abut {
 namespace {
@@ -106,8 +107,7 @@ class Grouper {
         }
       }
     }
-    std::ranges::sort(nodes);
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    keep_one_each(nodes);
     if (nodes.empty()) return refuse_nothing(surface.name, surface.line);
     if (surface.of_nodes) group.nodes = nodes;
     group.name = free_name(surface.name, piece, "_surface");
@@ -150,8 +150,7 @@ class Grouper {
       for (int a = 0; a < element.type->nodes; ++a) nodes.push_back(pieces_.nodes_of(element)[a]);
     }
     if (group.elements.empty()) return refuse_nothing(set.name, set.line);
-    std::ranges::sort(nodes);
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    keep_one_each(nodes);
     group.name = free_name(set.name, piece, "_cells");
     keep(std::move(group), std::move(nodes), piece);
   }

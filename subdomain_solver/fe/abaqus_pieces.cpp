@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 
 namespace abut {
 namespace {
@@ -66,8 +67,7 @@ void each_of(const AbaqusModel::Picked& picked, const Places& places, Each each,
 }
 
 std::vector<std::int32_t> sorted(std::vector<std::int32_t> all) {
-  std::ranges::sort(all);
-  all.erase(std::unique(all.begin(), all.end()), all.end());
+  keep_one_each(all);
   return all;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 
 namespace abut {
 
@@ -11,8 +12,7 @@ BatchedLayer::BatchedLayer(const Mesh& mesh, const Material& material, BatchedOp
     : dim_(index(mesh.dim)) {
   for (const auto& [block, cell, first] : cells)
     for (const std::int32_t node : nodes_of(mesh.blocks[block], cell)) nodes_.push_back(node);
-  std::ranges::sort(nodes_);
-  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  keep_one_each(nodes_);
   const auto own = [this](std::int32_t node) {
     return static_cast<std::int32_t>(std::ranges::lower_bound(nodes_, node) - nodes_.begin());
   };

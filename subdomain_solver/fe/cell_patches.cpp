@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 #include "subdomain_solver/fe/batched_kernel.hpp"
 
 namespace abut {
@@ -50,9 +51,8 @@ std::vector<std::int32_t> along_a_curve(const Mesh& mesh, const CellBlock& cells
   }
   std::vector<std::int32_t> order(key.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&key](std::int32_t a, std::int32_t b) {
-    return key[a] < key[b];
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&key](std::int32_t a, std::int32_t b) { return key[a] < key[b]; });
   return order;
 }
 
@@ -104,8 +104,7 @@ void CellPatches::place_nodes(const Mesh& mesh, CellPatch& patch,
   for (std::int32_t cell : patch.cells)
     for (std::int32_t node : nodes_of(cells, cell)) patch.nodes.push_back(node);
   std::vector<std::int32_t> sorted = patch.nodes;
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  keep_one_each(sorted);
   std::vector<std::int32_t> copy(sorted.size(), -1);
   const std::vector<std::int32_t> asked = std::move(patch.nodes);
   patch.nodes.clear();

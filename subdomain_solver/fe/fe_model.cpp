@@ -7,6 +7,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 #include "subdomain_solver/materials/stress_free.hpp"
 
 namespace abut {
@@ -121,9 +122,7 @@ void FeModel::find_pattern(Assembly& out) const {
   }
   Eigen::VectorXi sizes(dofs());
   for (std::size_t b = 0; b < neighbours.size(); ++b) {
-    std::sort(neighbours[b].begin(), neighbours[b].end());
-    neighbours[b].erase(std::unique(neighbours[b].begin(), neighbours[b].end()),
-                        neighbours[b].end());
+    keep_one_each(neighbours[b]);
     for (int k = 0; k < dim; ++k)
       sizes(static_cast<int>(b) * dim + k) = static_cast<int>(neighbours[b].size()) * dim;
   }

@@ -10,6 +10,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/solve/linear_solver.hpp"
 
@@ -131,8 +132,7 @@ void FeModel::find_heirs(int direction) {
                                              index(layer_cells_[first].second))),
                        "mesh", "Use a finer mesh, or fewer ports for contact.");
     }
-    std::ranges::sort(heirs);
-    heirs.erase(std::unique(heirs.begin(), heirs.end()), heirs.end());
+    keep_one_each(heirs);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 
 namespace abut {
 namespace {
@@ -48,8 +49,7 @@ std::vector<std::int32_t> Mesh::nodes_of(const std::string& name) const {
     const std::vector<std::int32_t> more = nodes_of(facet);
     nodes.insert(nodes.end(), more.begin(), more.end());
   }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  keep_one_each(nodes);
   return nodes;
 }
 

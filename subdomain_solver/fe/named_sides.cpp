@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 #include "subdomain_solver/fe/facet_index.hpp"
 
 namespace abut {
@@ -91,8 +92,7 @@ void settle_names(Mesh& mesh, const std::string& where) {
   }
   for (auto set = mesh.node_sets.begin(); set != mesh.node_sets.end();) {
     std::vector<std::int32_t>& nodes = set->second;
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    keep_one_each(nodes);
     if (!mesh.sides.contains(set->first)) {
       ++set;
       continue;

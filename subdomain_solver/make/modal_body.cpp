@@ -5,6 +5,7 @@
 
 #include "base/count.hpp"
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 #include "subdomain_solver/make/adjust.hpp"
 #include "subdomain_solver/make/constraints.hpp"
 #include "subdomain_solver/make/fields.hpp"
@@ -50,8 +51,7 @@ std::vector<int> dofs_of(const Mesh& mesh, const std::vector<SolidInterior::Port
       for (int i = 0; i < mesh.dim; ++i) out.push_back(node * mesh.dim + i);
     }
   }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
+  keep_one_each(out);
   return out;
 }
 
@@ -106,14 +106,14 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
   const std::string adjusted = adjust_ports(spec, place, ports, constraints, mesh);
   check_formulation(modal, mesh, place, "model.modal");
   SolidInterior::Parts parts;
-  parts.model = std::make_unique<FeModel>(
-      std::move(mesh), make_material(*spec.material, place, modal.dimension),
-      FeOptions{.plane = modal.plane,
-                .formulation = modal.formulation,
-                .thickness = modal.thickness,
-                .hourglass = modal.hourglass,
-                .area = modal.area()},
-      constraints.frames);
+  parts.model = std::make_unique<FeModel>(std::move(mesh),
+                                          make_material(*spec.material, place, modal.dimension),
+                                          FeOptions{.plane = modal.plane,
+                                                    .formulation = modal.formulation,
+                                                    .thickness = modal.thickness,
+                                                    .hourglass = modal.hourglass,
+                                                    .area = modal.area()},
+                                          constraints.frames);
   FeModel& nodes = *parts.model;
   check_mass(nodes.lumped_mass().minCoeff(), nodes.lumped_mass().maxCoeff(), spec, place);
   check_statics(spec, place, nodes, constraints.supports, {});

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/one_each.hpp"
 #include "subdomain_solver/fe/highest_frequency.hpp"
 #include "subdomain_solver/fe/rigid_motions.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
@@ -72,8 +73,7 @@ std::vector<int> layer_coordinates(const FeModel& model, const BodySpec& spec,
       for (int i = 0; held[node] < mesh.dim && i < mesh.dim; ++i)
         if (only < 0 || i == only) dofs.push_back(node * mesh.dim + i);
   }
-  std::ranges::sort(dofs);
-  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+  keep_one_each(dofs);
   return dofs;
 }
 

@@ -1,25 +1,21 @@
 // Goal: what a run left is read back whole, or refused with the reason. Oracle: the bytes written.
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
 #include "coordinator/record/checkpoint_file.hpp"
+#include "tests/support/test_folder.hpp"
 
 namespace abut {
 namespace {
 
 namespace fs = std::filesystem;
 
-class CheckpointFiles : public testing::Test {
+class CheckpointFiles : public TestFolder {
  protected:
-  CheckpointFiles() { fs::create_directories(folder); }
-  ~CheckpointFiles() override { fs::remove_all(folder); }
-
   static Checkpoint sample(double time) {
     Checkpoint kept;
     kept.version = "1.2.3";
@@ -35,13 +31,6 @@ class CheckpointFiles : public testing::Test {
     Checkpoint kept = sample(time);
     write_checkpoint(folder, kept);
   }
-  static std::string bytes_of(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
-  static void put(const fs::path& path, const std::string& bytes) {
-    std::ofstream(path, std::ios::binary) << bytes;
-  }
   std::string refusal() const {
     std::vector<std::string> warnings;
     try {
@@ -52,9 +41,6 @@ class CheckpointFiles : public testing::Test {
     return "accepted";
   }
 
-  const fs::path folder = fs::path(testing::TempDir()) /
-                          (std::string("abut_checkpoint_") +
-                           testing::UnitTest::GetInstance()->current_test_info()->name());
   const fs::path latest = folder / latest_checkpoint, earlier = folder / earlier_checkpoint;
 };
 
