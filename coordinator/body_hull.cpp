@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "base/index.hpp"
@@ -164,6 +165,32 @@ void look_outwards(BodyHull& hull) {
     std::reverse(hull.facets.begin() + hull.offsets[f], hull.facets.begin() + hull.offsets[f + 1]);
 }
 
+/// Quadrilaterals begin where those of ports do, or across from there: contact divides them along
+/// that diagonal, and what is warped is another surface along the other one.
+void begin_as_ports(BodyHull& hull, const Description& body) {
+  if (hull.dim != 3) return;
+  using Place = std::array<double, 3>;
+  const auto diagonal = [](const std::vector<double>& points, std::int32_t a, std::int32_t b) {
+    std::array<Place, 2> ends{};
+    std::copy_n(&points[3 * index(a)], 3, ends[0].begin());
+    std::copy_n(&points[3 * index(b)], 3, ends[1].begin());
+    return ends[1] < ends[0] ? std::array{ends[1], ends[0]} : ends;
+  };
+  std::set<std::array<Place, 2>> of_ports;
+  for (const Port& port : body.ports) {
+    const PortGeometry& g = port.geometry;
+    for (std::size_t f = 0; g.dim == 3 && f + 1 < g.offsets.size(); ++f) {
+      const std::int32_t* n = &g.facets[index(g.offsets[f])];
+      if (g.offsets[f + 1] - g.offsets[f] == 4) of_ports.insert(diagonal(g.points, n[0], n[2]));
+    }
+  }
+  for (std::size_t f = 0; f + 1 < hull.offsets.size(); ++f) {
+    if (hull.offsets[f + 1] - hull.offsets[f] != 4) continue;
+    std::int32_t* n = &hull.facets[index(hull.offsets[f])];
+    if (of_ports.contains(diagonal(hull.reference, n[1], n[3]))) std::rotate(n, n + 1, n + 4);
+  }
+}
+
 double typical_size(const PosedSurface& surface) {
   std::vector<double> sizes;
   for (int f = 0; f < surface.facet_count(); ++f) {
@@ -189,6 +216,7 @@ BodyHull hull_of(const Description& body, const Grid& grid) {
   if (hull.dim == 0) return hull;
   pose(hull, {});
   if (of_cells) look_outwards(hull);
+  if (of_cells) begin_as_ports(hull, body);
   hull.size = typical_size(hull.surface());
   return hull;
 }
