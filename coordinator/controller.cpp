@@ -133,10 +133,12 @@ void Controller::start() {
   }
   want_opening_accelerations(true);
   const TimeWindow instant{0, clock_.time(), clock_.time()};
+  const std::vector<Response> earlier(bodies_.responses().begin(), bodies_.responses().end());
   bodies_.save_all();
   prepare(instant, 1, Sampling::substeps);
   if (std::optional<Failed> failed = bodies_.advance_all())
     return fail(failed->time, failed->detail);
+  if (staged_) bodies_.keep_reactions(earlier);
   events_.start();
   for (const auto& [joint, contact, part] : known_exchanges(joints_).obstacles)
     narrator_.found(*joint, clock_.time());

@@ -37,10 +37,13 @@ void Controller::load_end(std::span<const std::byte> bytes) {
   introduce();
   Archive archive = Archive::reader(bytes, Archive::Form::named);
   state_of_pairs(archive);
-  std::vector<Role> roles;  // chosen anew, for the schemes of this stage
+  std::vector<Role> roles;  // chosen for the schemes of this stage
   for (const Joint& joint : joints_) roles.push_back(joint.role);
   state(archive);  // what presses goes on pressing, and files are numbered by all windows
-  for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].role = roles[j];
+  if (!roles_.keep(joints_))
+    for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].role = roles[j];
+  EnergyGuard(guard_).state(archive);  // this stage has an account of its own
+  bodies_.ends(archive);
   clock_.anchor();
   tell_start();
 }

@@ -331,10 +331,21 @@ double Bodies::overhead_median() const {
 
 void Bodies::counts(Archive& archive) { archive.field("exchanges", exchanges_); }
 
-void Bodies::state(Archive& archive) {
+void Bodies::keep_reactions(std::span<const Response> earlier) {
+  for (std::size_t b = 0; b < responses_.size(); ++b)
+    for (std::size_t p = 0; p < responses_[b].ports.size(); ++p)
+      if (std::vector<Reaction>& now = responses_[b].ports[p].reactions; now.empty())
+        now = earlier[b].ports[p].reactions;
+}
+
+void Bodies::ends(Archive& archive) {
   archive.field("taken_back", taken_back_);
   archive.field("struck", struck_);
   for (Response& response : responses_) field(archive, "response", response);
+}
+
+void Bodies::state(Archive& archive) {
+  ends(archive);
   for (Advance& request : requests_)  // replies have a reaction for every place
     for (BoundaryData& boundary : request.boundary)
       list(archive, "obstacles", boundary.obstacles, [](Archive&, Obstacle&) {});

@@ -70,6 +70,11 @@ class Bodies {
   [[nodiscard]] std::optional<Failed> advance(std::span<const int> bodies);
   [[nodiscard]] std::optional<Failed> advance_all();
 
+  /// What pressed on partners at the end of a stage goes on pressing when the next one begins,
+  /// though its bodies have not been asked yet: reactions of earlier responses, where the latest
+  /// have none.
+  void keep_reactions(std::span<const Response> earlier);
+
   /// An impulse [N s] into a port at the end of the last window, with which the next one begins:
   /// its body's last record tells of the state after it.
   void strike_record(const Side& side, double impulse);
@@ -103,6 +108,7 @@ class Bodies {
 
   /// Latest responses and what was told of the bodies, between windows.
   void state(Archive& archive);
+  void ends(Archive& archive);    // the first part of it: the latest responses
   void counts(Archive& archive);  // of the run for its end alone
 
   double shortest_step() const;              // [s] of all bodies, at most a window

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "base/error.hpp"
 #include "contract/substeps.hpp"
@@ -120,6 +121,18 @@ void Roles::start(std::span<Joint> joints) {
   for (Joint& joint : joints)
     if (joint.tied()) choose(joint);
   for (const auto& [own, contact, part] : known_exchanges(joints).obstacles) join(joints[part]);
+}
+
+bool Roles::keep(std::span<const Joint> joints) {
+  BodyOrder order(bodies_.count());
+  for (const Joint& joint : joints) {
+    const std::optional<int> only = only_side(joint, bodies_);
+    if (joint.tied() || (only && *only != joint.role.kinematic)) return false;
+    if (joint.exchange != nullptr && joint.exchange->ordered() && joint.role.fixed)
+      order.add(joint.kinematic_side().body, joint.neumann_side().body);
+  }
+  order_ = std::move(order);
+  return true;
 }
 
 void Roles::join(Joint& joint) {

@@ -43,6 +43,10 @@ class Roles {
   void join(Joint& joint);
   /// At first touch, for the rest of the run; true when the role was open.
   bool choose(Joint& joint);
+  /// Roles of a stage before, which the joints have: what presses stays with the side that has
+  /// found it. False, and nothing is changed: a side does not find contact any more, or there are
+  /// ties, whose roles are of their steps.
+  bool keep(std::span<const Joint> joints);
   /// The order of the bodies.
   void state(Archive& archive) { order_.state(archive); }
 
