@@ -1,0 +1,113 @@
+"""Goal: what rests goes on resting: a block that statics have pressed onto another one, or pulled
+with one that it is joined to, does not move in a stage of motion under the same load, whatever law,
+plane, element, contact and scheme. Oracles: balance of forces; no motion.
+
+usage: test_stages.py ABUT ROOT
+"""
+
+import csv
+import itertools
+import sys
+
+sys.dont_write_bytecode = True
+from support import SystemTest, main  # noqa: E402
+
+PRESSURE = 1.0e5  # [Pa] on 0.6 m, 1 m thick, or 0.6 m x 0.6 m; grows until statics end
+LAWS = {
+    "linear": "linear_elastic: {youngs_modulus: 1.0e7, poissons_ratio: 0.3, density: 1000.0}",
+    "kirchhoff": "saint_venant_kirchhoff: {youngs_modulus: 1.0e7, poissons_ratio: 0.3, "
+                 "density: 1000.0}",
+    "neo": "neo_hookean: {youngs_modulus: 1.0e7, poissons_ratio: 0.3, density: 1000.0}",
+    "yields": "j2_plasticity: {youngs_modulus: 1.0e7, poissons_ratio: 0.3, density: 1000.0, "
+              "yield_stress: 0.8e5, hardening: 1.0e6}"}
+MEETINGS = {
+    "contact": "interfaces: {meet: {sides: [low.face, up.face], contact: {}}}",
+    "friction": "interfaces: {meet: {sides: [low.face, up.face], contact: {friction: 0.3}}}",
+    "everything": "contact: {everything: {friction: 0.1}}",
+    "tied": "interfaces: {meet: {sides: [low.face, up.face], tied: {}}}"}
+EXPLICIT = "central_difference: {step: 1.0e-3, above_limit: clamp}"
+NEWMARK = "newmark: {step: 1.0e-3}"
+FINE = "central_difference: {step: 5.0e-4, above_limit: clamp}"
+SCHEMES = {  # of the lower and the upper body
+    "explicit": (EXPLICIT, EXPLICIT),
+    "implicit": ("hht_alpha: {step: 1.0e-3}", NEWMARK),
+    "unlike": ("generalized_alpha: {step: 1.0e-3}", FINE),
+    "finder of statics in longer steps": (FINE, NEWMARK)}
+
+
+def scene(dim: int, element: str, law: str, meeting: str, scheme: str) -> str:
+    flat = dim == 2
+    box = "rectangle" if flat else "box"
+    plane = "plane: strain, " if flat else ""
+    fixed = ", ".join(f'{axis}: "0"' for axis in "xyz"[:dim])
+    guided = ", ".join(f'{axis}: "0"' for axis in "xy"[:dim - 1])
+    load = ", ".join(['"0"'] * (dim - 1) + [f'"-{PRESSURE} * min(t, 1)"'])
+    bottom, top = ("bottom", "top") if flat else ("back", "front")
+
+    def body(name, lengths, cells, port, rest):
+        sizes = lengths if flat else [lengths[0]] + lengths
+        counts = cells if flat else [cells[0]] + cells
+        return f"""
+  {name}:
+    model: {{fe: {{dimension: {dim}, {plane}mesh: {{{box}: {{lengths: {sizes},
+                elements: {counts}, element: {element}}}}}}}}}
+    material: {{{LAWS[law]}}}
+    integrator: {{quasi_static: {{step: 0.25}}}}
+    ports: {{face: {{side: {port}}}}}
+{rest}"""
+
+    position = [0.2] * (dim - 1) + [1.0]
+    return f"""meta: {{title: Rest}}
+time: {{end: 1.0, window: 0.25}}
+bodies:{body("low", [1.0, 1.0], [3, 3], top, f'''    constraints:
+      base: {{on: {bottom}, {fixed}}}''')}{body("up", [0.6, 0.8], [2, 2], bottom, f'''    initial: {{position: {position}}}
+    constraints: {{guide: {{on: {top}, {guided}}}}}
+    loads: {{press: {{on: {top}, traction: [{load}]}}}}''')}
+{MEETINGS[meeting]}
+stages:
+  rest:
+    time: {{end: 1.05, window: 1.0e-3}}
+    bodies:
+      low: {{integrator: {{{SCHEMES[scheme][0]}}}}}
+      up: {{integrator: {{{SCHEMES[scheme][1]}}}}}
+"""
+
+
+class Rest(SystemTest):
+    def check(self, *kind):
+        path = self.folder / "scene.yaml"
+        path.write_text(scene(*kind), encoding="utf-8")
+        out = self.folder / "run"
+        self.succeed(self.abut("run", path, "--local", "--force", "--out", out))
+        with open(out / "history.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        kinetic, stored = (max(sum(float(value) for name, value in row.items()
+                                   if name.endswith(f"{energy} [J]")) for row in rows)
+                           for energy in (".kinetic", ".stored"))
+        # Waves that a change of the force by 3e-4 of it would set up.
+        self.assertLess(kinetic, 1.0e-7 * stored)
+        self.assertGreater(stored, 0.0)
+        pressed = [(float(row["time [s]"]), float(row[f"low.face.force_{'xyz'[kind[0] - 1]} [N]"]))
+                   for row in rows]
+        statics = next(force for time, force in pressed if time >= 1.0 - 1.0e-9)
+        self.assertLess(statics, -0.9 * PRESSURE * 0.6 ** (kind[0] - 1))
+        for time, force in pressed:
+            if time > 1.0:  # of what stabilises, some 1e-5 of the force, and of the sweeps
+                self.assertAlmostEqual(force / statics, 1.0, delta=1.0e-3, msg=f"at {time}")
+
+    def test_in_the_plane(self):
+        kinds = itertools.product(("quad4", "tri3"), LAWS, MEETINGS, SCHEMES)
+        for number, kind in enumerate(kinds):
+            if number % 5 != 0:  # a fifth of the combinations, of all kinds
+                continue
+            with self.subTest(kind=kind):
+                self.check(2, *kind)
+
+    def test_in_space(self):
+        for law, meeting in (("linear", "friction"), ("neo", "tied"), ("yields", "contact")):
+            with self.subTest(law=law, meeting=meeting):
+                self.check(3, "hex8", law, meeting, "implicit")
+
+
+if __name__ == "__main__":
+    main()
