@@ -294,6 +294,7 @@ Controller::Judgement Controller::judge_ways(const TimeWindow& window) {
     return {Judgement::Verdict::fail, window.end, "contact would make energy"};
   if (std::string crossed = crossing_.look(); !crossed.empty())
     return {Judgement::Verdict::fail, window.end, std::move(crossed)};
+  if (!repay()) return {Judgement::Verdict::fail, window.end, "contact would make energy"};
   return {};
 }
 
@@ -327,7 +328,6 @@ void Controller::accept(const TimeWindow& window) {
   events_.settle(window, guard_.most());
   halvings_ = 0;
   ++waiting_.accurate;
-  repay();
   end_window(window, guard_.look(bodies_.responses(), bodies_.struck()));
 }
 

@@ -139,7 +139,7 @@ class Controller {
   std::optional<Failed> give_impulses(double time);
   bool go_passively(double time, const std::string& reason);
   void step_passively();
-  void repay();
+  bool repay();
   void accept_passively(const TimeWindow& window);
   void go_accurately();
   GivenUp given_up() const;

@@ -17,6 +17,8 @@ constexpr double granted = 5.0e-3, part_of_share = 0.1;
 /// Of a share: growth that stays. Of the default that is below a thousandth of the energy, which
 /// nobody wants, as records within a window come before what is taken back at its end.
 constexpr double stands = 0.08;
+/// Of a share: what may stay beyond that, so that growth stays below a thousandth.
+constexpr double spare = 0.01;
 /// Of a share: what is told, and what one window may gain. Contact that dips and comes back stays
 /// below: 0.2 of it where a block lands, 0.02 where balls roll.
 constexpr double notable = 0.5;
@@ -95,6 +97,10 @@ bool EnergyGuard::refuses(std::span<const Response> responses,
   double motion = 0.0;
   const double own = own_energy(responses, struck, motion);
   const double scale = std::max(most_, motion);
+  // That of leapfrog, v- M v+/2, dips where a step turns velocities; by more than there is it
+  // cannot.
+  for (const Response& response : responses)
+    if (response.records.back().energy.kinetic < -scale) return true;
   if (unjudged_ > 0) return own - first_ > out_of_nothing * scale;
   const double bound = std::max(std::min(share_, granted), part_of_share * share_);
   const double at_once = std::max(bound, notable * share_);
@@ -111,6 +117,8 @@ double EnergyGuard::excess(std::span<const Response> responses, std::span<const 
         std::max(most_touching_, std::abs(response.records.back().energy.external_work));
   return std::max(0.0, own - first_ - stands * share_ * most_touching_);
 }
+
+double EnergyGuard::forgiven() const { return spare * share_ * most_touching_; }
 
 void EnergyGuard::repaid(int body, double joules) {
   bodies_[static_cast<std::size_t>(body)].ports -= joules;

@@ -45,6 +45,8 @@ class EnergyGuard {
   /// Asked of windows in which surfaces touch and of no others: how windows without contact are
   /// joined, which output decides, then changes no result.
   double excess(std::span<const Response> responses, std::span<const double> struck = {});
+  /// [J] of that excess which may stay where bodies have nothing to repay it with.
+  double forgiven() const;
   /// So much [J] of what was gained a body has given back since: what accounts say takes it in.
   void repaid(int body, double joules);
   double growth() const { return growth_; }  // as a fraction, at the last look

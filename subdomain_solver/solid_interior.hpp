@@ -124,6 +124,7 @@ class SolidInterior final : public Interior,
   Vector mean_motion();
   const SparseMatrix& mass_of_form() const { return is_passive() ? whole_mass_ : mass_; }
   double take_from_deformation(double joules);
+  double take_beside_joints(double joules);
   double moving_energy() const;
 
   struct State {
@@ -174,7 +175,7 @@ class SolidInterior final : public Interior,
   std::unique_ptr<SelfCrossings> crossings_;  // null: strains are small
   PortForces* port_forces_ = nullptr;         // owned by the problem, the last of its loads
   State state_;
-  bool stands_ = false;  // it has taken over a state in balance, which no window has left
+  bool stands_ = false;         // it has taken over a state in balance, which no window has left
   std::vector<double> places_;  // [m] (port values)
   PortValues seen_;
   int substep_ = 0;  // the last one of the window
@@ -191,8 +192,7 @@ class SolidInterior final : public Interior,
   Vector on_ports_;                   // [N] (nodes, dim)
   std::unique_ptr<PortForecast> forecast_;  // null: only walks tell where ports go
   std::unique_ptr<PortStatics> statics_;    // null: the body has inertia, or no ports
-  // Of the passive form; null: it has none, or another one.
-  std::unique_ptr<MidpointStep> midpoint_;
+  std::unique_ptr<MidpointStep> midpoint_;  // of the passive form; null: none, or another one
   std::unique_ptr<RigidStep> rigid_step_;
   SparseMatrix whole_mass_, given_mass_;  // [kg] (nodal values) of the nodes, when first asked for
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "base/dense.hpp"
@@ -39,6 +40,32 @@ void stay_below(double most, const Vector& plain, std::vector<double>& v, const 
   const double left = std::max(0.0, most - least), root = std::sqrt(b * b + 4.0 * c * left);
   const double part = b + root > 0.0 ? std::clamp(2.0 * left / (b + root), 0.0, 1.0) : 0.0;
   view(v) = plain + part * way;
+}
+
+/// [m/s] of the values that are not kept, less motions that leave momentum and angular momentum
+/// what they are, whatever share of the rest is taken away.
+Vector beside(std::span<const int> kept, const SparseMatrix& mass, const Eigen::MatrixXd& rigid,
+              Vector rest) {
+  Eigen::MatrixXd loose = rigid;
+  for (const int dof : kept) {
+    rest(dof) = 0.0;
+    loose.row(dof).setZero();
+  }
+  if (rigid.cols() == 0) return rest;
+  const Eigen::MatrixXd heavy = mass * rigid;
+  const Vector momentum = heavy.transpose() * rest;
+  return rest - loose * least_squares(heavy.transpose() * loose, momentum);
+}
+
+/// The share of the rest that takes so much energy [J] from velocities, or the one that takes most;
+/// at most all of it: of a rest that is rounding alone more would be anything.
+double share_of(double joules, const SparseMatrix& mass, const Vector& v, const Vector& rest) {
+  const Vector heavy = mass * rest;
+  const double square = rest.dot(heavy), slope = v.dot(heavy);
+  if (!(square > 0.0) || !(slope > 0.0)) return 0.0;
+  const double root = slope * slope - 2.0 * square * joules;
+  const double share = root > 0.0 ? 2.0 * joules / (slope + std::sqrt(root)) : slope / square;
+  return std::min(share, 1.0);
 }
 
 }  // namespace
@@ -230,6 +257,7 @@ double SolidInterior::take_from_deformation(double joules) {
   Motion& motion = state_.motion;
   const double before = energy().kinetic;
   if (parts_.rigid != nullptr || !(joules > 0.0)) return 0.0;
+  if (joins_ && !is_passive()) return take_beside_joints(joules);
   Vector rest = view(motion.v);
   Vector mass = Vector::Ones(rest.size());
   if (parts_.reduced) {
@@ -256,6 +284,21 @@ double SolidInterior::take_from_deformation(double joules) {
   const double most = 0.5 * rest.squaredNorm();  // modes have a mass of one
   if (!(most > 0.0)) return 0.0;
   view(motion.v) -= (1.0 - std::sqrt(std::max(0.0, 1.0 - joules / most))) * rest;
+  return before - energy().kinetic;
+}
+
+/// Sides of a joint move as one, and go on so: their nodes keep what they have.
+double SolidInterior::take_beside_joints(double joules) {
+  if (parts_.reduced) return 0.0;
+  const double before = energy().kinetic;
+  std::vector<int> kept = parts_.model->massless();
+  for (const Prescribed& p : parts_.problem->supports) kept.push_back(p.dof);
+  for (std::size_t p = 0; p < ports_.size(); ++p)
+    for (const std::int32_t node : ports_[p].nodes)
+      for (int i = 0; joined_[p] && i < description_.dim; ++i)
+        kept.push_back(node * description_.dim + i);
+  const Vector v = view(state_.motion.v), rest = beside(kept, mass_, free_motions(true), v);
+  view(state_.motion.v) -= share_of(joules, mass_, v, rest) * rest;
   return before - energy().kinetic;
 }
 

@@ -198,7 +198,6 @@ std::vector<double> PassiveWay::repay(std::span<const int> bodies, double joules
       left -= given;
     }
   }
-  for (const double given : gave) ledger_.repaid += given;
   return gave;
 }
 

@@ -49,6 +49,8 @@ class PassiveWay {
   /// shares of their kinetic energies; momentum and angular momentum stay. Their last records tell
   /// of the state after it. Returns what each of them gave.
   std::vector<double> repay(std::span<const int> bodies, double joules);
+  /// The window in which they did is accepted.
+  void count_repaid(double joules) { ledger_.repaid += joules; }
   /// They have left, and velocities of joined sides were made one, at this cost [J].
   void rejoin(double lost);
   /// Whether nothing pressed in the last window.

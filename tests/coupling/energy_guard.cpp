@@ -57,6 +57,14 @@ TEST(EnergyGuard, RefusesWindowsThatGainByAndByOrMuchAtOnce) {
   }
 }
 
+// v- M v+/2 of velocities that a step turns is all there was, with the other sign, and no more.
+TEST(EnergyGuard, RefusesKineticEnergyThatDipsBelowWhatThereIs) {
+  EnergyGuard guard(0.01, {false});
+  guard.look(std::vector{holding(1000.0, 0.0)});
+  EXPECT_FALSE(guard.refuses(std::vector{holding(-990.0, 0.0)}));
+  EXPECT_TRUE(guard.refuses(std::vector{holding(-1010.0, 0.0)}));
+}
+
 TEST(EnergyGuard, TellsWhatIsToBeRepaid) {
   struct Case {
     double share, bound;  // and what may be gained
