@@ -54,7 +54,7 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       guard_(
           make_energy_guard(scene.schwarz.energy_guard, joints_, !broad_phase_.empty(), bodies_)),
       passive_(touching_pairs(scene, joints_, bodies_), passive_ties(scene, joints_, bodies_),
-               bodies_),
+               bodies_, scene.time.window),
       crossing_(touching_pairs(scene, joints_, bodies_), bodies_),
       folds_(touching_pairs(scene, joints_, bodies_), bodies_),
       reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {

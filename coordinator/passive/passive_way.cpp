@@ -13,6 +13,9 @@ namespace abut {
 
 namespace {
 
+/// Of a window at most: no passive step has a limit of stability, which makes explicit ones far
+/// shorter than what is to be seen of contact. Where bodies' own steps are longer, those are taken.
+constexpr double parts_of_window = 16.0;
 constexpr int most_halvings = 14;
 /// Steps that must succeed before they are doubled again, fewer where they are very short.
 constexpr int steps_to_double = 8, short_level = 6, short_steps_to_double = 3;
@@ -26,11 +29,12 @@ constexpr double same_time = 1.0e-9;
 }  // namespace
 
 PassiveWay::PassiveWay(std::vector<TouchingPair> pairs, std::optional<std::vector<PassiveTie>> ties,
-                       Bodies& bodies)
+                       Bodies& bodies, double window)
     : pairs_(std::move(pairs)),
       ties_(std::move(ties)),
       bodies_(bodies),
-      hindrance_(find_hindrance()) {}
+      hindrance_(find_hindrance()),
+      window_(window) {}
 
 PassiveWay::~PassiveWay() = default;
 
@@ -51,6 +55,7 @@ bool PassiveWay::on_a_line() const {
 void PassiveWay::make() {
   if (step_ != nullptr) return;
   nominal_ = bodies_.shortest_step();
+  if (!on_a_line()) nominal_ = std::max(nominal_, window_ / parts_of_window);
   surfaces_ = std::make_unique<TouchingSurfaces>(pairs_, bodies_);
   near_ = std::make_unique<NearRows>(*surfaces_, thickness_share * surfaces_->shortest_edge());
   step_ = std::make_unique<CommonStep>(*surfaces_, *near_, *ties_, bodies_, nominal_);

@@ -21,9 +21,9 @@ namespace abut {
 class PassiveWay {
  public:
   /// `pairs`: of surfaces that may touch; `ties`: of those that are one, none where some of the run
-  /// have no passive form. Bodies and rows of ties must outlive it.
+  /// have no passive form. `window` [s]: the scene's. Bodies and rows of ties must outlive it.
   PassiveWay(std::vector<TouchingPair> pairs, std::optional<std::vector<PassiveTie>> ties,
-             Bodies& bodies);
+             Bodies& bodies, double window);
   ~PassiveWay();
 
   /// Why the scene cannot take this way, for people; empty: it can.
@@ -75,7 +75,8 @@ class PassiveWay {
   bool active_ = false, quiet_ = true;
   bool halved_ = false;  // a step of the window was shorter than the nominal one
   PassiveLedger ledger_;
-  double nominal_ = 0.0;                     // [s]
+  double window_;                            // [s] of the scene
+  double nominal_ = 0.0;                     // [s] the longest step
   int level_ = 0;                            // steps are nominal / 2^level
   int good_ = 0;                             // steps since the level changed
   int held_ = 0;                             // times in a row that bodies were held rigid
