@@ -184,9 +184,13 @@ TEST(StabilisedStatics, LoadsMayGrowToTheEnd) {
       SCOPED_TRACE(fmt::format("{}D {}", dim, law));
       const auto run = column.run();
       ASSERT_TRUE(run->completed()) << run->end.reason;
-      // Of a window's growth, a tenth of the load, 1 % of 0.005 in the last short one.
-      EXPECT_LT(run->measure("body.b1.stabilisation.share"), 1.0e-4);
-      EXPECT_NEAR(reaction(*run, "y"), column.pressure, 1.0e-4 * column.pressure);
+      // sigma w E / L of a block that goes down by w, 1.5 times its shortening, by what the load
+      // grows in the last short window: 0.005 of a tenth [M.143]. Strains of 2e-3 change that by
+      // some of it.
+      const double borne = 0.01 * 1.5 * 0.005 * 0.1;
+      EXPECT_NEAR(run->measure("body.b1.stabilisation.share"), borne, 5 * 2.0e-3 * borne);
+      // The sweeps' tolerance.
+      EXPECT_NEAR(reaction(*run, "y"), (1.0 - borne) * column.pressure, 2.0e-6 * column.pressure);
     }
   }
 }

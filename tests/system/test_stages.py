@@ -56,13 +56,13 @@ def scene(dim: int, element: str, law: str, meeting: str, scheme: str) -> str:
     ports: {{face: {{side: {port}}}}}
 {rest}"""
 
-    position = [0.2] * (dim - 1) + [1.0]
+    held = f"    constraints: {{base: {{on: {bottom}, {fixed}}}}}"
+    loaded = f"""    initial: {{position: {[0.2] * (dim - 1) + [1.0]}}}
+    constraints: {{guide: {{on: {top}, {guided}}}}}
+    loads: {{press: {{on: {top}, traction: [{load}]}}}}"""
     return f"""meta: {{title: Rest}}
 time: {{end: 1.0, window: 0.25}}
-bodies:{body("low", [1.0, 1.0], [3, 3], top, f'''    constraints:
-      base: {{on: {bottom}, {fixed}}}''')}{body("up", [0.6, 0.8], [2, 2], bottom, f'''    initial: {{position: {position}}}
-    constraints: {{guide: {{on: {top}, {guided}}}}}
-    loads: {{press: {{on: {top}, traction: [{load}]}}}}''')}
+bodies:{body("low", [1.0, 1.0], [3, 3], top, held)}{body("up", [0.6, 0.8], [2, 2], bottom, loaded)}
 {MEETINGS[meeting]}
 stages:
   rest:
