@@ -133,7 +133,8 @@ void Controller::start() {
   }
   want_opening_accelerations(true);
   const TimeWindow instant{0, clock_.time(), clock_.time()};
-  const std::vector<Response> earlier(bodies_.responses().begin(), bodies_.responses().end());
+  std::vector<Response> earlier;  // what pressed at the end of the stage before
+  if (staged_) earlier.assign(bodies_.responses().begin(), bodies_.responses().end());
   bodies_.save_all();
   prepare(instant, 1, Sampling::substeps);
   if (std::optional<Failed> failed = bodies_.advance_all())

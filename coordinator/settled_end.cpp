@@ -1,6 +1,5 @@
 #include "coordinator/settled_end.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace abut {
