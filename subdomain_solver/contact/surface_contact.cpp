@@ -316,6 +316,7 @@ void SurfaceContact::make_rows() {
   first_term_.assign(1, 0);
   directions_.clear();
   rows_.clear();
+  complies_ = false;
   rubs_ = false;
   for (Meeting& m : meetings_) {
     m.first = static_cast<Eigen::Index>(first_term_.size()) - 1;
@@ -353,24 +354,41 @@ bool SurfaceContact::find_gaps(const Vector& free) {
   return press;
 }
 
-/// Compliance among the components.
+/// Which coordinates the components have terms of, each numbered once.
+void SurfaceContact::number_touched() {
+  number_.assign(dofs_.size(), -1);
+  touched_.clear();
+  for (const Term& term : terms_) {
+    if (number_[index(term.coordinate)] >= 0) continue;
+    number_[index(term.coordinate)] = static_cast<int>(touched_.size());
+    touched_.push_back(term.coordinate);
+  }
+}
+
+/// Compliance among the components: each one's column over the coordinates that are touched comes
+/// first, as a pair of components would meet as many pairs of terms otherwise.
 bool SurfaceContact::find_compliance(Compliance& give) {
+  if (complies_ && version_ == give.version()) return true;
   const Eigen::Index count = gaps_.size();
   compliance_.setZero(count, count);
   for (const Meeting& m : meetings_)
     if (m.rows > 0) m.obstacle->add_compliance(m.first, directions(m), compliance_);
+  number_touched();
   for (Eigen::Index r = 0; r < count; ++r) {
+    along_.setZero(static_cast<Eigen::Index>(touched_.size()));
     for (std::size_t t = first_term_[r]; t < first_term_[index(r) + 1]; ++t) {
       const Vector* column = give.column(terms_[t].coordinate);
       if (column == nullptr) return false;
-      for (Eigen::Index s = 0; s < count; ++s) {
-        double sum = 0.0;
-        for (std::size_t k = first_term_[s]; k < first_term_[index(s) + 1]; ++k)
-          sum += terms_[k].factor * (*column)(terms_[k].coordinate);
-        compliance_(s, r) += terms_[t].factor * sum;
-      }
+      for (std::size_t i = 0; i < touched_.size(); ++i)
+        along_(static_cast<Eigen::Index>(i)) += terms_[t].factor * (*column)(touched_[i]);
     }
+    for (Eigen::Index s = 0; s < count; ++s)
+      for (std::size_t t = first_term_[s]; t < first_term_[index(s) + 1]; ++t)
+        compliance_(s, r) += terms_[t].factor * along_(number_[index(terms_[t].coordinate)]);
   }
+  if (rubs_) soften_held(rows_, compliance_);
+  complies_ = true;
+  version_ = give.version();
   return true;
 }
 

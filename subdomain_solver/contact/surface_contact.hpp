@@ -109,6 +109,7 @@ class SurfaceContact final : public PortContact {
   void pose(const Vector& q);
   void make_rows();
   bool find_gaps(const Vector& free);
+  void number_touched();
   [[nodiscard]] bool find_compliance(Compliance& give);
   void add_components(Meeting& m);
   void find_terms(const Own& own, const SurfaceRows& rows, int row, const double* direction);
@@ -152,7 +153,7 @@ class SurfaceContact final : public PortContact {
   std::vector<double> shears_before_;
   std::vector<OfPoint> of_points_;  // of a meeting
   std::vector<double> shares_;      // (rows of a meeting) of what is of the same point
-  Substeps grid_;  // of the window
+  Substeps grid_;                   // of the window
   int substep_ = 0;
   std::vector<double> anchors_;     // [m] (meetings that rub, values of the partner): state
   std::vector<double> anchored_;    // (meetings) 1: anchors are those of now: state
@@ -165,8 +166,12 @@ class SurfaceContact final : public PortContact {
   bool rubs_ = false;
   std::vector<std::size_t> first_term_;  // (components + 1)
   std::vector<Term> terms_;
-  Eigen::MatrixXd compliance_;  // [m/N]
-  Vector gaps_, row_force_;     // [m] of the free pose, and slips to there; [N]
+  std::vector<int> touched_, number_;  // coordinates of the terms; (coordinates) theirs, or -1
+  Vector along_;                       // [m/N] (touched) by a component's force
+  Eigen::MatrixXd compliance_;         // [m/N]
+  bool complies_ = false;              // as these components do, with the columns of a version
+  std::size_t version_ = 0;
+  Vector gaps_, row_force_;  // [m] of the free pose, and slips to there; [N]
   std::vector<double> row_gaps_;
   Vector opened_;  // [m] gaps and slips under the forces
   UnilateralBuffers buffers_;

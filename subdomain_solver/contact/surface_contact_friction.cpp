@@ -174,7 +174,6 @@ void SurfaceContact::guess_forces() {
 bool SurfaceContact::find_forces() {
   if (!rubs_) return unilateral_forces(compliance_, gaps_, row_force_, buffers_);
   if (row_force_.size() != gaps_.size()) guess_forces();
-  soften_held(rows_, compliance_);
   return friction_forces(compliance_, gaps_, rows_, row_force_, friction_buffers_);
 }
 

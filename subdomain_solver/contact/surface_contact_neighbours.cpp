@@ -29,6 +29,8 @@ class SurfaceContact::Eased final : public Compliance {
     return &out;
   }
 
+  std::size_t version() const override { return own_.version(); }
+
  private:
   const std::vector<Own>& surfaces_;
   Compliance& own_;
@@ -52,8 +54,7 @@ void SurfaceContact::begin_neighbours(const Window& window) {
     const PortKernel& kernel = window.neighbours[own.surface.port];
     if (kernel.count() > 0 && acts(own.surface.port) &&
         std::ranges::none_of(own.surface.frames, turned))
-      own.neighbours.begin(kernel, window.grid,
-                           window.request.boundary[own.surface.port].balanced);
+      own.neighbours.begin(kernel, window.grid, window.request.boundary[own.surface.port].balanced);
     else
       own.neighbours.rest();
   }

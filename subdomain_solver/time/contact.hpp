@@ -14,6 +14,8 @@ class Compliance {
   /// [m/N] (contact's coordinates) displacements by a unit force on the k-th of them; good until
   /// the step's end. Null: there is no answer.
   virtual const Vector* column(int k) = 0;
+  /// Another number whenever columns are others, within a step.
+  virtual std::size_t version() const = 0;
 };
 
 /// What may press on some coordinates of a body at the end of a step. Every scheme is affine in

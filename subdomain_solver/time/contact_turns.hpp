@@ -25,7 +25,10 @@ class ContactTurns final : private Compliance {
   /// coordinate.
   void weigh(double load, double move);
   /// The factors are others now.
-  void forget() { known_.assign(touched_.size(), 0); }
+  void forget() {
+    known_.assign(touched_.size(), 0);
+    ++version_;
+  }
   /// Adds the forces [N] (dofs).
   void add_to(Vector& external) const;
   /// Forces for where the balance without change of them has led, q [m] (dofs); takes a part of
@@ -34,6 +37,7 @@ class ContactTurns final : private Compliance {
 
  private:
   const Vector* column(int k) override;
+  std::size_t version() const override { return version_; }
   void relax(int turn);
 
   const FreeCoordinates& free_;
@@ -44,6 +48,7 @@ class ContactTurns final : private Compliance {
   Vector unit_, answer_;         // (free)
   std::vector<Vector> columns_;  // [m/N] (contact) of the compliance
   std::vector<char> known_;      // (contact) which of them
+  std::size_t version_ = 0;      // of all of them
   double load_ = 0.0, move_ = 0.0;
   Vector change_, last_change_;  // [N] (contact) that contact asked for, in this turn and before
   double factor_ = 1.0;          // of the change that is taken

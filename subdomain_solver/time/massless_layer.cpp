@@ -51,15 +51,12 @@ bool MasslessLayer::respond(std::span<const double> q, std::span<const double> h
   return problem_.model->evaluate_layer(q, history, want, response_);
 }
 
-Model::Want MasslessLayer::along() const {
-  return yields_ ? Model::Want::tangent : Model::Want::force;
-}
-
 /// Factors of the layer's stiffness; columns of its inverse are to be found anew.
 bool MasslessLayer::factor() {
   if (factors_last_) return true;
   factored_ = factors_->factor(response_.tangent);
   std::ranges::fill(known_, 0);
+  ++version_;
   factors_last_ = factored_ && problem_.model->is_linear();
   return factored_;
 }
@@ -91,6 +88,7 @@ void MasslessLayer::find_places(const Contact& contact) {
   }
   columns_.resize(std::max(columns_.size(), touched_.size()));
   known_.assign(touched_.size(), 0);
+  ++version_;
 }
 
 /// Adds what contact presses to the step, where the step without it would lead. False: contact has
@@ -155,7 +153,7 @@ bool MasslessLayer::walk(std::vector<double>& q, std::span<const double> history
   const double most = 0.5 * begin;
   part_ = 1.0;
   largest_ = move(q, part_);
-  for (int halving = 0; !respond(q, history, along()); ++halving) {
+  for (int halving = 0; !respond(q, history, Model::Want::force); ++halving) {
     if (halving == most_halvings) return false;
     part_ *= 0.5;
     largest_ = move(q, -part_);
@@ -167,7 +165,7 @@ bool MasslessLayer::walk(std::vector<double>& q, std::span<const double> history
     const double next = part_ * begin / (begin - here);
     largest_ = move(q, next - part_);
     part_ = next;
-    if (!respond(q, history, along())) return false;
+    if (!respond(q, history, Model::Want::force)) return false;
   }
   return true;
 }
@@ -182,9 +180,8 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     find_places(*contact);
   }
   // Factors cost far more than forces do: they serve as long as they lead on, from step to step
-  // too. Where a material yields they are made anew from there on.
+  // too, and where a material yields.
   double before = 0.0;
-  yields_ = false;
   if (!respond(q, history, factored_ ? Model::Want::force : Model::Want::tangent))
     return inadmissible(time);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -195,11 +192,9 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     const double roundoff = problem_.model->roundoff(q) / summed_roundings;
     if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, roundoff)) return std::nullopt;
     const double left = rest_.norm();
-    const bool anew = !factored_ || yields_ || (iteration > 0 && left > slow * before);
-    if (anew && factored_ && !yields_ && !respond(q, history, Model::Want::tangent))
-      return inadmissible(time);
+    const bool anew = !factored_ || (iteration > 0 && left > slow * before);
+    if (anew && factored_ && !respond(q, history, Model::Want::tangent)) return inadmissible(time);
     if (anew && !factor()) return not_held(time);
-    yields_ = anew && iteration > 0 && problem_.model->history_size() > 0;
     before = left;
     if (!factors_->solve(rest_, step_) || (contact != nullptr && !press(time, q, *contact)))
       return failed_newton({NewtonReport::End::singular}, time, contact);

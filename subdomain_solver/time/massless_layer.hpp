@@ -37,10 +37,10 @@ class MasslessLayer final : private Compliance {
 
  private:
   const Vector* column(int k) override;
+  std::size_t version() const override { return version_; }
   [[nodiscard]] bool respond(std::span<const double> q, std::span<const double> history,
                              Model::Want want);
   [[nodiscard]] bool factor();
-  Model::Want along() const;  // wanted at places of a step
   void find_places(const Contact& contact);
   [[nodiscard]] bool press(double time, std::span<const double> q, Contact& contact);
   double find_rest(const Vector& loads, bool pressed);
@@ -54,7 +54,6 @@ class MasslessLayer final : private Compliance {
   std::unique_ptr<LinearSolver> factors_;
   bool factored_ = false;              // since renew(), at some place
   bool factors_last_ = false;          // for good: the model is linear
-  bool yields_ = false;                // the material, in this balance: tangents go with forces
   Vector step_, rest_;                 // [m], [N] (layer)
   double part_ = 0.0, largest_ = 0.0;  // of the step; [m] displacement that results
   Vector free_, pressed_;              // [m], [N] (contact)
@@ -62,6 +61,7 @@ class MasslessLayer final : private Compliance {
   std::vector<int> place_;             // of them in the layer; -1: prescribed
   std::vector<Vector> columns_;        // [m/N] (contact) of the compliance
   std::vector<char> known_;            // (contact) which of them
+  std::size_t version_ = 0;            // of all of them
   Vector unit_, answer_;               // (layer)
   std::vector<double> moved_;          // [m] (dofs) by a jump
   Vector loads_;                       // [N] (dofs) after it
