@@ -325,6 +325,7 @@ Controller::Judgement Controller::judge_trouble(const TimeWindow& window) {
 
 void Controller::accept(const TimeWindow& window) {
   for (const Island& island : partition_.islands()) schwarz_.accept(island);
+  note_friction();
   fill_reports(false);
   events_.settle(window, guard_.most());
   halvings_ = 0;
@@ -376,13 +377,27 @@ int Controller::records_in(const TimeWindow& window) const {
   return std::max(1, static_cast<int>(std::lround(scene_.output.records_per_window * share)));
 }
 
-PairReport Controller::pair_report(const Joint& joint) {
+/// What bodies tell of friction in an accurate window; passive ones are in the passive way's
+/// ledger.
+void Controller::note_friction() {
+  for (Joint& joint : joints_) {
+    const Side& side = joint.kinematic_side();
+    const PortResponse& reply = bodies_.response(side.body).ports[index(side.port)];
+    if (joint.tied() || side.partner < 0 || index(side.partner) >= reply.reactions.size()) continue;
+    const double told = reply.reactions[index(side.partner)].dissipated;
+    if (told > 0.0) joint.contact.rubbed[index(joint.role.kinematic)] = told;
+  }
+}
+
+double Controller::dissipated(const Joint& joint) const {
+  return joint.contact.rubbed[0] + joint.contact.rubbed[1] + passive_.rubbed(joint);
+}
+
+PairReport Controller::pair_report(const Joint& joint) const {
   const auto& [one, two] = joint.sides;
-  return {joint.interface,
-          {one.body, two.body},
-          {one.port, two.port},
-          {one.partner, two.partner},
-          joint.role.kinematic};
+  return {joint.interface,      {one.body, two.body},
+          {one.port, two.port}, {one.partner, two.partner},
+          joint.role.kinematic, dissipated(joint)};
 }
 
 void Controller::fill_reports(bool flown) {
@@ -395,6 +410,7 @@ void Controller::fill_reports(bool flown) {
     report.kinematic = joint.role.kinematic;
     report.missed = std::max(report.missed, shown.missed);
     report.force = std::max(report.force, shown.force);
+    report.dissipated += dissipated(joint);
   }
   if (flown) return;
   for (std::size_t k = 0; k < attempt_.reports.size(); ++k) {

@@ -126,7 +126,9 @@ class Controller {
   void prepare(const TimeWindow& window, int records, Sampling sampling);
   int records_in(const TimeWindow& window) const;
   void fill_reports(bool flown);
-  static PairReport pair_report(const Joint& joint);
+  PairReport pair_report(const Joint& joint) const;
+  void note_friction();
+  double dissipated(const Joint& joint) const;
   void watch_energy(EnergyGuard::Verdict verdict);
   void watch_passing(std::int64_t windows_before);
   void look_for_overlaps();

@@ -24,6 +24,7 @@ void ContactState::state(Archive& archive) {
   archive.field("closing_speed", closing_speed);
   archive.field("force_scale", force_scale);
   archive.field("impulse", impulse);
+  for (double& heat : rubbed) archive.field("rubbed", heat);
 }
 
 void Joint::state(Archive& archive) {

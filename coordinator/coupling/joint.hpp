@@ -41,6 +41,8 @@ struct ContactState {
   double closing_speed = 0.0;  // [m/s] against which the iteration is measured
   double force_scale = 0.0;    // [N] largest contact force since the joint closed
   double impulse = 0.0;        // [N s] pushing the sides apart, at the next window's begin
+  // [J] by friction since the run began, by side that found it, in accurate windows
+  std::array<double, 2> rubbed{};
 
   void state(Archive& archive);
 };
@@ -57,7 +59,7 @@ struct Joint {
   std::array<Side, 2> sides;
   Role role;
   PointGap line;
-  double fit = 0.0;  // [m] interference that is wanted, as it is drawn
+  double fit = 0.0;                    // [m] interference that is wanted, as it is drawn
   std::unique_ptr<Exchange> exchange;  // null: contact inside a body, which exchanges nothing
   std::unique_ptr<Watch> watch;
   ContactState contact;

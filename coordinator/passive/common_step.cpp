@@ -390,14 +390,23 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
     const double normal = row.normal_impulse * row_velocity(row, velocities_, row.normal);
     (normal < 0.0 ? ledger.normal : ledger.push_out) += std::abs(normal);
     if (normal < 0.0) share_out_loss(row, -normal, ledger);
-    for (const std::size_t t : {0u, 1u})
-      ledger.friction -=
-          row.tangential_impulse[t] * row_velocity(row, velocities_, row.tangents[t]);
+    count_friction(row, ledger);
     if (row.normal_impulse > 0.0) warm_[row.key()] = row.impulse();
     if (row.behind && -row.gap > rounding_of_places * surfaces_.shortest_edge())
       ledger.deepest = std::max(ledger.deepest, -row.gap);
   }
   return std::nullopt;
+}
+
+void CommonStep::count_friction(const DistanceRow& row, PassiveLedger& ledger) const {
+  double heat = 0.0;
+  for (const std::size_t t : {0u, 1u})
+    heat -= row.tangential_impulse[t] * row_velocity(row, velocities_, row.tangents[t]);
+  if (heat == 0.0) return;
+  ledger.friction += heat;
+  const TouchingSurfaces::Point& one = surfaces_[row.first_point(0)];
+  const TouchingSurfaces::Point& other = surfaces_[row.first_point(1)];
+  ledger.rubbed[PassiveLedger::pair_of(one.body, one.port, other.body, other.port)] += heat;
 }
 
 /// Half of it to either side that deforms: a finer mesh there would lose less.

@@ -82,6 +82,7 @@ class CommonStep {
   std::optional<Refusal> accept(bool lenient, PassiveLedger& ledger);
   void share_out_work();
   void share_out_ties();
+  void count_friction(const DistanceRow& row, PassiveLedger& ledger) const;
   void share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const;
   double energy_of(int body) const;
   double length() const { return step_.end - step_.begin; }

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
-#include "base/archive.hpp"
+#include "base/archive_lists.hpp"
 
 namespace abut {
 
@@ -25,6 +29,9 @@ struct PassiveLedger {
   // By body, as long as one has any. [J] of its deforming side's normal contact; [J] that damping
   // and changes of form took from it; steps that it refused
   std::vector<double> lost, taken, refused_by;
+  /// [J] of friction, by surfaces that touched: body, port, body, port, the lower side first.
+  using Pair = std::array<int, 4>;
+  std::map<Pair, double> rubbed;
 
   /// [J] what accuracy was given up; friction would be there anyway.
   double given_up() const { return normal - push_out + damped + switched; }
@@ -33,7 +40,17 @@ struct PassiveLedger {
     if (values.size() <= at) values.resize(at + 1, 0.0);
     values[at] += value;
   }
+  static Pair pair_of(int one, int its_port, int other, int its_other) {
+    const Pair pair{one, its_port, other, its_other}, turned{other, its_other, one, its_port};
+    return std::min(pair, turned);
+  }
   void state(Archive& archive) {
+    std::vector<std::pair<Pair, double>> pairs(rubbed.begin(), rubbed.end());
+    list(archive, "rubbed", pairs, [](Archive& a, auto& each) {
+      for (int& side : each.first) whole(a, "side", side);
+      a.field("heat", each.second);
+    });
+    rubbed = {pairs.begin(), pairs.end()};
     archive.field("normal", normal);
     archive.field("friction", friction);
     archive.field("push_out", push_out);

@@ -165,6 +165,12 @@ bool PassiveWay::pressed(const Joint& joint) const {
   });
 }
 
+double PassiveWay::rubbed(const Joint& joint) const {
+  const auto& [a, b] = joint.sides;
+  const auto found = ledger_.rubbed.find(PassiveLedger::pair_of(a.body, a.port, b.body, b.port));
+  return found == ledger_.rubbed.end() ? 0.0 : found->second;
+}
+
 /// Takes all of the deformation's kinetic energy away: what the last rung costs.
 bool PassiveWay::hold_rigid() {
   if (++held_ > most_holds) return false;

@@ -57,6 +57,8 @@ class PassiveWay {
   bool quiet() const { return quiet_; }
   /// Whether surfaces pressed in the last window, of a joint.
   bool pressed(const Joint& joint) const;
+  /// [J] that friction took between the surfaces of a joint since the run began.
+  double rubbed(const Joint& joint) const;
 
   void state(Archive& archive);
 

@@ -72,7 +72,7 @@ void ContactMeasures::on_window(const WindowReport& report) {
   velocity_.on_window(readers_, traces, mine.kinematic, mine.closed, errors_ ? &*errors_ : nullptr);
   if (const Waveform* force = force_of(report, kinematic)) {
     read_force(*force, readers_[kinematic]);
-    read_friction(report, kinematic);
+    dissipated_ = mine.dissipated;
   } else {
     read_rest(*traces[kinematic]);
   }
@@ -86,13 +86,6 @@ const Waveform* ContactMeasures::force_of(const WindowReport& report, std::size_
   const std::size_t partner = index(info_.partner[kinematic]);
   if (partner >= reply.reactions.size() || reply.reactions[partner].force.empty()) return nullptr;
   return &reply.reactions[partner].force;
-}
-
-/// Ends of bars do not rub.
-void ContactMeasures::read_friction(const WindowReport& report, std::size_t kinematic) {
-  if (readers_[kinematic].port().geometry.dim == 1) return;
-  const PortResponse& reply = report.responses[info_.body[kinematic]].ports[info_.port[kinematic]];
-  dissipated_ = reply.reactions[info_.partner[kinematic]].dissipated;
 }
 
 void ContactMeasures::read_gap(const WindowReport& report,

@@ -38,7 +38,6 @@ class ContactMeasures {
   void read_gap(const WindowReport& report, const std::array<const Waveform*, 2>& traces);
   const Waveform* force_of(const WindowReport& report, std::size_t kinematic) const;
   void read_force(const Waveform& trace, const PortReader& reader);
-  void read_friction(const WindowReport& report, std::size_t kinematic);
   void read_rest(const Waveform& trace);
   void write_force(double closed, Measures& out);
   void write_times(Measures& out) const;

@@ -29,13 +29,13 @@ void ManyContacts::on_event(const RunEvent& event) {
 void ManyContacts::on_window(const WindowReport& report) {
   for (const PairReport& pair : report.pairs) {
     if (pair.interface != index_) continue;
+    dissipated_[{pair.body[0], pair.port[0], pair.body[1], pair.port[1]}] = pair.dissipated;
     const std::size_t k = index(pair.kinematic);
     const PortResponse& reply = report.responses[pair.body[k]].ports[pair.port[k]];
     const std::size_t partner = index(pair.partner[k]);
     if (partner >= reply.reactions.size() || reply.reactions[partner].force.empty()) continue;
     const Reaction& reaction = reply.reactions[partner];
     read_force(reaction.force, PortReader(start_.bodies[pair.body[k]]->ports[pair.port[k]]));
-    dissipated_[{pair.body[0], pair.port[0], pair.body[1], pair.port[1]}] = reaction.dissipated;
   }
 }
 

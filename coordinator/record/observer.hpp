@@ -40,6 +40,7 @@ struct InterfaceReport {
   // Of tied surfaces: [m] by how much they missed each other, [N] the largest resultant between
   // them.
   double missed = 0.0, force = 0.0;
+  double dissipated = 0.0;  // [J] by friction since the run began
 };
 
 /// Two surfaces that were iterated in an accepted window, of an interface of many.
@@ -47,7 +48,8 @@ struct PairReport {
   int interface = 0;                       // index into RunStart::interfaces
   int body[2] = {0, 0}, port[2] = {0, 0};  // as of an InterfaceInfo
   int partner[2] = {0, 0};
-  int kinematic = 0;  // which side is
+  int kinematic = 0;        // which side is
+  double dissipated = 0.0;  // [J] by friction since the run began
 };
 
 /// An accepted stretch of time: one window, or several windows of free flight in one request.

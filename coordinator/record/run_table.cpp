@@ -139,17 +139,29 @@ std::string RunTable::reactions() const {
 
 std::string RunTable::energies(const Measures& measures) const {
   Rows rows = {{"energy [J]", "kinetic", "stored", "work done on it", "dissipated", "error"}};
-  const auto row = [&rows](const char* name, const Energy& e, std::string error) {
+  // What passive windows take is in no body's account.
+  const GivenUp& up = end_.given_up;
+  const bool passive = up.windows > 0;
+  if (passive) rows[0].insert(rows[0].end() - 1, {"passive friction", "given up"});
+  const auto row = [&rows](const char* name, const Energy& e) {
     std::vector<std::string> cells = {name};
     for (const double value : {e.kinetic, e.stored, e.external_work, e.dissipated})
       cells.push_back(fmt::format("{:.5g}", value));
-    cells.push_back(std::move(error));
     rows.push_back(std::move(cells));
   };
+  const Energy first = sum_of(first_), last = sum_of(last_);
+  row("begin", first);
+  row("end", last);
+  if (passive)
+    for (const double taken : {up.friction, up.joules()})
+      rows.back().push_back(fmt::format("{:.5g}", taken));
   const auto drift = measures.values.find("energy.total.relative_drift_end");
   const bool known = drift != measures.values.end() && std::isfinite(drift->second);
-  row("begin", sum_of(first_), "");
-  row("end", sum_of(last_), known ? fmt::format("{:.2g} %", 100.0 * drift->second) : "-");
+  const auto own = [](const Energy& e) { return e.total() + e.dissipated - e.external_work; };
+  const double change = own(last) - own(first), taken = up.friction + up.joules();
+  const double left = change == 0.0 ? 1.0 : (change + taken) / change;  // of the drift
+  rows.back().push_back(known ? fmt::format("{:.2g} %", 100.0 * left * drift->second) : "-");
+  for (std::vector<std::string>& cells : rows) cells.resize(rows[0].size());
   return text_table(rows) + "\n";
 }
 

@@ -60,6 +60,23 @@ TEST_F(RunTableText, TellsContactsReactionsAndEnergies) {
             "\n");
 }
 
+/// What passive windows took is in no body's account: with it the energies of the table balance.
+TEST_F(RunTableText, TellsWhatPassiveWindowsTook) {
+  RunEnd end;
+  end.given_up = {.windows = 3, .normal = 0.5, .friction = 0.75, .push_out = 0.25};
+  table.on_end(end);
+  // The bodies have 10 J at the begin, 6 + 2 + 2 - 1 J at the end: 1 J less, all of which was
+  // taken.
+  EXPECT_NE(table.text(measures).find(
+                "energy [J]  kinetic  stored  work done on it  dissipated  passive friction  given "
+                "up  error\n"
+                "begin            10       0                0           0\n"
+                "end               6       2                1           2              0.75      "
+                "0.25    0 %\n"),
+            std::string::npos)
+      << table.text(measures);
+}
+
 TEST_F(RunTableText, TellsTenContactsAndHowManyMoreThereAre) {
   start.interfaces.assign(12, InterfaceInfo{.name = "impact"});
   RunTable many;
