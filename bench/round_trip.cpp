@@ -30,6 +30,7 @@
 #include "messaging/remote_subdomain.hpp"
 #include "messaging/serve.hpp"
 #include "messaging/zmq_channel.hpp"
+#include "messaging/zmq_dealer.hpp"
 
 namespace {
 

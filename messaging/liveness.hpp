@@ -8,6 +8,7 @@
 #include "messaging/child_process.hpp"
 #include "messaging/protocol.hpp"
 #include "messaging/zmq_channel.hpp"
+#include "messaging/zmq_dealer.hpp"
 
 namespace abut {
 

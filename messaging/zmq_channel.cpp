@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <string_view>
 #include <utility>
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "messaging/zmq_socket.hpp"
 
 namespace abut {
 
@@ -22,80 +22,6 @@ constexpr std::size_t largest_hello = 65'536;   // [B] of which no more than thi
 constexpr std::size_t most_waiting = 64;        // frames of a peer; it repeats what it needs
 constexpr std::size_t most_waiting_limits = 4;  // what waits, of all peers, in limits of a frame
 constexpr std::size_t most_disconnects = 256;   // times remembered per peer
-
-/// Everything that libzmq would otherwise choose for us.
-void configure(zmq::socket_t& socket, const Limits& limits) {
-  socket.set(zmq::sockopt::linger, 500);  // [ms] a refusal or a last reply may still leave
-  socket.set(zmq::sockopt::sndtimeo, 0);  // never blocks: requests are repeated by whoever waits
-  // Frames above the limit are refused by size and name; far above it the connection ends before
-  // memory does.
-  socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(2 * limits.frame_bytes));
-  socket.set(zmq::sockopt::handshake_ivl, 5'000);       // [ms]
-  socket.set(zmq::sockopt::heartbeat_ivl, 2'000);       // [ms] answered by the peer's I/O thread,
-  socket.set(zmq::sockopt::heartbeat_timeout, 10'000);  // [ms] also while its body is solving
-  socket.set(zmq::sockopt::heartbeat_ttl, 10'000);      // [ms]
-  socket.set(zmq::sockopt::tcp_keepalive, 1);
-  socket.set(zmq::sockopt::ipv6, 0);
-}
-
-/// Of a connection that so many bodies share; heeded by connections that begin later. One request
-/// is under way per body, with a sign of progress now and then, which whoever waits reads at once.
-void set_queues(zmq::socket_t& socket, std::size_t bodies) {
-  socket.set(zmq::sockopt::sndhwm, static_cast<int>(64 * bodies));
-  socket.set(zmq::sockopt::rcvhwm, static_cast<int>(16 * bodies));
-}
-
-void set_receive_timeout(zmq::socket_t& socket, Milliseconds wait, int& current) {
-  const int wanted = static_cast<int>(std::clamp<Milliseconds::rep>(wait.count(), 0, 60'000));
-  if (wanted == current) return;
-  socket.set(zmq::sockopt::rcvtimeo, wanted);
-  current = wanted;
-}
-
-/// False when nothing came in time or a signal interrupted the wait: the caller looks around.
-bool receive_part(zmq::socket_t& socket, zmq::message_t& part) {
-  if (zmq_msg_recv(part.handle(), socket.handle(), 0) >= 0) return true;
-  if (zmq_errno() == EAGAIN || zmq_errno() == EINTR) return false;
-  throw RunError(fmt::format("a socket failed: {}", zmq_strerror(zmq_errno())), "messaging",
-                 "look at the limits of open files and memory of this machine");
-}
-
-/// What is left of a message: the frame, and before it the body's name where bodies share the
-/// connection. More parts are not ours: the last one is no frame of that body. False as above.
-bool receive_frame(zmq::socket_t& socket, zmq::message_t& body, zmq::message_t& frame) {
-  if (!receive_part(socket, frame)) return false;
-  while (frame.more()) {
-    body = std::move(frame);
-    frame.rebuild();
-    if (!receive_part(socket, frame)) return false;
-  }
-  return true;
-}
-
-/// False when the transport cannot take the part now (no such peer, full queue, signal).
-bool send_part(zmq::socket_t& socket, const void* data, std::size_t size, int flags) {
-  return zmq_send(socket.handle(), data, size, flags | ZMQ_DONTWAIT) >= 0;
-}
-
-/// Below this a copy costs less than the bookkeeping of two threads.
-constexpr std::size_t worth_sharing = 8192;
-
-void release(void*, void* hint) { delete static_cast<std::shared_ptr<const void>*>(hint); }
-
-/// The same without a copy: libzmq's thread sends from where the bytes are, and lets them go then.
-bool send_part(zmq::socket_t& socket, Bytes frame, std::shared_ptr<const void> owner) {
-  if (frame.size() < worth_sharing) return send_part(socket, frame.data(), frame.size(), 0);
-  auto held = std::make_unique<std::shared_ptr<const void>>(std::move(owner));
-  zmq_msg_t message;
-  void* data = const_cast<std::byte*>(frame.data());  // libzmq only reads what it sends
-  if (zmq_msg_init_data(&message, data, frame.size(), &release, held.get()) != 0) return false;
-  (void)held.release();
-  if (zmq_msg_send(&message, socket.handle(), ZMQ_DONTWAIT) >= 0) return true;
-  const int error = zmq_errno();
-  zmq_msg_close(&message);
-  errno = error;
-  return false;
-}
 
 /// libzmq removes whatever lies where its socket is to be: a file of somebody else.
 void refuse_existing_file(const std::string& endpoint) {
@@ -110,23 +36,14 @@ void refuse_existing_file(const std::string& endpoint) {
                    "removed by hand");
 }
 
-std::string_view text_of(const zmq::message_t& message) {
-  return {static_cast<const char*>(message.data()), message.size()};
-}
-
-Bytes bytes_of(const zmq::message_t& message) {
-  return Bytes(static_cast<const std::byte*>(message.data()), message.size());
-}
-
 }  // namespace
-
-// ---- hub
-// --------------------------------------------------------------------------------------------
 
 /// With one process; of one body, or of several that are named in every message.
 struct ZmqHub::Connection {
-  std::string routing_id;
+  std::string routing_id;  // of one with a key: as it is now
+  std::string earlier_id;  // of one with a key: before it came back
   bool shared = false;
+  bool keyed = false;
   int number = 0;
   std::map<std::string, Peer*, std::less<>> peers;
   int descriptor = -1;  // once a frame has come through it
@@ -134,11 +51,12 @@ struct ZmqHub::Connection {
   std::vector<TimePoint> disconnects;
   TimePoint last_frame{};  // where it is shared
 
-  /// The ROUTER knows best who can be reached: this also sees a connection that has come back.
+  /// The ROUTER knows best who can be reached: this also sees a connection that has come back. One
+  /// with a key comes back under another routing id.
   bool note(bool sent) {
     if (sent) {
       gone.reset();
-    } else if (zmq_errno() == EHOSTUNREACH && !gone) {
+    } else if (zmq_errno() == EHOSTUNREACH && !gone && !keyed) {
       gone = std::chrono::steady_clock::now();
     }
     return sent;
@@ -206,6 +124,23 @@ std::string ZmqHub::bind(const std::string& endpoint) {
   return socket_.get(zmq::sockopt::last_endpoint);
 }
 
+std::string ZmqHub::bind(const std::string& endpoint, const CoordinatorKeys& keys) {
+  ABUT_ASSERT(!gate_);
+  for (const auto& [key, body] : keys.bodies) {
+    Connection& connection = connections_.at(body);
+    ABUT_ASSERT(!connection.shared);
+    connection.keyed = true;
+    connection.routing_id.clear();
+  }
+  gate_ = std::make_unique<KeyGate>(context_, keys.bodies);
+  // A name is handed over to nobody: who comes back with its key has another routing id.
+  socket_.set(zmq::sockopt::router_handover, false);
+  socket_.set(zmq::sockopt::curve_server, true);
+  socket_.set(zmq::sockopt::curve_secretkey, keys.own.secret_key);
+  socket_.set(zmq::sockopt::zap_domain, "abut");
+  return bind(endpoint);
+}
+
 int ZmqHub::add_peer(const std::string& name) {
   const int peer = add_peer(name, name);
   peers_.back()->connection.shared = false;
@@ -246,14 +181,28 @@ bool ZmqHub::receive_message(Milliseconds wait) {
   return true;
 }
 
-/// Null: nobody that is known.
+/// Null: nobody that is known. Of a message that came with a key, the key alone says whose it is;
+/// a routing id that nobody has given, which is drawn by libzmq, begins with a zero.
+ZmqHub::Connection* ZmqHub::find_connection() {
+  const char* user = gate_ ? zmq_msg_gets(sender_.handle(), "User-Id") : nullptr;
+  const std::string_view name = user != nullptr ? std::string_view(user) : text_of(sender_);
+  const auto found = connections_.find(name);
+  if (found == connections_.end() || found->second.keyed != (user != nullptr)) return nullptr;
+  Connection& connection = found->second;
+  const std::string_view id = text_of(sender_);
+  if (connection.keyed && id != name && !id.starts_with('\0')) return nullptr;  // says another name
+  if (connection.keyed && id != connection.routing_id && id != connection.earlier_id) {
+    connection.earlier_id = std::exchange(connection.routing_id, std::string(id));
+  }
+  return &connection;
+}
+
 ZmqHub::Peer* ZmqHub::find_sender() {
-  const auto connection = connections_.find(text_of(sender_));
-  if (connection == connections_.end()) return nullptr;
-  const auto& [id, found] = *connection;
-  if (!found.shared) return found.peers.begin()->second;
-  const auto peer = found.peers.find(text_of(addressee_));
-  return peer == found.peers.end() ? nullptr : peer->second;
+  Connection* connection = find_connection();
+  if (connection == nullptr) return nullptr;
+  if (!connection->shared) return connection->peers.begin()->second;
+  const auto peer = connection->peers.find(text_of(addressee_));
+  return peer == connection->peers.end() ? nullptr : peer->second;
 }
 
 void ZmqHub::keep_stranger() {
@@ -267,7 +216,7 @@ void ZmqHub::keep_stranger() {
 /// Over which connection the frame came. While there are unknown ones, a descriptor may be that of
 /// another connection than the last time.
 void ZmqHub::note_descriptor(Connection& connection) {
-  if (incoming_.size() == 0) return;
+  if (incoming_.size() == 0 && !connection.keyed) return;
   const int descriptor = zmq_msg_get(incoming_.handle(), ZMQ_SRCFD);
   const bool changed = descriptor != connection.descriptor;
   connection.descriptor = descriptor;
@@ -287,17 +236,18 @@ bool ZmqHub::receive_for(int wanted, Milliseconds wait) {
   const TimePoint until = std::chrono::steady_clock::now() + wait;
   while (receive_message(wait)) {
     if (Peer* peer = find_sender(); peer == nullptr) {
-      keep_stranger();
+      if (!gate_) keep_stranger();  // where there are keys, nobody is refused in words
     } else {
       Connection& connection = peer->connection;
       note_descriptor(connection);
       connection.gone.reset();
       if (connection.shared) connection.last_frame = std::chrono::steady_clock::now();
-      if (peer->index == wanted) {
+      const bool announced = connection.keyed && incoming_.size() == 0;  // only: here it is again
+      if (peer->index == wanted && !announced) {
         peer->current = std::move(incoming_);
         return true;
       }
-      keep_waiting(*peer);
+      if (!announced) keep_waiting(*peer);
       if (wanted < 0) return true;
     }
     wait = std::max(Milliseconds(0),
@@ -340,81 +290,15 @@ int ZmqHub::disconnects(int peer, TimePoint since) {
 
 std::optional<TimePoint> ZmqHub::gone_since(int peer) {
   read_monitor();
-  return peers_.at(index(peer))->connection.gone;
+  Connection& connection = peers_.at(index(peer))->connection;
+  if (connection.keyed && connection.gone &&
+      gate_->admitted(peers_.at(index(peer))->name) > connection.gone)
+    connection.gone.reset();  // it is back, and busy: it has not said so yet
+  return connection.gone;
 }
 
 TimePoint ZmqHub::last_frame(int peer) const {
   return peers_.at(index(peer))->connection.last_frame;
-}
-
-// ---- dealer
-// -----------------------------------------------------------------------------------------
-
-ZmqDealer::ZmqDealer(const std::string& endpoint, const std::string& routing_id,
-                     const Limits& limits, std::size_t bodies)
-    : context_(1), socket_(context_, zmq::socket_type::dealer) {
-  configure(socket_, limits);
-  set_queues(socket_, bodies);
-  socket_.set(zmq::sockopt::connect_timeout, 2'000);  // [ms]
-  socket_.set(zmq::sockopt::reconnect_ivl, 20);       // [ms] start order does not matter,
-  socket_.set(zmq::sockopt::reconnect_ivl_max, 500);  // [ms] and costs little
-  try {
-    socket_.set(zmq::sockopt::routing_id, routing_id);
-    monitor_ = std::make_unique<ZmqMonitor>(context_, socket_);
-    socket_.connect(endpoint);
-  } catch (const zmq::error_t& error) {
-    throw InputError(
-        fmt::format("cannot connect body '{}' to '{}': {}", routing_id, endpoint, error.what()),
-        "--connect", "give the coordinator's endpoint, for example tcp://127.0.0.1:5555");
-  }
-}
-
-ZmqDealer::~ZmqDealer() = default;
-
-bool ZmqDealer::send(Bytes frame) { return send_part(socket_, frame.data(), frame.size(), 0); }
-
-bool ZmqDealer::send(Bytes frame, std::shared_ptr<const void> owner) {
-  return send_part(socket_, frame, std::move(owner));
-}
-
-std::optional<Bytes> ZmqDealer::receive(Milliseconds wait) {
-  set_receive_timeout(socket_, wait, receive_timeout_);
-  addressee_.rebuild();
-  if (!receive_frame(socket_, addressee_, current_)) return std::nullopt;
-  return bytes_of(current_);
-}
-
-bool ZmqDealer::send_of(std::string_view body, Bytes frame) {
-  return send_part(socket_, body.data(), body.size(), ZMQ_SNDMORE) &&
-         send_part(socket_, frame.data(), frame.size(), 0);
-}
-
-bool ZmqDealer::send_of(std::string_view body, Bytes frame, std::shared_ptr<const void> owner) {
-  return send_part(socket_, body.data(), body.size(), ZMQ_SNDMORE) &&
-         send_part(socket_, frame, std::move(owner));
-}
-
-std::string_view ZmqDealer::addressee() const { return text_of(addressee_); }
-
-void ZmqDealer::read_monitor() {
-  while (const std::optional<ZmqMonitor::Event> event = monitor_->next()) {
-    connected_ = event->kind != ZmqMonitor::Kind::ended;
-    if (connected_) {
-      gone_since_.reset();
-    } else if (!gone_since_) {  // attempts to reconnect that fail do not begin the wait anew
-      gone_since_ = std::chrono::steady_clock::now();
-    }
-  }
-}
-
-bool ZmqDealer::connected() {
-  read_monitor();
-  return connected_;
-}
-
-std::optional<TimePoint> ZmqDealer::gone_since() {
-  read_monitor();
-  return gone_since_;
 }
 
 }  // namespace abut

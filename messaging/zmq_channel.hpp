@@ -15,8 +15,9 @@
 
 #include "messaging/channel.hpp"
 #include "messaging/connection_guard.hpp"
+#include "messaging/key_files.hpp"
+#include "messaging/key_gate.hpp"
 #include "messaging/protocol.hpp"
-#include "messaging/zmq_monitor.hpp"
 
 namespace abut {
 
@@ -33,6 +34,9 @@ class ZmqHub {
   /// Listens at "ipc://path" or "tcp://interface:port"; answers the endpoint with its port filled
   /// in. Throws InputError when the endpoint cannot be had.
   std::string bind(const std::string& endpoint);
+  /// The same, and the last place to listen at: for the bodies of these keys alone, who come in no
+  /// other way. Whose message it is, its key says, not the routing id that it gives.
+  std::string bind(const std::string& endpoint, const CoordinatorKeys& keys);
   /// Adds the peer whose routing id is `name`; peers are numbered from 0 in the order of these
   /// calls, all of them before bind().
   int add_peer(const std::string& name);
@@ -55,6 +59,8 @@ class ZmqHub {
   int disconnects(int peer, TimePoint since);
   /// Since when the peer has had no connection; nothing while it has one.
   std::optional<TimePoint> gone_since(int peer);
+  /// How many were turned away for their keys.
+  int refused() const { return gate_ ? gate_->refused() : 0; }
 
  private:
   struct Connection;
@@ -62,6 +68,7 @@ class ZmqHub {
   bool send_head(const Connection& connection, const std::string& name);
   bool receive_for(int wanted, Milliseconds wait);
   bool receive_message(Milliseconds wait);
+  Connection* find_connection();
   Peer* find_sender();
   void keep_stranger();
   void keep_waiting(Peer& peer);
@@ -69,47 +76,15 @@ class ZmqHub {
   void read_monitor();
 
   zmq::context_t context_;
+  std::unique_ptr<KeyGate> gate_;  // null: nobody has keys; outlives the socket that it guards
   zmq::socket_t socket_;
   std::unique_ptr<ConnectionGuard> guard_;
-  int receive_timeout_ = -1;  // [ms] as set on the socket
-  std::map<std::string, Connection, std::less<>> connections_;  // by routing id
+  int receive_timeout_ = -1;                                    // [ms] as set on the socket
+  std::map<std::string, Connection, std::less<>> connections_;  // by routing id, or body of a key
   std::vector<std::unique_ptr<Peer>> peers_;
   std::size_t waiting_bytes_ = 0, most_waiting_bytes_;  // of all peers
   std::deque<std::pair<std::string, std::vector<std::byte>>> strangers_;
   zmq::message_t sender_, addressee_, incoming_;
-};
-
-/// A solver's socket: one DEALER whose routing id is the body's name, or that of a process with
-/// several bodies (zmq_group.hpp).
-class ZmqDealer : public Channel {
- public:
-  ZmqDealer(const std::string& endpoint, const std::string& routing_id, const Limits& limits,
-            std::size_t bodies = 1);
-  ~ZmqDealer() override;
-  bool send(Bytes frame) override;
-  bool send(Bytes frame, std::shared_ptr<const void> owner) override;
-  std::optional<Bytes> receive(Milliseconds wait) override;
-
-  /// The same in a process of several bodies: the frame is of `body`.
-  bool send_of(std::string_view body, Bytes frame);
-  bool send_of(std::string_view body, Bytes frame, std::shared_ptr<const void> owner);
-  /// For which body the last frame was; empty: its message named none.
-  std::string_view addressee() const;
-
-  bool connected();
-  /// Since when there has been no connection; nothing while there is one or before the first.
-  std::optional<TimePoint> gone_since();
-
- private:
-  void read_monitor();
-
-  zmq::context_t context_;
-  zmq::socket_t socket_;
-  std::unique_ptr<ZmqMonitor> monitor_;
-  int receive_timeout_ = -1;  // [ms] as set on the socket
-  bool connected_ = false;
-  std::optional<TimePoint> gone_since_;
-  zmq::message_t addressee_, current_;
 };
 
 }  // namespace abut

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "messaging/channel.hpp"
-#include "messaging/zmq_channel.hpp"
+#include "messaging/zmq_dealer.hpp"
 
 namespace abut {
 

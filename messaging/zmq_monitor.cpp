@@ -9,9 +9,10 @@ namespace abut {
 ZmqMonitor::ZmqMonitor(zmq::context_t& context, zmq::socket_t& watched)
     : watched_(watched), reports_(context, zmq::socket_type::pair) {
   const std::string address = "inproc://abut-monitor";  // one monitored socket per context
-  if (zmq_socket_monitor(
-          watched.handle(), address.c_str(),
-          ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED) != 0) {
+  if (zmq_socket_monitor(watched.handle(), address.c_str(),
+                         ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
+                             ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH |
+                             ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL) != 0) {
     throw zmq::error_t();
   }
   reports_.set(zmq::sockopt::linger, 0);
@@ -33,6 +34,8 @@ std::optional<ZmqMonitor::Event> ZmqMonitor::next() {
     if (event == ZMQ_EVENT_ACCEPTED) return Event{Kind::accepted, value};
     if (event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED) return Event{Kind::connected, value};
     if (event == ZMQ_EVENT_DISCONNECTED) return Event{Kind::ended, value};
+    if (event == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH) return Event{Kind::key_refused};
+    if (value == ZMQ_PROTOCOL_ERROR_ZMTP_MECHANISM_MISMATCH) return Event{Kind::unlike};
   }
   return std::nullopt;
 }

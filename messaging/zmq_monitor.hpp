@@ -12,11 +12,13 @@ class ZmqMonitor {
   enum class Kind {
     accepted,   // somebody has connected to a socket that listens
     connected,  // the handshake succeeded
-    ended
+    ended,
+    key_refused,  // by the other end
+    unlike        // one end has keys, the other has none, or another protocol
   };
   struct Event {
     Kind kind = Kind::ended;
-    int descriptor = -1;  // of the connection
+    int descriptor = -1;  // of the connection, where it is reported
   };
 
   ZmqMonitor(zmq::context_t& context, zmq::socket_t& watched);

@@ -17,7 +17,7 @@
 #include "messaging/liveness.hpp"
 #include "messaging/serve.hpp"
 #include "messaging/serve_group.hpp"
-#include "messaging/zmq_channel.hpp"
+#include "messaging/zmq_dealer.hpp"
 #include "messaging/zmq_group.hpp"
 #include "subdomain_solver/make/body_spec.hpp"
 
@@ -58,7 +58,7 @@ void serve_bodies(const Command& command) {
   abut::require_descriptors(descriptors);
   const bool shared = !command.process.empty();
   abut::ZmqDealer dealer(command.endpoint, shared ? command.process : command.bodies.front(),
-                         limits, command.bodies.size());
+                         limits, command.bodies.size(), abut::Access{{}, true});
   abut::CoordinatorLiveness coordinator(dealer, command.endpoint, deadlines);
   Maker maker;
   const abut::MakeBody make = std::ref(maker);

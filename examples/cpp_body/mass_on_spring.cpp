@@ -14,7 +14,7 @@
 #include "base/yaml_fields.hpp"
 #include "contract/substeps.hpp"
 #include "messaging/serve.hpp"
-#include "messaging/zmq_channel.hpp"
+#include "messaging/zmq_dealer.hpp"
 
 using namespace abut;
 
@@ -189,7 +189,7 @@ int main(int argc, char** argv) {
   try {
     const Limits limits;
     const Deadlines deadlines;
-    ZmqDealer dealer(endpoint, body, limits);
+    ZmqDealer dealer(endpoint, body, limits, 1, Access{{}, true});
     CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
     Server server(body, make, dealer, coordinator, limits, deadlines);
     serve(server, Milliseconds(60'000));

@@ -15,7 +15,7 @@
 #include "base/error.hpp"
 #include "messaging/serve.hpp"
 #include "messaging/serve_group.hpp"
-#include "messaging/zmq_channel.hpp"
+#include "messaging/zmq_dealer.hpp"
 #include "messaging/zmq_group.hpp"
 #include "tests/support/fakes.hpp"
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "messaging/zmq_channel.hpp"
+#include "messaging/zmq_dealer.hpp"
 
 namespace abut {
 namespace {
