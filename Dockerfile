@@ -14,8 +14,9 @@ FROM debian:bookworm-slim
 COPY scripts /tmp/scripts
 RUN /tmp/scripts/install_dependencies.sh runtime && rm -rf /tmp/scripts /var/lib/apt/lists/*
 COPY --from=build /image/usr/local /usr/local
-# Not root; /abut/runs is where a run may write.
-RUN useradd --system --uid 10001 --no-create-home abut && install -d -o abut -g abut /abut/runs \
+# Not root; /abut/runs is where a run may write, /abut/keys where docker-compose.yml keeps keys.
+RUN useradd --system --uid 10001 --no-create-home abut \
+  && install -d -o abut -g abut /abut/runs && install -d -o abut -g abut -m 700 /abut/keys \
   && ln -s /usr/local/share/abut/configs /usr/local/share/abut/studies /abut/
 USER abut
 WORKDIR /abut

@@ -23,8 +23,8 @@ const std::array<std::pair<std::string, std::string>, 4> tools{{
     {"study", "run a scene with many settings: cost against accuracy"},
 }};
 
-constexpr std::array<std::string_view, 6> own_verbs{"run",   "resume", "check",
-                                                    "split", "init",   "reference"};
+constexpr std::array<std::string_view, 7> own_verbs{"run",  "resume", "check",    "split",
+                                                    "init", "keygen", "reference"};
 
 /// An empty path is most often a variable of a script that was never set.
 const CLI::Validator named_folder(
@@ -45,6 +45,11 @@ void add_scene(CLI::App& verb, std::string& scene, std::vector<std::string>& ove
   add_overrides(verb, overrides);
 }
 
+void add_insecure(CLI::App& verb, bool& insecure) {
+  verb.add_flag("--insecure", insecure,
+                "wait for bodies of other machines without keys, on a network that you trust");
+}
+
 CLI::App& add_run(CLI::App& app, RunCommand& run) {
   CLI::App& verb = *app.add_subcommand("run", "run a scene and evaluate its expectations");
   add_scene(verb, run.scene, run.overrides);
@@ -54,6 +59,7 @@ CLI::App& add_run(CLI::App& app, RunCommand& run) {
   verb.add_flag("--local", run.local, "all bodies in this process");
   verb.add_flag("--quiet", run.quiet, "print errors and failed expectations only");
   verb.add_flag("--force", run.force, "replace the run that DIR holds");
+  add_insecure(verb, run.insecure);
   return verb;
 }
 
@@ -69,6 +75,7 @@ CLI::App& add_resume(CLI::App& app, ResumeCommand& resume) {
   add_overrides(verb, resume.overrides);
   verb.add_flag("--local", resume.local, "all bodies in this process");
   verb.add_flag("--quiet", resume.quiet, "print errors and failed expectations only");
+  add_insecure(verb, resume.insecure);
   return verb;
 }
 
@@ -100,6 +107,18 @@ CLI::App& add_init(CLI::App& app, InitCommand& init) {
   verb.add_option("mesh", init.meshes, "mesh files of --from mesh (.msh, .inp), a body each")
       ->type_name("MESH");
   verb.add_flag("--force", init.force, "replace the files that are there");
+  return verb;
+}
+
+CLI::App& add_keygen(CLI::App& app, KeygenCommand& keygen) {
+  CLI::App& verb = *app.add_subcommand(
+      "keygen", "make keys of a coordinator and of bodies that connect (network.keys)");
+  verb.add_option("directory", keygen.directory, "folder of the keys")
+      ->required()
+      ->type_name("DIR")
+      ->check(named_folder);
+  verb.add_option("body", keygen.bodies, "name of a body that gets a pair of its own")
+      ->type_name("NAME");
   return verb;
 }
 
@@ -157,6 +176,9 @@ Command parse_command_line(int argc, const char* const* argv) {
   InitCommand init;
   const CLI::App& init_verb = add_init(app, init);
 
+  KeygenCommand keygen;
+  const CLI::App& keygen_verb = add_keygen(app, keygen);
+
   ReferenceCommand reference;
   const CLI::App& reference_verb = add_reference(app, reference);
 
@@ -181,6 +203,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (check_verb.parsed()) return check;
   if (split_verb.parsed()) return split;
   if (init_verb.parsed()) return init;
+  if (keygen_verb.parsed()) return keygen;
   if (reference_verb.parsed()) return reference;
   return PrintCommand{app.help(), 2};
 }

@@ -13,6 +13,7 @@ struct RunCommand {
   bool local = false;
   bool quiet = false;
   bool force = false;
+  bool insecure = false;
 };
 struct ResumeCommand {
   std::string directory;
@@ -21,6 +22,11 @@ struct ResumeCommand {
   std::vector<std::string> overrides;
   bool local = false;
   bool quiet = false;
+  bool insecure = false;
+};
+struct KeygenCommand {
+  std::string directory;
+  std::vector<std::string> bodies;
 };
 struct CheckCommand {
   std::string scene;
@@ -59,7 +65,7 @@ struct PrintCommand {
 };
 
 using Command = std::variant<RunCommand, ResumeCommand, CheckCommand, SplitCommand, InitCommand,
-                             ReferenceCommand, ExternalCommand, PrintCommand>;
+                             KeygenCommand, ReferenceCommand, ExternalCommand, PrintCommand>;
 
 /// Never throws: a command line that is wrong becomes a PrintCommand with exit code 2.
 Command parse_command_line(int argc, const char* const* argv);

@@ -20,6 +20,7 @@
 #include "coordinator/solver_processes.hpp"
 #include "messaging/codec.hpp"
 #include "messaging/descriptors.hpp"
+#include "messaging/key_files.hpp"
 #include "messaging/liveness.hpp"
 #include "messaging/remote_subdomain.hpp"
 #include "messaging/zmq_channel.hpp"
@@ -80,12 +81,18 @@ std::string solver_beside_this_program() {
   return error ? std::string("abut-solver") : (self.parent_path() / "abut-solver").string();
 }
 
+/// A folder that a scene names counts from the scene's own.
+std::string keys_of(const Scene& scene, const std::string& document) {
+  if (scene.network.keys.empty()) return {};
+  return (std::filesystem::path(document).parent_path() / scene.network.keys).string();
+}
+
 /// What somebody types to start the solver of a body that is waited for.
-std::string command_for(std::string endpoint, const std::string& body, bool external) {
+std::string command_for(std::string endpoint, const std::string& body, bool external, bool keys) {
   const std::size_t wildcard = endpoint.find("//0.0.0.0:");
   if (wildcard != std::string::npos) endpoint.replace(wildcard + 2, 7, "HOST");  // this machine
-  return fmt::format("{} --connect {} --body {}", external ? "ITS_PROGRAM" : "abut-solver",
-                     endpoint, body);
+  return fmt::format("{} --connect {} --body {}{}", external ? "ITS_PROGRAM" : "abut-solver",
+                     endpoint, body, keys ? " --keys DIR" : "");
 }
 
 }  // namespace
@@ -136,7 +143,7 @@ Launch::Launch(const Scene& scene, const Specification& scene_text, const Launch
   hub_ = std::make_unique<ZmqHub>(options_.limits);
   try {
     add_members(scene);
-    listen(scene);
+    listen(scene, scene_text.document);
     spawn_all();
     greet_all(scene_text);
   } catch (...) {
@@ -180,19 +187,23 @@ void Launch::add_members(const Scene& scene) {
   }
 }
 
-void Launch::listen(const Scene& scene) {
+void Launch::listen(const Scene& scene, const std::string& document) {
+  if (!processes_.empty()) {
+    directory_ = make_private_directory();
+    ipc_endpoint_ = hub_->bind("ipc://" + directory_ + "/hub");
+  }
+  std::vector<std::string> awaited;
+  for (const std::unique_ptr<Member>& member : members_)
+    if (member->process == nullptr) awaited.push_back(member->name);
+  if (awaited.empty()) return;
+  const std::string keys = keys_of(scene, document);
+  keyed_ = !keys.empty();
+  tcp_endpoint_ = keyed_ ? hub_->bind(scene.network.endpoint, read_coordinator_keys(keys, awaited))
+                         : hub_->bind(scene.network.endpoint);
   for (const std::unique_ptr<Member>& member : members_) {
-    if (member->process != nullptr && ipc_endpoint_.empty()) {
-      directory_ = make_private_directory();
-      ipc_endpoint_ = hub_->bind("ipc://" + directory_ + "/hub");
-    }
-    if (member->process == nullptr && tcp_endpoint_.empty()) {
-      tcp_endpoint_ = hub_->bind(scene.network.endpoint);
-    }
-    if (member->process == nullptr) {
-      log_info(fmt::format("waiting for body '{}': {}", member->name,
-                           command_for(tcp_endpoint_, member->name, member->external)));
-    }
+    if (member->process != nullptr) continue;
+    log_info(fmt::format("waiting for body '{}': {}", member->name,
+                         command_for(tcp_endpoint_, member->name, member->external, keyed_)));
   }
 }
 
@@ -354,13 +365,16 @@ void Launch::check_startup(Member& member, TimePoint begin) {
   }
   if (std::chrono::steady_clock::now() - begin < member.patience) return;
   const double seconds = static_cast<double>(member.patience.count()) / 1000.0;
-  const std::string what =
+  std::string what =
       fmt::format("body '{}' did not connect to {} within {} s", member.name, endpoint, seconds);
+  if (hub_->refused() > 0)
+    what += fmt::format(", and {} that did were turned away for their keys", hub_->refused());
   if (member.process != nullptr) {
     throw RunError(what, "", "raise network.startup_deadline on a slow machine");
   }
-  throw RunError(what, "",
-                 fmt::format("start `{}`", command_for(endpoint, member.name, member.external)));
+  throw RunError(
+      what, "",
+      fmt::format("start `{}`", command_for(endpoint, member.name, member.external, keyed_)));
 }
 
 std::vector<std::unique_ptr<Subdomain>> Launch::take_bodies() {

@@ -51,7 +51,7 @@ class Launch {
   struct Process;
   struct Member;
   void add_members(const Scene& scene);
-  void listen(const Scene& scene);
+  void listen(const Scene& scene, const std::string& document);
   void spawn_all();
   void greet_all(const Specification& scene_text);
   bool greet(Member& member);
@@ -70,6 +70,7 @@ class Launch {
   std::unique_ptr<ZmqHub> hub_;
   std::vector<std::unique_ptr<Process>> processes_;  // that this object starts
   std::vector<std::unique_ptr<Member>> members_;
+  bool keyed_ = false;    // bodies that connect have keys
   bool refused_ = false;  // a body has told what is wrong with it
   bool finished_ = false;
 };

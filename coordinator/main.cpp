@@ -30,6 +30,7 @@
 #include "coordinator/verbs/placed_scene.hpp"
 #include "coordinator/verbs/resume.hpp"
 #include "coordinator/verbs/run.hpp"
+#include "messaging/key_files.hpp"
 
 namespace abut {
 namespace {
@@ -90,6 +91,15 @@ int init_verb(const InitCommand& command) {
   return 0;
 }
 
+int keygen_verb(const KeygenCommand& command) {
+  for (const std::string& file : write_keys(command.directory, command.bodies))
+    fmt::print("written: {}\n", file);
+  fmt::print(
+      "the coordinator needs coordinator.key_secret and the bodies' .key files; a body needs "
+      "coordinator.key and its own .key_secret\n");
+  return 0;
+}
+
 int reference_verb(const ReferenceCommand& command) {
   Reference reference;
   reference.add<Scene>("The scene", "");
@@ -123,6 +133,7 @@ struct Verbs {
   int operator()(const CheckCommand& command) const { return check_verb(command); }
   int operator()(const SplitCommand& command) const { return split_verb(command); }
   int operator()(const InitCommand& command) const { return init_verb(command); }
+  int operator()(const KeygenCommand& command) const { return keygen_verb(command); }
   int operator()(const ReferenceCommand& command) const { return reference_verb(command); }
   int operator()(const ExternalCommand& command) const {
     become_external_verb(command.verb, command.arguments);

@@ -163,6 +163,10 @@ void OutputSpec::fields(Fields& f) {
 void NetworkSpec::fields(Fields& f) {
   f.optional("endpoint", endpoint, "",
              "address at which bodies with launch: connect find the coordinator");
+  f.optional("keys", keys, "",
+             "folder with the keys of coordinator and bodies that abut keygen has made, from the "
+             "scene's own folder: bodies with launch: connect come in with their keys alone, and "
+             "what passes is encrypted; empty: no keys, on this machine alone");
   f.optional("request_deadline", request_deadline, clock_seconds,
              "time without a reply or a sign of progress after which a body is lost",
              patience_rule);
@@ -214,6 +218,8 @@ void Scene::idle_keys(Fields& f) const {
     return std::holds_alternative<ConnectLaunch>(entry.second.launch);
   };
   f.idle(std::none_of(bodies.begin(), bodies.end(), waits), "network.endpoint",
+         "no body has launch: connect");
+  f.idle(std::none_of(bodies.begin(), bodies.end(), waits), "network.keys",
          "no body has launch: connect");
   f.idle(std::all_of(bodies.begin(), bodies.end(), waits), "network.startup_deadline",
          "no body is started by the coordinator");

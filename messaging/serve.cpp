@@ -69,10 +69,12 @@ void Server::greet_when_due(TimePoint begin, Milliseconds patience) {
   if (now - begin >= patience) {
     const std::string foreign =
         foreign_ > 0 ? fmt::format("; {} requests of another session came", foreign_) : "";
-    throw CoordinatorLost(fmt::format("no coordinator has answered body '{}' within {} s{}", name_,
-                                      static_cast<double>(patience.count()) / 1000.0, foreign),
-                          "",
-                          "start `abut run` with the scene that has this body and this endpoint");
+    throw CoordinatorLost(
+        fmt::format("no coordinator has answered body '{}' within {} s{}", name_,
+                    static_cast<double>(patience.count()) / 1000.0, foreign),
+        "",
+        "start `abut run` with the scene that has this body and this endpoint, and keys at "
+        "both ends or at none");
   }
   if (now < next_hello_) return;
   say_hello();

@@ -12,6 +12,7 @@
 
 #include "base/build_info.hpp"
 #include "base/denormals.hpp"
+#include "base/endpoint.hpp"
 #include "base/error.hpp"
 #include "messaging/descriptors.hpp"
 #include "messaging/liveness.hpp"
@@ -48,6 +49,7 @@ struct Command {
   std::string process;  // routing id of a process that several bodies may share
   std::vector<std::string> bodies;
   double patience = 60.0;  // [s]
+  abut::Access access;
 };
 
 void serve_bodies(const Command& command) {
@@ -56,9 +58,16 @@ void serve_bodies(const Command& command) {
   const abut::Milliseconds patience(
       static_cast<abut::Milliseconds::rep>(1000.0 * command.patience));
   abut::require_descriptors(descriptors);
+  const bool open = command.access.keys.empty() && !abut::is_local_endpoint(command.endpoint);
+  if (command.access.insecure && open)
+    std::fputs(
+        fmt::format("warning: --insecure: whoever is at {} can read and answer what is sent\n",
+                    command.endpoint)
+            .c_str(),
+        stderr);
   const bool shared = !command.process.empty();
   abut::ZmqDealer dealer(command.endpoint, shared ? command.process : command.bodies.front(),
-                         limits, command.bodies.size(), abut::Access{{}, true});
+                         limits, command.bodies.size(), command.access);
   abut::CoordinatorLiveness coordinator(dealer, command.endpoint, deadlines);
   Maker maker;
   const abut::MakeBody make = std::ref(maker);
@@ -98,6 +107,11 @@ int main(int argc, char** argv) {
   app.add_option("--patience", command.patience, "time to wait for a coordinator [s]; default 60")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.1, 86'400.0).description(""));
+  app.add_option("--keys", command.access.keys,
+                 "folder with the body's key and the coordinator's public one (abut keygen)")
+      ->type_name("DIR");
+  app.add_flag("--insecure", command.access.insecure,
+               "connect to another machine without keys, on a network that you trust");
   app.set_version_flag("--version", abut::version_text("abut-solver", protocol),
                        "Print version, commit and options of the build, and exit");
   try {

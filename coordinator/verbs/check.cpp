@@ -22,6 +22,7 @@
 #include "coordinator/prediction.hpp"
 #include "coordinator/probed_run.hpp"
 #include "coordinator/solver_processes.hpp"
+#include "coordinator/trust.hpp"
 #include "coordinator/unit_doubts.hpp"
 #include "coordinator/verbs/placed_scene.hpp"
 
@@ -124,6 +125,7 @@ int check_verb(const CheckCommand& command) {
   const Document document = Document::load(command.scene, command.overrides);
   const Scene scene = read_all_keys(document);
   check_processes(scene, document);
+  check_programs(scene, document);
   Estimate estimate;
   {
     const Placement here{nullptr, launch_local(scene, document)};

@@ -29,6 +29,7 @@
 #include "coordinator/record/summary.hpp"
 #include "coordinator/record/vtk_fields.hpp"
 #include "coordinator/solver_processes.hpp"
+#include "coordinator/trust.hpp"
 #include "coordinator/verbs/checkpoints.hpp"
 #include "messaging/lost_body.hpp"
 
@@ -213,7 +214,11 @@ std::string resolved_text(const Scene& scene, const Document& document) {
 RunPlan plan_run(Document document, const RunOptions& options, const Interrupts& interrupts) {
   RunPlan plan{std::move(document), {}, {}, {}};
   plan.scene = read_all_keys(plan.document);
-  if (!options.local) check_processes(plan.scene, plan.document);
+  if (!options.local) {
+    check_processes(plan.scene, plan.document);
+    check_programs(plan.scene, plan.document);
+    check_endpoint(plan.scene, plan.document, options.insecure);
+  }
   plan.placement = place(plan.scene, plan.document, options.local, interrupts.at_once);
   plan.valid = validate_all(plan.scene, plan.document, plan.placement, !options.local);
   return plan;

@@ -24,7 +24,8 @@ struct RunPlan {
 struct RunOptions {
   bool local = false;
   bool quiet = false;
-  Clock::Time began;  // of the program
+  bool insecure = false;  // bodies without keys may come from other machines
+  Clock::Time began;      // of the program
 };
 
 /// Reads a scene, with all stages that follow, and places its bodies. Throws InputError, RunError.

@@ -182,14 +182,14 @@ int main(int argc, char** argv) {
   std::map<std::string, std::string> options;
   for (int i = 1; i + 1 < argc; i += 2) options[argv[i]] = argv[i + 1];
   if (!options.contains("--connect") || !options.contains("--body")) {
-    std::fputs("usage: mass_on_spring --connect ENDPOINT --body NAME\n", stderr);
+    std::fputs("usage: mass_on_spring --connect ENDPOINT --body NAME [--keys DIR]\n", stderr);
     return 2;
   }
   const std::string &endpoint = options["--connect"], &body = options["--body"];
   try {
     const Limits limits;
     const Deadlines deadlines;
-    ZmqDealer dealer(endpoint, body, limits, 1, Access{{}, true});
+    ZmqDealer dealer(endpoint, body, limits, 1, Access{options["--keys"], false});
     CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
     Server server(body, make, dealer, coordinator, limits, deadlines);
     serve(server, Milliseconds(60'000));

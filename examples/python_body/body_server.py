@@ -9,6 +9,7 @@ import time
 
 import xxhash
 import zmq
+import zmq.auth
 from abut.v1 import subdomain_pb2 as pb
 
 EMPTY = {"ping": "pong", "finish": "finished"}  # requests with nothing to say, and their answers
@@ -53,12 +54,19 @@ def execute(body, make, ask, reply):
 
 def serve(make):
     parser = argparse.ArgumentParser()
-    parser.add_argument("--connect", required=True, help="endpoint of the coordinator")
-    parser.add_argument("--body", required=True, help="name of the body in the scene")
+    for name, what in (("--connect", "the coordinator's endpoint"), ("--body", "name of the body")):
+        parser.add_argument(name, required=True, help=what)
+    parser.add_argument("--keys", help="folder with coordinator.key and NAME.key_secret")
     options = parser.parse_args()
     socket = zmq.Context.instance().socket(zmq.DEALER)
-    socket.setsockopt(zmq.ROUTING_ID, options.body.encode())
     socket.setsockopt(zmq.LINGER, 500)
+    if options.keys:  # then the key says which body this is
+        load = zmq.auth.load_certificate
+        socket.curve_serverkey, _ = load(f"{options.keys}/coordinator.key")
+        socket.curve_publickey, socket.curve_secretkey = load(
+            f"{options.keys}/{options.body}.key_secret")
+    else:
+        socket.setsockopt(zmq.ROUTING_ID, options.body.encode())
     lost = socket.get_monitor_socket(zmq.EVENT_DISCONNECTED)
     socket.connect(options.connect)
 
@@ -80,8 +88,8 @@ def serve(make):
         ask = pb.Request.FromString(frame[16:])
         if ask.HasField("refuse") and ask.session in (0, session):
             sys.exit(f"body {options.body} is refused: {ask.refuse.reason}")
-        if ask.session != session:
-            continue  # for a process that had this name before
+        if ask.session != session:  # for a process that had this name before
+            continue
         greeted = True
         if ask.number == 0 or ask.number < executed:
             continue  # Welcome, or answered long ago

@@ -98,7 +98,9 @@ class SystemTest(unittest.TestCase):
         self.temporary = self.folder / "t"
         self.temporary.mkdir()
         self.mark = uuid.uuid4().hex
-        self.environment = {**os.environ, MARK: self.mark, "TMPDIR": str(self.temporary)}
+        self.programs = self.folder / "programs"
+        self.environment = {**os.environ, MARK: self.mark, "TMPDIR": str(self.temporary),
+                            "ABUT_PROGRAMS": str(self.programs)}
         self.leaves_sockets = False  # only what SIGKILL ends may
         self.addCleanup(self.end_what_is_left)
 
@@ -109,6 +111,12 @@ class SystemTest(unittest.TestCase):
         self.assertEqual(left, [], "processes are left behind")
         if not self.leaves_sockets:
             self.assertEqual(list(self.temporary.iterdir()), [], "temporary files are left behind")
+
+    def allow(self, program: object):
+        """Lets scenes start this program."""
+        with self.programs.open("a", encoding="utf-8") as file:
+            file.write(f"{program}\n")
+        self.programs.chmod(0o600)
 
     def marked_after(self, patience: float) -> list:
         """The processes that are still there when the patience is over."""

@@ -144,6 +144,7 @@ class Strangers(FaultTest):
         path = self.folder / "solver"
         path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
         path.chmod(0o755)
+        self.allow(path)
         return path
 
     def assert_start_fails(self, seconds: float, arguments: list, *words: str):
@@ -163,6 +164,7 @@ class Strangers(FaultTest):
             "the solver of body 'right' exited with code 7")
 
     def test_a_program_that_is_not_there_is_named(self):
+        self.allow("/nowhere/solver")
         self.assert_start_fails(
             0.5, launch("right", "spawn: {program: /nowhere/solver}"),
             "cannot start /nowhere/solver: No such file or directory")

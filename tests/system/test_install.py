@@ -301,12 +301,15 @@ class Others(Install):
         self.call(CMAKE, "-S", project, "-B", "build", f"-DCMAKE_PREFIX_PATH={self.prefix}")
         self.call(CMAKE, "--build", "build")
         scene = self.prefix / "share/doc/abut/examples/python_body/bar_meets_mass.yaml"
-        program = self.folder / "build/mass_on_spring"
+        program, listed = self.folder / "build/mass_on_spring", self.folder / "programs"
+        listed.write_text(f"{program}\n", encoding="utf-8")
+        listed.chmod(0o600)
+        mine = {"ABUT_PROGRAMS": str(listed)}
         words = ["--quiet", "--set", f"bodies.mass.launch={{spawn: {{program: {program}}}}}",
                  "--set", "network.endpoint=null"]
-        self.call(self.prefix / "bin/abut", "run", scene, *words)
+        self.call(self.prefix / "bin/abut", "run", scene, *words, **mine)
         said = self.call(self.prefix / "bin/abut", "run", scene, *words, "--out", "other",
-                         "--set", "bodies.mass.model.external.mass=-1", code=2)
+                         "--set", "bodies.mass.model.external.mass=-1", code=2, **mine)
         self.assertIn("bodies.mass.model.external.mass: must be positive", said)
 
     def test_pkg_config_tells_what_to_compile_and_link(self):

@@ -113,6 +113,7 @@ class Placements(SystemTest):
         scene, table = self.folder / "scene.yaml", self.folder / "bars.csv"
         wrapper = self.folder / "solver-without-the-table"
         scene.write_text(THROWN, encoding="utf-8")
+        self.allow(wrapper)
         table.write_text("x, vx\n0.0, 0.1\n0.3, 0.30000000000000004\n", encoding="utf-8")
         wrapper.write_text(f"#!/bin/sh\nrm -f {table}\nexec {SOLVER} \"$@\"\n", encoding="utf-8")
         wrapper.chmod(0o755)
@@ -200,6 +201,7 @@ class Placements(SystemTest):
             f"open('{peak}', 'w').write(str(usage.ru_maxrss))\n"
             "sys.exit(code)\n", encoding="utf-8")
         wrapper.chmod(0o755)
+        self.allow(wrapper)
         folder = self.run_in("measured", TWO_BARS, "--set",
                              f"bodies.left.launch={{spawn: {{program: {wrapper}}}}}")
         resident = int(peak.read_text(encoding="utf-8"))

@@ -109,6 +109,20 @@ class Motion(PythonTest):
             # measured 3.5e-4, first order in the length of an element; the goal is 1e-3
             self.assertLess(error, 1.0e-3, what)
 
+    def test_it_comes_with_a_key_and_nothing_else_changes(self):
+        body = self.body()
+        self.succeed(self.end(self.run_scene()))
+        self.end(body)
+        open_run, self.out = self.out, self.folder / "keyed"
+        keys = self.folder / "keys"
+        self.succeed(self.abut("keygen", keys, "mass"))
+        run = self.run_scene("--set", f"network.keys={keys}")
+        body = self.start(sys.executable, PROGRAM, "--connect", self.endpoint, "--body", "mass",
+                          "--keys", keys)
+        self.succeed(self.end(run))
+        self.succeed(self.end(body))
+        self.assertEqual(self.summary()["state_hash"], self.summary(open_run)["state_hash"])
+
     def test_the_order_of_starting_changes_nothing(self):
         body = self.body()
         time.sleep(0.5)
@@ -153,6 +167,7 @@ class Motion(PythonTest):
         program = self.folder / "program"
         program.write_text(f'#!/bin/sh\nexec {sys.executable} {PROGRAM} "$@"\n', encoding="utf-8")
         program.chmod(0o755)
+        self.allow(program)
         scene = self.scene_with("connect: {}", f"spawn: {{program: {program}}}")
         text = scene.read_text(encoding="utf-8").splitlines()
         scene.write_text("\n".join(line for line in text if not line.startswith("network")),

@@ -31,6 +31,20 @@ TEST(CommandLine, RunWithoutOptionsHasNone) {
   EXPECT_FALSE(run.local || run.quiet || run.force);
 }
 
+TEST(CommandLine, NothingIsOpenToOtherMachinesUnlessSaid) {
+  EXPECT_FALSE(std::get<RunCommand>(parsed({"run", "a.yaml"})).insecure);
+  EXPECT_TRUE(std::get<RunCommand>(parsed({"run", "a.yaml", "--insecure"})).insecure);
+  EXPECT_FALSE(std::get<ResumeCommand>(parsed({"resume", "d"})).insecure);
+  EXPECT_TRUE(std::get<ResumeCommand>(parsed({"resume", "d", "--insecure"})).insecure);
+}
+
+TEST(CommandLine, KeygenTakesAFolderAndBodies) {
+  const KeygenCommand keygen = std::get<KeygenCommand>(parsed({"keygen", "d", "left", "right"}));
+  EXPECT_EQ(keygen.directory, "d");
+  EXPECT_EQ(keygen.bodies, (std::vector<std::string>{"left", "right"}));
+  EXPECT_TRUE(std::get<KeygenCommand>(parsed({"keygen", "d"})).bodies.empty());
+}
+
 TEST(CommandLine, CheckTakesASceneAndOverrides) {
   const CheckCommand check = std::get<CheckCommand>(parsed({"check", "a.yaml", "--set", "a=1"}));
   EXPECT_EQ(check.scene, "a.yaml");
