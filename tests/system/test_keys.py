@@ -163,9 +163,9 @@ class Attacks(KeyTest):
 
         def replay():
             with socket.create_connection(("127.0.0.1", self.port), timeout=5.0) as again:
-                again.sendall(bytes(tape.sent))
                 again.settimeout(0.03)
                 try:
+                    again.sendall(bytes(tape.sent))
                     while again.recv(65536):
                         pass
                 except OSError:
