@@ -35,7 +35,9 @@ void configure(zmq::socket_t& socket, const Limits& limits) {
 
 void set_queues(zmq::socket_t& socket, std::size_t bodies) {
   socket.set(zmq::sockopt::sndhwm, static_cast<int>(64 * bodies));
-  socket.set(zmq::sockopt::rcvhwm, static_cast<int>(16 * bodies));
+  // Without a bound: once a queue is full, libzmq (4.3.4, and later ones) stops reading, takes the
+  // peer's hanging up for nothing, and its next heartbeat to that peer aborts the whole process.
+  socket.set(zmq::sockopt::rcvhwm, 0);
 }
 
 void set_receive_timeout(zmq::socket_t& socket, Milliseconds wait, int& current) {

@@ -17,6 +17,7 @@ namespace abut {
 void configure(zmq::socket_t& socket, const Limits& limits);
 /// Of a connection that so many bodies share; heeded by connections that begin later. One request
 /// is under way per body, with a sign of progress now and then, which whoever waits reads at once.
+/// What arrives is bounded otherwise: of who is unknown, by a ConnectionGuard.
 void set_queues(zmq::socket_t& socket, std::size_t bodies);
 /// `current` [ms]: as it is set now.
 void set_receive_timeout(zmq::socket_t& socket, Milliseconds wait, int& current);

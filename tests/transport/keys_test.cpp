@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/error.hpp"
@@ -248,6 +249,23 @@ TEST_F(KeyedHub, AnotherBodysKeyTakesNoNameAndNoMessage) {
   zmq::message_t stolen;
   EXPECT_FALSE(early.recv(stolen, zmq::recv_flags::dontwait));
   EXPECT_FALSE(late.recv(stolen, zmq::recv_flags::dontwait));
+}
+
+/// libzmq aborts the process by its second heartbeat to whoever has filled a bounded queue and has
+/// hung up: nothing must be left of them then.
+TEST_F(KeyedHub, WhoFillsAQueueThatNobodyReadsAndHangsUpEndsNothing) {
+  const auto left = dealer("left");
+  send(*left, "from left");
+  ASSERT_EQ(hears(left_), "from left");
+  // Twice each: the name is taken, and nobody reads what comes from another one that says it.
+  for (const char* name : {"right", "right", "left", "left", "spare"}) {
+    zmq::socket_t peer = program(name, "right");
+    for (int k = 0; k < 200; ++k) send(peer, std::string(100, 'x'));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(4'500));  // two heartbeats, 2 s each
+  send(*left, "again");
+  EXPECT_EQ(hears(left_), "again");
 }
 
 TEST_F(KeyedHub, WhoComesBackWithTheKeyIsReachedAgain) {
