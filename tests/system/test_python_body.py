@@ -241,7 +241,8 @@ class Faults(PythonTest):
 
     def test_an_endpoint_that_cannot_be_had_is_the_users_error(self):
         self.endpoint = "tcp://192.0.2.1:5555"  # reserved for documentation: no machine's own
-        self.assert_error(self.run_scene(), 2, 10.0, "cannot listen at tcp://192.0.2.1:5555")
+        self.assert_error(self.run_scene("--insecure"), 2, 10.0,
+                          "cannot listen at tcp://192.0.2.1:5555")
 
     def test_a_body_that_dies_in_the_run_is_named(self):
         run, body = self.run_scene(*LONG), self.body()
