@@ -1,6 +1,6 @@
 # The front door. Every target checks what it needs first, skips what is done, and may be run again.
 .DEFAULT_GOAL := help
-.PHONY: help demo build install uninstall package test fuzz bench results extremes robustness reliability clean dependencies-build dependencies-test dependencies-bench dependencies-package
+.PHONY: help demo build install uninstall package test fuzz hostile bench results extremes robustness reliability clean dependencies-build dependencies-test dependencies-bench dependencies-package
 
 PRESET ?= release
 WITH ?=
@@ -17,6 +17,7 @@ help:
 	@echo "make package  Debian packages, in build/$(PRESET)/packages"
 	@echo "make test    every test"
 	@echo "make fuzz SECONDS=600   random scenes of new seeds; what fails is told (docs/ROBUSTNESS.md)"
+	@echo "make hostile SECONDS=60   bytes that mean harm, for every reader of files and messages (clang)"
 	@echo "make bench   the measured figures"
 	@echo "make results   docs/RESULTS.md, measured anew (minutes)"
 	@echo "make extremes  docs/EXTREMES.md, measured anew"
@@ -65,6 +66,13 @@ SECONDS ?= 600
 fuzz: dependencies-test
 	@sh scripts/build.sh tests
 	$(BIN)/abut_fuzz --quiet --table --keep runs/fuzz --seconds $(SECONDS) $$(date +%s)
+
+# Its own preset, by clang, whatever PRESET says.
+hostile:
+	@sh scripts/install_dependencies.sh build hostile
+	@[ -f build/fuzz/build.ninja ] || cmake --preset fuzz >/dev/null
+	@cmake --build build/fuzz --target hostile
+	@sh tests/fuzz/run.sh build/fuzz/bin $(SECONDS)
 
 bench: dependencies-bench
 	@sh scripts/build.sh bench

@@ -104,7 +104,7 @@ class Fields {
       item("<name>", sample);
     }
     for (auto& [name, value] : values) {
-      if constexpr (requires { value.name = name; }) value.name = name;
+      if constexpr (requires(S one, std::string text) { one.name = text; }) value.name = name;
       item(name, value);
     }
     leave();

@@ -12,13 +12,14 @@ bool merge(google::protobuf::MessageLite& message, Bytes payload) {
   return message.MergePartialFromCodedStream(&stream) && stream.ConsumedEntireMessage();
 }
 
-// Kinds whose arrays stay where they are; a case of the oneof is the number of its field.
+// Kinds whose arrays stay where they are, by the number of their field, which a case of the oneof
+// is as well.
 
-bool is_bulk(v1::Request::BodyCase kind) {
-  return kind == v1::Request::kAdvance || kind == v1::Request::kPassiveStep;
+bool is_bulk(const v1::Request&, int field) {
+  return field == v1::Request::kAdvance || field == v1::Request::kPassiveStep;
 }
-bool is_bulk(v1::Reply::BodyCase kind) {
-  return kind == v1::Reply::kAdvanced || kind == v1::Reply::kPassiveStepped;
+bool is_bulk(const v1::Reply&, int field) {
+  return field == v1::Reply::kAdvanced || field == v1::Reply::kPassiveStepped;
 }
 
 void mark(v1::Request& message, v1::Request::BodyCase kind) {
@@ -48,10 +49,9 @@ bool parse_around(Message& message, Bytes payload, Bytes& bulk, typename Message
   try {
     for (WireReader from(payload, path); from.next();) {
       const Bytes here = from.from_here();
-      const auto field = static_cast<typename Message::BodyCase>(from.field());
-      if (is_bulk(field)) {
+      if (is_bulk(message, from.field())) {
         bulk = from.message();
-        kind = field;
+        kind = static_cast<typename Message::BodyCase>(from.field());
         continue;
       }
       from.skip();
@@ -66,8 +66,7 @@ bool parse_around(Message& message, Bytes payload, Bytes& bulk, typename Message
 // Clear() of a oneof would free what it holds; the mark of a kind that comes again and again stays.
 template <class Message>
 bool parse(Message& message, Bytes payload, Bytes& bulk) {
-  const typename Message::BodyCase before = message.body_case();
-  if (is_bulk(before)) {
+  if (is_bulk(message, message.body_case())) {
     clear_beside_body(message);
   } else {
     message.Clear();
@@ -75,9 +74,9 @@ bool parse(Message& message, Bytes payload, Bytes& bulk) {
   typename Message::BodyCase kind = Message::BODY_NOT_SET;
   bulk = {};
   if (!parse_around(message, payload, bulk, kind)) return false;
-  if (is_bulk(kind)) {
+  if (is_bulk(message, kind)) {
     mark(message, kind);
-  } else if (is_bulk(message.body_case())) {
+  } else if (is_bulk(message, message.body_case())) {
     message.clear_body();
   }
   return true;
