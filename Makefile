@@ -86,7 +86,7 @@ robustness: dependencies-test
 	/usr/bin/python3 scripts/robustness_document.py $(BIN)
 
 reliability: build
-	/usr/bin/python3 bench/reliability.py $(BIN) >build/RELIABILITY.md && mv build/RELIABILITY.md docs/
+	/usr/bin/python3 bench/reliability.py $(BIN) >build/RELIABILITY.md; code=$$?; mv build/RELIABILITY.md docs/; exit $$code
 
 clean:
 	rm -rf build
