@@ -25,7 +25,7 @@ bool is_held(FeModel& model, std::size_t massless) {
   const std::vector<double> q(index(model.dofs()), 0.0), history(model.history_size(), 0.0);
   LayerResponse response;
   return model.evaluate_layer(q, history, Model::Want::tangent, response) &&
-         make_small_solver()->factor(response.tangent);
+         make_own_solver()->factor(response.tangent);
 }
 
 }  // namespace

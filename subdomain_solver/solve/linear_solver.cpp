@@ -7,14 +7,14 @@
 #include "base/assert.hpp"
 #include "subdomain_solver/solve/cholmod_solver.hpp"
 #include "subdomain_solver/solve/eigen_solver.hpp"
+#include "subdomain_solver/solve/multifrontal_solver.hpp"
 
 namespace abut {
 
 namespace {
 
 /// Eigen's LDL^T, digit by digit, that keeps the permuted matrix from factorisation to
-/// factorisation and solves in place. Up to 16384 coordinates, whose three lists fit onto the
-/// stack, neither allocates.
+/// factorisation and solves in place. As its lists fit onto the stack, neither allocates.
 class KeptLdlt : public Eigen::SimplicialLDLT<SparseMatrix> {
  public:
   void factorize(const SparseMatrix& matrix) {
@@ -67,8 +67,34 @@ class Ldlt final : public EigenSolver<KeptLdlt> {
   }
 };
 
-/// Supernodal factors while the matrix is positive definite; past a buckling load, for instance,
-/// it is not, and the simplicial LDL^T takes over.
+/// From so many coordinates on fronts cost less than entries one by one, their ordering included
+/// (abut_bench_direct_solvers); below, either takes some milliseconds.
+constexpr Eigen::Index large = 1000;
+
+/// Chosen by the first matrix, as all are of one pattern.
+class BySize final : public LinearSolver {
+ public:
+  explicit BySize(Pivots pivots) : pivots_(pivots) {}
+
+  [[nodiscard]] bool factor(const SparseMatrix& matrix) override {
+    if (chosen_ == nullptr && matrix.rows() < large)
+      chosen_ = std::make_unique<Ldlt>(pivots_);
+    else if (chosen_ == nullptr)
+      chosen_ = make_multifrontal_solver(pivots_);
+    return chosen_->factor(matrix);
+  }
+  [[nodiscard]] bool solve(const Vector& b, Vector& x) override { return chosen_->solve(b, x); }
+  [[nodiscard]] bool solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) override {
+    return chosen_->solve_columns(b, x);
+  }
+
+ private:
+  Pivots pivots_;
+  std::unique_ptr<LinearSolver> chosen_;
+};
+
+/// CHOLMOD's factors while the matrix is positive definite; past a buckling load, for instance, it
+/// is not, and another solver takes over.
 class FirstThatFactors final : public LinearSolver {
  public:
   FirstThatFactors(std::unique_ptr<LinearSolver> quick, Pivots pivots)
@@ -87,7 +113,7 @@ class FirstThatFactors final : public LinearSolver {
 
  private:
   std::unique_ptr<LinearSolver> quick_;
-  Ldlt general_;
+  BySize general_;
   bool definite_ = true;
 };
 
@@ -103,14 +129,14 @@ bool LinearSolver::solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
   return true;
 }
 
-std::unique_ptr<LinearSolver> make_small_solver(Pivots pivots) {
-  return std::make_unique<Ldlt>(pivots);
+std::unique_ptr<LinearSolver> make_own_solver(Pivots pivots) {
+  return std::make_unique<BySize>(pivots);
 }
 
 std::unique_ptr<LinearSolver> make_direct_solver(Pivots pivots) {
   if (std::unique_ptr<LinearSolver> quick = make_cholmod_solver(pivots); quick != nullptr)
     return std::make_unique<FirstThatFactors>(std::move(quick), pivots);
-  return make_small_solver(pivots);
+  return make_own_solver(pivots);
 }
 
 }  // namespace abut

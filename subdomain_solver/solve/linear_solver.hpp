@@ -25,11 +25,11 @@ class LinearSolver {
 /// alone.
 enum class Pivots { with_digits, every, definite };
 
-/// Direct: CHOLMOD when the build has it (docs/adr/0007), Eigen's own LDL^T otherwise and for
-/// matrices that are not positive definite.
+/// Direct: L D L^T, by Eigen of small matrices and by fronts of others (docs/adr/0035); by CHOLMOD
+/// when the build has it and the matrix is positive definite.
 std::unique_ptr<LinearSolver> make_direct_solver(Pivots pivots = Pivots::with_digits);
-/// Eigen's own LDL^T in every build: for small matrices, and where a step may not allocate.
-std::unique_ptr<LinearSolver> make_small_solver(Pivots pivots = Pivots::with_digits);
+/// The same without CHOLMOD in every build: where a step may not allocate.
+std::unique_ptr<LinearSolver> make_own_solver(Pivots pivots = Pivots::with_digits);
 /// Conjugate gradients with incomplete Cholesky factors; for positive definite matrices too large
 /// to factor. `tolerance` is of the residual relative to the right-hand side.
 std::unique_ptr<LinearSolver> make_conjugate_gradients(double tolerance);

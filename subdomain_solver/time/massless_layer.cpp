@@ -37,7 +37,7 @@ MasslessLayer::MasslessLayer(const Problem& problem)
     : problem_(problem), dofs_(problem.model->massless()) {
   if (dofs_.empty()) return;
   const Eigen::Index all = problem.model->dofs();
-  factors_ = make_small_solver();
+  factors_ = make_own_solver();
   unit_.setZero(static_cast<Eigen::Index>(dofs_.size()));
   loads_.setZero(all);  // of jumps, the first of which may come late
   moved_.resize(index(all));

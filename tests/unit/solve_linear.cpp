@@ -1,10 +1,14 @@
-// Goal: direct and iterative solvers of symmetric systems, definite, indefinite and singular.
+// Goal: direct and iterative solvers of symmetric systems, definite, indefinite and singular; the
+// same bits for every width of registers.
 // Oracle: the equation itself.
 #include "subdomain_solver/solve/linear_solver.hpp"
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,6 +17,8 @@
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
+#include "subdomain_solver/solve/front_elimination.hpp"
+#include "subdomain_solver/solve/multifrontal_solver.hpp"
 #include "subdomain_solver/time/problem.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -40,18 +46,29 @@ void expect_solution(LinearSolver& solver, const SparseMatrix& k, double toleran
   EXPECT_LT((k * x - b).norm(), tolerance * b.norm());
 }
 
-TEST(DirectSolver, SolvesDefiniteAndIndefiniteSystemsOfOnePatternInTurn) {
-  const std::unique_ptr<LinearSolver> solver = make_direct_solver();
+/// The direct solver, which small matrices have of Eigen, and that of large ones.
+class DirectSolver : public testing::TestWithParam<bool> {
+ protected:
+  static std::unique_ptr<LinearSolver> make(Pivots pivots = Pivots::with_digits) {
+    return GetParam() ? make_multifrontal_solver(pivots) : make_direct_solver(pivots);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Solve, DirectSolver, testing::Bool(), [](const auto& param) {
+  return param.param ? std::string("ByFronts") : std::string("BySize");
+});
+
+TEST_P(DirectSolver, SolvesDefiniteAndIndefiniteSystemsOfOnePatternInTurn) {
+  const std::unique_ptr<LinearSolver> solver = make();
   // Backward stable: round-off of a residual whose terms are 4 |x|; |x| is up to 500 |b| here.
   expect_solution(*solver, chain(50, 0.0), roundoff(1.0e4, 1.0));
   expect_solution(*solver, chain(50, 1.3), roundoff(1.0e4, 1.0));
   expect_solution(*solver, chain(50, 0.0), roundoff(1.0e4, 1.0));
 }
 
-TEST(DirectSolver, SaysThatASystemIsSingular) {
+TEST_P(DirectSolver, SaysThatASystemIsSingular) {
   SparseMatrix k = chain(4, 0.0);
   for (int i : {0, 3}) k.coeffRef(i, i) = 1.0;  // both ends free
-  const std::unique_ptr<LinearSolver> solver = make_direct_solver();
+  const std::unique_ptr<LinearSolver> solver = make();
   Vector x;
   EXPECT_FALSE(solver->factor(k) && solver->solve(Vector::Ones(4), x));
 }
@@ -69,17 +86,17 @@ SparseMatrix free_stiffness(const std::string& element, const std::array<int, 3>
   return at_rest.tangent;
 }
 
-TEST(DirectSolver, SaysThatAFreeBodyIsSingularHoweverItRounds) {
+TEST_P(DirectSolver, SaysThatAFreeBodyIsSingularHoweverItRounds) {
   for (const std::string element : {"tet4", "tet10", "hex8", "hex20"}) {
     for (const std::array<int, 3> cells : {std::array{1, 1, 1}, {2, 2, 2}, {4, 4, 4}, {40, 1, 1}}) {
-      const std::unique_ptr<LinearSolver> solver = make_direct_solver();
+      const std::unique_ptr<LinearSolver> solver = make();
       EXPECT_FALSE(solver->factor(free_stiffness(element, cells)))
           << element << " " << cells[0] << " " << cells[1];
     }
   }
 }
 
-TEST(DirectSolver, SolvesSlenderBodiesHeldAtOneEnd) {
+TEST_P(DirectSolver, SolvesSlenderBodiesHeldAtOneEnd) {
   // Five hundred cubes in a row: a stiffness of 0.25/500^3 of a cell's at the tip.
   const SparseMatrix all = free_stiffness("hex8", {500, 1, 1});
   std::vector<Prescribed> held;
@@ -90,15 +107,121 @@ TEST(DirectSolver, SolvesSlenderBodiesHeldAtOneEnd) {
   SparseMatrix k;
   free.extract(all, k);
   // Backward stable: round-off of a residual whose terms are k |x|, |x| up to 4 . 500^3 here.
-  expect_solution(*make_direct_solver(), k, roundoff(1.0e10, 1.0));
+  expect_solution(*make(), k, roundoff(1.0e10, 1.0));
 }
 
-TEST(DirectSolver, SaysThatAMatrixIsNotANumber) {
+TEST_P(DirectSolver, SaysThatAMatrixIsNotANumber) {
   SparseMatrix k = chain(4, 0.0);
   k.coeffRef(1, 1) = std::numeric_limits<double>::quiet_NaN();
-  const std::unique_ptr<LinearSolver> solver = make_direct_solver();
+  const std::unique_ptr<LinearSolver> solver = make();
   Vector x;
   EXPECT_FALSE(solver->factor(k) && solver->solve(Vector::Ones(4), x));
+}
+
+TEST_P(DirectSolver, TakesDefiniteMatricesAloneWhereThatIsAsked) {
+  const std::unique_ptr<LinearSolver> solver = make(Pivots::definite);
+  EXPECT_TRUE(solver->factor(chain(50, 0.0)));
+  EXPECT_FALSE(solver->factor(chain(50, 0.1)));  // above the lowest eigenvalues, 0.004 to 0.09
+  EXPECT_TRUE(solver->factor(chain(50, 0.0)));
+}
+
+TEST_P(DirectSolver, SolvesSystemsThatFallApart) {
+  SparseMatrix two(75, 75);  // two chains, and points that nothing joins
+  for (const auto& [first, count] : {std::pair{0, 30}, {30, 40}}) {
+    const SparseMatrix k = chain(count, 0.3);
+    for (int j = 0; j < count; ++j)
+      for (SparseMatrix::InnerIterator at(k, j); at; ++at)
+        two.insert(first + static_cast<int>(at.row()), first + j) = at.value();
+  }
+  for (int j = 70; j < 75; ++j) two.insert(j, j) = 1.0 + j;
+  two.makeCompressed();
+  // |x| is below 100 |b|, as the eigenvalues are 0.01 and more from zero.
+  expect_solution(*make(), two, roundoff(1.0e3, 1.0));
+  SparseMatrix points = two.block(70, 70, 5, 5);
+  points.makeCompressed();
+  expect_solution(*make(), points, roundoff(10.0, 1.0));  // a division each
+}
+
+/// A square (edge, edge) of points, each joined to its eight neighbours, with numbers of all signs.
+SparseMatrix grid_of_numbers(int edge) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto number = [](int i, int j) { return std::sin(1.0 + 7.0 * (i + j) + 0.1 * (i * j)); };
+  for (int i = 0; i < edge * edge; ++i)
+    for (int j = 0; j < edge * edge; ++j)
+      if (std::abs(i / edge - j / edge) <= 1 && std::abs(i % edge - j % edge) <= 1)
+        entries.emplace_back(i, j, number(i, j) + (i == j ? (i % 3 == 0 ? -19.0 : 19.0) : 0.0));
+  SparseMatrix out(edge * edge, edge * edge);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+TEST(Fronts, SolveLargeIndefiniteSystemsToTheSameBitsEveryTime) {
+  const SparseMatrix k = grid_of_numbers(60);
+  const Vector b = Vector::LinSpaced(k.rows(), -1.0, 2.0);
+  Vector first, again;
+  const std::unique_ptr<LinearSolver> one = make_multifrontal_solver(Pivots::with_digits);
+  ASSERT_TRUE(one->factor(k) && one->solve(b, first));
+  // Backward stable but for growth: rows dominate, so that pivots stay above 10 and
+  // |x| is below |b| / 10; sums of nine terms.
+  EXPECT_LT((k * first - b).norm(), roundoff(100.0, 1.0) * b.norm());
+  ASSERT_TRUE(one->factor(grid_of_numbers(60)) && one->solve(b, again));
+  EXPECT_EQ(first, again);
+  const std::unique_ptr<LinearSolver> other = make_multifrontal_solver(Pivots::every);
+  ASSERT_TRUE(other->factor(k) && other->solve(b, again));
+  EXPECT_EQ(first, again);
+  Eigen::MatrixXd columns(k.rows(), 2), answers;
+  columns << b, 2.0 * b;
+  ASSERT_TRUE(one->solve_columns(columns, answers));
+  EXPECT_LT((k * answers - columns).norm(), roundoff(100.0, 1.0) * columns.norm());
+}
+
+/// A front whose columns dominate, with edges that no tile of any width fits.
+struct TestFront {
+  static constexpr std::ptrdiff_t rows = 421, columns = 303, rest = rows - columns;
+  std::vector<double> block, left, space;
+  TestFront() : block(rows * columns), left(rest * rest), space(elimination_space(rows, columns)) {
+    for (std::size_t k = 0; k < block.size(); ++k)
+      block[k] = std::sin(0.7 * static_cast<double>(k));
+    for (std::ptrdiff_t j = 0; j < columns; ++j)
+      block[index(j * (rows + 1))] = j % 2 == 0 ? 500.0 : -500.0;
+    for (std::size_t k = 0; k < left.size(); ++k) left[k] = std::cos(0.3 * static_cast<double>(k));
+  }
+  bool eliminate_by(Eliminate& by) {
+    return by({block.data(), rows, columns, rows}, {left.data(), rest, rest, rest}, space.data());
+  }
+};
+
+TEST(Fronts, HaveTheSameBitsForEveryWidthOfRegisters) {
+  TestFront generic, here;
+  ASSERT_TRUE(generic.eliminate_by(eliminate_generic));
+  ASSERT_TRUE(here.eliminate_by(eliminate_here()));
+  using Front = TestFront;
+  for (std::ptrdiff_t j = 0; j < Front::columns; ++j)
+    for (std::ptrdiff_t i = j; i < Front::rows; ++i)
+      ASSERT_EQ(generic.block[index(i + j * Front::rows)], here.block[index(i + j * Front::rows)]);
+  for (std::ptrdiff_t j = 0; j < Front::rest; ++j)
+    for (std::ptrdiff_t i = j; i < Front::rest; ++i)
+      ASSERT_EQ(generic.left[index(i + j * Front::rest)], here.left[index(i + j * Front::rest)]);
+}
+
+TEST(Fronts, LeaveWhatEliminationLeaves) {
+  TestFront front;
+  const auto entry = [&front](std::ptrdiff_t i, std::ptrdiff_t j) {
+    return front.block[index(i + j * TestFront::rows)];
+  };
+  const std::vector<double> before = front.block, rest = front.left;
+  ASSERT_TRUE(front.eliminate_by(eliminate_here()));
+  // L D L^T is the matrix again: sums of up to 303 products that add up to 500.
+  for (const auto& [i, j] : {std::pair{0, 0}, {302, 302}, {420, 302}, {257, 256}, {420, 0}}) {
+    double sum = 0.0;
+    for (std::ptrdiff_t k = 0; k <= j; ++k)
+      sum += (k == i ? 1.0 : entry(i, k)) * entry(k, k) * (k == j ? 1.0 : entry(j, k));
+    EXPECT_NEAR(sum, before[index(i + j * TestFront::rows)], roundoff(500.0, 303.0));
+  }
+  double left = rest[index(TestFront::rest - 1)];  // last row, first column
+  for (std::ptrdiff_t k = 0; k < TestFront::columns; ++k)
+    left -= entry(420, k) * entry(k, k) * entry(303, k);
+  EXPECT_NEAR(front.left[index(TestFront::rest - 1)], left, roundoff(500.0, 303.0));
 }
 
 TEST(LinearSolvers, SolveManyRightHandSidesAtOnce) {

@@ -3,8 +3,7 @@
 // and loaded. Oracle: a count of malloc.
 //
 // Not claimed: conjugate gradients and CHOLMOD, which make their own vectors in every solve (cases
-// with a sparse solver are left out where the build has CHOLMOD); bodies of more than 16384 free
-// coordinates, for which Eigen's factorisation takes three lists from the heap.
+// with a sparse solver are left out where the build has CHOLMOD).
 
 #include <algorithm>
 #include <atomic>

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+
+namespace abut {
+
+/// A dense matrix, column by column; `stride` from column to column.
+struct DenseView {
+  double* values = nullptr;
+  std::ptrdiff_t rows = 0, columns = 0, stride = 0;
+  double* at(std::ptrdiff_t row, std::ptrdiff_t column) const {
+    return values + row + column * stride;
+  }
+};
+
+/// Numbers that an elimination works with beside a front of so many rows and columns.
+constexpr std::size_t elimination_space(std::size_t rows, std::size_t columns) {
+  return rows * columns + 32'768 + 4'096;
+}
+
+/// Eliminates the columns of a front by L D L^T without exchanges: `block` (rows, columns) becomes
+/// the unit lower trapezoid L with D on its diagonal, and L D L^T of the rows below its columns is
+/// taken from the lower half of `rest` (rows - columns, squared). What stands above the diagonals
+/// is undefined. False: a pivot is nothing, or not a number.
+///
+/// The same source for every width of registers; all give the same bits, as every entry loses its
+/// products one by one in their order.
+using Eliminate = bool(DenseView block, DenseView rest, double* space);
+Eliminate eliminate_generic, eliminate_avx2, eliminate_avx512;
+
+/// That of this machine.
+Eliminate& eliminate_here();
+
+}  // namespace abut

@@ -1,0 +1,193 @@
+#include "subdomain_solver/solve/multifrontal_solver.hpp"
+
+#include <algorithm>
+
+#include "base/assert.hpp"
+#include "base/index.hpp"
+#include "subdomain_solver/solve/eigen_solver.hpp"
+#include "subdomain_solver/solve/front_elimination.hpp"
+#include "subdomain_solver/solve/fronts.hpp"
+
+namespace abut {
+
+Eliminate& eliminate_here() {
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("x86-64-v4")) return eliminate_avx512;
+  if (__builtin_cpu_supports("x86-64-v3")) return eliminate_avx2;
+#endif
+  return eliminate_generic;
+}
+
+namespace {
+
+using Block = Eigen::Map<Eigen::MatrixXd>;
+
+DenseView view(Block& of) { return {of.data(), of.rows(), of.cols(), of.rows()}; }
+
+class Multifrontal final : public LinearSolver {
+ public:
+  explicit Multifrontal(Pivots pivots) : pivots_(pivots) {}
+
+  [[nodiscard]] bool factor(const SparseMatrix& matrix) override {
+    if (entries_ < 0) analyse(matrix);
+    ABUT_ASSERT(entries_ == matrix.nonZeros());
+    const double* entries = matrix.valuePtr();
+    std::ranges::fill(values_, 0.0);
+    for (std::size_t k = 0; k < from_.size(); ++k) values_[to_[k]] = entries[from_[k]];
+    waiting_.clear();
+    std::size_t top = 0;
+    for (const Front& front : fronts_.list)
+      if (!eliminate_front(front, top)) return false;
+    return pivots_hold(matrix);
+  }
+
+  [[nodiscard]] bool solve(const Vector& b, Vector& x) override {
+    work_.resize(b.size());
+    for (Eigen::Index k = 0; k < b.size(); ++k) work_(k) = b(fronts_.order[k]);
+    solve_permuted(work_, below_);
+    x.resize(b.size());
+    for (Eigen::Index k = 0; k < b.size(); ++k) x(fronts_.order[k]) = work_(k);
+    return x.allFinite();
+  }
+  [[nodiscard]] bool solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) override {
+    Eigen::MatrixXd permuted = b(fronts_.order, Eigen::all), below;
+    solve_permuted(permuted, below);
+    x.resize(b.rows(), b.cols());
+    x(fronts_.order, Eigen::all) = permuted;
+    return x.allFinite();
+  }
+
+ private:
+  void analyse(const SparseMatrix& matrix) {
+    ABUT_ASSERT(matrix.isCompressed());
+    entries_ = matrix.nonZeros();
+    fronts_ = find_fronts(matrix);
+    values_.resize(fronts_.values);
+    stack_.resize(fronts_.stack);
+    rest_.resize(fronts_.largest_rest);
+    space_.resize(fronts_.space);
+    find_places(matrix);
+  }
+
+  /// Where each entry of the lower half goes.
+  void find_places(const SparseMatrix& matrix) {
+    std::vector<int> place(fronts_.order.size()), row(fronts_.order.size(), -1);
+    for (std::size_t k = 0; k < place.size(); ++k) place[fronts_.order[k]] = static_cast<int>(k);
+    for (const Front& front : fronts_.list) {
+      for (int k = 0; k < front.rows; ++k) row[fronts_.rows[front.list + index(k)]] = k;
+      for (int c = 0; c < front.columns; ++c) {
+        const int column = fronts_.order[front.first + c];
+        for (int k = matrix.outerIndexPtr()[column]; k < matrix.outerIndexPtr()[column + 1]; ++k) {
+          const int at = place[index(matrix.innerIndexPtr()[k])];
+          if (at < front.first + c) continue;
+          from_.push_back(k);
+          to_.push_back(front.values + index(c) * index(front.rows) + index(row[at]));
+        }
+      }
+    }
+  }
+
+  Block block_of(const Front& front) {
+    return {values_.data() + front.values, front.rows, front.columns};
+  }
+
+  bool eliminate_front(const Front& front, std::size_t& top) {
+    Block block = block_of(front), rest(rest_.data(), front.rest(), front.rest());
+    rest.setZero();
+    for (int child = 0; child < front.children; ++child) {
+      const Front& from = *waiting_.back();
+      waiting_.pop_back();
+      top -= index(from.rest()) * index(from.rest());
+      add(from, stack_.data() + top, block, rest);
+    }
+    if (!eliminate_(view(block), view(rest), space_.data())) return false;
+    if (front.rest() == 0) return true;
+    waiting_.push_back(&front);
+    std::ranges::copy_n(rest_.data(), rest.size(), stack_.data() + top);
+    top += index(rest.size());
+    return true;
+  }
+
+  /// The rest of a child, to its parent's columns and rest.
+  void add(const Front& from, const double* values, Block& block, Block& rest) const {
+    const int n = from.rest(), columns = static_cast<int>(block.cols());
+    const int* place = fronts_.in_parent.data() + from.list + from.columns;
+    for (int c = 0; c < n; ++c) {
+      const double* value = values + static_cast<std::ptrdiff_t>(c) * n;
+      if (place[c] < columns) {
+        double* to = &block(0, place[c]);
+        for (int k = c; k < n; ++k) to[place[k]] += value[k];
+      } else {
+        double* to = rest.data() + (place[c] - columns) * rest.rows() - columns;
+        for (int k = c; k < n; ++k) to[place[k]] += value[k];
+      }
+    }
+  }
+
+  bool pivots_hold(const SparseMatrix& matrix) {
+    if (pivots_ == Pivots::every) return true;
+    for (const Front& front : fronts_.list) {
+      const Block block = block_of(front);
+      for (int c = 0; c < front.columns; ++c) {
+        const int at = fronts_.order[front.first + c];
+        const double pivot = block(c, c);
+        const bool holds = pivots_ == Pivots::definite
+                               ? pivot > 0.0
+                               : pivot_holds(pivot, matrix.coeff(at, at), matrix.cols());
+        if (!holds) return false;
+      }
+    }
+    return true;
+  }
+
+  /// x (n) or (n, k) in the order of the elimination: the right side, and the answer.
+  template <class Columns>
+  void solve_permuted(Columns& x, Columns& gathered) {
+    gathered.resize(static_cast<Eigen::Index>(fronts_.longest), x.cols());
+    for (const Front& front : fronts_.list) {
+      const Block block = block_of(front);
+      auto own = x.middleRows(front.first, front.columns);
+      auto below = gathered.topRows(front.rest());
+      block.topRows(front.columns).template triangularView<Eigen::UnitLower>().solveInPlace(own);
+      below.noalias() = block.bottomRows(front.rest()) * own;
+      const int* row = fronts_.rows.data() + front.list + front.columns;
+      for (Eigen::Index c = 0; c < x.cols(); ++c)
+        for (int k = 0; k < front.rest(); ++k) x(row[k], c) -= below(k, c);
+    }
+    for (auto front = fronts_.list.rbegin(); front != fronts_.list.rend(); ++front) {
+      const Block block = block_of(*front);
+      auto own = x.middleRows(front->first, front->columns);
+      auto below = gathered.topRows(front->rest());
+      for (int c = 0; c < front->columns; ++c) own.row(c) /= block(c, c);
+      const int* row = fronts_.rows.data() + front->list + front->columns;
+      for (Eigen::Index c = 0; c < x.cols(); ++c)
+        for (int k = 0; k < front->rest(); ++k) below(k, c) = x(row[k], c);
+      own.noalias() -= block.bottomRows(front->rest()).transpose() * below;
+      block.topRows(front->columns)
+          .template triangularView<Eigen::UnitLower>()
+          .transpose()
+          .solveInPlace(own);
+    }
+  }
+
+  Pivots pivots_;
+  Fronts fronts_;
+  Eigen::Index entries_ = -1;    // of the matrix
+  std::vector<int> from_;        // of its lower half, in the order of elimination
+  std::vector<std::size_t> to_;  // among the values
+  std::vector<double> values_;   // of the factor
+  std::vector<double> stack_;    // rests that wait for their parents
+  std::vector<const Front*> waiting_;
+  std::vector<double> rest_;
+  std::vector<double> space_;
+  Eliminate& eliminate_ = eliminate_here();
+  Vector work_, below_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_multifrontal_solver(Pivots pivots) {
+  return std::make_unique<Multifrontal>(pivots);
+}
+
+}  // namespace abut
