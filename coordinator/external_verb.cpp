@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -16,6 +17,17 @@ std::string program_folder() {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   return error ? std::string() : self.parent_path().string() + '/';
+}
+
+void offer_python_package() {
+  std::error_code error;
+  const std::filesystem::path package =
+      std::filesystem::weakly_canonical(program_folder() + "../share/abut/python", error);
+  if (error || !std::filesystem::is_directory(package, error)) return;
+  // Behind what the user names: a package of somebody else is theirs to choose.
+  const char* named = std::getenv("PYTHONPATH");
+  const bool several = named != nullptr && *named != '\0';
+  setenv("PYTHONPATH", ((several ? std::string(named) + ':' : "") + package.string()).c_str(), 1);
 }
 
 void become_external_verb(const std::string& verb, const std::vector<std::string>& arguments) {

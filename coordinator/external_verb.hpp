@@ -13,4 +13,7 @@ namespace abut {
 /// Folder of this program, with a slash at its end; empty when the system does not tell.
 std::string program_folder();
 
+/// Programs that this one starts find the Python package `abut` of this installation (PYTHONPATH).
+void offer_python_package();
+
 }  // namespace abut

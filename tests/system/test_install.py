@@ -313,6 +313,16 @@ class Others(Install):
                          "--set", "bodies.mass.model.external.mass=-1", code=2, **mine)
         self.assertIn("bodies.mass.model.external.mass: must be positive", said)
 
+    def test_a_solver_in_python_finds_its_package_and_runs(self):
+        self.install(self.prefix)
+        example = self.folder / "copy"
+        shutil.copytree(self.prefix / "share/doc/abut/examples/python_body", example)
+        abut, there = self.prefix / "bin/abut", {"PYTHONDONTWRITEBYTECODE": "1"}
+        self.call(abut, "run", "plates.yaml", "--quiet", cwd=example, **there)
+        self.call(abut, "run", "bar_meets_mass.yaml", "--quiet", "--set", "network.endpoint=null",
+                  "--set", "bodies.mass.launch={spawn: {program: ./mass_on_spring.py}}",
+                  cwd=example, **there)
+
     def test_pkg_config_tells_what_to_compile_and_link(self):
         if "sanitizers" in self.call(ABUT, "--version"):
             self.skipTest("its program would have to be built with the same sanitizers")
