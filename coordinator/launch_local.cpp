@@ -201,12 +201,13 @@ std::vector<std::unique_ptr<Subdomain>> launch_local(const Scene& scene, const D
     if (interrupted != nullptr && interrupted->load())
       throw RunError("interrupted while a body was advancing", "", "start the run again");
   };
-  for (const auto& [name, entry] : scene.bodies) {
-    if (entry.external) {
+  for (const auto& body : scene.bodies) {
+    if (body.second.external) {
       bodies.push_back(nullptr);
     } else {
-      errors.gather(
-          [&] { bodies.push_back(make_body(document, path_of(name), entry.context, progress)); });
+      errors.gather([&] {
+        bodies.push_back(make_body(document, path_of(body.first), body.second.context, progress));
+      });
     }
   }
   errors.raise();

@@ -124,7 +124,8 @@ void Narrator::lowered_step(const Joint& joint, double time, double limit) {
 
 void Narrator::overlap(const Overlap& overlap, std::span<const Joint> joints) {
   const auto [a, b] = overlap.body;
-  const auto joint = std::ranges::find_if(joints, [a, b](const Joint& j) {
+  const auto joint = std::ranges::find_if(joints, [&overlap](const Joint& j) {
+    const auto [a, b] = overlap.body;
     return std::minmax(j.sides[0].body, j.sides[1].body) == std::pair<const int&, const int&>(a, b);
   });
   std::string advice = "no interface joins them: give one, or contact: {everything: {}}";

@@ -88,7 +88,8 @@ RowBody body_of(const Mesh& mesh, const fs::path& file, std::vector<std::string>
     body.ports.emplace_back(fresh_name(side, ports), side);
     ports.push_back(body.ports.back().first);
   }
-  for (const auto& [name, nodes] : mesh.node_sets) {
+  for (const auto& set : mesh.node_sets) {
+    const std::string& name = set.first;
     const auto block = [&name](const CellBlock& one) { return one.name == name; };
     if (!mesh.sides.contains(name) && std::none_of(mesh.blocks.begin(), mesh.blocks.end(), block))
       body.node_sets.push_back(name);

@@ -158,8 +158,8 @@ void PassiveWay::note_pressed() {
 }
 
 bool PassiveWay::pressed(const Joint& joint) const {
-  const auto& [a, b] = joint.sides;
-  return std::ranges::any_of(pressed_, [&](const std::array<int, 4>& pair) {
+  return std::ranges::any_of(pressed_, [&joint](const std::array<int, 4>& pair) {
+    const auto& [a, b] = joint.sides;
     return pair == std::array{a.body, a.port, b.body, b.port} ||
            pair == std::array{b.body, b.port, a.body, a.port};
   });

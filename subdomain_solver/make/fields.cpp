@@ -44,8 +44,9 @@ std::vector<std::unique_ptr<Load>> all_loads(const BodySpec& spec, const Place& 
                                              const FeModel& model, const Make& body_force) {
   std::vector<std::unique_ptr<Load>> loads;
   const int dim = model.mesh().dim;
-  for (const auto& [name, load] : spec.loads) {
-    const std::string key = "loads." + name;
+  for (const auto& entry : spec.loads) {
+    const auto& load = entry.second;
+    const std::string key = "loads." + entry.first;
     named(place, key + ".on", [&] {
       if (!load.on.empty()) (void)model.mesh().side(load.on);
       return 0;

@@ -121,7 +121,8 @@ std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Pla
                                                  const Mesh& mesh) {
   std::vector<SolidInterior::PortNodes> ports;
   for (const auto& [name, port] : spec.ports) {
-    named(place, "ports." + name + ".side", [&] { return mesh.nodes_of(port.side); });
+    const std::string& side = port.side;
+    named(place, "ports." + name + ".side", [&] { return mesh.nodes_of(side); });
     const int end = mesh.dim == 1 ? spec.end_of(port.side) : -1;  // by a point's name too
     const PortRole role = spec.context.role(name);
     const bool touched = mesh.dim == 1 ? !port.tied : role.touches;

@@ -23,9 +23,10 @@ from abut_tools import study_file  # noqa: E402
 from abut_tools.tables import ToolError  # noqa: E402
 
 VALUES = ("[]", "{}", "null", "-1", "0", "1e999", "-.5", "~", "''", "'*'", "true", "[1, [2]]",
-          "{a: 1}", "&a [*a]", "!!python/name:os.system", "../../../etc/passwd", "1_0", "0x1F", "{", "]", "|",
-          "2001-01-01", "1:30", "é\u2028", "9" * 400, "a.b[3].c", "{from: 1, to: 0, count: -1}",
-          "[[[[[[[[]]]]]]]]", "? x", "<<: {}", "nan", "(" * 2000, "1/0", "a**9**9**9")
+          "{a: 1}", "&a [*a]", "!!python/name:os.system", "../../../etc/passwd", "1_0", "0x1F",
+          "{", "]", "|", "2001-01-01", "1:30", "é\u2028", "9" * 400, "a.b[3].c",
+          "{from: 1, to: 0, count: -1}", "[[[[[[[[]]]]]]]]", "? x", "<<: {}", "nan", "(" * 2000,
+          "1/0", "a**9**9**9")
 
 
 def changed(text: str, rng: random.Random) -> str:
