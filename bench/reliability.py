@@ -63,6 +63,14 @@ class Runs:
         return "" if one["state_hash"] == other["state_hash"] else "state hash"
 
 
+def completed(out: Path) -> bool:
+    try:
+        summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return summary["status"] == "completed"
+
+
 def children(pid: int) -> list:
     try:
         text = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8")
@@ -101,6 +109,8 @@ def trial(runs: Runs, kind: str, rng: random.Random) -> tuple:
         if code not in (-signal.SIGKILL, 3):
             return ended, f"exit code {code}"
         ended += 1
+        if completed(out):  # killed after it had told of its end
+            return ended, runs.differs(out)
         if any((out / name).is_file() for name in ("checkpoint.abut", "checkpoint.before.abut")):
             words = ("resume", out)
         else:  # ended before the first checkpoint
