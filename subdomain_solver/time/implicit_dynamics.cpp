@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/assert.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
@@ -20,18 +21,14 @@ class ImplicitDynamics::Balance final : public Equations {
         end_(time + dt),
         dt_(dt) {
     const auto q = view(motion.q), v = view(motion.v), a = view(motion.a);
-    b_.a = a;
     if (o_.sums()) {  // for no acceleration
       b_.q_start = q + dt * v;
       b_.v_start = v;
-      b_.a *= 2.0;
     } else {  // for none at the end
       b_.q_start = q + dt * v + (0.5 - w_.beta) * dt * dt * a;
       b_.v_start = v + (1.0 - w_.gamma) * dt * a;
     }
-    follow_supports();
-    // Factors of another state would leave their rounding in contact's turns.
-    if (!o_.problem_.model->is_linear()) o_.factored_dt_ = 0.0;
+    kept_ = o_.remember(motion, dt);
     see_past(time);
   }
 
@@ -48,15 +45,26 @@ class ImplicitDynamics::Balance final : public Equations {
   }
 
   Vector& first_guess() {
+    b_.a = (o_.sums() ? 2.0 : 1.0) * view(motion_.a);
+    follow_supports();
     o_.free_.pick(b_.a, b_.x);
     return b_.x;
   }
 
+  /// Whether corrections are by factors of an earlier state, and another solve begins with them.
+  bool kept() const { return kept_; }
+  void begin_solve() { last_ = std::numeric_limits<double>::infinity(); }
+
   /// Where Newton's method got nowhere: nodes without mass keep no acceleration, so under large
   /// ones of the others the first guess may strain or invert their cells. As if there were none at
-  /// all, and then where the step began. False: all were tried.
-  [[nodiscard]] bool guess_again() {
-    if (guesses_ == 2) return false;
+  /// all, and then where the step began; before all that, by factors of its own. False: all were
+  /// tried.
+  [[nodiscard]] bool guess_again(int turn) {
+    if (std::exchange(kept_, false)) {
+      first_guess();
+      return true;
+    }
+    if (turn > 0 || guesses_ == 2) return false;
     if (++guesses_ == 1) {
       b_.a.setZero();
     } else {
@@ -93,8 +101,12 @@ class ImplicitDynamics::Balance final : public Equations {
   }
 
   [[nodiscard]] bool correct(const Vector& r, Vector& dx) override {
-    const bool kept = o_.problem_.model->is_linear() && o_.factored_dt_ == dt_;
-    if (!kept && !factor()) return false;
+    // Where factors of another state lead on too slowly, those of this one do.
+    const double size = r.norm();
+    kept_ = kept_ && size <= enough_ * last_;
+    last_ = size;
+    const bool linear = o_.problem_.model->is_linear() && o_.factored_dt_ == dt_;
+    if (!linear && !(kept_ ? o_.factor_remembered() : factor())) return false;
     if (!o_.solver_->solve(r, dx)) return false;
     dx = -dx;
     return true;
@@ -109,18 +121,13 @@ class ImplicitDynamics::Balance final : public Equations {
       load->add_tangent(end_, q, here.tangent);
     const SparseMatrix& whole = o_.whole_.of(
         1.0 - w_.alpha_m, o_.mass_, (1.0 - w_.alpha_f) * w_.beta * dt_ * dt_, here.tangent);
-    o_.free_.extract(whole, o_.matrix_);
-    o_.factored_dt_ = 0.0;
-    if (!o_.solver_->factor(o_.matrix_)) return false;
-    o_.factored_dt_ = dt_;
-    o_.contact_.forget();
-    return true;
+    return o_.factor(whole, dt_);
   }
 
   /// Contact forces for where the balance without change of them has led. False: there are none.
   [[nodiscard]] bool press(Vector& x, int turn, double& change) {
-    if (o_.factored_dt_ != dt_ && !factor()) return false;
-    o_.contact_.weigh(1.0 - w_.alpha_f, w_.beta * dt_ * dt_);
+    if (kept_ ? !o_.factor_remembered() : o_.factored_dt_ != dt_ && !factor()) return false;
+    o_.contact_.weigh(1.0 - w_.alpha_f, w_.beta * o_.factored_dt_ * o_.factored_dt_);
     return o_.contact_.press(end_, b_.q, turn, x, change);
   }
 
@@ -137,6 +144,10 @@ class ImplicitDynamics::Balance final : public Equations {
     motion.dissipated += b_.response.dissipation;
     motion.stored = b_.response.stored;
     motion.history = b_.response.history;
+    if (o_.keeps_factors()) {  // those that led too slowly are forgotten
+      motion.control.clear();
+      if (kept_) motion.control = o_.remembered_;
+    }
     store(b_.q, motion.q);
     store(b_.v, motion.v);
     if (o_.sums()) b_.a *= 0.5;
@@ -182,6 +193,9 @@ class ImplicitDynamics::Balance final : public Equations {
   const Motion& motion_;
   double end_, dt_;
   int guesses_ = 0;  // beside the first
+  bool kept_ = false;
+  double last_ = 0.0;                     // [N] residual before the last correction of this solve
+  static constexpr double enough_ = 0.1;  // of it may be left by factors of another state
 };
 
 /// A tangent tells how bodies go on that are not linear and keep no accelerations.
@@ -308,9 +322,15 @@ NewtonReport ImplicitDynamics::solve(Balance& balance, const Motion& motion) {
   for (int turn = 0;; ++turn) {
     NewtonReport report;
     do {
+      balance.begin_solve();
       report = solve_newton(balance, x, options_.newton, buffers_.newton);
       iterations_ += report.iterations;
-    } while (!report.converged() && turn == 0 && balance.guess_again());
+    } while (!report.converged() && balance.guess_again(turn));
+    // Newton's own last correction leaves far less than is asked for; these do after another one.
+    if (report.converged() && balance.kept() && report.iterations > 0) {
+      balance.begin_solve();
+      report = solve_newton(balance, x, options_.newton, buffers_.newton);
+    }
     if (!report.converged() || problem_.contact == nullptr) return report;
     double change = 0.0;
     if (!balance.press(x, turn, change)) return {NewtonReport::End::singular};

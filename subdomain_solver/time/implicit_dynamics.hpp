@@ -19,6 +19,10 @@ namespace abut {
 /// of linear models. Unknowns are accelerations, so that small steps lose nothing to round-off.
 /// Coordinates without mass take part as they are; contact presses with a force of the step's end
 /// [M.87]. A step allocates nothing itself once its buffers have grown.
+///
+/// Large bodies that are not linear are corrected by factors of an earlier state as long as these
+/// lead on quickly. Which state that was is told by the motion (control): a body that is rewound,
+/// or resumed, makes the same factors again.
 class ImplicitDynamics final : public Integrator, private Inertia, private Foreseeing {
  public:
   /// What the scheme does with accelerations between steps, where forces may jump.
@@ -36,6 +40,9 @@ class ImplicitDynamics final : public Integrator, private Inertia, private Fores
     MassForm mass = MassForm::consistent;
     NewtonOptions newton;
     Accelerations accelerations = Accelerations::balanced;
+    // Free coordinates from which on factors serve for many steps, of laws without history. Below,
+    // a factorisation is cheap.
+    int keeps_from = 1000;
   };
 
   ImplicitDynamics(const Problem& problem, const Options& options,
@@ -67,6 +74,11 @@ class ImplicitDynamics final : public Integrator, private Inertia, private Fores
   };
   [[nodiscard]] bool hold_tangent(const Motion& motion, double time, double dt);
 
+  bool keeps_factors() const;
+  bool remember(const Motion& motion, double dt);
+  [[nodiscard]] bool factor_remembered();
+  [[nodiscard]] bool factor(const SparseMatrix& whole, double dt);
+
   struct MassBuffers {  // of what is asked for between steps
     Vector force, acceleration, free, rest, answer;
   };
@@ -84,6 +96,8 @@ class ImplicitDynamics final : public Integrator, private Inertia, private Fores
   MatrixSum whole_;
   SparseMatrix matrix_;  // of the free coordinates
   double factored_dt_ = 0.0;
+  const Model* factored_model_ = nullptr;
+  std::vector<double> remembered_, factored_;  // step [s], coordinates [m]; empty: others
   Buffers buffers_;
   mutable MassBuffers of_mass_;
   mutable std::unique_ptr<LinearSolver> mass_solver_;  // of the free coordinates, when needed
