@@ -104,6 +104,8 @@ class FirstHour(SystemTest):
             if path.is_file():
                 shutil.copy(path, self.folder)
         self.environment["PYTHONDONTWRITEBYTECODE"] = "1"
+        for program in ("floating.py", "my_body.py"):
+            self.allow(self.folder / program)
         self.assertEqual(self.follow("docs/SOLVER.md"), 2)
         measures = self.summary(self.folder / "runs" / "floating")["measures"]
         self.assertLess(measures["momentum.total"], 1.0e-12)  # round-off
