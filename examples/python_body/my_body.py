@@ -13,8 +13,6 @@ The order of calls, and which part of yours belongs where:
     save(), restore()             the attributes that `state` names: everything that step() changes!
                                   A window comes again with other forces until both bodies agree
     node_fields()                 what pictures show
-
-`abut conformance` says whether it keeps to what the others rely on.
 """
 
 import numpy as np
