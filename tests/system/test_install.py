@@ -317,7 +317,10 @@ class Others(Install):
         self.install(self.prefix)
         example = self.folder / "copy"
         shutil.copytree(self.prefix / "share/doc/abut/examples/python_body", example)
-        abut, there = self.prefix / "bin/abut", {"PYTHONDONTWRITEBYTECODE": "1"}
+        for program in ("my_body.py", "mass_on_spring.py"):
+            self.allow(example / program)
+        abut, there = self.prefix / "bin/abut", {"PYTHONDONTWRITEBYTECODE": "1",
+                                                 "ABUT_PROGRAMS": str(self.programs)}
         self.call(abut, "run", "plates.yaml", "--quiet", cwd=example, **there)
         self.call(abut, "run", "bar_meets_mass.yaml", "--quiet", "--set", "network.endpoint=null",
                   "--set", "bodies.mass.launch={spawn: {program: ./mass_on_spring.py}}",
