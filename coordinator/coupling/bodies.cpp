@@ -332,10 +332,16 @@ double Bodies::overhead_median() const {
 void Bodies::counts(Archive& archive) { archive.field("exchanges", exchanges_); }
 
 void Bodies::keep_reactions(std::span<const Response> earlier) {
-  for (std::size_t b = 0; b < responses_.size(); ++b)
-    for (std::size_t p = 0; p < responses_[b].ports.size(); ++p)
-      if (std::vector<Reaction>& now = responses_[b].ports[p].reactions; now.empty())
-        now = earlier[b].ports[p].reactions;
+  for (std::size_t b = 0; b < responses_.size(); ++b) {
+    for (std::size_t p = 0; p < responses_[b].ports.size(); ++p) {
+      std::vector<Reaction>& now = responses_[b].ports[p].reactions;
+      const std::vector<Reaction>& before = earlier[b].ports[p].reactions;
+      // Replies from other processes have places for reactions that there are none of.
+      now.resize(std::max(now.size(), before.size()));
+      for (std::size_t k = 0; k < before.size(); ++k)
+        if (now[k].force.empty()) now[k] = before[k];
+    }
+  }
 }
 
 void Bodies::ends(Archive& archive) {

@@ -10,7 +10,7 @@ import itertools
 import sys
 
 sys.dont_write_bytecode = True
-from support import SystemTest, main  # noqa: E402
+from support import ROOT, SystemTest, main  # noqa: E402
 
 PRESSURE = 1.0e5  # [Pa] on 0.6 m, 1 m thick, or 0.6 m x 0.6 m; grows until statics end
 LAWS = {
@@ -104,6 +104,18 @@ class Rest(SystemTest):
         for law, meeting in (("linear", "friction"), ("neo", "tied"), ("yields", "contact")):
             with self.subTest(law=law, meeting=meeting):
                 self.check(3, "hex8", law, meeting, "implicit")
+
+    def test_places_of_the_bodies_change_no_bit(self):
+        """What presses at the end of statics goes on pressing in other processes, too."""
+        path = ROOT / "configs" / "contact" / "preload_then_impact.yaml"
+        outs = [self.folder / "one", self.folder / "several"]
+        for out, words in zip(outs, (["--local"], [])):
+            self.succeed(self.abut("run", path, "--out", out, "--set", "meta.expect=[]", "--set",
+                                   "stages.impact.time.end=1.00005", "--set",
+                                   "output.force_filter=null", *words))
+        one, several = (self.summary(out) for out in outs)
+        self.assertEqual(one["state_hash"], several["state_hash"])
+        self.assertEqual(*((out / "history.csv").read_bytes() for out in outs))
 
 
 if __name__ == "__main__":
