@@ -6,6 +6,7 @@
 
 #include "base/assert.hpp"
 #include "base/index.hpp"
+#include "base/vector_units.hpp"
 #include "subdomain_solver/materials/j2_plasticity.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
@@ -86,8 +87,8 @@ void copy_out(std::span<const std::int32_t> nodes, const double* from, double* t
 std::vector<const KernelTable*> batched_kernels() {
   std::vector<const KernelTable*> tables;
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("x86-64-v4")) tables.push_back(&batched_kernels_avx512());
-  if (__builtin_cpu_supports("x86-64-v3")) tables.push_back(&batched_kernels_avx2());
+  if (has_x86_64_v4()) tables.push_back(&batched_kernels_avx512());
+  if (has_x86_64_v3()) tables.push_back(&batched_kernels_avx2());
 #endif
   tables.push_back(&batched_kernels_generic());
   return tables;

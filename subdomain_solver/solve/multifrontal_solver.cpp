@@ -4,6 +4,7 @@
 
 #include "base/assert.hpp"
 #include "base/index.hpp"
+#include "base/vector_units.hpp"
 #include "subdomain_solver/solve/eigen_solver.hpp"
 #include "subdomain_solver/solve/front_elimination.hpp"
 #include "subdomain_solver/solve/fronts.hpp"
@@ -12,8 +13,8 @@ namespace abut {
 
 Eliminate& eliminate_here() {
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("x86-64-v4")) return eliminate_avx512;
-  if (__builtin_cpu_supports("x86-64-v3")) return eliminate_avx2;
+  if (has_x86_64_v4()) return eliminate_avx512;
+  if (has_x86_64_v3()) return eliminate_avx2;
 #endif
   return eliminate_generic;
 }
