@@ -9,7 +9,7 @@ template <class Real>
 [[gnu::always_inline]] inline Real square_root(const Real& x) {
   Real root;
   ABUT_UNROLLED (i, 0, sizeof(Real) / sizeof(double)) root[i] = __builtin_sqrt(x[i]);
-  return __builtin_assoc_barrier(root);
+  return kept_whole(root);
 }
 
 template <class Real>

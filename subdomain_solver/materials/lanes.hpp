@@ -40,14 +40,24 @@ template <int N>
   std::memcpy(to, &x, sizeof x);
 }
 
+/// Keeps GCC from taking neighbouring calls apart into scalars before it has seen the vector; Clang
+/// does not.
+template <class Real>
+[[gnu::always_inline]] inline Real kept_whole(const Real& x) {
+#if defined(__clang__)
+  return x;
+#else
+  return __builtin_assoc_barrier(x);
+#endif
+}
+
 /// a b + c in one rounding. Explicit, as the build contracts nothing by itself: the same bits on
 /// every machine, and slow, by a library call, on one without the instruction.
 template <class Real>
 [[gnu::always_inline]] inline Real fused(const Real& a, const Real& b, const Real& c) {
   Real sum;
   ABUT_UNROLLED (i, 0, sizeof(Real) / sizeof(double)) sum[i] = __builtin_fma(a[i], b[i], c[i]);
-  // Keeps GCC from taking neighbouring calls apart into scalars before it has seen the vector.
-  return __builtin_assoc_barrier(sum);
+  return kept_whole(sum);
 }
 
 template <class Real>
