@@ -120,22 +120,19 @@ void Controller::step_passively() {
 
 /// Energy that an accurate window has gained, beyond what may stand, is taken back at its end from
 /// the bodies that touch, and from those that hang together with them by ties. False: they have too
-/// little of it, as at first touch, and the window is to be taken back. Where joined bodies touch,
-/// it stays: ties answer blows better than the passive way does.
+/// little of it, as at first touch, and the window is to be taken back.
 bool Controller::repay() {
   std::set<int> touching;
   for (const Joint& joint : joints_)
     for (const Side& side : joint.sides)
       if (joint.closed() && !joint.tied()) touching.insert(side.body);
   if (touching.empty()) return true;
-  bool joined = false;
   for (std::size_t before = 0; before < touching.size();) {
     before = touching.size();
     for (const Joint& joint : joints_) {
       const auto& [one, two] = joint.sides;
       if (!joint.tied() || (!touching.contains(one.body) && !touching.contains(two.body))) continue;
       touching.insert({one.body, two.body});
-      joined = true;
     }
   }
   std::erase_if(touching, [this](int b) { return !std::isfinite(bodies_.describe(b).mass); });
@@ -145,7 +142,7 @@ bool Controller::repay() {
   const std::vector<double> gave = passive_.repay(bodies, excess);
   double left = excess;
   for (const double given : gave) left -= given;
-  if (left > guard_.forgiven() && !joined) return false;
+  if (left > guard_.forgiven()) return false;
   for (std::size_t k = 0; k < bodies.size(); ++k) guard_.repaid(bodies[k], gave[k]);
   passive_.count_repaid(excess - left);
   return true;
