@@ -280,6 +280,8 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i, bool) {
   Integrator& integrator = *parts_.scheme.integrator;
   const double begin = window.grid.time(i - 1), dt = window.grid.length(i);
   substep_ = i;
+  if (window.grid.begins_window(i))  // a row of windows ends as they do one by one
+    if (MasslessLayer* layer = integrator.able().layer) layer->renew();
   if (joins_ && i > 1) {  // forces of joined sides jump
     port_forces_->enter(i);
     if (std::optional<Failed> failed = meet_port_forces(begin)) return failed;
