@@ -127,6 +127,35 @@ TEST(Flights, NeverFailByTheirRounding) {
   }
 }
 
+/// Fields are told at the end of every window, which then is a flight of its own: what a body keeps
+/// from step to step beside its state, as the factors of a surface without mass, shows in no bit.
+TEST(Flights, EndAsTheirWindowsDoOneByOne) {
+  for (const char* law : {"linear_elastic", "saint_venant_kirchhoff", "neo_hookean", "hencky"}) {
+    for (const char* scheme : {"newmark", "hht_alpha", "central_difference"}) {
+      for (const int dim : {2, 3}) {
+        SCOPED_TRACE(fmt::format("{} {} {}D", law, scheme, dim));
+        SolidText it = block(dim == 2 ? "quad4" : "hex8", {1.0, 0.93, 1.0});
+        it.material = unit_law(law, 0.3);
+        it.integrator = implicit_scheme(scheme, 0.05);
+        it.velocity = {1.0};
+        it.field = dim == 2 ? "\"0.1 * y - 0.05 * x * y\", \"-0.1 * x\""
+                            : "\"0.1 * y - 0.05 * x * y\", \"-0.1 * x\", \"0.02 * z\"";
+        it.port = "skin";
+        it.side = "boundary";
+        const SolidText far =
+            tool("far", block_in(dim, {1.0, 1.0, 1.0}, {1, 1, 1}), {0.0, -1.0e4, 0.0}, "top");
+        const auto whole =
+            run_solids(3.0, 0.1, {it, far}, touching("never", "it.skin", "far.face"));
+        const auto each = run_solids(3.0, 0.1, {it, far}, touching("never", "it.skin", "far.face"),
+                                     "output: {fields: {every: 1}}\n");
+        ASSERT_TRUE(whole->completed() && each->completed());
+        EXPECT_GT(whole->measure("body.it.energy.stored"), 1.0e-6);  // it shakes
+        EXPECT_EQ(whole->end.body_hashes, each->end.body_hashes);
+      }
+    }
+  }
+}
+
 /// The load is that of the scheme's own mass: of second-order elements, whose lumped and consistent
 /// masses have other sums, too. As heavy as it is stiff, the body would be strained by its own
 /// size.
