@@ -138,6 +138,12 @@ bool RandomScene::free() const {
   return gravity.isZero() && std::ranges::all_of(bodies, &RandomBody::moves_by_itself);
 }
 
+bool RandomScene::conserves() const {
+  return std::ranges::none_of(bodies, [](const RandomBody& body) {
+    return body.scheme == "hht_alpha" || body.scheme == "generalized_alpha";
+  });
+}
+
 bool RandomScene::turns() const {
   return dim > 1 && std::ranges::all_of(bodies, [](const RandomBody& body) {
            return body.kind == Kind::rigid || body.law == "neo_hookean" ||

@@ -63,7 +63,9 @@ struct RandomScene {
   double window = 0.0, end = 0.0;                     // [s]
   double speed = 0.0;                                 // [m/s]
 
-  bool free() const;   // nothing outside acts on its bodies
+  bool free() const;  // nothing outside acts on its bodies
+  /// No scheme takes energy by itself: what is lost beside friction and plasticity, contact took.
+  bool conserves() const;
   bool turns() const;  // all bodies may turn: their laws are of finite strain
   std::string words() const;
   /// The scene file; bodies have their meshes beside it, as NAME.msh.

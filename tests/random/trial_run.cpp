@@ -176,6 +176,7 @@ struct Judge : Observer {
       run.overlaps.push_back(fmt::format("bodies {} and {} by {:.2g} m at {:.4g} s",
                                          overlap.body[0], overlap.body[1], overlap.depth,
                                          overlap.time));
+    if (run.scale > 0.0) run.loss -= end.given_up.friction / run.scale;  // no body tells of it
     run.passive = end.windows > 0 ? double(end.given_up.windows) / double(end.windows) : 0.0;
     run.hashes = end.body_hashes;
   }
@@ -212,6 +213,7 @@ struct Judge : Observer {
     grown = std::max(grown, account - first_account);
     changed = std::max(changed, (momentum - first_momentum).norm());
     if (run.scale > 0.0) run.growth = grown / run.scale;
+    if (run.scale > 0.0) run.loss = (first_account - account) / run.scale;
     if (run.impulse > 0.0) run.momentum = changed / run.impulse;
     most_moment = std::max(most_moment, moments);
     turned = std::max(turned, (angular - first_angular).norm());

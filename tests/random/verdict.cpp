@@ -133,10 +133,11 @@ Verdict judge(const RandomScene& scene, const std::filesystem::path& folder) {
 
 std::string line_of(const RandomScene& scene, const Verdict& verdict) {
   return fmt::format(
-      "{:>6} {:11} passive {:3.0f} % grown {:8.1e} momentum {:7.1e} angular {:7.1e} {:6.2f} s "
+      "{:>6} {:11} passive {:3.0f} % grown {:8.1e} lost {:5.1f} % momentum {:7.1e} angular {:7.1e} "
+      "{:6.2f} s "
       "{:6} {:7.1e} {}{}",
       scene.seed, verdict.run.status, 100.0 * verdict.run.passive, verdict.run.growth,
-      scene.free() ? verdict.run.momentum : 0.0,
+      100.0 * verdict.run.loss, scene.free() ? verdict.run.momentum : 0.0,
       scene.free() && scene.turns() ? verdict.run.angular : 0.0, verdict.run.seconds,
       to_string(verdict.again), verdict.difference, scene.words(),
       verdict.trouble.empty() ? "" : "\n           " + verdict.trouble);
@@ -151,11 +152,32 @@ void Table::add(const RandomScene& scene, const Verdict& verdict) {
   row.growth = std::max(row.growth, verdict.run.growth);
   if (scene.free()) row.momentum = std::max(row.momentum, verdict.run.momentum);
   row.seconds += verdict.run.seconds;
+  if (scene.conserves() && verdict.run.completed())
+    row.losses.push_back(std::abs(verdict.run.loss));
   if (!verdict.run.trouble(scene.free(), scene.turns()).empty()) return;
   Pairs& pairs = again_[verdict.again];
   ++pairs.scenes;
   pairs.same += verdict.trouble.empty() ? 1 : 0;
   pairs.differences.push_back(verdict.difference);
+}
+
+/// Beside friction and plasticity, in percent of the most there was.
+std::string Table::losses() const {
+  std::string out =
+      "\n| schemes that conserve | scenes | energy lost within .05 % | within .5 % | within 5 % | "
+      "median |\n|---|---|---|---|---|---|\n";
+  for (const auto& [dim, row] : rows_) {
+    std::vector<double> losses = row.losses;
+    if (losses.empty()) continue;
+    std::ranges::sort(losses);
+    const auto within = [&losses](double part) {
+      return std::ranges::upper_bound(losses, part) - losses.begin();
+    };
+    out += fmt::format("| {} | {} | {} | {} | {} | {:.2g} % |\n", space_of(dim), losses.size(),
+                       within(5.0e-4), within(5.0e-3), within(5.0e-2),
+                       100.0 * losses[losses.size() / 2]);
+  }
+  return out;
 }
 
 std::string Table::text() const {
@@ -166,6 +188,7 @@ std::string Table::text() const {
     out += fmt::format("| {} {} | {} | {} | {:.0f} % | {:.1e} | {:.1e} | {:.2f} s |\n", row.scenes,
                        space_of(dim), row.completed, row.sound, 100.0 * row.passive / row.scenes,
                        row.growth, row.momentum, row.seconds / row.scenes);
+  out += losses();
   out +=
       "\n| run again | scenes | as good | difference, median | nine tenths below |\n"
       "|---|---|---|---|---|\n";

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "tests/random/random_scene.hpp"
 #include "tests/random/trial_run.hpp"
@@ -52,11 +53,14 @@ class Table {
   struct Row {
     int scenes = 0, completed = 0, sound = 0;
     double passive = 0.0, growth = 0.0, momentum = 0.0, seconds = 0.0;
+    std::vector<double> losses;  // of energy, in scenes of schemes that take none, as parts
   };
   struct Pairs {
     int scenes = 0, same = 0;
     std::vector<double> differences;
   };
+  std::string losses() const;
+
   std::map<int, Row> rows_;  // by dimension
   std::map<Again, Pairs> again_;
 };
