@@ -19,9 +19,8 @@ constexpr int most_checks = 6;   // of the ways
 constexpr double fits = 0.05;
 /// [1/(thickness/step)] of velocities of rows: less is no change.
 constexpr double negligible = 1.0e-3;
-/// Of the largest energy: the rounding of work, and what a step's account may gain before the step
-/// is refused.
-constexpr double rounding_of_work = 1.0e-9, most_gain = 1.0e-3;
+/// Of the largest energy: the rounding of work.
+constexpr double rounding_of_work = 1.0e-9;
 /// What parts surfaces that are too near: this share of what they miss in a step, at most so many
 /// edges in a nominal step, for at most this share of half of what normal contact has lost.
 constexpr double push_share = 0.1, push_edges = 0.05, paid_share = 0.2;
@@ -30,8 +29,6 @@ constexpr double push_share = 0.1, push_edges = 0.05, paid_share = 0.2;
 constexpr int softer_from = 3, softest = 3;
 /// Impulses below this share of those on a point are none.
 constexpr double no_impulse = 1.0e-9;
-/// Of the shortest edge: points less deep behind a surface are on it.
-constexpr double rounding_of_places = 1.0e-6;
 
 /// Of the thickness: ties that are missed by less hold.
 constexpr double holds = 1.0e-3;
@@ -43,18 +40,6 @@ std::vector<int> owners_of(const PassiveTies& ties, int bodies) {
   std::vector<int> owners;
   for (int b = 0; b < bodies; ++b) owners.push_back(ties.cluster(b));
   return owners;
-}
-
-double own_energy(const BodyRecord& record) {
-  const Energy& e = record.energy;
-  return e.kinetic + e.stored + e.dissipated - e.external_work;
-}
-
-/// [J] of all bodies together.
-double motion_of(std::span<const PassiveReply> replies) {
-  double sum = 0.0;
-  for (const PassiveReply& reply : replies) sum += reply.record.energy.total();
-  return sum;
 }
 
 }  // namespace
@@ -82,6 +67,7 @@ std::optional<Failed> CommonStep::begin(double time) {
   step_.begin = step_.end = time;
   rows_.clear();
   warm_.clear();
+  owed_.clear();
   points_.clear();
   std::ranges::fill(advanced_, 0);
   if (std::optional<Failed> failed = advance(true)) return failed;
@@ -101,7 +87,16 @@ std::optional<Failed> CommonStep::begin(double time) {
   return std::nullopt;
 }
 
-double CommonStep::energy_of(int body) const { return own_energy(tried_[index(body)].record); }
+double CommonStep::own_energy(const BodyRecord& record) {
+  const Energy& e = record.energy;
+  return e.kinetic + e.stored + e.dissipated - e.external_work;
+}
+
+double CommonStep::motion_of(std::span<const PassiveReply> replies) {
+  double sum = 0.0;
+  for (const PassiveReply& reply : replies) sum += reply.record.energy.total();
+  return sum;
+}
 
 void CommonStep::lower(int body, double joules) { energies_[index(body)] -= joules; }
 
@@ -113,6 +108,8 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   points_.clear();
   prepared_ = 0;
   softer_ = 0;
+  released_ = 0.0;
+  unclaimed_ = owed_;
   culprit_ = -1;
   std::ranges::fill(advanced_, 0);
   const double budget = 0.5 * ledger.normal - ledger.push_out;
@@ -153,7 +150,7 @@ std::optional<CommonStep::Refusal> CommonStep::iterate() {
     rows_ask(unfit, work);
     const std::size_t known = rows_.size();
     if (round > 0 && ((unfit < fits * near_.thickness() && ties_fit()) || last)) {
-      if (work <= allowed_ + rounding_of_work * most_ && ties_.passive()) {
+      if (work <= allowed_ + released_ + rounding_of_work * most_ && ties_.passive()) {
         const NearRows::Crossed crossed = near_.check(from_, to_, rows_);
         if (crossed.pairs == 0) return std::nullopt;
         if (last || ++checks > most_checks) {
@@ -183,6 +180,7 @@ bool CommonStep::prepare_rows() {
     row.push = pushing_ && missing > 0.0 ? std::min(push_share * missing / h, least) : 0.0;
     row.closing = missing < 0.0 ? -missing / h : -row.push;
     warm(row);
+    if (const auto owed = unclaimed_.extract(row.first_point(0))) row.owed = owed.mapped();
     grown = points_.add(row) || grown;
   }
   return grown;
@@ -284,7 +282,7 @@ void CommonStep::rows_ask(double& unfit, double& work) const {
     for (const std::size_t t : {0u, 1u})
       if (row.tangential_impulse[t] != 0.0)
         work += row.tangential_impulse[t] * row_velocity(row, velocities_, row.tangents[t]);
-    const double over = (w + row.closing) * length();
+    const double over = (w - row.least()) * length();
     unfit = std::max(unfit, -over);
     if (row.normal_impulse > no_impulse * largest) unfit = std::max(unfit, 0.1 * std::abs(over));
   }
@@ -299,12 +297,17 @@ void CommonStep::solve_rows(std::size_t answered) {
   RowImpulses solver(rows_, points_, surfaces_, velocities_);
   solver.press_from(answered);
   solver.solve(still);
-  if (pushing_ && solver.work() > allowed_ + rounding) {  // too dear: without it
+  released_ = solver.release();
+  if (released_ > 0.0) solver.solve(still);
+  if (pushing_ && solver.work() > allowed_ + released_ + rounding) {  // too dear: without it
     pushing_ = false;
     for (DistanceRow& row : rows_) row.closing = std::max(row.closing, 0.0), row.push = 0.0;
     solver.solve(still);
   }
-  if (solver.work() > (pushing_ ? allowed_ : 0.0) + rounding) solver.limit();
+  const double most = (pushing_ ? allowed_ : 0.0) + released_;
+  if (solver.work() > most + rounding) solver.limit(most);
+  for (DistanceRow& row : rows_)
+    if (row.recoils) row.push = solver.velocity(row);
   if (ties_.any()) follow_ties();
   ++softer_;
 }
@@ -347,111 +350,6 @@ void CommonStep::follow_ties() {
   }
 }
 
-/// The account of every body: what its energy gained beside what its ports did.
-std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedger& ledger) {
-  share_out_work();
-  const double scale = std::max(most_, motion_of(tried_));
-  std::vector<double> gained(accounts_.size());
-  for (int b = 0; b < bodies_.count(); ++b) {
-    double done = 0.0;
-    for (const double work : port_work_[index(b)]) done += work;
-    gained[index(b)] = energy_of(b) - energies_[index(b)] - done;
-    if (!std::isfinite(gained[index(b)]) || (!lenient && gained[index(b)] > most_gain * scale)) {
-      why_ =
-          fmt::format("body '{}' would gain {:.3g} J", bodies_.describe(b).name, gained[index(b)]);
-      culprit_ = b;
-      return Refusal::energy;
-    }
-  }
-  most_ = scale;
-  ties_.accept();
-  ledger.switched -= ties_.work();
-  std::swap(replies_, tried_);
-  from_ = to_;
-  near_.accept(from_);
-  for (int b = 0; b < bodies_.count(); ++b)
-    for (std::size_t p = 0; p < displacements_[index(b)].size(); ++p)
-      for (std::size_t k = 0; k < displacements_[index(b)][p].size(); ++k)
-        displacements_[index(b)][p][k] += replies_[index(b)].ports[p].displacement[k];
-  for (int b = 0; b < bodies_.count(); ++b) {
-    double& account = accounts_[index(b)];
-    account += gained[index(b)];
-    double taken = 0.0;
-    if (account > 0.0 && gained[index(b)] > 0.0 && std::isfinite(bodies_.describe(b).mass))
-      taken = bodies_[b].passive()->damp(account);
-    account -= taken;
-    ledger.damped += taken;
-    if (taken != 0.0) PassiveLedger::add(ledger.taken, b, taken);
-    replies_[index(b)].record.energy.kinetic -= taken;
-    energies_[index(b)] = own_energy(replies_[index(b)].record);
-  }
-  warm_.clear();
-  for (const DistanceRow& row : rows_) {
-    const double normal = row.normal_impulse * row_velocity(row, velocities_, row.normal);
-    (normal < 0.0 ? ledger.normal : ledger.push_out) += std::abs(normal);
-    if (normal < 0.0) share_out_loss(row, -normal, ledger);
-    count_friction(row, ledger);
-    if (row.normal_impulse > 0.0) warm_[row.key()] = row.impulse();
-    if (row.behind && -row.gap > rounding_of_places * surfaces_.shortest_edge())
-      ledger.deepest = std::max(ledger.deepest, -row.gap);
-  }
-  return std::nullopt;
-}
-
-void CommonStep::count_friction(const DistanceRow& row, PassiveLedger& ledger) const {
-  double heat = 0.0;
-  for (const std::size_t t : {0u, 1u})
-    heat -= row.tangential_impulse[t] * row_velocity(row, velocities_, row.tangents[t]);
-  if (heat == 0.0) return;
-  ledger.friction += heat;
-  const TouchingSurfaces::Point& one = surfaces_[row.first_point(0)];
-  const TouchingSurfaces::Point& other = surfaces_[row.first_point(1)];
-  ledger.rubbed[PassiveLedger::pair_of(one.body, one.port, other.body, other.port)] += heat;
-}
-
-/// Half of it to either side that deforms: a finer mesh there would lose less.
-void CommonStep::share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const {
-  std::array<int, 2> sides{-1, -1};
-  int deforming = 0;
-  for (const std::size_t s : {0u, 1u}) {
-    const TouchingSurfaces::Point& at = surfaces_[row.first_point(static_cast<int>(s))];
-    if (!(bodies_.port({at.body, at.port}).geometry.transit > 0.0)) continue;  // rigid
-    sides[s] = at.body;
-    ++deforming;
-  }
-  for (const int body : sides)
-    if (body >= 0) PassiveLedger::add(ledger.lost, body, loss / deforming);
-}
-
-/// [J] of impulses at the mean velocities of the points that they push.
-void CommonStep::share_out_work() {
-  for (std::vector<double>& ports : port_work_) std::ranges::fill(ports, 0.0);
-  for (const DistanceRow& row : rows_) {
-    const Eigen::Vector3d impulse = row.impulse();
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (row.weights[i] == 0.0) continue;
-      const std::int32_t point = row.features.points[i];
-      const TouchingSurfaces::Point& at = surfaces_[point];
-      port_work_[index(at.body)][index(at.port)] +=
-          row.weights[i] * impulse.dot(velocities_[index(point)]);
-    }
-  }
-  share_out_ties();
-}
-
-/// Of ties, whose ports no rows press on, and of those on which both do.
-void CommonStep::share_out_ties() {
-  for (int b = 0; b < bodies_.count() && ties_.any(); ++b) {
-    std::vector<std::vector<double>> impulses(port_work_[index(b)].size());
-    ties_.add_impulses(b, impulses);
-    for (std::size_t p = 0; p < impulses.size(); ++p) {
-      const std::vector<double>& moved = tried_[index(b)].ports[p].displacement;
-      for (std::size_t v = 0; v < impulses[p].size(); ++v)
-        port_work_[index(b)][p] += impulses[p][v] * moved[v] / length();
-    }
-  }
-}
-
 void CommonStep::state(Archive& archive) {
   archive.field("energies", energies_);
   archive.field("accounts", accounts_);
@@ -474,6 +372,12 @@ void CommonStep::state(Archive& archive) {
     for (double& part : row.second) a.field("impulse", part);
   });
   warm_ = {warm.begin(), warm.end()};
+  std::vector<std::pair<std::int32_t, double>> owed(owed_.begin(), owed_.end());
+  list(archive, "owed", owed, [](Archive& a, auto& point) {
+    whole(a, "point", point.first);
+    a.field("joules", point.second);
+  });
+  owed_ = {owed.begin(), owed.end()};
 }
 
 }  // namespace abut

@@ -82,9 +82,12 @@ class CommonStep {
   std::optional<Refusal> accept(bool lenient, PassiveLedger& ledger);
   void share_out_work();
   void share_out_ties();
+  void count_normal(const DistanceRow& row, PassiveLedger& ledger);
+  bool gives_back(const DistanceRow& row) const;
   void count_friction(const DistanceRow& row, PassiveLedger& ledger) const;
   void share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const;
-  double energy_of(int body) const;
+  static double own_energy(const BodyRecord& record);              // [J] of a body
+  static double motion_of(std::span<const PassiveReply> replies);  // [J] of all bodies together
   double length() const { return step_.end - step_.begin; }
 
   const TouchingSurfaces& surfaces_;
@@ -104,8 +107,11 @@ class CommonStep {
   std::size_t prepared_ = 0;  // rows that were given their targets
   bool pushing_ = false;
   double allowed_ = 0.0;                              // [J] that contact may do in the step
+  double released_ = 0.0;                             // [J] beside, by rows that part
   int softer_ = 0;                                    // solves of these rows so far
   std::map<DistanceRow::Key, Eigen::Vector3d> warm_;  // impulses of the last step [N s]
+  std::map<std::int32_t, double> owed_;               // [J] to rows, by their first points
+  std::map<std::int32_t, double> unclaimed_;          // of it, by no row of this step yet
   std::vector<double> energies_;                      // [J] by body
   std::vector<double> accounts_;                      // [J] by body that nothing explains
   std::vector<std::vector<double>> port_work_;        // [J] by body and port

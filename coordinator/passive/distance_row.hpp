@@ -25,6 +25,8 @@ struct DistanceRow {
 
   double closing = 0.0;  // [m/s] c: the row's velocity w must be at least -c
   double push = 0.0;     // [m/s] of it, that parts what is too near
+  double owed = 0.0;     // [J] that its normal impulses took and that it gives back as it parts
+  bool recoils = false;  // it does so in this step, at w = push
   double normal_impulse = 0.0;
   std::array<double, 2> tangential_impulse{};
 
@@ -32,6 +34,8 @@ struct DistanceRow {
   std::int32_t first_point(int side) const {
     return features.points[side == 0 ? 0 : index(features.first_side())];
   }
+  /// [m/s] what w is to be at least.
+  double least() const { return recoils ? push : -closing; }
   Eigen::Vector3d impulse() const {
     return normal_impulse * normal + tangential_impulse[0] * tangents[0] +
            tangential_impulse[1] * tangents[1];

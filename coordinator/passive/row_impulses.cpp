@@ -118,11 +118,33 @@ double RowImpulses::solve_normal(std::size_t k) {
   if (!(own > 0.0)) return 0.0;
   const double some = regularised * own;
   const double w = velocity(row, row.normal) + row.closing + some * row.normal_impulse;
-  const double now = std::max(0.0, row.normal_impulse - w / (own + some));
+  double now = std::max(0.0, row.normal_impulse - w / (own + some));
+  if (row.recoils) now = std::max(now, recoil(k));
   const double change = now - row.normal_impulse;
   if (change != 0.0) press(k, 0, change);
   row.normal_impulse = now;
   return std::abs(change) * own;
+}
+
+/// J with J (w + a J) = what is owed, w the velocity without it and a its own compliance [M.145].
+double RowImpulses::recoil(std::size_t k) const {
+  const DistanceRow& row = rows_[k];
+  const double own = answers_[k].normal;
+  const double w = velocity(row) - own * row.normal_impulse;
+  const double root = std::sqrt(w * w + 4.0 * own * row.owed);
+  return w > 0.0 ? 2.0 * row.owed / (w + root) : (root - w) / (2.0 * own);
+}
+
+double RowImpulses::release() {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    DistanceRow& row = rows_[k];
+    if (row.owed > 0.0 && row.normal_impulse == 0.0 && answers_[k].normal > 0.0 &&
+        velocity(row) > 0.0)
+      row.recoils = true;
+    if (row.recoils) sum += row.owed;
+  }
+  return sum;
 }
 
 /// Towards sticking, held on Coulomb's disc: by the larger compliance of the tangents, so that it
@@ -166,13 +188,14 @@ double RowImpulses::work() const {
   return sum;
 }
 
-double RowImpulses::limit() {
+double RowImpulses::limit(double most) {
   const double with = work();
-  if (with <= 0.0) return 1.0;
+  if (with <= most) return 1.0;
   press_from(0, -1.0);
   const double free = work();  // of the same impulses, at the velocities without them
   const double curved = with - free;
-  const double factor = curved > 0.0 ? std::clamp(-free / curved, 0.0, 1.0) : 0.0;
+  const double root = std::sqrt(std::max(0.0, free * free + 4.0 * curved * most));
+  const double factor = curved > 0.0 ? std::clamp((root - free) / (2.0 * curved), 0.0, 1.0) : 0.0;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     rows_[k].normal_impulse *= factor;
     for (double& value : rows_[k].tangential_impulse) value *= factor;

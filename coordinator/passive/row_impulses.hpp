@@ -23,10 +23,14 @@ class RowImpulses {
   void press_from(std::size_t row, double share = 1.0);
   /// `negligible` [m/s]: less change of a velocity is none.
   void solve(double negligible);
+  /// [m/s] w of a row along its normal.
+  double velocity(const DistanceRow& row) const { return velocity(row, row.normal); }
   /// [J] sum of J.w
   double work() const;
-  /// Makes the work at most 0; the factor that it took.
-  double limit();
+  /// Rows that are owed something, press no more and part, give it back from now on; its sum [J].
+  double release();
+  /// Makes the work at most so much [J]; the factor that it took.
+  double limit(double most);
 
  private:
   struct Answer {  // of one row
@@ -42,6 +46,7 @@ class RowImpulses {
   double velocity(const DistanceRow& row, const Eigen::Vector3d& along) const;
   void press(std::size_t row, int direction, double impulse);
   double solve_normal(std::size_t row);
+  double recoil(std::size_t row) const;
   double solve_friction(std::size_t row);
 
   std::vector<DistanceRow>& rows_;

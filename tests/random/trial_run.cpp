@@ -202,21 +202,18 @@ struct Judge : Observer {
       moments += l.norm();
     }
     run.finite = run.finite && std::isfinite(account) && momentum.allFinite();
-    if (std::exchange(first, false)) {
-      first_account = account;
-      first_momentum = momentum;
-      first_angular = angular;
-    }
+    if (!std::exchange(start.known, true))
+      start = {.known = true, .account = account, .momentum = momentum, .angular = angular};
     run.energy = energy;
     run.scale = std::max(run.scale, energy);
     run.impulse = std::max(run.impulse, sizes);
-    grown = std::max(grown, account - first_account);
-    changed = std::max(changed, (momentum - first_momentum).norm());
+    grown = std::max(grown, account - start.account);
+    changed = std::max(changed, (momentum - start.momentum).norm());
     if (run.scale > 0.0) run.growth = grown / run.scale;
-    if (run.scale > 0.0) run.loss = (first_account - account) / run.scale;
+    if (run.scale > 0.0) run.loss = (start.account - account) / run.scale;
     if (run.impulse > 0.0) run.momentum = changed / run.impulse;
     most_moment = std::max(most_moment, moments);
-    turned = std::max(turned, (angular - first_angular).norm());
+    turned = std::max(turned, (angular - start.angular).norm());
     if (most_moment > 0.0) run.angular = turned / most_moment;
   }
 
@@ -224,11 +221,14 @@ struct Judge : Observer {
   Outsides outsides;
   double until;
   std::atomic<bool> stop = false;
-  bool first = true;
+  /// What there was when the run began.
+  struct Start {
+    bool known = false;
+    double account = 0.0;  // [J]
+    Eigen::Vector3d momentum = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
+  } start;
   double time = 0.0;  // [s]
-  double first_account = 0.0, grown = 0.0, changed = 0.0, turned = 0.0, most_moment = 0.0;
-  Eigen::Vector3d first_momentum = Eigen::Vector3d::Zero();
-  Eigen::Vector3d first_angular = Eigen::Vector3d::Zero();
+  double grown = 0.0, changed = 0.0, turned = 0.0, most_moment = 0.0;
 };
 
 /// The bodies of a run and what keeps their processes alive.
@@ -260,6 +260,8 @@ Placed place(const Scene& scene, const Document& document, bool elsewhere) {
 struct Kept {
   std::vector<std::byte> run;
   std::vector<std::vector<std::byte>> bodies;
+  Judge::Start start;
+  double scale = 0.0, impulse = 0.0;  // [J], [N s] most so far
 };
 
 /// That of the middle of a run, which goes on to its end.
@@ -273,6 +275,9 @@ Kept keep_middle(const Scene& scene, const Document& document, double patience) 
     if (!kept.run.empty() || judge.time < 0.5 * (scene.time.begin + scene.time.end)) return;
     kept.run = controller.save();
     for (Subdomain* body : placed.pointers) kept.bodies.push_back(body->checkpoint());
+    kept.start = judge.start;
+    kept.scale = nobody_asks.scale;
+    kept.impulse = nobody_asks.impulse;
   };
   controller.run();
   return kept;
@@ -288,6 +293,9 @@ void run_scene(const std::filesystem::path& folder, double patience, Where where
   Controller controller(scene, placed.pointers, {&judge}, &judge.stop);
   if (!kept.run.empty()) {
     controller.load(kept.run);
+    judge.start = kept.start;
+    run.scale = kept.scale;
+    run.impulse = kept.impulse;
     for (std::size_t b = 0; b < kept.bodies.size(); ++b) placed.bodies[b]->resume(kept.bodies[b]);
   }
   controller.run();

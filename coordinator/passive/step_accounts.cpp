@@ -1,0 +1,152 @@
+// What a step that was taken did to the accounts: of every body, of rows, of the ledger.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "coordinator/passive/common_step.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Of the largest energy: what a step's account may gain before the step is refused.
+constexpr double most_gain = 1.0e-3;
+/// Of what normal impulses took: what rows give back as they part. The rest is for bodies that
+/// answer a little otherwise than was foreseen.
+constexpr double given_back = 0.98;
+/// Of the shortest edge: points less deep behind a surface are on it.
+constexpr double rounding_of_places = 1.0e-6;
+
+}  // namespace
+
+/// The account of every body: what its energy gained beside what its ports did.
+std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedger& ledger) {
+  share_out_work();
+  const double scale = std::max(most_, motion_of(tried_));
+  std::vector<double> gained(accounts_.size());
+  for (int b = 0; b < bodies_.count(); ++b) {
+    double done = 0.0;
+    for (const double work : port_work_[index(b)]) done += work;
+    gained[index(b)] = own_energy(tried_[index(b)].record) - energies_[index(b)] - done;
+    if (!std::isfinite(gained[index(b)]) || (!lenient && gained[index(b)] > most_gain * scale)) {
+      why_ =
+          fmt::format("body '{}' would gain {:.3g} J", bodies_.describe(b).name, gained[index(b)]);
+      culprit_ = b;
+      return Refusal::energy;
+    }
+  }
+  most_ = scale;
+  ties_.accept();
+  ledger.switched -= ties_.work();
+  std::swap(replies_, tried_);
+  from_ = to_;
+  near_.accept(from_);
+  for (int b = 0; b < bodies_.count(); ++b)
+    for (std::size_t p = 0; p < displacements_[index(b)].size(); ++p)
+      for (std::size_t k = 0; k < displacements_[index(b)][p].size(); ++k)
+        displacements_[index(b)][p][k] += replies_[index(b)].ports[p].displacement[k];
+  for (int b = 0; b < bodies_.count(); ++b) {
+    double& account = accounts_[index(b)];
+    account += gained[index(b)];
+    double taken = 0.0;
+    if (account > 0.0 && gained[index(b)] > 0.0 && std::isfinite(bodies_.describe(b).mass))
+      taken = bodies_[b].passive()->damp(account);
+    account -= taken;
+    ledger.damped += taken;
+    if (taken != 0.0) PassiveLedger::add(ledger.taken, b, taken);
+    replies_[index(b)].record.energy.kinetic -= taken;
+    energies_[index(b)] = own_energy(replies_[index(b)].record);
+  }
+  warm_.clear();
+  owed_.clear();
+  for (const DistanceRow& row : rows_) {
+    count_normal(row, ledger);
+    count_friction(row, ledger);
+    if (row.normal_impulse > 0.0) warm_[row.key()] = row.impulse();
+    if (row.behind && -row.gap > rounding_of_places * surfaces_.shortest_edge())
+      ledger.deepest = std::max(ledger.deepest, -row.gap);
+  }
+  return std::nullopt;
+}
+
+/// What a row took is lost until it gives it back, as long as it stays near.
+void CommonStep::count_normal(const DistanceRow& row, PassiveLedger& ledger) {
+  const double work = row.normal_impulse * row_velocity(row, velocities_, row.normal);
+  if (work > 0.0 && !row.recoils) {
+    ledger.push_out += work;
+  } else {
+    ledger.normal -= work;
+    share_out_loss(row, -work, ledger);
+  }
+  const double owed = row.recoils ? 0.0 : row.owed - given_back * std::min(work, 0.0);
+  if (owed > 0.0 && gives_back(row)) owed_[row.first_point(0)] += owed;
+}
+
+/// What contact takes from rigid bodies alone is gone: how they bounce is a matter of what they are
+/// made of, which nobody has told.
+bool CommonStep::gives_back(const DistanceRow& row) const {
+  if (row.behind || surfaces_.skin().dim == 1) return false;
+  return std::ranges::any_of(std::array{0, 1}, [&](int side) {
+    const TouchingSurfaces::Point& at = surfaces_[row.first_point(side)];
+    return bodies_.port({at.body, at.port}).geometry.transit > 0.0;
+  });
+}
+
+void CommonStep::count_friction(const DistanceRow& row, PassiveLedger& ledger) const {
+  double heat = 0.0;
+  for (const std::size_t t : {0u, 1u})
+    heat -= row.tangential_impulse[t] * row_velocity(row, velocities_, row.tangents[t]);
+  if (heat == 0.0) return;
+  ledger.friction += heat;
+  const TouchingSurfaces::Point& one = surfaces_[row.first_point(0)];
+  const TouchingSurfaces::Point& other = surfaces_[row.first_point(1)];
+  ledger.rubbed[PassiveLedger::pair_of(one.body, one.port, other.body, other.port)] += heat;
+}
+
+/// Half of it to either side that deforms: a finer mesh there would lose less.
+void CommonStep::share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const {
+  std::array<int, 2> sides{-1, -1};
+  int deforming = 0;
+  for (const std::size_t s : {0u, 1u}) {
+    const TouchingSurfaces::Point& at = surfaces_[row.first_point(static_cast<int>(s))];
+    if (!(bodies_.port({at.body, at.port}).geometry.transit > 0.0)) continue;  // rigid
+    sides[s] = at.body;
+    ++deforming;
+  }
+  for (const int body : sides)
+    if (body >= 0) PassiveLedger::add(ledger.lost, body, loss / deforming);
+}
+
+/// [J] of impulses at the mean velocities of the points that they push.
+void CommonStep::share_out_work() {
+  for (std::vector<double>& ports : port_work_) std::ranges::fill(ports, 0.0);
+  for (const DistanceRow& row : rows_) {
+    const Eigen::Vector3d impulse = row.impulse();
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (row.weights[i] == 0.0) continue;
+      const std::int32_t point = row.features.points[i];
+      const TouchingSurfaces::Point& at = surfaces_[point];
+      port_work_[index(at.body)][index(at.port)] +=
+          row.weights[i] * impulse.dot(velocities_[index(point)]);
+    }
+  }
+  share_out_ties();
+}
+
+/// Of ties, whose ports no rows press on, and of those on which both do.
+void CommonStep::share_out_ties() {
+  for (int b = 0; b < bodies_.count() && ties_.any(); ++b) {
+    std::vector<std::vector<double>> impulses(port_work_[index(b)].size());
+    ties_.add_impulses(b, impulses);
+    for (std::size_t p = 0; p < impulses.size(); ++p) {
+      const std::vector<double>& moved = tried_[index(b)].ports[p].displacement;
+      for (std::size_t v = 0; v < impulses[p].size(); ++v)
+        port_work_[index(b)][p] += impulses[p][v] * moved[v] / length();
+    }
+  }
+}
+
+}  // namespace abut
