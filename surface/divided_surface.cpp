@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
 #include "base/assert.hpp"
+#include "base/count.hpp"
 
 namespace abut {
 namespace {
@@ -77,7 +79,7 @@ class Division {
 }  // namespace
 
 int parts_for(const PosedSurface& surface, double size) {
-  return std::max(1, static_cast<int>(std::ceil(longest_edge(surface) / size)));
+  return count_within(std::ceil(longest_edge(surface) / size), 1, std::numeric_limits<int>::max());
 }
 
 DividedSurface divided(const PosedSurface& surface, int parts) {

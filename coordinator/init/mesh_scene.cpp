@@ -13,6 +13,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/count.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/yaml_document.hpp"
@@ -211,7 +212,7 @@ Times times_of(const MeshRow& row, const std::vector<double>& limits) {
   const double touch = row.first_gap / speed;
   const double windows = std::ceil((touch + transits * row.longest / wave_speed) / times.window);
   times.end = windows * times.window;
-  times.every = std::max(1, static_cast<int>(windows / pictures));
+  times.every = count_within(std::floor(windows / pictures), 1, std::numeric_limits<int>::max());
   return times;
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/count.hpp"
 #include "coordinator/coupling/state_fields.hpp"
 
 namespace abut {
@@ -38,8 +39,7 @@ std::string CrossingWatch::look() {
   }
   const double step = deep * surfaces_->shortest_edge();
   const int parts =
-      std::clamp(static_cast<int>(std::ceil(surfaces_->longest_way(bodies_.responses()) / step)), 1,
-                 most_looks);
+      count_within(std::ceil(surfaces_->longest_way(bodies_.responses()) / step), 1, most_looks);
   for (int part = 1; part <= parts; ++part) {
     if (part == parts)
       surfaces_->place(bodies_.responses(), places_);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "surface/divided_surface.hpp"
@@ -61,6 +62,8 @@ TEST(DividedSurface, IsDividedToASize) {
       4, [](double u) { return Eigen::Vector2d(u, 0.0); }, false);  // edges of 1/4
   EXPECT_EQ(parts_for(mesh.pose(), 0.3), 1);
   EXPECT_EQ(parts_for(mesh.pose(), 0.1), 3);
+  // More than an int counts: as many as it counts, which scenes are refused for.
+  EXPECT_EQ(parts_for(mesh.pose(), 1.0e-12), std::numeric_limits<int>::max());
 }
 
 TEST(DividedSurface, KeepsItsEdgesSharp) {
