@@ -85,7 +85,9 @@ class BySize final : public LinearSolver {
   }
   [[nodiscard]] bool solve(const Vector& b, Vector& x) override { return chosen_->solve(b, x); }
   [[nodiscard]] bool solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) override {
-    return chosen_->solve_columns(b, x);
+    if (b.size() > 0) return chosen_->solve_columns(b, x);
+    x = b;  // a matrix without columns has no memory, and solvers would count from there
+    return true;
   }
 
  private:

@@ -253,5 +253,18 @@ TEST(LinearSolvers, AnswerNoEquationsWithNothing) {  // a body all of whose coor
   }
 }
 
+// As of a modal basis whose ports move as rigid motions alone. What a matrix without columns has no
+// memory for is read by nobody (preset asan).
+TEST(LinearSolvers, AnswerNoRightHandSidesWithNone) {
+  for (const bool direct : {true, false}) {
+    const std::unique_ptr<LinearSolver> solver =
+        direct ? make_direct_solver() : make_conjugate_gradients(1.0e-10);
+    Eigen::MatrixXd x = Eigen::MatrixXd::Ones(1, 1);
+    ASSERT_TRUE(solver->factor(chain(50, 0.0)) && solver->solve_columns(Eigen::MatrixXd(50, 0), x));
+    EXPECT_EQ(x.rows(), 50);
+    EXPECT_EQ(x.cols(), 0);
+  }
+}
+
 }  // namespace
 }  // namespace abut
