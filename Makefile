@@ -1,6 +1,6 @@
 # The front door. Every target checks what it needs first, skips what is done, and may be run again.
 .DEFAULT_GOAL := help
-.PHONY: help demo build install uninstall package test fuzz hostile bench results extremes robustness reliability clean dependencies-build dependencies-test dependencies-bench dependencies-package
+.PHONY: help demo build install uninstall package test fuzz hostile sanitize bench results extremes robustness reliability clean dependencies-build dependencies-test dependencies-bench dependencies-package
 
 PRESET ?= release
 WITH ?=
@@ -18,6 +18,7 @@ help:
 	@echo "make test    every test"
 	@echo "make fuzz SECONDS=600   random scenes of new seeds; what fails is told (docs/ROBUSTNESS.md)"
 	@echo "make hostile SECONDS=60   bytes that mean harm, for every reader of files and messages (clang)"
+	@echo "make sanitize  the tests with sanitizers of addresses, undefined behaviour and threads (hours)"
 	@echo "make bench   the measured figures"
 	@echo "make results   docs/RESULTS.md, measured anew (minutes)"
 	@echo "make extremes  docs/EXTREMES.md, measured anew"
@@ -74,6 +75,14 @@ hostile:
 	@cmake --build build/fuzz --target hostile
 	@sh tests/fuzz/run.sh build/fuzz/bin $(SECONDS)
 
+# Their own presets, whatever PRESET says. By threads, what has threads.
+sanitize: dependencies-test
+	@PRESET=asan sh scripts/build.sh tests
+	ctest --preset asan --parallel 2 $(TESTS)
+	@[ -f build/tsan/build.ninja ] || cmake --preset tsan >/dev/null
+	@cmake --build --preset tsan
+	ctest --preset tsan
+
 bench: dependencies-bench
 	@sh scripts/build.sh bench
 	@sh bench/run.sh $(BIN)
@@ -86,7 +95,9 @@ robustness: dependencies-test
 	/usr/bin/python3 scripts/robustness_document.py $(BIN)
 
 reliability: build
-	/usr/bin/python3 bench/reliability.py $(BIN) >build/RELIABILITY.md; code=$$?; mv build/RELIABILITY.md docs/; exit $$code
+	/usr/bin/python3 bench/reliability.py $(BIN) >build/RELIABILITY.md; code=$$?; \
+	  echo >>build/RELIABILITY.md; sed -n '/^## Under sanitizers/,$$p' docs/RELIABILITY.md >>build/RELIABILITY.md; \
+	  mv build/RELIABILITY.md docs/; exit $$code
 
 clean:
 	rm -rf build
