@@ -20,6 +20,7 @@
 #include "messaging/codec/wire.hpp"
 #include "messaging/frame.hpp"
 #include "messaging/key_files.hpp"
+#include "messaging/linked_bodies.hpp"
 #include "messaging/liveness.hpp"
 #include "messaging/remote_subdomain.hpp"
 #include "messaging/serve.hpp"
@@ -39,16 +40,20 @@ inline double quantile(std::vector<double> values, double part) {
   return values[at];
 }
 
-/// The solver's process: our own server, as abut-solver runs it.
-[[noreturn]] inline void solve(const std::string& endpoint, int points, const Access& access = {}) {
+/// The solver's process: our own server, as abut-solver runs it. `memory`: the descriptor of what
+/// it shares with the coordinator; below 0: nothing.
+[[noreturn]] inline void solve(const std::string& endpoint, int points, const Access& access = {},
+                               int memory = -1) {
   const Limits limits;
   const Deadlines deadlines;
   ZmqDealer dealer(endpoint, "body", limits, 1, access);
-  CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
+  const auto linked = LinkedBodies::join(memory, {&dealer}, limits);
+  CoordinatorLiveness coordinator(dealer, endpoint, deadlines, linked.get());
   const MakeBody make = [points](const Specification&, const ProgressHook&) {
     return std::unique_ptr<Subdomain>(std::make_unique<InstantBody>(points));
   };
-  Server server("body", make, dealer, coordinator, limits, deadlines);
+  Channel& channel = linked ? linked->channel(0) : dealer;
+  Server server("body", make, channel, coordinator, limits, deadlines);
   try {
     serve(server, Milliseconds(10'000));
   } catch (const CoordinatorLost&) {  // it has measured what it wanted
@@ -83,28 +88,31 @@ inline void end_process(pid_t id) {
 /// Ours: start and finish of an advance through a RemoteSubdomain, minus the time inside the body.
 class OurExchange {
  public:
-  /// `keys`: the folder of both ends; empty: they have none.
+  /// By sockets, with a solver that is there. `keys`: the folder of both ends; empty: they have
+  /// none.
   explicit OurExchange(const std::string& endpoint, const std::string& keys = "")
-      : hub_(limits_),
-        peer_(hub_.add_peer("body")),
-        liveness_(hub_, peer_, nullptr, "", limits_, Deadlines{}),
-        caller_("body", CallContext{hub_.channel(peer_), liveness_, nullptr, limits_, Deadlines{}}),
-        body_(caller_) {
+      : OurExchange(Way::sockets, {}) {
     if (keys.empty()) {
       hub_.bind(endpoint);
     } else {
       hub_.bind(endpoint, read_coordinator_keys(keys, std::vector<std::string>{"body"}));
     }
-    std::optional<Bytes> frame;
-    while (!(frame = hub_.channel(peer_).receive(Milliseconds(100)))) {
-    }
-    v1::Reply hello;
-    Bytes bulk;
-    if (!parse_into(hello, *open_frame(*frame), bulk)) std::abort();
-    caller_.accept_session(hello.session());
-    body_.start_configure(Specification{});
-    body_.finish_configure();
+    greet();
   }
+  /// Through memory, with a solver of its own.
+  OurExchange(const std::string& endpoint, int points, std::chrono::microseconds spin)
+      : OurExchange(Way::memory, spin) {
+    hub_.bind(endpoint);
+    const int memory = linked_->descriptor();
+    solver_ = start_process([&] { solve(endpoint, points, {}, memory); });
+    greet();
+  }
+  ~OurExchange() {
+    if (solver_ > 0) end_process(solver_);
+  }
+  OurExchange(const OurExchange&) = delete;
+  OurExchange& operator=(const OurExchange&) = delete;
+
   /// Sizes of the two frames.
   std::pair<std::size_t, std::size_t> prepare(int substeps) {
     advance_.window = TimeWindow{0, 0.0, 1.0e-7 * substeps};
@@ -134,6 +142,27 @@ class OurExchange {
   }
 
  private:
+  enum class Way { sockets, memory };
+  OurExchange(Way way, std::chrono::microseconds spin)
+      : hub_(limits_),
+        peer_(hub_.add_peer("body")),
+        linked_(way == Way::memory ? LinkedBodies::make({&hub_.channel(peer_)}, limits_, spin)
+                                   : nullptr),
+        liveness_(hub_, peer_, nullptr, "", limits_, Deadlines{}, linked_.get()),
+        caller_("body", CallContext{linked_ ? linked_->channel(0) : hub_.channel(peer_), liveness_,
+                                    nullptr, limits_, Deadlines{}}),
+        body_(caller_) {}
+  void greet() {
+    std::optional<Bytes> frame;
+    while (!(frame = hub_.channel(peer_).receive(Milliseconds(100)))) {
+    }
+    v1::Reply hello;
+    Bytes bulk;
+    if (!parse_into(hello, *open_frame(*frame), bulk)) std::abort();
+    caller_.accept_session(hello.session());
+    body_.start_configure(Specification{});
+    body_.finish_configure();
+  }
   std::pair<std::size_t, std::size_t> sizes() {
     once();
     Frame request, reply;
@@ -148,6 +177,8 @@ class OurExchange {
   Limits limits_;
   ZmqHub hub_;
   int peer_;
+  std::unique_ptr<LinkedBodies> linked_;  // null: by sockets
+  pid_t solver_ = -1;                     // of its own
   BodyLiveness liveness_;
   Caller caller_;
   RemoteSubdomain body_;

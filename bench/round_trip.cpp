@@ -1,10 +1,12 @@
-// What one exchange with a body in another process costs beyond the solve, against a bare ZeroMQ
-// ROUTER/DEALER round trip of the same frame sizes over the same kind of socket (ipc). Both are
-// measured in turns, block by block, so that a change of the machine's mood meets both; medians,
-// one line per size.
+// What one exchange with a body in another process costs beyond the solve: through memory that both
+// processes share, and through sockets (ipc), against a bare ZeroMQ ROUTER/DEALER round trip of the
+// same frame sizes. All are measured in turns, block by block, so that a change of the machine's
+// mood meets all; medians, one line per size.
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,9 +21,10 @@ namespace {
 using namespace abut;
 using namespace abut::bench;
 
-constexpr int blocks = 60;
+int blocks = 60;  // another number as argument: sooner, and less sure
 constexpr int exchanges_per_block = 100;
 constexpr double accepted_ratio = 1.5;
+constexpr int usual_spin = 50;  // [us] as the coordinator has it
 
 /// The other end of the bare round trip: answers with as many bytes as the first 8 of a frame say.
 [[noreturn]] void echo_process(const std::string& endpoint) {
@@ -70,42 +73,59 @@ class BareExchange {
   zmq::message_t sender_, message_;
 };
 
-struct Measured {
-  std::vector<double> ours, bare;  // [us]
+/// The ways of an exchange, side by side.
+struct Ways {
+  BareExchange& bare;
+  OurExchange& sockets;
+  OurExchange& looking;   // through memory, as where each process has a core
+  OurExchange& sleeping;  // through memory, as where it has none: nobody looks before it sleeps
 };
 
+struct Measured {
+  std::vector<double> bare, sockets, looking, sleeping;  // [us]
+};
+
+template <class Exchange>
+void take(Exchange& exchange, int each, bool counts, std::vector<double>& times) {
+  for (int i = 0; i < each; ++i) {
+    const double time = exchange.once();
+    if (counts) times.push_back(time);
+  }
+}
+
 /// In turns; the first block warms up.
-Measured measure(OurExchange& ours, BareExchange& bare, int count, int each) {
+Measured measure(const Ways& ways, int count, int each) {
   Measured out;
   for (int block = 0; block <= count; ++block) {
-    for (int i = 0; i < each; ++i) {
-      const double time = bare.once();
-      if (block > 0) out.bare.push_back(time);
-    }
-    for (int i = 0; i < each; ++i) {
-      const double time = ours.once();
-      if (block > 0) out.ours.push_back(time);
-    }
+    take(ways.bare, each, block > 0, out.bare);
+    take(ways.sockets, each, block > 0, out.sockets);
+    take(ways.looking, each, block > 0, out.looking);
+    take(ways.sleeping, each, block > 0, out.sleeping);
   }
   return out;
 }
 
-void print(int first, const std::pair<std::size_t, std::size_t>& sizes, const Measured& m,
-           double last) {
-  fmt::print(
-      "{:>8} {:>7} {:>7}   {:>6.1f} ({:.1f} to {:.1f})   {:>6.1f} ({:.1f} to {:.1f})   {:.2f}\n",
-      first, sizes.first, sizes.second, quantile(m.bare, 0.5), quantile(m.bare, 0.1),
-      quantile(m.bare, 0.9), quantile(m.ours, 0.5), quantile(m.ours, 0.1), quantile(m.ours, 0.9),
-      last);
+std::string words(const std::vector<double>& times) {
+  return fmt::format("{:.1f} ({:.1f} to {:.1f})", quantile(times, 0.5), quantile(times, 0.1),
+                     quantile(times, 0.9));
 }
 
-/// Prints one line; true when the ratio is accepted.
-bool measure_substeps(OurExchange& ours, BareExchange& bare, int substeps) {
-  const std::pair<std::size_t, std::size_t> sizes = ours.prepare(substeps);
-  bare.prepare(sizes);
-  const Measured m = measure(ours, bare, blocks, exchanges_per_block);
-  const double ratio = quantile(m.ours, 0.5) / quantile(m.bare, 0.5);
-  print(substeps, sizes, m, ratio);
+void print(int first, const std::pair<std::size_t, std::size_t>& sizes, const Measured& m) {
+  fmt::print("{:>8} {:>7} {:>7}   {:26} {:26} {:26} {:26}", first, sizes.first, sizes.second,
+             words(m.bare), words(m.sockets), words(m.looking), words(m.sleeping));
+}
+
+/// Prints one line; true when the ratio of sockets is accepted.
+bool measure_substeps(const Ways& ways, int substeps) {
+  const std::pair<std::size_t, std::size_t> sizes = ways.sockets.prepare(substeps);
+  ways.looking.prepare(substeps);
+  ways.sleeping.prepare(substeps);
+  ways.bare.prepare(sizes);
+  const Measured m = measure(ways, blocks, exchanges_per_block);
+  const double ratio = quantile(m.sockets, 0.5) / quantile(m.bare, 0.5);
+  print(substeps, sizes, m);
+  fmt::print(" {:.2f}  {:.2f}  {:.2f}\n", ratio, quantile(m.looking, 0.5) / quantile(m.bare, 0.5),
+             quantile(m.sleeping, 0.5) / quantile(m.bare, 0.5));
   return ratio <= accepted_ratio;
 }
 
@@ -126,56 +146,69 @@ double copies(std::size_t bytes) {
   return quantile(times, 0.5);
 }
 
-/// A surface of points at both ends of a substep: milliseconds beyond the bare round trip and the
-/// copies.
-void measure_surface(OurExchange& ours, BareExchange& bare, int points, double goal) {
-  const std::pair<std::size_t, std::size_t> sizes = ours.prepare_surface(points);
-  bare.prepare(sizes);
-  const Measured m = measure(ours, bare, 10, 20);
-  const double beyond = quantile(m.ours, 0.5) - quantile(m.bare, 0.5) - copies(sizes.first);
-  print(points, sizes, m, beyond / 1000.0);
-  fmt::print("{:>86} {:.2f}\n", "goal", goal);
+/// A surface of points at both ends of a substep: milliseconds beyond the four copies.
+void measure_surface(const Ways& ways, int points, double goal) {
+  const std::pair<std::size_t, std::size_t> sizes = ways.sockets.prepare_surface(points);
+  ways.looking.prepare_surface(points);
+  ways.sleeping.prepare_surface(points);
+  ways.bare.prepare(sizes);
+  const Measured m = measure(ways, std::min(blocks, 10), 20);
+  const double least = copies(sizes.first);
+  print(points, sizes, m);
+  fmt::print(" {:.2f}  {:.2f}  (goal {:.1f})\n", (quantile(m.sockets, 0.5) - least) / 1000.0,
+             (quantile(m.looking, 0.5) - least) / 1000.0, goal);
+}
+
+constexpr const char* columns =
+    "bare ZeroMQ                sockets                    memory                     memory, "
+    "without looking   ";
+
+bool measure_all(const std::string& directory, const std::vector<std::string>& at) {
+  const auto through = [&](int points, int spin) {
+    return std::make_unique<OurExchange>(fmt::format("ipc://{}/{}_{}", directory, points, spin),
+                                         points, std::chrono::microseconds(spin));
+  };
+  BareExchange bare(at[0]);
+  const double goals[] = {0.1, 1.5};  // [ms] of surfaces
+  fmt::print("Exchange of surfaces, in microseconds: median (10 % to 90 %)\n");
+  fmt::print("  points   bytes   bytes   {}ms beyond four copies: sockets, memory\n", columns);
+  for (const int which : {0, 1}) {
+    const int points = which == 0 ? 10'000 : 100'000;
+    OurExchange sockets(at[index(2 + which)]);
+    const auto looking = through(points, usual_spin), sleeping = through(points, 0);
+    measure_surface({bare, sockets, *looking, *sleeping}, points, goals[which]);
+  }
+  OurExchange sockets(at[1]);
+  const auto looking = through(1, usual_spin), sleeping = through(1, 0);
+  fmt::print("Exchange less solving, {} of each, in microseconds: median (10 % to 90 %)\n",
+             blocks * exchanges_per_block);
+  fmt::print("substeps   bytes   bytes   {}over the bare one\n", columns);
+  bool accepted = true;
+  for (const int substeps : {1, 10, 100, 1000})
+    accepted = measure_substeps({bare, sockets, *looking, *sleeping}, substeps) && accepted;
+  return accepted;
 }
 
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
+  if (count > 1) blocks = std::max(1, std::atoi(arguments[1]));
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // each line as it comes
   std::string directory = "/tmp/abut-bench-XXXXXX";
   if (mkdtemp(directory.data()) == nullptr) return 1;
-  const std::string ours_at = "ipc://" + directory + "/ours";
-  const std::string bare_at = "ipc://" + directory + "/bare";
-  const std::string small_at = "ipc://" + directory + "/small";
-  const std::string large_at = "ipc://" + directory + "/large";
-  const pid_t solver = start_process([&] { solve(ours_at, 1); });
-  const pid_t small = start_process([&] { solve(small_at, 10'000); });
-  const pid_t large = start_process([&] { solve(large_at, 100'000); });
-  const pid_t echo = start_process([&] { echo_process(bare_at); });
+  std::vector<std::string> at;
+  for (const char* name : {"/bare", "/one", "/small", "/large"})
+    at.push_back("ipc://" + directory + name);
+  std::vector<pid_t> others{start_process([&] { echo_process(at[0]); })};
+  for (const int which : {1, 2, 3})
+    others.push_back(start_process([&] {
+      solve(at[index(which)], which == 1 ? 1 : which == 2 ? 10'000 : 100'000);
+    }));
   stay_on_core(0);
-  bool accepted = true;
-  {
-    OurExchange ours(ours_at);
-    BareExchange bare(bare_at);
-    fmt::print("Exchange over ipc, in microseconds: median (10 % to 90 %)\n");
-    fmt::print(
-        "  points   bytes   bytes   bare ZeroMQ              surface: motion there, force back   "
-        "ms beyond it and four copies\n");
-    {
-      OurExchange of_small(small_at), of_large(large_at);
-      measure_surface(of_small, bare, 10'000, 0.15);
-      measure_surface(of_large, bare, 100'000, 2.5);
-    }
-    fmt::print("Exchange over ipc, {} of each, in microseconds: median (10 % to 90 %)\n",
-               blocks * exchanges_per_block);
-    fmt::print(
-        "substeps   bytes   bytes   bare ZeroMQ              exchange less solving    ratio\n");
-    fmt::print("           there    back\n");
-    for (const int substeps : {1, 10, 100, 1000})
-      accepted = measure_substeps(ours, bare, substeps) && accepted;
-  }
-  for (const pid_t id : {solver, small, large, echo}) end_process(id);
-  for (const char* name : {"/ours", "/small", "/large", "/bare", ""}) {
-    if (std::remove((directory + name).c_str()) != 0) continue;  // libzmq removes its own
-  }
-  fmt::print("limit {:.1f}: {}\n", accepted_ratio, accepted ? "kept" : "EXCEEDED");
+  const bool accepted = measure_all(directory, at);
+  for (const pid_t id : others) end_process(id);
+  std::filesystem::remove_all(directory);
+  fmt::print("sockets over bare ZeroMQ, limit {:.1f}: {}\n", accepted_ratio,
+             accepted ? "kept" : "EXCEEDED");
   return accepted ? 0 : 1;
 }

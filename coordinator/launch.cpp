@@ -1,6 +1,7 @@
 #include "coordinator/launch.hpp"
 
 #include <fmt/format.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 #include "messaging/codec.hpp"
 #include "messaging/descriptors.hpp"
 #include "messaging/key_files.hpp"
+#include "messaging/linked_bodies.hpp"
 #include "messaging/liveness.hpp"
 #include "messaging/remote_subdomain.hpp"
 #include "messaging/zmq_channel.hpp"
@@ -45,6 +47,18 @@ Milliseconds milliseconds(double seconds) {
 Milliseconds time_left(TimePoint until) {
   return std::max(Milliseconds(0),
                   std::chrono::ceil<Milliseconds>(until - std::chrono::steady_clock::now()));
+}
+
+/// How long whoever waits for a frame may look for it before it sleeps. To wake another core takes
+/// some 25 us; where processes have no core each, looking keeps others from theirs.
+std::chrono::microseconds spin_of(std::size_t processes) {
+  constexpr std::chrono::microseconds usual{50};
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  const bool known = sched_getaffinity(0, sizeof cores, &cores) == 0;
+  return known && processes <= static_cast<std::size_t>(CPU_COUNT(&cores))
+             ? usual
+             : std::chrono::microseconds(0);
 }
 
 /// Bodies with processes that somebody else starts.
@@ -100,10 +114,12 @@ std::string command_for(std::string endpoint, const std::string& body, bool exte
 /// A process that we start, and the bodies in it.
 struct Launch::Process {
   std::string program;
+  bool ours = false;       // abut-solver
   std::string routing_id;  // of several bodies; empty: the name of its one body
   std::vector<std::string> bodies;
   std::unique_ptr<ChildProcess> child;
-  bool has_scene = false;  // its text is under way or there
+  std::unique_ptr<LinkedBodies> linked;  // null: its frames pass through sockets
+  bool has_scene = false;                // its text is under way or there
 
   /// With whom the body shares it, for messages; empty: with nobody.
   std::string others_than(const std::string& body) const {
@@ -126,6 +142,7 @@ struct Launch::Member {
   BodyContext context;
   Milliseconds patience{0};
   int peer = 0;
+  Channel* way = nullptr;  // of all but its Hello
   std::unique_ptr<Liveness> liveness;
   std::unique_ptr<Caller> caller;
   std::unique_ptr<RemoteSubdomain> body;  // until it is handed out
@@ -144,7 +161,7 @@ Launch::Launch(const Scene& scene, const Specification& scene_text, const Launch
   try {
     add_members(scene);
     listen(scene, scene_text.document);
-    spawn_all();
+    spawn_all(scene.network.transport);
     greet_all(scene_text);
   } catch (...) {
     end_processes();
@@ -161,7 +178,8 @@ void Launch::add_members(const Scene& scene) {
   std::vector<Process*> process_of(scene.bodies.size(), nullptr);
   for (const SolverProcess& plan : solver_processes(scene)) {
     std::unique_ptr<Process> process = std::make_unique<Process>();
-    process->program = plan.program.empty() ? options_.solver : plan.program;
+    process->ours = plan.program.empty();
+    process->program = process->ours ? options_.solver : plan.program;
     // No body can be called so: names have no blanks.
     if (plan.bodies.size() > 1) process->routing_id = fmt::format("process {}", processes_.size());
     for (const std::size_t body : plan.bodies) {
@@ -207,24 +225,48 @@ void Launch::listen(const Scene& scene, const std::string& document) {
   }
 }
 
-void Launch::spawn_all() {
+/// With our own solvers alone: others need not know what to do with it.
+void Launch::share_memory(Process& process) {
+  std::vector<Member*> its;
+  std::vector<Channel*> sockets;
+  for (const std::unique_ptr<Member>& member : members_) {
+    if (member->process != &process) continue;
+    its.push_back(member.get());
+    sockets.push_back(member->way);
+  }
+  process.linked = LinkedBodies::make(sockets, options_.limits, spin_of(processes_.size()));
+  if (!process.linked) {
+    log_warning("no memory to share with a solver's process: its frames pass through sockets");
+    return;
+  }
+  for (std::size_t number = 0; number < its.size(); ++number)
+    its[number]->way = &process.linked->channel(number);
+}
+
+void Launch::spawn_all(Transport transport) {
+  for (const std::unique_ptr<Member>& member : members_) member->way = &hub_->channel(member->peer);
+  for (const std::unique_ptr<Process>& process : processes_)
+    if (transport == Transport::automatic && process->ours) share_memory(*process);
   for (const std::unique_ptr<Process>& process : processes_) {
     std::vector<std::string> arguments{"--connect", ipc_endpoint_};
+    const int memory = process->linked ? process->linked->descriptor() : -1;
+    if (memory >= 0) arguments.insert(arguments.end(), {"--memory", std::to_string(memory)});
     if (!process->routing_id.empty())
       arguments.insert(arguments.end(), {"--process", process->routing_id});
     for (const std::string& body : process->bodies)
       arguments.insert(arguments.end(), {"--body", body});
-    process->child = std::make_unique<ChildProcess>(process->program, arguments);
+    process->child = std::make_unique<ChildProcess>(process->program, arguments, memory);
+    if (process->linked) process->linked->handed_over();
   }
   for (const std::unique_ptr<Member>& member : members_) {
     const Process* process = member->process;
     member->liveness = std::make_unique<BodyLiveness>(
         *hub_, member->peer, process != nullptr ? process->child.get() : nullptr,
         process != nullptr ? process->others_than(member->name) : "", options_.limits,
-        options_.deadlines);
+        options_.deadlines, process != nullptr ? process->linked.get() : nullptr);
     member->caller = std::make_unique<Caller>(
-        member->name, CallContext{hub_->channel(member->peer), *member->liveness,
-                                  options_.interrupted, options_.limits, options_.deadlines});
+        member->name, CallContext{*member->way, *member->liveness, options_.interrupted,
+                                  options_.limits, options_.deadlines});
     member->body = std::make_unique<RemoteSubdomain>(*member->caller);
   }
 }
@@ -324,14 +366,14 @@ bool Launch::welcome(Member& member, const v1::Hello& hello) {
   welcome.mutable_welcome()->set_frame_limit(options_.limits.frame_bytes);
   Frame out;
   out.seal(welcome);
-  hub_->channel(member.peer).send(out.bytes());
+  member.way->send(out.bytes());
   member.caller->accept_session(hello.session());
   member.welcome = true;
   return true;
 }
 
 void Launch::refuse(const Member& member, std::uint64_t session, const std::string& reason) {
-  hub_->channel(member.peer).send(refusal(session, reason).bytes());
+  member.way->send(refusal(session, reason).bytes());
 }
 
 void Launch::refuse_strangers() {

@@ -52,7 +52,8 @@ class Launch {
   struct Member;
   void add_members(const Scene& scene);
   void listen(const Scene& scene, const std::string& document);
-  void spawn_all();
+  void share_memory(Process& process);
+  void spawn_all(Transport transport);
   void greet_all(const Specification& scene_text);
   bool greet(Member& member);
   void configure(Member& member, const Specification& scene_text);

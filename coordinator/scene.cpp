@@ -179,6 +179,10 @@ void NetworkSpec::fields(Fields& f) {
   f.word("on_lost_body", on_lost_body, {"stop", "restart"},
          "answer to a body that does not answer any more: end the run, or start all bodies again "
          "and go on from the latest checkpoint");
+  f.word("transport", transport, {"automatic", "sockets"},
+         "way of the messages of bodies: memory that the coordinator shares with each abut-solver "
+         "that it starts, and sockets of ZeroMQ elsewhere; or sockets for all. Results are the "
+         "same");
   f.check(endpoint.starts_with("tcp://") || endpoint.starts_with("ipc://"), "endpoint",
           fmt::format("must begin with tcp:// or ipc://, but is {}", endpoint),
           "Give for example tcp://127.0.0.1:5555.");
@@ -223,6 +227,9 @@ void Scene::idle_keys(Fields& f) const {
          "no body has launch: connect");
   f.idle(std::all_of(bodies.begin(), bodies.end(), waits), "network.startup_deadline",
          "no body is started by the coordinator");
+  f.idle(std::none_of(bodies.begin(), bodies.end(),
+                      [](const auto& entry) { return starts_our_solver(entry.second); }),
+         "network.transport", "the coordinator starts no abut-solver");
   f.idle(std::none_of(bodies.begin(), bodies.end(),
                       [](const auto& entry) { return is_dealt(entry.second); }),
          "network.processes", "every body has a group, a program or connect of its own");

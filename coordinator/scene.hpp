@@ -123,6 +123,7 @@ struct OutputSpec {
 };
 
 enum class OnLostBody { stop, restart };
+enum class Transport { automatic, sockets };
 
 struct NetworkSpec {
   // Where bodies with launch: connect find the coordinator.
@@ -131,6 +132,7 @@ struct NetworkSpec {
   double startup_deadline = 10.0;  // [s] for processes that the coordinator starts
   int processes = 0;               // that bodies without a group are dealt to; 0: one for each
   OnLostBody on_lost_body = OnLostBody::stop;
+  Transport transport = Transport::automatic;
   std::string keys;  // directory, from the scene's own folder; empty: connected bodies have none
   void fields(Fields& f);
 };

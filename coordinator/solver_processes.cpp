@@ -37,6 +37,10 @@ bool is_dealt(const BodyEntry& entry) {
   return launch != nullptr && launch->program.empty() && !entry.external;
 }
 
+bool starts_our_solver(const BodyEntry& entry) {
+  return !std::holds_alternative<ConnectLaunch>(entry.launch) && program_of(entry).empty();
+}
+
 std::vector<SolverProcess> solver_processes(const Scene& scene) {
   std::vector<SolverProcess> processes;
   std::map<std::string, std::size_t> number;  // of shared ones, by key

@@ -21,6 +21,9 @@ struct SolverProcess {
 /// Whether network.processes decides where the body lives.
 bool is_dealt(const BodyEntry& entry);
 
+/// Whether the coordinator starts abut-solver for the body.
+bool starts_our_solver(const BodyEntry& entry);
+
 /// One process for each group, one for each body that is spawned alone, and those that
 /// network.processes deals the others to in turns; in the order of their first bodies.
 std::vector<SolverProcess> solver_processes(const Scene& scene);

@@ -22,7 +22,8 @@ namespace abut {
 namespace {
 
 /// In the child, between fork and exec: only calls that are safe after a fork among threads.
-[[noreturn]] void become(const char* program, char* const* arguments, pid_t parent, int report) {
+[[noreturn]] void become(const char* program, char* const* arguments, pid_t parent, int report,
+                         int inherited) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() == parent) {  // else the parent died before the request to die with it
     setpgid(0, 0);
@@ -34,6 +35,7 @@ namespace {
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
     const int null = open("/dev/null", O_RDONLY);
     if (null >= 0) dup2(null, STDIN_FILENO);
+    if (inherited >= 0) fcntl(inherited, F_SETFD, 0);  // open beyond exec
     execvp(program, arguments);  // a name without a slash is looked up on PATH
   }
   const int error = errno;
@@ -43,7 +45,8 @@ namespace {
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::string& program, const std::vector<std::string>& arguments) {
+ChildProcess::ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
+                           int inherited) {
   const std::string remedy = "build abut-solver beside abut, or name the program in launch.spawn";
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -55,7 +58,7 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
   }
   const pid_t parent = getpid();
   pid_ = fork();
-  if (pid_ == 0) become(program.c_str(), argv.data(), parent, report[1]);
+  if (pid_ == 0) become(program.c_str(), argv.data(), parent, report[1], inherited);
   const int fork_error = errno;
   close(report[1]);
   int error = pid_ < 0 ? fork_error : 0;

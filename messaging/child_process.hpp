@@ -14,8 +14,10 @@ namespace abut {
 /// parent alone.
 class ChildProcess {
  public:
-  /// Throws RunError when the program cannot be started.
-  ChildProcess(const std::string& program, const std::vector<std::string>& arguments);
+  /// Of the descriptors of this process that are closed elsewhere it keeps `inherited`, where that
+  /// is none below 0. Throws RunError when the program cannot be started.
+  ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
+               int inherited = -1);
   /// Kills what is still running and waits for it.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace abut {
@@ -14,13 +15,20 @@ constexpr Milliseconds time_to_exit{1'000};
 }  // namespace
 
 BodyLiveness::BodyLiveness(ZmqHub& hub, int peer, ChildProcess* child, std::string shares,
-                           const Limits& limits, const Deadlines& deadlines)
+                           const Limits& limits, const Deadlines& deadlines,
+                           const LinkedBodies* linked)
     : hub_(hub),
       peer_(peer),
       child_(child),
       shares_(std::move(shares)),
       limits_(limits),
-      deadlines_(deadlines) {}
+      deadlines_(deadlines),
+      linked_(linked) {}
+
+TimePoint BodyLiveness::last_sign() {
+  const TimePoint by_hub = hub_.last_frame(peer_);
+  return linked_ != nullptr ? std::max(by_hub, linked_->last_frame()) : by_hub;
+}
 
 std::string BodyLiveness::loss(TimePoint since) {
   const std::string what = loss_of_process(since);
@@ -31,6 +39,7 @@ std::string BodyLiveness::loss(TimePoint since) {
 std::string BodyLiveness::loss_of_process(TimePoint since) {
   const std::string hint = fmt::format(
       "(a frame far above the limit of {} bytes ends a connection)", limits_.frame_bytes);
+  if (linked_ != nullptr && !linked_->fault().empty()) return linked_->fault();
   if (child_ != nullptr && child_->ended(Milliseconds(0))) {
     // Code 3 is a solver that believes its coordinator gone: it was this end that hung up.
     return child_->exited_with(3) ? child_->ending() + ", its connection having ended " + hint
@@ -49,12 +58,14 @@ std::string BodyLiveness::loss_of_process(TimePoint since) {
 }
 
 CoordinatorLiveness::CoordinatorLiveness(ZmqDealer& dealer, const std::string& endpoint,
-                                         const Deadlines& deadlines)
+                                         const Deadlines& deadlines, const LinkedBodies* linked)
     : dealer_(dealer),
       // On one machine a closed socket is a dead coordinator; a network may come back.
-      grace_(endpoint.starts_with("ipc:") ? Milliseconds(0) : deadlines.reconnect) {}
+      grace_(endpoint.starts_with("ipc:") ? Milliseconds(0) : deadlines.reconnect),
+      linked_(linked) {}
 
 std::string CoordinatorLiveness::loss(TimePoint) {
+  if (linked_ != nullptr && !linked_->fault().empty()) return linked_->fault();
   const std::optional<TimePoint> gone = dealer_.gone_since();
   if (!gone || std::chrono::steady_clock::now() - *gone < grace_) return {};
   return "is gone";

@@ -6,6 +6,7 @@
 
 #include "messaging/channel.hpp"
 #include "messaging/child_process.hpp"
+#include "messaging/linked_bodies.hpp"
 #include "messaging/protocol.hpp"
 #include "messaging/zmq_channel.hpp"
 #include "messaging/zmq_dealer.hpp"
@@ -37,11 +38,11 @@ class AlwaysAlive : public Liveness {
 class BodyLiveness : public Liveness {
  public:
   /// `child` may be null: somebody else started the solver. `shares`: with whom the body shares its
-  /// process, for messages; empty: with nobody.
+  /// process, for messages; empty: with nobody. `linked`: where its frames pass; null: by the hub.
   BodyLiveness(ZmqHub& hub, int peer, ChildProcess* child, std::string shares, const Limits& limits,
-               const Deadlines& deadlines);
+               const Deadlines& deadlines, const LinkedBodies* linked = nullptr);
   std::string loss(TimePoint since) override;
-  TimePoint last_sign() override { return hub_.last_frame(peer_); }
+  TimePoint last_sign() override;
 
  private:
   std::string loss_of_process(TimePoint since);
@@ -52,17 +53,21 @@ class BodyLiveness : public Liveness {
   std::string shares_;
   Limits limits_;
   Deadlines deadlines_;
+  const LinkedBodies* linked_;
 };
 
 /// The solver's view of its coordinator.
 class CoordinatorLiveness : public Liveness {
  public:
-  CoordinatorLiveness(ZmqDealer& dealer, const std::string& endpoint, const Deadlines& deadlines);
+  /// `linked`: where its frames pass; null: by the dealer.
+  CoordinatorLiveness(ZmqDealer& dealer, const std::string& endpoint, const Deadlines& deadlines,
+                      const LinkedBodies* linked = nullptr);
   std::string loss(TimePoint since) override;
 
  private:
   ZmqDealer& dealer_;
   Milliseconds grace_;
+  const LinkedBodies* linked_;
 };
 
 }  // namespace abut

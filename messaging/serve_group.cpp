@@ -7,7 +7,7 @@
 
 namespace abut {
 
-void serve_group(std::span<const std::unique_ptr<Server>> servers, ZmqGroup& group,
+void serve_group(std::span<const std::unique_ptr<Server>> servers, BodyGroup& group,
                  Milliseconds patience) {
   const FlushedDenormals flushed;  // as in the coordinator: equal bits in every placement
   const TimePoint begin = group.channel(0).now();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "messaging/body_group.hpp"
 #include "messaging/channel.hpp"
 #include "messaging/zmq_dealer.hpp"
 
@@ -15,19 +16,18 @@ namespace abut {
 
 /// The bodies of one process behind its one connection, each with a channel of its own: a part with
 /// the body's name stands before every frame.
-class ZmqGroup {
+class ZmqGroup : public BodyGroup {
  public:
   /// The dealer must outlive this object.
   ZmqGroup(ZmqDealer& dealer, const std::vector<std::string>& bodies);
-  ~ZmqGroup();
+  ~ZmqGroup() override;
   ZmqGroup(const ZmqGroup&) = delete;
   ZmqGroup& operator=(const ZmqGroup&) = delete;
 
-  /// Bodies are numbered from 0 in the order of the constructor. A channel receives what wait() has
+  /// Bodies are numbered in the order of the constructor. A channel receives what wait() has
   /// brought, and never waits itself.
-  Channel& channel(std::size_t body);
-  /// Waits for a frame of any of them; tells whose it is. Nothing when none came.
-  std::optional<std::size_t> wait(Milliseconds time);
+  Channel& channel(std::size_t body) override;
+  std::optional<std::size_t> wait(Milliseconds time) override;
 
  private:
   struct Member;

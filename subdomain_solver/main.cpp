@@ -15,6 +15,7 @@
 #include "base/endpoint.hpp"
 #include "base/error.hpp"
 #include "messaging/descriptors.hpp"
+#include "messaging/linked_bodies.hpp"
 #include "messaging/liveness.hpp"
 #include "messaging/serve.hpp"
 #include "messaging/serve_group.hpp"
@@ -48,6 +49,7 @@ struct Command {
   std::string endpoint;
   std::string process;  // routing id of a process that several bodies may share
   std::vector<std::string> bodies;
+  int memory = -1;         // descriptor; below 0: none
   double patience = 60.0;  // [s]
   abut::Access access;
 };
@@ -68,15 +70,22 @@ void serve_bodies(const Command& command) {
   const bool shared = !command.process.empty();
   abut::ZmqDealer dealer(command.endpoint, shared ? command.process : command.bodies.front(),
                          limits, command.bodies.size(), command.access);
-  abut::CoordinatorLiveness coordinator(dealer, command.endpoint, deadlines);
   Maker maker;
   const abut::MakeBody make = std::ref(maker);
   if (!shared) {
-    abut::Server server(command.bodies.front(), make, dealer, coordinator, limits, deadlines);
+    const auto linked = abut::LinkedBodies::join(command.memory, {&dealer}, limits);
+    abut::CoordinatorLiveness coordinator(dealer, command.endpoint, deadlines, linked.get());
+    abut::Channel& channel = linked ? linked->channel(0) : dealer;
+    abut::Server server(command.bodies.front(), make, channel, coordinator, limits, deadlines);
     abut::serve(server, patience);
     return;
   }
-  abut::ZmqGroup group(dealer, command.bodies);
+  abut::ZmqGroup by_socket(dealer, command.bodies);
+  std::vector<abut::Channel*> sockets;
+  for (std::size_t b = 0; b < command.bodies.size(); ++b) sockets.push_back(&by_socket.channel(b));
+  const auto linked = abut::LinkedBodies::join(command.memory, sockets, limits);
+  abut::BodyGroup& group = linked ? static_cast<abut::BodyGroup&>(*linked) : by_socket;
+  abut::CoordinatorLiveness coordinator(dealer, command.endpoint, deadlines, linked.get());
   std::vector<std::unique_ptr<abut::Server>> servers;
   for (std::size_t b = 0; b < command.bodies.size(); ++b) {
     servers.push_back(std::make_unique<abut::Server>(command.bodies[b], make, group.channel(b),
@@ -104,6 +113,9 @@ int main(int argc, char** argv) {
   app.add_option("--process", command.process,
                  "of several bodies: the name by which the coordinator that starts it knows it")
       ->type_name("NAME");
+  app.add_option("--memory", command.memory,
+                 "descriptor of memory that the coordinator which starts it shares with it")
+      ->type_name("NUMBER");
   app.add_option("--patience", command.patience, "time to wait for a coordinator [s]; default 60")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.1, 86'400.0).description(""));

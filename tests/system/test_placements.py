@@ -143,6 +143,17 @@ class Placements(SystemTest):
         self.assertEqual(
             bits(self.run_in("one", TWO_BARS, "--set", "network.processes=1")), two)
 
+    def test_memory_and_sockets_lead_to_the_same_bits(self):
+        chain = self.folder / "chain.yaml"
+        chain.write_text(CHAIN, encoding="utf-8")
+        local = bits(self.run_in("here", chain, "--local"))
+        for name, arguments in {"alone": [], "dealt": ["--set", "network.processes=2"]}.items():
+            for way in ("automatic", "sockets"):
+                with self.subTest(placement=name, way=way):
+                    folder = self.run_in(f"{name} {way}", chain, *arguments,
+                                         "--set", f"network.transport={way}")
+                    self.assertEqual(bits(folder), local)
+
     def test_everything_that_rubs_with_two_coefficients_reaches_the_same_bits(self):
         scene = self.folder / "everything.yaml"
         text = CHAIN[:CHAIN.index("interfaces:")].replace("[0.01, 0.0]", "[0.01, 0.003]")

@@ -3,9 +3,12 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cinttypes>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <thread>
@@ -13,6 +16,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "messaging/linked_bodies.hpp"
 #include "messaging/serve.hpp"
 #include "messaging/serve_group.hpp"
 #include "messaging/zmq_dealer.hpp"
@@ -22,6 +26,20 @@
 namespace {
 
 using namespace abut;
+
+/// Overwrites what it shares with the coordinator.
+void scribble() {
+  std::FILE* const maps = std::fopen("/proc/self/maps", "r");
+  char line[512];
+  while (maps != nullptr && std::fgets(line, sizeof line, maps) != nullptr) {
+    std::uintptr_t begin = 0, end = 0;
+    if (std::strstr(line, "/memfd:abut") == nullptr ||
+        std::sscanf(line, "%" SCNxPTR "-%" SCNxPTR, &begin, &end) != 2)
+      continue;
+    std::memset(reinterpret_cast<void*>(begin), 0x5a, end - begin);
+  }
+  if (maps != nullptr) std::fclose(maps);
+}
 
 /// Sends properly until the body is configured, then something else instead of every reply.
 class Spoiler : public Channel {
@@ -59,6 +77,8 @@ std::unique_ptr<Subdomain> make(const std::string& manners, const std::string& n
   body->during_substep = [manners, progress, &spoiling] {
     progress();
     if (manners == "crash") raise(SIGKILL);
+    if (manners == "stop") raise(SIGSTOP);
+    if (manners == "scribble") scribble();
     if (manners == "mute") std::this_thread::sleep_for(std::chrono::hours(1));
     if (manners == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(250));
     if (manners == "corrupt" || manners == "oversized" || manners == "huge") spoiling = true;
@@ -66,7 +86,8 @@ std::unique_ptr<Subdomain> make(const std::string& manners, const std::string& n
   return body;
 }
 
-int run(const std::string& endpoint, const std::string& name, const std::string& manners) {
+int run(const std::string& endpoint, int memory, const std::string& name,
+        const std::string& manners) {
   Limits limits;
   Deadlines deadlines;
   deadlines.progress = Milliseconds(100);
@@ -85,8 +106,9 @@ int run(const std::string& endpoint, const std::string& name, const std::string&
     dealer.send(noise);
     pause();
   }
-  Spoiler channel(dealer, manners);
-  CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
+  const auto linked = LinkedBodies::join(memory, {&dealer}, limits);
+  Spoiler channel(linked ? linked->channel(0) : dealer, manners);
+  CoordinatorLiveness coordinator(dealer, endpoint, deadlines, linked.get());
   Server server(
       name,
       [&](const Specification& specification, const ProgressHook& progress) {
@@ -107,14 +129,18 @@ std::string manners_of(const std::string& body) {
 }
 
 /// Several bodies, each with its manners of solving.
-int run_group(const std::string& endpoint, const std::string& process,
+int run_group(const std::string& endpoint, int memory, const std::string& process,
               const std::vector<std::string>& bodies) {
   const Limits limits;
   Deadlines deadlines;
   deadlines.progress = Milliseconds(100);
   ZmqDealer dealer(endpoint, process, limits, bodies.size());
-  CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
-  ZmqGroup group(dealer, bodies);
+  ZmqGroup by_socket(dealer, bodies);
+  std::vector<Channel*> sockets;
+  for (std::size_t b = 0; b < bodies.size(); ++b) sockets.push_back(&by_socket.channel(b));
+  const auto linked = LinkedBodies::join(memory, sockets, limits);
+  BodyGroup& group = linked ? static_cast<BodyGroup&>(*linked) : by_socket;
+  CoordinatorLiveness coordinator(dealer, endpoint, deadlines, linked.get());
   std::vector<std::unique_ptr<Server>> servers;
   bool spoiling = false;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -134,11 +160,13 @@ int run_group(const std::string& endpoint, const std::string& process,
 
 int main(int argc, char** argv) {
   std::string endpoint, process;
+  int memory = -1;
   std::vector<std::string> bodies;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string option = argv[i];
     if (option == "--connect") endpoint = argv[i + 1];
     if (option == "--process") process = argv[i + 1];
+    if (option == "--memory") memory = std::atoi(argv[i + 1]);
     if (option == "--body") bodies.emplace_back(argv[i + 1]);
   }
   for (const std::string& body : bodies) {
@@ -146,8 +174,8 @@ int main(int argc, char** argv) {
     if (manners_of(body) == "never") pause();
   }
   try {
-    return process.empty() ? run(endpoint, bodies.front(), manners_of(bodies.front()))
-                           : run_group(endpoint, process, bodies);
+    return process.empty() ? run(endpoint, memory, bodies.front(), manners_of(bodies.front()))
+                           : run_group(endpoint, memory, process, bodies);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 3;

@@ -20,12 +20,13 @@ namespace abut {
 /// Fake solvers in processes of their own, launched as a scene's bodies are; none may be left.
 class LaunchTest : public testing::Test {
  protected:
+  static constexpr std::size_t limit = 1'000'000;  // [B] of a frame
   void SetUp() override {
     scene_.network.startup_deadline = 5.0;
     scene_.network.request_deadline = 5.0;
     scene_.network.endpoint = "tcp://127.0.0.1:*";
     options_.solver = ABUT_FAKE_SOLVER;
-    options_.limits.frame_bytes = 1'000'000;
+    options_.limits.frame_bytes = limit;
     options_.deadlines.repeat = Milliseconds(200);
   }
   void TearDown() override {
