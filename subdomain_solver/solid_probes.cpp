@@ -21,9 +21,9 @@ double SolidInterior::light_force(std::size_t port) const {
   return strain * model.material().moduli().youngs() * area;
 }
 
-/// Where it is joined, and steps need its stiffness anyway.
+/// Where steps need its stiffness anyway: one factor then serves all patterns.
 bool SolidInterior::probed_as_linear() const {
-  return joins_ && parts_.deforms && parts_.scheme.integrator->able().inertia != nullptr &&
+  return parts_.deforms && parts_.scheme.integrator->able().inertia != nullptr &&
          std::isinf(description_.stable_step);
 }
 
