@@ -7,6 +7,7 @@
 #include "base/vector_units.hpp"
 #include "subdomain_solver/solve/eigen_solver.hpp"
 #include "subdomain_solver/solve/front_elimination.hpp"
+#include "subdomain_solver/solve/front_substitution.hpp"
 #include "subdomain_solver/solve/fronts.hpp"
 
 namespace abut {
@@ -17,6 +18,14 @@ Eliminate& eliminate_here() {
   if (has_x86_64_v3()) return eliminate_avx2;
 #endif
   return eliminate_generic;
+}
+
+const FrontSubstitution& substitution_here() {
+#ifdef __x86_64__
+  if (has_x86_64_v4()) return substitute_avx512;
+  if (has_x86_64_v3()) return substitute_avx2;
+#endif
+  return substitute_generic;
 }
 
 namespace {
@@ -43,18 +52,15 @@ class Multifrontal final : public LinearSolver {
   }
 
   [[nodiscard]] bool solve(const Vector& b, Vector& x) override {
-    work_.resize(b.size());
-    for (Eigen::Index k = 0; k < b.size(); ++k) work_(k) = b(fronts_.order[k]);
-    solve_permuted(work_, below_);
     x.resize(b.size());
-    for (Eigen::Index k = 0; k < b.size(); ++k) x(fronts_.order[k]) = work_(k);
+    solve_some(b.data(), x.data(), 1);
     return x.allFinite();
   }
   [[nodiscard]] bool solve_columns(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) override {
-    Eigen::MatrixXd permuted = b(fronts_.order, Eigen::all), below;
-    solve_permuted(permuted, below);
     x.resize(b.rows(), b.cols());
-    x(fronts_.order, Eigen::all) = permuted;
+    for (Eigen::Index first = 0; first < b.cols(); first += together)
+      solve_some(b.data() + first * b.rows(), x.data() + first * b.rows(),
+                 std::min(together, b.cols() - first));
     return x.allFinite();
   }
 
@@ -141,34 +147,43 @@ class Multifrontal final : public LinearSolver {
     return true;
   }
 
-  /// x (n) or (n, k) in the order of the elimination: the right side, and the answer.
-  template <class Columns>
-  void solve_permuted(Columns& x, Columns& gathered) {
-    gathered.resize(static_cast<Eigen::Index>(fronts_.longest), x.cols());
-    for (const Front& front : fronts_.list) {
-      const Block block = block_of(front);
-      auto own = x.middleRows(front.first, front.columns);
-      auto below = gathered.topRows(front.rest());
-      block.topRows(front.columns).template triangularView<Eigen::UnitLower>().solveInPlace(own);
-      below.noalias() = block.bottomRows(front.rest()) * own;
-      const int* row = fronts_.rows.data() + front.list + front.columns;
-      for (Eigen::Index c = 0; c < x.cols(); ++c)
-        for (int k = 0; k < front.rest(); ++k) x(row[k], c) -= below(k, c);
-    }
-    for (auto front = fronts_.list.rbegin(); front != fronts_.list.rend(); ++front) {
-      const Block block = block_of(*front);
-      auto own = x.middleRows(front->first, front->columns);
-      auto below = gathered.topRows(front->rest());
-      for (int c = 0; c < front->columns; ++c) own.row(c) /= block(c, c);
-      const int* row = fronts_.rows.data() + front->list + front->columns;
-      for (Eigen::Index c = 0; c < x.cols(); ++c)
-        for (int k = 0; k < front->rest(); ++k) below(k, c) = x(row[k], c);
-      own.noalias() -= block.bottomRows(front->rest()).transpose() * below;
-      block.topRows(front->columns)
-          .template triangularView<Eigen::UnitLower>()
-          .transpose()
-          .solveInPlace(own);
-    }
+  /// Right sides (n, count), and their answers.
+  void solve_some(const double* b, double* x, Eigen::Index count) {
+    const Eigen::Index n = static_cast<Eigen::Index>(fronts_.order.size());
+    work_.resize(std::max(work_.size(), n * count));
+    gathered_.resize(std::max(gathered_.size(), index(fronts_.longest) * index(count)));
+    Block work(work_.data(), n, count);
+    for (Eigen::Index c = 0; c < count; ++c)
+      for (Eigen::Index k = 0; k < n; ++k) work(k, c) = b[fronts_.order[index(k)] + c * n];
+    for (const Front& front : fronts_.list) go_forward(front, work);
+    for (auto front = fronts_.list.rbegin(); front != fronts_.list.rend(); ++front)
+      go_back(*front, work);
+    for (Eigen::Index c = 0; c < count; ++c)
+      for (Eigen::Index k = 0; k < n; ++k) x[fronts_.order[index(k)] + c * n] = work(k, c);
+  }
+
+  /// Right sides that have nothing at its columns pass: forces on a surface meet few fronts.
+  void go_forward(const Front& front, Block& x) {
+    auto own = x.middleRows(front.first, front.columns);
+    if (own.isZero(0.0)) return;
+    Block values(gathered_.data(), front.rows, x.cols());
+    values.topRows(front.columns) = own;
+    values.bottomRows(front.rest()).setZero();
+    Block block = block_of(front);
+    substitution_.forward(view(block), view(values));
+    own = values.topRows(front.columns);
+    const int* row = fronts_.rows.data() + front.list;
+    for (Eigen::Index c = 0; c < x.cols(); ++c)
+      for (int k = front.columns; k < front.rows; ++k) x(row[k], c) += values(k, c);
+  }
+  void go_back(const Front& front, Block& x) {
+    Block values(gathered_.data(), front.rows, x.cols());
+    const int* row = fronts_.rows.data() + front.list;
+    for (Eigen::Index c = 0; c < x.cols(); ++c)
+      for (int k = 0; k < front.rows; ++k) values(k, c) = x(row[k], c);
+    Block block = block_of(front);
+    substitution_.backward(view(block), view(values));
+    x.middleRows(front.first, front.columns) = values.topRows(front.columns);
   }
 
   Pivots pivots_;
@@ -182,7 +197,10 @@ class Multifrontal final : public LinearSolver {
   std::vector<double> rest_;
   std::vector<double> space_;
   Eliminate& eliminate_ = eliminate_here();
-  Vector work_, below_;
+  const FrontSubstitution& substitution_ = substitution_here();
+  Vector work_;                                // right sides in the order of elimination
+  std::vector<double> gathered_;               // what they have at a front's rows
+  static constexpr Eigen::Index together = 8;  // that stay in the cache beside a front's columns
 };
 
 }  // namespace

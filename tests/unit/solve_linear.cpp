@@ -18,6 +18,7 @@
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/solve/front_elimination.hpp"
+#include "subdomain_solver/solve/front_substitution.hpp"
 #include "subdomain_solver/solve/multifrontal_solver.hpp"
 #include "subdomain_solver/time/problem.hpp"
 #include "tests/support/tolerance.hpp"
@@ -169,10 +170,24 @@ TEST(Fronts, SolveLargeIndefiniteSystemsToTheSameBitsEveryTime) {
   const std::unique_ptr<LinearSolver> other = make_multifrontal_solver(Pivots::every);
   ASSERT_TRUE(other->factor(k) && other->solve(b, again));
   EXPECT_EQ(first, again);
-  Eigen::MatrixXd columns(k.rows(), 2), answers;
-  columns << b, 2.0 * b;
-  ASSERT_TRUE(one->solve_columns(columns, answers));
-  EXPECT_LT((k * answers - columns).norm(), roundoff(100.0, 1.0) * columns.norm());
+}
+
+/// Some of the columns meet but a part of the fronts going down: those that have nothing there.
+TEST(Fronts, SolveManyRightSidesToTheBitsOfEach) {
+  const SparseMatrix k = grid_of_numbers(60);
+  const std::unique_ptr<LinearSolver> solver = make_multifrontal_solver(Pivots::with_digits);
+  ASSERT_TRUE(solver->factor(k));
+  Eigen::MatrixXd columns(k.rows(), 19), answers;  // more than two passes of 8
+  for (Eigen::Index c = 0; c < columns.cols(); ++c)
+    columns.col(c) = c % 3 == 0 ? Vector(Vector::LinSpaced(k.rows(), -1.0, 3.0))
+                                : Vector(Vector::Unit(k.rows(), 100 * c + c));
+  ASSERT_TRUE(solver->solve_columns(columns, answers));
+  Vector one;
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+    ASSERT_TRUE(solver->solve(columns.col(c), one));
+    EXPECT_EQ(one, answers.col(c)) << c;
+    EXPECT_LT((k * one - columns.col(c)).norm(), roundoff(100.0, 1.0) * columns.col(c).norm());
+  }
 }
 
 /// A front whose columns dominate, with edges that no tile of any width fits.
@@ -202,6 +217,24 @@ TEST(Fronts, HaveTheSameBitsForEveryWidthOfRegisters) {
   for (std::ptrdiff_t j = 0; j < Front::rest; ++j)
     for (std::ptrdiff_t i = j; i < Front::rest; ++i)
       ASSERT_EQ(generic.left[index(i + j * Front::rest)], here.left[index(i + j * Front::rest)]);
+}
+
+TEST(Fronts, SubstituteToTheSameBitsForEveryWidthOfRegisters) {
+  TestFront front;
+  ASSERT_TRUE(front.eliminate_by(eliminate_here()));
+  const DenseView block{front.block.data(), TestFront::rows, TestFront::columns, TestFront::rows};
+  std::vector<double> generic(3 * TestFront::rows), here;
+  for (std::size_t i = 0; i < generic.size(); ++i)
+    generic[i] = std::sin(0.9 * static_cast<double>(i));
+  here = generic;
+  const DenseView one{generic.data(), TestFront::rows, 3, TestFront::rows};
+  const DenseView other{here.data(), TestFront::rows, 3, TestFront::rows};
+  substitute_generic.forward(block, one);
+  substitution_here().forward(block, other);
+  EXPECT_EQ(generic, here);
+  substitute_generic.backward(block, one);
+  substitution_here().backward(block, other);
+  EXPECT_EQ(generic, here);
 }
 
 TEST(Fronts, LeaveWhatEliminationLeaves) {
