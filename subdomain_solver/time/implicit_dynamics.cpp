@@ -10,6 +10,14 @@
 
 namespace abut {
 
+namespace {
+
+/// How far the balance under known contact forces is solved by kept factors before contact is
+/// asked: in the first turn of its scale, later of what contact last changed. More would be undone.
+constexpr double first_turn = 1.0e-3, of_change = 0.03;
+
+}  // namespace
+
 /// Balance of momentum at the end of a step, with the free accelerations as unknowns.
 class ImplicitDynamics::Balance final : public Equations {
  public:
@@ -319,24 +327,32 @@ std::optional<Failed> ImplicitDynamics::begin(Motion& motion, double time) {
 NewtonReport ImplicitDynamics::solve(Balance& balance, const Motion& motion) {
   Vector& x = balance.first_guess();
   contact_.begin(problem_.contact, motion.force);
+  const NewtonOptions& asked = options_.newton;
+  NewtonOptions now = asked;
+  if (problem_.contact != nullptr && balance.kept())
+    now.tolerance = std::max(first_turn, asked.tolerance);
   for (int turn = 0;; ++turn) {
     NewtonReport report;
     do {
       balance.begin_solve();
-      report = solve_newton(balance, x, options_.newton, buffers_.newton);
+      report = solve_newton(balance, x, now, buffers_.newton);
       iterations_ += report.iterations;
     } while (!report.converged() && balance.guess_again(turn));
+    const bool whole = now.tolerance == asked.tolerance;
     // Newton's own last correction leaves far less than is asked for; these do after another one.
-    if (report.converged() && balance.kept() && report.iterations > 0) {
+    if (report.converged() && balance.kept() && report.iterations > 0 && whole) {
       balance.begin_solve();
-      report = solve_newton(balance, x, options_.newton, buffers_.newton);
+      report = solve_newton(balance, x, asked, buffers_.newton);
     }
     if (!report.converged() || problem_.contact == nullptr) return report;
     double change = 0.0;
     if (!balance.press(x, turn, change)) return {NewtonReport::End::singular};
-    if (change <= options_.newton.tolerance * buffers_.scale) return report;
+    if (whole && change <= asked.tolerance * buffers_.scale) return report;
     if (turn == ContactTurns::most)
       return {NewtonReport::End::not_converged, turn, change / buffers_.scale};
+    now.tolerance = asked.tolerance;
+    if (balance.kept())
+      now.tolerance = std::max(of_change * change / buffers_.scale, asked.tolerance);
   }
 }
 
