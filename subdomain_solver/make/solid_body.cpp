@@ -135,12 +135,16 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   overlap_partners(spec, place, mesh, ports);
   check_formulation(fe, mesh, place, "model.fe");
   const bool explicit_in_time = spec.integrates(SchemeKind::explicit_steps);
+  std::unique_ptr<const Material> material = make_material(*spec.material, place, fe.dimension);
+  // Steps that solve equations have the matrix of a linear law; those with a history keep to one
+  // way to compute force and tangent, as points rest on the edge of yielding.
+  const bool batched =
+      explicit_in_time || (!material->is_linear() && material->history_size() == 0);
   SolidInterior::Parts parts;
-  parts.model =
-      std::make_unique<FeModel>(std::move(mesh), make_material(*spec.material, place, fe.dimension),
-                                FeOptions{fe.plane, fe.formulation, fe.thickness, fe.hourglass,
-                                          explicit_in_time, fe.threads, fe.area()},
-                                constraints.frames);
+  parts.model = std::make_unique<FeModel>(std::move(mesh), std::move(material),
+                                          FeOptions{fe.plane, fe.formulation, fe.thickness,
+                                                    fe.hourglass, batched, fe.threads, fe.area()},
+                                          constraints.frames);
   FeModel& model = *parts.model;
   check_mass(model.lumped_mass().minCoeff(), model.lumped_mass().maxCoeff(), spec, place);
   check_threads(fe, model, place);
