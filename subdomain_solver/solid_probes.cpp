@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "subdomain_solver/solid_interior.hpp"
+#include "subdomain_solver/time/massless_layer.hpp"
 
 namespace abut {
 
@@ -56,6 +57,7 @@ void SolidInterior::wake() {
   problem.loads.swap(loaded_->loads);
   problem.supports = std::move(loaded_->supports);
   problem.model = loaded_->model;
+  if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->renew();
   linearised_.reset();
   loaded_.reset();
 }

@@ -170,7 +170,11 @@ bool MasslessLayer::walk(std::vector<double>& q, std::span<const double> history
   return true;
 }
 
-void MasslessLayer::renew() { factored_ = factors_last_; }
+/// Factors that last are those of a linear model, as probes of other bodies are answered by.
+void MasslessLayer::renew() {
+  factors_last_ = factors_last_ && problem_.model->is_linear();
+  factored_ = factors_last_;
+}
 
 std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
                                             std::span<const double> history, const Vector& loads,
