@@ -74,7 +74,8 @@ def cells_of(first_cell: int, first: int) -> list:
 
 
 def deck(steps: int) -> str:
-    """Neo-Hookean by C10 = mu / 2 and D1 = 2 / K; contact by a stiff linear penalty."""
+    """Neo-Hookean by C10 = mu / 2 and D1 = 2 / K; contact by a linear penalty of 5 moduli per edge
+    of a cell: with 50 CalculiX 2.20 gives up at 1.1 s (its energy is not among those printed)."""
     mu, bulk = 1.0 / 2.6, 1.0 / 1.2
     count = (CELLS[0] + 1) * (CELLS[1] + 1) * (CELLS[2] + 1)
     number = CELLS[0] * CELLS[1] * CELLS[2]
@@ -95,7 +96,7 @@ def deck(steps: int) -> str:
               f"{mu / 2:.12g}, {2 / bulk:.12g}",
               "*DENSITY", "1.0", "*SOLID SECTION, ELSET=BOTH, MATERIAL=RUBBER",
               "*SURFACE INTERACTION, NAME=PRESS", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
-              "50.0", "*CONTACT PAIR, INTERACTION=PRESS, TYPE=SURFACE TO SURFACE", "SRIGHT, SLEFT",
+              "5.0", "*CONTACT PAIR, INTERACTION=PRESS, TYPE=SURFACE TO SURFACE", "SRIGHT, SLEFT",
               "*INITIAL CONDITIONS, TYPE=VELOCITY", f"NLEFT, 1, {SPEED}", f"NRIGHT, 1, -{SPEED}",
               f"*STEP, NLGEOM, INC={10 * steps}", "*DYNAMIC, DIRECT, ALPHA=0.0",
               f"{STEP}, {steps * STEP}",

@@ -7,23 +7,12 @@
 #include "base/assert.hpp"
 #include "base/index.hpp"
 #include "base/vector_units.hpp"
+#include "subdomain_solver/fe/batched_law.hpp"
 #include "subdomain_solver/materials/j2_plasticity.hpp"
-#include "subdomain_solver/materials/linear_elastic.hpp"
-#include "subdomain_solver/materials/neo_hookean.hpp"
-#include "subdomain_solver/materials/saint_venant_kirchhoff.hpp"
 
 namespace abut {
 
 namespace {
-
-std::optional<BatchedLaw> law_of(const Material& material) {
-  if (dynamic_cast<const LinearElastic*>(&material) != nullptr) return BatchedLaw::linear_elastic;
-  if (dynamic_cast<const SaintVenantKirchhoff*>(&material) != nullptr)
-    return BatchedLaw::saint_venant_kirchhoff;
-  if (dynamic_cast<const NeoHookean*>(&material) != nullptr) return BatchedLaw::neo_hookean;
-  if (dynamic_cast<const J2Plasticity*>(&material) != nullptr) return BatchedLaw::j2_plasticity;
-  return std::nullopt;
-}
 
 std::optional<BatchedCell> cell_of(const Element& element, Formulation formulation) {
   const auto choose = [formulation](BatchedCell full, BatchedCell mean, BatchedCell one_point) {
@@ -95,7 +84,7 @@ std::vector<const KernelTable*> batched_kernels() {
 }
 
 bool BatchedCells::can(const Mesh& mesh, const Material& material, Formulation formulation) {
-  const std::optional<BatchedLaw> law = law_of(material);
+  const std::optional<BatchedLaw> law = batched_law_of(material);
   return law && std::all_of(mesh.blocks.begin(), mesh.blocks.end(),
                             [law, formulation](const CellBlock& block) {
                               const auto cell = cell_of(*block.element, formulation);
@@ -115,8 +104,8 @@ BatchedCells::BatchedCells(const Mesh& mesh, const Material& material,
   ABUT_ASSERT(can(mesh, material, options.formulation));
   for (const CellBlock& block : mesh.blocks) {
     const BatchedCell cell = *cell_of(*block.element, options.formulation);
-    kernels_.push_back(table_.of(cell, *law_of(material)));
-    frequencies_.push_back(table_.frequency_of(cell, *law_of(material)));
+    kernels_.push_back(table_.of(cell, *batched_law_of(material)));
+    frequencies_.push_back(table_.frequency_of(cell, *batched_law_of(material)));
   }
   copies_.resize(index(threads_.count()));
   for (Copies& c : copies_) {

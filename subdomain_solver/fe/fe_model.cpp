@@ -66,11 +66,14 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
   }
   lump_mass();
   const bool plain = mesh_.dim == 3 || options.plane == Plane::strain;
-  if (!options.batched || !plain || !BatchedCells::can(mesh_, *material_, options.formulation))
-    return;
-  batched_ = std::make_unique<BatchedCells>(mesh_, *material_, batched_options());
-  // Frequencies are then found cell by cell, step after step, by measures that are kept.
-  if (!batched_->bounds()) assembly();
+  if (options.batched && plain && BatchedCells::can(mesh_, *material_, options.formulation)) {
+    batched_ = std::make_unique<BatchedCells>(mesh_, *material_, batched_options());
+    // Frequencies are then found cell by cell, step after step, by measures that are kept.
+    if (!batched_->bounds()) assembly();
+  }
+  answers_ =
+      std::make_unique<CellAnswers>(*material_, options, mesh_.dim,
+                                    batched_ ? &batched_->threads() : nullptr, batched_ != nullptr);
 }
 
 BatchedOptions FeModel::batched_options() const {
@@ -253,25 +256,48 @@ double FeModel::roundoff(std::span<const double> q) const {
          std::sqrt(static_cast<double>(dofs()));
 }
 
+/// Threads answer for some cells at a time, one adds them up, cell after cell. Where tangents come
+/// in batches, so do forces, and all at once.
 bool FeModel::assemble(std::span<const double> q, std::span<const double> history, Want want,
                        ModelResponse& out) {
-  out.force.setZero(dofs());
   const Assembly& reference = assembly();
-  if (want == Want::tangent) out.tangent = reference.pattern;
-  out.history.resize(history_size_);
-  out.stored = out.dissipation = 0.0;
+  const bool tangents = want == Want::tangent;
+  const bool batches = tangents && batched_ &&
+                       std::ranges::all_of(reference.measures, [this](const CellMeasures& m) {
+                         return answers_->batched(m);
+                       });
+  if (batches) {
+    if (!batched_force(q, history, out)) return false;
+  } else {
+    out.force.setZero(dofs());
+    out.history.resize(history_size_);
+    out.stored = out.dissipation = 0.0;
+  }
+  if (tangents) out.tangent = reference.pattern;
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const CellBlock& cells = mesh_.blocks[k];
-    const CellMeasures& measures = reference.measures[k];
-    const std::size_t each = index(measures.points * kernel_.history_size());
-    for (int c = 0; c < cells.count(); ++c) {
-      const std::size_t at = first_history(static_cast<int>(k), c);
-      gather(cells, c, q, u_);
-      const bool admissible = kernel_.evaluate(
-          measures.of(c), u_, history.subspan(at, each), std::span(out.history).subspan(at, each),
-          want == Want::tangent ? Need::tangent : Need::stress, local_);
+    const auto displacement = [&cells, q, this](int cell, std::vector<double>& u) {
+      gather(cells, cell, q, u);
+    };
+    for (int first = 0; first < cells.count(); first += answers_->most()) {
+      const std::size_t at = first_history(static_cast<int>(k), first);
+      const CellsAsked asked{reference.measures[k],
+                             first,
+                             std::min(answers_->most(), cells.count() - first),
+                             std::ref(displacement),
+                             history.subspan(at),
+                             std::span(out.history).subspan(at)};
+      const bool admissible =
+          batches ? answers_->find_tangents(asked)
+                  : answers_->evaluate(asked, tangents ? Need::tangent : Need::stress);
       if (!admissible) return false;
-      scatter(k, c, want, local_, out);
+      for (int c = 0; c < asked.count; ++c) {
+        CellResponse& answer = answers_->of(c);
+        turn(nodes_of(cells, first + c), batches ? nullptr : &answer.force,
+             tangents ? &answer.tangent : nullptr);
+        if (!batches) scatter(k, first + c, answer, out);
+        if (tangents) add_matrix(k, first + c, reference, answer.tangent, out.tangent);
+      }
     }
   }
   return true;
@@ -291,17 +317,13 @@ void FeModel::gather(const CellBlock& cells, int cell, std::span<const double> q
   }
 }
 
-void FeModel::scatter(std::size_t block, int cell, Want want, CellResponse& local,
-                      ModelResponse& out) const {
-  const CellBlock& cells = mesh_.blocks[block];
+void FeModel::scatter(std::size_t block, int cell, CellResponse& local, ModelResponse& out) const {
   const int dim = mesh_.dim;
-  turn(nodes_of(cells, cell), &local.force, want == Want::tangent ? &local.tangent : nullptr);
   int a = 0;
-  for (std::int32_t node : nodes_of(cells, cell)) {
+  for (std::int32_t node : nodes_of(mesh_.blocks[block], cell)) {
     out.force.segment(node * dim, dim) += local.force.segment(dim * a, dim);
     ++a;
   }
-  if (want == Want::tangent) add_matrix(block, cell, assembly(), local.tangent, out.tangent);
   out.stored += local.stored;
   out.dissipation += local.dissipation;
 }

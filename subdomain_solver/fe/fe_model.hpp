@@ -9,8 +9,7 @@
 #include "base/index.hpp"
 #include "subdomain_solver/fe/batched_cells.hpp"
 #include "subdomain_solver/fe/batched_layer.hpp"
-#include "subdomain_solver/fe/cell_kernel.hpp"
-#include "subdomain_solver/fe/cell_measures.hpp"
+#include "subdomain_solver/fe/cell_answers.hpp"
 #include "subdomain_solver/fe/mesh.hpp"
 #include "subdomain_solver/fe/node_frame.hpp"
 #include "subdomain_solver/model.hpp"
@@ -33,7 +32,9 @@ class FeModel final : public Model {
   std::size_t history_size() const override { return history_size_; }
   const SparseMatrix& mass() const override;
   const Vector& lumped_mass() const override { return lumped_; }
-  WorkerThreads* threads() override { return batched_ ? &batched_->threads() : nullptr; }
+  WorkerThreads* threads() override {
+    return batched_ || !is_linear() ? &answers_->threads() : nullptr;
+  }
   double roundoff(std::span<const double> q) const override;
   [[nodiscard]] bool evaluate(std::span<const double> q, std::span<const double> history, Want want,
                               ModelResponse& out) override;
@@ -85,8 +86,7 @@ class FeModel final : public Model {
   CellMeasures cell_measures(int block, int cell) const;
   /// The rule at which a block's cells are integrated.
   const Tabulation& rule(int block) const { return blocks_[block].table; }
-  /// Null: forces are found cell by cell.
-  BatchedCells* batched() { return batched_.get(); }
+  BatchedCells* batched() { return batched_.get(); }  // null: forces are found cell by cell
 
   /// State of one quadrature point.
   struct PointState {
@@ -159,8 +159,7 @@ class FeModel final : public Model {
                              std::span<const double> q, std::span<const double> history, Need need);
   void gather(const CellBlock& cells, int cell, std::span<const double> q,
               std::vector<double>& u) const;
-  void scatter(std::size_t block, int cell, Want want, CellResponse& local,
-               ModelResponse& out) const;
+  void scatter(std::size_t block, int cell, CellResponse& local, ModelResponse& out) const;
   void add_matrix(std::size_t block, int cell, const Assembly& assembly,
                   const Eigen::MatrixXd& local, SparseMatrix& out) const;
   void rotate(std::span<double> values, bool into_frames) const;
@@ -191,6 +190,7 @@ class FeModel final : public Model {
   Vector lumped_;
   Vector whole_;  // as lumped_ was before make_massless(); empty: the same
   CellKernel kernel_;
+  std::unique_ptr<CellAnswers> answers_;  // of all cells
   CellResponse local_;
   std::vector<double> u_;
   Vector relative_;            // (dofs) of linear models

@@ -66,7 +66,6 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
     layer_measures_.clear();
     throw;
   }
-  layer_measures_.clear();  // an assembly may have them later
   whole_ = lumped_;
   lump_mass();
 }
@@ -307,6 +306,7 @@ bool FeModel::batched_layer_force(std::span<const double> q, std::span<const dou
   return batched_layer_->evaluate(q, history, {force.data(), massless_.size()});
 }
 
+/// Tangents come in batches where they can; then forces do, too.
 bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> history, Want want,
                              LayerResponse& out) {
   if (out.tangent.size() == 0) find_layer_pattern(out);
@@ -314,30 +314,54 @@ bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> 
     linear_layer(q, want, out);
     return true;
   }
-  if (batched_ && frames_.empty() && want == Want::force && !kernel_.guarded())
-    return batched_layer_force(q, history, out.force);
-  if (!assembly_ && layer_measures_.empty())
-    for (const auto& [block, cell] : layer_cells_)
-      layer_measures_.push_back(cell_measures(block, cell));
   const bool tangent = want == Want::tangent;
+  bool batched = batched_ && frames_.empty() && !kernel_.guarded();
+  if (batched && !tangent) return batched_layer_force(q, history, out.force);
+  if (layer_measures_.empty()) {
+    layer_measures_.resize(blocks_.size());
+    for (const auto& [block, cell] : layer_cells_)
+      measure_cell(mesh_, mesh_.blocks[block], cell, blocks_[block].table, options_,
+                   material_->moduli(), layer_measures_[block]);
+  }
+  for (const auto& [block, cell] : layer_cells_)
+    batched = batched && answers_->batched(layer_measures_[block]);
   out.force.setZero(static_cast<Eigen::Index>(massless_.size()));
-  for (Eigen::Index k = 0; tangent && k < out.tangent.nonZeros(); ++k)
-    out.tangent.valuePtr()[k] = 0.0;
-  const auto* measures = layer_measures_.data();
-  const int* place = layer_places_.data();
-  const int* slot = layer_slots_.data();
-  for (const auto& [block, cell] : layer_cells_) {
-    const CellGeometry geometry =
-        assembly_ ? assembly_->measures[block].of(cell) : (measures++)->of(0);
+  if (batched && !batched_layer_force(q, history, out.force)) return false;
+  if (tangent) std::fill_n(out.tangent.valuePtr(), out.tangent.nonZeros(), 0.0);
+  const int *place = layer_places_.data(), *slot = layer_slots_.data();
+  const auto add_tangent = [&out, &slot](const Eigen::MatrixXd& of_cell) {
+    for (Eigen::Index k = 0; k < of_cell.size(); ++k, ++slot)
+      if (*slot >= 0) out.tangent.valuePtr()[*slot] += of_cell.data()[k];
+  };
+  for (std::size_t l = 0, begin = 0; l < layer_cells_.size();) {
+    const auto [block, cell] = layer_cells_[l];
+    if (block != layer_cells_[begin].first) begin = l;  // of the block
+    const CellBlock& cells = mesh_.blocks[block];
+    if (batched) {
+      const auto displacement = [&, this](int k, std::vector<double>& u) {
+        gather(cells, layer_cells_[begin + index(k)].second, q, u);
+      };
+      int count = 1;
+      while (count < answers_->most() && l + index(count) < layer_cells_.size() &&
+             layer_cells_[l + index(count)].first == block)
+        ++count;
+      if (!answers_->find_tangents({layer_measures_[block],
+                                    static_cast<int>(l - begin),
+                                    count,
+                                    std::ref(displacement),
+                                    {},
+                                    {}}))
+        return false;
+      for (int c = 0; c < count; ++c, ++l) add_tangent(answers_->of(c).tangent);
+      continue;
+    }
+    const CellGeometry geometry = layer_measures_[block].of(static_cast<int>(l++ - begin));
     if (!respond(block, cell, geometry, q, history, tangent ? Need::tangent : Need::stress))
       return false;
-    turn(nodes_of(mesh_.blocks[block], cell), &local_.force, tangent ? &local_.tangent : nullptr);
+    turn(nodes_of(cells, cell), &local_.force, tangent ? &local_.tangent : nullptr);
     for (Eigen::Index a = 0; a < local_.force.size(); ++a, ++place)
       if (*place >= 0) out.force(*place) += local_.force(a);
-    const Eigen::Index values = local_.force.size() * local_.force.size();
-    for (Eigen::Index k = 0; tangent && k < values; ++k)
-      if (slot[k] >= 0) out.tangent.valuePtr()[slot[k]] += local_.tangent.data()[k];
-    slot += values;
+    if (tangent) add_tangent(local_.tangent);
   }
   return true;
 }

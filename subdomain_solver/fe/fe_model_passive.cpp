@@ -82,6 +82,7 @@ bool FeModel::can_be_crushed() const {
 
 bool FeModel::guard(bool on) {
   kernel_.guard(on && can_be_crushed());
+  answers_->guard(kernel_.guarded());
   return kernel_.guarded();
 }
 

@@ -38,8 +38,11 @@ void SolidShapeSpec::fields(Fields& f) {
   const bool bar = std::holds_alternative<BarMeshSpec>(mesh);
   const bool flat =
       std::holds_alternative<RectangleSpec>(mesh) || std::holds_alternative<DiskSpec>(mesh);
-  const bool file =
-      std::visit([](const auto& kind) { return requires { kind.file; }; }, mesh);
+  const bool file = std::visit(
+      [](const auto& kind) {
+        return requires { kind.file; };
+      },
+      mesh);
   const int wanted = bar ? 1 : flat ? 2 : 3;
   f.check(file ? dimension > 1 : dimension == wanted, "dimension",
           fmt::format("is {}, but the mesh has {}", dimension,
@@ -69,7 +72,8 @@ void FiniteElementsSpec::fields(Fields& f) {
 
 void FeModelSpec::fields(Fields& f) {
   FiniteElementsSpec::fields(f);
-  f.optional("threads", threads, "", "number of threads of an explicit body", between(1, 256));
+  f.optional("threads", threads, "", "number of threads that compute its elements",
+             between(1, 256));
 }
 
 void ModalModelSpec::fields(Fields& f) {

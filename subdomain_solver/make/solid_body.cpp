@@ -115,10 +115,7 @@ std::optional<double> interference_of(const BodySpec& spec, bool massive_surface
 
 void check_threads(const FeModelSpec& fe, FeModel& model, const Place& place) {
   if (fe.threads <= 1 || model.threads() != nullptr) return;
-  const bool shares = std::ranges::any_of(
-      model.mesh().blocks, [](const CellBlock& block) { return !block.shares.empty(); });
-  throw InputError(fmt::format("have no effect: one thread computes the elements of {}",
-                               shares ? "bodies that overlap" : "this law or formulation"),
+  throw InputError("have no effect: forces of this law on these elements are those of one matrix",
                    place.where("model.fe.threads"), "Leave threads out.");
 }
 

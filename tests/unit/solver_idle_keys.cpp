@@ -57,7 +57,7 @@ std::string body_of(const std::string& context) {
     return "model: {fe: {dimension: 1, mesh: {bar: {length: 1, area: 1, elements: 1}}}}, " +
            (steel + implicit_steps);
   if (context == "solid") return in_space + rubber + explicit_steps;
-  if (context == "implicit solid") return in_space + rubber + implicit_steps;
+  if (context == "implicit linear solid") return in_space + linear + implicit_steps;
   if (context == "static solid") return in_space + rubber + "integrator: {quasi_static: {step: 1}}";
   if (context == "axisymmetric")
     return std::string("model: {fe: {dimension: 2, plane: axisymmetric, ") + flat + "}}, " +
@@ -125,9 +125,8 @@ const std::vector<Idle> table = {
       "integrator.central_difference.dispersion_terms=2",
       "integrator.central_difference.bulk_viscosity=0.1",
       "integrator.central_difference.tchamwa=1.1", "ports={p: {side: left, tied: false}}"}},
-    {"implicit solid", {"model.fe.threads=1", "model.fe.threads=2"}},
-    {"static solid",
-     {"initial.velocity=[1, 0, 0]", "initial.velocity_field=[x, 0, 0]", "model.fe.threads=2"}},
+    {"implicit linear solid", {"model.fe.threads=1", "model.fe.threads=2"}},
+    {"static solid", {"initial.velocity=[1, 0, 0]", "initial.velocity_field=[x, 0, 0]"}},
     {"axisymmetric", {"model.fe.thickness=2"}},
     {"modal", {"equations.tolerance=1e-6", "model.modal.hourglass=0.1", "contact_layer=kick"}},
     {"rigid",
