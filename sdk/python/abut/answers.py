@@ -1,10 +1,11 @@
 """Requests to one body, and its replies."""
 
-from abut.errors import InputError
+from abut.errors import InputError, Unsound
 from abut.keys import Keys
 from abut.pictures import Picture
 from abut.probing import answer_probe
 from abut.served import Served
+from abut.soundness import require_sound
 from abut.v1 import subdomain_pb2 as pb
 from abut.window import Failure, Window
 
@@ -27,7 +28,7 @@ class Answers:
             raise InputError(f"{kind} came before configure", "request", "Send Configure first.")
         if ask.restore_first:
             if self.served.saved is None:
-                raise RuntimeError("restore_first comes before any save_first")
+                raise Unsound("restore_first comes before any save_first")
             self.served.return_to(self.served.saved)
         if ask.save_first:
             self.served.saved = self.served.snapshot()
@@ -66,6 +67,7 @@ class Answers:
         self.picture.describe(to)
 
     def answer_advance(self, ask, reply):
+        require_sound(ask, self.served)
         try:
             Window(self.served, ask, self.alive).advance(reply.advanced)
         except Failure as failure:
@@ -97,6 +99,9 @@ def told_fault(error: Exception, fault, body: str, configured: bool):
     fault.kind = pb.FAULT_KIND_RUN if configured else pb.FAULT_KIND_INPUT
     fault.what, fault.where = f"{type(error).__name__}: {error}", body
     fault.remedy = "Look into the program of this body"
+    if isinstance(error, Unsound):
+        fault.kind, fault.what = pb.FAULT_KIND_RUN, f"unsound request: {error}"
+        fault.remedy = "This is a fault of the coordinator, not of the scene"
     if isinstance(error, InputError):
         fault.kind = pb.FAULT_KIND_INPUT
         fault.what, fault.where, fault.remedy = error.what, error.where, error.remedy

@@ -12,3 +12,7 @@ class InputError(Exception):
 class NotConverged(Exception):
     """The numbers': a step could not be made. The scene's policy decides, as of bodies of abut: the
     window is cut, or the run ends; the body serves on from the state that it had saved."""
+
+
+class Unsound(Exception):
+    """The coordinator's: a request that this body does not take, or that is not whole."""

@@ -12,7 +12,7 @@ import zmq
 import zmq.auth
 
 from abut.answers import Answers, told_fault
-from abut.errors import InputError
+from abut.errors import InputError, Unsound
 from abut.v1 import subdomain_pb2 as pb
 
 PROTOCOL = 4
@@ -91,11 +91,11 @@ class Server:
         self.begun = self.signed = time.monotonic()
         try:
             if ask.number > self.executed + 1:
-                raise RuntimeError("this solver has not taken part from the begin")
+                raise Unsound("this solver has not taken part from the begin")
             self.number = ask.number
             self.answers.answer(ask, reply)
         except Exception as error:  # in words to whoever started the run
-            if not isinstance(error, InputError):
+            if not isinstance(error, (InputError, Unsound)):
                 traceback.print_exc()
             told_fault(error, reply.fault, self.name, self.answers.served is not None)
         self.executed, self.answer = ask.number, sealed(reply)
