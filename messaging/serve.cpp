@@ -339,6 +339,7 @@ void Server::seal_around(int field, const From&... from) {
 
 void Server::advance() {
   decode(bulk_, body_->describe(), partners_, advance_);
+  require_taken(advance_, body_->describe());
   const Outcome outcome = body_->advance(advance_, response_);
   if (const Failed* failed = std::get_if<Failed>(&outcome)) {
     encode(*failed, *reply_.mutable_failed());

@@ -218,6 +218,22 @@ void require_sound(const Description& body) {
   }
 }
 
+void require_taken(const Advance& asked, const Description& body) {
+  const FieldPath path{nullptr, "advance"};
+  for (std::size_t p = 0; p < asked.boundary.size(); ++p) {
+    const BoundaryData& given = asked.boundary[p];
+    const FieldPath boundary{&path, "boundary", static_cast<int>(p)};
+    const auto require = [&boundary](bool taken, bool there, const char* part) {
+      if (there && !taken) FieldPath{&boundary, part}.fail("is nothing that the body takes");
+    };
+    require(body.can.motion, !given.motion.empty(), "motion");
+    require(body.can.force, given.pushed(), "forces");
+    require(body.can.obstacle, given.obstructed(), "obstacles");
+    require(body.can.impulse, !given.impulse.empty(), "impulse");
+    require(body.can.impedance, !given.impedance.empty(), "impedance");
+  }
+}
+
 void require_sound(const Response& reply, const Description& body, const Advance& asked) {
   const FieldPath path{nullptr, "advanced"};
   // What an impulse does to joined sides, their velocities tell.

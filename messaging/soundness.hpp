@@ -16,6 +16,8 @@ namespace abut {
 void require_sound(const PortGeometry& surface, const FieldPath& path);
 /// What a body tells of itself.
 void require_sound(const Description& body);
+/// A request to advance: nothing is in it that the body does not take.
+void require_taken(const Advance& asked, const Description& body);
 /// A reply to a window: every part is there that what the body can do entails, boxes hold what they
 /// are of, and no bound of speed is below the speed.
 void require_sound(const Response& reply, const Description& body, const Advance& asked);
