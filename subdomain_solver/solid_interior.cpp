@@ -52,6 +52,7 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
     if (joins_) description_.can.kernel = true;
     description_.can.impulse = joins_ && !description_.quasi_static;
     places_.assign(port_map_->values(), 0.0);
+    worked_.assign(ports_.size(), 0.0);
     before_ = now_ = seen_.u = state_.port_force = places_;
     change_.setZero(parts_.problem->model->dofs());
     parts_.problem->loads.push_back(std::move(forces));
@@ -217,6 +218,7 @@ void SolidInterior::state(Archive& archive) {
 
 std::optional<Failed> SolidInterior::begin(const Window& window) {
   const double time = window.request.window.begin;
+  worked_.assign(ports_.size(), 0.0);
   if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->renew();
   if (const bool instant = window.grid.count == 0; std::exchange(stands_, instant && stands_)) {
     if (port_map_) port_map_->displacement(state_.motion.q, places_);
@@ -250,25 +252,6 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
   }
   if (port_map_) port_map_->displacement(state_.motion.q, places_);
   return std::nullopt;
-}
-
-/// Impulses on joined ports make velocities one at the start  [M.122].
-void SolidInterior::set_off(const Window& window) {
-  if (!description_.can.impulse) return;
-  const std::vector<BoundaryData>& boundary = window.request.boundary;
-  if (std::ranges::all_of(boundary, [](const BoundaryData& b) { return b.impulse.empty(); }))
-    return;
-  before_.assign(port_map_->values(), 0.0);
-  for (std::size_t p = 0; p < boundary.size(); ++p)
-    std::ranges::copy(boundary[p].impulse,
-                      before_.begin() + static_cast<std::ptrdiff_t>(port_map_->first(p)));
-  change_.setZero(parts_.problem->model->dofs());
-  port_map_->lift(state_.motion.q, before_, change_);
-  hand_on(change_);
-  parts_.scheme.integrator->able().inertia->strike(state_.motion, change_);
-  spread_velocities();
-  for (const Prescribed& p : parts_.problem->supports)  // they withstand it, and go on as told
-    state_.motion.external_work -= change_(p.dof) * state_.motion.v[p.dof];
 }
 
 void SolidInterior::restored() {
@@ -354,65 +337,6 @@ double SolidInterior::compliance(std::size_t port) const {
   return layer->compliance(motion.q, motion.history, ports_[port].nodes.front());
 }
 
-/// Forces on ports begin and end between windows: accelerations follow at once, and ports without
-/// mass. What presses on a port goes on pressing where the obstacle stays.
-std::optional<Failed> SolidInterior::meet_port_forces(double time) {
-  if (port_forces_ == nullptr) return std::nullopt;
-  port_forces_->at(time, now_);
-  if (contact_) contact_->hold(state_.port_force, now_);
-  return take_port_forces(time);
-}
-
-/// Means over dual cells press on a surface whose partner has other levels. When the window ends it
-/// stands where the force of the instant holds it  [M.127].
-std::optional<Failed> SolidInterior::meet_end() {
-  now_ = state_.port_force;
-  if (port_forces_ == nullptr || !port_forces_->add_end(now_)) return std::nullopt;
-  return take_port_forces(state_.time);
-}
-
-/// Those of now_, instead of those of the state.
-std::optional<Failed> SolidInterior::take_port_forces(double time) {
-  if (state_.begun && now_ != state_.port_force) {
-    before_ = now_;
-    for (std::size_t k = 0; k < now_.size(); ++k) before_[k] -= state_.port_force[k];
-    change_.setZero(parts_.problem->model->dofs());
-    port_map_->lift(state_.motion.q, before_, change_);
-    if (contact_) port_map_->displacement(state_.motion.q, before_);
-    Inertia* inertia = parts_.scheme.integrator->able().inertia;
-    if (inertia != nullptr)
-      if (auto failed = inertia->jump(state_.motion, time, change_)) return failed;
-    if (contact_) {
-      port_map_->displacement(state_.motion.q, places_);
-      add_port_work();
-    }
-  }
-  state_.port_force = now_;
-  return std::nullopt;
-}
-
-/// Of the forces on ports, which change from those of the state to now_ while the ports move from
-/// before_ to their places.
-void SolidInterior::add_port_work() {
-  for (std::size_t k = 0; k < now_.size(); ++k)
-    state_.port_work += 0.5 * (state_.port_force[k] + now_[k]) * (places_[k] - before_[k]);
-}
-
-/// After a substep: where the ports are, and the work that the forces on them have done.
-void SolidInterior::follow_ports(double time) {
-  before_.swap(places_);
-  port_map_->displacement(state_.motion.q, places_);
-  const bool pressed = parts_.problem->contact != nullptr;
-  if (!port_forces_->acts() && !pressed) return;
-  port_forces_->at(time, now_);
-  if (pressed) contact_->settle(now_);
-  if (description_.quasi_static && surfaces_ != nullptr &&
-      std::ranges::all_of(state_.port_force, [](double force) { return force == 0.0; }))
-    state_.motion.external_work += surfaces_->taken_at_once();
-  add_port_work();
-  state_.port_force = now_;
-}
-
 std::optional<Failed> SolidInterior::record(BodyRecord& r) {
   see_nodes();
   r.energy = energy();
@@ -482,6 +406,7 @@ Energy SolidInterior::energy() const {
 
 /// A hint, which the horizon's flight verifies: waves inside may yet throw the surface faster.
 void SolidInterior::finish(std::size_t port, PortResponse& reply) const {
+  reply.work = worked_[port];
   if (description_.dim == 1) return;
   for (std::size_t k = 0; surfaces_ != nullptr && k < reply.reactions.size(); ++k)
     surfaces_->finish(port, k, reply.reactions[k]);

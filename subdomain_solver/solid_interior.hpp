@@ -159,6 +159,7 @@ class SolidInterior final : public Interior,
   void watch_crossings();
   void follow_ports(double time);
   void add_port_work();
+  void add_work_of_impulses();
   const Vector& forces_on_ports();
   void reactions(std::vector<double>& out);
   FieldValues nodal_reactions();
@@ -177,6 +178,7 @@ class SolidInterior final : public Interior,
   State state_;
   bool stands_ = false;         // it has taken over a state in balance, which no window has left
   std::vector<double> places_;  // [m] (port values)
+  std::vector<double> worked_;  // [J] (ports) that came through them in the window so far
   PortValues seen_;
   int substep_ = 0;  // the last one of the window
   // While the body is probed: the problem with its loads, and its model for small motions.
@@ -184,15 +186,13 @@ class SolidInterior final : public Interior,
   std::unique_ptr<LinearisedModel> linearised_;
   // Of the nodes (nodes, dim) along the axes of space, as see_nodes() left them.
   std::vector<double> u_, v_;
-  std::vector<double> lag_;           // [m/s] of velocities behind the impulses
-  Vector momentum_;                   // [kg m/s]
-  Vector behind_, nodes_behind_;      // [kg m/s] behind the impulses: of coordinates, of the nodes
-  std::vector<double> before_, now_;  // [m], [N] (port values)
-  Vector change_;                     // [N] (coordinates)
-  Vector on_ports_;                   // [N] (nodes, dim)
-  std::unique_ptr<PortForecast> forecast_;  // null: only walks tell where ports go
-  std::unique_ptr<PortStatics> statics_;    // null: the body has inertia, or no ports
-  std::unique_ptr<MidpointStep> midpoint_;  // of the passive form; null: none, or another one
+  std::vector<double> lag_;                  // [m/s] of velocities behind the impulses
+  Vector momentum_, behind_, nodes_behind_;  // [kg m/s]; behind the impulses: of coordinates, nodes
+  std::vector<double> before_, now_;         // [m], [N] (port values)
+  Vector change_, on_ports_;                 // [N] (coordinates), (nodes, dim)
+  std::unique_ptr<PortForecast> forecast_;   // null: only walks tell where ports go
+  std::unique_ptr<PortStatics> statics_;     // null: the body has inertia, or no ports
+  std::unique_ptr<MidpointStep> midpoint_;   // of the passive form; null: none, or another one
   std::unique_ptr<RigidStep> rigid_step_;
   SparseMatrix whole_mass_, given_mass_;  // [kg] (nodal values) of the nodes, when first asked for
 };
