@@ -225,10 +225,9 @@ void require_taken(const Advance& asked, const Description& body) {
     const FieldPath boundary{&path, "boundary", static_cast<int>(p)};
     const auto require = [&boundary](bool taken, bool there, const char* part) {
       if (there && !taken) FieldPath{&boundary, part}.fail("is nothing that the body takes");
-    };
+    };  // obstacles are held against the partners that it has met
     require(body.can.motion, !given.motion.empty(), "motion");
     require(body.can.force, given.pushed(), "forces");
-    require(body.can.obstacle, given.obstructed(), "obstacles");
     require(body.can.impulse, !given.impulse.empty(), "impulse");
     require(body.can.impedance, !given.impedance.empty(), "impedance");
   }
