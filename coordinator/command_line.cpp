@@ -23,8 +23,8 @@ const std::array<std::pair<std::string, std::string>, 4> tools{{
     {"study", "run a scene with many settings: cost against accuracy"},
 }};
 
-constexpr std::array<std::string_view, 7> own_verbs{"run",  "resume", "check",    "split",
-                                                    "init", "keygen", "reference"};
+constexpr std::array<std::string_view, 8> own_verbs{"run",  "resume", "check",     "split",
+                                                    "init", "keygen", "reference", "conformance"};
 
 /// An empty path is most often a variable of a script that was never set.
 const CLI::Validator named_folder(
@@ -138,6 +138,34 @@ CLI::App& add_reference(CLI::App& app, ReferenceCommand& reference) {
   return verb;
 }
 
+CLI::App& add_conformance(CLI::App& app, ConformanceCommand& conformance) {
+  CLI::App& verb = *app.add_subcommand(
+      "conformance", "say which clauses of the contract a solver keeps, and how it breaks others");
+  verb.add_option("what", conformance.what,
+                  "scene (.yaml), whose bodies are tried; or a program of a body, or the endpoint "
+                  "where one connects")
+      ->required()
+      ->type_name("SCENE|PROGRAM|ENDPOINT");
+  verb.add_option("--keys", conformance.keys,
+                  "keys of the body of a program or endpoint, as below model.external; default {}")
+      ->type_name("YAML");
+  verb.add_option("--body", conformance.body, "its name; default body")->type_name("NAME");
+  verb.add_option("--window", conformance.window,
+                  "length of a window of a body without a step; default 0.001")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber.description(""));
+  verb.add_option("--deadline", conformance.deadline,
+                  "longest time without a reply or a sign of progress; default 10")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber.description(""));
+  verb.add_option("--only", conformance.only, "hold it to these clauses alone")
+      ->delimiter(',')
+      ->type_name("CLAUSE,...")
+      ->take_all();
+  add_overrides(verb, conformance.overrides);
+  return verb;
+}
+
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
@@ -161,7 +189,6 @@ Command parse_command_line(int argc, const char* const* argv) {
   CLI::App& check_verb =
       *app.add_subcommand("check", "say whether a scene is valid, and what its run will be");
   add_scene(check_verb, check.scene, check.overrides);
-
   check_verb.add_flag("--verbose", check.verbose, "tell as well what the scene leaves unused");
   check_verb
       .add_option("--probe", check.probe,
@@ -182,9 +209,11 @@ Command parse_command_line(int argc, const char* const* argv) {
   ReferenceCommand reference;
   const CLI::App& reference_verb = add_reference(app, reference);
 
+  ConformanceCommand conformance;
+  const CLI::App& conformance_verb = add_conformance(app, conformance);
+
   // For the list alone: their command lines are read by programs of their own.
   for (const auto& [name, purpose] : tools) app.add_subcommand(name, purpose);
-
   // Last: verbs take over the footer that is there when they are added.
   app.footer(
       "abut VERB --help tells what a verb takes. Any other verb V runs the program abut-V.\n"
@@ -205,6 +234,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (init_verb.parsed()) return init;
   if (keygen_verb.parsed()) return keygen;
   if (reference_verb.parsed()) return reference;
+  if (conformance_verb.parsed()) return conformance;
   return PrintCommand{app.help(), 2};
 }
 

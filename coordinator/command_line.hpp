@@ -48,6 +48,16 @@ struct InitCommand {
   std::vector<std::string> meshes;  // of mesh and gmsh
   bool force = false;
 };
+struct ConformanceCommand {
+  std::string what;               // a scene, a program or an endpoint
+  std::string keys = "{}";        // in YAML, of a program or an endpoint alone
+  std::string body = "body";      // its name, likewise
+  double window = 1.0e-3;         // [s] likewise
+  double deadline = 10.0;         // [s] likewise
+  std::vector<std::string> only;  // clauses; empty: all
+  std::vector<std::string> overrides;
+  bool names_scene() const { return what.ends_with(".yaml") || what.ends_with(".yml"); }
+};
 struct ReferenceCommand {
   std::string key;  // empty: all of them
   bool json_schema = false;
@@ -64,8 +74,9 @@ struct PrintCommand {
   int exit_code = 0;  // other than 0: for standard error
 };
 
-using Command = std::variant<RunCommand, ResumeCommand, CheckCommand, SplitCommand, InitCommand,
-                             KeygenCommand, ReferenceCommand, ExternalCommand, PrintCommand>;
+using Command =
+    std::variant<RunCommand, ResumeCommand, CheckCommand, SplitCommand, InitCommand, KeygenCommand,
+                 ReferenceCommand, ConformanceCommand, ExternalCommand, PrintCommand>;
 
 /// Never throws: a command line that is wrong becomes a PrintCommand with exit code 2.
 Command parse_command_line(int argc, const char* const* argv);

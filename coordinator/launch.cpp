@@ -89,12 +89,6 @@ std::string make_private_directory() {
   return name;
 }
 
-std::string solver_beside_this_program() {
-  std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  return error ? std::string("abut-solver") : (self.parent_path() / "abut-solver").string();
-}
-
 /// A folder that a scene names counts from the scene's own.
 std::string keys_of(const Scene& scene, const std::string& document) {
   if (scene.network.keys.empty()) return {};
@@ -110,6 +104,12 @@ std::string command_for(std::string endpoint, const std::string& body, bool exte
 }
 
 }  // namespace
+
+std::string solver_beside_this_program() {
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? std::string("abut-solver") : (self.parent_path() / "abut-solver").string();
+}
 
 /// A process that we start, and the bodies in it.
 struct Launch::Process {

@@ -21,6 +21,9 @@ namespace v1 {
 class Hello;
 }
 
+/// Path of abut-solver.
+std::string solver_beside_this_program();
+
 struct LaunchOptions {
   std::string solver;  // program of spawned bodies; empty: abut-solver beside this program
   const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: every wait ends

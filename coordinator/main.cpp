@@ -27,6 +27,7 @@
 #include "coordinator/scene.hpp"
 #include "coordinator/split/split_scene.hpp"
 #include "coordinator/verbs/check.hpp"
+#include "coordinator/verbs/conformance.hpp"
 #include "coordinator/verbs/placed_scene.hpp"
 #include "coordinator/verbs/resume.hpp"
 #include "coordinator/verbs/run.hpp"
@@ -135,6 +136,7 @@ struct Verbs {
   int operator()(const InitCommand& command) const { return init_verb(command); }
   int operator()(const KeygenCommand& command) const { return keygen_verb(command); }
   int operator()(const ReferenceCommand& command) const { return reference_verb(command); }
+  int operator()(const ConformanceCommand& command) const { return conformance_verb(command); }
   int operator()(const ExternalCommand& command) const {
     become_external_verb(command.verb, command.arguments);
   }
