@@ -84,6 +84,7 @@ class CommonStep {
   void share_out_ties();
   void count_normal(const DistanceRow& row, PassiveLedger& ledger);
   bool gives_back(const DistanceRow& row) const;
+  bool is_blow(const DistanceRow& row) const;
   void count_friction(const DistanceRow& row, PassiveLedger& ledger) const;
   void share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const;
   static double own_energy(const BodyRecord& record);              // [J] of a body

@@ -17,6 +17,8 @@ constexpr double most_gain = 1.0e-3;
 /// Of what normal impulses took: what rows give back as they part. The rest is for bodies that
 /// answer a little otherwise than was foreseen.
 constexpr double given_back = 0.98;
+/// Speeds that loads make in so many steps are no blows.
+constexpr double steps_of_loads = 2.0;
 /// Of the shortest edge: points less deep behind a surface are on it.
 constexpr double rounding_of_places = 1.0e-6;
 
@@ -81,8 +83,28 @@ void CommonStep::count_normal(const DistanceRow& row, PassiveLedger& ledger) {
     ledger.normal -= work;
     share_out_loss(row, -work, ledger);
   }
-  const double owed = row.recoils ? 0.0 : row.owed - given_back * std::min(work, 0.0);
+  const double taken = work < 0.0 && is_blow(row) ? -work : 0.0;
+  const double owed = row.recoils ? 0.0 : row.owed + given_back * taken;
   if (owed > 0.0 && gives_back(row)) owed_[row.first_point(0)] += owed;
+}
+
+/// Whether its sides came faster than loads make them in a few steps: what comes slower lies down.
+bool CommonStep::is_blow(const DistanceRow& row) const {
+  const auto dim = index(surfaces_.skin().dim);
+  double speed = 0.0, loads = 0.0;  // [m/s], [m/s^2]
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (row.weights[i] == 0.0) continue;
+    const TouchingSurfaces::Point& at = surfaces_[row.features.points[i]];
+    const std::vector<double>& velocity = tried_[index(at.body)].ports[index(at.port)].velocity;
+    for (std::size_t k = 0; k < dim; ++k)
+      speed -= row.weights[i] * row.normal(static_cast<Eigen::Index>(k)) *
+               velocity[index(at.point) * dim + k];
+  }
+  for (const int side : {0, 1}) {
+    const TouchingSurfaces::Point& at = surfaces_[row.first_point(side)];
+    loads += bodies_.response(at.body).ports[index(at.port)].acceleration_bound;
+  }
+  return speed > steps_of_loads * loads * length();
 }
 
 /// What contact takes from rigid bodies alone is gone: how they bounce is a matter of what they are
