@@ -315,7 +315,7 @@ bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> 
     return true;
   }
   const bool tangent = want == Want::tangent;
-  bool batched = batched_ && frames_.empty() && !kernel_.guarded();
+  bool batched = batched_ && !layer_cells_.empty() && frames_.empty() && !kernel_.guarded();
   if (batched && !tangent) return batched_layer_force(q, history, out.force);
   if (layer_measures_.empty()) {
     layer_measures_.resize(blocks_.size());
