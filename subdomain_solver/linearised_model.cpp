@@ -18,7 +18,7 @@ LinearisedModel::LinearisedModel(Model& of) : of_(of) {
   const std::vector<double> q(index(of.dofs()), 0.0), history(of.history_size(), 0.0);
   ModelResponse rest;
   ready_ = of.evaluate(q, history, Want::tangent, rest) &&
-           (of.massless().empty() || of.evaluate_layer(q, history, Want::tangent, layer_));
+           of.evaluate_layer(q, history, Want::tangent, layer_);
   tangent_ = std::move(rest.tangent);
 }
 

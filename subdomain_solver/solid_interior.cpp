@@ -130,7 +130,8 @@ void SolidInterior::find_surfaces() {
     if (geometry.facets.empty() || !may_touch_[p] || reduced || parts_.massive_surface) continue;
     const PortSurface port{p, port_map_->first(p), &geometry, nodes};
     touched_.push_back({port, ports_[p].name, model.options().thickness});
-    SurfaceContact::Surface& surface = surfaces.emplace_back(port);
+    surfaces.push_back({port, {}});
+    SurfaceContact::Surface& surface = surfaces.back();
     for (const std::int32_t node : nodes) surface.frames.push_back(model.frame(node));
   }
   if (surfaces.empty()) return;

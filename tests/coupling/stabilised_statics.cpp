@@ -115,7 +115,9 @@ TEST(StabilisedStatics, ColumnsShortenAsHeldOnesDo) {
           }
           // Across a gap the force of a step's end does work of the mean of none and itself.
           const double drift = run->measure("energy.total.relative_drift_end");
-          if (gap == 0.0) EXPECT_NEAR(drift, 0.0, 1.0e-6);  // sweeps' tolerance
+          if (gap == 0.0) {
+            EXPECT_NEAR(drift, 0.0, 1.0e-6);  // sweeps' tolerance
+          }
         }
       }
     }
@@ -128,7 +130,9 @@ void expect_pressed_or_told(const Column& column, bool to_converge) {
   SCOPED_TRACE(fmt::format("{}D, {} floating, every other one {} times as stiff, metre {}",
                            column.dim, column.floating, column.unlike, column.metre));
   const auto run = column.run();
-  if (to_converge) ASSERT_TRUE(run->completed()) << run->end.reason;
+  if (to_converge) {
+    ASSERT_TRUE(run->completed()) << run->end.reason;
+  }
   if (!run->completed()) {
     const bool told = run->end.reason.find("not converged") != std::string::npos ||
                       run->end.reason.find("is held against moving") != std::string::npos;

@@ -9,26 +9,15 @@
 #include <gtest/gtest.h>
 
 #include "base/index.hpp"
-#include "tests/support/materials.hpp"
+#include "tests/support/cell_models.hpp"
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
 
-struct Case {
-  std::string element;
-  Formulation formulation;
-  std::string law;
-};
-
-void PrintTo(const Case& c, std::ostream* out) {
-  const char* names[] = {" full ", " mean_dilatation ", " one_point "};
-  *out << c.element << names[static_cast<int>(c.formulation)] << c.law;
-}
-
-std::vector<Case> cases(const std::vector<std::string>& laws) {
-  std::vector<Case> out;
+std::vector<BatchCase> cases(const std::vector<std::string>& laws) {
+  std::vector<BatchCase> out;
   for (const std::string element : {"hex8", "quad4", "tet4", "tri3"})
     for (const Formulation formulation :
          {Formulation::full, Formulation::one_point, Formulation::mean_dilatation})
@@ -46,27 +35,18 @@ const std::vector<std::string> objective = {"saint_venant_kirchhoff", "neo_hooke
 const std::vector<std::string> laws = {"linear_elastic", "saint_venant_kirchhoff", "neo_hookean",
                                        "j2_plasticity"};
 
-std::unique_ptr<const Material> law_named(const std::string& name) {
-  if (name == "linear_elastic") return std::make_unique<LinearElastic>(test_moduli, 1.0);
-  if (name == "saint_venant_kirchhoff")
-    return std::make_unique<SaintVenantKirchhoff>(test_moduli, 1.0);
-  if (name == "j2_plasticity")
-    return std::make_unique<J2Plasticity>(test_moduli, test_hardening(), 1.0);
-  return std::make_unique<NeoHookean>(test_moduli, 1.0);
-}
-
 /// 9 cells along each edge: several patches in space, batches that are not full.
 constexpr int cells = 9;
 constexpr double thickness = 0.7;
 
-Mesh distorted_mesh(const Case& c) {
+Mesh distorted_mesh(const BatchCase& c) {
   const bool many = c.element == "quad4";
   Mesh mesh = unit_mesh(c.element, many ? 3 * cells : cells);
   distort(mesh, 0.02 / (many ? 3.0 : 1.0));
   return mesh;
 }
 
-FeModel model_of(const Case& c) {
+FeModel model_of(const BatchCase& c) {
   return FeModel(distorted_mesh(c), law_named(c.law),
                  {Plane::strain, c.formulation, thickness, 0.05});
 }
@@ -77,7 +57,7 @@ struct Answer {
   std::vector<double> force, history;
 };
 
-Answer batched(const Case& c, const Mesh& mesh, std::span<const double> q,
+Answer batched(const BatchCase& c, const Mesh& mesh, std::span<const double> q,
                const KernelTable* kernels = nullptr, int threads = 1) {
   const std::unique_ptr<const Material> law = law_named(c.law);
   BatchedCells all(mesh, *law, {c.formulation, 0.05, thickness, threads, kernels});
@@ -113,7 +93,7 @@ std::vector<double> affine(const Mesh& mesh, const Matrix3& h) {
   return q;
 }
 
-class BatchedCellsOf : public testing::TestWithParam<Case> {};
+class BatchedCellsOf : public testing::TestWithParam<BatchCase> {};
 
 // Sums of a few hundred terms of the size of a force each, in different orders.
 constexpr double operations = 1000.0;
@@ -203,7 +183,7 @@ TEST_P(BatchedCellsOf, RefuseNumbersThatAreNotFinite) {
 
 INSTANTIATE_TEST_SUITE_P(All, BatchedCellsOf, testing::ValuesIn(cases(laws)));
 
-class ObjectiveBatchedCells : public testing::TestWithParam<Case> {};
+class ObjectiveBatchedCells : public testing::TestWithParam<BatchCase> {};
 
 TEST_P(ObjectiveBatchedCells, RotationCostsNothing) {
   const Mesh mesh = distorted_mesh(GetParam());

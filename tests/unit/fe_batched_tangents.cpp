@@ -8,47 +8,21 @@
 #include <gtest/gtest.h>
 
 #include "base/index.hpp"
-#include "tests/support/materials.hpp"
+#include "tests/support/cell_models.hpp"
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut {
 namespace {
 
-struct Case {
-  std::string element;
-  Formulation formulation;
-  std::string law;
-};
-
-void PrintTo(const Case& c, std::ostream* out) {
-  const char* names[] = {" full ", " mean_dilatation ", " one_point "};
-  *out << c.element << names[static_cast<int>(c.formulation)] << c.law;
-}
-
-std::unique_ptr<const Material> law_named(const std::string& name) {
-  if (name == "saint_venant_kirchhoff")
-    return std::make_unique<SaintVenantKirchhoff>(test_moduli, 1.0);
-  if (name == "j2_plasticity")
-    return std::make_unique<J2Plasticity>(test_moduli, test_hardening(), 1.0);
-  return std::make_unique<NeoHookean>(test_moduli, 1.0);
-}
-
 /// Batches that are not full, and more cells than are asked at a time.
-FeModel model_of(const Case& c, bool batched, int threads = 1) {
+FeModel model_of(const BatchCase& c, bool batched, int threads = 1) {
   Mesh mesh = unit_mesh(c.element, c.element.starts_with("hex") || c.element == "tet4" ? 3 : 7);
   distort(mesh, 0.02);
   FeOptions options{Plane::strain, c.formulation, 0.7};
   options.batched = batched;
   options.threads = threads;
   return FeModel(std::move(mesh), law_named(c.law), options);
-}
-
-std::vector<double> displaced(const FeModel& model, double size) {
-  Draw draw;
-  std::vector<double> q(index(model.dofs()));
-  for (double& x : q) x = size * draw.between(-1.0, 1.0);
-  return q;
 }
 
 ModelResponse tangent_of(FeModel& model, double size) {
@@ -58,8 +32,8 @@ ModelResponse tangent_of(FeModel& model, double size) {
   return out;
 }
 
-std::vector<Case> cases() {
-  std::vector<Case> out;
+std::vector<BatchCase> cases() {
+  std::vector<BatchCase> out;
   for (const std::string element : {"hex8", "quad4", "tet4", "tri3"})
     for (const Formulation formulation : {Formulation::full, Formulation::mean_dilatation})
       for (const std::string law : {"saint_venant_kirchhoff", "neo_hookean"})
@@ -67,7 +41,7 @@ std::vector<Case> cases() {
   return out;
 }
 
-class BatchedTangentsOf : public testing::TestWithParam<Case> {};
+class BatchedTangentsOf : public testing::TestWithParam<BatchCase> {};
 INSTANTIATE_TEST_SUITE_P(Laws, BatchedTangentsOf, testing::ValuesIn(cases()));
 
 TEST_P(BatchedTangentsOf, AreTheCellByCellOnes) {
@@ -115,7 +89,7 @@ TEST_P(BatchedTangentsOf, AreTheSameBitsForAllThreads) {
 /// Cells that are answered for one by one.
 TEST(CellAnswers, AreTheSameBitsForAllThreads) {
   for (const std::string element : {"hex20", "quad8", "hex8"}) {
-    const Case c{element, Formulation::full, "j2_plasticity"};
+    const BatchCase c{element, Formulation::full, "j2_plasticity"};
     FeModel one = model_of(c, false), three = model_of(c, false, 3);
     const ModelResponse wanted = tangent_of(one, 0.004), found = tangent_of(three, 0.004);
     EXPECT_EQ((wanted.tangent - found.tangent).norm(), 0.0);
@@ -157,6 +131,21 @@ TEST(StiffnessKernels, HaveTheSameBitsForEveryWidthOfRegisters) {
             parameters));
       }
       EXPECT_EQ(found[0], found[1]);
+    }
+  }
+}
+
+/// A body whose surface has mass has no layer, and is asked for it all the same: by what answers
+/// port kernels from rest.
+TEST(LayerWithoutCells, AnswersWithNothing) {
+  for (const char* law :
+       {"linear_elastic", "saint_venant_kirchhoff", "neo_hookean", "j2_plasticity"}) {
+    for (const Model::Want want : {Model::Want::force, Model::Want::tangent}) {
+      FeModel model = model_of({"hex8", Formulation::full, law}, true);
+      const std::vector<double> history(model.history_size(), 0.0);
+      LayerResponse out;
+      EXPECT_TRUE(model.evaluate_layer(displaced(model, 0.0), history, want, out)) << law;
+      EXPECT_EQ(out.force.size(), 0) << law;
     }
   }
 }

@@ -9,7 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "tests/support/materials.hpp"
+#include "tests/support/cell_models.hpp"
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -23,12 +23,6 @@ struct Case : ElementCase {
 void PrintTo(const Case& c, std::ostream* out) {
   PrintTo(static_cast<const ElementCase&>(c), out);
   *out << " " << c.law;
-}
-
-std::unique_ptr<const Material> law_named(const std::string& name) {
-  if (name == "linear_elastic") return std::make_unique<LinearElastic>(test_moduli, 1.0);
-  if (name == "neo_hookean") return std::make_unique<NeoHookean>(test_moduli, 1.0);
-  return std::make_unique<J2Plasticity>(test_moduli, test_hardening(), 1.0);
 }
 
 std::vector<Case> cases(const std::vector<std::string>& laws) {
@@ -47,13 +41,6 @@ FeModel one_cell(const Case& c) {
   FeOptions options{c.plane, c.formulation, 0.7};
   options.area = 0.6;
   return FeModel(std::move(mesh), law_named(c.law), options);
-}
-
-std::vector<double> displaced(const FeModel& model, double size) {
-  Draw draw;
-  std::vector<double> q(index(model.dofs()));
-  for (double& x : q) x = size * draw.between(-1.0, 1.0);
-  return q;
 }
 
 class Cells : public testing::TestWithParam<Case> {};
