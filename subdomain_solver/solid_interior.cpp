@@ -367,9 +367,9 @@ std::vector<double> SolidInterior::measure() {
         validity_measures(*parts_.model, parts_.deforms, u_, state_.motion.stored, state_.turned)})
     out.insert(out.end(), more.begin(), more.end());
   if (stabilised()) {
-    const std::vector<double> held = stabilisation_measures(
+    const std::vector<double> more = stabilisation_measures(
         *parts_.model, *parts_.scheme.integrator->able().statics, state_.motion);
-    out.insert(out.end(), held.begin(), held.end());
+    out.insert(out.end(), more.begin(), more.end());
   }
   if (surfaces_ != nullptr) touch_measures(touched_, *surfaces_, state_.port_force, places_, out);
   if (crossings_) out.push_back(state_.crossed);
