@@ -76,10 +76,10 @@ std::optional<Unit> symbol_named(std::string_view word) {
   return std::nullopt;
 }
 
-Unit to_power(const Unit& unit, int power) {
-  return {{unit.dimension.length * power, unit.dimension.mass * power, unit.dimension.time * power},
-          std::pow(unit.mantissa, power),
-          unit.exponent * power};
+Unit to_power(const Unit& unit, int times) {
+  return {{unit.dimension.length * times, unit.dimension.mass * times, unit.dimension.time * times},
+          std::pow(unit.mantissa, times),
+          unit.exponent * times};
 }
 
 Unit product(const Unit& a, const Unit& b) {
@@ -93,13 +93,13 @@ Unit product(const Unit& a, const Unit& b) {
 std::optional<Unit> parse_factor(std::string_view text) {
   const std::size_t end = text.find_first_of("^-0123456789");
   const std::string_view word = text.substr(0, end);
-  std::string_view power = end == std::string_view::npos ? "1" : text.substr(end);
-  if (power.starts_with('^')) power.remove_prefix(1);
+  std::string_view number = end == std::string_view::npos ? "1" : text.substr(end);
+  if (number.starts_with('^')) number.remove_prefix(1);
   int exponent = 0;
   const std::from_chars_result read =
-      std::from_chars(power.data(), power.data() + power.size(), exponent);
+      std::from_chars(number.data(), number.data() + number.size(), exponent);
   const std::optional<Unit> unit = word.empty() && text == "1" ? Unit{} : symbol_named(word);
-  if (!unit || read.ec != std::errc() || read.ptr != power.data() + power.size())
+  if (!unit || read.ec != std::errc() || read.ptr != number.data() + number.size())
     return std::nullopt;
   if (exponent < -9 || exponent > 9) return std::nullopt;
   return to_power(*unit, exponent);

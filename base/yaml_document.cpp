@@ -211,8 +211,8 @@ void Document::write_out(const YAML::Node& text) {
   tree_ = std::make_unique<YamlTree>(root);
   if (has("stages")) {
     before_ = std::make_unique<YamlTree>(root);
-    std::ranges::copy_if(later, std::back_inserter(later_), [](const std::string& text) {
-      return !is_at_or_below(override_path(text), "stages");
+    std::ranges::copy_if(later, std::back_inserter(later_), [](const std::string& each) {
+      return !is_at_or_below(override_path(each), "stages");
     });
   }
   read_units();

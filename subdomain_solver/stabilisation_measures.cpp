@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include <fmt/format.h>
+
 #include "base/index.hpp"
 
 namespace abut {
@@ -10,7 +12,7 @@ std::vector<std::string> stabilisation_measure_names(int dim) {
   std::vector<std::string> names = {"stabilisation.share", "stabilisation.share_max",
                                     "stabilisation.at_most", "stabilisation.work",
                                     "stabilisation.force"};
-  for (int i = 0; i < dim; ++i) names.push_back(std::string("stabilisation.force.") + "xyz"[i]);
+  for (int i = 0; i < dim; ++i) names.push_back(fmt::format("stabilisation.force.{}", "xyz"[i]));
   return names;
 }
 

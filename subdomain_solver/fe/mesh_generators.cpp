@@ -142,7 +142,8 @@ Mesh box(const Lengths<Dim>& data, const Element& element, const std::string& wh
     for (std::size_t d = 0; d < Dim; ++d) {
       const unsigned end = (corner >> d) & 1u;
       place.at[d] = end == 1 ? last[d] : 0;
-      name += (d > 0 ? "_" : "") + std::string(side_names[d][end]);
+      if (d > 0) name += '_';
+      name += side_names[d][end];
     }
     mesh.name_nodes(name, [&place](const LatticePoint& other) { return other == place; });
   }

@@ -71,7 +71,7 @@ ConstraintSpec mirrored(const Mesh& mesh, ConstraintSpec spec) {
   spec.symmetry = false;
   Eigen::Index axis = 0;
   if (normal.cwiseAbs().maxCoeff(&axis) >= 1.0 - flatness * flatness) {
-    (axis == 0 ? spec.x : axis == 1 ? spec.y : spec.z) = "0";
+    (axis == 0 ? spec.x : axis == 1 ? spec.y : spec.z) = std::string("0");
   } else {
     spec.direction.assign(normal.data(), normal.data() + mesh.dim);
   }
