@@ -16,7 +16,7 @@
 namespace abut {
 namespace {
 
-constexpr std::size_t max_bytes = 16'000'000;
+constexpr std::size_t most_table_bytes = 16'000'000;
 constexpr std::array<std::string_view, 6> columns = {"x", "y", "z", "vx", "vy", "vz"};
 constexpr const char* name_columns =
     "Begin the table with a line of its columns, some of x, y, z in m and vx, vy, vz in m/s.";
@@ -120,8 +120,8 @@ class Table {
 
 std::vector<TableRow> read_copies_table(const std::string& path, std::size_t dim,
                                         std::size_t most_rows) {
-  const std::string text =
-      read_input_file(path, max_bytes, "Give the path of a table, relative to the scene's folder.");
+  const std::string text = read_input_file(
+      path, most_table_bytes, "Give the path of a table, relative to the scene's folder.");
   Table table(path, dim, most_rows);
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());

@@ -20,7 +20,7 @@
 namespace abut {
 namespace {
 
-constexpr std::size_t max_bytes = 16'000'000;
+constexpr std::size_t most_scene_bytes = 16'000'000;
 constexpr const char* scene_file = "Give the path of a scene file.";
 
 /// A map or list of the same entries, but for the one that is replaced or added.
@@ -163,7 +163,7 @@ std::string join_path(std::string_view parent, std::string_view child) {
 }
 
 Document Document::load(const std::string& path, std::vector<std::string> overrides) {
-  return Document(path, read_input_file(path, max_bytes, scene_file), std::move(overrides));
+  return Document(path, read_input_file(path, most_scene_bytes, scene_file), std::move(overrides));
 }
 
 Document Document::from_text(std::string name, std::string text,
@@ -177,8 +177,9 @@ Document::~Document() = default;
 
 Document::Document(std::string name, std::string text, std::vector<std::string> overrides)
     : name_(std::move(name)), text_(std::move(text)), overrides_(std::move(overrides)) {
-  if (text_.size() > max_bytes)
-    throw InputError(fmt::format("is larger than {} MB", max_bytes / 1'000'000), name_, scene_file);
+  if (text_.size() > most_scene_bytes)
+    throw InputError(fmt::format("is larger than {} MB", most_scene_bytes / 1'000'000), name_,
+                     scene_file);
   const YAML::Node root = parse_yaml(
       text_, name_, "", "Correct the line; most often it is an indentation, a bracket or a colon.");
   if (!root.IsMap())

@@ -21,7 +21,7 @@
 namespace abut {
 namespace {
 
-constexpr std::array<std::string_view, 8> choices = {
+constexpr std::array<std::string_view, 8> like_choices = {
     "launch",   "model",      "model.*.mesh",  "model.*.contact",
     "material", "integrator", "contact_layer", "equations.linear"};
 
@@ -47,8 +47,8 @@ std::optional<YAML::Node> find(const YAML::Node& map, const std::string& key) {
 bool is_own(const std::string& key) { return key == "like" || key == "copies"; }
 
 /// `path`: keys of a body.
-bool is_choice(const std::vector<std::string>& path) {
-  return std::ranges::any_of(choices, [&path](std::string_view choice) {
+bool chooses_one(const std::vector<std::string>& path) {
+  return std::ranges::any_of(like_choices, [&path](std::string_view choice) {
     return std::ranges::equal(path, split_path(choice), [](const auto& key, const auto& step) {
       return step == "*" || step == key;
     });
@@ -138,7 +138,7 @@ class Bodies {
     if (!inherited.IsMap() || !own.IsMap()) return YAML::Clone(own);
     const Index mine = index_of(own), theirs = index_of(inherited);
     const bool other = mine.size() == 1 && !theirs.contains(mine.begin()->first);
-    if (other && is_choice(path)) return YAML::Clone(own);
+    if (other && chooses_one(path)) return YAML::Clone(own);
     YAML::Node out(YAML::NodeType::Map);
     for (const auto& pair : inherited) {
       const std::string& key = pair.first.Scalar();
@@ -170,7 +170,7 @@ class Bodies {
 
 }  // namespace
 
-std::span<const std::string_view> body_choices() { return choices; }
+std::span<const std::string_view> body_choices() { return like_choices; }
 
 bool has_likes(const YAML::Node& scene) {
   const std::optional<YAML::Node> bodies = find(scene, "bodies");

@@ -15,7 +15,8 @@ namespace abut {
 namespace {
 
 /// Beside those of bodies, as body_choices() has them.
-constexpr std::array<std::string_view, 2> choices = {"schwarz.accelerator", "output.checkpoint"};
+constexpr std::array<std::string_view, 2> stage_choices = {"schwarz.accelerator",
+                                                           "output.checkpoint"};
 
 bool fits(const std::vector<std::string>& path, std::string_view pattern) {
   return std::ranges::equal(path, split_path(pattern), [](const auto& step, const auto& part) {
@@ -23,9 +24,9 @@ bool fits(const std::vector<std::string>& path, std::string_view pattern) {
   });
 }
 
-bool is_choice(const std::vector<std::string>& path) {
+bool is_stage_choice(const std::vector<std::string>& path) {
   const auto here = [&path](std::string_view choice) { return fits(path, choice); };
-  if (std::ranges::any_of(choices, here)) return true;
+  if (std::ranges::any_of(stage_choices, here)) return true;
   return std::ranges::any_of(body_choices(), [&path](std::string_view choice) {
     return fits(path, "bodies.*." + std::string(choice));
   });
@@ -40,7 +41,7 @@ bool is_explicit(const YAML::Node& body) {
 YAML::Node merged(const YAML::Node& before, const YAML::Node& own, std::vector<std::string>& path) {
   if (!before.IsMap() || !own.IsMap()) return own;
   const bool other = own.size() == 1 && !child(before, own.begin()->first.Scalar());
-  if (other && is_choice(path)) return own;
+  if (other && is_stage_choice(path)) return own;
   YAML::Node out(YAML::NodeType::Map);
   for (const auto& pair : before) {
     const std::string& key = pair.first.Scalar();

@@ -49,7 +49,7 @@ int corners_of(int dim, std::size_t nodes) {
 }
 
 /// Facets that belong to one cell alone, in the order of cells.
-std::vector<Facet> outside(const Grid& grid, int dim) {
+std::vector<Facet> outside_facets(const Grid& grid, int dim) {
   std::map<Facet, int> seen;  // by corners, sorted
   std::vector<std::pair<Facet, Facet>> all;
   for (std::size_t c = 0; c < grid.cells(); ++c) {
@@ -81,7 +81,7 @@ Corners corners_of(const Facet& facet, const Grid& grid) {
 }
 
 /// Straight facets between all nodes of these, and the points that they need.
-void add(BodyHull& hull, const std::vector<Facet>& facets, const Grid& grid) {
+void add_facets(BodyHull& hull, const std::vector<Facet>& facets, const Grid& grid) {
   std::map<std::int32_t, std::int32_t> place;
   const auto number = [&](std::int32_t node) {
     const auto [at, fresh] = place.emplace(node, static_cast<std::int32_t>(hull.nodes.size()));
@@ -210,7 +210,7 @@ BodyHull hull_of(const Description& body, const Grid& grid) {
   BodyHull hull;
   hull.dim = body.dim;
   hull.offsets = {0};
-  add(hull, outside(grid, body.dim), grid);
+  add_facets(hull, outside_facets(grid, body.dim), grid);
   const bool of_cells = !hull.facets.empty();
   if (!of_cells) hull = port_hull(body);
   if (hull.dim == 0) return hull;

@@ -13,7 +13,7 @@ namespace abut {
 
 namespace {
 
-constexpr double mebi = 1048576.0;
+constexpr double mebibyte = 1048576.0;
 
 struct Frames {
   const Scene& scene;
@@ -26,7 +26,7 @@ struct Frames {
     throw InputError(
         fmt::format("{} of body '{}' takes {:.4g} MiB, more than a frame between processes holds, "
                     "{:.4g} MiB",
-                    what, body.name, bytes / mebi, limit / mebi),
+                    what, body.name, bytes / mebibyte, limit / mebibyte),
         document.where(key), remedy + ", or run with --local, which has no frames.");
   }
 

@@ -46,7 +46,7 @@ Json number_of(const KeyNode& key) {
              {"pattern", "^[-+]?[0-9.]+([eE][-+]?[0-9]+)? ?[A-Za-z\u00b5\u03bc]"}}}}};
 }
 
-Json names_of(const std::vector<Preset>& presets) {
+Json preset_names(const std::vector<Preset>& presets) {
   Json names = Json::array();
   for (const Preset& preset : presets) names.push_back(preset.name);
   return names;
@@ -163,14 +163,14 @@ class Schemas {
   Json items_of(const KeyNode& node) const {
     Json map = map_of(node.keys, node.open);
     if (!node.presets.empty())
-      return {{"anyOf", {{{"enum", names_of(node.presets)}}, std::move(map)}}};
+      return {{"anyOf", {{{"enum", preset_names(node.presets)}}, std::move(map)}}};
     const KeyNode* plain = node.shorthand.empty() ? nullptr : find(node.keys, node.shorthand);
     if (plain == nullptr) return map;
     return {{"anyOf", {value(*plain), std::move(map)}}};
   }
 
   Json choice(const KeyNode& key) const {
-    Json alone = names_of(key.presets), properties = Json::object();
+    Json alone = preset_names(key.presets), properties = Json::object();
     for (const KeyNode& alternative : key.keys) {
       const bool needs = std::ranges::any_of(alternative.keys, &KeyNode::required);
       if (!needs) alone.push_back(alternative.name);

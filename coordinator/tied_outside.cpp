@@ -12,8 +12,8 @@ namespace abut {
 namespace {
 
 /// Adds the facets of a port; nodes at one place are one.
-void add(const PortGeometry& port, std::map<std::vector<double>, std::int32_t>& known,
-         PortGeometry& all) {
+void add_port(const PortGeometry& port, std::map<std::vector<double>, std::int32_t>& known,
+              PortGeometry& all) {
   const std::size_t dim = index(port.dim);
   std::vector<std::int32_t> number;
   for (std::size_t v = 0; v < port.points.size(); v += dim) {
@@ -43,14 +43,14 @@ std::optional<PortGeometry> tied_outside(const Scene& scene, const Side& side,
   all.spacing = own.geometry.spacing;
   all.offsets = {0};
   std::map<std::vector<double>, std::int32_t> known;
-  add(own.geometry, known, all);
+  add_port(own.geometry, known, all);
   for (const Port& port : body.ports) {
     const bool tied = std::ranges::any_of(scene.interfaces, [&](const auto& entry) {
       return entry.second.tied &&
              std::ranges::find(entry.second.sides, body.name + '.' + port.name) !=
                  entry.second.sides.end();
     });
-    if (tied && port.name != own.name) add(port.geometry, known, all);
+    if (tied && port.name != own.name) add_port(port.geometry, known, all);
   }
   if (!is_closed(posed(all))) return std::nullopt;
   return all;

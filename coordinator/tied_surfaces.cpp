@@ -59,7 +59,8 @@ int side_of_rows(const std::array<Side, 2>& sides, const Bodies& bodies) {
   return coarser_mesh(sides, bodies);
 }
 
-void check_overlap(const InterfaceSpec& spec, const std::array<const PortGeometry*, 2>& faces) {
+void check_faces_overlap(const InterfaceSpec& spec,
+                         const std::array<const PortGeometry*, 2>& faces) {
   for (const std::size_t s : {0u, 1u}) {
     if (faces[s]->embedded > 0) continue;
     throw InputError(fmt::format("body of {} does not tell how it moves where side {} is inside it",
@@ -134,7 +135,7 @@ Joint make_tied_joint(const InterfaceSpec& spec, std::array<Side, 2> sides, cons
     throw InputError("ties a plane surface to one of rings", where,
                      "Give both bodies plane: axisymmetric, or none.");
   }
-  if (spec.tied->overlap) check_overlap(spec, faces);
+  if (spec.tied->overlap) check_faces_overlap(spec, faces);
   std::unique_ptr<Tie> tie = make_tie(spec, sides, bodies);
   const TieRows& rows = tie->rows();
   const double most = unlike_meshes_gap * std::max(faces[0]->spacing, faces[1]->spacing);

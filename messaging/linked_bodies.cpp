@@ -8,8 +8,8 @@
 namespace abut {
 
 namespace {
-constexpr std::size_t most_waiting = 64;        // frames of a body; it repeats what it needs
-constexpr std::size_t most_waiting_limits = 4;  // what waits, of all, in limits of a frame
+constexpr std::size_t most_waiting_frames = 64;       // frames of a body; it repeats what it needs
+constexpr std::size_t most_waiting_frame_limits = 4;  // what waits, of all, in limits of a frame
 
 SharedLink::Bounds bounds_of(const std::vector<Channel*>& sockets, const Limits& limits) {
   return {static_cast<std::uint32_t>(sockets.size()), limits.frame_bytes};
@@ -89,7 +89,7 @@ LinkedBodies::LinkedBodies(std::unique_ptr<SharedLink> link, SharedLink::End end
                            const std::vector<Channel*>& sockets, const Limits& limits)
     : link_(std::move(link)),
       end_(end),
-      most_waiting_bytes_(most_waiting_limits * limits.frame_bytes) {
+      most_waiting_bytes_(most_waiting_frame_limits * limits.frame_bytes) {
   for (Channel* const socket : sockets) {
     const std::uint32_t number = static_cast<std::uint32_t>(members_.size());
     members_.push_back(std::make_unique<Member>(*this, number, *socket));
@@ -112,7 +112,7 @@ LinkedBodies::Member* LinkedBodies::receive_one(Milliseconds wait) {
 
 /// What is too much is as good as lost: who waits for it repeats its request.
 void LinkedBodies::keep_for(Member& member) {
-  if (member.waiting.size() >= most_waiting) return;
+  if (member.waiting.size() >= most_waiting_frames) return;
   if (waiting_bytes_ + received_.size > most_waiting_bytes_) return;
   waiting_bytes_ += received_.size;
   member.waiting.push_back(std::exchange(received_, {}));

@@ -9,7 +9,7 @@ namespace abut {
 
 namespace {
 // A broken connection heals by reconnecting; one that breaks at every repeat of a request does not.
-constexpr int most_disconnects = 3;
+constexpr int disconnects_of_the_living = 3;
 // A process that ends closes its socket a moment before it can be waited for.
 constexpr Milliseconds time_to_exit{1'000};
 }  // namespace
@@ -45,8 +45,8 @@ std::string BodyLiveness::loss_of_process(TimePoint since) {
     return child_->exited_with(3) ? child_->ending() + ", its connection having ended " + hint
                                   : child_->ending();
   }
-  if (hub_.disconnects(peer_, since) >= most_disconnects) {
-    return fmt::format("lost its connection {} times ", most_disconnects) + hint;
+  if (hub_.disconnects(peer_, since) >= disconnects_of_the_living) {
+    return fmt::format("lost its connection {} times ", disconnects_of_the_living) + hint;
   }
   const std::optional<TimePoint> gone = hub_.gone_since(peer_);
   const Milliseconds grace = child_ != nullptr ? time_to_exit : deadlines_.reconnect;

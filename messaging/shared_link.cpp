@@ -12,8 +12,8 @@ namespace abut {
 
 namespace {
 
-constexpr std::uint32_t layout = 1;          // of what follows: both ends must have the same
-constexpr std::uint32_t mark = 0x74756261u;  // "abut": where a frame begins
+constexpr std::uint32_t layout = 1;                // of what follows: both ends must have the same
+constexpr std::uint32_t frame_mark = 0x74756261u;  // "abut": where a frame begins
 constexpr std::size_t page = 4096;
 constexpr std::chrono::microseconds most_spin{200};
 /// Without the other end reading anything; then the rest waits until it is looked after again.
@@ -102,7 +102,7 @@ bool SharedLink::send(std::uint32_t body, Bytes frame, std::shared_ptr<const voi
   push();
   if (unsent()) wait_for_room();
   if (unsent() || !fault_.empty()) return false;
-  const FrameHead head{mark, body, frame.size()};
+  const FrameHead head{frame_mark, body, frame.size()};
   std::memcpy(out_head_.data(), &head, sizeof head);
   head_rest_ = out_head_;
   frame_rest_ = frame;
@@ -222,7 +222,7 @@ bool SharedLink::take_head() {
   if (head_got_ < head_bytes) return false;
   FrameHead head;
   std::memcpy(&head, in_head_.data(), sizeof head);
-  if (head.mark != mark || head.body >= bounds_.bodies) {
+  if (head.mark != frame_mark || head.body >= bounds_.bodies) {
     fault_ =
         "has left the memory that it shares with this process unsound: no frame begins "
         "where the last one has ended";

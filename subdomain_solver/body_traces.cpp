@@ -16,8 +16,8 @@ const Want& want_of(const Advance& request, std::size_t port) {
 }
 
 /// Of a port's values, those of the points that are listed; all, where none is.
-void append(std::span<const double> port, const std::vector<std::int32_t>& points, std::size_t dim,
-            std::vector<double>& to) {
+void append_values(std::span<const double> port, const std::vector<std::int32_t>& points,
+                   std::size_t dim, std::vector<double>& to) {
   if (points.empty()) to.insert(to.end(), port.begin(), port.end());
   for (const std::int32_t point : points) {
     const std::span<const double> one = port.subspan(index(point) * dim, dim);
@@ -120,7 +120,7 @@ void Body::push_trace(const Watched& port, double time) const {
   }
   const auto push = [&](bool wanted, const std::vector<double>& from, std::vector<double>& to) {
     const std::span<const double> own = std::span(from).subspan(first, port.width);
-    if (wanted) append(own, want.points, index(port.geometry->dim), to);
+    if (wanted) append_values(own, want.points, index(port.geometry->dim), to);
   };
   push(want.u, seen_->u, trace.u);
   push(want.v, seen_->v, trace.v);

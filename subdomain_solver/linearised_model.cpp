@@ -8,7 +8,7 @@ namespace abut {
 
 namespace {
 
-Eigen::Map<const Vector> view(std::span<const double> q) {
+Eigen::Map<const Vector> view_of(std::span<const double> q) {
   return {q.data(), static_cast<Eigen::Index>(q.size())};
 }
 
@@ -24,22 +24,22 @@ LinearisedModel::LinearisedModel(Model& of) : of_(of) {
 
 double LinearisedModel::roundoff(std::span<const double> q) const {
   return summed_roundings * std::numeric_limits<double>::epsilon() * tangent_.norm() *
-         view(q).lpNorm<Eigen::Infinity>();
+         view_of(q).lpNorm<Eigen::Infinity>();
 }
 
 bool LinearisedModel::evaluate(std::span<const double> q, std::span<const double> history,
                                Want want, ModelResponse& out) {
-  out.force.noalias() = tangent_ * view(q);
+  out.force.noalias() = tangent_ * view_of(q);
   if (want == Want::tangent) out.tangent = tangent_;
   out.history.assign(history.begin(), history.end());
-  out.stored = 0.5 * out.force.dot(view(q));
+  out.stored = 0.5 * out.force.dot(view_of(q));
   out.dissipation = 0.0;
   return true;
 }
 
 bool LinearisedModel::evaluate_layer(std::span<const double> q, std::span<const double>, Want want,
                                      LayerResponse& out) {
-  force_.noalias() = tangent_ * view(q);
+  force_.noalias() = tangent_ * view_of(q);
   out.force.resize(layer_.force.size());
   for (std::size_t k = 0; k < massless().size(); ++k)
     out.force(static_cast<Eigen::Index>(k)) = force_(massless()[k]);

@@ -12,7 +12,7 @@ namespace abut {
 namespace {
 
 /// Of a substep: times nearer to its end than this are its end, rounded.
-constexpr double rounding = 1.0e-6;
+constexpr double force_rounding = 1.0e-6;
 
 }  // namespace
 
@@ -94,8 +94,7 @@ bool PortForces::add_end(std::vector<double>& force) const {
 
 /// The values of the points that a waveform lists to those of all points of its port. The first
 /// ones are taken as they are: zeros have signs.
-void PortForces::add(const Waveform& imposed, const double* values, bool first,
-                     double* row) const {
+void PortForces::add(const Waveform& imposed, const double* values, bool first, double* row) const {
   const std::size_t dim = index(map_.dim()), width = index(imposed.width);
   for (std::size_t k = 0; k < width; ++k) {
     const bool listed = !imposed.points.empty();
@@ -112,7 +111,7 @@ void PortForces::at(double time, std::vector<double>& out) const {
   const double length = std::max(grid_.step, 0.0);
   const auto row = [this](int i) { return forces_.data() + index(i) * map_.values(); };
   const auto instant = [this](int i) { return i == 0 ? grid_.begin : grid_.time(i); };
-  if (grid_.count == 0 || std::abs(time - instant(near)) <= rounding * length) {
+  if (grid_.count == 0 || std::abs(time - instant(near)) <= force_rounding * length) {
     std::copy_n(row(near), map_.values(), out.begin());
   } else {
     const int after = count_within(std::ceil(place), 1, grid_.count);

@@ -1,8 +1,8 @@
 #include "subdomain_solver/solid_interior.hpp"
 
 #include <algorithm>
-#include <utility>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ namespace abut {
 namespace {
 
 /// Cell-steps in about 10 ms.
-constexpr double usual_work = 1.0e3;
+constexpr double usual_solid_work = 1.0e3;
 
 /// Degrees of freedom from which on a factorisation may take more than a moment.
 constexpr std::int64_t long_factorisation = 30'000;
@@ -70,7 +70,7 @@ void SolidInterior::find_traits() {
   }
   const std::string& words = parts_.scheme.words;
   traits_.scheme = words.substr(0, words.find(','));
-  traits_.effort = parts_.model->mesh().cell_count() / usual_work;
+  traits_.effort = parts_.model->mesh().cell_count() / usual_solid_work;
   // It may factor a large matrix.
   traits_.slow = !explicit_in_time && description_.dofs >= long_factorisation;
   // Let go of, material with a history would unload at a joined port: implicit bodies take the way

@@ -17,7 +17,7 @@ namespace abut {
 
 namespace {
 
-constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
+constexpr std::array<const char*, 3> measured_axes = {"x", "y", "z"};
 
 constexpr std::array<const char*, 6> stress_names = {"xx", "yy", "zz", "xy", "yz", "zx"};
 
@@ -118,7 +118,7 @@ std::vector<std::string> solid_measure_names(int dim, bool deforms,
   for (const char* field : {"displacement", "velocity"}) {
     for (int i = 0; i < dim; ++i) {
       for (const char* what : {"min", "max", "mean"})
-        names.push_back(fmt::format("{}.{}.{}", field, axes[i], what));
+        names.push_back(fmt::format("{}.{}.{}", field, measured_axes[i], what));
     }
   }
   const std::size_t entries = deforms ? stress_count(dim) : 0;
@@ -132,13 +132,13 @@ std::vector<std::string> solid_measure_names(int dim, bool deforms,
   if (deforms) names.insert(names.end(), {"nodal_von_mises.max", "nodal_von_mises.max_of_cells"});
   names.insert(names.end(),
                {"energy.kinetic", "energy.stored", "energy.dissipated", "energy.external_work"});
-  for (int i = 0; i < dim; ++i) names.push_back(fmt::format("momentum.{}", axes[i]));
+  for (int i = 0; i < dim; ++i) names.push_back(fmt::format("momentum.{}", measured_axes[i]));
   for (int i = first_spin(dim); i < 3; ++i)
-    names.push_back(fmt::format("angular_momentum.{}", axes[i]));
+    names.push_back(fmt::format("angular_momentum.{}", measured_axes[i]));
   for (const NamedNodes& port : ports) {
     for (const char* field : {"displacement", "velocity"}) {
       for (int i = 0; i < dim; ++i)
-        names.push_back(fmt::format("{}.{}.{}", port.name, field, axes[i]));
+        names.push_back(fmt::format("{}.{}.{}", port.name, field, measured_axes[i]));
     }
     for (std::size_t k = 0; k < entries; ++k)
       names.push_back(fmt::format("{}.stress.{}", port.name, stress_names[k]));

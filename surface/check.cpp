@@ -76,17 +76,17 @@ std::optional<SurfaceDefect> check_shape(const Corners& c) {
 
 /// One facet's way along an edge, nodes ascending; in the plane an edge is a node, and the way is
 /// from it or to it.
-struct HalfEdge {
+struct CheckedEdge {
   std::int32_t a, b, facet;
   bool forward;
 
-  bool same_edge(const HalfEdge& other) const { return a == other.a && b == other.b; }
+  bool same_edge(const CheckedEdge& other) const { return a == other.a && b == other.b; }
 };
 
 /// Neighbours that look to one side run along their edge in opposite ways. Where more than two
 /// meet, at cells that have nothing but an edge in common, as many run either way.
 std::optional<UnsoundSurface> check_orientation(const PosedSurface& s) {
-  std::vector<HalfEdge> edges;
+  std::vector<CheckedEdge> edges;
   for (std::int32_t f = 0; f < s.facet_count(); ++f) {
     const std::span<const std::int32_t> nodes = s.nodes(f);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -94,7 +94,7 @@ std::optional<UnsoundSurface> check_orientation(const PosedSurface& s) {
       edges.push_back({std::min(a, b), std::max(a, b), f, s.dim == 2 ? i == 0 : a < b});
     }
   }
-  std::ranges::sort(edges, {}, [](const HalfEdge& e) { return std::tuple(e.a, e.b, e.facet); });
+  std::ranges::sort(edges, {}, [](const CheckedEdge& e) { return std::tuple(e.a, e.b, e.facet); });
   for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
     int ways = 0;
     for (end = begin; end < edges.size() && edges[end].same_edge(edges[begin]); ++end)

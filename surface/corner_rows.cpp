@@ -12,11 +12,11 @@ namespace {
 
 // Of a facet's size: a foot may lie `beside` its facet or edge by as much; what is farther apart
 // than `far` has no row yet.
-constexpr double beside = 0.02, far = 0.1;
+constexpr double beside = 0.02, far_corner = 0.1;
 
 /// Cosines: between facets of one plane, or edges across each other; between normals of one row,
 /// as edges have that are straight but for what a first touch bends.
-const double same = std::cos(10.0 * std::acos(-1.0) / 180.0);
+const double same_normal = std::cos(10.0 * std::acos(-1.0) / 180.0);
 const double one_row = std::cos(0.01 * std::acos(-1.0) / 180.0);
 
 /// Of a row: a node that has it alone.
@@ -32,7 +32,7 @@ void copy(const SparseRows& from, std::size_t row, SparseRows& to) {
 
 }  // namespace
 
-double MeetingCorners::reach() const { return 2.0 * options_.way + far * size_; }
+double MeetingCorners::reach() const { return 2.0 * options_.way + far_corner * size_; }
 
 Eigen::Vector3d MeetingCorners::place(const PosedSurface& surface, const Side& side) {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
@@ -58,7 +58,7 @@ void MeetingCorners::add_nodes(const Plane& best, const Wedge& of_nodes, const W
     for (const std::int32_t f : of_facets.planes) {
       const Corners facet = corners(two, f);
       const Eigen::Vector3d n = mean_normal(facet);
-      if (n.dot(out) < same) continue;
+      if (n.dot(out) < same_normal) continue;
       const ClosestPoint foot = closest_point(facet, x);
       const Eigen::Vector3d to = x - foot.point;
       const double off = foot.feature == FacetFeature::inside ? 0.0 : (to - to.dot(n) * n).norm();
@@ -82,7 +82,7 @@ bool MeetingCorners::add_crossing(const Plane& best, const Wedge& a, const Wedge
   const Eigen::Vector3d across = u.cross(v);
   const double square = across.squaredNorm();
   // Other edges of corners have rows of their own.
-  if (!(std::abs(across.dot(best.normal)) >= same * std::sqrt(square)) || !(square > 0.0))
+  if (!(std::abs(across.dot(best.normal)) >= same_normal * std::sqrt(square)) || !(square > 0.0))
     return false;
   const double on_k = (d.dot(u) * vv - d.dot(v) * uv) / square;
   const double on_n = (d.dot(u) * uv - d.dot(v) * uu) / square;

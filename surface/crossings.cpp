@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-
 namespace abut {
 
 namespace {
@@ -27,7 +26,7 @@ bool on_either_side(double from, double to, double size, double& part) {
 }
 
 /// Segments of the plane.
-bool cross(const Corners& a, const Corners& b) {
+bool triangles_cross(const Corners& a, const Corners& b) {
   const auto apart = [](const Corners& one, const Corners& other) {
     const Eigen::Vector3d n = mean_normal(one);
     double part;
@@ -75,7 +74,7 @@ Crossings crossings(const PosedSurface& surface, const BoxTree& tree,
   for (const FacetPair& pair : pairs) {
     if (pair.k >= pair.n || share_a_node(surface, pair)) continue;
     const Corners a = corners(surface, pair.k), b = corners(surface, pair.n);
-    if (!(surface.dim == 2 ? cross(a, b) : pierces(a, b) || pierces(b, a))) continue;
+    if (!(surface.dim == 2 ? triangles_cross(a, b) : pierces(a, b) || pierces(b, a))) continue;
     if (found.count++ == 0) found.first = pair;
   }
   return found;

@@ -30,7 +30,7 @@ constexpr TrianglePoint seven[] = {{1.0 / 3.0, 1.0 / 3.0, 9.0 / 40.0},
                                    {far, 1.0 - 2.0 * far, far_weight}};
 
 /// Pieces below this share of the ground facet are round-off of facets that only touch.
-constexpr double least_share = 1.0e-13;
+constexpr double least_overlap_share = 1.0e-13;
 
 struct Integrand {
   const PlaneFacet &ground, &partner;
@@ -114,7 +114,7 @@ bool integrate_surfaces(const GroundFacet& ground, const Corners& partner, doubl
   const PlaneFacet seen = seen_in(ground.plane, partner);
   const Polygon common = clip(seen.polygon(), ground.polygon);
   overlap.area = signed_area(common);
-  if (!(overlap.area > least_share * ground.area)) return false;
+  if (!(overlap.area > least_overlap_share * ground.area)) return false;
   const Eigen::Vector2d centre = middle(common);
   overlap.gap = height_at(ground, partner, seen.shape(centre));
   if (!(std::abs(overlap.gap) <= reach)) return false;
@@ -122,7 +122,7 @@ bool integrate_surfaces(const GroundFacet& ground, const Corners& partner, doubl
   return true;
 }
 
-Interval interval(const PlaneFacet& segment) {
+Interval overlap_interval(const PlaneFacet& segment) {
   const double a = segment.x[0].x(), b = segment.x[1].x();
   return a < b ? Interval{a, b} : Interval{b, a};
 }
@@ -130,9 +130,9 @@ Interval interval(const PlaneFacet& segment) {
 bool integrate_segments(const GroundFacet& ground, const Corners& partner, double reach,
                         FacetOverlap& overlap) {
   const PlaneFacet seen = seen_in(ground.plane, partner);
-  const Interval common = clip(interval(ground.seen), interval(seen));
+  const Interval common = clip(overlap_interval(ground.seen), overlap_interval(seen));
   overlap.area = common.length();
-  if (!(overlap.area > least_share * ground.area)) return false;
+  if (!(overlap.area > least_overlap_share * ground.area)) return false;
   const Eigen::Vector2d centre(0.5 * (common.low + common.high), 0.0);
   overlap.gap = height_at(ground, partner, seen.shape(centre));
   if (!(std::abs(overlap.gap) <= reach)) return false;

@@ -31,12 +31,12 @@ bool meets(const Box& box, const Eigen::Vector3d& x, const Eigen::Vector3d& ray,
   return from <= to + rounding * std::abs(to);
 }
 
-double cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+double area_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
 bool meets_segment(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& ray) {
-  const double side_a = cross(ray, a), side_b = cross(ray, b);
+  const double side_a = area_of(ray, a), side_b = area_of(ray, b);
   if ((side_a > 0.0) == (side_b > 0.0)) return false;
   return ray.dot(a + (b - a) * (side_a / (side_a - side_b))) > 0.0;
 }

@@ -45,7 +45,7 @@ bool passes(const Vector& p, const Vector& q, const Vector& a, const Vector& b, 
 }
 
 /// Whether two segments of the plane cross.
-bool cross(const Vector& p, const Vector& q, const Vector& a, const Vector& b) {
+bool segments_cross(const Vector& p, const Vector& q, const Vector& a, const Vector& b) {
   const auto side = [](const Vector& from, const Vector& to, const Vector& x) {
     return (to - from).cross(x - from).z() > 0.0;
   };
@@ -97,7 +97,7 @@ class Search {
     if (skin_.dim == 2) by = Vector(by.x(), by.y(), 0.0).normalized();
     const Vector p = points_[e[0]] + depth_ * by, q = points_[e[1]] + depth_ * by;
     const Vector &a = points_[f[0]], &b = points_[f[1]];
-    return skin_.dim == 2 ? cross(p, q, a, b) : passes(p, q, a, b, points_[f[2]]);
+    return skin_.dim == 2 ? segments_cross(p, q, a, b) : passes(p, q, a, b, points_[f[2]]);
   }
   std::size_t first_shift() const { return skin_.dim == 2 ? 6 : 0; }
 

@@ -16,11 +16,12 @@ namespace {
 
 constexpr double degrees = std::numbers::pi / 180.0;
 /// Cosines: facets that lie along a plane, and those that are averaged over along a plane of N's.
-const double same = std::cos(10.0 * degrees), along = std::cos(35.0 * degrees);
+const double same_direction = std::cos(10.0 * degrees), along = std::cos(35.0 * degrees);
 
 // Of a facet's size: planes that separate worse by less than `round` share the normal. Wedges that
-// overlap by more than `deep` are not of this side. Differences of `rounding` choose no plane.
-constexpr double round = 0.02, deep = 0.25, rounding = 1.0e-9;
+// overlap by more than `deep` are not of this side. Differences of `corner_rounding` choose no
+// plane.
+constexpr double round = 0.02, deep = 0.25, corner_rounding = 1.0e-9;
 
 /// Of a facet: what covers less only touches it.
 constexpr double touching = 1.0e-6;
@@ -117,8 +118,8 @@ void MeetingCorners::look_along(const Wedge& a, const Wedge& b, Plane plane) {
   high += std::max({0.0, b.beyond[0] >= 0 ? -on : 0.0, b.beyond[1] >= 0 ? on : 0.0});
   plane.apart = low - high;
   for (Plane& known : planes_) {
-    if (known.kind != plane.kind || known.normal.dot(plane.normal) < same) continue;
-    if (plane.apart > known.apart + rounding * size_) known = plane;
+    if (known.kind != plane.kind || known.normal.dot(plane.normal) < same_direction) continue;
+    if (plane.apart > known.apart + corner_rounding * size_) known = plane;
     return;
   }
   planes_.push_back(plane);
@@ -146,7 +147,7 @@ const MeetingCorners::Plane* MeetingCorners::joining(const Plane& best, const We
     return std::ranges::any_of(a.planes, [&](std::int32_t f) {
       return -normal_of(k_.before, f).dot(plane.normal) >= along &&
              std::ranges::any_of(b.planes, [&](std::int32_t g) {
-               return normal_of(n_.before, g).dot(plane.normal) >= same &&
+               return normal_of(n_.before, g).dot(plane.normal) >= same_direction &&
                       cover(corners(k_.now, f), corners(n_.now, g));
              });
     });
@@ -170,7 +171,7 @@ void MeetingCorners::judge(Verdict& verdict) {
   for (const Ends& one : a.edges)
     for (const Ends& two : b.edges) look_across(a, b, one, two);
   const Plane& best = *std::ranges::max_element(planes_, [this](const Plane& p, const Plane& q) {
-    return p.apart + rounding * size_ < q.apart;
+    return p.apart + corner_rounding * size_ < q.apart;
   });
   if (best.apart < -options_.way - deep * size_) return;
   verdict.told = true;
@@ -194,7 +195,7 @@ void MeetingCorners::judge(Verdict& verdict) {
 bool MeetingCorners::is_dropped(FacetPair pair) const {
   const Eigen::Vector3d out_k = normal_of(k_.now, pair.k), out_n = normal_of(n_.now, pair.n);
   if (out_k.dot(out_n) > -options_.facing) return false;  // it is none
-  const bool faced = out_k.dot(out_n) <= -same;
+  const bool faced = out_k.dot(out_n) <= -same_direction;
   const std::span<const std::int32_t> at_k = k_.wedges->at(pair.k), at_n = n_.wedges->at(pair.n);
   bool stays = false, other = false;
   const std::span<const std::int32_t> twos = crosses_ ? n_.wedges->around(pair.n) : at_n;

@@ -19,7 +19,7 @@ constexpr Gauss six[] = {{-0.9324695142031520278, 0.1713244923791703450},
                          {0.9324695142031520278, 0.1713244923791703450}};
 
 /// Pieces below this share of the ground facet are round-off of facets that only touch.
-constexpr double least_share = 1.0e-13;
+constexpr double least_points_share = 1.0e-13;
 
 /// The partner where it is seen at z, if that is within reach.
 bool is_near(const GroundFacet& ground, const Corners& partner, const PlaneFacet& seen,
@@ -30,7 +30,7 @@ bool is_near(const GroundFacet& ground, const Corners& partner, const PlaneFacet
   return std::abs(height) <= reach;
 }
 
-Interval interval(const PlaneFacet& segment) {
+Interval points_interval(const PlaneFacet& segment) {
   const double a = segment.x[0].x(), b = segment.x[1].x();
   return a < b ? Interval{a, b} : Interval{b, a};
 }
@@ -38,8 +38,8 @@ Interval interval(const PlaneFacet& segment) {
 void points_of_segments(const GroundFacet& ground, const Corners& partner, double reach,
                         std::vector<OverlapPoint>& points) {
   const PlaneFacet seen = seen_in(ground.plane, partner);
-  const Interval common = clip(interval(ground.seen), interval(seen));
-  if (!(common.length() > least_share * ground.area)) return;
+  const Interval common = clip(points_interval(ground.seen), points_interval(seen));
+  if (!(common.length() > least_points_share * ground.area)) return;
   const double middle = 0.5 * (common.low + common.high), half = 0.5 * common.length();
   if (!is_near(ground, partner, seen, {middle, 0.0}, reach)) return;
   for (const Gauss& g : six) {
@@ -58,7 +58,7 @@ void points_of_surfaces(const GroundFacet& ground, const Corners& partner, doubl
                         std::vector<OverlapPoint>& points) {
   const PlaneFacet seen = seen_in(ground.plane, partner);
   const Polygon common = clip(seen.polygon(), ground.polygon);
-  if (!(signed_area(common) > least_share * ground.area)) return;
+  if (!(signed_area(common) > least_points_share * ground.area)) return;
   Eigen::Vector2d middle = common.x[0];
   for (int i = 1; i < common.count; ++i) middle += common.x[i];
   middle /= common.count;

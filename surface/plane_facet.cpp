@@ -5,7 +5,7 @@
 namespace abut {
 namespace {
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+double turn_of(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
@@ -44,11 +44,11 @@ PlaneFacet seen_in(const AuxiliaryPlane& plane, const Corners& facet) {
     f.affine =
         f.cab.squaredNorm() <= straight * straight * (f.ca.squaredNorm() + f.cb.squaredNorm());
   }
-  const double j = cross(f.ca, f.cb), turn = j < 0.0 ? -1.0 : 1.0;
+  const double j = turn_of(f.ca, f.cb), turn = j < 0.0 ? -1.0 : 1.0;
   f.da = turned(f.cb) / j;
   f.db = f.count == 2 ? Eigen::Vector2d::Zero() : Eigen::Vector2d(turned(f.ca) / -j);
   // r = ca a + cb b + cab a b, crossed with ca + cab b
-  f.square = turn * cross(f.cb, f.cab);
+  f.square = turn * turn_of(f.cb, f.cab);
   f.linear = -turn * j;
   f.to_linear = -turn * turned(f.cab);
   f.to_constant = -turn * turned(f.ca);
@@ -58,14 +58,14 @@ PlaneFacet seen_in(const AuxiliaryPlane& plane, const Corners& facet) {
 Eigen::Vector2d PlaneFacet::corrected(const Eigen::Vector2d& r, const Eigen::Vector2d& ab) const {
   const Eigen::Vector2d rest = r - ca * ab.x() - cb * ab.y() - cab * (ab.x() * ab.y());
   const Eigen::Vector2d along_a = ca + cab * ab.y(), along_b = cb + cab * ab.x();
-  const double j = 1.0 / cross(along_a, along_b);
-  return {ab.x() + cross(rest, along_b) * j, ab.y() + cross(along_a, rest) * j};
+  const double j = 1.0 / turn_of(along_a, along_b);
+  return {ab.x() + turn_of(rest, along_b) * j, ab.y() + turn_of(along_a, rest) * j};
 }
 
 Polygon PlaneFacet::polygon() const {
   Polygon p;
   double turn = 0.0;
-  for (int i = 2; i < count; ++i) turn += cross(x[i - 1] - x[0], x[i] - x[0]);
+  for (int i = 2; i < count; ++i) turn += turn_of(x[i - 1] - x[0], x[i] - x[0]);
   for (int i = 0; i < count; ++i) p.add(turn < 0.0 ? x[count - 1 - i] : x[i]);
   return p;
 }

@@ -297,7 +297,7 @@ std::string kernel(BodyTrial& trial) {
   return body.linear ? "" : "the body is not linear: its kernel is that of its rest alone";
 }
 
-constexpr Clause all[] = {
+constexpr Clause clauses_on_forces[] = {
     {"momentum", "impulses of forces are the change of momentum, for any pair of steps", impulse},
     {"work", "work on a port is force times way, and the energy of the body", work},
     {"kernel", "ports give way to forces as kernels say; a probe leaves the state", kernel},
@@ -305,6 +305,6 @@ constexpr Clause all[] = {
 
 }  // namespace
 
-std::span<const Clause> clauses_of_forces() { return all; }
+std::span<const Clause> clauses_of_forces() { return clauses_on_forces; }
 
 }  // namespace abut

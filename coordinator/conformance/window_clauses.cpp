@@ -326,7 +326,7 @@ std::string boxes(BodyTrial& trial) {
   return "";
 }
 
-constexpr Clause all[] = {
+constexpr Clause clauses_on_windows[] = {
     {"orientation", "facets look outward", orientation},
     {"ends", "a window ends on its end, in substeps that the description tells", ends},
     {"parts", "two windows are one of twice the length", parts},
@@ -339,6 +339,6 @@ constexpr Clause all[] = {
 
 }  // namespace
 
-std::span<const Clause> clauses_of_windows() { return all; }
+std::span<const Clause> clauses_of_windows() { return clauses_on_windows; }
 
 }  // namespace abut

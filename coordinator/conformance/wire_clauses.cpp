@@ -311,7 +311,7 @@ struct WireClause {
   std::string (*hold)(const Solver& solver, const Pushed& pushed);
 };
 
-constexpr WireClause all[] = {
+constexpr WireClause clauses_on_wire[] = {
     {"greeting", "a new process says Hello, with a session of its own", greeting},
     {"damage", "a damaged frame counts as lost", damage},
     {"session", "requests of another session are nobody's", session},
@@ -330,13 +330,13 @@ constexpr WireClause all[] = {
 
 std::vector<std::string> names_of_wire_clauses() {
   std::vector<std::string> names;
-  for (const WireClause& clause : all) names.emplace_back(clause.name);
+  for (const WireClause& clause : clauses_on_wire) names.emplace_back(clause.name);
   return names;
 }
 
 void hold_wire(const Solver& solver, const Pushed& pushed, const Wanted& wanted,
                std::vector<Verdict>& verdicts) {
-  for (const WireClause& clause : all)
+  for (const WireClause& clause : clauses_on_wire)
     if (wants(wanted, clause.name))
       verdicts.push_back(
           judged(clause.name, clause.says, [&] { return clause.hold(solver, pushed); }));

@@ -41,7 +41,7 @@ struct BandedResponses {
   std::vector<double> values;
 };
 
-BandedResponses responses_of(const TieLayout& layout, const TieLayout::Part& part,
+BandedResponses banded_responses(const TieLayout& layout, const TieLayout::Part& part,
                              const TieBandWidth& width, int steps, Bodies& bodies) {
   BandedResponses own{make_tie_band(layout, part, width, steps, bodies), steps, {}, {}};
   const int dim = dim_of(layout);
@@ -79,7 +79,7 @@ BandedResponses responses_of(const TieLayout& layout, const TieLayout::Part& par
 
 /// What forces of one joint in the first block do to the rows of another so many blocks later,
 /// through one body.
-void add(const TieLayout& layout, const TieLayout::Part& part, const BandedResponses& responses,
+void add_banded(const TieLayout& layout, const TieLayout::Part& part, const BandedResponses& responses,
          const TieLayout::End& of, const TieLayout::End& by, int lag, Triplets& block) {
   const TieLayout::Member& row = layout.members[of.member];
   const TieLayout::Member& column = layout.members[by.member];
@@ -137,7 +137,7 @@ BandedTieKernel::BandedTieKernel(const TieLayout& layout, const TieBandWidth& wi
   std::vector<BandedResponses> responses(layout.parts.size());
   for (std::size_t p = 0; p < responses.size(); ++p) {
     const TieLayout::Part& part = layout.parts[p];
-    if (!part.stands) responses[p] = responses_of(layout, part, width, part.steps * lags, bodies);
+    if (!part.stands) responses[p] = banded_responses(layout, part, width, part.steps * lags, bodies);
   }
   Eigen::VectorXd scale;
   for (int lag = 0; lag < lags; ++lag) {
@@ -147,7 +147,7 @@ BandedTieKernel::BandedTieKernel(const TieLayout& layout, const TieBandWidth& wi
       if (part.stands) continue;
       for (const TieLayout::End& of : part.ends)
         for (const TieLayout::End& by : part.ends)
-          add(layout, part, responses[p], of, by, lag, entries);
+          add_banded(layout, part, responses[p], of, by, lag, entries);
     }
     layout.give_way(lag, [&entries](Eigen::Index of, Eigen::Index by, double value) {
       entries.emplace_back(static_cast<int>(of), static_cast<int>(by), value);

@@ -29,12 +29,12 @@ std::vector<int> ranks(int bodies) {
   return rank;
 }
 
-constexpr Box nothing = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+constexpr Box no_box = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
 
 /// A box around those between `lower` and `upper`, (parts, dim), larger by `more` [m].
 Box box_of(std::span<const double> lower, std::span<const double> upper, std::size_t dim,
            double more) {
-  Box box = nothing;
+  Box box = no_box;
   for (std::size_t i = 0; i < dim; ++i) {
     box.low[i] = std::numeric_limits<double>::infinity();
     box.high[i] = -box.low[i];

@@ -8,7 +8,7 @@ namespace abut {
 
 namespace {
 
-constexpr double force_floor = 1.0e-9;  // of the largest contact force: less is no compression
+constexpr double account_floor = 1.0e-9;  // of the largest contact force: less is no compression
 // Of the fastest first touch: what meets more slowly only grazes, until it presses.
 constexpr double grazing_share = 1.0e-2;
 // Of the largest contact force of the run: what grazes and presses less only touches. Forerunners
@@ -37,7 +37,7 @@ void ContactAccount::state(Archive& archive) {
 
 /// [N] of the window in history_: what the iteration leaves open is no force.
 double ContactAccount::least_force(const Joint& joint, const ContactRun& run) const {
-  return std::max(force_floor, run.tolerance) *
+  return std::max(account_floor, run.tolerance) *
          std::max(joint.contact.force_scale, history_.peak());
 }
 

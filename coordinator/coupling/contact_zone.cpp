@@ -12,7 +12,7 @@ namespace {
 
 /// Facets around what is reached that a new zone takes in: rows reach over a facet of either side,
 /// and it should hold for some windows.
-constexpr double margin = 3.0;
+constexpr double zone_margin = 3.0;
 
 PosedSurface pose(const PortGeometry& surface, std::span<const double> moved,
                   std::vector<double>& to) {
@@ -58,13 +58,13 @@ void ContactZone::see(const Joint& joint, const Bodies& bodies, std::span<const 
   refit(tree_, k_, 0.0);
   const std::vector<std::int32_t> now = reached(reach, pressed);
   if (!std::ranges::includes(points_, now)) {
-    points_ = around(now, margin * facet);
+    points_ = around(now, zone_margin * facet);
     all_ = points_.size() == index(n_.node_count());
     if (all_) return points_.clear();
   }
   seen_k_.assign(k.begin(), k.end());
   seen_n_.assign(n.begin(), n.end());
-  clear_ = clearance(reach + margin * facet);
+  clear_ = clearance(reach + zone_margin * facet);
 }
 
 /// [m] from the kinematic side to the nearest point that is not in the zone; `most`: to look no

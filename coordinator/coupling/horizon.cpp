@@ -11,7 +11,7 @@ namespace abut {
 namespace {
 /// Share of the estimated time to contact that is flown at once; the rest is for what the bound
 /// does not know.
-constexpr double margin = 0.95;
+constexpr double horizon_margin = 0.95;
 }  // namespace
 
 double free_flight_horizon(std::span<Joint> joints, const Bodies& bodies) {
@@ -24,7 +24,7 @@ double free_flight_horizon(std::span<Joint> joints, const Bodies& bodies) {
     for (const Side& side : joint.sides) a += port_of(bodies, side).acceleration_bound;
     const double root = std::sqrt(std::max(0.0, v * v + 2.0 * a * gap));
     if (v + root <= 0.0) continue;
-    horizon = std::min(horizon, margin * 2.0 * gap / (v + root));
+    horizon = std::min(horizon, horizon_margin * 2.0 * gap / (v + root));
   }
   return horizon;
 }

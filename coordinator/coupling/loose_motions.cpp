@@ -15,7 +15,7 @@ namespace abut {
 namespace {
 
 /// Of the largest: the square of a motion that no tie notices.
-constexpr double nothing = 1.0e-12;
+constexpr double no_motion = 1.0e-12;
 
 /// Columns of motions, one per loose motion of each body.
 std::map<int, Eigen::Index> columns_of(std::span<const Joint> joints, const Bodies& bodies) {
@@ -82,7 +82,7 @@ void check_supports(std::span<const Joint> joints, const Bodies& bodies) {
     square.noalias() += apart.transpose() * apart;
   }
   const EigenPairs motions = symmetric_eigen(square);
-  if (motions.values(0) > nothing * motions.values(count - 1)) return;
+  if (motions.values(0) > no_motion * motions.values(count - 1)) return;
   std::string names;
   const Eigen::VectorXd free = motions.vectors.col(0);
   for (const auto& [body, first] : columns) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double far_share = 0.5;
 /// Of the largest coordinate: what places, distances and ways are rounded by altogether is far
 /// less, and what bodies do to each other is of windows that are far longer.
-constexpr double rounding = 1.0e-12;
+constexpr double distance_rounding = 1.0e-12;
 
 struct Boxes {
   double apart = 0.0;   // [m]
@@ -120,8 +120,9 @@ bool kept_apart(const Joint& joint, const Approach& before, double margin, const
                 double length) {
   if (swept_apart(joint, margin, bodies)) return true;
   const Approach now = approach_of(joint, margin, bodies);
-  const double rounded = rounding * std::max(largest_coordinate(port_of(bodies, joint.sides[0])),
-                                             largest_coordinate(port_of(bodies, joint.sides[1])));
+  const double rounded =
+      distance_rounding * std::max(largest_coordinate(port_of(bodies, joint.sides[0])),
+                                   largest_coordinate(port_of(bodies, joint.sides[1])));
   return before.apart + now.apart > length * fastest_closing(joint, bodies, before, now) + rounded;
 }
 

@@ -17,14 +17,14 @@ constexpr int ahead = 2, implicit_ahead = 3;
 /// Of distances: neighbours at exactly so many spacings are among them.
 constexpr double rounding = 1.0e-6;
 
-struct Places {
+struct BandPlaces {
   std::vector<std::array<double, 3>> rows;  // [m] where they are
   double own = 0.0;                         // [m] from a row to the farthest of its nodes
   double spacing = 0.0;                     // [m] of the sides that have rows, the largest
 };
 
-Places places_of(const TieLayout& layout, const TieLayout::Part& part, const Bodies& bodies) {
-  Places places;
+BandPlaces places_of(const TieLayout& layout, const TieLayout::Part& part, const Bodies& bodies) {
+  BandPlaces places;
   for (const TieLayout::End& end : part.ends) {
     const TieRows& rows = layout.rows(end);
     const SparseRows& own = rows.of[end.side];
@@ -50,7 +50,7 @@ Places places_of(const TieLayout& layout, const TieLayout::Part& part, const Bod
 
 /// [m] within which rows answer, by step.
 std::vector<double> reach_of(const TieLayout& layout, const TieLayout::Part& part,
-                             const Places& places, const TieBandWidth& width, int steps,
+                             const BandPlaces& places, const TieBandWidth& width, int steps,
                              const Bodies& bodies) {
   if (width.rows) return std::vector<double>(index(steps), *width.rows * places.spacing);
   const Description& body = bodies.describe(part.body);
@@ -72,7 +72,7 @@ std::vector<double> reach_of(const TieLayout& layout, const TieLayout::Part& par
 }
 
 /// Pairs of rows within the reach of the last step, by a sweep along the longest way.
-void find_reached(const Places& places, const std::vector<double>& reach, TieBand& band) {
+void find_reached(const BandPlaces& places, const std::vector<double>& reach, TieBand& band) {
   const std::vector<std::array<double, 3>>& at = places.rows;
   std::array<double, 3> low = at.front(), high = at.front();
   for (const std::array<double, 3>& place : at) {
@@ -94,8 +94,7 @@ void find_reached(const Places& places, const std::vector<double>& reach, TieBan
                                                [&](std::int32_t r) { return at[r][along]; });
     for (auto r = from; r != order.end() && at[*r][along] <= place[along] + most; ++r) {
       double square = 0.0;
-      for (std::size_t d = 0; d < 3; ++d)
-        square += (at[*r][d] - place[d]) * (at[*r][d] - place[d]);
+      for (std::size_t d = 0; d < 3; ++d) square += (at[*r][d] - place[d]) * (at[*r][d] - place[d]);
       if (square > most * most) continue;
       const double far = std::sqrt(square) - slack;
       const auto first = std::ranges::lower_bound(reach, far);
@@ -135,7 +134,7 @@ int free_colour(const TieBand& band, std::size_t row, std::vector<Colours>& answ
 TieBand make_tie_band(const TieLayout& layout, const TieLayout::Part& part,
                       const TieBandWidth& width, int steps, const Bodies& bodies) {
   TieBand band;
-  const Places places = places_of(layout, part, bodies);
+  const BandPlaces places = places_of(layout, part, bodies);
   find_reached(places, reach_of(layout, part, places, width, steps, bodies), band);
   band.colour.resize(places.rows.size());
   std::size_t row = 0;

@@ -15,7 +15,7 @@ namespace abut {
 namespace {
 
 /// Of the coarser facets: farther apart they do not belong together.
-constexpr double reach = 1.0;
+constexpr double row_reach = 1.0;
 
 SparseRows one_point() { return {{0, 1}, {0}, {1.0}}; }
 
@@ -160,7 +160,7 @@ TieRows compared(const PortGeometry& one, const PortGeometry& other, int side) {
     rows.place.assign(one.points.begin(), one.points.begin() + one.dim);
     return rows;
   }
-  const double far = reach * std::max(one.spacing, other.spacing);
+  const double far = row_reach * std::max(one.spacing, other.spacing);
   const bool first_order = own.parts.empty() && partner.parts.empty();
   // What does not deform is met by every node: nothing moves between them.
   const bool straight = first_order || partner.transit == 0.0;
@@ -178,7 +178,7 @@ TieRows make_tie_rows(const PortGeometry& one, const PortGeometry& other, int si
 }
 
 TieRows make_overlap_rows(const PortGeometry& one, const PortGeometry& other) {
-  const double far = reach * std::max(one.spacing, other.spacing);
+  const double far = row_reach * std::max(one.spacing, other.spacing);
   const PortGeometry cut = part_of(one, false), in_other = part_of(other, true);
   TieRows rows = of_surfaces(posed(cut), posed(in_other), far);
   const PortGeometry its_cut = part_of(other, false), in_one = part_of(one, true);

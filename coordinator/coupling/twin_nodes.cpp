@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 
-
 namespace abut {
 
 namespace {
@@ -29,9 +28,9 @@ double shortest_edge(const PosedSurface& surface) {
 }
 
 /// Nodes of a surface in order along a direction in which nodes of lattices differ.
-class Places {
+class TwinPlaces {
  public:
-  explicit Places(const PosedSurface& surface) : surface_(surface) {
+  explicit TwinPlaces(const PosedSurface& surface) : surface_(surface) {
     for (std::int32_t node = 0; node < surface.node_count(); ++node)
       nodes_.emplace_back(along(surface.point(node)), node);
     std::ranges::sort(nodes_);
@@ -72,7 +71,7 @@ Facet facet_of(const PosedSurface& surface, int facet, NodeOf node_of) {
 
 std::vector<std::int32_t> twin_nodes(const PosedSurface& one, const PosedSurface& other) {
   const double reach = same_place * std::min(shortest_edge(one), shortest_edge(other));
-  const Places places(other);
+  const TwinPlaces places(other);
   std::vector<std::int32_t> twins;
   for (std::int32_t node = 0; node < one.node_count(); ++node) {
     twins.push_back(places.at(one.point(node), reach));

@@ -13,9 +13,9 @@ namespace abut {
 namespace {
 
 /// Of the fastest side: velocities are known to it, after sums over some nodes.
-constexpr double rounding = 1.0e-13;
+constexpr double speed_rounding = 1.0e-13;
 /// Masses of faces have condition numbers of ten or so: conjugate residuals take some twenty steps.
-constexpr int most_steps = 200, patience = 20;
+constexpr int most_steps = 200, start_patience = 20;
 
 using Tied = KnownExchanges::Entry<Tie>;
 
@@ -144,7 +144,7 @@ class Mobility {
   for (Eigen::Index k = 0; k < size; ++k)  // no combination of rows
     any[k] = 1.0 + std::fmod(0.6180339887498949 * static_cast<double>(k), 1.0);
   if (std::optional<Failed> failed = mobility.apply(any, moved)) return failed;
-  const double least = rounding * moved.lpNorm<Eigen::Infinity>();
+  const double least = speed_rounding * moved.lpNorm<Eigen::Infinity>();
   free = (moved.array().abs() > least).cast<double>();
   return std::nullopt;
 }
@@ -158,16 +158,17 @@ class Mobility {
   Eigen::VectorXd free, sr, y = x;
   if (std::optional<Failed> failed = find_free(mobility, r.size(), free)) return failed;
   r = r.cwiseProduct(free);
-  if (r.lpNorm<Eigen::Infinity>() <= rounding * speed) return std::nullopt;
+  if (r.lpNorm<Eigen::Infinity>() <= speed_rounding * speed) return std::nullopt;
   Eigen::VectorXd p = r;
   if (std::optional<Failed> failed = mobility.apply(r, sr)) return failed;
   sr = sr.cwiseProduct(free);
   Eigen::VectorXd sp = sr;
   const double nothing =
-      mobility.each() * rounding * speed * std::sqrt(static_cast<double>(r.size()));
+      mobility.each() * speed_rounding * speed * std::sqrt(static_cast<double>(r.size()));
   double square = r.dot(sr), best = sr.norm();
   int since = 0;
-  for (int k = 0; k < most_steps && sr.norm() > nothing && square > 0.0 && since < patience; ++k) {
+  for (int k = 0; k < most_steps && sr.norm() > nothing && square > 0.0 && since < start_patience;
+       ++k) {
     const double length = square / sp.squaredNorm();
     y += length * p;
     r -= length * sp;
@@ -218,7 +219,7 @@ std::optional<Failed> unite_velocities(std::span<const Joint> joints, double tim
   if (rows.empty()) return std::nullopt;
   Eigen::VectorXd apart;
   double speed = rows.differ(apart);
-  const auto alike = [&] { return apart.lpNorm<Eigen::Infinity>() <= rounding * speed; };
+  const auto alike = [&] { return apart.lpNorm<Eigen::Infinity>() <= speed_rounding * speed; };
   if (alike()) return std::nullopt;
   bodies.save_all();
   // Nodes without mass are seen from here on as what has theirs, which is what impulses move.

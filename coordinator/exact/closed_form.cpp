@@ -12,7 +12,7 @@
 namespace abut {
 namespace {
 
-[[noreturn]] void refuse(const std::string& why) {
+[[noreturn]] void refuse_form(const std::string& why) {
   throw InputError(fmt::format("the closed form bar_impact does not describe this impact: {}", why),
                    "meta.closed_form",
                    "Choose closed_form: {bars: {}}, leave it out, or change the bodies.");
@@ -51,21 +51,22 @@ BarRow bar_impact(const std::array<RowBar, 2>& bodies, const std::array<BarEnd, 
   for (const BarEnd& e : ends) {
     const RowBar& body = bodies[e.bar];
     if (body.wall) continue;
-    if (body.fixed[0] || body.fixed[1]) refuse(fmt::format("{} has a fixed end", body.name));
+    if (body.fixed[0] || body.fixed[1]) refuse_form(fmt::format("{} has a fixed end", body.name));
     closing += e.normal() * body.velocity;
     echo = std::min(echo, 2.0 * body.length * std::sqrt(body.density / body.youngs_modulus));
   }
   if (!(closing > 0.0))
-    refuse(fmt::format("{} and {} do not approach each other", bodies[0].name, bodies[1].name));
+    refuse_form(
+        fmt::format("{} and {} do not approach each other", bodies[0].name, bodies[1].name));
   const std::vector<RowBar> bars(bodies.begin(), bodies.end());
   const double touch = begin + BarRow(bars, {ends}, begin, begin).gap(0, begin) / closing;
   BarRow row(bars, {ends}, begin, std::max(end, touch + 2.0 * echo));
   const RowContact& contact = row.contacts()[0];
   if (contact.count() > 1)
-    refuse(fmt::format("{} and {} meet again at {:.6g} s", bodies[0].name, bodies[1].name,
-                       contact.stretches[1].begin));
+    refuse_form(fmt::format("{} and {} meet again at {:.6g} s", bodies[0].name, bodies[1].name,
+                            contact.stretches[1].begin));
   if (contact.stretches.size() > 1)
-    refuse(fmt::format(
+    refuse_form(fmt::format(
         "when the first echo is back, at {:.6g} s, the contact force falls from "
         "{:.6g} N to {:.6g} N instead of ending",
         contact.stretches[1].begin, contact.stretches[0].force, contact.stretches[1].force));

@@ -13,7 +13,7 @@ namespace abut {
 namespace {
 
 /// Of the thickness: how exactly the moment is found at which a way comes within it.
-constexpr double resolved = 0.02;
+constexpr double resolved_fold = 0.02;
 
 }  // namespace
 
@@ -90,7 +90,7 @@ bool FoldWatch::meets(Watched& body) const {
   return std::ranges::any_of(found_, [&](const FeaturePair& pair) {
     return !body.gaps.leaves_out(pair) &&
            first_time_within(pair.kind, dim, places(pair, from_), places(pair, to_), body.thickness,
-                             resolved * body.thickness) < 1.0;
+                             resolved_fold * body.thickness) < 1.0;
   });
 }
 

@@ -15,7 +15,7 @@ namespace abut {
 
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();  // leaves the cell empty
+constexpr double empty_cell = std::numeric_limits<double>::quiet_NaN();  // leaves the cell empty
 
 /// Columns that closed forms do not have.
 void add_balance_names(std::string& header, const RecordedBody& body) {
@@ -147,7 +147,7 @@ void CsvHistory::write_row(const WindowReport& report, std::size_t record) {
       if (recorded.body == static_cast<int>(b)) write_body(recorded, response.records[record]);
     const std::vector<double>& told = response.records[record].columns;
     for (std::size_t k = 0; k < start_.bodies[b]->columns.size(); ++k)
-      number(k < told.size() ? told[k] : nothing);
+      number(k < told.size() ? told[k] : empty_cell);
     const Energy& whole = response.records[record].energy;
     if (!start_.bodies[b]->members.empty()) number(whole.total() - whole.external_work);
   }
@@ -176,7 +176,7 @@ void CsvHistory::write_body(const RecordedBody& body, const BodyRecord& record) 
   if (body.member >= 0) return;
   const int rotations = 3 - first_rotation_axis(body.dim);
   const std::vector<double>& angular = record.angular_momentum;
-  for (int i = 0; i < rotations; ++i) number(angular.empty() ? nothing : angular[i]);
+  for (int i = 0; i < rotations; ++i) number(angular.empty() ? empty_cell : angular[i]);
 }
 
 void CsvHistory::on_end(const RunEnd&) {

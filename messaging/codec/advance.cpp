@@ -18,7 +18,7 @@ static_assert(sizeof(Advance) ==
 /// Of a run: more than any body could advance through.
 constexpr std::int64_t most_windows = 1'000'000'000'000;
 
-using Wire = v1::Advance;
+using WireAdvance = v1::Advance;
 
 void encode(const TimeWindow& from, WireWriter& to) {
   const std::size_t before = to.size();
@@ -31,7 +31,7 @@ void encode(const TimeWindow& from, WireWriter& to) {
   to.number(v1::TimeWindow::kEndFieldNumber, from.end);
   to.number(v1::TimeWindow::kBeginFieldNumber, from.begin);
   to.integer(v1::TimeWindow::kIndexFieldNumber, from.index);
-  to.close(Wire::kWindowFieldNumber, before);
+  to.close(WireAdvance::kWindowFieldNumber, before);
 }
 
 void decode_window(Bytes bytes, const FieldPath& path, TimeWindow& to) {
@@ -77,7 +77,7 @@ void encode(const Want& from, WireWriter& to) {
   to.integer(v1::Want::kAFieldNumber, from.a);
   to.integer(v1::Want::kVFieldNumber, from.v);
   to.integer(v1::Want::kUFieldNumber, from.u);
-  to.close(Wire::kWantFieldNumber, before);
+  to.close(WireAdvance::kWantFieldNumber, before);
 }
 
 void decode_want(Bytes bytes, const SurfaceSize& port, const FieldPath& path, Want& to) {
@@ -138,17 +138,17 @@ SurfaceSize surface_at(const Description& body, std::size_t place, const FieldPa
 }  // namespace
 
 void encode(const Advance& from, WireWriter& to) {
-  to.numbers(Wire::kCarryFieldNumber, from.carry);
-  to.number(Wire::kAheadFieldNumber, from.ahead);
+  to.numbers(WireAdvance::kCarryFieldNumber, from.carry);
+  to.number(WireAdvance::kAheadFieldNumber, from.ahead);
   for (std::size_t i = from.want.size(); i-- > 0;) encode(from.want[i], to);
   for (std::size_t i = from.boundary.size(); i-- > 0;) {
     const std::size_t before = to.size();
     encode(from.boundary[i], to);
-    to.close(Wire::kBoundaryFieldNumber, before);
+    to.close(WireAdvance::kBoundaryFieldNumber, before);
   }
-  to.integer(Wire::kSamplingFieldNumber,
+  to.integer(WireAdvance::kSamplingFieldNumber,
              from.sampling == Sampling::substeps ? v1::SAMPLING_SUBSTEPS : v1::SAMPLING_RECORDS);
-  to.integer(Wire::kRecordsFieldNumber, from.records);
+  to.integer(WireAdvance::kRecordsFieldNumber, from.records);
   encode(from.window, to);
 }
 
@@ -165,30 +165,30 @@ void decode(Bytes bytes, const Description& body, const Partners& met, Advance& 
   to.carry.clear();
   for (WireReader from(bytes, path); from.next();) {
     switch (from.field()) {
-      case Wire::kWindowFieldNumber:
+      case WireAdvance::kWindowFieldNumber:
         decode_window(from.message(), FieldPath{&path, "window"}, to.window);
         windowed = true;
         break;
-      case Wire::kRecordsFieldNumber:
+      case WireAdvance::kRecordsFieldNumber:
         records = from.integer();
         break;
-      case Wire::kSamplingFieldNumber:
+      case WireAdvance::kSamplingFieldNumber:
         sampling = from.integer();
         break;
-      case Wire::kAheadFieldNumber:
+      case WireAdvance::kAheadFieldNumber:
         to.ahead = number(from.number(), FieldPath{&path, "ahead"}, Allow::not_negative);
         break;
-      case Wire::kCarryFieldNumber:
+      case WireAdvance::kCarryFieldNumber:
         from.numbers(to.carry);
         break;
-      case Wire::kBoundaryFieldNumber: {
+      case WireAdvance::kBoundaryFieldNumber: {
         const SurfaceSize surface = surface_at(body, boundaries, boundary);
         decode(from.message(), surface, met[boundaries],
                FieldPath{&path, "boundary", static_cast<int>(boundaries)}, to.boundary[boundaries]);
         ++boundaries;
         break;
       }
-      case Wire::kWantFieldNumber: {
+      case WireAdvance::kWantFieldNumber: {
         const SurfaceSize surface = surface_at(body, wants, want);
         decode_want(from.message(), surface, FieldPath{&path, "want", static_cast<int>(wants)},
                     to.want[wants]);

@@ -16,7 +16,7 @@ static_assert(sizeof(Impedance) == 2 * sizeof(double));
 static_assert(sizeof(BoundaryData) ==
               2 * sizeof(Waveform) + sizeof(Impedance) + 3 * sizeof(std::vector<double>));
 
-using Wire = v1::BoundaryData;
+using WireBoundary = v1::BoundaryData;
 
 /// Entries up to the last that is there; one between them that is absent has no times.
 template <class T>
@@ -90,29 +90,29 @@ void decode_balanced(Bytes from, const SurfaceSize& port, const FieldPath& path,
 }  // namespace
 
 void encode(const BoundaryData& from, WireWriter& to) {
-  if (!from.balanced.empty()) encode(from.balanced, Want{}, Wire::kBalancedFieldNumber, to);
+  if (!from.balanced.empty()) encode(from.balanced, Want{}, WireBoundary::kBalancedFieldNumber, to);
   if (!from.impedance.empty()) {
     const std::size_t before = to.size();
     to.integer(v1::Impedance::kBilateralFieldNumber, from.impedance.bilateral);
     to.number(v1::Impedance::kValueFieldNumber, from.impedance.value);
-    to.close(Wire::kImpedanceFieldNumber, before);
+    to.close(WireBoundary::kImpedanceFieldNumber, before);
   }
-  to.numbers(Wire::kImpulseFieldNumber, from.impulse);
+  to.numbers(WireBoundary::kImpulseFieldNumber, from.impulse);
   for (std::size_t i = filled(from.obstacles); i-- > 0;) {
     const std::size_t before = to.size();
     const Waveform& motion = from.obstacles[i].motion;
     to.integers(v1::Obstacle::kSlidFieldNumber, from.obstacles[i].slid);
     if (!motion.empty()) encode(motion, Want{}, v1::Obstacle::kMotionFieldNumber, to);
-    to.close(Wire::kObstaclesFieldNumber, before);
+    to.close(WireBoundary::kObstaclesFieldNumber, before);
   }
   for (std::size_t i = filled(from.forces); i-- > 0;) {
     if (from.forces[i].empty()) {
-      to.close(Wire::kForcesFieldNumber, to.size());
+      to.close(WireBoundary::kForcesFieldNumber, to.size());
     } else {
-      encode(from.forces[i], Want{}, Wire::kForcesFieldNumber, to);
+      encode(from.forces[i], Want{}, WireBoundary::kForcesFieldNumber, to);
     }
   }
-  if (!from.motion.empty()) encode(from.motion, Want{}, Wire::kMotionFieldNumber, to);
+  if (!from.motion.empty()) encode(from.motion, Want{}, WireBoundary::kMotionFieldNumber, to);
 }
 
 void decode(Bytes bytes, const SurfaceSize& port, const std::vector<SurfaceSize>& partners,
@@ -126,16 +126,16 @@ void decode(Bytes bytes, const SurfaceSize& port, const std::vector<SurfaceSize>
     const FieldPath force{&path, "forces", static_cast<int>(forces)};
     const FieldPath obstacle{&path, "obstacles", static_cast<int>(obstacles)};
     switch (from.field()) {
-      case Wire::kMotionFieldNumber:
+      case WireBoundary::kMotionFieldNumber:
         decode_motion(from.message(), port, FieldPath{&path, "motion"}, to.motion);
         moved = true;
         break;
-      case Wire::kForcesFieldNumber:
+      case WireBoundary::kForcesFieldNumber:
         if (forces >= most_partners) FieldPath{&path, "forces"}.fail("has too many entries");
         decode_force(from.message(), port, force, entry(to.forces, forces));
         ++forces;
         break;
-      case Wire::kObstaclesFieldNumber:
+      case WireBoundary::kObstaclesFieldNumber:
         if (obstacles >= partners.size()) {
           obstacle.fail(fmt::format("is of nobody: the port has met {} partners", partners.size()));
         }
@@ -143,13 +143,13 @@ void decode(Bytes bytes, const SurfaceSize& port, const std::vector<SurfaceSize>
                         entry(to.obstacles, obstacles));
         ++obstacles;
         break;
-      case Wire::kImpulseFieldNumber:
+      case WireBoundary::kImpulseFieldNumber:
         from.numbers(to.impulse);
         break;
-      case Wire::kImpedanceFieldNumber:
+      case WireBoundary::kImpedanceFieldNumber:
         to.impedance = decode_impedance(from.message(), FieldPath{&path, "impedance"});
         break;
-      case Wire::kBalancedFieldNumber:
+      case WireBoundary::kBalancedFieldNumber:
         decode_balanced(from.message(), port, FieldPath{&path, "balanced"}, to.balanced);
         balanced = true;
         break;

@@ -41,7 +41,8 @@ Capabilities decode(const v1::Capabilities& from) {
           .only_passive = from.only_passive()};
 }
 
-void decode_port(const v1::Port& from, const Description& body, const FieldPath& path, Port& to) {
+void decode_described_port(const v1::Port& from, const Description& body, const FieldPath& path,
+                           Port& to) {
   to.name = from.name();
   if (to.name.empty()) FieldPath{&path, "name"}.fail("is empty");
   for (const Port& earlier : body.ports) {
@@ -130,7 +131,7 @@ void decode(const v1::Description& from, Description& to) {
   if (from.ports_size() > most_ports) FieldPath{&path, "ports"}.fail("has too many entries");
   to.ports.resize(index(from.ports_size()));
   for (int i = 0; i < from.ports_size(); ++i) {
-    decode_port(from.ports(i), to, FieldPath{&path, "ports", i}, to.ports[i]);
+    decode_described_port(from.ports(i), to, FieldPath{&path, "ports", i}, to.ports[i]);
   }
   if (!from.has_can()) FieldPath{&path, "can"}.fail("is missing");
   to.can = decode(from.can());

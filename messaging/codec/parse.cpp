@@ -22,11 +22,11 @@ bool is_bulk(const v1::Reply&, int field) {
   return field == v1::Reply::kAdvanced || field == v1::Reply::kPassiveStepped;
 }
 
-void mark(v1::Request& message, v1::Request::BodyCase kind) {
+void mark_kind(v1::Request& message, v1::Request::BodyCase kind) {
   if (kind == v1::Request::kAdvance) message.mutable_advance();
   if (kind == v1::Request::kPassiveStep) message.mutable_passive_step();
 }
-void mark(v1::Reply& message, v1::Reply::BodyCase kind) {
+void mark_kind(v1::Reply& message, v1::Reply::BodyCase kind) {
   if (kind == v1::Reply::kAdvanced) message.mutable_advanced();
   if (kind == v1::Reply::kPassiveStepped) message.mutable_passive_stepped();
 }
@@ -75,7 +75,7 @@ bool parse(Message& message, Bytes payload, Bytes& bulk) {
   bulk = {};
   if (!parse_around(message, payload, bulk, kind)) return false;
   if (is_bulk(message, kind)) {
-    mark(message, kind);
+    mark_kind(message, kind);
   } else if (is_bulk(message, message.body_case())) {
     message.clear_body();
   }

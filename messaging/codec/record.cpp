@@ -13,15 +13,16 @@ static_assert(sizeof(BodyRecord) ==
               sizeof(Energy) + sizeof(double) + 4 * sizeof(std::vector<double>));
 static_assert(sizeof(MemberRecord) == sizeof(Energy) + sizeof(std::vector<double>));
 
-using Wire = v1::BodyRecord;
+using WireRecord = v1::BodyRecord;
 using MemberWire = v1::MemberRecord;
 
 // Both kinds of record have the same energies; their fields differ in number.
 struct EnergyFields {
   int kinetic, stored, dissipated, external_work;
 };
-constexpr EnergyFields of_body{Wire::kKineticFieldNumber, Wire::kStoredFieldNumber,
-                               Wire::kDissipatedFieldNumber, Wire::kExternalWorkFieldNumber};
+constexpr EnergyFields of_body{WireRecord::kKineticFieldNumber, WireRecord::kStoredFieldNumber,
+                               WireRecord::kDissipatedFieldNumber,
+                               WireRecord::kExternalWorkFieldNumber};
 constexpr EnergyFields of_member{MemberWire::kKineticFieldNumber, MemberWire::kStoredFieldNumber,
                                  MemberWire::kDissipatedFieldNumber,
                                  MemberWire::kExternalWorkFieldNumber};
@@ -67,17 +68,17 @@ void decode_member(Bytes bytes, std::size_t dim, const FieldPath& path, MemberRe
 }  // namespace
 
 void encode(const BodyRecord& from, WireWriter& to) {
-  to.numbers(Wire::kColumnsFieldNumber, from.columns);
-  to.numbers(Wire::kAngularMomentumFieldNumber, from.angular_momentum);
+  to.numbers(WireRecord::kColumnsFieldNumber, from.columns);
+  to.numbers(WireRecord::kAngularMomentumFieldNumber, from.angular_momentum);
   for (std::size_t m = from.members.size(); m-- > 0;) {
     const std::size_t before = to.size();
     to.numbers(MemberWire::kMomentumFieldNumber, from.members[m].momentum);
     encode(from.members[m].energy, of_member, to);
-    to.close(Wire::kMembersFieldNumber, before);
+    to.close(WireRecord::kMembersFieldNumber, before);
   }
-  to.numbers(Wire::kMomentumFieldNumber, from.momentum);
+  to.numbers(WireRecord::kMomentumFieldNumber, from.momentum);
   encode(from.energy, of_body, to);
-  to.number(Wire::kTimeFieldNumber, from.time);
+  to.number(WireRecord::kTimeFieldNumber, from.time);
 }
 
 void decode(Bytes bytes, const Description& body, const FieldPath& path, BodyRecord& to) {
@@ -93,19 +94,19 @@ void decode(Bytes bytes, const Description& body, const FieldPath& path, BodyRec
   for (WireReader from(bytes, path); from.next();) {
     if (read(from, of_body, path, to.energy)) continue;
     switch (from.field()) {
-      case Wire::kTimeFieldNumber:
+      case WireRecord::kTimeFieldNumber:
         to.time = number(from.number(), FieldPath{&path, "time"});
         break;
-      case Wire::kMomentumFieldNumber:
+      case WireRecord::kMomentumFieldNumber:
         from.numbers(to.momentum);
         break;
-      case Wire::kAngularMomentumFieldNumber:
+      case WireRecord::kAngularMomentumFieldNumber:
         from.numbers(to.angular_momentum);
         break;
-      case Wire::kColumnsFieldNumber:
+      case WireRecord::kColumnsFieldNumber:
         from.numbers(to.columns);
         break;
-      case Wire::kMembersFieldNumber:
+      case WireRecord::kMembersFieldNumber:
         if (members >= to.members.size()) {
           all_members.fail(fmt::format("has more entries than the body's {} members", members));
         }

@@ -17,7 +17,7 @@ static_assert(sizeof(Reaction) ==
 static_assert(sizeof(PortResponse) == 2 * sizeof(Waveform) + 5 * sizeof(std::vector<double>) +
                                           3 * sizeof(double) + sizeof(std::optional<Recoil>));
 
-using Wire = v1::PortResponse;
+using WireResponse = v1::PortResponse;
 
 const Want everything;
 const Want places{.v = false, .a = false, .f = false, .points = {}};
@@ -28,9 +28,9 @@ const Want& wanted(const Advance& asked, std::size_t port) {
 }
 
 void encode(const PortResponse& from, const Want& want, WireWriter& to) {
-  to.numbers(Wire::kFastestFieldNumber, from.fastest);
-  to.numbers(Wire::kSlowestFieldNumber, from.slowest);
-  if (!from.ahead.empty()) encode(from.ahead, places, Wire::kAheadFieldNumber, to);
+  to.numbers(WireResponse::kFastestFieldNumber, from.fastest);
+  to.numbers(WireResponse::kSlowestFieldNumber, from.slowest);
+  if (!from.ahead.empty()) encode(from.ahead, places, WireResponse::kAheadFieldNumber, to);
   std::size_t reactions = from.reactions.size();
   while (reactions > 0 && from.reactions[reactions - 1].force.empty()) --reactions;
   while (reactions-- > 0) {
@@ -41,20 +41,20 @@ void encode(const PortResponse& from, const Want& want, WireWriter& to) {
       to.number(v1::Reaction::kDissipatedFieldNumber, from.reactions[reactions].dissipated);
       encode(force, Want{}, v1::Reaction::kForceFieldNumber, to);
     }
-    to.close(Wire::kReactionsFieldNumber, before);
+    to.close(WireResponse::kReactionsFieldNumber, before);
   }
-  to.number(Wire::kWorkFieldNumber, from.work);
+  to.number(WireResponse::kWorkFieldNumber, from.work);
   if (from.recoil) {
     const std::size_t before = to.size();
     to.number(v1::Recoil::kMobilityFieldNumber, from.recoil->mobility);
     to.number(v1::Recoil::kVelocityFieldNumber, from.recoil->velocity);
-    to.close(Wire::kRecoilFieldNumber, before);
+    to.close(WireResponse::kRecoilFieldNumber, before);
   }
-  to.number(Wire::kAccelerationBoundFieldNumber, from.acceleration_bound);
-  to.number(Wire::kSpeedBoundFieldNumber, from.speed_bound);
-  to.numbers(Wire::kUpperFieldNumber, from.upper);
-  to.numbers(Wire::kLowerFieldNumber, from.lower);
-  if (!from.trace.empty()) encode(from.trace, want, Wire::kTraceFieldNumber, to);
+  to.number(WireResponse::kAccelerationBoundFieldNumber, from.acceleration_bound);
+  to.number(WireResponse::kSpeedBoundFieldNumber, from.speed_bound);
+  to.numbers(WireResponse::kUpperFieldNumber, from.upper);
+  to.numbers(WireResponse::kLowerFieldNumber, from.lower);
+  if (!from.trace.empty()) encode(from.trace, want, WireResponse::kTraceFieldNumber, to);
 }
 
 /// A body tells of the whole window and of nothing else.
@@ -177,24 +177,24 @@ void clear(PortResponse& port, std::size_t obstacles) {
   port.recoil.reset();
 }
 
-void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance& asked,
-                 const FieldPath& path, PortResponse& to) {
+void decode_port_response(Bytes bytes, const Port& port, std::size_t place, const Advance& asked,
+                          const FieldPath& path, PortResponse& to) {
   const std::vector<Obstacle>& obstacles = asked.boundary[place].obstacles;
   clear(to, obstacles.size());
   std::size_t reactions = 0;
   bool traced = false, looked = false;
   for (WireReader from(bytes, path); from.next();) {
     switch (from.field()) {
-      case Wire::kAheadFieldNumber:
+      case WireResponse::kAheadFieldNumber:
         decode_ahead(from.message(), port, asked, FieldPath{&path, "ahead"}, to.ahead);
         looked = true;
         break;
-      case Wire::kTraceFieldNumber:
+      case WireResponse::kTraceFieldNumber:
         decode_trace(from.message(), port, asked, wanted(asked, place), FieldPath{&path, "trace"},
                      to.trace);
         traced = true;
         break;
-      case Wire::kReactionsFieldNumber:
+      case WireResponse::kReactionsFieldNumber:
         if (reactions >= obstacles.size()) {
           FieldPath{&path, "reactions"}.fail(
               fmt::format("has more entries than the {} obstacles", obstacles.size()));
@@ -204,29 +204,29 @@ void decode_port(Bytes bytes, const Port& port, std::size_t place, const Advance
                         to.reactions[reactions]);
         ++reactions;
         break;
-      case Wire::kLowerFieldNumber:
+      case WireResponse::kLowerFieldNumber:
         from.numbers(to.lower);
         break;
-      case Wire::kUpperFieldNumber:
+      case WireResponse::kUpperFieldNumber:
         from.numbers(to.upper);
         break;
-      case Wire::kSlowestFieldNumber:
+      case WireResponse::kSlowestFieldNumber:
         from.numbers(to.slowest);
         break;
-      case Wire::kFastestFieldNumber:
+      case WireResponse::kFastestFieldNumber:
         from.numbers(to.fastest);
         break;
-      case Wire::kSpeedBoundFieldNumber:
+      case WireResponse::kSpeedBoundFieldNumber:
         to.speed_bound = number(from.number(), FieldPath{&path, "speed_bound"}, Allow::infinite);
         break;
-      case Wire::kAccelerationBoundFieldNumber:
+      case WireResponse::kAccelerationBoundFieldNumber:
         to.acceleration_bound =
             number(from.number(), FieldPath{&path, "acceleration_bound"}, Allow::infinite);
         break;
-      case Wire::kRecoilFieldNumber:
+      case WireResponse::kRecoilFieldNumber:
         to.recoil = decode_recoil(from.message(), FieldPath{&path, "recoil"});
         break;
-      case Wire::kWorkFieldNumber:
+      case WireResponse::kWorkFieldNumber:
         to.work = number(from.number(), FieldPath{&path, "work"});
         break;
       default:
@@ -279,8 +279,8 @@ void decode(Bytes bytes, const Description& body, const Advance& asked, Response
         if (ports >= to.ports.size()) {
           all_ports.fail(fmt::format("has more entries than the body's {} ports", ports));
         }
-        decode_port(from.message(), body.ports[ports], ports, asked,
-                    FieldPath{&path, "ports", static_cast<int>(ports)}, to.ports[ports]);
+        decode_port_response(from.message(), body.ports[ports], ports, asked,
+                             FieldPath{&path, "ports", static_cast<int>(ports)}, to.ports[ports]);
         ++ports;
         break;
       case v1::Advanced::kRecordsFieldNumber:

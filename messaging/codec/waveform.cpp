@@ -28,7 +28,7 @@ void encode(const Waveform& from, const Want& want, int field, WireWriter& to) {
 namespace {
 
 /// What the bytes hold, whatever it is worth; the support.
-std::int64_t read(WireReader from, Waveform& to) {
+std::int64_t read_values(WireReader from, Waveform& to) {
   to.points.clear();
   bool time = false, u = false, v = false, a = false, f = false;
   std::int64_t support = 0, width = 0;
@@ -73,7 +73,7 @@ std::int64_t read(WireReader from, Waveform& to) {
 }  // namespace
 
 void decode(Bytes from, const SurfaceSize& surface, const FieldPath& path, Waveform& to) {
-  const std::int64_t support = read(WireReader(from, path), to);
+  const std::int64_t support = read_values(WireReader(from, path), to);
   check_points(to.points, surface.points, FieldPath{&path, "points"});
   const int points = to.points.empty() ? surface.points : static_cast<int>(to.points.size());
   if (to.width != points * surface.dim) {

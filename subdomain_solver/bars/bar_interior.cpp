@@ -18,7 +18,7 @@ namespace abut {
 namespace {
 
 /// Element-steps in about 10 ms.
-constexpr double usual_work = 2.0e7;
+constexpr double usual_bar_work = 2.0e7;
 
 }  // namespace
 
@@ -114,7 +114,7 @@ void BarInterior::describe(std::string name, const std::vector<End>& ends) {
   }
   for (std::vector<double>* values : {&seen_.u, &seen_.v, &seen_.a, &seen_.f})
     values->resize(ends.size());
-  traits_.effort = data.elements / usual_work;
+  traits_.effort = data.elements / usual_bar_work;
   traits_.scheme = scheme_.words.substr(0, scheme_.words.find(','));
   if (ends.empty()) return;
   able_.probed = this;

@@ -13,7 +13,7 @@ namespace abut {
 
 namespace {
 /// Node-steps in about 50 ms.
-constexpr double usual_work = 2.0e7;
+constexpr double usual_pair_work = 2.0e7;
 }  // namespace
 
 PairInterior::PairInterior(std::string name, const Parameters& parameters)
@@ -38,7 +38,7 @@ PairInterior::PairInterior(std::string name, const Parameters& parameters)
   description_.stable_step = parameters.weights ? std::numeric_limits<double>::infinity()
                                                 : pair_.stable_step(parameters.contact.penalty);
   description_.fields = bar_fields();
-  traits_.effort = static_cast<double>(pair_.nodes()) / usual_work;
+  traits_.effort = static_cast<double>(pair_.nodes()) / usual_pair_work;
   describe_members(parameters);
 }
 

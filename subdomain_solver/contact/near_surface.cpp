@@ -10,7 +10,7 @@ namespace abut {
 
 namespace {
 
-double largest_difference(std::span<const double> a, std::span<const double> b) {
+double largest_move(std::span<const double> a, std::span<const double> b) {
   double most = 0.0;
   for (std::size_t v = 0; v < a.size(); ++v) most = std::max(most, std::abs(a[v] - b[v]));
   return most;
@@ -36,14 +36,13 @@ void NearSurface::follow(std::span<const double> u) {
   stands_ = true;
   for (std::size_t first = 0; first < u.size(); first += width) {
     const std::span<const double> level = u.subspan(first, width);
-    moved_ = std::max(moved_, largest_difference(level, made_));
+    moved_ = std::max(moved_, largest_move(level, made_));
     stands_ = stands_ && (first == 0 || std::ranges::equal(level, u.first(width)));
   }
 }
 
 bool NearSurface::holds(std::span<const double> pose, double reach) const {
-  return all_ ||
-         reach + moved_ + (margin_ < 0.0 ? 0.0 : largest_difference(pose, made_own_)) <= margin_;
+  return all_ || reach + moved_ + (margin_ < 0.0 ? 0.0 : largest_move(pose, made_own_)) <= margin_;
 }
 
 void NearSurface::take_all() {

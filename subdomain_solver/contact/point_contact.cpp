@@ -11,10 +11,10 @@ namespace {
 
 /// Two ends of one body see each other by the compliance between them, which is less than their
 /// own: sweeps over them end soon.
-constexpr int most_sweeps = 100;
+constexpr int most_point_sweeps = 100;
 
 /// Of a substep: times nearer to its end than this are its end, rounded.
-constexpr double rounding = 1.0e-6;
+constexpr double point_rounding = 1.0e-6;
 
 }  // namespace
 
@@ -82,9 +82,9 @@ double PointContact::push(const End& end, bool in_substep, double time, double f
 }
 
 const Vector* PointContact::solve(double time, const Vector& free, Compliance& give) {
-  const bool in_substep = std::abs(time - aim_) > rounding * grid_.step;
+  const bool in_substep = std::abs(time - aim_) > point_rounding * grid_.step;
   force_.setZero(free.size());
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+  for (int sweep = 0; sweep < most_point_sweeps; ++sweep) {
     double change = 0.0;
     for (Eigen::Index k = 0; k < free.size(); ++k) {
       const Vector* column = give.column(static_cast<int>(k));  // symmetric: its row too

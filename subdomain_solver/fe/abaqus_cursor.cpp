@@ -27,7 +27,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 /// Text of a file that can be shown.
-std::string shown(std::string_view text) {
+std::string shown_field(std::string_view text) {
   std::string kept(text.substr(0, 40));
   for (char& letter : kept)
     if (letter < ' ' || letter > '~') letter = '?';
@@ -195,7 +195,7 @@ std::int64_t AbaqusCursor::integer(std::string_view field, const char* what) con
   const std::string_view digits = field.starts_with('+') ? field.substr(1) : field;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size() || value < 1)
-    refuse(fmt::format("has '{}' where {} must be", shown(field), what),
+    refuse(fmt::format("has '{}' where {} must be", shown_field(field), what),
            "Write whole numbers from 1 on, with commas between them.");
   return value;
 }
@@ -212,7 +212,7 @@ double AbaqusCursor::real(std::string_view field) const {
   const auto [end, error] = std::from_chars(text.data(), text.data() + size, value);
   const bool whole = size == digits.size() && end == text.data() + size;
   if (error != std::errc() || !whole || !std::isfinite(value))
-    refuse(fmt::format("has '{}' where a number must be", shown(field)),
+    refuse(fmt::format("has '{}' where a number must be", shown_field(field)),
            "Write numbers as 1.5e-3 or 1.5D-3, with commas between them.");
   return value;
 }

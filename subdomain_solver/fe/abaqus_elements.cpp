@@ -23,7 +23,7 @@ struct Ordering {
   std::vector<std::vector<int>> faces;
 };
 
-const Ordering line = {1, 2, {{0, 1}}, {}};
+const Ordering line_ordering = {1, 2, {{0, 1}}, {}};
 const Ordering triangle = {2, 3, {{0, 1}, {1, 2}, {2, 0}}, {{0, 1}, {1, 2}, {2, 0}}};
 const Ordering quadrilateral = {
     2, 4, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}};
@@ -65,8 +65,8 @@ int between(const Ordering& own, int a, int b) {
   return 0;
 }
 
-AbaqusElement made(const Ordering& own, bool quadratic, const Element* type,
-                   const DividedShape* divided) {
+AbaqusElement abaqus_made(const Ordering& own, bool quadratic, const Element* type,
+                          const DividedShape* divided) {
   AbaqusElement out;
   out.dim = own.dim;
   out.nodes = own.corners + (quadratic ? static_cast<int>(own.edges.size()) : 0);
@@ -90,7 +90,7 @@ AbaqusElement made(const Ordering& own, bool quadratic, const Element* type,
   return out;
 }
 
-const Element* element_of(Shape shape, int nodes) {
+const Element* element_of_shape(Shape shape, int nodes) {
   for (const Element& element : all_elements())
     if (element.shape == shape && element.nodes == nodes) return &element;
   return nullptr;
@@ -120,17 +120,17 @@ std::vector<Row> rows() {
       all.push_back({plane, nodes, &quadrilateral, Shape::quadrilateral});
   }
   for (const char* lines : {"T2D", "T3D"})
-    for (const int nodes : {2, 3}) all.push_back({lines, nodes, &line, Shape::line});
+    for (const int nodes : {2, 3}) all.push_back({lines, nodes, &line_ordering, Shape::line});
   return all;
 }
 
 std::map<std::string, AbaqusElement> make_table() {
   std::map<std::string, AbaqusElement> table;
   for (const Row& row : rows()) {
-    const Element* type = row.divided == nullptr ? element_of(row.shape, row.nodes) : nullptr;
+    const Element* type = row.divided == nullptr ? element_of_shape(row.shape, row.nodes) : nullptr;
     const bool quadratic = row.nodes > row.ordering->corners;
     table.emplace(std::string(row.family) + std::to_string(row.nodes),
-                  made(*row.ordering, quadratic, type, row.divided));
+                  abaqus_made(*row.ordering, quadratic, type, row.divided));
   }
   return table;
 }
@@ -150,7 +150,8 @@ const AbaqusElement* abaqus_element(const std::string& name) {
 }
 
 const AbaqusElement* abaqus_shape(int dim, int corners, bool quadratic) {
-  static const AbaqusElement quadratic_pyramid = made(pyramid, true, nullptr, &pyramid_shape());
+  static const AbaqusElement quadratic_pyramid =
+      abaqus_made(pyramid, true, nullptr, &pyramid_shape());
   if (dim == 2 && corners == 3) return abaqus_element(quadratic ? "CPS6" : "CPS3");
   if (dim == 2 && corners == 4) return abaqus_element(quadratic ? "CPS8" : "CPS4");
   if (dim == 3 && corners == 4) return abaqus_element(quadratic ? "C3D10" : "C3D4");

@@ -33,9 +33,9 @@ std::string file_bytes(const std::string& path) {
   return read_input_file(path, most, remedy);
 }
 
-class Builder {
+class AbaqusBuilder {
  public:
-  Builder(const AbaqusModel& model, const AbaqusCursor& file, const std::string& part)
+  AbaqusBuilder(const AbaqusModel& model, const AbaqusCursor& file, const std::string& part)
       : model_(model), file_(file), pieces_(model, file), named_(part), part_(in_capitals(part)) {}
 
   FileMesh build() {
@@ -286,7 +286,7 @@ Mesh abaqus_mesh(std::string bytes, const std::string& name, double scale, const
                  int surface_in, std::vector<std::string>* notes, CellWords* words) {
   AbaqusCursor cursor(std::move(bytes), name);
   const AbaqusModel model = parse_abaqus(cursor);
-  Builder builder(model, cursor, part);
+  AbaqusBuilder builder(model, cursor, part);
   FileMesh file = builder.build();
   if (notes != nullptr) notes->insert(notes->end(), file.notes.begin(), file.notes.end());
   std::vector<std::vector<std::int32_t>> origins;

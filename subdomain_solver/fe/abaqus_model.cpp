@@ -26,9 +26,9 @@ bool is_number(std::string_view field) {
          field.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-class Parser {
+class AbaqusParser {
  public:
-  explicit Parser(AbaqusCursor& file) : file_(file) {}
+  explicit AbaqusParser(AbaqusCursor& file) : file_(file) {}
 
   AbaqusModel parse() {
     while (file_.next_card(card_)) {
@@ -350,6 +350,6 @@ class Parser {
 
 }  // namespace
 
-AbaqusModel parse_abaqus(AbaqusCursor& file) { return Parser(file).parse(); }
+AbaqusModel parse_abaqus(AbaqusCursor& file) { return AbaqusParser(file).parse(); }
 
 }  // namespace abut

@@ -17,7 +17,7 @@ namespace abut {
 namespace {
 
 using Point = std::array<double, 3>;
-using Places = std::unordered_map<std::int64_t, std::int32_t>;
+using PlaceOfNode = std::unordered_map<std::int64_t, std::int32_t>;
 
 /// Where an instance takes a point of its part: moved, then turned about its axis (Rodrigues).
 Point placed(const AbaqusModel::Instance& instance, Point x) {
@@ -45,7 +45,8 @@ Point placed(const AbaqusModel::Instance& instance, Point x) {
 /// Numbers of a range that there are; those that are named one by one and are not there go to
 /// `missing`.
 template <class Each, class Missing>
-void each_of(const AbaqusModel::Picked& picked, const Places& places, Each each, Missing missing) {
+void each_of(const AbaqusModel::Picked& picked, const PlaceOfNode& places, Each each,
+             Missing missing) {
   const auto there = [&](std::int64_t number) {
     return (number - picked.first) % picked.step == 0 && number >= picked.first &&
            number <= picked.last;

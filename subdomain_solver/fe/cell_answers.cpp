@@ -31,7 +31,7 @@ void lay_out(const double* of_first, int numbers, int cells, double* out) {
 }
 
 /// A cell's tangent from its pairs of nodes.
-void spread(const double* pairs, int nodes, int dim, Eigen::MatrixXd& out) {
+void spread_pairs(const double* pairs, int nodes, int dim, Eigen::MatrixXd& out) {
   out.resize(nodes * dim, nodes * dim);
   for (int a = 0; a < nodes; ++a)
     for (int b = a; b < nodes; ++b)
@@ -128,7 +128,7 @@ void CellAnswers::find_tangents(const CellsAsked& asked, std::size_t task, Worke
   answered_[task] =
       stiffness_({m.nodes, m.points, volume, gradient, displacement, stiffness}, parameters_);
   for (int l = 0; l < cells; ++l)
-    spread(stiffness + l, m.nodes, m.dim, answers_[index(begin + l)].tangent);
+    spread_pairs(stiffness + l, m.nodes, m.dim, answers_[index(begin + l)].tangent);
 }
 
 }  // namespace abut

@@ -20,7 +20,7 @@ constexpr std::size_t most_cells = 4096, least_cells = 512, wanted_patches = 16;
 constexpr std::size_t lanes = batch_lanes;
 
 /// Puts two zeros before every one of the lower 21 bits.
-std::uint64_t spread(std::uint64_t x) {
+std::uint64_t spread_bits(std::uint64_t x) {
   x = (x | x << 32) & 0x001f00000000ffffull;
   x = (x | x << 16) & 0x001f0000ff0000ffull;
   x = (x | x << 8) & 0x100f00f00f00f00full;
@@ -46,7 +46,7 @@ std::vector<std::int32_t> along_a_curve(const Mesh& mesh, const CellBlock& cells
     const std::int32_t node = nodes_of(cells, static_cast<std::int32_t>(c))[0];
     for (std::size_t d = 0; d < dim; ++d) {
       const double part = (mesh.points[index(node) * dim + d] - low[d]) / extent;
-      key[c] |= spread(static_cast<std::uint64_t>(part * 0x1.fffffp20)) << d;
+      key[c] |= spread_bits(static_cast<std::uint64_t>(part * 0x1.fffffp20)) << d;
     }
   }
   std::vector<std::int32_t> order(key.size());

@@ -119,7 +119,7 @@ std::vector<int> facet_nodes(const Element& cell, const std::vector<int>& corner
   return nodes;
 }
 
-Element made(const Entry& entry, std::span<const Element> above) {
+Element made_element(const Entry& entry, std::span<const Element> above) {
   const Corners corners = corners_of(entry.shape);
   Element element;
   element.name = entry.name;
@@ -156,7 +156,7 @@ Element made(const Entry& entry, std::span<const Element> above) {
 
 std::vector<Element> make_elements() {
   std::vector<Element> all;
-  for (const Entry& entry : entries()) all.push_back(made(entry, all));
+  for (const Entry& entry : entries()) all.push_back(made_element(entry, all));
   return all;
 }
 

@@ -19,8 +19,8 @@ namespace {
 constexpr int most_values = 3 * 27;
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
 using Axes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, most_values>;
-using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_values, 3>;
+using CellRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, most_values>;
+using CellColumns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_values, 3>;
 
 std::unique_ptr<const Material> in_its_space(std::unique_ptr<const Material> law, int dim,
                                              const FeOptions& options) {
@@ -384,9 +384,9 @@ void FeModel::turn(std::span<const std::int32_t> nodes, Eigen::VectorXd* force,
       force->segment(at, dim).noalias() = axes.transpose() * given;
     }
     if (matrix == nullptr) continue;
-    const Rows rows = matrix->middleRows(at, dim);
+    const CellRows rows = matrix->middleRows(at, dim);
     matrix->middleRows(at, dim).noalias() = axes.transpose() * rows;
-    const Columns columns = matrix->middleCols(at, dim);
+    const CellColumns columns = matrix->middleCols(at, dim);
     matrix->middleCols(at, dim).noalias() = columns * axes;
   }
 }

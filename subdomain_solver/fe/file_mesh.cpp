@@ -25,11 +25,11 @@ std::span<const std::int32_t> nodes_of(const FileMesh::Elements& block, std::siz
   return std::span(block.nodes).subspan(element * count, count);
 }
 
-class Builder {
+class FileMeshBuilder {
  public:
   using Origins = std::vector<std::vector<std::int32_t>>;
 
-  Builder(FileMesh file, double scale, int surface_in, Origins* origins)
+  FileMeshBuilder(FileMesh file, double scale, int surface_in, Origins* origins)
       : file_(std::move(file)), scale_(scale), surface_in_(surface_in), origins_(origins) {}
 
   Mesh build() {
@@ -209,7 +209,7 @@ class Builder {
 
 Mesh mesh_of(FileMesh file, double scale, int surface_in,
              std::vector<std::vector<std::int32_t>>* origins) {
-  return Builder(std::move(file), scale, surface_in, origins).build();
+  return FileMeshBuilder(std::move(file), scale, surface_in, origins).build();
 }
 
 }  // namespace abut

@@ -20,7 +20,7 @@ bool is_space(char letter) {
 const char* const damaged = "The file is cut short or damaged: export it again.";
 
 /// Text of a file that can be shown.
-std::string shown(std::string_view text) {
+std::string shown_token(std::string_view text) {
   std::string kept(text.substr(0, 40));
   for (char& letter : kept)
     if (letter < ' ' || letter > '~') letter = '?';
@@ -67,7 +67,7 @@ std::string_view GmshCursor::line() {
 void GmshCursor::expect_line(const std::string& wanted) {
   const std::string_view text = line();
   if (text != wanted)
-    refuse(fmt::format("has '{}' where {} must be", shown(text), wanted), damaged);
+    refuse(fmt::format("has '{}' where {} must be", shown_token(text), wanted), damaged);
 }
 
 void GmshCursor::skip_to(const std::string& text) {
@@ -103,7 +103,7 @@ Number GmshCursor::from_text(const char* kind) {
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
-    refuse(fmt::format("has '{}' where {} must be", shown(text), kind), damaged);
+    refuse(fmt::format("has '{}' where {} must be", shown_token(text), kind), damaged);
   return value;
 }
 

@@ -48,9 +48,9 @@ std::string other_element(int type) {
          "prisms, pyramids.";
 }
 
-class Parser {
+class GmshParser {
  public:
-  Parser(std::string bytes, const std::string& name) : file_(std::move(bytes), name) {
+  GmshParser(std::string bytes, const std::string& name) : file_(std::move(bytes), name) {
     data_.name = name;
   }
 
@@ -329,7 +329,7 @@ class Parser {
 }  // namespace
 
 FileMesh parse_gmsh(std::string bytes, const std::string& name) {
-  return Parser(std::move(bytes), name).parse();
+  return GmshParser(std::move(bytes), name).parse();
 }
 
 }  // namespace abut

@@ -13,8 +13,8 @@ namespace {
 // Bounded by the largest element: asked for at every record, they shall allocate nothing.
 constexpr int most_nodes = 27;
 using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_nodes, 3>;
-using Places = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, most_nodes>;
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+using CellPlaces = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, most_nodes>;
+using SpaceSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
 
 /// Derivatives of an element's shape functions at the mean of its corners: (nodes, dim).
 Slopes slopes_at_centre(const Element& element) {
@@ -46,9 +46,9 @@ double largest_rotation(const Mesh& mesh, std::span<const double> u, int stride)
       if (next-- > 0) continue;
       next = stride - 1;
       const Eigen::Map<const Eigen::VectorXi> own(cells.nodes.data() + c * nodes, nodes);
-      const Places x = points(Eigen::all, own), v = moved(Eigen::all, own);
-      const Square jacobian = x * slopes, change = v * slopes, inverse = jacobian.inverse();
-      const Square gradient = change * inverse;
+      const CellPlaces x = points(Eigen::all, own), v = moved(Eigen::all, own);
+      const SpaceSquare jacobian = x * slopes, change = v * slopes, inverse = jacobian.inverse();
+      const SpaceSquare gradient = change * inverse;
       // The axial vector has half the norm of gradient - gradient^T over sqrt(2).
       most = std::max(most, (gradient - gradient.transpose()).squaredNorm() / 8.0);
     }

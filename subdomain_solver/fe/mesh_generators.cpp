@@ -58,7 +58,7 @@ void require_count(int value, const std::string& where) {
 // Coordinates ----------------------------------------------------------------------------------
 
 /// Coordinates of a line of graded elements, with those halfway in between [m] (2 elements + 1).
-std::vector<double> line(double begin, double length, int elements, double grading) {
+std::vector<double> graded_line(double begin, double length, int elements, double grading) {
   const double growth = elements > 1 ? std::pow(grading, 1.0 / (elements - 1)) : 1.0;
   std::vector<double> sizes(index(elements), 1.0);
   double sum = 1.0;
@@ -118,8 +118,8 @@ Mesh box(const Lengths<Dim>& data, const Element& element, const std::string& wh
   }
   require_room(total, bytes_of_cell, where + ".elements");
   for (std::size_t d = 0; d < Dim; ++d) {
-    x[d] = line(lower_end(data.origin[d], data.origin_at, data.lengths[d]), data.lengths[d],
-                cells[d], data.grading[d]);
+    x[d] = graded_line(lower_end(data.origin[d], data.origin_at, data.lengths[d]), data.lengths[d],
+                       cells[d], data.grading[d]);
   }
   LatticeMesh mesh(element, [&x](const LatticePoint& place) {
     Point point{};
@@ -281,8 +281,8 @@ Mesh generate(const CylinderMesh& data, const std::string& where) {
   require_grading(data.grading, where + ".grading");
   require_count(data.elements, where + ".elements");
   require_round(data.radius, data.core, data.layers, data.elements, 2.0, where);
-  const std::vector<double> z = line(lower_end(data.origin[2], data.origin_at, data.length),
-                                     data.length, data.elements, data.grading);
+  const std::vector<double> z = graded_line(lower_end(data.origin[2], data.origin_at, data.length),
+                                            data.length, data.elements, data.grading);
   LatticeMesh mesh(element, [&data, &z](const LatticePoint& place) {
     const Point unit = round_place<2>(place, data.core, data.layers);
     return Point{data.origin[0] + data.radius * unit[0], data.origin[1] + data.radius * unit[1],

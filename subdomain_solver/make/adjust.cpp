@@ -66,7 +66,7 @@ struct Meeting {
 };
 
 /// Rows over the coordinates of the body's mesh.
-struct Rows {
+struct AdjustRows {
   SparseRows rows;
   std::vector<double> gaps;  // [m]
   std::vector<char> met;     // gaps are to be closed
@@ -97,8 +97,8 @@ class Adjuster {
   void choose_gaps();
   double open_overlaps(bool closing);
   void add(const Meeting& m, const SurfaceRows& rows, bool as_partner, double allowed,
-           Rows& out) const;
-  void add_rows(const Meeting& m, bool closing, Rows& out) const;
+           AdjustRows& out) const;
+  void add_rows(const Meeting& m, bool closing, AdjustRows& out) const;
   void pose();
   void check_cells() const;
   double moved(std::int32_t node) const;
@@ -109,7 +109,7 @@ class Adjuster {
   std::vector<double> begin_;             // [m] (nodes, dim) of the mesh as it was
   std::map<std::int32_t, Matrix3> free_;  // onto the directions in which a held node may go
   std::vector<Meeting> meetings_;
-  Rows rows_;  // of the last pass
+  AdjustRows rows_;  // of the last pass
 };
 
 void Adjuster::hold(int dof, const std::vector<NodeFrame>& frames) {
@@ -183,7 +183,7 @@ void Adjuster::pose() {
 
 /// Rows in terms of the body's coordinates; `as_partner`: its surface is the one that they see.
 void Adjuster::add(const Meeting& m, const SurfaceRows& rows, bool as_partner, double allowed,
-                   Rows& out) const {
+                   AdjustRows& out) const {
   const SparseRows& own = as_partner ? rows.n : rows.k;
   for (int r = 0; r < rows.count(); ++r) {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -209,7 +209,7 @@ void Adjuster::add(const Meeting& m, const SurfaceRows& rows, bool as_partner, d
 
 /// All rows in which the sides of a contact must not overlap; while gaps are closed, those of the
 /// body's own nodes.
-void Adjuster::add_rows(const Meeting& m, bool closing, Rows& out) const {
+void Adjuster::add_rows(const Meeting& m, bool closing, AdjustRows& out) const {
   const StartSurface own = m.one(), partner = m.other();
   if (closing) {
     const std::size_t first = out.gaps.size();
@@ -242,8 +242,7 @@ void Adjuster::choose_gaps() {
                        "Move the body with initial.position, and give what is left.");
     const SurfaceRows rows = m.rows(m.one(), m.other());
     for (std::size_t r = 0; r < rows.nodes.size(); ++r)
-      m.closes[rows.nodes[r]] =
-          rows.gaps[r] > 0.0 && rows.gaps[r] <= spec_.initial.adjust_gaps;
+      m.closes[rows.nodes[r]] = rows.gaps[r] > 0.0 && rows.gaps[r] <= spec_.initial.adjust_gaps;
   }
 }
 

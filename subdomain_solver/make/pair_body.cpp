@@ -15,7 +15,7 @@ namespace abut {
 namespace {
 
 /// CFL 1 is meant: a step may pass the limit by round-off.
-constexpr double limit_slack = 1.0e-12;
+constexpr double pair_limit_slack = 1.0e-12;
 
 using Refuse =
     std::function<void(const std::string& key, const std::string& what, const std::string& remedy)>;
@@ -35,7 +35,7 @@ struct PairScheme {
     }
     const double limit = BarPair(parameters.bars[0], parameters.bars[1], ElementLengths::reference)
                              .stable_step(parameters.contact.penalty);
-    if (s.step > limit * (1.0 + limit_slack)) {
+    if (s.step > limit * (1.0 + pair_limit_slack)) {
       refuse("integrator.central_difference.step",
              fmt::format("{:g} s is above the stable limit of {:g} s", s.step, limit),
              "Give a step of at most the limit, or an implicit integrator such as newmark.");
@@ -89,7 +89,7 @@ std::array<BarProperties, 2> pair_properties(const BodySpec& spec) {
 
 std::unique_ptr<Interior> make_pair(const BodySpec& spec, const Place& place) {
   const Refuse refuse = [&place](const std::string& key, const std::string& what,
-                                           const std::string& remedy) {
+                                 const std::string& remedy) {
     throw InputError(what, place.where(key), remedy);
   };
   const BarPairSpec& pair = std::get<BarPairSpec>(spec.model);

@@ -28,7 +28,7 @@ namespace abut {
 namespace {
 
 /// Components of a unit normal below this are the rounding of an axis.
-constexpr double straight = 1.0e-9;
+constexpr double straight_motion = 1.0e-9;
 
 /// Direction without mass [M.97] at the nodes of a flat side along an axis: its normal's.
 int only_direction(const FeModel& model, const std::string& side,
@@ -39,7 +39,7 @@ int only_direction(const FeModel& model, const std::string& side,
   int found = -1;
   for (std::size_t v = 0; v < normals.size(); ++v) {
     const int direction = static_cast<int>(v) % dim;
-    if (std::abs(normals[v]) < straight) continue;
+    if (std::abs(normals[v]) < straight_motion) continue;
     if (found < 0) found = direction;
     if (direction == found) continue;
     throw InputError("is normal, but side '" + side + "' is not flat along an axis",

@@ -12,10 +12,10 @@ namespace abut {
 namespace {
 
 /// Of a cell: less is none of it, all but that is all of it; and of its size, what is no distance.
-constexpr double nothing = 1.0e-9;
+constexpr double no_share = 1.0e-9;
 
 /// Exact for shape functions of parallelepipeds, three of whose factors are linear.
-constexpr int degree = 4;
+constexpr int share_degree = 4;
 
 struct Cells {
   std::vector<std::size_t> first;  // (blocks) where a block's cells begin in a list of all
@@ -35,7 +35,7 @@ void add_integrals(const Mesh& mesh, CellPlace place, const Simplex& part,
                    std::vector<double>& out) {
   const Element& element = *mesh.blocks[place.block].element;
   const std::size_t dim = index(mesh.dim), nodes = index(element.nodes);
-  const Quadrature rule = quadrature(dim == 2 ? Shape::triangle : Shape::tetrahedron, degree);
+  const Quadrature rule = quadrature(dim == 2 ? Shape::triangle : Shape::tetrahedron, share_degree);
   const double unit = dim == 2 ? 2.0 : 6.0;  // volume of the reference simplex: 1 of so many
   const std::span<const std::int32_t> own = nodes_of(mesh.blocks[place.block], place.cell);
   std::vector<double> n(nodes), dn(nodes * dim);
@@ -74,7 +74,7 @@ CommonParts common_parts(const MeshSimplices& own, const MeshSimplices& other) {
   for (int i = 0; i < own.count(); ++i) volume[cells.at(own.cell(i))] += measure(own.simplex(i));
   std::vector<FacetPair> pairs;
   overlapping_pairs(own.tree(), other.tree(), pairs);
-  const double near = nothing * own.spacing();
+  const double near = no_share * own.spacing();
   std::vector<Simplex> inside;
   std::vector<std::pair<CellPlace, Simplex>> found;
   for (const FacetPair& pair : pairs) {
@@ -90,9 +90,9 @@ CommonParts common_parts(const MeshSimplices& own, const MeshSimplices& other) {
     for (int c = 0; c < mesh.blocks[b].count(); ++c) {
       const CellPlace place{static_cast<std::int32_t>(b), static_cast<std::int32_t>(c)};
       const std::size_t at = cells.at(place);
-      if (common[at] <= nothing * volume[at]) continue;
+      if (common[at] <= no_share * volume[at]) continue;
       out.volume += common[at];
-      const bool all = common[at] >= (1.0 - nothing) * volume[at];
+      const bool all = common[at] >= (1.0 - no_share) * volume[at];
       const std::size_t nodes = index(mesh.blocks[b].element->nodes);
       by_cell[at] = {place, std::vector<double>(nodes, all ? 1.0 : 0.0)};
       if (all) common[at] = 0.0;  // nothing to integrate

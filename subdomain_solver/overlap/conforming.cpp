@@ -4,12 +4,11 @@
 #include <utility>
 #include <vector>
 
-
 namespace abut {
 
 namespace {
 
-constexpr double same_place = 1.0e-6;  // of a cell
+constexpr double same_overlap_place = 1.0e-6;  // of a cell
 
 Eigen::Vector3d place_of(const Mesh& mesh, std::int32_t node) {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
@@ -64,7 +63,8 @@ std::optional<CellPlace> first_without_twin(const CommonParts& common, const Mes
     const Eigen::Vector3d middle = middle_of(own, part.cell);
     const std::span<const std::int32_t> nodes = nodes_of(own, part.cell);
     const double size = (place_of(own, nodes[0]) - middle).norm();
-    const double near = same_place * size, at = along(middle), far = 2.0 * near;  // |direction| < 2
+    const double near = same_overlap_place * size, at = along(middle),
+                 far = 2.0 * near;  // |direction| < 2
     auto it =
         std::ranges::lower_bound(theirs, at - far, {}, [](const auto& cell) { return cell.first; });
     while (it != theirs.end() && it->first <= at + far &&

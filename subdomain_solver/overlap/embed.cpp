@@ -22,7 +22,7 @@ constexpr double nothing = 1.0e-9;
 /// Of a cell: points this near are one.
 constexpr double same = 1.0e-7;
 /// Of shape functions, which are up to 1.
-constexpr double rounding = 1.0e-12;
+constexpr double embed_rounding = 1.0e-12;
 /// Of three linear factors of a shape function, and one to weigh it; in either direction of a
 /// quadrilateral, one more.
 constexpr int degree = 4;
@@ -37,7 +37,7 @@ Row row_of(const Mesh& mesh, CellPlace cell, const Eigen::VectorXd& values) {
   double sum = 0.0;
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     const double value = values(static_cast<Eigen::Index>(a));
-    if (std::abs(value) < rounding) continue;
+    if (std::abs(value) < embed_rounding) continue;
     row.emplace_back(nodes[a], value);
     sum += value;
   }
@@ -51,7 +51,7 @@ Eigen::VectorXd shapes_at(const Mesh& mesh, CellPlace cell, const Eigen::Vector3
   return Eigen::Map<const Eigen::VectorXd>(n.data(), static_cast<Eigen::Index>(n.size()));
 }
 
-void append(const Row& row, const Eigen::Vector3d& at, int dim, EmbeddedSurface& to) {
+void append_row(const Row& row, const Eigen::Vector3d& at, int dim, EmbeddedSurface& to) {
   to.points.insert(to.points.end(), at.data(), at.data() + dim);
   for (const auto& [node, value] : row) {
     to.rows.columns.push_back(node);
@@ -122,7 +122,7 @@ class Embedder {
     for (const auto& [place, other] : here)
       if (equal(other, row)) return place;
     here.emplace_back(out_.rows.count(), row);
-    append(row, at, cells_.mesh().dim, out_);
+    append_row(row, at, cells_.mesh().dim, out_);
     return here.back().first;
   }
 
@@ -164,12 +164,12 @@ double distance(const BoundarySimplices& boundary, const Eigen::Vector3d& at) {
 }
 
 void add_point(const Mesh& mesh, const Eigen::Vector3d& at, CellPlace cell, EmbeddedSurface& to) {
-  append(row_of(mesh, cell, shapes_at(mesh, cell, at)), at, mesh.dim, to);
+  append_row(row_of(mesh, cell, shapes_at(mesh, cell, at)), at, mesh.dim, to);
 }
 
 void add_node(const Mesh& mesh, std::int32_t node, EmbeddedSurface& to) {
   const double* x = mesh.points.data() + std::ptrdiff_t{node} * mesh.dim;
-  append({{node, 1.0}}, {x[0], x[1], mesh.dim == 3 ? x[2] : 0.0}, mesh.dim, to);
+  append_row({{node, 1.0}}, {x[0], x[1], mesh.dim == 3 ? x[2] : 0.0}, mesh.dim, to);
 }
 
 std::vector<HeldNode> held_nodes(const Mesh& mesh, const MeshSimplices& cells) {

@@ -15,8 +15,8 @@ namespace {
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Of nodes of a mesh, some after each other for every simplex.
-PosedSurface view(const Mesh& mesh, std::span<const std::int32_t> nodes,
-                  std::span<const std::int32_t> offsets) {
+PosedSurface simplex_view(const Mesh& mesh, std::span<const std::int32_t> nodes,
+                          std::span<const std::int32_t> offsets) {
   return {mesh.dim, mesh.points, nodes, offsets};
 }
 
@@ -53,7 +53,7 @@ MeshSimplices::MeshSimplices(const Mesh& mesh) : mesh_(mesh), offsets_({0}) {
   double whole = 0.0;
   for (int i = 0; i < count(); ++i) whole += measure(simplex(i));
   spacing_ = std::pow(whole / mesh.cell_count(), 1.0 / mesh.dim);
-  build(tree_, view(mesh, nodes_, offsets_), 1.0e-6 * spacing_);
+  build(tree_, simplex_view(mesh, nodes_, offsets_), 1.0e-6 * spacing_);
 }
 
 void MeshSimplices::add_fan(CellPlace place) {
@@ -77,7 +77,9 @@ void MeshSimplices::add_fan(CellPlace place) {
   }
 }
 
-Simplex MeshSimplices::simplex(int i) const { return simplex_of(view(mesh_, nodes_, offsets_), i); }
+Simplex MeshSimplices::simplex(int i) const {
+  return simplex_of(simplex_view(mesh_, nodes_, offsets_), i);
+}
 
 BoundarySimplices::BoundarySimplices(const Mesh& of, const std::vector<Facet>& facets) : mesh(of) {
   for (std::size_t f = 0; f < facets.size(); ++f) {
@@ -87,12 +89,12 @@ BoundarySimplices::BoundarySimplices(const Mesh& of, const std::vector<Facet>& f
       facet.push_back(static_cast<std::int32_t>(f));
     }
   }
-  const PosedSurface surface = view(mesh, nodes, offsets);
+  const PosedSurface surface = simplex_view(mesh, nodes, offsets);
   build(tree, surface, 1.0e-6 * longest_edge(surface));
 }
 
 Simplex BoundarySimplices::simplex(int i) const {
-  return simplex_of(view(mesh, nodes, offsets), i);
+  return simplex_of(simplex_view(mesh, nodes, offsets), i);
 }
 
 /// Newton's method from the middle: one step where the cell is a parallelepiped or a simplex.

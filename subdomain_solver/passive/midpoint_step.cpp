@@ -13,7 +13,7 @@ namespace abut {
 
 namespace {
 
-constexpr int most_iterations = 100, most_halvings = 40;
+constexpr int most_midpoint_iterations = 100, most_halvings = 40;
 /// Corrections of a linear body: factors are of a length that differs by 1e-7 at most, and each of
 /// them gains as many digits.
 constexpr int most_corrections = 6;
@@ -195,7 +195,7 @@ std::optional<Failed> MidpointStep::iterate(const Motion& motion) {
   NewtonReport report{NewtonReport::End::not_converged};
   double before = std::numeric_limits<double>::infinity();
   bool afresh = false;
-  for (int small = 0; report.iterations < most_iterations; ++report.iterations) {
+  for (int small = 0; report.iterations < most_midpoint_iterations; ++report.iterations) {
     const double size = residual(), least = roundoff();
     if (!std::isfinite(size)) return not_finite(end_);
     if (size <= least) return std::nullopt;

@@ -15,7 +15,7 @@ namespace {
 constexpr int most_iterations = 100;
 /// Of the largest moment, to which the moment of the impulses is found; and at which it may stay
 /// where rounding lets it come no nearer.
-constexpr double tolerance = 1.0e-15, rounding = 1.0e-12;
+constexpr double tolerance = 1.0e-15, step_rounding = 1.0e-12;
 /// [rad] in one step. A turn that is not small beside one is no straight way at all.
 constexpr double most_turn = 1.0;
 /// [rad] below which chords are arcs to 1e-11 of a turn, and the difference is lost in rounding.
@@ -118,7 +118,7 @@ std::optional<Failed> RigidStep::step(Motion& motion, double begin, double end,
     const double change = (next - moment).norm();
     moment = next;
     const double scale = size + loading.norm();
-    if (change <= tolerance * scale || (change >= last && change <= rounding * scale)) break;
+    if (change <= tolerance * scale || (change >= last && change <= step_rounding * scale)) break;
     last = change;
   }
   now = turn(motion, given, moment);

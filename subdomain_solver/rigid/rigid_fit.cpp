@@ -21,7 +21,7 @@ Vector3d at_node(std::span<const double> field, int node, int dim) {
   return out;
 }
 
-double largest_difference(std::span<const double> a, std::span<const double> b) {
+double largest_misfit(std::span<const double> a, std::span<const double> b) {
   double most = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, std::abs(a[k] - b[k]));
   return most;
@@ -70,7 +70,7 @@ PoseFit fit_pose(const RigidModel& body, const FeModel& mesh,
   fit.pose.displacement = mean + arm_mean - fit.pose.attitude * arm_mean;
   std::vector<double> rigid(displacement.size());
   RigidMap(body, mesh.mesh()).displacement(body.coordinates(fit.pose), rigid);
-  fit.distance = largest_difference(rigid, displacement);
+  fit.distance = largest_misfit(rigid, displacement);
   return fit;
 }
 
@@ -92,7 +92,7 @@ TwistFit fit_twist(const RigidModel& body, const FeModel& mesh, const SparseMatr
   fit.twist.angular = body.angular_velocity(pose.attitude, angular);
   std::vector<double> rigid(velocity.size());
   RigidMap(body, mesh.mesh()).velocity(q, body.rates(pose, fit.twist), rigid);
-  fit.distance = largest_difference(rigid, velocity);
+  fit.distance = largest_misfit(rigid, velocity);
   return fit;
 }
 

@@ -21,7 +21,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// [rad] in one step, in which points go straight: arcs leave their chords by 1.3e-3 of the arm.
-constexpr double most_turn = 0.1;
+constexpr double most_tool_turn = 0.1;
 
 /// Arms of places [m] (n, dim), appended.
 void add_arms(const std::vector<double>& points, std::size_t dim, const Vector3d& about,
@@ -168,12 +168,12 @@ std::optional<Failed> RigidTool::turn_to(double time, const Load& mean) {
                   "the angle of the tool has no value: check its expression"};
   }
   const double turn = std::abs(angle - state_.angle);
-  if (length > 0.0 && turn > most_turn) {
+  if (length > 0.0 && turn > most_tool_turn) {
     return Failed{Failed::Cause::step_too_small, time,
                   fmt::format("the tool turns by {:.3g} rad in a step of {:.3g} s, in which its "
                               "points go straight, and {:g} rad are the most: give "
                               "model.rigid_tool.step at most {:.2g} s",
-                              turn, length, most_turn, 0.5 * length * most_turn / turn)};
+                              turn, length, most_tool_turn, 0.5 * length * most_tool_turn / turn)};
   }
   if (length > 0.0) {
     state_.before = state_.angle;

@@ -11,16 +11,16 @@ constexpr int first_sweeps = 15, most_sweeps = 4000;
 constexpr int most_newton = 30;
 constexpr int most_turns = 30;  // of the direction in which one row slips
 /// Of the largest force: changes, and residuals, that are rounding; residuals that are an answer.
-constexpr double settled = 1.0e-14, accurate = 1.0e-11;
+constexpr double friction_settled = 1.0e-14, accurate = 1.0e-11;
 /// The same: steps of Newton's method after which the next would be rounding.
-constexpr double converged = 1.0e-9;
+constexpr double friction_converged = 1.0e-9;
 /// Of the largest compliance: what rows that say the same give way by, each for itself.
-constexpr double softness = 1.0e-11;
+constexpr double friction_softness = 1.0e-11;
 /// Of the cone's radius: forces nearer to it than this are on it.
 constexpr double on_cone = 1.0e-9;
 
 using Tangent = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1>;
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;
+using PlaneSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;
 
 double radius(const FrictionRow& row, double normal) {
   return normal > 0.0 ? row.friction * normal : 0.0;
@@ -95,7 +95,7 @@ class OneRow {
       next.normalize();
       const double change = (next - way).norm();
       way = next;
-      if (change <= settled) break;
+      if (change <= friction_settled) break;
     }
     z(0) = pressing(gap, way);
     z.tail(tangents_) = row_.friction * z(0) * way;
@@ -105,7 +105,7 @@ class OneRow {
   Eigen::Index tangents_;
   double normal_;
   Tangent couple_;
-  Square give_;
+  PlaneSquare give_;
 };
 
 /// True: settled.
@@ -129,7 +129,7 @@ bool sweep(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionRo
       change = std::max(change, moved.lpNorm<Eigen::Infinity>());
     }
     if (!z.allFinite()) return false;
-    if (change <= settled * std::max(size, z.lpNorm<Eigen::Infinity>())) return true;
+    if (change <= friction_settled * std::max(size, z.lpNorm<Eigen::Infinity>())) return true;
   }
   return false;
 }
@@ -212,8 +212,8 @@ class Linearised {
     const Tangent lead = led(row, z);
     const double size = lead.norm();
     const Tangent way = lead / size;
-    const Square across = (Square::Identity(tangents, tangents) - way * way.transpose()) *
-                          std::min(1.0, radius(row, z(row.first)) / size);
+    const PlaneSquare across = (PlaneSquare::Identity(tangents, tangents) - way * way.transpose()) *
+                               std::min(1.0, radius(row, z(row.first)) / size);
     for (Eigen::Index p = 0; p < tangents; ++p) {
       b_.matrix.row(at + 1 + p).setZero();
       b_.rest(at + 1 + p) = 0.0;
@@ -223,7 +223,7 @@ class Linearised {
       b_.matrix.col(static_cast<Eigen::Index>(k)).segment(at + 1, tangents) += across * slips;
     }
     b_.matrix.block(at + 1, at + 1, tangents, tangents) +=
-        Square::Identity(tangents, tangents) - across;
+        PlaneSquare::Identity(tangents, tangents) - across;
     b_.matrix.col(at).segment(at + 1, tangents) -= row.friction * way;
     b_.rest.segment(at + 1, tangents) = -(across * (rho(row) * b.segment(row.first + 1, tangents)));
   }
@@ -252,10 +252,10 @@ bool newton(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionR
     if (!equations.step(b, buffers.trial)) return false;
     const double change = (buffers.trial - buffers.best).lpNorm<Eigen::Infinity>();
     const bool ended =
-        change <= converged * std::max(size, buffers.trial.lpNorm<Eigen::Infinity>());
+        change <= friction_converged * std::max(size, buffers.trial.lpNorm<Eigen::Infinity>());
     // Of bodies much lighter than they are stiff, forces that hold each other go on changing by
     // more; that is rounding where the equations hold to the last digit.
-    const double most = !ended ? settled : soft > 0.0 ? 1.0e-8 : accurate;
+    const double most = !ended ? friction_settled : soft > 0.0 ? 1.0e-8 : accurate;
     buffers.best = buffers.trial;
     hold_all(rows, buffers.best);
     if (friction_residual(a, b, rows, buffers.best) <= most) {
@@ -356,7 +356,7 @@ bool friction_forces(const Eigen::MatrixXd& a, const Vector& b, std::span<const 
   if (sweep(a, b, rows, first_sweeps, force, buffers)) return true;
   if (!force.allFinite()) force.setZero();
   if (newton(a, b, rows, 0.0, force, buffers)) return true;
-  const double soft = softness * a.diagonal().maxCoeff();
+  const double soft = friction_softness * a.diagonal().maxCoeff();
   if (newton(a, b, rows, soft, force, buffers)) return true;
   for (const Softened softened : {Softened::all, Softened::tangents})
     if (by_softness(a, b, rows, softened, force, buffers)) return true;

@@ -12,7 +12,7 @@ using Index = std::ptrdiff_t;
 
 // A tile of the product stays in registers, its rows of L in the first cache, a strip of L D in the
 // second.
-constexpr Index lanes = ABUT_LANES, tall = 2 * lanes, wide = 4;
+constexpr Index front_lanes = ABUT_LANES, tall = 2 * front_lanes, wide = 4;
 constexpr Index depth = 256, strip = 128;
 constexpr Index narrow = 8;  // columns that are eliminated one by one
 
@@ -35,10 +35,10 @@ void take_tile(const double* a, const double* b, Index d, double* c, Index strid
   Lanes sum[2][wide];
   for (Index j = 0; j < wide; ++j)
     for (Index i = 0; i < 2; ++i)
-      sum[i][j] = *reinterpret_cast<const MemoryLanes*>(c + i * lanes + j * stride);
+      sum[i][j] = *reinterpret_cast<const MemoryLanes*>(c + i * front_lanes + j * stride);
   for (Index k = 0; k < d; ++k, a += tall, b += wide) {
     const Lanes low = *reinterpret_cast<const MemoryLanes*>(a);
-    const Lanes high = *reinterpret_cast<const MemoryLanes*>(a + lanes);
+    const Lanes high = *reinterpret_cast<const MemoryLanes*>(a + front_lanes);
 #pragma GCC unroll 4
     for (Index j = 0; j < wide; ++j) {
       sum[0][j] -= low * b[j];
@@ -47,7 +47,7 @@ void take_tile(const double* a, const double* b, Index d, double* c, Index strid
   }
   for (Index j = 0; j < wide; ++j)
     for (Index i = 0; i < 2; ++i)
-      *reinterpret_cast<MemoryLanes*>(c + i * lanes + j * stride) = sum[i][j];
+      *reinterpret_cast<MemoryLanes*>(c + i * front_lanes + j * stride) = sum[i][j];
 }
 
 /// The same of a tile that reaches beyond the edges of c.

@@ -15,9 +15,9 @@ constexpr Eigen::Index block_size = 8;
 /// Up to here the dense problem costs nothing.
 constexpr Eigen::Index small_problem = 200;
 /// Residual of a mode in parts of its 1/lambda; the eigenvalue's error is of its square.
-constexpr double converged = 1.0e-9;
+constexpr double modes_converged = 1.0e-9;
 /// Residuals below this part of the largest 1/lambda are round-off.
-constexpr double roundoff = 1.0e-13;
+constexpr double mode_roundoff = 1.0e-13;
 /// Growth of the space between two looks at it, each of which costs a dense eigenproblem.
 constexpr double growth = 1.15;
 
@@ -59,7 +59,7 @@ class KrylovSpace {
     projected_.bottomRows(last_.cols()) = projected_.rightCols(last_.cols()).transpose().eval();
     largest_ = std::max(largest_, projected_.diagonal().maxCoeff());
     remove_components(space(), pencil_.mass, image);
-    last_ = orthonormal(image, pencil_.mass, roundoff * largest_);
+    last_ = orthonormal(image, pencil_.mass, mode_roundoff * largest_);
     const Eigen::MatrixXd beyond = pencil_.mass * image;
     coupling_ = last_.transpose() * beyond;
     coupled_ = from;
@@ -77,7 +77,7 @@ class KrylovSpace {
     Eigen::Index sound = 0, count = 0;
     const auto settled = [&](Eigen::Index k) {
       return exhausted() ||
-             residuals.col(k).norm() <= std::max(converged * inverse(k), roundoff * largest_);
+             residuals.col(k).norm() <= std::max(modes_converged * inverse(k), mode_roundoff * largest_);
     };
     while (sound < m && settled(sound)) ++sound;
     while (count < sound && count < wanted.count && inverse(count) * wanted.below > 1.0) ++count;

@@ -32,7 +32,7 @@ namespace {
 
 using Block = Eigen::Map<Eigen::MatrixXd>;
 
-DenseView view(Block& of) { return {of.data(), of.rows(), of.cols(), of.rows()}; }
+DenseView block_view(Block& of) { return {of.data(), of.rows(), of.cols(), of.rows()}; }
 
 class Multifrontal final : public LinearSolver {
  public:
@@ -107,7 +107,7 @@ class Multifrontal final : public LinearSolver {
       top -= index(from.rest()) * index(from.rest());
       add(from, stack_.data() + top, block, rest);
     }
-    if (!eliminate_(view(block), view(rest), space_.data())) return false;
+    if (!eliminate_(block_view(block), block_view(rest), space_.data())) return false;
     if (front.rest() == 0) return true;
     waiting_.push_back(&front);
     std::ranges::copy_n(rest_.data(), rest.size(), stack_.data() + top);
@@ -170,7 +170,7 @@ class Multifrontal final : public LinearSolver {
     values.topRows(front.columns) = own;
     values.bottomRows(front.rest()).setZero();
     Block block = block_of(front);
-    substitution_.forward(view(block), view(values));
+    substitution_.forward(block_view(block), block_view(values));
     own = values.topRows(front.columns);
     const int* row = fronts_.rows.data() + front.list;
     for (Eigen::Index c = 0; c < x.cols(); ++c)
@@ -182,7 +182,7 @@ class Multifrontal final : public LinearSolver {
     for (Eigen::Index c = 0; c < x.cols(); ++c)
       for (int k = 0; k < front.rows; ++k) values(k, c) = x(row[k], c);
     Block block = block_of(front);
-    substitution_.backward(view(block), view(values));
+    substitution_.backward(block_view(block), block_view(values));
     x.middleRows(front.first, front.columns) = values.topRows(front.columns);
   }
 

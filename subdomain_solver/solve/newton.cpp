@@ -10,7 +10,7 @@ namespace abut {
 
 namespace {
 
-constexpr int most_halvings = 8;
+constexpr int most_step_halvings = 8;
 /// Residuals of path-dependent materials may rise a little before they fall.
 constexpr double allowed_growth = 2.0;
 /// Roundoffs are told by the norms of their parts; what solving adds grows with the condition.
@@ -38,7 +38,7 @@ bool advance(Equations& equations, double size, Vector& x, ResidualUnits& units,
   auto& [r, dx, trial] = vectors;
   double part = 1.0;
   bool admissible = false;
-  for (int halving = 0; halving <= most_halvings; ++halving, part *= 0.5) {
+  for (int halving = 0; halving <= most_step_halvings; ++halving, part *= 0.5) {
     trial = x + part * dx;
     admissible = equations.residual(trial, r, units);
     if (admissible && r.norm() <= allowed_growth * size) break;

@@ -14,7 +14,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::adjusted_surfaces_tests {
 namespace {
 
 /// Two blocks with a bump that fit each other, but for their facets and for `deep` [m].
@@ -222,4 +222,4 @@ TEST(AdjustRefusals, WallsAndBars) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::adjusted_surfaces_tests

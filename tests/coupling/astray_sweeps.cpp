@@ -11,7 +11,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::astray_sweeps_tests {
 namespace {
 
 std::string slow_bolted_joint() {
@@ -42,4 +42,4 @@ TEST(AstraySweeps, LetNoLaterOnePass) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::astray_sweeps_tests

@@ -10,7 +10,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::chatter_remedies_tests {
 namespace {
 
 constexpr double published_digits = 0.1;  // relative: two digits are given, and single contacts
@@ -125,4 +125,4 @@ TEST(NumericalDissipation, OfImplicitBarsLowersTheNoiseAtLittleEnergy) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::chatter_remedies_tests

@@ -11,7 +11,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::closing_speeds_tests {
 namespace {
 
 struct Case {
@@ -88,4 +88,4 @@ TEST(ClosingSpeeds, AreAlongTheNormal) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::closing_speeds_tests

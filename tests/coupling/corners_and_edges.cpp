@@ -13,7 +13,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::corners_and_edges_tests {
 namespace {
 
 constexpr double speed = 0.01;  // of that of sound
@@ -271,4 +271,4 @@ TEST(OneNodeBetweenTwo, LiesAcrossAJoint) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::corners_and_edges_tests

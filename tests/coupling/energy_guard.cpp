@@ -10,7 +10,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::energy_guard_tests {
 namespace {
 
 using Verdict = EnergyGuard::Verdict;
@@ -264,4 +264,4 @@ TEST(EnergyGuard, IsSetByItsKey) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::energy_guard_tests

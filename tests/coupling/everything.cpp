@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::everything_tests {
 namespace {
 
 struct Case {
@@ -132,4 +132,4 @@ TEST(ChainsOfFive, SweepAtMostTwiceWhateverTheirMassesAndWindows) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::everything_tests

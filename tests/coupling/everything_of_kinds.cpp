@@ -11,7 +11,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::everything_of_kinds_tests {
 namespace {
 
 struct Kind {
@@ -134,4 +134,4 @@ TEST(EverythingOfRings, IsThePairsThatTouchBitForBit) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::everything_of_kinds_tests

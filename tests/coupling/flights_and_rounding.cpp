@@ -15,7 +15,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/solids.hpp"
 
-namespace abut {
+namespace abut::flights_and_rounding_tests {
 namespace {
 
 constexpr int steps = 60;
@@ -238,4 +238,4 @@ TEST(ToolWork, IsTheEnergyOfWhatItPressesInAnyWindows) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::flights_and_rounding_tests

@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::friction_on_corners_tests {
 namespace {
 
 struct Corner {
@@ -78,4 +78,4 @@ TEST_P(FrictionOnCorners, TellsJustWhatBodiesLose) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::friction_on_corners_tests

@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::friction_scaling_tests {
 namespace {
 
 struct Speeds {
@@ -68,4 +68,4 @@ TEST(FrictionScaling, OfAllLengthsAndForcesChangesNothing) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::friction_scaling_tests

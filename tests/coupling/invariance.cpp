@@ -9,7 +9,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::invariance_tests {
 namespace {
 
 const RunResult& reference() {
@@ -149,4 +149,4 @@ TEST(Start, BarsThatPartNeverMeet) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::invariance_tests

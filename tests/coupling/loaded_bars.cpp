@@ -11,7 +11,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::loaded_bars_tests {
 namespace {
 
 /// Keys of a body, put into a scene's text.
@@ -121,4 +121,4 @@ TEST(LoadedBar, HasNoExactSolution) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::loaded_bars_tests

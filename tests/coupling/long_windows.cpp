@@ -13,7 +13,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::long_windows_tests {
 namespace {
 
 constexpr double two_substeps = 4.0e-7;  // [s]
@@ -115,4 +115,4 @@ TEST(LongWindows, PressingOfAShortBarThatTouchesIsAsInShortOnes) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::long_windows_tests

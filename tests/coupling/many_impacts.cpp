@@ -12,7 +12,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::many_impacts_tests {
 namespace {
 
 /// A bar of unit length, wave speed and impedance with one side in contact, or both.
@@ -228,4 +228,4 @@ TEST(TouchingBars, PassTheBlowOnForAnyMeshWindowAndForm) {  // catalogue A6
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::many_impacts_tests

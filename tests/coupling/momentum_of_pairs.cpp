@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::momentum_of_pairs_tests {
 namespace {
 
 constexpr double speed = 0.01;  // of that of sound
@@ -120,4 +120,4 @@ TEST(MomentumOfPairs, IsExactWhereAJointAndAContactMeet) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::momentum_of_pairs_tests

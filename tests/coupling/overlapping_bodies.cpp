@@ -17,7 +17,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::overlapping_bodies_tests {
 namespace {
 
 double sum(const RunResult& run, const std::string& what) {
@@ -180,4 +180,4 @@ TEST(OverlappingBodies, LetPulsesThrough) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::overlapping_bodies_tests

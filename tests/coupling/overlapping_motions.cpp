@@ -14,7 +14,7 @@
 
 #include "tests/support/overlapping_pair.hpp"
 
-namespace abut {
+namespace abut::overlapping_motions_tests {
 namespace {
 
 const std::string motions = "overlap: {exchange: motions}";
@@ -230,4 +230,4 @@ TEST(OverlappingMotions, OfOthersGainEnergy) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::overlapping_motions_tests

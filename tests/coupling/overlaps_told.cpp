@@ -11,7 +11,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::overlaps_told_tests {
 namespace {
 
 /// A brick that flies down onto a plate, and a contact on sides that do not meet.
@@ -176,4 +176,4 @@ TEST(PassingThrough, IsToldOfBarsThatNobodyJoins) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::overlaps_told_tests

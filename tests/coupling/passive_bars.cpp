@@ -8,7 +8,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::passive_bars_tests {
 namespace {
 
 struct Crush {
@@ -89,4 +89,4 @@ TEST(PassiveBars, AreCrushedToTheEndAndGainNothing) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::passive_bars_tests

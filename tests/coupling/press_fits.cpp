@@ -11,7 +11,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::press_fits_tests {
 namespace {
 
 /// Two bars between walls, drawn a hundredth of a metre into each other.
@@ -203,4 +203,4 @@ TEST(PressFits, WhatIsNoFitIsRefused) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::press_fits_tests

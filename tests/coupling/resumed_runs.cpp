@@ -13,7 +13,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::resumed_runs_tests {
 namespace {
 
 /// The state of a whole run between two windows.
@@ -166,4 +166,4 @@ std::vector<Cut> cuts() {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::resumed_runs_tests

@@ -8,7 +8,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::rigid_on_rigid_tests {
 namespace {
 
 /// Of the largest momentum of a body: impulses act on both alike.
@@ -134,4 +134,4 @@ TEST(RigidOnRigid, RestsOnATool) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::rigid_on_rigid_tests

@@ -9,7 +9,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::robin_tests {
 namespace {
 
 SceneText unequal(const std::string& layer, double window) {
@@ -85,4 +85,4 @@ TEST(ProbedFactor, IsExactInWindowsOfAStepAndBetterThanAHalfInLongerOnes) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::robin_tests

@@ -11,7 +11,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::rows_of_points_tests {
 namespace {
 
 /// A block of so many cells across and two upwards, with a port, face.
@@ -164,4 +164,4 @@ TEST(RowsOfPoints, AreRefusedWhereTheyWouldMissOrDoNothing) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::rows_of_points_tests

@@ -10,7 +10,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::rungs_in_contact_tests {
 namespace {
 
 /// One window of forces on the left end of a bar that is fixed on the right.
@@ -240,4 +240,4 @@ TEST(RigidBlock, IsSlowedByABarAsByADashpot) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::rungs_in_contact_tests

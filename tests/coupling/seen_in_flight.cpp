@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::seen_in_flight_tests {
 namespace {
 
 constexpr double window = 1.0e-5, end = 1.0e-3;  // [s]
@@ -102,4 +102,4 @@ TEST(PressedNot, AWayThatEndsShortOfTheBlockPressesNothing) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::seen_in_flight_tests

@@ -11,7 +11,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::self_contact_tests {
 namespace {
 
 /// Of the energy at the start: the account of a step may gain a thousandth of it before it is
@@ -161,4 +161,4 @@ TEST(SelfContact, KeepsATwistedMatOffItself) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::self_contact_tests

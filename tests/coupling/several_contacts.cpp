@@ -12,7 +12,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::several_contacts_tests {
 namespace {
 
 using ResultPtr = ResultPtr;
@@ -243,4 +243,4 @@ TEST(RestingContact, ABarOnAWallUnderItsWeightStaysAndPressesWithIt) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::several_contacts_tests

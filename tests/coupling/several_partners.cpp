@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::several_partners_tests {
 namespace {
 
 constexpr double speed = 0.01;  // of that of sound
@@ -116,4 +116,4 @@ TEST(SeveralPartners, AMirrorAlongTheDiagonalChangesNothing) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::several_partners_tests

@@ -20,7 +20,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::split_bodies_tests {
 namespace {
 
 namespace fs = std::filesystem;
@@ -354,4 +354,4 @@ TEST(SplitBodies, WhatCannotBeDividedIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::split_bodies_tests

@@ -13,7 +13,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::stabilised_statics_tests {
 namespace {
 
 /// Blocks of 1 m on each other, the lowest held, pressed by a load on the last one that grows until
@@ -268,4 +268,4 @@ TEST(StabilisedStatics, KeysWithoutEffectAreRefused) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::stabilised_statics_tests

@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::stacks_at_rest_tests {
 namespace {
 
 /// Blocks of 1 x 0.5 on the ground, masses in units of 500 kg from the lowest up; the lighter of
@@ -107,4 +107,4 @@ TEST(StacksAtRest, BearTheirWeight) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::stacks_at_rest_tests

@@ -13,7 +13,7 @@
 #include "tests/support/solid_texts.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::starts_of_surfaces_tests {
 namespace {
 
 SolidText solid(const std::string& name, const std::vector<double>& position) {
@@ -168,4 +168,4 @@ interfaces: {met: {sides: [held.face, pressed.face], contact: {}}}
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::starts_of_surfaces_tests

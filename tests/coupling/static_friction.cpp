@@ -11,7 +11,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::static_friction_tests {
 namespace {
 
 struct Friction {
@@ -108,4 +108,4 @@ TEST(StaticFriction, AddsNoSweepWhereItDiffersFromThatOfWhatSlides) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::static_friction_tests

@@ -9,7 +9,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::sticking_areas_tests {
 namespace {
 
 constexpr int cells = 8;
@@ -88,4 +88,4 @@ TEST(StickingArea, IsThePartThatIsOnARoughTool) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::sticking_areas_tests

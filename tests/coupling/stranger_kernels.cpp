@@ -13,7 +13,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::stranger_kernels_tests {
 namespace {
 
 constexpr double mass = 30.0;    // [kg]
@@ -218,4 +218,4 @@ TEST(StrangerTie, WhoseKernelIsForOtherForcesIsRefusedByNames) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::stranger_kernels_tests

@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::surface_combinations_tests {
 namespace {
 
 struct Pair {
@@ -114,4 +114,4 @@ TEST_P(SurfacePair, TouchesAndParts) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_combinations_tests

@@ -13,7 +13,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::surface_friction_tests {
 namespace {
 
 struct Pair {
@@ -132,4 +132,4 @@ TEST_P(SurfaceFriction, TakesNothingWhereAllSticks) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_friction_tests

@@ -15,7 +15,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_tools_tests {
 namespace {
 
 using Points = std::vector<std::array<double, 3>>;
@@ -149,4 +149,4 @@ TEST(SurfaceTools, DoWhatToolsWithCellsDo) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_tools_tests

@@ -13,7 +13,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::surfaces_in_contact_tests {
 namespace {
 
 struct Block {
@@ -286,4 +286,4 @@ TEST(SurfacePatch, PassesAConstantPressure) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surfaces_in_contact_tests

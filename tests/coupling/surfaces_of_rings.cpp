@@ -11,7 +11,7 @@
 #include "base/error.hpp"
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::surfaces_of_rings_tests {
 namespace {
 
 struct Rings {
@@ -120,4 +120,4 @@ TEST(SurfaceRingsRefused, BesideAPlaneBody) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surfaces_of_rings_tests

@@ -12,7 +12,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::surfaces_with_edges_tests {
 namespace {
 
 struct Fall {
@@ -155,4 +155,4 @@ TEST(SpinningCorner, HoldsWhileItTurns) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surfaces_with_edges_tests

@@ -9,7 +9,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::surfaces_with_zones_tests {
 namespace {
 
 /// A disk that falls on a plate, along it too.
@@ -55,4 +55,4 @@ TEST(ContactZone, HoldsWhatContactReaches) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surfaces_with_zones_tests

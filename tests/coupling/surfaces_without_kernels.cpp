@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::surfaces_without_kernels_tests {
 namespace {
 
 const std::string folder = ABUT_SOURCE_DIR "/configs/contact/";
@@ -89,4 +89,4 @@ TEST(NoRoomForKernels, ContactConvergesWhicheverSideIsSofter) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surfaces_without_kernels_tests

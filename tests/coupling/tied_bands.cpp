@@ -18,7 +18,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::tied_bands_tests {
 namespace {
 
 /// Two slabs that a face of `across` cells in each direction joins, of unit modulus and density,
@@ -233,4 +233,4 @@ TEST(TiedBands, RigidAndModalBodiesConverge) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_bands_tests

@@ -14,7 +14,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::tied_bar_rows_tests {
 namespace {
 
 // ---- strained from the start --------------------------------------------------------------------
@@ -208,4 +208,4 @@ TEST(TiedBars, OfClampedStepsKeepTheirEnergy) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_bar_rows_tests

@@ -17,7 +17,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::tied_bars_tests {
 namespace {
 
 /// Displacements of all nodes at the end, left to right, a joint's node once.
@@ -376,4 +376,4 @@ TEST(TiedBars, ToAWallAreFixedThere) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_bars_tests

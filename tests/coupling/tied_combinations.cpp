@@ -13,7 +13,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::tied_combinations_tests {
 namespace {
 
 struct Law {
@@ -268,4 +268,4 @@ TEST(TiedCombinations, DividedStaticBodiesBendAsWholeOnes) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_combinations_tests

@@ -12,7 +12,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::tied_contact_tests {
 namespace {
 
 /// A unit block of cells above a base, in parts: cut along x and y, the lowest row of them whole
@@ -257,4 +257,4 @@ TEST(TiedContact, LightLoosePartsHaveKernels) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_contact_tests

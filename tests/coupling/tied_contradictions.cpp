@@ -12,7 +12,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::tied_contradictions_tests {
 namespace {
 
 /// How fast what is given moves [m/s], and its distance at the end of the first window [m].
@@ -193,4 +193,4 @@ TEST(TiedContradictions, MeshesThatFollowOneCurveGoOn) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_contradictions_tests

@@ -8,7 +8,7 @@
 
 #include "tests/support/overlapping_pair.hpp"
 
-namespace abut {
+namespace abut::tied_dashpots_tests {
 namespace {
 
 /// Halves that meet in the middle. Unit density, a wave speed and a face of about one.
@@ -57,4 +57,4 @@ TEST(TiedDashpots, LoseWhatUnlikeMeshesCannotFollow) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_dashpots_tests

@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::tied_passively_tests {
 namespace {
 
 struct Halves {
@@ -128,4 +128,4 @@ INSTANTIATE_TEST_SUITE_P(Schemes, JoinedAndHit,
                          [](const auto& p) { return p.param.substr(0, p.param.find(':')); });
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_passively_tests

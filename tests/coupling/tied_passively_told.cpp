@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::tied_passively_told_tests {
 namespace {
 
 /// What the ports of a body do to it in windows that are gone passively, and what joints tell.
@@ -175,4 +175,4 @@ TEST(TiedPassivelyTold, ReturnWhenTheyFlyAgain) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_passively_told_tests

@@ -19,7 +19,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::tied_second_order_tests {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -333,4 +333,4 @@ TEST(TiedSecondOrder, CurvedJointsKeepTheOrder) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_second_order_tests

@@ -18,7 +18,7 @@
 #include "coordinator/coupling/tie_rows.hpp"
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::tied_starts_tests {
 namespace {
 
 /// [J] by windows: what all bodies have and have turned into heat, less what was done on them.
@@ -249,4 +249,4 @@ TEST(TiedStartsBesideContact, NoImpulseIsLost) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_starts_tests

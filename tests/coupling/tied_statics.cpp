@@ -17,7 +17,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::tied_statics_tests {
 namespace {
 
 /// Two calls of all bodies: one tells what is missing, the next is exact.
@@ -232,4 +232,4 @@ TEST(TiedStatics, NetThatNothingHoldsIsRefused) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_statics_tests

@@ -17,7 +17,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::tied_surfaces_tests {
 namespace {
 
 using Ties = std::vector<std::pair<std::string, std::string>>;
@@ -433,4 +433,4 @@ TEST(TiedSurfaces, FiniteStrainConverges) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tied_surfaces_tests

@@ -9,7 +9,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::trials_ahead_tests {
 namespace {
 
 struct Pair {
@@ -69,4 +69,4 @@ TEST(TrialsAhead, OneSweepPerWindowOfEveryPair) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::trials_ahead_tests

@@ -11,7 +11,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::turning_tools_tests {
 namespace {
 
 constexpr double gravity = 9.81;
@@ -312,4 +312,4 @@ TEST(TurningTools, CopiesTurnAboutTheirOwnPoints) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::turning_tools_tests

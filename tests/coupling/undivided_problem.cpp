@@ -16,7 +16,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::undivided_problem_tests {
 namespace {
 
 constexpr int elements = 40;   // of each bar, 1 m and 1 kg each; wave speed 1 m/s
@@ -165,4 +165,4 @@ TEST(UndividedProblem, ThreeBarsAreOneBarWhateverTheRoles) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::undivided_problem_tests

@@ -12,7 +12,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::unlike_steps_tests {
 namespace {
 
 constexpr double speed = 0.01;  // of that of sound
@@ -113,4 +113,4 @@ TEST(UnlikeSteps, LetTheSideOfTheShorterOnesFindTheContact) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::unlike_steps_tests

@@ -10,7 +10,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::windows_and_roles_tests {
 namespace {
 
 using ResultPtr = ResultPtr;
@@ -296,4 +296,4 @@ TEST(Policies, HalveShortensWindowsUntilItGivesUp) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::windows_and_roles_tests

@@ -57,7 +57,7 @@ double crossing_of(const RandomBody& bar) {
   return bar.kind == Kind::tool ? INFINITY : bar.shape.shortest_edge() / bar.wave_speed();
 }
 
-void choose_steps(Draw& draw, RandomScene& scene) {
+void choose_bar_steps(Draw& draw, RandomScene& scene) {
   double crossing = INFINITY, slowest = 0.0;
   for (const RandomBody& bar : scene.bodies) {
     if (bar.kind == Kind::tool) continue;
@@ -109,7 +109,7 @@ RandomScene random_bars(Draw& draw, std::uint64_t seed, double speed) {
     if (scene.bodies[k - 1].kind != Kind::tool && scene.bodies[k].kind != Kind::tool &&
         draw.chance(0.25))
       tie(scene, k - 1, k);
-  choose_steps(draw, scene);
+  choose_bar_steps(draw, scene);
   const int flight = draw.whole(2, 20);
   put_in_a_row(draw, scene, flight);
   scene.end = scene.window * std::clamp(std::ceil(scene.end / scene.window) + flight, 20.0, 400.0);

@@ -96,7 +96,7 @@ std::string head_of(const Shape& shape, const std::vector<Part>& parts, bool bot
 }
 
 /// Facets at the bottom are of both groups.
-std::vector<Part> parts_of(const Shape& shape) {
+std::vector<Part> gmsh_parts(const Shape& shape) {
   const std::vector<Facet> low = shape.bottom();
   const Middles middles(shape);
   std::vector<Part> parts = {{"skin", {skin_group}, {}}};
@@ -118,7 +118,7 @@ std::vector<Part> parts_of(const Shape& shape) {
 }  // namespace
 
 std::string Shape::gmsh() const {
-  const std::vector<Part> parts = parts_of(*this);
+  const std::vector<Part> parts = gmsh_parts(*this);
   std::string out = head_of(*this, parts, has_bottom());
   out += fmt::format("$Nodes\n1 {0} 1 {0}\n{1} 1 0 {0}\n", points.size(), dim);
   for (std::size_t n = 1; n <= points.size(); ++n) out += fmt::format("{}\n", n);

@@ -28,7 +28,7 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
-namespace abut {
+namespace abut::allocations_test {
 namespace {
 
 Waveform wave(int width) {
@@ -133,4 +133,4 @@ TEST(Allocations, APassiveStepThatIsWrittenAndReadTakesNoMemory) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::allocations_test

@@ -5,7 +5,7 @@
 #include "contract/no_answer.hpp"
 #include "tests/transport/loop.hpp"
 
-namespace abut {
+namespace abut::at_most_once_test {
 namespace {
 
 /// Windows with one rewind each; returns the last response's end displacement.
@@ -144,4 +144,4 @@ TEST(Transport, ABodyWithoutAKernelSaysSoInEitherPlacement) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::at_most_once_test

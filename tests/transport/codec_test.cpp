@@ -15,7 +15,7 @@
 #include "tests/support/fakes.hpp"
 #include "tests/transport/wire_bytes.hpp"
 
-namespace abut {
+namespace abut::codec_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -486,4 +486,4 @@ TEST(Frame, EveryFlippedBitAndEveryCutIsRecognised) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::codec_test

@@ -11,7 +11,7 @@
 #include "base/error.hpp"
 #include "tests/transport/loop.hpp"
 
-namespace abut {
+namespace abut::fields_test {
 namespace {
 
 std::string error_of(const std::function<void()>& act) { return run_error(act, true); }
@@ -105,4 +105,4 @@ TEST(RemoteFields, ADescriptionWithUnsoundFieldsIsRefused) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fields_test

@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "tests/transport/launched.hpp"
 
-namespace abut {
+namespace abut::group_test {
 namespace {
 
 class GroupTest : public LaunchTest {
@@ -159,4 +159,4 @@ TEST_F(GroupTest, AnInterruptEndsTheWaitAndTheProcess) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::group_test

@@ -14,7 +14,7 @@
 #include "messaging/zmq_channel.hpp"
 #include "messaging/zmq_dealer.hpp"
 
-namespace abut {
+namespace abut::hub_test {
 namespace {
 
 // [B] far above a Hello, below the limit of a frame
@@ -108,4 +108,4 @@ TEST(Hub, WhatWaitsOfAllPeersTogetherIsBounded) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::hub_test

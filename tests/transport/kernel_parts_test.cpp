@@ -11,7 +11,7 @@
 #include "contract/kernel_parts.hpp"
 #include "tests/transport/loop.hpp"
 
-namespace abut {
+namespace abut::kernel_parts_test {
 namespace {
 
 Limits frames_of(std::size_t bytes) {
@@ -140,4 +140,4 @@ TEST(KernelParts, ThatDoNotFollowEachOtherAreRefused) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::kernel_parts_test

@@ -20,7 +20,7 @@
 #include "messaging/zmq_channel.hpp"
 #include "messaging/zmq_dealer.hpp"
 
-namespace abut {
+namespace abut::keys_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -306,4 +306,4 @@ TEST(Access, WithoutKeysASolverGoesToNoOtherMachineUnlessTold) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::keys_test

@@ -20,7 +20,7 @@
 #include "messaging/zmq_channel.hpp"
 #include "tests/transport/launched.hpp"
 
-namespace abut {
+namespace abut::launch_test {
 namespace {
 
 TEST_F(LaunchTest, SpawnedBodiesReachTheStateOfLocalOnes) {
@@ -348,4 +348,4 @@ TEST(LaunchedProcess, DiesWithTheCoordinatorThatWasKilled) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::launch_test

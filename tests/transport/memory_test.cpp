@@ -14,7 +14,7 @@
 
 #include "tests/transport/launched.hpp"
 
-namespace abut {
+namespace abut::memory_test {
 namespace {
 
 class MemoryTest : public LaunchTest {
@@ -148,4 +148,4 @@ TEST_F(MemoryTest, OneThatIsKilledWithHalfAMessageReadIsFoundAtOnce) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::memory_test

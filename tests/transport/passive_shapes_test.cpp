@@ -15,7 +15,7 @@
 #include "tests/transport/shape_dice.hpp"
 #include "tests/transport/wire_bytes.hpp"
 
-namespace abut {
+namespace abut::passive_shapes_test {
 namespace {
 
 /// A body with some ports, a step, and the reply to it.
@@ -284,4 +284,4 @@ TEST(PassiveShapes, AnythingThatParsesIsTakenOrRefusedInWords) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::passive_shapes_test

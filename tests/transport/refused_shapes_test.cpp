@@ -11,7 +11,7 @@
 #include "tests/transport/shape_dice.hpp"
 #include "tests/transport/wire_bytes.hpp"
 
-namespace abut {
+namespace abut::refused_shapes_test {
 namespace {
 
 /// A plane body of three points with one partner of four, and messages that fit it.
@@ -252,4 +252,4 @@ TEST(Shapes, KernelsThatDoNotFitAreRefusedByFieldName) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::refused_shapes_test

@@ -13,7 +13,7 @@
 #include "tests/support/star_body.hpp"
 #include "tests/transport/loop.hpp"
 
-namespace abut {
+namespace abut::remote_passive_test {
 namespace {
 
 using Star = LoopOf<StarBody>;
@@ -429,4 +429,4 @@ TEST(RemotePassive, AComplianceThatNoFrameHoldsIsRefusedBeforeItIsMade) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::remote_passive_test

@@ -13,7 +13,7 @@
 #include "base/error.hpp"
 #include "tests/transport/loop.hpp"
 
-namespace abut {
+namespace abut::server_test {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -409,4 +409,4 @@ TEST(Serve, NoCoordinatorWithinPatienceIsNamed) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::server_test

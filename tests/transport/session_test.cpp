@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "tests/transport/loop.hpp"
 
-namespace abut {
+namespace abut::session_test {
 namespace {
 
 Frame sealed(const google::protobuf::MessageLite& message) {
@@ -177,4 +177,4 @@ TEST(Remote, AKernelThatNoFrameHoldsIsRefusedBeforeItIsMade) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::session_test

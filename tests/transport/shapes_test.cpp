@@ -15,7 +15,7 @@
 #include "tests/transport/shape_dice.hpp"
 #include "tests/transport/wire_bytes.hpp"
 
-namespace abut {
+namespace abut::shapes_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -267,4 +267,4 @@ TEST(Shapes, AnythingThatParsesIsTakenOrRefusedInWords) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::shapes_test

@@ -21,7 +21,7 @@
 
 #include "messaging/shared_link.hpp"
 
-namespace abut {
+namespace abut::shared_link_test {
 namespace {
 
 using Frame = std::vector<std::byte>;
@@ -250,4 +250,4 @@ TEST(SharedLink, WhateverStandsInTheMemoryEndsInAFrameAFaultOrAWaitInVain) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::shared_link_test

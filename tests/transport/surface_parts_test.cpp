@@ -7,7 +7,7 @@
 
 #include "messaging/codec/parts.hpp"
 
-namespace abut {
+namespace abut::surface_parts_test {
 namespace {
 
 /// Two facets of three nodes each in the plane, divided at their middles.
@@ -46,4 +46,4 @@ TEST(SurfaceParts, ArriveAndAreRefusedWhereTheyDoNotFit) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_parts_test

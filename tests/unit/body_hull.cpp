@@ -10,7 +10,7 @@
 #include "contract/subdomain.hpp"
 #include "coordinator/body_hull.hpp"
 
-namespace abut {
+namespace abut::body_hull_tests {
 namespace {
 
 /// A unit cube of one cell.
@@ -58,4 +58,4 @@ TEST(BodyHull, DividesQuadrilateralsAsPortsDo) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::body_hull_tests

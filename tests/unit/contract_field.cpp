@@ -8,7 +8,7 @@
 
 #include "contract/field.hpp"
 
-namespace abut {
+namespace abut::contract_field_tests {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -73,4 +73,4 @@ TEST(Field, TheFirstValueThatIsNotFiniteIsFound) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::contract_field_tests

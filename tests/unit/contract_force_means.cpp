@@ -10,7 +10,7 @@
 #include "contract/waveform.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::contract_force_means_tests {
 namespace {
 
 std::vector<double> levels(double begin, double end, int parts) {
@@ -75,4 +75,4 @@ TEST(LinearForce, IsLinearBetweenItsTimes) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::contract_force_means_tests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace abut {
+namespace abut::contract_kernel_tests {
 namespace {
 
 /// Three substeps, patterns of 2 values and responses of 3; every entry is another number.
@@ -54,4 +54,4 @@ TEST(ContractKernel, ForcesThatAreZeroAddNothing) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::contract_kernel_tests

@@ -10,7 +10,7 @@
 #include "contract/substeps.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::contract_substeps_tests {
 namespace {
 
 TEST(Substeps, AreWholeStepsThatEndOnTheWindowsEnd) {
@@ -81,4 +81,4 @@ TEST(Substeps, KnowTheirOwnTimes) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::contract_substeps_tests

@@ -11,7 +11,7 @@
 #include "contract/waveform.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::contract_waveform_tests {
 namespace {
 
 Waveform uneven(ForceSupport support) {
@@ -156,4 +156,4 @@ TEST(Outcome, EveryCauseHasItsWords) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::contract_waveform_tests

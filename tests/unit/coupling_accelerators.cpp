@@ -7,7 +7,7 @@
 #include "coordinator/coupling/port_jacobian.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::coupling_accelerators_tests {
 namespace {
 
 Eigen::VectorXd one(double x) { return Eigen::VectorXd::Constant(1, x); }
@@ -174,4 +174,4 @@ TEST(Toeplitz, SolvesWhatTheMatrixMultiplies) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::coupling_accelerators_tests

@@ -13,7 +13,7 @@
 
 #include "tests/support/scripted.hpp"
 
-namespace abut {
+namespace abut::coupling_broad_phase_tests {
 namespace {
 
 /// Boxes of cubes somewhere, each of a body; in two dimensions squares.
@@ -117,4 +117,4 @@ TEST(BroadPhase, FlightsEndBeforeAPairCanMeet) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::coupling_broad_phase_tests

@@ -14,7 +14,7 @@
 #include "tests/support/scripted.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::coupling_criteria_tests {
 namespace {
 
 /// [s] Of contact that no kick layer has left yet.
@@ -268,4 +268,4 @@ TEST(Horizon, SweptBoxesThatMeetInAnyPartAreSeen) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::coupling_criteria_tests

@@ -15,7 +15,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::coupling_jacobian_tests {
 namespace {
 
 struct Pair {
@@ -283,4 +283,4 @@ TEST(UnilateralSolution, MakesForcesAndGapsComplementary) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::coupling_jacobian_tests

@@ -11,7 +11,7 @@
 #include "contract/force_means.hpp"
 #include "tests/support/scripted.hpp"
 
-namespace abut {
+namespace abut::coupling_kernel_support_tests {
 namespace {
 
 constexpr int steps = 7, width = 3;
@@ -109,4 +109,4 @@ TEST(KernelSupport, OfWhatIsRefusedBothBodiesAreNamed) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::coupling_kernel_support_tests

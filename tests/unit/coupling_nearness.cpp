@@ -15,7 +15,7 @@
 #include "tests/support/surfaces.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::coupling_nearness_tests {
 namespace {
 
 constexpr int facets = 400;  // of a ring
@@ -180,4 +180,4 @@ TEST(Nearness, IsThatOfTheBeginWhereAnAttemptWasTakenBack) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::coupling_nearness_tests

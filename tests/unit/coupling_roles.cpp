@@ -17,7 +17,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/scripted.hpp"
 
-namespace abut {
+namespace abut::coupling_roles_tests {
 namespace {
 
 int kinematic_of(const BarText& left, const BarText& right) {
@@ -218,4 +218,4 @@ TEST(Roles, ThatTheSceneFixesInACircleAreRefusedBeforeTheRun) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::coupling_roles_tests

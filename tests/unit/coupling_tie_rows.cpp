@@ -18,7 +18,7 @@
 #include "surface/whole_facet.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::coupling_tie_rows_tests {
 namespace {
 
 using Eigen::Vector2d;
@@ -302,4 +302,4 @@ TEST(TieRows, OfRigidPartnersHoldEveryNode) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::coupling_tie_rows_tests

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace abut {
+namespace abut::dense_tests {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
@@ -128,4 +128,4 @@ TEST(Dense, PivotsOfLuMultiplyToTheDeterminant) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::dense_tests

@@ -22,7 +22,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_abaqus_tests {
 namespace {
 
 using Point = std::array<double, 3>;
@@ -434,4 +434,4 @@ TEST(AbaqusFile, EveryTruncationIsAMeshOrRefused) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_abaqus_tests

@@ -19,7 +19,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_abaqus_collapsed_tests {
 namespace {
 
 using Point = std::array<double, 3>;
@@ -211,4 +211,4 @@ TEST(AbaqusCells, ThatAreInvertedAreNamedWithTheirLines) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_abaqus_collapsed_tests

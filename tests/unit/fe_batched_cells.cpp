@@ -13,7 +13,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_batched_cells_tests {
 namespace {
 
 std::vector<BatchCase> cases(const std::vector<std::string>& laws) {
@@ -243,4 +243,4 @@ TEST(Hourglass, EveryFieldButRigidMotionHasEnergy) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_batched_cells_tests

@@ -13,7 +13,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_batched_plasticity_tests {
 namespace {
 
 struct Case {
@@ -183,4 +183,4 @@ TEST_P(BatchedPlasticity, FrequenciesHaveABoundThroughTheFlow) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_batched_plasticity_tests

@@ -12,7 +12,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_batched_tangents_tests {
 namespace {
 
 /// Batches that are not full, and more cells than are asked at a time.
@@ -151,4 +151,4 @@ TEST(LayerWithoutCells, AnswersWithNothing) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_batched_tangents_tests

@@ -22,7 +22,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_divide_cells_tests {
 namespace {
 
 struct Cell {
@@ -158,4 +158,4 @@ TEST(DividedCells, WithNodesInsideOfFacesAreRefused) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_divide_cells_tests

@@ -14,7 +14,7 @@
 #include "subdomain_solver/fe/element.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_element_tests {
 namespace {
 
 using Vector = std::vector<double>;
@@ -238,4 +238,4 @@ TEST(Element, AnUnknownNameIsRefusedWithTheKnownOnes) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_element_tests

@@ -19,7 +19,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_exodus_tests {
 namespace {
 
 std::string path_of(const std::string& file) {
@@ -229,4 +229,4 @@ TEST(ExodusFile, DamagedDataGiveAMeshOrARefusalAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_exodus_tests

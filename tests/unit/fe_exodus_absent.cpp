@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "subdomain_solver/fe/exodus_file.hpp"
 
-namespace abut {
+namespace abut::fe_exodus_absent_tests {
 namespace {
 
 TEST(ExodusFile, IsRefusedWithARemedyWithoutNetcdf) {
@@ -21,4 +21,4 @@ TEST(ExodusFile, IsRefusedWithARemedyWithoutNetcdf) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_exodus_absent_tests

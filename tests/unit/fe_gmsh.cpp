@@ -24,7 +24,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_gmsh_tests {
 namespace {
 
 std::string path_of(const std::string& file) {
@@ -431,4 +431,4 @@ TEST(GmshFile, DamagedBytesGiveAMeshOrARefusalAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_gmsh_tests

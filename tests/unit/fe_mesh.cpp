@@ -14,7 +14,7 @@
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace abut {
+namespace abut::fe_mesh_tests {
 namespace {
 
 /// Two unit squares beside each other, quad4: nodes 0 1 2 below, 3 4 5 above.
@@ -136,4 +136,4 @@ TEST(CheckMesh, RefusesWrongDimensionsNumbersAndNothing) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_mesh_tests

@@ -18,7 +18,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_mesh_generators_tests {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -243,4 +243,4 @@ TEST(MeshGenerators, RefuseWhatIsNoPart) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_mesh_generators_tests

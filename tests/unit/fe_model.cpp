@@ -13,7 +13,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_model_tests {
 namespace {
 
 struct Case : ElementCase {
@@ -189,4 +189,4 @@ TEST(FeModel, TellsTheStressOfThePresentAreaWhereCellsThin) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_model_tests

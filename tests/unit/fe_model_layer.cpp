@@ -13,7 +13,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/solids.hpp"
 
-namespace abut {
+namespace abut::fe_model_layer_tests {
 namespace {
 
 FeModel body(const std::string& element, int cells) {
@@ -129,4 +129,4 @@ TEST_P(Layers, RefuseWhereNothingMovesThatCouldTakeIt) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_model_layer_tests

@@ -12,7 +12,7 @@
 #include "subdomain_solver/fe/element.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::fe_quadrature_tests {
 namespace {
 
 struct Case {
@@ -107,4 +107,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape, testing::ValuesIn(cases),
                          });
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_quadrature_tests

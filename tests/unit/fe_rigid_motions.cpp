@@ -10,7 +10,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/solids.hpp"
 
-namespace abut {
+namespace abut::fe_rigid_motions_tests {
 namespace {
 
 /// Unit cells beside each other, with gaps.
@@ -81,4 +81,4 @@ TEST(LoosePieces, AreFoundWhicheverOfThemIsHeld) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::fe_rigid_motions_tests

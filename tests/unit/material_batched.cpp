@@ -14,7 +14,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::material_batched_tests {
 namespace {
 
 template <int N>
@@ -190,4 +190,4 @@ TEST(BatchedLaws, SameBitsWhateverTheRegisters) {
 #endif
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::material_batched_tests

@@ -13,7 +13,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::material_batched_j2_tests {
 namespace {
 
 /// F rounds at 1e-16 of itself, P then at the modulus times that, and C_p^-1 too; large stretches
@@ -238,4 +238,4 @@ TEST(BatchedJ2, ExponentialsErrByTwoRoundings) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::material_batched_j2_tests

@@ -11,7 +11,7 @@
 #include "subdomain_solver/materials/crush_guard.hpp"
 #include "tests/support/materials.hpp"
 
-namespace abut {
+namespace abut::material_crush_guard_tests {
 namespace {
 
 constexpr double p_wave = 7.0;
@@ -91,4 +91,4 @@ TEST(CrushGuard, NeverGivesWay) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::material_crush_guard_tests

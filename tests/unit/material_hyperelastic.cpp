@@ -8,7 +8,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::material_hyperelastic_tests {
 namespace {
 
 const double kappa = test_moduli.bulk, mu = test_moduli.shear;
@@ -118,4 +118,4 @@ TEST(Hencky, SimpleShearByItsPrincipalStretch) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::material_hyperelastic_tests

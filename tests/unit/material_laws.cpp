@@ -13,7 +13,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::material_laws_tests {
 namespace {
 
 class MaterialLaw : public testing::TestWithParam<Law> {
@@ -166,4 +166,4 @@ INSTANTIATE_TEST_SUITE_P(All, MaterialLaw, testing::ValuesIn(all_laws()),
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::material_laws_tests

@@ -15,7 +15,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::material_moduli_tests {
 namespace {
 
 constexpr std::optional<double> ElasticConstants::*const constants[] = {
@@ -144,4 +144,4 @@ TEST(Materials, InadmissibleParametersAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::material_moduli_tests

@@ -15,7 +15,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::material_plane_tests {
 namespace {
 
 constexpr std::array<int, 4> sheet_entries = {0, 1, 3, 4};
@@ -200,4 +200,4 @@ TEST(PlaneStress, NoThicknessNoAnswer) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::material_plane_tests

@@ -15,7 +15,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::material_plasticity_tests {
 namespace {
 
 const J2Plasticity& metal() {
@@ -250,4 +250,4 @@ TEST(J2Plasticity, SofteningIsRefused) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::material_plasticity_tests

@@ -13,7 +13,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::material_uniaxial_tests {
 namespace {
 
 constexpr std::array<int, 1> bar_entry = {0};
@@ -158,4 +158,4 @@ TEST(UniaxialStress, InvertedBarHasNoAnswer) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::material_uniaxial_tests

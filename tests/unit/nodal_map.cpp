@@ -11,7 +11,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::nodal_map_tests {
 namespace {
 
 /// Not linear in q, and without a short way to a few values.
@@ -111,4 +111,4 @@ TEST(PortMap, SeesAndPushesNodesAlongTheAxesOfSpace) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::nodal_map_tests

@@ -16,7 +16,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::nodal_stress_tests {
 namespace {
 
 /// Linear in every coordinate, with all products on squares and cubes.
@@ -176,4 +176,4 @@ TEST(StressMeasures, OfAPortAndOfNodesAreThoseOfThePlace) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::nodal_stress_tests

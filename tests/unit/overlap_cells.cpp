@@ -12,7 +12,7 @@
 #include "subdomain_solver/overlap/cell_shares.hpp"
 #include "subdomain_solver/overlap/embed.hpp"
 
-namespace abut {
+namespace abut::overlap_cells_tests {
 namespace {
 
 /// A block of unit height from one x to another.
@@ -109,4 +109,4 @@ TEST(OverlapCells, TellHowFarASideSticksOut) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::overlap_cells_tests

@@ -4,7 +4,7 @@
 
 #include "tests/unit/passive_bodies.hpp"
 
-namespace abut {
+namespace abut::passive_bars_tests {
 namespace {
 
 /// Bars of one law are the bars' own, of the other one solids in one dimension.
@@ -159,4 +159,4 @@ TEST(PassiveBars, DampingLeavesTheMotionOfTheCentre) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::passive_bars_tests

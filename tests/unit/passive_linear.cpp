@@ -4,7 +4,7 @@
 
 #include "tests/unit/passive_bodies.hpp"
 
-namespace abut {
+namespace abut::passive_linear_tests {
 namespace {
 
 std::vector<PassiveText> linear_cases() {
@@ -193,4 +193,4 @@ TEST(PassiveLinear, ComplianceIsWhatImpulsesAddToTheMeanVelocity) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::passive_linear_tests

@@ -4,7 +4,7 @@
 
 #include "tests/unit/passive_bodies.hpp"
 
-namespace abut {
+namespace abut::passive_nonlinear_tests {
 namespace {
 
 std::vector<PassiveText> finite_cases() {
@@ -224,4 +224,4 @@ TEST(PassiveFinite, DampingTakesWhatDeformsAndLeavesTheMomenta) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::passive_nonlinear_tests

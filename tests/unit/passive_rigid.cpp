@@ -6,7 +6,7 @@
 
 #include "tests/unit/passive_bodies.hpp"
 
-namespace abut {
+namespace abut::passive_rigid_tests {
 namespace {
 
 PassiveText rigid(int dim, const std::string& more) {
@@ -152,4 +152,4 @@ TEST(PassiveTool, GoesItsWayAndGivesWayToNothing) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::passive_rigid_tests

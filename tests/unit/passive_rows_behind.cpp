@@ -12,7 +12,7 @@
 #include "coordinator/passive/near_rows.hpp"
 #include "tests/support/solid_texts.hpp"
 
-namespace abut {
+namespace abut::passive_rows_behind_tests {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -139,4 +139,4 @@ TEST(RowsBehind, HoldEdgesInSpace) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::passive_rows_behind_tests

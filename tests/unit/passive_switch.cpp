@@ -5,7 +5,7 @@
 #include "base/error.hpp"
 #include "tests/unit/passive_bodies.hpp"
 
-namespace abut {
+namespace abut::passive_switch_tests {
 namespace {
 
 Advance free_window(const Subdomain& body, double begin, double end) {
@@ -209,4 +209,4 @@ TEST(PassiveSwitch, WhatHasNoInertiaHasNoPassiveForm) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::passive_switch_tests

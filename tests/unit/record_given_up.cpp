@@ -7,7 +7,7 @@
 #include "coordinator/record/given_up_words.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace abut {
+namespace abut::record_given_up_tests {
 namespace {
 
 struct Told {
@@ -102,4 +102,4 @@ TEST(GivenUp, BodiesHeldRigidAreTold) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::record_given_up_tests

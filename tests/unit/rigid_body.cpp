@@ -16,7 +16,7 @@
 #include "tests/support/solid_texts.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::rigid_body_tests {
 namespace {
 
 constexpr double begin = 0.0, middle = 0.05, end = 0.1;
@@ -173,4 +173,4 @@ TEST(RigidSolid, RefusesWhatItIsNot) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::rigid_body_tests

@@ -12,7 +12,7 @@
 #include "subdomain_solver/rigid/free_rotation.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::rigid_free_rotation_tests {
 namespace {
 
 using Eigen::Quaterniond;
@@ -261,4 +261,4 @@ TEST(FreeRotation, KeepsItsEnergyOver100000Steps) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::rigid_free_rotation_tests

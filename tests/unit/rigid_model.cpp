@@ -12,7 +12,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::rigid_model_tests {
 namespace {
 
 using Eigen::Quaterniond;
@@ -202,4 +202,4 @@ TEST(RigidFit, SaysHowFarAFieldIsFromARigidOne) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::rigid_model_tests

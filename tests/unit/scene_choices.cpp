@@ -12,7 +12,7 @@
 #include "base/yaml_like.hpp"
 #include "coordinator/launch_local.hpp"
 
-namespace abut {
+namespace abut::scene_choices_tests {
 namespace {
 
 /// keys.
@@ -32,4 +32,4 @@ TEST(BodyChoices, AreThoseThatLikeKnows) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::scene_choices_tests

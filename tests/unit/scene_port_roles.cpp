@@ -17,7 +17,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace abut {
+namespace abut::scene_port_roles_tests {
 namespace {
 
 constexpr const char* kicks = "central_difference: {step: 0.01}";
@@ -249,4 +249,4 @@ TEST(PortRoles, AreToldToBodiesOfOtherProgramsToo) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::scene_port_roles_tests

@@ -19,7 +19,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solid_fields_tests {
 namespace {
 
 using Edges = std::vector<std::vector<int>>;
@@ -257,4 +257,4 @@ TEST(SolidFields, ABodyThatDoesNotDeformHasNone) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solid_fields_tests

@@ -16,7 +16,7 @@
 #include "subdomain_solver/solve/unilateral_forces.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solve_friction_tests {
 namespace {
 
 struct Problem {
@@ -236,4 +236,4 @@ TEST(FrictionForces, OfWhatIsNoNumberAreNone) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solve_friction_tests

@@ -23,7 +23,7 @@
 #include "subdomain_solver/time/problem.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solve_linear_tests {
 namespace {
 
 /// Second differences of n points, clamped at both ends, with `shift` taken from the diagonal. The
@@ -300,4 +300,4 @@ TEST(LinearSolvers, AnswerNoRightHandSidesWithNone) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solve_linear_tests

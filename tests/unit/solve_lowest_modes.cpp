@@ -12,7 +12,7 @@
 #include "subdomain_solver/solve/orthonormal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solve_lowest_modes_tests {
 namespace {
 
 /// n x n x n points, each joined to its six neighbours, the outermost to a wall.
@@ -189,4 +189,4 @@ TEST(Orthonormal, DropsWhatDependsOnOthers) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solve_lowest_modes_tests

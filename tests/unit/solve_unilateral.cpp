@@ -8,7 +8,7 @@
 
 #include "subdomain_solver/solve/unilateral_forces.hpp"
 
-namespace abut {
+namespace abut::solve_unilateral_tests {
 namespace {
 
 void check(const Eigen::MatrixXd& a, const Vector& gap, const Vector& force, double tolerance) {
@@ -85,4 +85,4 @@ TEST(UnilateralForces, OfWhatIsNotFiniteAreNotFound) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solve_unilateral_tests

@@ -69,7 +69,7 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexc
 }
 #endif
 
-namespace abut {
+namespace abut::solver_allocations_tests {
 namespace {
 
 struct Counted {
@@ -289,4 +289,4 @@ TEST_P(Allocations, AreNoneFromTheSecondWindowOn) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_allocations_tests

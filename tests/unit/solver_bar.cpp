@@ -13,7 +13,7 @@
 #include "subdomain_solver/solve/tridiagonal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solver_bar_tests {
 namespace {
 
 BarProperties properties(int elements) {
@@ -182,4 +182,4 @@ TEST(EndReaction, IsTheForceThatKeepsTheEndAtItsTarget) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_bar_tests

@@ -16,7 +16,7 @@
 #include "tests/unit/shared_schemes.hpp"
 #include "tests/unit/solver_cases.hpp"
 
-namespace abut {
+namespace abut::solver_bar_loads_tests {
 namespace {
 
 /// What a scene says of a bar besides its text.
@@ -307,4 +307,4 @@ TEST(BarPoints, AndLoadsAreRefusedWhereNothingIs) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_bar_loads_tests

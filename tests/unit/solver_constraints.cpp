@@ -12,7 +12,7 @@
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
-namespace abut {
+namespace abut::solver_constraints_tests {
 namespace {
 
 std::unique_ptr<Subdomain> solid(const std::string& mesh, const std::string& constraints) {
@@ -90,4 +90,4 @@ TEST(Symmetry, IsOneWayToPrescribe) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_constraints_tests

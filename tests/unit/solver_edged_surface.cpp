@@ -9,7 +9,7 @@
 #include "subdomain_solver/contact/edged_surface.hpp"
 #include "tests/support/surfaces.hpp"
 
-namespace abut {
+namespace abut::solver_edged_surface_tests {
 namespace {
 
 /// A face of two segments along the x-axis; a wedge of sixteen stands on it, turned by 32 degrees.
@@ -46,4 +46,4 @@ TEST(EdgedSurface, RowsNameNodesOfTheFinder) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_edged_surface_tests

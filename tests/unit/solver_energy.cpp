@@ -16,7 +16,7 @@
 #include "tests/support/oracles.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solver_energy_tests {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -284,4 +284,4 @@ TEST(Dispersion, SixTermsLeaveAMillionthAtTenElementsPerWave) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_energy_tests

@@ -10,7 +10,7 @@
 #include "base/index.hpp"
 #include "tests/unit/every_body.hpp"
 
-namespace abut {
+namespace abut::solver_every_rewind_tests {
 namespace {
 
 constexpr double instants[] = {0.0, 0.33, 0.61};  // no multiples of the substep
@@ -106,4 +106,4 @@ TEST(EveryRewind, OfBarsPairsAndWalls) { EXPECT_GE(rewind_all(bars()), 50); }
 TEST(EveryRewind, OfSolidsRigidAndModalBodies) { EXPECT_GE(rewind_all(solids()), 150); }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_every_rewind_tests

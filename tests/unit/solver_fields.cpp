@@ -16,7 +16,7 @@
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
-namespace abut {
+namespace abut::solver_fields_tests {
 namespace {
 
 constexpr int vtk_vertex = 1, vtk_line = 3;
@@ -198,4 +198,4 @@ TEST(WallFields, AWallIsAPointThatStays) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_fields_tests

@@ -12,7 +12,7 @@
 #include "tests/support/solid_texts.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solver_frequencies_tests {
 namespace {
 
 std::unique_ptr<Subdomain> bar(const std::string& model, const std::string& keys,
@@ -58,4 +58,4 @@ TEST(ModalBody, AloneTellsFrequencies) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_frequencies_tests

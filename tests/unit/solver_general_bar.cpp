@@ -12,7 +12,7 @@
 #include "tests/unit/shared_schemes.hpp"
 #include "tests/unit/solver_cases.hpp"
 
-namespace abut {
+namespace abut::solver_general_bar_tests {
 /// Of finite elements in general, not the bars' core.
 bool is_solid(const Subdomain& body) { return body.describe().model.starts_with("fe"); }
 
@@ -159,4 +159,4 @@ TEST(GeneralBar, StretchesAsHookesLawHasIt) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_general_bar_tests

@@ -11,7 +11,7 @@
 #include "base/yaml_resolved.hpp"
 #include "subdomain_solver/make/body_spec.hpp"
 
-namespace abut {
+namespace abut::solver_idle_keys_tests {
 namespace {
 
 struct Context {
@@ -181,4 +181,4 @@ TEST(IdleKeys, AreLeftOutOfTheResolvedScene) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_idle_keys_tests

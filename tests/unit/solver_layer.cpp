@@ -15,7 +15,7 @@
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
-namespace abut {
+namespace abut::solver_layer_tests {
 namespace {
 
 struct Layered {
@@ -237,4 +237,4 @@ TEST(LayeredBars, OfOneElementHaveOneLayer) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_layer_tests

@@ -8,7 +8,7 @@
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
-namespace abut {
+namespace abut::solver_momentum_tests {
 namespace {
 
 /// A partner's force history over [0, length] at its own steps, of one sign and irregular, and
@@ -138,4 +138,4 @@ TEST(Loads, AFixedEndStaysAndTheOtherEndFeelsIt) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_momentum_tests

@@ -11,7 +11,7 @@
 #include "subdomain_solver/contact/near_surface.hpp"
 #include "tests/support/surfaces.hpp"
 
-namespace abut {
+namespace abut::solver_near_surface_tests {
 namespace {
 
 PortGeometry port(const SurfaceMesh& mesh) {
@@ -104,4 +104,4 @@ TEST(NearSurface, OfAPartnerFarAwayIsOnePoint) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_near_surface_tests

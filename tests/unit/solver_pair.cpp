@@ -14,7 +14,7 @@
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
-namespace abut {
+namespace abut::solver_pair_tests {
 namespace {
 
 constexpr double pair_step = 0.5;  // [s]; h / c is 1 s
@@ -270,4 +270,4 @@ TEST(PairRefusals, BackwardEulerIsForPairsOnly) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_pair_tests

@@ -14,7 +14,7 @@
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
-namespace abut {
+namespace abut::solver_partners_tests {
 namespace {
 
 struct Pairing {
@@ -210,4 +210,4 @@ TEST_P(PartnersOf, SeeTheFieldsThatTheyWant) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_partners_tests

@@ -13,7 +13,7 @@
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
-namespace abut {
+namespace abut::solver_ports_tests {
 namespace {
 
 constexpr int window_steps = 50;
@@ -205,4 +205,4 @@ TEST(RigidWall, TakesAnyForceAndStays) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_ports_tests

@@ -16,7 +16,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solver_probe_tests {
 namespace {
 
 struct Probed {
@@ -189,4 +189,4 @@ TEST_P(Probe, IsTheMotionUnderForcesFromRest) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_probe_tests

@@ -17,7 +17,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solver_reactions_tests {
 namespace {
 
 /// A unit square, cube or bar of two cells along each edge, of mass density 1.
@@ -415,4 +415,4 @@ TEST(ReactionsInMotion, OfAPortUnderForceHoldAgainstIt) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_reactions_tests

@@ -9,7 +9,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/solver_cases.hpp"
 
-namespace abut {
+namespace abut::solver_refusals_tests {
 namespace {
 
 std::string refusal(const BarText& bar) {
@@ -94,4 +94,4 @@ TEST(MakeBody, DescribesItself) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_refusals_tests

@@ -17,7 +17,7 @@
 #include "contract/force_means.hpp"
 #include "tests/unit/every_body.hpp"
 
-namespace abut {
+namespace abut::solver_replies_tests {
 namespace {
 
 /// Requests between: some over the same window, some not, some again.
@@ -374,4 +374,4 @@ TEST(Replies, DependOnTheForceThatIsBalancedAndOnWhatSlid) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_replies_tests

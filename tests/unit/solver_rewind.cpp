@@ -10,7 +10,7 @@
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/solver_cases.hpp"
 
-namespace abut {
+namespace abut::solver_rewind_tests {
 namespace {
 
 /// The case's bar, all of whose ports have met a surface.
@@ -174,4 +174,4 @@ TEST(Rewind, AStateThatIsNotFiniteIsAFailedValue) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_rewind_tests

@@ -15,7 +15,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solver_surface_contact_tests {
 namespace {
 
 struct Case {
@@ -245,4 +245,4 @@ TEST_P(SurfaceContactOf, ProbesLeaveItAlone) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_surface_contact_tests

@@ -15,7 +15,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solver_validity_tests {
 namespace {
 
 using Position = Eigen::Vector3d;
@@ -100,4 +100,4 @@ TEST(Validity, LawsOfFiniteStrainAndBodiesThatCannotDeformTellNothing) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solver_validity_tests

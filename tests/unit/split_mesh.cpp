@@ -23,7 +23,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::split_mesh_tests {
 namespace {
 
 Mesh box(const std::string& element) {
@@ -228,4 +228,4 @@ TEST(DividedMesh, RefusesWhatWouldComeApart) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::split_mesh_tests

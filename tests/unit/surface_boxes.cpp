@@ -10,7 +10,7 @@
 
 #include "tests/support/surfaces.hpp"
 
-namespace abut {
+namespace abut::surface_boxes_tests {
 namespace {
 
 /// Facets strewn about a cube (or a square), each with its own nodes.
@@ -128,4 +128,4 @@ TEST(Tree, OfNoFacetsMeetsNothing) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_boxes_tests

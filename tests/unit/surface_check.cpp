@@ -13,7 +13,7 @@
 #include "surface/check.hpp"
 #include "tests/support/surfaces.hpp"
 
-namespace abut {
+namespace abut::surface_check_tests {
 namespace {
 
 /// Two squares and a triangle side by side.
@@ -106,4 +106,4 @@ TEST(SurfaceCheck, KnowsSegments) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_check_tests

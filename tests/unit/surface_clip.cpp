@@ -19,7 +19,7 @@
 #include "tests/support/surfaces.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_clip_tests {
 namespace {
 
 using Eigen::Vector2d;
@@ -170,4 +170,4 @@ TEST(Clip, OfIntervalsIsWhatBothHold) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_clip_tests

@@ -13,7 +13,7 @@
 #include "tests/support/surfaces.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_closest_point_tests {
 namespace {
 
 using Eigen::Vector3d;
@@ -169,4 +169,4 @@ TEST(PlaneFacet, ShapeFunctionsAreFoundInDistortedQuadrilaterals) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_closest_point_tests

@@ -9,7 +9,7 @@
 #include "surface/crossings.hpp"
 #include "tests/support/surfaces.hpp"
 
-namespace abut {
+namespace abut::surface_crossings_tests {
 namespace {
 
 Crossings crossings_of(const SurfaceMesh& mesh) {
@@ -91,4 +91,4 @@ TEST(Crossings, OfSheetsInSpace) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_crossings_tests

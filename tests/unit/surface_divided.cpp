@@ -12,7 +12,7 @@
 #include "tests/support/surfaces.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_divided_tests {
 namespace {
 
 const double exact = roundoff(200.0, 2.0);  // sums over some hundred cells of lengths to 2
@@ -78,4 +78,4 @@ TEST(DividedSurface, KeepsItsEdgesSharp) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_divided_tests

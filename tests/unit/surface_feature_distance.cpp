@@ -15,7 +15,7 @@
 #include "tests/support/feature_cases.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_feature_distance_tests {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -241,4 +241,4 @@ TEST(FeatureDistance, IsTheLeastOfASearch) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_feature_distance_tests

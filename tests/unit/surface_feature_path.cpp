@@ -13,7 +13,7 @@
 #include "tests/support/feature_cases.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_feature_path_tests {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -172,4 +172,4 @@ TEST(FeaturePath, StepsThatKeepToItNeverTouch) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_feature_path_tests

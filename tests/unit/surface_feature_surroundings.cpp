@@ -8,7 +8,7 @@
 
 #include "surface/feature_surroundings.hpp"
 
-namespace abut {
+namespace abut::surface_feature_surroundings_tests {
 namespace {
 
 constexpr double sine = 0.1;
@@ -79,4 +79,4 @@ TEST(FeatureSurroundings, InSpaceAreFacetsBesideAnEdgeAndEdgesFromANode) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_feature_surroundings_tests

@@ -12,7 +12,7 @@
 
 #include "tests/support/feature_cases.hpp"
 
-namespace abut {
+namespace abut::surface_intersections_tests {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -164,4 +164,4 @@ TEST(Intersections, AreThoseOfEveryPair) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_intersections_tests

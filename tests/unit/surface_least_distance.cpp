@@ -12,7 +12,7 @@
 #include "tests/support/surfaces.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_least_distance_tests {
 namespace {
 
 double by_trees(const SurfaceMesh& a, const SurfaceMesh& b) {
@@ -126,4 +126,4 @@ TEST(LeastDistance, IsNothingWhereSurfacesCrossAndEndlessWithoutFacets) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_least_distance_tests

@@ -11,7 +11,7 @@
 #include "surface/least_opening.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_least_opening_tests {
 namespace {
 
 SparseRows rows_of(const Eigen::MatrixXd& a) {
@@ -65,4 +65,4 @@ TEST(LeastOpening, OfManyRowsIsThatOfTheDenseProblem) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_least_opening_tests

@@ -10,7 +10,7 @@
 #include "surface/meeting_corners.hpp"
 #include "tests/support/surfaces.hpp"
 
-namespace abut {
+namespace abut::surface_meeting_corners_tests {
 namespace {
 
 constexpr double tight = 1.0e-14;  // some roundings of lengths of 1
@@ -111,4 +111,4 @@ TEST(MeetingCorners, HoldACornerBeforeAFaceThatEndsInOne) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_meeting_corners_tests

@@ -14,7 +14,7 @@
 #include "tests/support/surfaces.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_mortar_curved_tests {
 namespace {
 
 using Eigen::Vector3d;
@@ -260,4 +260,4 @@ TEST(PointRows, InterpolatedNormalsAreContinuousAcrossEdges) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_mortar_curved_tests

@@ -13,7 +13,7 @@
 #include "base/index.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_mortar_flat_tests {
 namespace {
 
 class FlatMortar : public testing::TestWithParam<FlatCase> {
@@ -189,4 +189,4 @@ INSTANTIATE_TEST_SUITE_P(Meshes, FlatMortar, testing::ValuesIn(flat_cases()), []
 });
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_mortar_flat_tests

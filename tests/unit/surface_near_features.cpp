@@ -12,7 +12,7 @@
 
 #include "tests/support/feature_cases.hpp"
 
-namespace abut {
+namespace abut::surface_near_features_tests {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -225,4 +225,4 @@ TEST(SkinTrees, TellTheClosestFacet) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_near_features_tests

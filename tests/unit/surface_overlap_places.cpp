@@ -14,7 +14,7 @@
 #include "tests/support/feature_cases.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_overlap_places_tests {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -177,4 +177,4 @@ TEST(OverlapPlaces, InAHoleAreBeforeItsSurface) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_overlap_places_tests

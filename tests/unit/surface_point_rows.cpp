@@ -14,7 +14,7 @@
 #include "tests/support/surfaces.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_point_rows_tests {
 namespace {
 
 using Eigen::Vector3d;
@@ -116,4 +116,4 @@ TEST(SharpNodes, AreThoseOfConvexEdgesAlone) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_point_rows_tests

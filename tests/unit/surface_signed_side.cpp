@@ -16,7 +16,7 @@
 #include "tests/support/feature_cases.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_signed_side_tests {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -190,4 +190,4 @@ TEST(SignedSide, WhereASurfaceEnds) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_signed_side_tests

@@ -9,7 +9,7 @@
 #include "tests/support/surfaces.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::surface_start_rows_tests {
 namespace {
 
 const double pi = std::acos(-1.0);
@@ -51,4 +51,4 @@ TEST(StartRows, NodesOfCirclesThatFitLieBehindEachOtherByNoMore) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::surface_start_rows_tests

@@ -16,7 +16,7 @@
 #include "base/archive.hpp"
 #include "base/error.hpp"
 
-namespace abut {
+namespace abut::test_archive {
 namespace {
 
 struct State {
@@ -166,4 +166,4 @@ TEST(Archive, CombinedHashDependsOnTheOrder) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_archive

@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "coordinator/exact/bar_row.hpp"
 
-namespace abut {
+namespace abut::test_bar_row {
 namespace {
 
 // A value of the solution is some dozens of operations on numbers of the scale given.
@@ -345,4 +345,4 @@ TEST(BarRow, RefusesWhatItCannotDescribe) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_bar_row

@@ -9,7 +9,7 @@
 #include "coordinator/record/checkpoint_file.hpp"
 #include "tests/support/test_folder.hpp"
 
-namespace abut {
+namespace abut::test_checkpoint_file {
 namespace {
 
 namespace fs = std::filesystem;
@@ -127,4 +127,4 @@ TEST_F(CheckpointFiles, FingerprintsDifferWithWhatAStateDependsOn) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_checkpoint_file

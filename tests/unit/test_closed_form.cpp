@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "coordinator/exact/closed_form.hpp"
 
-namespace abut {
+namespace abut::test_closed_form {
 namespace {
 
 // A closed form is a few dozen operations on numbers of the scale given.
@@ -151,4 +151,4 @@ TEST(ClosedForm, CountsTimeInContactOnceWhereInterfacesPressTogether) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_closed_form

@@ -6,7 +6,7 @@
 
 #include "coordinator/command_line.hpp"
 
-namespace abut {
+namespace abut::test_command_line {
 namespace {
 
 Command parsed(std::vector<const char*> arguments) {
@@ -121,4 +121,4 @@ TEST(CommandLine, WhatIsWrongEndsWithCodeTwo) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_command_line

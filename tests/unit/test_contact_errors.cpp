@@ -11,7 +11,7 @@
 #include "coordinator/exact/bar_row.hpp"
 #include "coordinator/record/contact_errors.hpp"
 
-namespace abut {
+namespace abut::test_contact_errors {
 namespace {
 
 // Sums of some thousand products.
@@ -122,4 +122,4 @@ TEST(ContactErrors, ExactContactThatGoesOnHasNoRelease) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_contact_errors

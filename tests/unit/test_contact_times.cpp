@@ -3,7 +3,7 @@
 
 #include "coordinator/record/contact_times.hpp"
 
-namespace abut {
+namespace abut::test_contact_times {
 namespace {
 
 TEST(ContactTimes, EveryReleaseCountsWhereNothingIsKnownOfTheMesh) {
@@ -62,4 +62,4 @@ TEST(ContactTimes, ATieIsClosedAndNeverCounts) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_contact_times

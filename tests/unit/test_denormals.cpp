@@ -8,7 +8,7 @@
 
 #include "base/denormals.hpp"
 
-namespace abut {
+namespace abut::test_denormals {
 namespace {
 
 double halved() {
@@ -32,4 +32,4 @@ TEST(Denormals, AreZeroWhileFlushedAndInThreadsThatBeginThen) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_denormals

@@ -13,7 +13,7 @@
 #include "coordinator/flight_work.hpp"
 #include "coordinator/scene.hpp"
 
-namespace abut {
+namespace abut::test_estimate {
 namespace {
 
 Scene two_bars(const std::string& more = {}) {
@@ -212,4 +212,4 @@ interfaces:
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_estimate

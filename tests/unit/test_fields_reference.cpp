@@ -7,7 +7,7 @@
 #include "base/fields_reference.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace abut {
+namespace abut::test_fields_reference {
 namespace {
 
 struct Steel {
@@ -99,4 +99,4 @@ TEST(PartOfTheReference, AKeyThatIsNoneIsRefusedWithTheOneThatWasMeant) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_fields_reference

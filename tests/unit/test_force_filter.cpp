@@ -15,7 +15,7 @@
 #include "coordinator/record/mean_filter.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::test_force_filter {
 namespace {
 
 // Sums of some thousand products of size 1.
@@ -196,4 +196,4 @@ TEST_P(ChannelClass, HoldsBoundedMemory) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_force_filter

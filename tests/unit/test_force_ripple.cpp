@@ -9,7 +9,7 @@
 #include "coordinator/record/force_ripple.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::test_force_ripple {
 namespace {
 
 /// Of mean `mean` and amplitude `swing`: highest at whole times, lowest halfway.
@@ -58,4 +58,4 @@ TEST(ForceRipple, OfASquareWaveIsItsAmplitudeAndOfAConstantNone) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_force_ripple

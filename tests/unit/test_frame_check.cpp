@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "coordinator/reply_bytes.hpp"
 
-namespace abut {
+namespace abut::test_frame_check {
 namespace {
 
 /// A body in space whose one port has so many points.
@@ -68,4 +68,4 @@ TEST(FrameCheck, RefusesReplyDescriptionAndFieldsThatNoFrameHolds) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_frame_check

@@ -11,7 +11,7 @@
 
 #include "base/life_signs.hpp"
 
-namespace abut {
+namespace abut::test_life_signs {
 namespace {
 
 using std::chrono::milliseconds;
@@ -58,4 +58,4 @@ TEST(LifeSigns, AShortCallMakesNone) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_life_signs

@@ -12,7 +12,7 @@
 
 #include <pugixml.hpp>
 
-namespace abut {
+namespace abut::test_paraview_state {
 namespace {
 
 const FieldInfo stress{"nodal_von_mises", FieldPlace::nodes, 1};
@@ -117,4 +117,4 @@ TEST(ParaviewState, MagnitudesAreOfWholeVectors) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_paraview_state

@@ -10,7 +10,7 @@
 #include "coordinator/record/shares.hpp"
 #include "coordinator/record/time_words.hpp"
 
-namespace abut {
+namespace abut::test_prediction {
 namespace {
 
 /// Windows of 1 s of the scene's time, after a start that costs nothing.
@@ -112,4 +112,4 @@ TEST(TimeWords, HaveTwoFiguresOrTwoUnits) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_prediction

@@ -9,7 +9,7 @@
 #include "base/log.hpp"
 #include "coordinator/record/progress_line.hpp"
 
-namespace abut {
+namespace abut::test_progress_line {
 namespace {
 
 class ProgressLineText : public testing::Test {
@@ -109,4 +109,4 @@ TEST_F(ProgressLineText, LeavesNoTraceAtTheEnd) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_progress_line

@@ -5,7 +5,7 @@
 
 #include "coordinator/record/pushes.hpp"
 
-namespace abut {
+namespace abut::test_pushes {
 namespace {
 
 /// A push of a constant force, cut into parts.
@@ -60,4 +60,4 @@ TEST(Pushes, AreNotJoinedByRounding) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_pushes

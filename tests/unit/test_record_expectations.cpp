@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "coordinator/record/expectations.hpp"
 
-namespace abut {
+namespace abut::test_record_expectations {
 namespace {
 
 Measures measures(double windows) {
@@ -113,4 +113,4 @@ TEST(Expectations, TableShowsWhatFailedAndWhyItWasExpected) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_record_expectations

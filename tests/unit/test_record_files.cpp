@@ -21,7 +21,7 @@
 #include "tests/support/tolerance.hpp"
 #include "tests/unit/record_run.hpp"
 
-namespace abut {
+namespace abut::test_record_files {
 namespace {
 
 class RecordFiles : public ::testing::Test {
@@ -318,4 +318,4 @@ TEST_F(RecordFiles, NothingIsWrittenThroughASymbolicLinkOrOverAFile) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_record_files

@@ -10,7 +10,7 @@
 #include "coordinator/record/measure_recorder.hpp"
 #include "tests/unit/record_run.hpp"
 
-namespace abut {
+namespace abut::test_record_measures {
 namespace {
 
 // Sums of some hundred numbers of size 1.
@@ -299,4 +299,4 @@ TEST(Measures, ReadVelocityAgainstTheJumpOfTheContactPoint) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_record_measures

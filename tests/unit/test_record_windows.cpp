@@ -11,7 +11,7 @@
 #include "coordinator/record/measure_recorder.hpp"
 #include "tests/unit/record_run.hpp"
 
-namespace abut {
+namespace abut::test_record_windows {
 namespace {
 
 // Sums of three hundred numbers of size 1, at times that windows round in their own way.
@@ -198,4 +198,4 @@ TEST_P(Windows, MakeNoDifferenceToATie) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_record_windows

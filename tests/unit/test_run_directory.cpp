@@ -11,7 +11,7 @@
 #include "coordinator/run_directory.hpp"
 #include "tests/support/test_folder.hpp"
 
-namespace abut {
+namespace abut::test_run_directory {
 namespace {
 
 namespace fs = std::filesystem;
@@ -150,4 +150,4 @@ TEST(DefaultRunDirectory, IsNamedAfterTheScene) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_run_directory

@@ -7,7 +7,7 @@
 
 #include "coordinator/record/run_table.hpp"
 
-namespace abut {
+namespace abut::test_run_table {
 namespace {
 
 class RunTableText : public testing::Test {
@@ -98,4 +98,4 @@ TEST_F(RunTableText, TellsWhoTookTheTimeAndWhoWaited) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_run_table

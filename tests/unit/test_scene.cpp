@@ -14,7 +14,7 @@
 #include "coordinator/scene.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace abut {
+namespace abut::test_scene {
 namespace {
 
 constexpr const char* two_bars = R"(meta:
@@ -301,4 +301,4 @@ TEST_F(BodiesOfAScene, SidesThatOverlapAtTheStartAreRefusedAndThoseThatTouchAreN
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_scene

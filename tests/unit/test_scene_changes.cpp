@@ -11,7 +11,7 @@
 #include "base/yaml_differences.hpp"
 #include "coordinator/scene_changes.hpp"
 
-namespace abut {
+namespace abut::test_scene_changes {
 namespace {
 
 const std::string scene = R"(
@@ -99,4 +99,4 @@ TEST(SceneChanges, AreFoundKeyByKey) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_scene_changes

@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "coordinator/solver_processes.hpp"
 
-namespace abut {
+namespace abut::test_solver_processes {
 namespace {
 
 Document document(const std::string& bodies, int processes = 0) {
@@ -79,4 +79,4 @@ TEST(SolverProcesses, ARunHasAtMost64) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_solver_processes

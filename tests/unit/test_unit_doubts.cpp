@@ -13,7 +13,7 @@
 #include "coordinator/unit_doubts.hpp"
 #include "subdomain_solver/make/material_doubt.hpp"
 
-namespace abut {
+namespace abut::test_unit_doubts {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();
@@ -185,4 +185,4 @@ TEST(MaterialDoubt, TellsNumbersOfNoSolidWhereUnitsAreKnown) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_unit_doubts

@@ -7,7 +7,7 @@
 #include "base/unit_words.hpp"
 #include "base/units.hpp"
 
-namespace abut {
+namespace abut::test_units {
 namespace {
 
 /// The text in another unit, both of one dimension.
@@ -106,4 +106,4 @@ TEST(UnitSystems, AreALengthAMassAndATime) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_units

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace abut {
+namespace abut::test_validity_notes {
 namespace {
 
 Description body_that_tells() {
@@ -78,4 +78,4 @@ TEST(ValidityNotes, AreNoneWhereNothingWasTold) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_validity_notes

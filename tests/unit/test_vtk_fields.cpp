@@ -23,7 +23,7 @@
 #include "coordinator/record/vtu_file.hpp"
 #include "tests/support/fakes.hpp"
 
-namespace abut {
+namespace abut::test_vtk_fields {
 namespace {
 
 namespace fs = std::filesystem;
@@ -245,4 +245,4 @@ TEST_F(VtkFiles, AFolderThatCannotBeWrittenEndsTheRunInWords) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_vtk_fields

@@ -14,7 +14,7 @@
 #include "base/yaml_document.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace abut {
+namespace abut::test_yaml_copies {
 namespace {
 
 using Overrides = std::vector<std::string>;
@@ -255,4 +255,4 @@ TEST(Copies, RefusesMoreThanAnySceneHolds) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_yaml_copies

@@ -12,7 +12,7 @@
 #include "base/yaml_resolved.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace abut {
+namespace abut::test_yaml_fields {
 namespace {
 
 struct Steel {
@@ -471,4 +471,4 @@ TEST(Nearest, FindsAMisspellingAndNothingFarAway) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_yaml_fields

@@ -12,7 +12,7 @@
 #include "base/yaml_document.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace abut {
+namespace abut::test_yaml_like {
 namespace {
 
 constexpr const char* scene = R"(bodies:
@@ -149,4 +149,4 @@ TEST(Like, RefusesMoreThanAnySceneHolds) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_yaml_like

@@ -10,7 +10,7 @@
 #include "base/yaml_differences.hpp"
 #include "base/yaml_document.hpp"
 
-namespace abut {
+namespace abut::test_yaml_stages {
 namespace {
 
 const std::string scene = R"(units: SI
@@ -88,4 +88,4 @@ TEST(Stages, AreNoneWhereASceneHasNone) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_yaml_stages

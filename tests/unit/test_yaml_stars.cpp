@@ -10,7 +10,7 @@
 #include "base/yaml_tree.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace abut {
+namespace abut::test_yaml_stars {
 namespace {
 
 const std::string scene =
@@ -94,4 +94,4 @@ TEST(Stars, ThatMeanNothingAreRefusedWithTheNearest) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::test_yaml_stars

@@ -10,7 +10,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::time_explicit_dynamics_tests {
 namespace {
 
 /// A block on two rollers, one of them inclined, in motion.
@@ -90,4 +90,4 @@ TEST(ExplicitDynamics, LeavesTheMotionAsItWasWhenItFails) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::time_explicit_dynamics_tests

@@ -12,7 +12,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/solids.hpp"
 
-namespace abut {
+namespace abut::time_foreseeing_tests {
 namespace {
 
 constexpr double length = 0.01;  // [s] of a step
@@ -152,4 +152,4 @@ TEST(Foreseeing, WrappersHandOnAllAbilities) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::time_foreseeing_tests

@@ -14,7 +14,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::time_kept_factors_tests {
 namespace {
 
 constexpr double length = 0.1;  // [s] of a step, in which waves pass a tenth of a cell
@@ -110,4 +110,4 @@ TEST(KeptFactorsOfSmallMotions, ServeAllSteps) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::time_kept_factors_tests

@@ -9,7 +9,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::time_stabilisation_tests {
 namespace {
 
 constexpr double youngs = 1.0e3, spring = 5.0;  // [Pa], [N/m]
@@ -64,4 +64,4 @@ TEST(Stabilisation, BearsNothingOfForcesInBalance) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::time_stabilisation_tests

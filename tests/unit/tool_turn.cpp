@@ -9,7 +9,7 @@
 
 #include "tests/unit/passive_bodies.hpp"
 
-namespace abut {
+namespace abut::tool_turn_tests {
 namespace {
 
 using Eigen::Vector3d;
@@ -215,4 +215,4 @@ TEST(ToolTurn, ComesBackBitForBit) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::tool_turn_tests

@@ -13,7 +13,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::bars_in_rows_tests {
 namespace {
 
 constexpr int per_length = 100;            // elements
@@ -183,4 +183,4 @@ TEST(ChainsInRows, OfAnyImpedanceFollowTheExactSolution) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::bars_in_rows_tests

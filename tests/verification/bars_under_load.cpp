@@ -11,7 +11,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::bars_under_load_tests {
 namespace {
 
 constexpr int elements = 50;
@@ -129,4 +129,4 @@ TEST(LoadedBars, PressOnAWallWithTwiceThePressureThatArrives) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::bars_under_load_tests

@@ -11,7 +11,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::collision_variants_tests {
 namespace {
 
 TEST(TwoBars, AtCflOneAreExactForAnyGapAndWindow) {
@@ -58,4 +58,4 @@ TEST(PublishedForm, ImplicitBarsWithLumpedMassChatterAsPublished) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::collision_variants_tests

@@ -13,7 +13,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::contacts_in_rows_tests {
 namespace {
 
 /// 3 to 5 bars of unlike steps, some of them touching, of which the first strikes.
@@ -97,4 +97,4 @@ TEST(ContactsInRows, AreAsManyInAnyOrderAndRole) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::contacts_in_rows_tests

@@ -10,7 +10,7 @@
 
 #include "tests/support/runs.hpp"
 
-namespace abut {
+namespace abut::conventional_methods_tests {
 namespace {
 
 std::string path_of(const std::string& scene) {
@@ -72,4 +72,4 @@ TEST(ConventionalMethods, APairIsWatchedAndItsPortsTakeNoOtherTransmission) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::conventional_methods_tests

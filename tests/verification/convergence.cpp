@@ -10,7 +10,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::convergence_tests {
 namespace {
 
 const std::vector<int> meshes = {25, 50, 100, 200};
@@ -104,4 +104,4 @@ TEST(Convergence, ImplicitBarsConverge) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::convergence_tests

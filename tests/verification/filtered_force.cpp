@@ -13,7 +13,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::filtered_force_tests {
 namespace {
 
 constexpr double exact = 100.0;      // [N]
@@ -89,4 +89,4 @@ TEST_P(FilteredForce, MeanOverATransitKeepsTheOvershootOnEveryMesh) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::filtered_force_tests

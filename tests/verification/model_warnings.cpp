@@ -9,7 +9,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::model_warnings_tests {
 namespace {
 
 /// A square turns freely, by 2 rad where nothing slows it.
@@ -85,4 +85,4 @@ TEST(ModelWarnings, TellOfBendingByHourglasses) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::model_warnings_tests

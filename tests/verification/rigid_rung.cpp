@@ -8,7 +8,7 @@
 #include "tests/support/runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::rigid_rung_tests {
 namespace {
 
 ResultPtr run_shipped(const std::string& scene, const std::vector<std::string>& overrides) {
@@ -65,4 +65,4 @@ TEST(RigidRung, OfAThrownBodyHasItsMomentumAndStart) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::rigid_rung_tests

@@ -8,7 +8,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_bar_tests {
 namespace {
 
 FeOptions of_area(double area) {
@@ -87,4 +87,4 @@ TEST(HangingBar, ConvergesToTheLawsOwnIntegral) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_bar_tests

@@ -7,7 +7,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_beam_tests {
 namespace {
 
 /// Half-height 1/2, length 2, force 1 upwards at the end x = L; plane strain by its own moduli.
@@ -141,4 +141,4 @@ std::vector<Beam> beams() {
 INSTANTIATE_TEST_SUITE_P(All, Cantilevers, testing::ValuesIn(beams()));
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_beam_tests

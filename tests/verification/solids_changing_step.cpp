@@ -11,7 +11,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/solid_runs.hpp"
 
-namespace abut {
+namespace abut::solids_changing_step_tests {
 namespace {
 
 struct Case {
@@ -215,4 +215,4 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{3.0, Formulation::one_point}, Case{3.0, Formulation::mean_dilatation}));
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_changing_step_tests

@@ -12,7 +12,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_dynamics_tests {
 namespace {
 
 void advance(Integrator& run, Motion& motion, int steps, double dt) {
@@ -295,4 +295,4 @@ TEST(FreeBody, KeepsItsAngularMomentumOver100000ExplicitSteps) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_dynamics_tests

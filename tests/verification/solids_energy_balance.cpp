@@ -15,7 +15,7 @@
 #include "tests/support/solids.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_energy_balance_tests {
 namespace {
 
 /// A unit square, cube or bar of which one end is held and the other moved.
@@ -193,4 +193,4 @@ TEST(WorkInMotion, OfLinearBodiesInExplicitStepsIsFoundAgainExactly) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_energy_balance_tests

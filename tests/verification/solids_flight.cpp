@@ -9,7 +9,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_flight_tests {
 namespace {
 
 constexpr double speed = 300.0, distance = 1000.0;  // [m/s], [m]
@@ -112,4 +112,4 @@ std::vector<Flight> flights() {
 INSTANTIATE_TEST_SUITE_P(All, Flights, testing::ValuesIn(flights()));
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_flight_tests

@@ -11,7 +11,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_formulations_tests {
 namespace {
 
 class Formulations : public testing::TestWithParam<ElementCase> {};
@@ -137,4 +137,4 @@ TEST_P(Formulations, BendAsBeamsAndPlatesDo) {
 INSTANTIATE_TEST_SUITE_P(All, Formulations, testing::ValuesIn(element_cases()));
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_formulations_tests

@@ -12,7 +12,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/solid_runs.hpp"
 
-namespace abut {
+namespace abut::solids_frequency_bound_tests {
 namespace {
 
 using Effort = FrequencyWatch::Effort;
@@ -191,4 +191,4 @@ TEST(FrequencyBound, HasNoAnswerForAnInvertedCell) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_frequency_bound_tests

@@ -8,7 +8,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_locking_tests {
 namespace {
 
 /// Pressure 1 inside, radii 1 and 2.
@@ -199,4 +199,4 @@ TEST(CooksMembrane, LocksPointwiseAndNotUnderMeanDilatation) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_locking_tests

@@ -11,7 +11,7 @@
 #include "tests/support/modal_solid.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_modal_tests {
 namespace {
 
 std::unique_ptr<const Material> elastic(double young = 1.0, double nu = 0.3) {
@@ -407,4 +407,4 @@ TEST(Reduction, IsRefusedWhenTheMeshIsAMechanism) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_modal_tests

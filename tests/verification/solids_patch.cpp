@@ -12,7 +12,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_patch_tests {
 namespace {
 
 using Case = ElementCase;
@@ -146,4 +146,4 @@ TEST_P(Patch, PressureAllAroundMakesTheSamePressureInside) {
 INSTANTIATE_TEST_SUITE_P(All, Patch, testing::ValuesIn(element_cases()));
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_patch_tests

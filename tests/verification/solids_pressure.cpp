@@ -9,7 +9,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_pressure_tests {
 namespace {
 
 constexpr double bulk = 1.25, shear = 0.5;
@@ -150,4 +150,4 @@ TEST(FollowerPressure, TurnsWithTheBody) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_pressure_tests

@@ -13,7 +13,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_rigid_tests {
 namespace {
 
 using Eigen::Quaterniond;
@@ -253,4 +253,4 @@ TEST(RigidBody, RefusesAStepOfTooManyTurns) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_rigid_tests

@@ -13,7 +13,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_stable_step_tests {
 namespace {
 
 /// A unit mesh of `n` cells along each edge, stretched along x.
@@ -122,4 +122,4 @@ TEST(StableStep, BoundsTheFrequenciesOfADeformedBody) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_stable_step_tests

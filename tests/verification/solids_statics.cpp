@@ -12,7 +12,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_statics_tests {
 namespace {
 
 NewtonOptions tight() {
@@ -215,4 +215,4 @@ TEST(QuasiStatic, SaysThatHourglassesWithoutStiffnessHaveNoAnswer) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_statics_tests

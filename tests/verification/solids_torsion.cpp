@@ -10,7 +10,7 @@
 #include "tests/support/solid_runs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace abut {
+namespace abut::solids_torsion_tests {
 namespace {
 
 Mesh column() {
@@ -122,4 +122,4 @@ TEST(TorsionColumn, HasThePublishedPeakStressAtItsNodes) {
 }
 
 }  // namespace
-}  // namespace abut
+}  // namespace abut::solids_torsion_tests
