@@ -15,7 +15,7 @@ namespace abut {
 namespace {
 
 /// Of the largest: interfaces that miss by less have no part in it.
-constexpr double part = 1.0e-3;
+constexpr double least_part = 1.0e-3;
 
 struct Missed {
   const TieLayout::Member* member = nullptr;
@@ -122,7 +122,7 @@ bool is_of_meshes(const TieLayout::Member& member, const Eigen::VectorXd& left, 
   for (int r = 0; r < member.tie->rows().count(); ++r) {
     bool open = false;
     for (Eigen::Index i = 0; i < left.size(); i += member.width)
-      open = open || left.segment(i + Eigen::Index{r} * dim, dim).norm() > part * most.distance;
+      open = open || left.segment(i + Eigen::Index{r} * dim, dim).norm() > least_part * most.distance;
     if (open) rows.push_back(r);
   }
   constexpr double share = 0.5;  // a third, and what steps of unlike length add
@@ -138,7 +138,7 @@ std::string words_of(std::vector<Missed>& all, double time, const Bodies& bodies
   double distance = 0.0;
   std::vector<std::string> ties, names;
   for (const Missed& missed : all) {
-    if (missed.distance < part * all.front().distance) break;
+    if (missed.distance < least_part * all.front().distance) break;
     distance += missed.distance;  // each has its share of it
     ties.push_back(missed.member->joint->name);
     for (const Side& side : missed.member->joint->sides)

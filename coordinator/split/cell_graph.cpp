@@ -11,14 +11,14 @@ namespace abut {
 namespace {
 
 /// A facet by its corners, and whose it is.
-struct Place {
+struct GraphPlace {
   std::array<std::int32_t, 4> corners;  // sorted; -1 in front where there are fewer
   std::int32_t cell;
   Facet facet;
 };
 
-std::vector<Place> places_of(const Mesh& mesh) {
-  std::vector<Place> places;
+std::vector<GraphPlace> places_of(const Mesh& mesh) {
+  std::vector<GraphPlace> places;
   std::int32_t cell = 0;
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     const CellBlock& block = mesh.blocks[b];
@@ -27,7 +27,7 @@ std::vector<Place> places_of(const Mesh& mesh) {
     for (std::int32_t own = 0; own < block.count(); ++own, ++cell) {
       const std::span<const std::int32_t> nodes = nodes_of(block, own);
       for (std::size_t f = 0; f < element.facets.size(); ++f) {
-        Place place{{-1, -1, -1, -1},
+        GraphPlace place{{-1, -1, -1, -1},
                     cell,
                     {static_cast<std::int32_t>(b), own, static_cast<std::int32_t>(f)}};
         for (std::size_t a = 0; a < corners; ++a)
@@ -43,8 +43,8 @@ std::vector<Place> places_of(const Mesh& mesh) {
 }  // namespace
 
 CellGraph cell_graph(const Mesh& mesh) {
-  std::vector<Place> places = places_of(mesh);
-  std::ranges::sort(places, [](const Place& a, const Place& b) {
+  std::vector<GraphPlace> places = places_of(mesh);
+  std::ranges::sort(places, [](const GraphPlace& a, const GraphPlace& b) {
     return std::tie(a.corners, a.cell) < std::tie(b.corners, b.cell);
   });
   struct Link {
@@ -53,7 +53,7 @@ CellGraph cell_graph(const Mesh& mesh) {
   };
   std::vector<Link> links;
   for (std::size_t k = 1; k < places.size(); ++k) {
-    const Place &one = places[k - 1], &other = places[k];
+    const GraphPlace &one = places[k - 1], &other = places[k];
     if (one.corners != other.corners) continue;
     links.push_back({one.cell, other.cell, one.facet});
     links.push_back({other.cell, one.cell, other.facet});

@@ -27,9 +27,9 @@ namespace abut {
 namespace {
 
 /// Energy of the start beyond the modes, in parts of it, that is worth a word.
-constexpr double told = 1.0e-6;
+constexpr double told_share = 1.0e-6;
 /// And that is worth a warning: 1 %.
-constexpr double warned = 1.0e-2;
+constexpr double warned_share = 1.0e-2;
 
 double hertz(double omega) { return omega / (2.0 * std::numbers::pi); }
 
@@ -68,10 +68,10 @@ std::string words_of(const ModalBasis& basis) {
 
 /// What a start loses to the modes, in words; empty: nothing.
 std::string loss(const char* energy, double whole, double kept) {
-  if (!(whole - kept > told * whole)) return "";
+  if (!(whole - kept > told_share * whole)) return "";
   const double part = (whole - kept) / whole;
   return fmt::format(", {}the modes leave out {:.3g} % of the start's {} energy",
-                     part > warned ? "WARNING: " : "", 100.0 * part, energy);
+                     part > warned_share ? "WARNING: " : "", 100.0 * part, energy);
 }
 
 double stored(Model& model, const std::vector<double>& q) {

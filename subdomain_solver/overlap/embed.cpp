@@ -61,11 +61,11 @@ void append_row(const Row& row, const Eigen::Vector3d& at, int dim, EmbeddedSurf
 }
 
 /// A part of a facet: a segment, a triangle, or a quadrilateral that lies in one cell as a whole.
-using Corners = std::span<const Eigen::Vector3d>;
+using CellCorners = std::span<const Eigen::Vector3d>;
 
 /// Of a part at a point of its rule, per weight: that of segments and triangles is the same
 /// everywhere.
-double stretch(const Tabulation& t, int point, Corners corners) {
+double stretch(const Tabulation& t, int point, CellCorners corners) {
   if (corners.size() < 4) return 1.0;
   Eigen::Matrix<double, 3, 2> along = Eigen::Matrix<double, 3, 2>::Zero();
   for (std::size_t i = 0; i < 4; ++i)
@@ -77,7 +77,7 @@ double stretch(const Tabulation& t, int point, Corners corners) {
 /// What the corners of a part of a facet are to move by, so that their interpolant, linear or
 /// bilinear, has the means of the cell's motion against such functions: (corners, nodes of the
 /// cell). A quadrilateral that is a facet of the cell moves as its nodes do, warp included.
-Eigen::MatrixXd means(const Mesh& mesh, CellPlace cell, Corners corners) {
+Eigen::MatrixXd means(const Mesh& mesh, CellPlace cell, CellCorners corners) {
   const auto count = static_cast<Eigen::Index>(corners.size());
   const Element& linear = linear_element(count == 2   ? Shape::line
                                          : count == 3 ? Shape::triangle
@@ -104,7 +104,7 @@ class Embedder {
     out_.rows.clear();
   }
 
-  void add(Corners part, CellPlace cell) {
+  void add(CellCorners part, CellPlace cell) {
     const Eigen::MatrixXd values = means(cells_.mesh(), cell, part);
     for (Eigen::Index i = values.rows() - 1; i >= 0; --i)  // seen from inside this body
       out_.facets.push_back(point(part[i], row_of(cells_.mesh(), cell, values.row(i).transpose())));
