@@ -35,7 +35,7 @@ inline std::unique_ptr<const Material> law_named(const std::string& name) {
 
 /// Coordinates by chance, the same in every run.
 inline std::vector<double> displaced(const FeModel& model, double size) {
-  Draw draw;
+  DrawTensors draw;
   std::vector<double> q(index(model.dofs()));
   for (double& x : q) x = size * draw.between(-1.0, 1.0);
   return q;

@@ -19,12 +19,12 @@ struct FeatureCase {
 constexpr FeatureCase feature_cases[] = {
     {FeatureKind::node_facet, 2}, {FeatureKind::node_facet, 3}, {FeatureKind::edge_edge, 3}};
 
-inline Eigen::Vector3d drawn_point(Draw& draw, int dim, double size) {
+inline Eigen::Vector3d drawn_point(DrawNumbers& draw, int dim, double size) {
   const double x = draw(-size, size), y = draw(-size, size);
   return {x, y, dim == 3 ? draw(-size, size) : 0.0};
 }
 
-inline FeaturePoints drawn_points(Draw& draw, int dim, double size) {
+inline FeaturePoints drawn_points(DrawNumbers& draw, int dim, double size) {
   FeaturePoints x;
   for (Eigen::Vector3d& point : x) point = drawn_point(draw, dim, size);
   return x;

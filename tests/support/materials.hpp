@@ -70,7 +70,7 @@ inline std::vector<Law> all_laws() {
 }
 
 /// Random numbers that are the same in every run and on every platform.
-class Draw {
+class DrawTensors {
  public:
   double between(double low, double high) {
     return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
@@ -90,7 +90,7 @@ class Draw {
 /// Deformation gradients at which laws are differentiated: the reference, small strains, large
 /// stretches in rotated axes, two and three equal or nearly equal stretches.
 inline std::vector<Matrix3> sample_deformations() {
-  Draw draw;
+  DrawTensors draw;
   std::vector<Matrix3> samples = {Matrix3::Identity(), 1.2 * Matrix3::Identity()};
   for (const double size : {1.0e-8, 1.0e-3, 5.0e-3})
     samples.push_back(Matrix3::Identity() + draw.matrix(size));

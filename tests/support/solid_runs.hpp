@@ -20,7 +20,7 @@
 namespace abut {
 
 using Position = Eigen::Vector3d;
-using Place = std::function<Position(const Position&)>;
+using Displaced = std::function<Position(const Position&)>;
 
 /// Reference position of a node; zeros beyond the mesh's dimension.
 inline Position position(const Mesh& mesh, int node) {
@@ -30,7 +30,7 @@ inline Position position(const Mesh& mesh, int node) {
 }
 
 /// Nodal values (nodes, dim) of a vector field.
-inline std::vector<double> nodal(const Mesh& mesh, const Place& field) {
+inline std::vector<double> nodal(const Mesh& mesh, const Displaced& field) {
   std::vector<double> out(mesh.points.size());
   for (int node = 0; node < mesh.node_count(); ++node) {
     const Position value = field(position(mesh, node));
@@ -40,7 +40,7 @@ inline std::vector<double> nodal(const Mesh& mesh, const Place& field) {
 }
 
 /// Moves the nodes of a mesh.
-inline void move(Mesh& mesh, const Place& to) { mesh.points = nodal(mesh, to); }
+inline void move(Mesh& mesh, const Displaced& to) { mesh.points = nodal(mesh, to); }
 
 inline Moduli isotropic(double youngs_modulus, double poissons_ratio) {
   ElasticConstants constants;

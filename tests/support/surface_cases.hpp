@@ -26,27 +26,27 @@ inline Eigen::Vector3d turned(const Eigen::Vector3d& x, double degrees, double c
 }
 
 /// A rectangle, turned around the middle of the unit square.
-inline Place rectangle(double low, double high, double degrees = 0.0) {
+inline SurfaceMap rectangle(double low, double high, double degrees = 0.0) {
   return [low, high, degrees](double u, double v) {
     return turned({low + (high - low) * u, low + (high - low) * v, 0.0}, degrees, 0.5, 0.5);
   };
 }
 
 /// The unit square, its inside turned by up to 30 degrees in the middle and not at all at its rim.
-inline Place swirl() {
+inline SurfaceMap swirl() {
   return [](double u, double v) {
     const double bump = 16.0 * u * (1.0 - u) * v * (1.0 - v);
     return turned({u, v, 0.0}, 30.0 * bump, 0.5, 0.5);
   };
 }
 
-inline Place shifted(double du, double dv) {
+inline SurfaceMap shifted(double du, double dv) {
   return [du, dv](double u, double v) { return Eigen::Vector3d(u + du, v + dv, 0.0); };
 }
 
 inline std::vector<FlatCase> flat_cases() {
-  const Place unit = rectangle(0.0, 1.0);
-  const auto k = [](int cells, const Place& place, bool triangles) {
+  const SurfaceMap unit = rectangle(0.0, 1.0);
+  const auto k = [](int cells, const SurfaceMap& place, bool triangles) {
     return grid(cells, cells, place, triangles, true);
   };
   const auto n = [&unit](int cells, bool triangles) {

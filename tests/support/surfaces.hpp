@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "base/index.hpp"
 #include "surface/boxes.hpp"
 #include "surface/mortar.hpp"
-#include "base/index.hpp"
 #include "surface/posed_surface.hpp"
 
 namespace abut {
@@ -31,10 +31,10 @@ struct SurfaceMesh {
   }
 };
 
-using Place = std::function<Eigen::Vector3d(double, double)>;  // of u, v in [0, 1]
+using SurfaceMap = std::function<Eigen::Vector3d(double, double)>;  // of u, v in [0, 1]
 
 /// nu x nv cells over the unit square, placed in space; normals along d/du x d/dv, or against it.
-inline SurfaceMesh grid(int nu, int nv, const Place& place, bool triangles, bool flipped) {
+inline SurfaceMesh grid(int nu, int nv, const SurfaceMap& place, bool triangles, bool flipped) {
   SurfaceMesh mesh;
   for (int j = 0; j <= nv; ++j) {
     for (int i = 0; i <= nu; ++i) {
@@ -99,10 +99,10 @@ inline SurfaceRows mortar(const SurfaceMesh& k, const SurfaceMesh& n,
 }
 
 /// Numbers in [low, high] that are the same everywhere.
-struct Draw {
+struct DrawNumbers {
   std::mt19937_64 engine;
 
-  explicit Draw(unsigned seed) : engine(seed) {}
+  explicit DrawNumbers(unsigned seed) : engine(seed) {}
   double operator()(double low, double high) {
     return low + (high - low) * static_cast<double>(engine() >> 11) * 0x1p-53;
   }

@@ -16,6 +16,7 @@ import overriders
 import packages
 import places
 import tolerances
+import units
 import words
 from findings import Finding
 
@@ -246,6 +247,26 @@ class Equations(unittest.TestCase):
     def test_formula_or_row_that_ends_with_a_citation_defines_nothing(self) -> None:
         self.check([], self.METHOD + "    e = f under [M.1]\n| f | as [M.2] |\n")
         self.check(["docs/METHOD.md:4"], self.METHOD + "    e = f under [M.4]\n")
+
+
+class Units(unittest.TestCase):
+    def check(self, expected: list[str], **files: str) -> None:
+        found = findings(units.check, CMakeLists_dot_txt="add_library(x STATIC a.cpp b.cpp)\n", **files)
+        self.assertEqual([f"{finding.path}:{finding.line}" for finding in found], expected)
+
+    def test_files_of_one_target_have_functions_of_their_own(self) -> None:
+        one = "namespace abut {\nnamespace {\nint f(int x) {\n  return x;\n}\n}\n}\n"
+        overload = "namespace abut {\nnamespace {\nint f(double x) {\n  return 1;\n}\n}\n}\n"
+        self.check(["b.cpp:3"], a_dot_cpp=one, b_dot_cpp=overload)
+        self.check([], a_dot_cpp=one, b_dot_cpp=overload.replace("abut", "abut::tests"))
+        self.check([], a_dot_cpp=one, b_dot_cpp=overload.replace("f(double", "g(double"))
+        self.check([], a_dot_cpp=one, c_dot_cpp=overload)
+
+    def test_what_is_no_function_of_a_file(self) -> None:
+        for same in ("int K::f() {\n  return 1;\n}", "struct S {\n  int f() {\n    return 1;\n  }\n};",
+                     "TEST(A, B) {\n}"):
+            text = "namespace abut {\nnamespace {\n" + same + "\n}\n}\n"
+            self.check([], a_dot_cpp=text, b_dot_cpp=text)
 
 
 class Tolerances(unittest.TestCase):

@@ -74,7 +74,7 @@ Answer batched(const BatchCase& c, const Mesh& mesh, std::span<const double> q,
 }
 
 std::vector<double> displaced(const Mesh& mesh, double size) {
-  Draw draw;
+  DrawTensors draw;
   std::vector<double> q(mesh.points.size());
   for (double& x : q) x = size * draw.between(-1.0, 1.0);
   return q;
@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(All, ObjectiveBatchedCells, testing::ValuesIn(cases(obj
 TEST(Hourglass, EveryFieldButRigidMotionHasEnergy) {
   for (const std::string element : {"hex8", "quad4"}) {
     Mesh mesh = unit_mesh(element, 1);
-    Draw draw;
+    DrawTensors draw;
     for (double& x : mesh.points) x += 0.1 * draw.between(-1.0, 1.0);
     const int size = static_cast<int>(mesh.points.size()), rigid = mesh.dim == 3 ? 6 : 3;
     const int hourglasses = mesh.dim == 3 ? 12 : 2;

@@ -51,7 +51,7 @@ Mesh row(const std::string& element, int count) {
     m.element = element;
     mesh = generate(m, "test");
   }
-  Draw draw;
+  DrawTensors draw;
   for (double& x : mesh.points) x += draw.between(-0.1, 0.1);
   return mesh;
 }
@@ -76,7 +76,7 @@ TEST_P(BatchedPlasticity, HasTheHistoriesOfSingleCells) {
     FeModel batched = model_of(GetParam(), row(GetParam().element, count), true);
     ASSERT_EQ(single.batched(), nullptr);
     ASSERT_NE(batched.batched(), nullptr);
-    Draw draw;
+    DrawTensors draw;
     std::vector<double> q(index(single.dofs()), 0.0);
     std::vector<double> history(single.history_size(), 0.0);
     bool unloaded = false;

@@ -112,7 +112,7 @@ TEST(CellAnswers, TellOfCellsThatAreInsideOut) {
 
 TEST(StiffnessKernels, HaveTheSameBitsForEveryWidthOfRegisters) {
   constexpr int nodes = 8, points = 8, dim = 3;
-  Draw draw;
+  DrawTensors draw;
   std::vector<double> volume, gradient, displacement;
   for (int k = 0; k < points * batch_lanes; ++k) volume.push_back(draw.between(0.5, 1.0));
   for (int k = 0; k < points * nodes * dim * batch_lanes; ++k)

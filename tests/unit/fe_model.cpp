@@ -36,7 +36,7 @@ std::vector<Case> cases(const std::vector<std::string>& laws) {
 /// One distorted cell, away from the axis of an axisymmetric one.
 FeModel one_cell(const Case& c) {
   Mesh mesh = unit_mesh(c.element, 1);
-  Draw draw;
+  DrawTensors draw;
   for (double& x : mesh.points) x += 1.0 + 0.05 * draw.between(-1.0, 1.0);
   FeOptions options{c.plane, c.formulation, 0.7};
   options.area = 0.6;

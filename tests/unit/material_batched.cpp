@@ -27,7 +27,7 @@ TensorLanes<N> gather(const std::vector<Matrix3>& f, std::size_t first) {
 
 /// 64 deformations from small strains to stretches of 0.4 and 2.5, in turned axes.
 std::vector<Matrix3> many_deformations() {
-  Draw draw;
+  DrawTensors draw;
   std::vector<Matrix3> f;
   for (int i = 0; i < 32; ++i) f.push_back(Matrix3::Identity() + draw.matrix(1.0e-3 * i));
   for (int i = 0; i < 32; ++i) {
@@ -108,7 +108,7 @@ TEST(BatchedLaws, HaveTheTangentsOfTheScalarLaws) {
 }
 
 TEST(BatchedLaws, InverseCubeRootErrsByTwoRoundings) {
-  Draw draw;
+  DrawTensors draw;
   double worst = 0.0;
   for (int i = 0; i < 200'000; ++i) {
     const double range = i % 2 == 0 ? 0.5 : 200.0;  // around 1, and across the exponents

@@ -92,7 +92,7 @@ void expect_agreement(const Hardening& hardening, const std::vector<Matrix3>& f,
 /// Every other lane rests in the second half of its way, and its neighbours go on.
 template <int N>
 Seen walk(const Hardening& hardening, double size, int steps) {
-  Draw draw;
+  DrawTensors draw;
   std::vector<Matrix3> f(N);
   for (Matrix3& at : f) at = draw.rotation();
   std::vector<History> history(N, History(7, 0.0));
@@ -145,7 +145,7 @@ TEST(BatchedJ2, IsTheScalarLawWhereStretchesCoincide) {
 
 /// Lanes that yield, or are far from a sphere, beside one that does neither.
 TEST(BatchedJ2, ALaneHasItsBitsInEveryCompany) {
-  Draw draw;
+  DrawTensors draw;
   const HardeningNumbers numbers = numbers_of(hardening_of(10.0, true));
   const Matrix3 still = Matrix3::Identity() + draw.matrix(1.0e-3);
   std::vector<Matrix3> f(4, still);
@@ -194,7 +194,7 @@ TEST(BatchedJ2, NoTangentExceedsItsBound) {
     const Hardening hardening = hardening_of(higher, true);
     const J2Plasticity law(test_moduli, hardening, 1.0);
     const HardeningNumbers numbers = numbers_of(hardening);
-    Draw draw;
+    DrawTensors draw;
     std::vector<History> history(4, History(7, 0.0));
     std::vector<Matrix3> f(4, Matrix3::Identity());
     for (int s = 0; s < 60; ++s) {
@@ -222,7 +222,7 @@ TEST(BatchedJ2, NoTangentExceedsItsBound) {
 }
 
 TEST(BatchedJ2, ExponentialsErrByTwoRoundings) {
-  Draw draw;
+  DrawTensors draw;
   double worst = 0.0;
   for (int i = 0; i < 100'000; ++i) {
     double x[4], y[4];

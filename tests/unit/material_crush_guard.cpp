@@ -25,14 +25,14 @@ PointResponse guard_at(const Matrix3& f, Need want = Need::tangent) {
   return out;
 }
 
-Matrix3 with_volume(Draw& draw, double j) {
+Matrix3 with_volume(DrawTensors& draw, double j) {
   Matrix3 f = Matrix3::Identity() + draw.matrix(0.4);
   if (f.determinant() < 0.0) f.col(0) *= -1.0;
   return f * std::cbrt(j / f.determinant());
 }
 
 TEST(CrushGuard, HasAPotential) {
-  Draw draw;
+  DrawTensors draw;
   for (const double j : {0.05, 0.1, 0.25, 0.39}) {
     for (int k = 0; k < 20; ++k) {
       const Matrix3 f = with_volume(draw, j);
@@ -57,7 +57,7 @@ TEST(CrushGuard, HasAPotential) {
 }
 
 TEST(CrushGuard, IsNothingWhereNothingIsCrushed) {
-  Draw draw;
+  DrawTensors draw;
   for (const double j : {crushed * 1.0001, 0.7, 1.0, 2.0}) {
     const PointResponse r = guard_at(with_volume(draw, j));
     EXPECT_EQ(r.energy, 0.0);

@@ -58,7 +58,7 @@ TEST_P(MaterialLaw, TangentIsSymmetric) {
 }
 
 TEST_P(MaterialLaw, ObjectiveUnlessSmallStrain) {
-  Draw draw;
+  DrawTensors draw;
   for (History& start : histories())
     for (const Matrix3& f : sample_deformations()) {
       const Matrix3 q = draw.rotation();
@@ -78,7 +78,7 @@ TEST_P(MaterialLaw, ObjectiveUnlessSmallStrain) {
 }
 
 TEST_P(MaterialLaw, Isotropic) {
-  Draw draw;
+  DrawTensors draw;
   for (const Matrix3& f : sample_deformations()) {
     // A material turned by Q in the reference and space, under the turned deformation.
     const Matrix3 q = draw.rotation();
@@ -108,7 +108,7 @@ TEST_P(MaterialLaw, RestIsFreeOfStressAndEnergyAndHasTheModuli) {
 TEST_P(MaterialLaw, SmallStrainsKeepTheirDigits) {
   // Against linear elasticity the difference is of the order of the strain, down to strains where
   // F F^T - I computed from F F^T would hold half a dozen digits or none.
-  Draw draw;
+  DrawTensors draw;
   const LinearElastic hooke(law().moduli(), 1.0);
   for (const double size : {1.0e-4, 1.0e-7, 1.0e-10}) {
     Matrix3 h = draw.matrix(size);

@@ -25,7 +25,7 @@ PlaneStress sheet_of(const Material& law) {
 }
 
 std::vector<Matrix3> sample_sheets() {
-  Draw draw;
+  DrawTensors draw;
   std::vector<Matrix3> samples;
   for (const double size : {0.0, 1.0e-8, 5.0e-3, 0.1, 0.2, 0.25}) {
     const Matrix3 h = draw.matrix(size);

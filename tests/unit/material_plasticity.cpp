@@ -41,7 +41,7 @@ double plastic_determinant(const History& h) {
 /// A strain with a principal axis across the plane takes the way of plane bodies; the same one with
 /// its axes in another order takes the general way.
 TEST(LogStrain, IsThatOfSpaceInThePlane) {
-  Draw draw;
+  DrawTensors draw;
   for (int k = 0; k < 1000; ++k) {
     const double size = std::pow(10.0, -draw.between(0.5, 12.0));
     Matrix3 plane = Matrix3::Zero();
@@ -163,7 +163,7 @@ TEST(J2Plasticity, PressureDoesNotYield) {
 }
 
 TEST(J2Plasticity, RandomPathsDissipateKeepPlasticVolumeAndStayOnTheSurface) {
-  Draw draw;
+  DrawTensors draw;
   History h = zero_history(metal());
   const int steps = 20000;
   for (int i = 0; i < steps; ++i) {
@@ -214,7 +214,7 @@ TEST(J2Plasticity, PerfectPlasticityAndLargeStepsConverge) {
   sharp.saturation = Saturation{0.5, 1.0e5};
   for (const Hardening& hard : {perfect, sharp}) {
     const J2Plasticity law(test_moduli, hard, 1.0);
-    Draw draw;
+    DrawTensors draw;
     for (int i = 0; i < 100; ++i) {
       const Eigen::Vector3d stretch(draw.between(0.1, 10.0), draw.between(0.1, 10.0), 1.0);
       const Matrix3 f = draw.rotation() * stretch.asDiagonal() * draw.rotation();

@@ -93,7 +93,7 @@ inline void meet_point(Subdomain& body, std::size_t port, bool tied, double dist
   PortGeometry point = body.describe().ports[port].geometry;
   point.points[0] += distance * point.normals[0];
   point.normals[0] *= -1.0;
-  body.meet({static_cast<int>(port), 0, &point, {tied}});
+  body.meet({static_cast<int>(port), 0, &point, {.tied = tied}});
 }
 
 /// The kernel of a port of one point along its outward normal.

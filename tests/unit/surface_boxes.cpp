@@ -14,7 +14,7 @@ namespace abut::surface_boxes_tests {
 namespace {
 
 /// Facets strewn about a cube (or a square), each with its own nodes.
-SurfaceMesh strewn(int count, int dim, double size, Draw& draw) {
+SurfaceMesh strewn(int count, int dim, double size, DrawNumbers& draw) {
   SurfaceMesh mesh;
   mesh.dim = dim;
   for (int f = 0; f < count; ++f) {
@@ -49,7 +49,7 @@ std::vector<Box> boxes_of(const SurfaceMesh& mesh, double margin) {
 class Trees : public testing::TestWithParam<int> {};
 
 TEST_P(Trees, FindEveryPairAndNoOtherBeforeAndAfterARefit) {
-  Draw draw(5);
+  DrawNumbers draw(5);
   for (const int count : {1, 2, 3, 17, 400}) {
     SurfaceMesh a = strewn(count, GetParam(), 0.05, draw);
     SurfaceMesh b = strewn(count + 5, GetParam(), 0.05, draw);
@@ -71,7 +71,7 @@ TEST_P(Trees, FindEveryPairAndNoOtherBeforeAndAfterARefit) {
 }
 
 TEST_P(Trees, SweptBoxesHoldTheFacetAllTheWay) {
-  Draw draw(6);
+  DrawNumbers draw(6);
   const SurfaceMesh from = strewn(60, GetParam(), 0.05, draw);
   std::vector<double> to = from.points, between = from.points;
   for (double& x : to) x += draw(-0.3, 0.3);

@@ -37,7 +37,7 @@ Polygon box(double x0, double y0, double x1, double y1) {
 }
 
 /// Corners on an ellipse, anywhere, counterclockwise: convex.
-Polygon random_polygon(int corners, Draw& draw) {
+Polygon random_polygon(int corners, DrawNumbers& draw) {
   std::vector<double> angles = draw.many(index(corners), 0.0, 6.283);
   std::sort(angles.begin(), angles.end());
   const Vector2d middle(draw(-0.5, 0.5), draw(-0.5, 0.5));
@@ -58,7 +58,7 @@ BoostPolygon boost_of(const Polygon& p) {
 }
 
 TEST(Clip, AreasAreThoseOfBoostGeometry) {
-  Draw draw(3);
+  DrawNumbers draw(3);
   int common = 0;
   for (int k = 0; k < 20000; ++k) {
     const Polygon a = random_polygon(3 + k % 6, draw), b = random_polygon(3 + k % 5, draw);
@@ -77,7 +77,7 @@ TEST(Clip, AreasAreThoseOfBoostGeometry) {
 }
 
 TEST(Clip, IsInsideBoth) {
-  Draw draw(4);
+  DrawNumbers draw(4);
   for (int k = 0; k < 5000; ++k) {
     const Polygon a = random_polygon(4, draw), b = random_polygon(3, draw), c = clip(a, b);
     EXPECT_LE(c.count, 7);

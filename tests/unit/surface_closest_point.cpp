@@ -76,7 +76,7 @@ double sampled(const Corners& quad, const Vector3d& x, int lattice) {
 }
 
 TEST(ClosestPoint, OnWarpedQuadrilateralsIsNoFurtherThanAnySample) {
-  Draw draw(8);
+  DrawNumbers draw(8);
   int inside = 0;
   for (int k = 0; k < 3000; ++k) {
     Corners quad{4, {Vector3d(0, 0, 0), Vector3d(1, 0, 0), Vector3d(1, 1, 0), Vector3d(0, 1, 0)}};
@@ -102,7 +102,7 @@ TEST(ClosestPoint, OnWarpedQuadrilateralsIsNoFurtherThanAnySample) {
 }
 
 TEST(ClosestPoint, OfAPointOnTheFacetIsThatPoint) {
-  Draw draw(9);
+  DrawNumbers draw(9);
   for (int k = 0; k < 1000; ++k) {
     Corners quad{4, {Vector3d(0, 0, 0), Vector3d(1, 0, 0), Vector3d(1, 1, 0), Vector3d(0, 1, 0)}};
     for (int i = 0; i < 4; ++i)
@@ -117,7 +117,7 @@ TEST(ClosestPoint, OfAPointOnTheFacetIsThatPoint) {
 }
 
 TEST(ClosestPoint, OfASurfaceIsTheBestOfAllFacets) {
-  Draw draw(10);
+  DrawNumbers draw(10);
   const auto wavy = [](double u, double v) {
     return Vector3d(u, v, 0.2 * std::sin(5 * u) * std::cos(4 * v));
   };
@@ -147,7 +147,7 @@ TEST(ClosestPoint, OfASurfaceIsTheBestOfAllFacets) {
 }
 
 TEST(PlaneFacet, ShapeFunctionsAreFoundInDistortedQuadrilaterals) {
-  Draw draw(12);
+  DrawNumbers draw(12);
   for (int k = 0; k < 20000; ++k) {
     Corners quad{4, {Vector3d(0, 0, 0), Vector3d(1, 0, 0), Vector3d(1, 1, 0), Vector3d(0, 1, 0)}};
     const double distortion = k % 3 == 0 ? 1e-9 : 0.24;  // almost straight, and almost folded

@@ -41,7 +41,7 @@ void expect_weights(const FeatureDistance& d, const std::array<double, 4>& weigh
 
 /// A facet point with shares b of its corners; the difference is any that its feature allows.
 TEST(FeatureDistance, OfANodeInEveryRegionOfATriangle) {
-  Draw draw(1);
+  DrawNumbers draw(1);
   const Eigen::Matrix3d turn = some_rotation();
   for (int region = 1; region < 8; ++region) {  // a bit for each corner with a share
     for (int k = 0; k < 200; ++k) {
@@ -72,7 +72,7 @@ TEST(FeatureDistance, OfANodeInEveryRegionOfATriangle) {
 }
 
 TEST(FeatureDistance, OfANodeInEveryRegionOfASegment) {
-  Draw draw(2);
+  DrawNumbers draw(2);
   for (int region = 0; region < 3; ++region) {
     for (int k = 0; k < 100; ++k) {
       const double angle = draw(-3.0, 3.0), s = region == 0 ? 0.0 : region == 1 ? 1.0 : draw(0, 1);
@@ -92,7 +92,7 @@ TEST(FeatureDistance, OfANodeInEveryRegionOfASegment) {
 /// Closest points at both beginnings, insides and ends: of the difference, from the second to the
 /// first, the part along an edge vanishes inside, and points away from it at its ends.
 TEST(FeatureDistance, OfTwoEdgesInEveryRegion) {
-  Draw draw(3);
+  DrawNumbers draw(3);
   for (int region = 0; region < 9; ++region) {
     const int first = region % 3, second = region / 3;  // 0: begin, 1: inside, 2: end
     for (int k = 0; k < 200; ++k) {
@@ -167,7 +167,7 @@ TEST(FeatureDistance, OfParallelEdges) {
 
 /// Of features that have shrunk to an edge or a point it is the distance of what is left.
 TEST(FeatureDistance, OfFeaturesWithoutExtent) {
-  Draw draw(4);
+  DrawNumbers draw(4);
   for (int k = 0; k < 100; ++k) {
     const Vector p = drawn_point(draw, 3, 1.0), a = drawn_point(draw, 3, 1.0),
                  b = drawn_point(draw, 3, 1.0), between = a + draw(0.0, 1.0) * (b - a);
@@ -226,7 +226,7 @@ double by_search(FeatureCase c, const FeaturePoints& x) {
 }
 
 TEST(FeatureDistance, IsTheLeastOfASearch) {
-  Draw draw(5);
+  DrawNumbers draw(5);
   for (const FeatureCase c : feature_cases) {
     for (int k = 0; k < 400; ++k) {
       const FeaturePoints x = drawn_points(draw, c.dim, 1.0);

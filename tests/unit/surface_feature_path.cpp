@@ -50,7 +50,7 @@ TEST(FeaturePath, OfASpikeTowardsAPlane) {
 }
 
 TEST(FeaturePath, NeverOfFeaturesThatPartOrMoveTogether) {
-  Draw draw(1);
+  DrawNumbers draw(1);
   for (const FeatureCase c : feature_cases) {
     for (int k = 0; k < 300; ++k) {
       const FeaturePoints x0 = drawn_points(draw, c.dim, 1.0);
@@ -71,7 +71,7 @@ TEST(FeaturePath, NeverOfFeaturesThatPartOrMoveTogether) {
 }
 
 TEST(FeaturePath, BeginsAtOnceOfFeaturesThatAreWithin) {
-  Draw draw(2);
+  DrawNumbers draw(2);
   for (const FeatureCase c : feature_cases) {
     for (int k = 0; k < 300; ++k) {
       const FeaturePoints x0 = drawn_points(draw, c.dim, 1.0), x1 = drawn_points(draw, c.dim, 1.0);
@@ -121,7 +121,7 @@ TEST(FeaturePath, OfASegmentThatSwingsOntoANode) {
 
 /// Ways of all sizes, some hardly moving and some far past each other, in a corner far off, too.
 TEST(FeaturePath, IsNeverLateNorEarly) {
-  Draw draw(3);
+  DrawNumbers draw(3);
   constexpr int samples = 500;
   int met = 0, passed = 0;
   for (int k = 0; k < 10000; ++k) {
@@ -154,7 +154,7 @@ TEST(FeaturePath, IsNeverLateNorEarly) {
 /// What the passive way builds on: as long as no step is longer than such a time, nothing ever
 /// touches, whatever the motion of the next step.
 TEST(FeaturePath, StepsThatKeepToItNeverTouch) {
-  Draw draw(4);
+  DrawNumbers draw(4);
   for (int k = 0; k < 300; ++k) {
     const FeatureCase c = feature_cases[k % 3];
     FeaturePoints x = drawn_points(draw, c.dim, 1.0);

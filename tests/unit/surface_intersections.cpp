@@ -93,7 +93,7 @@ TEST(Intersections, AreFoundOnceBlocksOverlapByMoreThanTheDepth) {
 
 /// A needle, exactly through the middle of a plate that has there a node, or an edge, or a facet.
 TEST(Intersections, AreFoundThroughNodesAndEdges) {
-  const Place flat = [](double u, double v) { return Vector(u, v, 0); };
+  const SurfaceMap flat = [](double u, double v) { return Vector(u, v, 0); };
   for (const int cells : {1, 2, 3, 4}) {
     for (const bool triangles : {false, true}) {
       const SurfaceMesh plate = grid(cells, cells, flat, triangles, false);
@@ -119,7 +119,7 @@ TEST(Intersections, AreFoundThroughNodesAndEdges) {
 
 /// Where an edge meets a facet's plane is told by three equations.
 TEST(Intersections, AreThoseOfEveryPair) {
-  Draw draw(1);
+  DrawNumbers draw(1);
   std::size_t count = 0;
   for (const int dim : {2, 3}) {
     for (int k = 0; k < 10; ++k) {

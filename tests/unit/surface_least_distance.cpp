@@ -62,14 +62,14 @@ SurfaceMesh circle(int n, double radius) {
       false);
 }
 
-Eigen::Matrix3d turn(Draw& draw) {
+Eigen::Matrix3d turn(DrawNumbers& draw) {
   return Eigen::AngleAxisd(draw(-3.0, 3.0),
                            Eigen::Vector3d(draw(-1.0, 1.0), draw(-1.0, 1.0), 2.0).normalized())
       .toRotationMatrix();
 }
 
 TEST(LeastDistance, IsThatOfEveryPair) {
-  Draw draw(3);
+  DrawNumbers draw(3);
   for (int k = 0; k < 20; ++k) {
     const Eigen::Vector3d by(draw(0.5, 4.0), draw(-1.0, 1.0), draw(-1.0, 1.0));
     const SurfaceMesh a = sphere(9, 1.0), b = moved(sphere(7, 0.6), turn(draw), by);
@@ -81,7 +81,7 @@ TEST(LeastDistance, IsThatOfEveryPair) {
 }
 
 TEST(LeastDistance, IsNeverMoreThanThatOfTwoPoints) {
-  Draw draw(4);
+  DrawNumbers draw(4);
   for (int k = 0; k < 50; ++k) {
     const SurfaceMesh a = sphere(6, 1.0);
     const SurfaceMesh b = moved(sphere(5, 0.6), turn(draw), {draw(0.0, 3.0), draw(-1.0, 1.0), 0.0});
@@ -97,7 +97,7 @@ TEST(LeastDistance, OfTurnedPlatesInParallelIsTheirGap) {
   const auto plate = [](double z) {
     return [z](double u, double v) { return Eigen::Vector3d(u, v, z); };
   };
-  Draw draw(6);
+  DrawNumbers draw(6);
   for (const double gap : {1.0e-6, 0.01, 0.7}) {
     const Eigen::Matrix3d way = turn(draw);
     const SurfaceMesh a = moved(grid(5, 5, plate(0.0), false, false), way, {1.0, 2.0, 3.0});

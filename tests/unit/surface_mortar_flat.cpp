@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/surface_cases.hpp"
 #include "base/index.hpp"
+#include "tests/support/surface_cases.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace abut::surface_mortar_flat_tests {
@@ -82,7 +82,7 @@ TEST_P(FlatMortar, ConstantPressureIsThatOfTheConsistentNodalForces) {
 TEST_P(FlatMortar, AnyForcesBalanceInTotalMomentAndWork) {
   const FlatCase c = posed();
   const SurfaceRows rows = mortar(c.k, c.n);
-  Draw draw(11);
+  DrawNumbers draw(11);
   const int dim = rows.dim;
   const std::size_t size = index(rows.count() * dim);
   const std::vector<double> f = draw.many(size, -1.0, 1.0);

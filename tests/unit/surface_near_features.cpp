@@ -47,7 +47,7 @@ TEST(Skin, OfThePlaneHasNoEdges) {
 }
 
 /// Crumpled sheets of quadrilaterals and of triangles, or lines of the plane, all about one place.
-std::vector<SurfaceMesh> some_meshes(Draw& draw, int dim) {
+std::vector<SurfaceMesh> some_meshes(DrawNumbers& draw, int dim) {
   std::vector<SurfaceMesh> meshes;
   for (int m = 0; m < 4; ++m) {
     const Vector by = drawn_point(draw, dim, 0.5);
@@ -116,7 +116,7 @@ std::vector<FeaturePair> by_every_pair(const Skin& skin, const Points& from, con
 
 /// Groups against others, against all, against some and themselves; with and without points whose
 /// motion is given.
-std::vector<FeatureChoice> some_choices(Draw& draw, const Skin& skin) {
+std::vector<FeatureChoice> some_choices(DrawNumbers& draw, const Skin& skin) {
   std::vector<std::uint8_t> some(static_cast<std::size_t>(skin.groups * skin.groups), 0);
   for (int g = 0; g < skin.groups; ++g)
     for (int h = 0; h <= g; ++h)
@@ -128,7 +128,7 @@ std::vector<FeatureChoice> some_choices(Draw& draw, const Skin& skin) {
 }
 
 TEST(NearFeatures, AreThoseOfEveryPair) {
-  Draw draw(1);
+  DrawNumbers draw(1);
   std::size_t found = 0;
   for (const int dim : {2, 3}) {
     for (int k = 0; k < 4; ++k) {
@@ -153,7 +153,7 @@ TEST(NearFeatures, AreThoseOfEveryPair) {
 
 /// Whatever comes nearer than the reach on the way is among them.
 TEST(NearFeatures, MissNothingThatComesNear) {
-  Draw draw(2);
+  DrawNumbers draw(2);
   for (const int dim : {2, 3}) {
     const std::vector<SurfaceMesh> meshes = some_meshes(draw, dim);
     const Skin skin = skin_of(meshes);
@@ -179,7 +179,7 @@ TEST(NearFeatures, MissNothingThatComesNear) {
 }
 
 TEST(NearFeatures, KeepTheirMemory) {
-  Draw draw(3);
+  DrawNumbers draw(3);
   const std::vector<SurfaceMesh> meshes = some_meshes(draw, 3);
   const Skin skin = skin_of(meshes);
   const Points points = points_of(meshes);
@@ -194,7 +194,7 @@ TEST(NearFeatures, KeepTheirMemory) {
 }
 
 TEST(SkinTrees, TellTheClosestFacet) {
-  Draw draw(4);
+  DrawNumbers draw(4);
   for (const int dim : {2, 3}) {
     const std::vector<SurfaceMesh> meshes = some_meshes(draw, dim);
     const Skin skin = skin_of(meshes);

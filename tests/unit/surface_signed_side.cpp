@@ -39,7 +39,7 @@ double block_gap(const Vector& x, int dim) {
 }
 
 TEST(SignedSide, OfABlockIsItsGap) {
-  Draw draw(1);
+  DrawNumbers draw(1);
   for (const int dim : {2, 3}) {
     const Eigen::Matrix3d turn =
         dim == 3 ? some_rotation() : Eigen::AngleAxisd(0.7, Vector::UnitZ()).toRotationMatrix();
@@ -65,7 +65,7 @@ TEST(SignedSide, OfABlockIsItsGap) {
 
 /// A sphere whose nodes are thrown in and out: corners of all shapes, some sharper than a right
 /// angle, and fans of unlike facets.
-SurfaceMesh urchin(Draw& draw, double low) {
+SurfaceMesh urchin(DrawNumbers& draw, double low) {
   // a block whose faces are divided, blown up
   SurfaceMesh mesh;
   const SurfaceMesh cube = block(3, {-1, -1, -1}, {1, 1, 1});
@@ -97,7 +97,7 @@ SurfaceMesh urchin(Draw& draw, double low) {
   return mesh;
 }
 
-SurfaceMesh star(Draw& draw, double low) {
+SurfaceMesh star(DrawNumbers& draw, double low) {
   SurfaceMesh mesh;
   mesh.dim = 2;
   constexpr int n = 20;
@@ -110,7 +110,7 @@ SurfaceMesh star(Draw& draw, double low) {
 }
 
 TEST(SignedSide, IsThatOfRaysWhateverTheCorners) {
-  Draw draw(2);
+  DrawNumbers draw(2);
   for (const int dim : {2, 3}) {
     for (const double low : {0.9, 0.5, 0.1}) {
       const std::vector<SurfaceMesh> meshes{dim == 2 ? star(draw, low) : urchin(draw, low)};
@@ -155,7 +155,7 @@ SurfaceMesh needle(int parts) {
 }
 
 TEST(SignedSide, OfATipDoesNotDependOnTheNumberOfItsFacets) {
-  Draw draw(3);
+  DrawNumbers draw(3);
   for (const int parts : {1, 3, 30}) {
     const std::vector<SurfaceMesh> meshes{needle(parts)};
     ASSERT_TRUE(is_closed(meshes[0].pose()));

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "base/fields_reference.hpp"
 #include "base/input_errors.hpp"
 #include "base/synonyms.hpp"
@@ -356,8 +358,8 @@ TEST(YamlFields, SyntaxErrorNamesItsLine) {
 TEST(YamlFields, AnAnchorThatGrowsWithoutBoundIsRefused) {
   std::string bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
   for (int i = 1; i < 9; ++i) {
-    bomb += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [";
-    for (int k = 0; k < 10; ++k) bomb += (k > 0 ? ", *a" : "*a") + std::to_string(i - 1);
+    bomb += fmt::format("a{0}: &a{0} [", i);
+    for (int k = 0; k < 10; ++k) bomb += fmt::format("{}*a{}", k > 0 ? ", " : "", i - 1);
     bomb += "]\n";
   }
   EXPECT_EQ(refusal(bomb), "s.yaml: holds too many values. Remove anchors that repeat themselves.");

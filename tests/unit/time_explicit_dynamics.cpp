@@ -30,7 +30,7 @@ struct Block {
     std::sort(problem.supports.begin(), problem.supports.end(),
               [](const Prescribed& a, const Prescribed& b) { return a.dof < b.dof; });
     motion.q.assign(index(model.dofs()), 0.0);
-    Draw draw;
+    DrawTensors draw;
     for (std::size_t i = 0; i < motion.q.size(); ++i)
       motion.v.push_back(0.01 * draw.between(-1.0, 1.0));
   }

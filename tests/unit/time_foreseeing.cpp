@@ -48,15 +48,14 @@ struct Block {
   Motion motion;
   int asked = 0;
 
-  Block(const std::string& element, bool linear)
-      : model(unit_mesh(element, 3), law(linear), {}) {
+  Block(const std::string& element, bool linear) : model(unit_mesh(element, 3), law(linear), {}) {
     problem.model = &model;
     const int dim = model.mesh().dim;
     for (std::int32_t node : model.mesh().nodes_of("left"))
       problem.supports.push_back({dim * node, [](double t) { return 0.01 * t; }});
     problem.loads.push_back(std::make_unique<Push>());
     motion.q.assign(index(model.dofs()), 0.0);
-    Draw draw;
+    DrawTensors draw;
     for (std::size_t i = 0; i < motion.q.size(); ++i)
       motion.v.push_back(0.01 * draw.between(-1.0, 1.0));
   }

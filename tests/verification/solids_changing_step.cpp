@@ -194,13 +194,12 @@ TEST(StableSteps, AreWholeWhereOnlyTheBoundIsAboveTheLimit) {
     distort(mesh, 0.2 / 6.0);
     Solid solid(std::move(mesh), std::make_unique<NeoHookean>(test_moduli, 1.0),
                 Pressed::options(Formulation::full));
-    Draw draw;
+    DrawTensors draw;
     for (double& v : solid.motion.v) v = 1.0e-4 * draw.between(-1.0, 1.0);
     const double limit = stable_step(solid.model);
     const double step = 0.99 * limit;
     StableSteps steps(std::make_unique<ExplicitDynamics>(solid.problem),
-                      std::make_unique<HighestFrequency>(solid.model),
-                      {step, limit, clamp});
+                      std::make_unique<HighestFrequency>(solid.model), {step, limit, clamp});
     ASSERT_FALSE(steps.begin(solid.motion, 0.0));
     for (int k = 0; k < 1000; ++k) ASSERT_FALSE(steps.step(solid.motion, k * step, step));
     EXPECT_EQ(steps.measure(solid.motion)[1], 1.0);

@@ -24,8 +24,7 @@ struct Case {
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
-  *out << c.element << " " << static_cast<int>(c.formulation) << " "
-       << all_laws()[c.law].name;
+  *out << c.element << " " << static_cast<int>(c.formulation) << " " << all_laws()[c.law].name;
 }
 
 std::vector<Case> cases() {
@@ -86,7 +85,7 @@ double frequency_of_assembled(FeModel& model, const std::vector<double>& q,
 }
 
 /// Stretches and shears of the whole body, and of each cell in its own way.
-std::vector<double> deformed(const Mesh& mesh, double size, Draw& draw) {
+std::vector<double> deformed(const Mesh& mesh, double size, DrawTensors& draw) {
   const Matrix3 h = draw.matrix(size);
   std::vector<double> q = nodal(mesh, [&h](const Position& x) { return h * x; });
   for (double& u : q) u += 0.1 * size * draw.between(-1.0, 1.0);
@@ -100,7 +99,7 @@ TEST_P(FrequencyBoundOf, IsAboveAllFrequenciesOfTheAssembledBody) {
   FeModel model(uneven_mesh(c.element, 0.04), law_of(c.law), options_of(c.formulation));
   HighestFrequency watch(model);
   const std::vector<double> history(model.history_size(), 0.0);
-  Draw draw;
+  DrawTensors draw;
   for (const double size : {0.0, 0.01, 0.1, 0.2, 0.3}) {
     const std::vector<double> q = deformed(model.mesh(), size, draw);
     const double limit = stable_step(model, q, history);
@@ -123,7 +122,7 @@ TEST_P(FrequencyBoundOf, IsDecidedByEigenvaluesOfCells) {
   FeModel model(uneven_mesh(c.element, 0.04), law_of(c.law), options_of(c.formulation));
   HighestFrequency watch(model);
   const std::vector<double> history(model.history_size(), 0.0);
-  Draw draw;
+  DrawTensors draw;
   for (const double size : {0.0, 0.1}) {
     const std::vector<double> q = deformed(model.mesh(), size, draw);
     const double limit = stable_step(model, q, history);
@@ -171,7 +170,7 @@ TEST(FrequencyBound, IsTheSameBitsForAllThreads) {
   const auto bound = [](int threads) {
     FeModel model(unit_mesh("hex8", 14), law_of(2), options_of(Formulation::full, threads));
     HighestFrequency watch(model);
-    Draw draw;
+    DrawTensors draw;
     std::vector<double> q(index(model.dofs()));
     for (double& u : q) u = 0.005 * draw.between(-1.0, 1.0);
     return watch.bound(q, {}, 1.0, Effort::bounded)->square;

@@ -64,7 +64,7 @@ TEST(PressedCube, DeadPressureIsTheNominalStress) {
 
 /// A body turned, stretched and made irregular.
 std::vector<double> deformed(const Mesh& mesh) {
-  Draw draw;
+  DrawTensors draw;
   const Matrix3 f = Matrix3::Identity() + draw.matrix(0.3);
   const Matrix3 turned = mesh.dim == 3 ? Matrix3(draw.rotation() * f) : f;
   std::vector<double> q =
@@ -133,7 +133,7 @@ TEST(FollowerPressure, TurnsWithTheBody) {
   const Pressure pressure(
       model, "right", [](const auto&, double) { return 2.0; }, true);
   const std::vector<double> q = deformed(model.mesh());
-  const Matrix3 turn = Draw().rotation();
+  const Matrix3 turn = DrawTensors().rotation();
   std::vector<double> turned(q.size());
   Vector force = Vector::Zero(model.dofs()), after = force;
   for (int node = 0; node < model.mesh().node_count(); ++node) {

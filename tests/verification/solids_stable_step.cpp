@@ -32,7 +32,7 @@ double growth(FeModel& model, double dt, int steps) {
   Motion motion;
   motion.q.assign(index(model.dofs()), 0.0);
   motion.v = motion.q;
-  Draw draw;
+  DrawTensors draw;
   for (double& v : motion.v) v = draw.between(-1.0, 1.0);
   EXPECT_FALSE(run.begin(motion, 0.0));
   const double first = run.kinetic(motion);
@@ -104,7 +104,7 @@ TEST(StableStep, BoundsTheFrequenciesOfADeformedBody) {
   for (const Formulation formulation : {Formulation::full, Formulation::one_point}) {
     FeModel model(slender_mesh("hex8", 2, 3.0), std::make_unique<NeoHookean>(test_moduli, 1.0),
                   {Plane::strain, formulation});
-    Draw draw;
+    DrawTensors draw;
     std::vector<double> q(index(model.dofs()));
     for (double& x : q) x = draw.between(-0.08, 0.08);
     ModelResponse response;
