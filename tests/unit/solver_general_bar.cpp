@@ -110,16 +110,16 @@ TEST(GeneralBar, KnowsTheStableStepOfItsOwnCore) {
 /// The bodies of scenes with one thing that the core does not know.
 TEST(GeneralBar, IsWhatTheCoreDoesNotKnow) {
   const std::string text = bare().text();
-  const auto is_solid = [](const std::string& body) { return abut::is_solid(*build_text(body)); };
-  EXPECT_FALSE(is_solid(text));
-  EXPECT_THROW(is_solid(with(text, "density", "poissons_ratio: 0.3, density")), InputError);
-  EXPECT_TRUE(is_solid(with(text, "linear_elastic: {", "neo_hookean: {poissons_ratio: 0.3, ")));
-  EXPECT_TRUE(is_solid(with(text, ", area", ", grading: 1.01, area")));
-  EXPECT_TRUE(is_solid(text + "    constraints: {wall: {on: left, fixed: true}}\n"));
-  EXPECT_FALSE(is_solid(text + "    loads: {pull: {on: right, traction: ['0.1 * t']}}\n"));
+  const auto solid = [](const std::string& body) { return is_solid(*build_text(body)); };
+  EXPECT_FALSE(solid(text));
+  EXPECT_THROW(solid(with(text, "density", "poissons_ratio: 0.3, density")), InputError);
+  EXPECT_TRUE(solid(with(text, "linear_elastic: {", "neo_hookean: {poissons_ratio: 0.3, ")));
+  EXPECT_TRUE(solid(with(text, ", area", ", grading: 1.01, area")));
+  EXPECT_TRUE(solid(text + "    constraints: {wall: {on: left, fixed: true}}\n"));
+  EXPECT_FALSE(solid(text + "    loads: {pull: {on: right, traction: ['0.1 * t']}}\n"));
   const std::string held = text + "    supports: {left: fixed}\n";  // statics needs it
-  EXPECT_FALSE(is_solid(held));
-  EXPECT_TRUE(is_solid(with(held, explicit_scheme(0.6), "quasi_static: {step: 0.6}")));
+  EXPECT_FALSE(solid(held));
+  EXPECT_TRUE(solid(with(held, explicit_scheme(0.6), "quasi_static: {step: 0.6}")));
 }
 
 std::string refusal(const std::string& body) {
