@@ -167,8 +167,8 @@ int delivered(int code) {
 int main(int argc, char** argv) {
   const abut::FlushedDenormals flushed;  // also of threads that bodies start
   std::signal(SIGXFSZ, SIG_IGN);         // a file at the limit of its size is an error of writing
-  abut::offer_python_package();          // before there is a second thread
   try {
+    abut::offer_python_package();  // before there is a second thread
     return abut::delivered(std::visit(abut::Verbs{}, abut::parse_command_line(argc, argv)));
   } catch (const abut::InputErrorList& errors) {
     int code = abut::exit_input;

@@ -116,15 +116,18 @@ RunDirectory::RunDirectory(fs::path directory, bool force) : path_(std::move(dir
     refuse(path_, fmt::format("cannot be a run directory: {} is a file", there.string()));
   if (access(there.c_str(), W_OK | X_OK) != 0)
     refuse(path_, fmt::format("cannot be written: no permission in {}", there.string()));
-  while (lock_ < 0) {
-    fresh_ = fs::create_directories(path_, error);
-    if (error) refuse(path_, "cannot be made: " + error.message());
-    lock_ = lock(path_);
-  }
   try {
+    while (lock_ < 0) {
+      fresh_ = fs::create_directories(path_, error);
+      if (error) refuse(path_, "cannot be made: " + error.message());
+      lock_ = lock(path_);
+    }
     refuse_what_stays(force);
-  } catch (const InputError&) {
-    close(lock_);
+  } catch (...) {  // also where memory ends; what another run has locked is that run's
+    if (lock_ >= 0) {
+      abandon();
+      close(lock_);
+    }
     throw;
   }
 }

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -94,13 +95,10 @@ void serve_bodies(const Command& command) {
   abut::serve_group(servers, group, patience);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const abut::FlushedDenormals flushed;  // also of threads that bodies start
+/// What the command line says; where it says no more than that, the exit code.
+std::optional<int> read_command_line(int argc, char** argv, Command& command) {
   CLI::App app("Bodies of an abut scene; started by abut, or by hand for `launch: connect`.",
                "abut-solver");
-  Command command;
   const std::string protocol = fmt::format(", protocol {}", abut::protocol_version);
   app.add_option("--connect", command.endpoint,
                  "the coordinator's endpoint, e.g. tcp://127.0.0.1:5555")
@@ -135,12 +133,24 @@ int main(int argc, char** argv) {
     std::fputs("abut-solver: several bodies need --process\n", stderr);
     return 2;
   }
+  return std::nullopt;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const abut::FlushedDenormals flushed;  // also of threads that bodies start
+  Command command;
   try {
+    if (const std::optional<int> code = read_command_line(argc, argv, command)) return *code;
     serve_bodies(command);
     return 0;
   } catch (const abut::InputError& error) {
     std::fputs(fmt::format("abut-solver: {}\n", error.what()).c_str(), stderr);
     return 2;
+  } catch (const std::bad_alloc&) {
+    std::fputs("abut-solver: the memory is used up\n", stderr);
+    return 3;
   } catch (const std::exception& error) {
     std::fputs(fmt::format("abut-solver at {}: {}\n", command.endpoint, error.what()).c_str(),
                stderr);

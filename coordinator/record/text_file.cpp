@@ -105,9 +105,14 @@ void write_whole(const std::filesystem::path& path, std::string_view text) {
   temporary += ".tmp";
   std::error_code error;
   std::filesystem::remove(temporary, error);  // what a run that was killed has left
-  TextFile file(temporary);
-  file.append(text);
-  file.close();
+  try {
+    TextFile file(temporary);
+    file.append(text);
+    file.close();
+  } catch (...) {  // of what is written in part, nothing stays
+    std::filesystem::remove(temporary, error);
+    throw;
+  }
   std::filesystem::rename(temporary, path, error);
   if (error)
     throw RunError(fmt::format("cannot be renamed to {}: {}", path.string(), error.message()),

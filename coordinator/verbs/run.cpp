@@ -27,15 +27,15 @@ int run_verb(const RunCommand& command) {
   std::optional<RunPlan> plan;
   try {
     plan = plan_run(std::move(document), options, interrupts);
+    for (const Description* body : plan->placement.descriptions())
+      log_info(fmt::format("{}: {}", body->name,
+                           quantities_in(declared_units(plan->scene.units), body->model)));
+    held.clear();
+    write_whole(held.path() / "scene.resolved.yaml", resolved_text(plan->scene, plan->document));
   } catch (...) {  // a run that never begins leaves nothing behind
     held.abandon();
     throw;
   }
-  for (const Description* body : plan->placement.descriptions())
-    log_info(fmt::format("{}: {}", body->name,
-                         quantities_in(declared_units(plan->scene.units), body->model)));
-  held.clear();
-  write_whole(held.path() / "scene.resolved.yaml", resolved_text(plan->scene, plan->document));
   return record_run(std::move(*plan), options, held, interrupts, std::nullopt);
 }
 
