@@ -1,18 +1,28 @@
 #include "base/worker_threads.hpp"
 
 namespace abut {
+namespace {
+
+void end_workers(std::vector<std::thread>& threads, std::atomic<unsigned>& round, bool& ended) {
+  ended = true;
+  ++round;
+  round.notify_all();
+  for (std::thread& thread : threads) thread.join();
+}
+
+}  // namespace
 
 WorkerThreads::WorkerThreads(int count) {
-  for (int worker = 1; worker < count; ++worker)
-    threads_.emplace_back([this, worker] { serve(worker); });
+  try {
+    for (int worker = 1; worker < count; ++worker)
+      threads_.emplace_back([this, worker] { serve(worker); });
+  } catch (...) {  // there are no more threads, or memory: those that run are ended first
+    end_workers(threads_, round_, ended_);
+    throw;
+  }
 }
 
-WorkerThreads::~WorkerThreads() {
-  ended_ = true;
-  ++round_;
-  round_.notify_all();
-  for (std::thread& thread : threads_) thread.join();
-}
+WorkerThreads::~WorkerThreads() { end_workers(threads_, round_, ended_); }
 
 void WorkerThreads::run(std::size_t tasks, const Work& work) {
   work_ = &work;
