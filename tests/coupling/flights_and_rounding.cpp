@@ -87,7 +87,8 @@ std::vector<Flight> flights() {
                             falls = {0.0, 1.0, 30.0};  // 5 % of a cell per square of a step
   std::vector<Flight> all;
   std::vector<std::string> elements = solid_elements();  // what came later draws last
-  std::ranges::stable_partition(elements, [](const std::string& name) { return name != "quad9"; });
+  std::stable_partition(elements.begin(), elements.end(),
+                        [](const std::string& name) { return name != "quad9"; });
   for (const std::string& element : elements) {
     for (const std::string& scheme : schemes) {
       const bool dear = element_named(element).dim == 3 && element_named(element).order > 1;

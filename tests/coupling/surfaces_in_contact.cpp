@@ -168,7 +168,8 @@ INSTANTIATE_TEST_SUITE_P(
 /// cells.
 TEST_P(SurfaceFixedPoint, IsTheUndividedProblem) {
   constexpr double step = 0.0125;
-  const auto& [dim, law, name] = GetParam();
+  const int dim = std::get<0>(GetParam());
+  const std::string law = std::get<1>(GetParam()), name = std::get<2>(GetParam());
   const std::string mesh = dim == 2 ? bar_mesh(2, 2) : block_mesh({1.0, 0.25, 0.25}, {3, 2, 2});
   const auto solid = [&](const char* body, double place, double v, const char* side) {
     SolidText text = block(body, {"", law, scheme(name, step)}, dim, place, v, side);

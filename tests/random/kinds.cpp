@@ -74,7 +74,7 @@ Shape shape_of(Draw& draw, const Piece& piece, int dim) {
   shape.dim = dim;
   const double close = 1e-9 * size.head(dim).minCoeff();
   for (const auto& [name, side] : piece.tied) {
-    const auto [axis, end] = side;
+    const int axis = side.first, end = side.second;
     const double at = (end == 0 ? piece.box.low : piece.box.high)(axis);
     for (const std::vector<int>& facet : shape.outside())
       if (std::ranges::all_of(facet,
