@@ -18,7 +18,7 @@ using Recipe = std::vector<std::pair<std::int32_t, std::int32_t>>;
 
 class Division {
  public:
-  Division(const PosedSurface& surface, int parts) : surface_(surface), parts_(parts) {
+  Division(const PosedSurface& surface, int parts) : parts_(parts) {
     out_.dim = surface.dim;
     out_.round = surface.round;
     out_.offsets.push_back(0);
@@ -70,7 +70,6 @@ class Division {
     }
   }
 
-  const PosedSurface& surface_;
   std::int32_t parts_;
   DividedSurface out_;
   std::map<Recipe, std::int32_t> known_;

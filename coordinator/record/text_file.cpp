@@ -109,14 +109,14 @@ void write_whole(const std::filesystem::path& path, std::string_view text) {
     TextFile file(temporary);
     file.append(text);
     file.close();
-  } catch (...) {  // of what is written in part, nothing stays
+    std::filesystem::rename(temporary, path, error);
+    if (error)
+      throw RunError(fmt::format("cannot be renamed to {}: {}", path.string(), error.message()),
+                     temporary.string(), "Check that nothing else uses the run's folder.");
+  } catch (...) {  // nothing of it stays
     std::filesystem::remove(temporary, error);
     throw;
   }
-  std::filesystem::rename(temporary, path, error);
-  if (error)
-    throw RunError(fmt::format("cannot be renamed to {}: {}", path.string(), error.message()),
-                   temporary.string(), "Check that nothing else uses the run's folder.");
 }
 
 }  // namespace abut
