@@ -42,7 +42,8 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${needed}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "abut")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "serve a body of your own to abut
 Libraries, headers and the Protocol Buffers files with which a program becomes
-a body of a scene of abut, a CMake package, a pkg-config file and examples.")
+a body of a scene of abut, in C++, C or Fortran, a CMake package, pkg-config
+files and examples.")
 install(CODE "if(\"\${CMAKE_INSTALL_COMPONENT}\" STREQUAL development)
   file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/share/doc/libabut-dev\" TYPE FILE
     RENAME copyright FILES ${PROJECT_SOURCE_DIR}/LICENSE)

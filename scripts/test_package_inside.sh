@@ -61,8 +61,8 @@ as_user "cd ~/examples/cpp_body && cmake -B build >/dev/null && cmake --build bu
 program=/srv/user/examples/cpp_body/build/mass_on_spring
 as_user "cd ~/examples && abut run python_body/bar_meets_mass.yaml --quiet \
   --set network.endpoint=null --set 'bodies.mass.launch={spawn: {program: $program}}'"
-as_user "cd ~/examples/cpp_body && g++ -std=c++20 mass_on_spring.cpp -o by_pkg_config \
-  \$(pkg-config --cflags --libs abut)"
+as_user "cd ~/examples/cpp_body && g++ -std=c++17 mass_on_spring.cpp -o by_pkg_config \
+  \$(pkg-config --cflags --libs abut-sdk)"
 [ -f "$(pkg-config --variable=protodir abut)/abut/v1/subdomain.proto" ] || fail "no protocol"
 
 step "removed again"

@@ -294,25 +294,6 @@ class Words(Install):
 class Others(Install):
     """A project that knows nothing but what is installed."""
 
-    def test_a_solver_in_cpp_is_found_linked_and_run(self):
-        if "sanitizers" in self.call(ABUT, "--version"):
-            self.skipTest("its program would have to be built with the same sanitizers")
-        self.install(self.prefix)
-        project = self.prefix / "share/doc/abut/examples/cpp_body"
-        self.call(CMAKE, "-S", project, "-B", "build", f"-DCMAKE_PREFIX_PATH={self.prefix}")
-        self.call(CMAKE, "--build", "build")
-        scene = self.prefix / "share/doc/abut/examples/python_body/bar_meets_mass.yaml"
-        program, listed = self.folder / "build/mass_on_spring", self.folder / "programs"
-        listed.write_text(f"{program}\n", encoding="utf-8")
-        listed.chmod(0o600)
-        mine = {"ABUT_PROGRAMS": str(listed)}
-        words = ["--quiet", "--set", f"bodies.mass.launch={{spawn: {{program: {program}}}}}",
-                 "--set", "network.endpoint=null"]
-        self.call(self.prefix / "bin/abut", "run", scene, *words, **mine)
-        said = self.call(self.prefix / "bin/abut", "run", scene, *words, "--out", "other",
-                         "--set", "bodies.mass.model.external.mass=-1", code=2, **mine)
-        self.assertIn("bodies.mass.model.external.mass: must be positive", said)
-
     def test_a_solver_in_python_finds_its_package_and_runs(self):
         self.install(self.prefix)
         example = self.folder / "copy"

@@ -70,7 +70,8 @@ class Surface:
                 along = at[1] - at[0]
                 size = np.array([along[1], -along[0]])
             else:
-                size = np.cross(at[2] - at[0], at[-1] - at[1 if len(facet) == 4 else 0])
+                across = at[3] - at[1] if len(facet) == 4 else at[2] - at[1]
+                size = np.cross(at[2] - at[0], across)
             normals[list(facet)] += size
         lengths = np.linalg.norm(normals, axis=1)
         if not np.all(lengths > 0.0):

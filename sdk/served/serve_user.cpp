@@ -1,0 +1,98 @@
+// abut_serve(): the program of a user's body.
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "abut.h"
+#include "base/denormals.hpp"
+#include "base/endpoint.hpp"
+#include "base/yaml_fields.hpp"
+#include "messaging/descriptors.hpp"
+#include "messaging/serve.hpp"
+#include "messaging/zmq_dealer.hpp"
+#include "sdk/served/keys.hpp"
+#include "sdk/served/served_body.hpp"
+
+namespace abut {
+
+namespace {
+
+constexpr Milliseconds user_patience{60'000};  // for a coordinator to answer
+constexpr int user_descriptors = 20;           // as abut-solver; files of the user's come on top
+
+std::unique_ptr<Subdomain> make_user_body(const Specification& given, const ProgressHook& alive,
+                                          abut_make* make, void* with) {
+  const Document scene = Document::from_text(given.document, given.text, given.overrides);
+  const std::string path = given.path + ".model.external";
+  auto parts = std::make_unique<abut_parts>();
+  abut_body body{};
+  body.parts = parts.get();
+  body.dim = 1;
+  body.mass = std::numeric_limits<double>::quiet_NaN();
+  body.stable_step = std::numeric_limits<double>::infinity();
+  try {
+    read_fields(scene, path, [&](Fields& fields) {
+      abut_keys keys{fields, scene, path};
+      make(&keys, &body, with);
+      if (keys.refused) fields.ignore_rest();  // it may not have come to them
+    });
+  } catch (const InputError&) {
+    if (body.release != nullptr && body.self != nullptr) body.release(body.self);
+    throw;
+  }
+  return std::make_unique<ServedBody>(body, std::move(parts), alive);
+}
+
+/// By name: --connect, --body, --keys.
+std::map<std::string, std::string> options_of(int argc, char** argv) {
+  std::map<std::string, std::string> options;
+  for (int i = 1; i < argc; i += 2) {
+    const std::string name = argv[i];
+    if (i + 1 == argc || (name != "--connect" && name != "--body" && name != "--keys")) return {};
+    options[name] = argv[i + 1];
+  }
+  return options;
+}
+
+}  // namespace
+
+}  // namespace abut
+
+int abut_serve(int argc, char** argv, abut_make* make, void* with) {
+  std::map<std::string, std::string> options = abut::options_of(argc, argv);
+  if (!options.contains("--connect") || !options.contains("--body")) {
+    std::fputs(fmt::format("usage: {} --connect ENDPOINT --body NAME [--keys DIR]\n",
+                           argc > 0 ? argv[0] : "body")
+                   .c_str(),
+               stderr);
+    return 2;
+  }
+  const std::string &endpoint = options["--connect"], &name = options["--body"];
+  const auto make_body = [make, with](const abut::Specification& given,
+                                      const abut::ProgressHook& alive) {
+    return abut::make_user_body(given, alive, make, with);
+  };
+  try {
+    const abut::FlushedDenormals flushed;
+    const abut::Limits limits;
+    const abut::Deadlines deadlines;
+    abut::require_descriptors(abut::user_descriptors);
+    abut::ZmqDealer dealer(endpoint, name, limits, 1, abut::Access{options["--keys"], false});
+    abut::CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
+    abut::Server server(name, make_body, dealer, coordinator, limits, deadlines);
+    abut::serve(server, abut::user_patience);
+    return 0;
+  } catch (const abut::InputError& error) {
+    std::fputs(fmt::format("body {}: {}\n", name, error.what()).c_str(), stderr);
+    return 2;
+  } catch (const std::exception& error) {
+    std::fputs(fmt::format("body {} at {}: {}\n", name, endpoint, error.what()).c_str(), stderr);
+    return 3;
+  }
+}

@@ -1,0 +1,165 @@
+"""Goal: a body in C++, C or Fortran, in a project that knows nothing of abut but what is installed,
+keeps the contract and collides with ours as the closed forms of its scene say.
+
+usage: test_native_bodies.py ABUT ROOT CLASS CMAKE      exit code 77 (skipped) without a compiler
+"""
+
+import math
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from support import ABUT, ROOT, SystemTest, main
+
+CMAKE = sys.argv[4]
+BUILD = ABUT.parents[1]
+EXAMPLES = ROOT / "examples"
+MASS = "{mass: 0.2, stiffness: 8.0e5, position: 0.0, step: 4.0e-6}"
+SOLID = ("lengths: [0.25, 0.1], corner: [0.0, 0.0], velocity: [0.0, 0.0], step: 1.0e-5, "
+         "youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000.0")
+BAR = ("{length: 0.25, area: 1.0e-6, elements: 20, position: 0.0, velocity: 0.0, step: 1.0e-6, "
+       "youngs_modulus: 1.0e9, density: 1000.0}")
+# What a user's file may read beside its own library: the compiler's.
+OTHERS = re.compile(r"Eigen|google|zmq|fmt|spdlog|yaml|contract/|messaging/|base/")
+
+
+class NativeTest(SystemTest):
+    example = ""
+
+    @classmethod
+    def setUpClass(cls):
+        if not cls.example:
+            return
+        said = subprocess.run([ABUT, "--version"], capture_output=True, text=True, check=True)
+        if "sanitizers" in said.stdout:
+            raise unittest.SkipTest("a program would have to be built with the same sanitizers")
+        holder = tempfile.TemporaryDirectory(dir="/tmp")
+        cls.addClassCleanup(holder.cleanup)
+        cls.prefix = Path(holder.name) / "prefix"
+        cls.project = Path(holder.name) / cls.example
+        shutil.copytree(EXAMPLES / cls.example, cls.project)
+        build = cls.project / "build"
+        for words in ((CMAKE, "--install", BUILD, "--component", "development", "--prefix",
+                       cls.prefix),
+                      (CMAKE, "-S", cls.project, "-B", build, f"-DCMAKE_PREFIX_PATH={cls.prefix}"),
+                      (CMAKE, "--build", build)):
+            subprocess.run([*map(str, words)], check=True, stdout=subprocess.DEVNULL, timeout=600)
+
+    def call(self, *words: object) -> str:
+        result = subprocess.run([*map(str, words)], cwd=self.folder, text=True, check=False,
+                                env=self.environment, capture_output=True, timeout=300)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        return result.stdout
+
+    def program(self, name: str) -> Path:
+        return self.project / "build" / name
+
+    def run_scene(self, scene: Path, program: str, *more: str):
+        """A scene names its program from the folder that a run is started in."""
+        own = self.folder / scene.name
+        text = scene.read_text("utf-8").replace(f"./build/{program}", str(self.program(program)))
+        own.write_text(text, encoding="utf-8")
+        self.allow(self.program(program))
+        return self.abut("run", own, "--out", self.out, *more)
+
+    def collide(self, scene: str, program: str):
+        self.succeed(self.run_scene(EXAMPLES / self.example / scene, program))
+        self.assert_whole(self.out)
+
+    def meet_a_bar(self, *more: str):
+        launch = f"bodies.mass.launch={{spawn: {{program: {self.program('mass_on_spring')}}}}}"
+        return self.run_scene(EXAMPLES / "python_body" / "bar_meets_mass.yaml", "mass_on_spring",
+                              "--set", launch, "--set", "network.endpoint=null", *more)
+
+    def conform(self, program: str, keys: str):
+        """Every clause is kept; of those of a body that moves, each was asked."""
+        said = self.succeed(self.abut("conformance", self.program(program), "--keys", keys)).stdout
+        for clause in ("ends", "restore", "boxes", "momentum", "work", "kernel", "checkpoint"):
+            self.assertRegex(said, f"\n  {clause} +kept", said)
+        self.assertNotIn("BROKEN", said)
+
+
+class Cpp(NativeTest):
+    example = "cpp_body"
+
+    def test_a_plate_meets_a_bar_of_ours(self):
+        self.collide("plates.yaml", "my_body")
+        self.conform("my_body", f"{{{SOLID}, cells: [4, 2]}}")
+
+    def test_a_mass_meets_a_bar_of_ours(self):
+        self.succeed(self.meet_a_bar())
+        self.conform("mass_on_spring", MASS)
+
+    def test_wrong_keys_are_told_with_file_line_and_key(self):
+        for change, words in (("mass=-1", "mass: must be positive, but is -1 kg"),
+                              ("mass=null", "mass: is missing. Give the mass in kg"),
+                              ("colour=3", "colour: is not a known key"),
+                              ("step=1 kg", "step: ")):
+            with self.subTest(change):
+                result = self.meet_a_bar("--set", f"bodies.mass.model.external.{change}")
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn(f"bodies.mass.model.external.{words}", result.stderr)
+
+    def test_the_chapter_runs_as_it_stands(self):
+        text = (ROOT / "docs" / "SOLVER.md").read_text("utf-8")
+        whole = re.DOTALL | re.MULTILINE
+        files = re.findall(r"^```\w+\n((?:#|//) file: (\S+)\n.*?)^```$", text, whole)
+        self.assertEqual([name for _, name in files], ["floating.yaml", "floating.cpp"])
+        for content, name in files:
+            (self.folder / name).write_text(content, encoding="utf-8")
+        self.allow(self.folder / "floating")
+        self.environment["PKG_CONFIG_PATH"] = str(self.prefix / "lib/pkgconfig")
+        self.environment["PATH"] = f"{ABUT.parent}:{self.environment['PATH']}"
+        commands = re.search(r"^```sh\n(.*?)^```$", text, whole)[1].splitlines()
+        self.assertEqual(len(commands), 3)
+        said = [self.call("sh", "-c", command) for command in commands]
+        self.assertNotIn("BROKEN", said[2])
+        measures = self.summary(self.folder / "runs" / "floating")["measures"]
+        exact = 0.2 * (1.0 - math.exp(-100.0 * 1.0e-3 / 0.2))  # as in test_first_hour.py
+        self.assertLess(abs(measures["momentum.mass.end"] / exact - 1.0), 0.005)
+
+    def test_its_header_reads_nothing_else_of_abut_nor_of_its_libraries(self):
+        source = self.folder / "alone.cpp"
+        source.write_text("#include <abut.hpp>\n", encoding="utf-8")
+        read = self.call("g++", "-std=c++17", "-M", f"-I{self.prefix / 'include'}", source)
+        self.assertIn("abut.h ", read + " ")
+        self.assertEqual([name for name in read.split() if OTHERS.search(name)], [])
+
+    def test_pkg_config_tells_what_to_compile_and_link(self):
+        self.environment["PKG_CONFIG_PATH"] = str(self.prefix / "lib/pkgconfig")
+        flags = self.call("pkg-config", "--cflags", "--libs", "abut-sdk").split()
+        self.call("g++", "-std=c++17", self.project / "mass_on_spring.cpp", "-o", "mass", *flags)
+        said = self.call("sh", "-c", "./mass; test $? = 2 && echo it runs")
+        self.assertIn("it runs", said)
+
+
+class C(NativeTest):
+    example = "c_body"
+
+    def test_a_mass_meets_a_bar_of_ours(self):
+        self.succeed(self.meet_a_bar())
+        self.conform("mass_on_spring", MASS)
+
+
+class Fortran(NativeTest):
+    example = "fortran_body"
+
+    def test_a_bar_meets_one_of_ours(self):
+        self.collide("bars.yaml", "bar")
+        self.conform("bar", BAR)
+
+    def test_a_block_meets_a_bar_of_ours_in_the_plane(self):
+        self.collide("blocks.yaml", "block")
+        self.conform("block", f"{{{SOLID}, cells_along: 4, cells_across: 2}}")
+
+
+if __name__ == "__main__":
+    if "Fortran" in sys.argv and not shutil.which("gfortran"):
+        print("skipped: there is no gfortran (Debian: gfortran)")
+        sys.exit(77)
+    del sys.argv[4:]
+    main()
