@@ -137,7 +137,10 @@ void set_unilateral(const InterfaceSpec& spec, const UnilateralTransmission& how
   }
   const Description& one = bodies.describe(joint.sides[0].body);
   const Description& other = bodies.describe(joint.sides[1].body);
-  if (!one.can.obstacle && !other.can.obstacle) {
+  const bool moves = std::isfinite(one.mass) || std::isfinite(other.mass);
+  const bool passive = moves && only_passive(joint, bodies);
+  if (passive) require_spacing(joint, bodies, where);
+  if (!one.can.obstacle && !other.can.obstacle && !passive) {
     throw InputError(
         fmt::format(
             "joins '{}' ({}) and '{}' ({}), of which neither can follow the other's surface "

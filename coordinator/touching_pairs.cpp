@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "base/index.hpp"
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/tie.hpp"
@@ -12,11 +13,23 @@
 namespace abut {
 
 bool only_passive(const Joint& joint, const Bodies& bodies) {
-  return bodies.port(joint.sides[0]).geometry.dim > 1 &&
-         std::ranges::all_of(joint.sides, [&bodies](const Side& side) {
-           const Capabilities& can = bodies.describe(side.body).can;
-           return can.passive && !can.obstacle && !bodies.port(side).tied;
-         });
+  // Ends of bars that keep their mass know no kernel: they meet in the published form.
+  const bool surfaces = bodies.port(joint.sides[0]).geometry.dim > 1;
+  return std::ranges::all_of(joint.sides, [&bodies, surfaces](const Side& side) {
+    const Capabilities& can = bodies.describe(side.body).can;
+    return can.passive && !can.obstacle && !bodies.port(side).tied && (surfaces || can.kernel);
+  });
+}
+
+void require_spacing(const Joint& joint, const Bodies& bodies, const std::string& where) {
+  const auto told = [&bodies](const Side& side) {
+    return bodies.port(side).geometry.spacing > 0.0;
+  };
+  if (std::ranges::any_of(joint.sides, told)) return;
+  throw InputError(
+      "joins points that meet passively, of which neither tells the spacing of what "
+      "is behind it",
+      where, "Let the program of one of them tell one, as the length of its body.");
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "coordinator/coupling/joint.hpp"
@@ -18,7 +19,11 @@ std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joi
 std::optional<std::vector<PassiveTie>> passive_ties(const Scene& scene,
                                                     std::span<const Joint> joints,
                                                     const Bodies& bodies);
-/// Whether neither side can find the contact of two surfaces but in its passive form.
+/// Whether neither side can find the contact of surfaces, or of points on a line, but in its
+/// passive form.
 bool only_passive(const Joint& joint, const Bodies& bodies);
+/// Points that meet passively need a length, of which their distances are small parts: throws
+/// InputError where neither of two tells a spacing.
+void require_spacing(const Joint& joint, const Bodies& bodies, const std::string& where);
 
 }  // namespace abut

@@ -29,7 +29,7 @@ class Plate : public abut::Body {
     substep = keys.positive("step", "s");
     const double density = keys.positive("density", "kg/m^3");
     make_mesh(keys.numbers("corner", 2, "m"));
-    make_cell(keys.positive("youngs_modulus", "Pa"), keys.number("poissons_ratio"));
+    make_cell(keys.positive("youngs_modulus", "Pa"), keys.number("poissons_ratio"), density);
     mass = density * lengths_[0] * lengths_[1];  // [kg/m]
     masses_.assign(points_.size() / 2, 0.0);
     for (const auto& cell : cells_)
@@ -45,6 +45,7 @@ class Plate : public abut::Body {
   std::vector<abut::Surface> surface() override {
     abut::Surface face{of_face(points_), {}};
     for (int k = 0; k < ny_; ++k) face.facets.push_back({k, k + 1});
+    face.transit = transit_;
     return {face};
   }
 
@@ -105,13 +106,14 @@ class Plate : public abut::Body {
   }
 
   /// Stiffness of a cell: strains at four points, by the law of plane strain.
-  void make_cell(double modulus, double ratio) {
+  void make_cell(double modulus, double ratio, double density) {
     const double lame = modulus * ratio / ((1 + ratio) * (1 - 2 * ratio));
     const double shear = modulus / (2 * (1 + ratio)), gauss = 1.0 / std::sqrt(3.0);
     const double law[3][3] = {
         {lame + 2 * shear, lame, 0}, {lame, lame + 2 * shear, 0}, {0, 0, shear}};
     const double sx[4] = {-1, 1, 1, -1}, sy[4] = {-1, -1, 1, 1};
     const double hx = lengths_[0] / nx_, hy = lengths_[1] / ny_;
+    transit_ = std::abs(hx) / std::sqrt((lame + 2 * shear) / density);
     for (const double x : {-gauss, gauss})
       for (const double y : {-gauss, gauss}) {
         double strain[3][8] = {};
@@ -164,6 +166,7 @@ class Plate : public abut::Body {
   Values lengths_, points_, masses_;       // [m] [m] (nodes, 2), [kg/m] (nodes)
   std::vector<std::array<int, 4>> cells_;  // nodes, counterclockwise
   double cell_[8][8] = {};                 // [N/m^2]
+  double transit_ = 0.0;                   // [s] in which the fastest wave crosses a cell
   Values u_, v_;                           // [m] [m/s] (nodes, 2)
 };
 

@@ -106,7 +106,7 @@ class FirstHour(SystemTest):
         self.environment["PYTHONDONTWRITEBYTECODE"] = "1"
         for program in ("floating.py", "my_body.py"):
             self.allow(self.folder / program)
-        self.assertEqual(self.follow("docs/SOLVER.md"), 3)
+        self.assertEqual(self.follow("docs/SOLVER.md"), 4)
         measures = self.summary(self.folder / "runs" / "floating")["measures"]
         self.assertLess(measures["momentum.total"], 1.0e-12)  # round-off
         # A bar of impedance Z = rho c A is a dashpot to the mass until its wave comes back, 2 L/c

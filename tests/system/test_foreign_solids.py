@@ -46,6 +46,12 @@ class Brick(ForeignTest):
                      "step: 1.0e-5}")
 
 
+class Pair(ForeignTest):
+    def test_two_bodies_of_the_package_meet(self):
+        self.collide("python_body", "two_plates.yaml", "my_body.py")
+        self.assertGreater(self.summary()["accuracy"]["given_up"]["passive_windows"], 0)
+
+
 class GetFem(ForeignTest):
     def test_a_bar_of_getfem_meets_one_of_ours(self):
         self.collide("getfem_body", "bars.yaml", "getfem_bar.py")

@@ -62,6 +62,7 @@ class NativeTest(SystemTest):
         """A scene names its program from the folder that a run is started in."""
         own = self.folder / scene.name
         text = scene.read_text("utf-8").replace(f"./build/{program}", str(self.program(program)))
+        text = text.replace(f"./{program}.py", str(self.program(program)))
         own.write_text(text, encoding="utf-8")
         self.allow(self.program(program))
         return self.abut("run", own, "--out", self.out, *more)
@@ -93,6 +94,10 @@ class Cpp(NativeTest):
     def test_a_mass_meets_a_bar_of_ours(self):
         self.succeed(self.meet_a_bar())
         self.conform("mass_on_spring", MASS)
+
+    def test_two_plates_meet(self):
+        self.succeed(self.run_scene(EXAMPLES / "python_body" / "two_plates.yaml", "my_body"))
+        self.assertGreater(self.summary()["accuracy"]["given_up"]["passive_windows"], 0)
 
     def test_wrong_keys_are_told_with_file_line_and_key(self):
         for change, words in (("mass=-1", "mass: must be positive, but is -1 kg"),

@@ -210,6 +210,29 @@ class Block(Plate):
 serve(Block)
 """
 
+ONE_END = """from abut import Body, Point, serve
+
+
+class Mass(Body):
+    state = ("u", "v")
+    conserves = linear = True
+
+    def __init__(self, keys):
+        self.mass, self.substep, self.u = keys.positive("mass"), 5.0e-6, 0.0
+        self.v, self.surface_mass = keys.number("velocity"), self.mass
+        self.at, self.looks, self.spacing = map(keys.number, ("at", "looks", "spacing"))
+
+    def surface(self):
+        return Point(self.at, self.looks, spacing=self.spacing)
+
+    def step(self, dt, force):
+        before = self.v
+        self.v += dt * force / self.mass
+        self.u += dt * (before + self.v) / 2
+
+
+serve(Mass)
+"""
 TWO_ENDS = """from math import cos, sin
 from abut import Body, Energy, Point, serve
 
@@ -295,6 +318,47 @@ class Runs(SystemTest):
         stress = self.summary()["measures"]["body.upper.nodal_stress.yy.max"]
         # what the coordinator knows of a stranger is its kernel and its replies, as of our block
         self.assertLess(abs(stress / -1.098901098901099e5 - 1.0), 1.0e-9)
+
+    def test_two_masses_in_one_dimension_exchange_momentum_and_lose_nothing(self):
+        """Neither finds contact: they meet passively."""
+        program = self.write("mass.py", ONE_END)
+        body = ("    launch: {{spawn: {{program: {}}}}}\n    model: {{external: {{mass: {}, "
+                "at: {}, looks: {}, velocity: {}, spacing: {}}}}}\n")
+        for spacing, code in ((0.01, 0), (0.0, 2)):
+            scene = ("time: {end: 2.0e-3, window: 2.0e-5}\nbodies:\n"
+                     f"  one:\n{body.format(program, 0.2, 0.0, 1.0, 1.0, spacing)}"
+                     f"  two:\n{body.format(program, 0.1, 0.001, -1.0, 0.0, 0.0)}"
+                     "interfaces:\n  impact: {sides: [one.face, two.face], contact: {}}\n")
+            result = self.abut("run", self.write("masses.yaml", scene), "--out",
+                               self.folder / f"out {code}")
+            self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+            if code:
+                self.assertIn("neither tells the spacing", result.stderr)
+                continue
+            measures = self.summary(self.folder / "out 0")["measures"]
+            # 2 m M / (m + M) (v - V): elastic; impulses are found to some millionths
+            self.assertLess(abs(measures["contact.impact.impulse"] / (0.4 / 3.0) - 1.0), 1.0e-4)
+            self.assertLess(abs(measures["energy.total.relative_drift_end"]), 1.0e-5)  # the same
+            self.assertLess(measures["momentum.total"], 1.0e-12)  # round-off
+
+    def test_a_bar_in_modes_meets_a_mass(self):
+        """Neither finds contact. The bar is a dashpot Z = rho c A to the mass for 2 L/c."""
+        program = self.write("mass.py", ONE_END)
+        scene = ("time: {end: 2.0e-3, window: 2.0e-5}\nbodies:\n  bar:\n    model: {modal: "
+                 "{dimension: 1, mesh: {bar: {length: 0.5, elements: 200, area: 1.0e-4}}, "
+                 "modes: 40}}\n    material: {linear_elastic: {youngs_modulus: 1.0e9, "
+                 "density: 1000.0}}\n    integrator: {newmark: {step: 2.0e-6}}\n"
+                 "    initial: {position: [-0.5001], velocity: [1.0]}\n    ports: {tip: right}\n"
+                 f"  mass:\n    launch: {{spawn: {{program: {program}}}}}\n    model: {{external: "
+                 "{mass: 0.2, at: 0.0, looks: -1.0, velocity: 0.0, spacing: 0.0}}\n"
+                 "interfaces:\n  impact: {sides: [bar.tip, mass.face], contact: {}}\n")
+        self.succeed(self.abut("run", self.write("modal.yaml", scene), "--out", self.out))
+        measures = self.summary()["measures"]
+        # 40 modes round the front: measured 0.7 % of momentum, 0.4 % of the duration
+        exact = 0.2 * (1.0 - math.exp(-100.0 * 1.0e-3 / 0.2))
+        self.assertLess(abs(measures["momentum.mass.end"] / exact - 1.0), 0.01)
+        self.assertLess(abs(measures["contact.impact.duration"] / 1.0e-3 - 1.0), 0.01)  # as above
+        self.assertLess(measures["momentum.total"], 1.0e-12)  # round-off
 
     def test_a_body_with_two_ports_hands_an_impact_on(self):
         """A bar hits two masses with a spring between, and they hit a second bar."""

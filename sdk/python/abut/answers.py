@@ -2,6 +2,7 @@
 
 from abut.errors import InputError, Unsound
 from abut.keys import Keys
+from abut.passive import answer_step
 from abut.pictures import Picture
 from abut.probing import answer_probe
 from abut.served import Served
@@ -52,6 +53,7 @@ class Answers:
         to.mass, to.step, to.stable_step = body.mass, body.substep, body.stable_step
         to.conserves, to.linear, to.quasi_static = body.conserves, body.linear, body.quasi_static
         to.can.force = to.can.kernel = True
+        to.can.passive = not body.quasi_static
         for name, surface in self.served.ports:
             port = to.ports.add(name=name)
             port.surface.dim = surface.dim
@@ -76,6 +78,26 @@ class Answers:
 
     def answer_probe(self, ask, reply):
         answer_probe(self.served, ask, reply.kernel)
+
+    def answer_passive_step(self, ask, reply):
+        self.require_passive()
+        answer_step(self.served, ask, reply, self.alive)
+
+    def answer_passive_enter(self, _, reply):
+        self.require_passive()
+        reply.passive_entered.lost = 0.0
+
+    def answer_passive_leave(self, _, reply):
+        self.require_passive()
+        reply.passive_left.lost = 0.0
+
+    def answer_passive_damp(self, _, reply):
+        self.require_passive()
+        reply.passive_damped.taken = 0.0  # what of its velocities deforms it is not known
+
+    def require_passive(self):
+        if self.served.body.quasi_static:
+            raise Unsound("a body without inertia has no passive form")
 
     def answer_hash(self, _, reply):
         reply.hash.hash = self.served.hash()

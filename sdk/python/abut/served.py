@@ -1,10 +1,12 @@
 """A user's Body with what the contract wants beside it: ports in their order, arrays in one shape,
 the state as one thing."""
 
+import math
+
 import numpy as np
 import xxhash
 
-from abut.body import Body, packed, unpacked
+from abut.body import Body, Energy, packed, unpacked
 from abut.errors import InputError
 from abut.v1 import subdomain_pb2 as pb
 
@@ -84,6 +86,14 @@ class Served:
                                  f"Give {surface.count} points of {surface.dim}.")
             flat.append(value)
         return flat
+
+    def tell_record(self, to, time: float):
+        """Energy and momentum, now."""
+        energy = Energy(*self.body.energy())
+        to.time, to.kinetic, to.stored = time, energy.kinetic, energy.stored
+        to.dissipated, to.external_work = energy.dissipated, energy.external_work
+        if not math.isinf(self.body.mass):
+            to.momentum.extend(np.ravel(self.body.momentum()).tolist())
 
     # ---- state
 

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from abut.body import Energy
 from abut.errors import NotConverged
 from abut.forces import impulses, values
 from abut.v1 import subdomain_pb2 as pb
@@ -125,16 +124,9 @@ class Window:
             track.tell(time, *values)
 
     def tell_record(self, reply, record: int):
-        body = self.served.body
-        energy = Energy(*body.energy())
-        last = record == self.records
-        told = reply.records.add(
-            time=self.end if last else
-            self.begin + record * (self.end - self.begin) / self.records,
-            kinetic=energy.kinetic, stored=energy.stored, dissipated=energy.dissipated,
-            external_work=energy.external_work)
-        if not math.isinf(body.mass):
-            told.momentum.extend(np.ravel(body.momentum()).tolist())
+        length = self.end - self.begin
+        self.served.tell_record(reply.records.add(), self.end if record == self.records else
+                                self.begin + record * length / self.records)
         for track in self.tracks:
             track.end_record()
 
