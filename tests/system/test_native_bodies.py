@@ -28,7 +28,7 @@ OTHERS = re.compile(r"Eigen|google|zmq|fmt|spdlog|yaml|contract/|messaging/|base
 
 
 class NativeTest(SystemTest):
-    example = ""
+    example, places = "", EXAMPLES
 
     @classmethod
     def setUpClass(cls):
@@ -41,7 +41,7 @@ class NativeTest(SystemTest):
         cls.addClassCleanup(holder.cleanup)
         cls.prefix = Path(holder.name) / "prefix"
         cls.project = Path(holder.name) / cls.example
-        shutil.copytree(EXAMPLES / cls.example, cls.project)
+        shutil.copytree(cls.places / cls.example, cls.project)
         build = cls.project / "build"
         for words in ((CMAKE, "--install", BUILD, "--component", "development", "--prefix",
                        cls.prefix),
@@ -140,6 +140,60 @@ class Cpp(NativeTest):
         self.call("g++", "-std=c++17", self.project / "mass_on_spring.cpp", "-o", "mass", *flags)
         said = self.call("sh", "-c", "./mass; test $? = 2 && echo it runs")
         self.assertIn("it runs", said)
+
+
+class Kinds(NativeTest):
+    """What the examples do not have: statics, space, several ports, what a body may say itself."""
+
+    example, places = "native", Path(__file__).resolve().parent
+
+    def run_text(self, text: str, *more: str):
+        scene = self.folder / "scene.yaml"
+        scene.write_text(text.replace("PROGRAM", str(self.program("kinds"))), encoding="utf-8")
+        self.allow(self.program("kinds"))
+        return self.abut("run", scene, "--out", self.out, "--force", *more)
+
+    def test_all_kinds_keep_the_contract(self):
+        for keys, others in (("{kind: spring, stiffness: 1.0e5}", set()),
+                             ("{kind: box}", {"momentum", "orientation"}),
+                             ("{kind: two_ends}", {"momentum"})):
+            with self.subTest(keys):
+                said = self.succeed(self.abut("conformance", self.program("kinds"), "--keys",
+                                              keys)).stdout
+                self.assertNotIn("BROKEN", said)
+                for clause in {"ends", "restore", "work", "kernel", "checkpoint"} | others:
+                    self.assertRegex(said, f"\n  {clause} +kept", said)
+
+    def test_a_body_with_two_ports_hands_an_impact_on_until_it_breaks(self):
+        """A bar hits two masses with a spring between, and they hit a second bar."""
+        text = (ROOT / "configs" / "two_bars.yaml").read_text("utf-8")
+        left = text[text.index("  left:"):text.index("  right:")]
+        scene = ("time: {end: 1.2e-3, window: 1.0e-5}\nbodies:\n" + left +
+                 "  spring:\n    launch: {spawn: {program: PROGRAM}}\n"
+                 "    model: {external: {kind: two_ends}}\n"
+                 "  right: {like: left, initial: {position: [0.1], velocity: [0.0]}, "
+                 "ports: {tip: {side: left}}}\n"
+                 "interfaces:\n  one: {sides: [left.tip, spring.left], contact: {}}\n"
+                 "  two: {sides: [spring.right, right.tip], contact: {}}\n")
+        self.succeed(self.run_text(scene))
+        measures = self.summary()["measures"]
+        self.assertLess(measures["momentum.total"], 1.0e-12)  # round-off
+        self.assertGreaterEqual(measures["contact.two.closings"], 1)
+        # explicit steps of 1e-6 s against a period of 1.4e-4 s, and what layers of bars leave
+        self.assertLess(abs(measures["energy.total.relative_drift_end"]), 1.0e-3)
+        broken = self.run_text(scene, "--set", "bodies.spring.model.external.breaks=1.0e-5",
+                               "--set", "schwarz.on_nonconvergence=stop")
+        self.assertEqual(broken.returncode, 1, broken.stderr)
+        self.assertIn("the spring has broken", broken.stderr)
+
+    def test_fields_are_those_that_a_body_tells(self):
+        scene = ("time: {end: 1.0e-2, window: 1.0e-3}\nbodies:\n  box:\n"
+                 "    launch: {spawn: {program: PROGRAM}}\n    model: {external: {kind: box}}\n"
+                 "output: {fields: {every: 5}}\n")
+        self.succeed(self.run_text(scene))
+        drawn = next((self.out / "fields").rglob("*.vtu")).read_bytes()
+        for name in (b'Name="height"', b'Name="velocity"'):
+            self.assertIn(name, drawn)
 
 
 class C(NativeTest):
