@@ -216,7 +216,30 @@ class Fortran(NativeTest):
         self.conform("block", f"{{{SOLID}, cells_along: 4, cells_across: 2}}")
 
 
+class Bullet(NativeTest):
+    example = "bullet_body"
+
+    def test_a_bar_of_ours_meets_boxes_of_bullet(self):
+        self.collide("row.yaml", "boxes")
+
+    def test_boxes_of_bullet_keep_the_contract(self):
+        keys = ("{boxes: [2, 1, 1], edge: 0.1, density: 1000, corner: [0, 0, 0], "
+                "velocity: [0, 0, 0], step: 1.0e-5}")
+        said = self.succeed(self.abut("conformance", self.program("boxes"), "--keys", keys)).stdout
+        self.assertNotIn("BROKEN", said)
+        for clause in ("ends", "restore", "boxes", "momentum", "work", "checkpoint"):
+            self.assertRegex(said, f"\n  {clause} +kept", said)
+
+
+def lacks_bullet() -> bool:
+    found = subprocess.run(["pkg-config", "--exists", "bullet"], check=False)
+    return found.returncode != 0
+
+
 if __name__ == "__main__":
+    if "Bullet" in sys.argv and lacks_bullet():
+        print("skipped: Bullet is not installed (Debian: libbullet-dev)")
+        sys.exit(77)
     if "Fortran" in sys.argv and not shutil.which("gfortran"):
         print("skipped: there is no gfortran (Debian: gfortran)")
         sys.exit(77)
