@@ -64,7 +64,8 @@ contains
       do j = 0, ny
         first = i * (ny + 1) + j + 1
         points(:, first) = corner + lengths * [real(c_double) :: i, j] / [nx, ny]
-        if (i < nx .and. j < ny) cells(:, i * ny + j + 1) = [first, first + ny + 1, first + ny + 2, first + 1]
+        if (i == nx .or. j == ny) cycle
+        cells(:, i * ny + j + 1) = [first, first + ny + 1, first + ny + 2, first + 1]
       end do
     end do
     face = [(j, j = ny + 1, 1, -1)]

@@ -37,8 +37,8 @@ typedef struct abut_energy {
   double external_work; /* done by loads and supports that the scene knows nothing of */
 } abut_energy;
 
-/* Beside mass and step all may be left as it comes. What is null, or answers nothing (its first number
- * stays as it comes, NaN), follows as is said. */
+/* Beside mass and step all may be left as it comes. What is null, or answers nothing (its first
+ * number stays as it comes, NaN), follows as is said. */
 typedef struct abut_body {
   abut_parts *parts; /* is there already: leave it */
   void *self;        /* yours: what all functions are handed */
@@ -113,7 +113,7 @@ void abut_state(abut_body *body, const char *name, double *values, size_t count)
 
 /* ---- pictures: by default the surfaces of the ports with displacement and velocity */
 
-/* What is drawn: points [m] (n, dim), and cells (m, nodes) of VTK's kind; more kinds, more calls. */
+/* What is drawn: points [m] (n, dim), and cells (m, nodes) of VTK's kind; a call for each. */
 void abut_grid(abut_body *body, const double *points, int n);
 void abut_cells(abut_body *body, int kind, const int *cells, int m, int nodes);
 /* A field on its nodes, or on its cells; components: 1, 3 or 6. Numbered from 0. */

@@ -9,8 +9,6 @@
 #include "base/index.hpp"
 #include "sdk/served/surfaces.hpp"
 
-using abut::index;
-
 void abut_point(abut_body* body, const char* name, double position, double normal) {
   abut::Port port;
   port.name = name;
@@ -25,7 +23,7 @@ void abut_surface(abut_body* body, const char* name, const double* points, int n
   port.name = name;
   abut::PortGeometry& surface = port.geometry;
   surface.dim = body->dim;
-  surface.points.assign(points, points + index(n) * index(body->dim));
+  surface.points.assign(points, points + abut::index(n) * abut::index(body->dim));
   surface.offsets.push_back(0);
   for (int f = 0; f < m; ++f) {
     for (int c = 0; c < corners; ++c)
@@ -57,7 +55,8 @@ void abut_state(abut_body* body, const char* name, double* values, size_t count)
 
 void abut_grid(abut_body* body, const double* points, int n) {
   abut::Grid& grid = body->parts->grid;
-  grid.points = abut::in_space(std::span(points, index(n) * index(body->dim)), body->dim);
+  grid.points =
+      abut::in_space(std::span(points, abut::index(n) * abut::index(body->dim)), body->dim);
   grid.offsets.assign(1, 0);
 }
 
@@ -69,8 +68,9 @@ void abut_cells(abut_body* body, int kind, const int* cells, int m, int nodes) {
   }
   for (int cell = 0; cell < m; ++cell) {
     grid.types.push_back(kind);
-    grid.connectivity.insert(grid.connectivity.end(), cells + index(cell) * index(nodes),
-                             cells + index(cell + 1) * index(nodes));
+    grid.connectivity.insert(grid.connectivity.end(),
+                             cells + abut::index(cell) * abut::index(nodes),
+                             cells + abut::index(cell + 1) * abut::index(nodes));
     grid.offsets.push_back(static_cast<int>(grid.connectivity.size()));
   }
 }

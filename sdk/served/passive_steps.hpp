@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -40,6 +40,11 @@ class PassiveSteps final : public PassiveForm {
   const UserBody::State& initial_;
   const std::function<void()>& alive_;
   const PassiveStep* asked_ = nullptr;
+  struct Known {
+    double length = 0.0;                             // [s]
+    std::vector<std::vector<std::int32_t>> pressed;  // as in the request
+    std::vector<double> compliance;                  // [1/kg]
+  } known_;  // of a linear body, whose state does not matter: the last one found
 };
 
 }  // namespace abut

@@ -10,8 +10,8 @@ namespace abut {
 
 namespace {
 
-constexpr double rounding = 1.0e-6;  // of a step: less than this is no step of its own
-constexpr double largest = 1.0e150;  // whose square is still a number
+constexpr double rounding_of_substep = 1.0e-6;  // of a step: less than this is no step of its own
+constexpr double largest_way = 1.0e150;         // whose square is still a number
 
 }  // namespace
 
@@ -20,11 +20,11 @@ WindowWalk::WindowWalk(UserBody& body, const Advance& asked, const std::function
   const double length = asked.window.length(), nominal = body.told().substep;
   if (!(length > 0.0)) return;
   const double count = nominal > 0.0 ? length / asked.records / nominal : 1.0;
-  each_ = std::max(1, static_cast<int>(std::ceil(count - rounding)));
+  each_ = std::max(1, static_cast<int>(std::ceil(count - rounding_of_substep)));
   steps_ = each_ * asked.records;
   dt_ = length / steps_;
   // To the last bit, so that what was made for it is used again.
-  if (std::abs(dt_ - nominal) <= rounding * nominal) dt_ = nominal;
+  if (std::abs(dt_ - nominal) <= rounding_of_substep * nominal) dt_ = nominal;
 }
 
 double WindowWalk::time(int level) const {
@@ -66,7 +66,7 @@ std::optional<Failed> WindowWalk::substep(int step, Response& to) {
   if (const char* const why = body_.step(dt_, force_))
     return Failed{Failed::Cause::no_convergence, time(step), why};
   for (const double u : body_.displacement())
-    if (!(std::abs(u) < largest))
+    if (!(std::abs(u) < largest_way))
       return Failed{Failed::Cause::non_finite, time(step), "a displacement is no number"};
   for (std::size_t p = 0; p < to.ports.size(); ++p) to.ports[p].work += body_.work()[p];
   go(to);

@@ -72,6 +72,9 @@ def _compliance(served, ask, impulses, alive):
     found = np.zeros((len(rows), len(rows)))
     if not rows or length == 0.0 or math.isinf(body.mass):
         return found
+    asked = (length, tuple(tuple(port.pressed) for port in ask.ports))
+    if body.linear and served.known_compliance[0] == asked:  # whatever its state
+        return served.known_compliance[1]
     present = served.snapshot()
     begin = served.initial if body.linear else present
     under = [np.zeros_like(each) for each in impulses] if body.linear else impulses
@@ -90,4 +93,6 @@ def _compliance(served, ask, impulses, alive):
             found[:, j] = (way(pushed) - free) / (pulse * length)
     finally:
         served.return_to(present)
-    return (found + found.T) / 2.0
+    found = (found + found.T) / 2.0
+    served.known_compliance = asked, found
+    return found

@@ -34,6 +34,7 @@ class Served:
         self.rate = [np.zeros(self.width(p)) for p in range(len(self.ports))]  # way over time
         self.displacement()  # in the shape of the ports, or said so
         self.saved, self.initial = None, self.snapshot()
+        self.known_compliance = None, None  # what was asked last for it, and the answer
 
     def width(self, port: int) -> int:
         return self.ports[port][1].points.size
