@@ -56,6 +56,25 @@ double free_time(const Differences& d, const Vector& direction, double t, double
   return time;
 }
 
+/// Of the size of the numbers: over the length of a facet a direction found from a difference as
+/// short as that is off by a notable share of it.
+constexpr double hardly_apart = 1.0e-6;
+
+/// The normal of what the closest points lie in, a facet or two edges, towards the first side: as a
+/// direction that says how far apart the pair is at least it is as good as the difference, and does
+/// not know how near they are. Zero: there is none.
+Vector normal_towards(FeatureKind kind, int dim, const FeaturePoints& x, const Vector& difference) {
+  Vector normal;
+  if (dim == 2) {
+    normal = Vector(x[1].y() - x[2].y(), x[2].x() - x[1].x(), 0.0);
+  } else if (kind == FeatureKind::node_facet) {
+    normal = (x[2] - x[1]).cross(x[3] - x[1]);
+  } else {
+    normal = (x[1] - x[0]).cross(x[3] - x[2]);
+  }
+  return (normal.dot(difference) < 0.0 ? -1.0 : 1.0) * normal.normalized();
+}
+
 }  // namespace
 
 double first_time_within(FeatureKind kind, int dim, const FeaturePoints& x0,
@@ -76,7 +95,9 @@ double first_time_within(FeatureKind kind, int dim, const FeaturePoints& x0,
     const double length = difference.norm();
     if (!(length > 0.0)) return t;
     double lower;
-    const double time = free_time(d, difference / length, t, until, lower);
+    double time = free_time(d, difference / length, t, until, lower);
+    if (!(lower >= distance + margin) && length < hardly_apart * d.size)
+      time = free_time(d, normal_towards(kind, dim, x, difference), t, until, lower);
     if (!(lower >= distance + margin)) return t;
     t += time;
     if (!(t < 1.0)) return 1.0;

@@ -49,6 +49,29 @@ TEST(FeaturePath, OfASpikeTowardsAPlane) {
   }
 }
 
+/// A node above the middle of a facet, or an edge above another, by a ten-millionth of the sizes
+/// and less: the difference of their places is a few digits of these, so that its direction is off,
+/// over the facet's length by more than the distance. What parts from there is on its way.
+TEST(FeaturePath, NeverOfFeaturesThatPartFromHardlyAnyDistance) {
+  for (const FeatureCase c : feature_cases) {
+    for (const double apart : {1.0e-8, 1.0e-9, 1.0e-10}) {
+      for (const Vector& place : {Vector(0.1, 0.7, 0), Vector(1.0 / 3.0, 0.05, 0)}) {
+        const FeaturePoints x0 = shifted(above(c, apart), 0, 4, place);
+        const std::size_t first = c.kind == FeatureKind::node_facet ? 1 : 2;
+        const Vector up = c.dim == 2 ? Vector(0, apart, 0) : Vector(0, 0, apart);
+        const FeaturePoints x1 = shifted(x0, 0, first, up);
+        const double distance = feature_distance(c.kind, c.dim, x0).distance;
+        EXPECT_EQ(first_time_within(c.kind, c.dim, x0, x1, 0.9 * distance, 0.018 * distance), 1.0)
+            << apart;
+        // Towards it, by half of the distance: told before there is a tenth less of it.
+        const FeaturePoints near = shifted(x0, 0, first, -0.5 * up);
+        EXPECT_LE(first_time_within(c.kind, c.dim, x0, near, 0.9 * distance, 0.018 * distance),
+                  0.2 * (1.0 + 1.0e-4));  // of roundings of places, 1e-16 of 1e-10
+      }
+    }
+  }
+}
+
 TEST(FeaturePath, NeverOfFeaturesThatPartOrMoveTogether) {
   DrawNumbers draw(1);
   for (const FeatureCase c : feature_cases) {
