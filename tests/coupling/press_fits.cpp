@@ -135,14 +135,16 @@ TEST(PressFits, WhatPressesInIsAllThatIsGained) {
 }
 
 /// A quarter of a hollow shaft in a hub, in plane stress.
-ResultPtr rings(int around, double interference, const std::string& key, double end) {
+ResultPtr rings(int around, double interference, const std::string& key, double end,
+                const std::string& integrator = "quasi_static: {step: 0.25}",
+                double window = 0.25) {
   const auto ring = [&](const std::string& name, double inner, double outer, int through,
                         const std::string& side) {
     return SolidText{
         .name = name,
         .material =
             "linear_elastic: {youngs_modulus: 2.1e11, poissons_ratio: 0.3, density: 7800.0}",
-        .integrator = "quasi_static: {step: 0.25}",
+        .integrator = integrator,
         .side = side,
         .keys =
             fmt::format("plane: stress, map: [\"({0} + {1} * x) * cos(y * pi / 180)\", \"({0} + "
@@ -152,7 +154,7 @@ ResultPtr rings(int around, double interference, const std::string& key, double 
         .more = "    constraints: {a: {on: bottom, y: \"0\"}, b: {on: top, x: \"0\"}}\n",
         .block = {{1.0, 90.0}, {through, around}}};
   };
-  return run_solids(end, 0.25,
+  return run_solids(end, window,
                     {ring("hub", 0.010, 0.020, around / 2, "left"),
                      ring("shaft", 0.004, 0.010 + interference, around / 3, "right")},
                     "  fit: {sides: [hub.face, shaft.face], contact: {}}\n");
@@ -200,6 +202,23 @@ TEST(PressFits, WhatIsNoFitIsRefused) {
   expect_refused({.over = 0.0}, {"initial.interference.over", "has inertia"});
   expect_refused({.deep = -0.001}, {"bodies.lower.initial.interference", "has no effect"});
   expect_refused({.key = "adjust: true, interference: {over: 1.0}"}, {"stands beside adjust"});
+}
+
+/// In motion, where round sides are facets of 7.5 and 11.25 degrees: their rows turn as they press,
+/// and the work that presses them in was short of what it did by 1.7 %.
+TEST(PressFits, RoundSidesThatArePressedInAreBalanced) {
+  for (const char* const scheme :
+       {"newmark: {step: 2.0e-6}", "central_difference: {step: 5.0e-8}"}) {
+    SCOPED_TRACE(scheme);
+    const auto run = rings(24, 2.0e-5, "interference: {over: 1.6e-4}", 2.0e-4, scheme, 2.0e-6);
+    ASSERT_TRUE(run->completed()) << run->end.reason;
+    double energy = 0.0, work = 0.0;
+    for (const std::size_t b : {0u, 1u})
+      energy += run->rows.back().total[b], work += run->rows.back().work[b];
+    EXPECT_GT(energy, 0.0);
+    // Of second order in the step, and of what rows close one by one.
+    EXPECT_NEAR(work, energy, 2.0e-3 * energy);
+  }
 }
 
 }  // namespace
