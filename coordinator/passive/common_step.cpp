@@ -36,6 +36,16 @@ constexpr double holds = 1.0e-3;
 /// their forces do some work, to and fro.
 constexpr double work_of_ties = 1.0e-6;
 
+/// Debts to rows [J], all cut alike to what there is: what was paid to part what is too near is not
+/// given back.
+std::map<std::int32_t, double> affordable(std::map<std::int32_t, double> debts, double there) {
+  double owed = 0.0;
+  for (const auto& [point, joules] : debts) owed += joules;
+  if (owed <= there) return debts;
+  for (auto& [point, joules] : debts) joules *= std::max(0.0, there) / owed;
+  return debts;
+}
+
 std::vector<int> owners_of(const PassiveTies& ties, int bodies) {
   std::vector<int> owners;
   for (int b = 0; b < bodies; ++b) owners.push_back(ties.cluster(b));
@@ -109,12 +119,13 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   prepared_ = 0;
   softer_ = 0;
   released_ = 0.0;
-  unclaimed_ = owed_;
   culprit_ = -1;
   std::ranges::fill(advanced_, 0);
-  const double budget = 0.5 * ledger.normal - ledger.push_out;
+  credit_ = 0.5 * ledger.normal;
+  const double budget = credit_ - ledger.push_out;
   pushing_ = budget > 0.0;
   allowed_ = paid_share * std::max(0.0, budget);
+  unclaimed_ = affordable(owed_, ledger.normal - ledger.push_out);
   ties_.aim(length(), displacements_, replies_,
             work_of_ties * std::max(most_, motion_of(replies_)));
   near_.find(from_, rows_);
@@ -299,7 +310,9 @@ void CommonStep::solve_rows(std::size_t answered) {
   solver.solve(still);
   released_ = solver.release();
   if (released_ > 0.0) solver.solve(still);
-  if (pushing_ && solver.work() > allowed_ + released_ + rounding) {  // too dear: without it
+  const double there = credit_ + allowed_ / paid_share;  // [J] of normal contact, while pushing
+  const bool dear = solver.work() > allowed_ + released_ + rounding || allowed_ + released_ > there;
+  if (pushing_ && dear) {
     pushing_ = false;
     for (DistanceRow& row : rows_) row.closing = std::max(row.closing, 0.0), row.push = 0.0;
     solver.solve(still);
