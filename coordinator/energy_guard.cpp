@@ -10,6 +10,9 @@ namespace abut {
 namespace {
 /// Bodies at rest that loads set in motion have hardly any energy at first.
 constexpr int looks_from_rest = 10;
+/// Of what steps do not resolve, m (2 dt a)^2/2: what loads have made after ten steps. More than
+/// that has come otherwise, as from a tool that strikes what rests, and can be judged.
+constexpr double resolved_from_rest = 25.0;
 /// Growth that a window may lead to where it can be gone another way: turning normals, unlike steps
 /// and roles make some thousandths in scenes that the passive way would cost far more. Above it,
 /// the part of a share [M.21].
@@ -28,6 +31,11 @@ constexpr double out_of_nothing = 0.5;
 /// Roundings of a place that may go into the velocity of a body: 16 in the sums of each step, and
 /// those of a million steps add up by chance, to the root of that.
 constexpr double roundings = 16.0e3;
+
+/// Whether so much in motion may be what loads have made of bodies at rest, or what is rounded.
+bool hardly_any(double motion, double unresolved, double rounded) {
+  return motion <= resolved_from_rest * std::max(unresolved, rounded);
+}
 }  // namespace
 
 EnergyGuard::EnergyGuard(double share, std::vector<bool> conserves, bool together,
@@ -101,16 +109,18 @@ bool EnergyGuard::refuses(std::span<const Response> responses,
   // cannot.
   for (const Response& response : responses)
     if (response.records.back().energy.kinetic < -scale) return true;
-  if (unjudged_ > 0) return own - first_ > out_of_nothing * scale;
+  if (unjudged_ > 0 && hardly_any(motion, unresolved(responses), rounding(responses)))
+    return own - first_ > out_of_nothing * scale;
   const double bound = std::max(std::min(share_, granted), part_of_share * share_);
   const double at_once = std::max(bound, notable * share_);
   return own + repaid_ - first_ > bound * scale || own - latest_ > at_once * scale;
 }
 
 double EnergyGuard::excess(std::span<const Response> responses, std::span<const double> struck) {
-  if (!begun_ || !together_ || unjudged_ > 0) return 0.0;
+  if (!begun_ || !together_) return 0.0;
   double motion = 0.0;
   const double own = own_energy(responses, struck, motion);
+  if (unjudged_ > 0 && hardly_any(motion, unresolved(responses), rounding(responses))) return 0.0;
   most_touching_ = std::max(most_touching_, motion);
   for (const Response& response : responses)
     most_touching_ =
