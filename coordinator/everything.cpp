@@ -9,35 +9,23 @@
 
 #include <fmt/format.h>
 
-#include "base/index.hpp"
 #include "base/input_errors.hpp"
+#include "coordinator/coupling/parts_of_ports.hpp"
 
 namespace abut {
 
 namespace {
 
-/// The places of a facet's nodes, in an order of their own.
-std::vector<double> places(const PortGeometry& surface, std::size_t facet) {
-  const std::size_t dim = index(surface.dim);
-  std::vector<std::vector<double>> nodes;
-  for (std::int32_t k = surface.offsets[facet]; k < surface.offsets[facet + 1]; ++k) {
-    const auto at =
-        surface.points.begin() + static_cast<std::ptrdiff_t>(index(surface.facets[k]) * dim);
-    nodes.emplace_back(at, at + static_cast<std::ptrdiff_t>(dim));
-  }
-  std::ranges::sort(nodes);
-  std::vector<double> all;
-  for (const std::vector<double>& node : nodes) all.insert(all.end(), node.begin(), node.end());
-  return all;
-}
-
-/// A facet of two ports would touch twice.
+/// A facet of two ports would touch twice, but for ports that are parts of other ones.
 void require_single_facets(const Description& body, const Document& document) {
   if (body.ports.size() < 2) return;
   std::map<std::vector<double>, std::string> ports;  // by a facet of theirs
-  for (const Port& port : body.ports) {
+  const std::vector<bool> parts = parts_of_others(body);
+  for (std::size_t p = 0; p < body.ports.size(); ++p) {
+    const Port& port = body.ports[p];
+    if (parts[p]) continue;
     for (std::size_t f = 0; f + 1 < port.geometry.offsets.size(); ++f) {
-      const auto [entry, fresh] = ports.emplace(places(port.geometry, f), port.name);
+      const auto [entry, fresh] = ports.emplace(places_of_facet(port.geometry, f), port.name);
       if (fresh) continue;
       throw InputError(
           fmt::format("has the ports {} and {}, which share a facet: everything would touch it "
@@ -88,10 +76,10 @@ void require_friction(const ContactSpec& law, std::span<const Description* const
   if (!law.friction.rubs()) return;
   for (const Description* body : bodies) {
     if (body == nullptr || !body->can.obstacle || body->can.friction) continue;
-    throw InputError(fmt::format("has friction, but {} ({}) finds contact without", body->name,
-                                 body->model),
-                     document.where(std::string(everything_path)),
-                     "Leave friction out, or write interfaces one by one.");
+    throw InputError(
+        fmt::format("has friction, but {} ({}) finds contact without", body->name, body->model),
+        document.where(std::string(everything_path)),
+        "Leave friction out, or write interfaces one by one.");
   }
 }
 
@@ -106,11 +94,11 @@ void require_one_kind(std::span<const Description* const> bodies, const Document
     if (first == nullptr && std::isfinite(body->mass)) first = body;
     if (first == nullptr || kind(*first) == kind(*body)) continue;
     if (first->dim == body->dim && std::isinf(body->mass)) continue;
-    throw InputError(
-        fmt::format("has surfaces of another kind than those of {}: {}D{} and {}D{}", first->name,
-                    body->dim, kind(*body).second ? " round an axis" : "", first->dim,
-                    kind(*first).second ? " round an axis" : ""),
-        document.where("bodies." + body->name), "Give all bodies one dimension and one plane.");
+    throw InputError(fmt::format("has surfaces of another kind than those of {}: {}D{} and {}D{}",
+                                 first->name, body->dim, kind(*body).second ? " round an axis" : "",
+                                 first->dim, kind(*first).second ? " round an axis" : ""),
+                     document.where("bodies." + body->name),
+                     "Give all bodies one dimension and one plane.");
   }
 }
 

@@ -89,7 +89,8 @@ void SceneContactSpec::fields(Fields& f) {
   f.optional_section(
       "everything", everything,
       "law of contact between all surfaces (ports) of different bodies, but for pairs that "
-      "have an interface and bodies that ties hold together; measures name it contact.everything");
+      "have an interface and bodies that ties hold together; a port that is part of another one, "
+      "as a tied side is of boundary, touches as that one; measures name it contact.everything");
   f.optional(
       "self", self, "",
       "contact of bodies with themselves, on each port of theirs that has facets and between "

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "coordinator/coupling/exchange.hpp"
+#include "coordinator/coupling/parts_of_ports.hpp"
 #include "coordinator/coupling/tie.hpp"
 #include "coordinator/coupling/tied_wholes.hpp"
 #include "coordinator/coupling/watch.hpp"
@@ -39,11 +40,14 @@ void add_everything(const ContactSpec& law, std::span<const Joint> joints, const
                     std::vector<TouchingPair>& pairs) {
   const std::vector<int> wholes = tied_wholes(joints, bodies.count());
   std::vector<Side> sides;
-  for (int b = 0; b < bodies.count(); ++b)
-    for (std::size_t p = 0; p < bodies.describe(b).ports.size(); ++p) {
+  for (int b = 0; b < bodies.count(); ++b) {
+    const std::vector<bool> parts = parts_of_others(bodies.describe(b));
+    for (std::size_t p = 0; p < parts.size(); ++p) {
       const Port& port = bodies.describe(b).ports[p];
-      if (!port.tied && !port.geometry.facets.empty()) sides.push_back({b, static_cast<int>(p)});
+      if (!port.tied && !port.geometry.facets.empty() && !parts[p])
+        sides.push_back({b, static_cast<int>(p)});
     }
+  }
   for (std::size_t i = 0; i < sides.size(); ++i) {
     for (std::size_t j = i + 1; j < sides.size(); ++j) {
       const Side &one = sides[i], &other = sides[j];

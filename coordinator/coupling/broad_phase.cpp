@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "coordinator/coupling/exchange.hpp"
+#include "coordinator/coupling/parts_of_ports.hpp"
 #include "coordinator/coupling/row_margin.hpp"
 #include "coordinator/coupling/tied_wholes.hpp"
 
@@ -70,7 +71,7 @@ std::vector<int> sorted_along(const std::vector<Box>& boxes, std::size_t& axis) 
 
 }  // namespace
 
-/// Surfaces that are tied are none any more: they touch nothing.
+/// Surfaces that are tied are none any more: they touch nothing. Parts of other ports do not, too.
 BroadPhase::BroadPhase(const Bodies& bodies, std::span<const Joint> joined) {
   const auto tied = [joined](int body, std::size_t port) {
     return std::ranges::any_of(joined, [body, port](const Joint& joint) {
@@ -84,9 +85,10 @@ BroadPhase::BroadPhase(const Bodies& bodies, std::span<const Joint> joined) {
   place_.resize(index(bodies.count()));
   for (int b = 0; b < bodies.count(); ++b) {
     const Description& body = bodies.describe(b);
+    const std::vector<bool> parts = parts_of_others(body);
     for (std::size_t p = 0; p < body.ports.size(); ++p) {
       const PortGeometry& surface = body.ports[p].geometry;
-      const bool touches = surface.dim > 1 && !surface.facets.empty() && !tied(b, p);
+      const bool touches = surface.dim > 1 && !surface.facets.empty() && !tied(b, p) && !parts[p];
       place_[b].push_back(touches ? static_cast<int>(ports_.size()) : -1);
       if (!touches) continue;
       ports_.push_back({{b, static_cast<int>(p)}, std::isinf(body.mass), rank[b], whole[b]});

@@ -90,6 +90,52 @@ TEST_P(Everything, IsThePairsThatTouchBitForBit) {
   EXPECT_GT(pairs->measure("contact.east.begin"), pairs->measure("contact.west.begin") + 1.0);
 }
 
+/// Two blocks that are tied, one on the other, each with all of its boundary and the joint as
+/// ports, and one that comes from the right and strikes the upper one.
+ResultPtr tied_blocks_are_struck(bool everything) {
+  std::vector<SolidText> blocks;
+  for (const char* const name : {"lower", "upper", "comes"}) {
+    const bool comes = name[0] == 'c', upper = name[0] == 'u';
+    SolidText block{.name = name,
+                    .material = unit_law("linear_elastic", 0.25),
+                    .integrator = "central_difference: {step: 0.0125}",
+                    .position = {comes ? 1.0005 : 0.0, comes   ? 1.2
+                                                       : upper ? 1.0
+                                                               : 0.0},
+                    .velocity = {comes ? -1.0e-3 : 0.0, 0.0},
+                    .port = "skin",
+                    .side = "boundary",
+                    .block = block_in(2, {1.0, comes ? 0.5 : 1.0}, {4, comes ? 3 : 4})};
+    if (!comes) block.sides = {upper ? "bottom" : "top"};
+    blocks.push_back(block);
+  }
+  std::string rest = "interfaces:\n  joint: {sides: [lower.top, upper.bottom], tied: {}}\n";
+  if (everything) {
+    rest += "contact: {everything: {}}\n";
+  } else {
+    rest += "  high: {sides: [upper.skin, comes.skin], contact: {}}\n";
+    rest += "  low: {sides: [lower.skin, comes.skin], contact: {}}\n";
+  }
+  return run_solids(4.0, 0.025, blocks, "", rest);
+}
+
+/// What is tied, or looked at, is part of what touches: it touches once.
+TEST(EverythingWithParts, TouchesByTheSurfaceThatHasThem) {
+  const auto pairs = tied_blocks_are_struck(false), all = tied_blocks_are_struck(true);
+  ASSERT_TRUE(pairs->completed()) << pairs->end.reason;
+  ASSERT_TRUE(all->completed()) << all->end.reason;
+  EXPECT_EQ(all->measure("contact.everything.closings"), pairs->measure("contact.high.closings"));
+  EXPECT_GT(all->measure("contact.everything.impulse"), 0.0);
+  // Pairs are joined as they come near, so that sums are in another order: the sweeps' tolerance of
+  // 1e-6 in each of some ten windows in contact.
+  constexpr double sweeps = 1.0e-6 * 10.0;
+  EXPECT_NEAR(all->measure("contact.everything.impulse"), pairs->measure("contact.high.impulse"),
+              sweeps * pairs->measure("contact.high.impulse"));
+  constexpr double speed = 1.0e-3;  // [m/s] of what comes
+  for (const std::size_t b : {0u, 1u, 2u})
+    EXPECT_NEAR(all->velocity(b), pairs->velocity(b), sweeps * speed) << b;
+}
+
 /// Bars in a row whose moduli and densities differ alike; the first comes, a little sideways.
 std::string chain(const std::vector<double>& ratios, const std::string& scheme, int steps,
                   double friction) {
