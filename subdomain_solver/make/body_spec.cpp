@@ -95,7 +95,7 @@ void RigidModelSpec::fields(Fields& f) {
   SolidShapeSpec::fields(f);
   f.check(plane != Plane::axisymmetric, "plane",
           "axisymmetric does not fit a rigid body, which turns about its centre",
-          "Mesh the whole body in space, or leave plane out.");
+          "Make it an fe body of a stiff material, or mesh the whole body in space.");
   f.idle(true, "plane", "a rigid body has no stress");
 }
 
