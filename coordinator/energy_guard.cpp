@@ -10,9 +10,9 @@ namespace abut {
 namespace {
 /// Bodies at rest that loads set in motion have hardly any energy at first.
 constexpr int looks_from_rest = 10;
-/// Of what steps do not resolve, m (2 dt a)^2/2: what loads have made after ten steps. More than
-/// that has come otherwise, as from a tool that strikes what rests, and can be judged.
-constexpr double resolved_from_rest = 25.0;
+/// Of all there is in motion: what tools have done at least where it can be judged from the first
+/// window on, and of what steps do not resolve, m (2 dt a)^2/2, how often it must be there.
+constexpr double by_tools = 0.5, resolved_from_rest = 25.0;
 /// Growth that a window may lead to where it can be gone another way: turning normals, unlike steps
 /// and roles make some thousandths in scenes that the passive way would cost far more. Above it,
 /// the part of a share [M.21].
@@ -32,9 +32,19 @@ constexpr double out_of_nothing = 0.5;
 /// those of a million steps add up by chance, to the root of that.
 constexpr double roundings = 16.0e3;
 
-/// Whether so much in motion may be what loads have made of bodies at rest, or what is rounded.
-bool hardly_any(double motion, double unresolved, double rounded) {
-  return motion <= resolved_from_rest * std::max(unresolved, rounded);
+/// [J] done by bodies that hold no energy: tools.
+double work_of_tools(std::span<const Response> responses) {
+  double work = 0.0;
+  for (const Response& response : responses) {
+    const Energy& energy = response.records.back().energy;
+    if (energy.kinetic == 0.0 && energy.stored == 0.0) work += energy.external_work;
+  }
+  return work;
+}
+
+/// Whether bodies that began at rest have hardly any energy yet, or loads have made it.
+bool too_early(std::span<const Response> responses, double motion, double unresolved) {
+  return motion <= resolved_from_rest * unresolved || work_of_tools(responses) < by_tools * motion;
 }
 }  // namespace
 
@@ -109,7 +119,8 @@ bool EnergyGuard::refuses(std::span<const Response> responses,
   // cannot.
   for (const Response& response : responses)
     if (response.records.back().energy.kinetic < -scale) return true;
-  if (unjudged_ > 0 && hardly_any(motion, unresolved(responses), rounding(responses)))
+  const double small = std::max(unresolved(responses), rounding(responses));
+  if (unjudged_ > 0 && too_early(responses, motion, small))
     return own - first_ > out_of_nothing * scale;
   const double bound = std::max(std::min(share_, granted), part_of_share * share_);
   const double at_once = std::max(bound, notable * share_);
@@ -120,7 +131,8 @@ double EnergyGuard::excess(std::span<const Response> responses, std::span<const 
   if (!begun_ || !together_) return 0.0;
   double motion = 0.0;
   const double own = own_energy(responses, struck, motion);
-  if (unjudged_ > 0 && hardly_any(motion, unresolved(responses), rounding(responses))) return 0.0;
+  const double small = std::max(unresolved(responses), rounding(responses));
+  if (unjudged_ > 0 && too_early(responses, motion, small)) return 0.0;
   most_touching_ = std::max(most_touching_, motion);
   for (const Response& response : responses)
     most_touching_ =
