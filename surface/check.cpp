@@ -1,6 +1,7 @@
 #include "surface/check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <tuple>
@@ -14,6 +15,8 @@ namespace {
 /// Far below any cell that a solver survives, far above what round-off leaves of three points on a
 /// line (some 1e-16).
 constexpr double least_area = 1.0e-12;
+/// Cosine of the angle between the normals of two halves, 150 degrees.
+constexpr double on_each_other = -0.87;
 
 /// The defect of the surface's arrays as such, before facets can be read.
 std::optional<UnsoundSurface> check_arrays(const PosedSurface& s) {
@@ -64,6 +67,20 @@ ReflexCorners reflex_corners(const Corners& c, double longest) {
     found.last = i;
   }
   return found;
+}
+
+/// The first corner of the diagonal, 0 or 1, along which a quadrilateral's halves turn less against
+/// each other; -1: they lie on each other either way, as a bow does.
+int less_folded(const Corners& c) {
+  std::array<double, 2> cosine{};
+  for (const int i : {0, 1}) {
+    const auto at = [&](int k) { return c.x[index((i + k) % 4)]; };
+    const Eigen::Vector3d one = (at(1) - at(0)).cross(at(2) - at(0));
+    const Eigen::Vector3d other = (at(2) - at(0)).cross(at(3) - at(0));
+    cosine[index(i)] = one.normalized().dot(other.normalized());
+  }
+  if (std::max(cosine[0], cosine[1]) < on_each_other) return -1;
+  return cosine[1] > cosine[0] ? 1 : 0;
 }
 
 std::optional<SurfaceDefect> check_shape(const Corners& c) {
@@ -145,8 +162,10 @@ std::optional<UnsoundSurface> check(const PosedSurface& surface) {
 std::optional<std::array<std::array<int, 3>, 2>> unfolding(const Corners& c) {
   if (c.count != 4) return std::nullopt;
   const ReflexCorners found = reflex_corners(c, longest_edge_squared(c));
-  if (found.count != 1) return std::nullopt;
-  const int i = found.last, next = (i + 1) % 4, opposite = (i + 2) % 4, before = (i + 3) % 4;
+  if (found.count == 0) return std::nullopt;
+  const int i = found.count == 1 ? found.last : less_folded(c);
+  if (i < 0) return std::nullopt;
+  const int next = (i + 1) % 4, opposite = (i + 2) % 4, before = (i + 3) % 4;
   return {{{{i, next, opposite}, {i, opposite, before}}}};
 }
 

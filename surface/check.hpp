@@ -32,8 +32,9 @@ struct UnsoundSurface {
 /// for a surface that comes from outside; it visits every facet.
 std::optional<UnsoundSurface> check(const PosedSurface& surface);
 
-/// The two triangles, by places of its corners, into which a quadrilateral with one corner that is
-/// not convex in its mean plane divides without a fold; none: it is convex, or has two of them.
+/// The two triangles, by places of its corners, into which a quadrilateral divides that is not
+/// convex in its mean plane: without a fold where one corner is not, with the lesser one where it
+/// is so warped that two are not. None: it is convex, or a bow.
 std::optional<std::array<std::array<int, 3>, 2>> unfolding(const Corners& quadrilateral);
 
 /// The defect as the words of a message: "facet 3 has no area".

@@ -92,6 +92,27 @@ TEST(SurfaceCheck, DividesAQuadrilateralThatIsNotConvex) {
   }
 }
 
+/// One whose mean plane sees it cross itself is divided where its halves turn less.
+TEST(SurfaceCheck, DividesAQuadrilateralThatIsFoldedOverBothDiagonals) {
+  const Corners warped{
+      4, {{{-0.04, -0.13, 0.29}, {0.03, -0.2, 0.59}, {0.03, 0.1, 0.4}, {-0.03, 0.2, 0.55}}}};
+  const auto parts = unfolding(warped);
+  ASSERT_TRUE(parts.has_value());
+  const auto turn = [&warped](const std::array<std::array<int, 3>, 2>& halves) {
+    std::array<Eigen::Vector3d, 2> normals;
+    for (std::size_t k : {0u, 1u}) {
+      Corners triangle{3, {}};
+      for (std::size_t i = 0; i < 3; ++i) triangle.x[i] = warped.x[index(halves[k][i])];
+      normals[k] = area_vector(triangle).normalized();
+    }
+    return normals[0].dot(normals[1]);
+  };
+  const double one = turn({{{0, 1, 2}, {0, 2, 3}}}), other = turn({{{1, 2, 3}, {1, 3, 0}}});
+  EXPECT_EQ(turn(*parts), std::max(one, other));
+  const Corners bow{4, {{{0, 0, 0}, {1, 0, 0}, {0.2, 1, 0}, {0.8, 1, 0}}}};
+  EXPECT_FALSE(unfolding(bow).has_value());
+}
+
 TEST(SurfaceCheck, KnowsSegments) {
   const auto segments = [](std::vector<double> points, std::vector<std::int32_t> nodes) {
     SurfaceMesh mesh;
