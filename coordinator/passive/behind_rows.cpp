@@ -340,7 +340,7 @@ void BehindRows::find(SkinTrees& trees, const Places& from, std::vector<Distance
   for (std::size_t k = 0; k < behind_.size(); ++k) {
     const WayOut way = way_out(k, from);
     hold(behind_[k], way);
-    if (way.rank > 0 && can_press(way.row)) rows.push_back(completed(way.row));
+    if (way.rank > 0 && can_press(way.row)) rows.push_back(completed(way.row, from));
   }
 }
 
@@ -357,11 +357,13 @@ bool BehindRows::can_press(const DistanceRow& row) const {
   });
 }
 
-DistanceRow BehindRows::completed(DistanceRow row) const {
+DistanceRow BehindRows::completed(DistanceRow row, const Places& places) const {
   const auto& p = row.features.points;
   row.friction = surfaces_.friction(p[0], p[index(row.features.first_side())]);
   row.find_tangents(surfaces_.skin().dim);
   row.behind = true;
+  if (row.friction > 0.0)
+    row.find_couples(surfaces_.skin().dim, abut::places(row.features, places));
   return row;
 }
 
@@ -386,7 +388,7 @@ int BehindRows::check(SkinTrees& trees, const Places& from, const Places& to,
       way.row.gap += way.row.weights[i] * way.row.normal.dot(x[i]);
     if (gap > std::min(way.row.gap, 0.0) - deeper_by * thickness_) continue;
     ++deeper;
-    rows.push_back(completed(way.row));
+    rows.push_back(completed(way.row, from));
   }
   return deeper;
 }

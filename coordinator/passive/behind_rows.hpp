@@ -74,7 +74,7 @@ class BehindRows {
   void see_edge(const Behind& what, const std::array<std::int32_t, 2>& edge, const Places& places,
                 WayOut& best) const;
   bool can_press(const DistanceRow& row) const;
-  DistanceRow completed(DistanceRow row) const;
+  DistanceRow completed(DistanceRow row, const Places& places) const;
 
   const TouchingSurfaces& surfaces_;
   double thickness_, rounding_;  // [m]

@@ -257,15 +257,14 @@ void CommonStep::press_rows(bool any) {
   if (!any) return;
   const int dim = surfaces_.skin().dim;
   for (const DistanceRow& row : rows_) {
-    const Eigen::Vector3d impulse = row.impulse();
     for (std::size_t i = 0; i < 4; ++i) {
-      if (row.weights[i] == 0.0) continue;
+      if (!row.counts(i)) continue;
+      const Eigen::Vector3d impulse = row.impulse_on(i);
       const TouchingSurfaces::Point& at = surfaces_[row.features.points[i]];
       std::vector<double>& port = pressing_[index(at.body)][index(at.port)];
       if (port.empty())
         port.assign(bodies_.describe(at.body).ports[at.port].geometry.points.size(), 0.0);
-      for (int k = 0; k < dim; ++k)
-        port[index(at.point) * index(dim) + index(k)] += row.weights[i] * impulse(k);
+      for (int k = 0; k < dim; ++k) port[index(at.point) * index(dim) + index(k)] += impulse(k);
     }
   }
 }
@@ -288,11 +287,11 @@ void CommonStep::rows_ask(double& unfit, double& work) const {
   double largest = 0.0;
   for (const DistanceRow& row : rows_) largest = std::max(largest, row.normal_impulse);
   for (const DistanceRow& row : rows_) {
-    const double w = row_velocity(row, velocities_, row.normal);
+    const double w = row_velocity(row, velocities_, 0);
     work += row.normal_impulse * w;
     for (const std::size_t t : {0u, 1u})
       if (row.tangential_impulse[t] != 0.0)
-        work += row.tangential_impulse[t] * row_velocity(row, velocities_, row.tangents[t]);
+        work += row.tangential_impulse[t] * row_velocity(row, velocities_, static_cast<int>(t) + 1);
     const double over = (w - row.least()) * length();
     unfit = std::max(unfit, -over);
     if (row.normal_impulse > no_impulse * largest) unfit = std::max(unfit, 0.1 * std::abs(over));

@@ -130,15 +130,14 @@ void PassiveRecord::add(const CommonStep& step, double begin, double end) {
 void PassiveRecord::add_forces(const CommonStep& step, double length) {
   const std::size_t dim = index(surfaces_.skin().dim);
   for (const DistanceRow& row : step.rows()) {
-    const Eigen::Vector3d force = row.impulse() / length;
     const auto put = [&](std::vector<double>& f, std::size_t width, std::size_t i) {
       const TouchingSurfaces::Point& at = surfaces_[row.features.points[i]];
+      const Eigen::Vector3d force = row.impulse_on(i) / length;
       for (std::size_t k = 0; k < dim; ++k)
-        f[f.size() - width + index(at.point) * dim + k] +=
-            row.weights[i] * force(static_cast<Eigen::Index>(k));
+        f[f.size() - width + index(at.point) * dim + k] += force(static_cast<Eigen::Index>(k));
     };
     for (std::size_t i = 0; i < 4; ++i) {
-      if (row.weights[i] == 0.0) continue;
+      if (!row.counts(i)) continue;
       const TouchingSurfaces::Point& at = surfaces_[row.features.points[i]];
       Waveform& trace = bodies_.response(at.body).ports[index(at.port)].trace;
       put(trace.f, index(trace.width), i);

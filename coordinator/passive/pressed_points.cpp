@@ -17,7 +17,7 @@ bool PressedPoints::add(const DistanceRow& row) {
   bool grown = false;
   for (std::size_t i = 0; i < 4; ++i) {
     const std::int32_t point = row.features.points[i];
-    if (row.weights[i] == 0.0 || surfaces_.stands(point) || slots_[point] >= 0) continue;
+    if (!row.counts(i) || surfaces_.stands(point) || slots_[point] >= 0) continue;
     Body& body = bodies_[index(owner(point))];
     const auto before = [this](std::int32_t a, std::int32_t b) {
       const TouchingSurfaces::Point &one = surfaces_[a], &other = surfaces_[b];

@@ -12,18 +12,14 @@ constexpr double regularised = 1.0e-6;
 /// Sweeps over all rows. More do not change overlaps or losses: the next step's gaps do.
 constexpr int most_sweeps = 100;
 
-const Eigen::Vector3d& direction_of(const DistanceRow& row, int direction) {
-  return direction == 0 ? row.normal : row.tangents[index(direction - 1)];
-}
-
 }  // namespace
 
 double row_velocity(const DistanceRow& row, std::span<const Eigen::Vector3d> velocities,
-                    const Eigen::Vector3d& along) {
+                    int direction) {
   double sum = 0.0;
   for (std::size_t i = 0; i < 4; ++i)
-    if (row.weights[i] != 0.0)
-      sum += row.weights[i] * along.dot(velocities[index(row.features.points[i])]);
+    if (row.counts(i))
+      sum += row.share_on(i, direction).dot(velocities[index(row.features.points[i])]);
   return sum;
 }
 
@@ -50,16 +46,16 @@ RowImpulses::Answer RowImpulses::answer_of(const DistanceRow& row) const {
     if (answer.body[s] < 0) continue;
     const Eigen::MatrixXd& compliance = points_.compliance(answer.body[s]);
     for (int d = 0; d < directions; ++d) answer.change[index(d)][s].setZero(compliance.rows());
-    visit_pressed(row, answer.body[s], [&](int slot, double weight) {
+    visit_pressed(row, answer.body[s], [&](int slot, std::size_t i) {
       for (int d = 0; d < directions; ++d)
         answer.change[index(d)][s].noalias() +=
-            compliance.middleCols(slot, dim_) * (weight * direction_of(row, d).head(dim_));
+            compliance.middleCols(slot, dim_) * row.share_on(i, d).head(dim_);
     });
-    visit_pressed(row, answer.body[s], [&](int slot, double weight) {
+    visit_pressed(row, answer.body[s], [&](int slot, std::size_t i) {
       for (int d = 0; d < directions; ++d)
         for (int e = 0; e < directions; ++e)
-          own(e, d) += weight * direction_of(row, e).head(dim_).dot(
-                                    answer.change[index(d)][s].segment(slot, dim_));
+          own(e, d) +=
+              row.share_on(i, e).head(dim_).dot(answer.change[index(d)][s].segment(slot, dim_));
     });
   }
   answer.normal = own(0, 0);
@@ -69,28 +65,28 @@ RowImpulses::Answer RowImpulses::answer_of(const DistanceRow& row) const {
   return answer;
 }
 
-/// Calls `see` with the first value and the weight of each point of a row that is pressed on a
+/// Calls `see` with the first value and the place of each point of a row that is pressed on a
 /// body.
 template <class See>
 void RowImpulses::visit_pressed(const DistanceRow& row, int body, const See& see) const {
   for (std::size_t i = 0; i < 4; ++i) {
-    if (row.weights[i] == 0.0) continue;
+    if (!row.counts(i)) continue;
     const std::int32_t point = row.features.points[i];
     const int slot = points_.slot(point);
-    if (slot >= 0 && points_.owner(point) == body) see(slot, row.weights[i]);
+    if (slot >= 0 && points_.owner(point) == body) see(slot, i);
   }
 }
 
-double RowImpulses::velocity(const DistanceRow& row, const Eigen::Vector3d& along) const {
+double RowImpulses::velocity(const DistanceRow& row, int direction) const {
   double sum = 0.0;
   for (std::size_t i = 0; i < 4; ++i) {
-    if (row.weights[i] == 0.0) continue;
+    if (!row.counts(i)) continue;
     const std::int32_t point = row.features.points[i];
     const int slot = points_.slot(point);
     const Eigen::VectorXd* pressed = slot < 0 ? nullptr : &points_.velocity(points_.owner(point));
+    const Eigen::Vector3d share = row.share_on(i, direction);
     for (int k = 0; k < dim_; ++k)
-      sum += row.weights[i] * along(k) *
-             (pressed != nullptr ? (*pressed)(slot + k) : velocities_[index(point)](k));
+      sum += share(k) * (pressed != nullptr ? (*pressed)(slot + k) : velocities_[index(point)](k));
   }
   return sum;
 }
@@ -117,7 +113,7 @@ double RowImpulses::solve_normal(std::size_t k) {
   const double own = answers_[k].normal;
   if (!(own > 0.0)) return 0.0;
   const double some = regularised * own;
-  const double w = velocity(row, row.normal) + row.closing + some * row.normal_impulse;
+  const double w = velocity(row, 0) + row.closing + some * row.normal_impulse;
   double now = std::max(0.0, row.normal_impulse - w / (own + some));
   if (row.recoils) now = std::max(now, recoil(k));
   const double change = now - row.normal_impulse;
@@ -154,7 +150,7 @@ double RowImpulses::solve_friction(std::size_t k) {
   const double own = answers_[k].tangential;
   if (!(row.friction > 0.0) || !(own > 0.0)) return 0.0;
   std::array<double, 2> now = row.tangential_impulse;
-  for (int t = 0; t + 1 < dim_; ++t) now[index(t)] -= velocity(row, row.tangents[index(t)]) / own;
+  for (int t = 0; t + 1 < dim_; ++t) now[index(t)] -= velocity(row, t + 1) / own;
   const double length = std::hypot(now[0], now[1]), most = row.friction * row.normal_impulse;
   if (length > most)
     for (double& value : now) value *= most / length;
@@ -180,10 +176,10 @@ void RowImpulses::solve(double negligible) {
 double RowImpulses::work() const {
   double sum = 0.0;
   for (const DistanceRow& row : rows_) {
-    sum += row.normal_impulse * velocity(row, row.normal);
+    sum += row.normal_impulse * velocity(row, 0);
     for (int t = 0; t + 1 < dim_; ++t)
       if (row.tangential_impulse[index(t)] != 0.0)
-        sum += row.tangential_impulse[index(t)] * velocity(row, row.tangents[index(t)]);
+        sum += row.tangential_impulse[index(t)] * velocity(row, t + 1);
   }
   return sum;
 }

@@ -24,7 +24,7 @@ class RowImpulses {
   /// `negligible` [m/s]: less change of a velocity is none.
   void solve(double negligible);
   /// [m/s] w of a row along its normal.
-  double velocity(const DistanceRow& row) const { return velocity(row, row.normal); }
+  double velocity(const DistanceRow& row) const { return velocity(row, 0); }
   /// [J] sum of J.w
   double work() const;
   /// Rows that are owed something, press no more and part, give it back from now on; its sum [J].
@@ -43,7 +43,7 @@ class RowImpulses {
   Answer answer_of(const DistanceRow& row) const;
   template <class See>
   void visit_pressed(const DistanceRow& row, int body, const See& see) const;
-  double velocity(const DistanceRow& row, const Eigen::Vector3d& along) const;
+  double velocity(const DistanceRow& row, int direction) const;
   void press(std::size_t row, int direction, double impulse);
   double solve_normal(std::size_t row);
   double recoil(std::size_t row) const;
@@ -57,8 +57,8 @@ class RowImpulses {
   std::vector<Answer> answers_;
 };
 
-/// [m/s] w of a row along a direction, of mean velocities of all points.
+/// [m/s] w of a row along its normal (0) or a tangent, of mean velocities of all points.
 double row_velocity(const DistanceRow& row, std::span<const Eigen::Vector3d> velocities,
-                    const Eigen::Vector3d& along);
+                    int direction);
 
 }  // namespace abut

@@ -76,7 +76,7 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
 
 /// What a row took is lost until it gives it back, as long as it stays near.
 void CommonStep::count_normal(const DistanceRow& row, PassiveLedger& ledger) {
-  const double work = row.normal_impulse * row_velocity(row, velocities_, row.normal);
+  const double work = row.normal_impulse * row_velocity(row, velocities_, 0);
   if (work > 0.0 && !row.recoils) {
     ledger.push_out += work;
   } else {
@@ -120,7 +120,7 @@ bool CommonStep::gives_back(const DistanceRow& row) const {
 void CommonStep::count_friction(const DistanceRow& row, PassiveLedger& ledger) const {
   double heat = 0.0;
   for (const std::size_t t : {0u, 1u})
-    heat -= row.tangential_impulse[t] * row_velocity(row, velocities_, row.tangents[t]);
+    heat -= row.tangential_impulse[t] * row_velocity(row, velocities_, static_cast<int>(t) + 1);
   if (heat == 0.0) return;
   ledger.friction += heat;
   const TouchingSurfaces::Point& one = surfaces_[row.first_point(0)];
@@ -146,13 +146,12 @@ void CommonStep::share_out_loss(const DistanceRow& row, double loss, PassiveLedg
 void CommonStep::share_out_work() {
   for (std::vector<double>& ports : port_work_) std::ranges::fill(ports, 0.0);
   for (const DistanceRow& row : rows_) {
-    const Eigen::Vector3d impulse = row.impulse();
     for (std::size_t i = 0; i < 4; ++i) {
-      if (row.weights[i] == 0.0) continue;
+      if (!row.counts(i)) continue;
       const std::int32_t point = row.features.points[i];
       const TouchingSurfaces::Point& at = surfaces_[point];
       port_work_[index(at.body)][index(at.port)] +=
-          row.weights[i] * impulse.dot(velocities_[index(point)]);
+          row.impulse_on(i).dot(velocities_[index(point)]);
     }
   }
   share_out_ties();

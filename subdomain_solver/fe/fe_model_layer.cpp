@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/assert.hpp"
+#include "base/dense.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/one_each.hpp"
@@ -26,6 +27,31 @@ bool is_held(FeModel& model, std::size_t massless) {
   LayerResponse response;
   return model.evaluate_layer(q, history, Model::Want::tangent, response) &&
          make_own_solver()->factor(response.tangent);
+}
+
+/// Of its mass, by how much a node may gain or lose so that centres of mass are one; less than
+/// roundings of places is none.
+constexpr double most_tilt = 0.9, least_tilt = 1.0e-12;
+
+/// `whole` [kg] (dofs), all mass on the nodes, made lighter on one side and heavier on the other so
+/// that in every direction its centre is that of `layered`, which has the same sum [M.150].
+Vector with_centre_of(const Mesh& mesh, const Vector& whole, const Vector& layered) {
+  const Eigen::Index dim = mesh.dim, nodes = whole.size() / dim;
+  const Eigen::Map<const Eigen::MatrixXd> points(mesh.points.data(), dim, nodes);
+  Vector out = whole;
+  for (Eigen::Index i = 0; i < dim; ++i) {
+    const Eigen::VectorXd mass = whole(Eigen::seqN(i, nodes, dim));
+    const Eigen::VectorXd centre = points * mass / mass.sum();
+    const Eigen::MatrixXd arms = points.colwise() - centre;
+    const Eigen::VectorXd shift = arms * Eigen::VectorXd(layered(Eigen::seqN(i, nodes, dim)));
+    const Eigen::VectorXd slope = least_squares(arms * mass.asDiagonal() * arms.transpose(), shift);
+    Eigen::VectorXd tilt = arms.transpose() * slope;
+    const double most = tilt.cwiseAbs().maxCoeff();
+    if (!(most > least_tilt)) continue;
+    if (most > most_tilt) tilt *= most_tilt / most;
+    out(Eigen::seqN(i, nodes, dim)) += mass.cwiseProduct(tilt);
+  }
+  return out;
 }
 
 }  // namespace
@@ -68,6 +94,9 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
   }
   whole_ = lumped_;
   lump_mass();
+  // What is held, and what is round, has no angular momentum to keep.
+  if (mesh_.dim > 1 && held.empty() && frames_.empty() && !round())
+    whole_ = with_centre_of(mesh_, whole_, lumped_);
 }
 
 /// Cells with bare nodes, and who takes the mass of those that have no other nodes.

@@ -24,11 +24,11 @@ constexpr double depth = 0.1;  // [m] at the begin
 /// Two rigid bodies and the rows between them, in places that are told.
 class Pair {
  public:
-  Pair(const SolidText& one, const SolidText& other)
+  Pair(const SolidText& one, const SolidText& other, double friction = 0.0)
       : one_(build(one)),
         other_(build(other)),
         bodies_({one_.get(), other_.get()}),
-        surfaces_(std::vector<TouchingPair>{{{Side{0, 0}, Side{1, 0}}, 0.0}}, bodies_),
+        surfaces_(std::vector<TouchingPair>{{{Side{0, 0}, Side{1, 0}}, friction}}, bodies_),
         near_(surfaces_, thickness_share * surfaces_.shortest_edge()) {}
 
   /// All places, with the second body moved.
@@ -69,11 +69,26 @@ SolidText rigid(const std::string& name, const std::string& side, const std::str
 }
 
 /// A plate of one cell, 0.5 m thick, and a square that stands on its corner.
-Pair tip_on_plate(const std::string& side) {
+Pair tip_on_plate(const std::string& side, double friction = 0.0) {
   const std::string turned =
       fmt::format("map: [\"{0} * (x - y)\", \"{0} * (x + y)\"], ", number(root));
   return {rigid("plate", side, "", {4.0, 0.5}, {4, 1}),
-          rigid("tip", "boundary", turned, {1.0, 1.0}, {1, 1})};
+          rigid("tip", "boundary", turned, {1.0, 1.0}, {1, 1}), friction};
+}
+
+/// Unit impulses of a row, in all of its directions, have no sum and no moment together.
+void expect_balanced(const DistanceRow& row, const std::vector<Vector>& places, int dim) {
+  for (int direction = 0; direction < dim; ++direction) {
+    Vector sum = Vector::Zero(), moment = Vector::Zero();
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!row.counts(i)) continue;
+      const Vector share = row.share_on(i, direction);
+      sum += share;
+      moment += places[index(row.features.points[i])].cross(share);
+    }
+    EXPECT_LT(sum.norm(), rounding) << direction;
+    EXPECT_LT(moment.norm(), rounding) << direction;
+  }
 }
 
 const Vector tip(2.2, 0.5 - depth, 0.0);  // of that corner
@@ -90,6 +105,15 @@ TEST(RowsBehind, HoldATipWhereItCameIn) {
   EXPECT_GT(pair.offended(tip, tip - Vector(0, 0.05, 0)), 0);  // deeper
   EXPECT_GT(pair.offended(tip, tip - Vector(0, 0.6, 0)), 0);   // through
   EXPECT_GT(pair.offended(tip, tip - Vector(3.0, 0, 0)), 0);   // a plate's node in it
+}
+
+/// Its friction acts on sides that are apart by as much as it is behind.
+TEST(RowsBehind, HaveNoMomentOfFriction) {
+  Pair pair = tip_on_plate("boundary", 0.5);
+  const std::vector<DistanceRow> rows = pair.begin(tip);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_TRUE(rows[0].coupled);
+  expect_balanced(rows[0], pair.moved(tip), 2);
 }
 
 /// Nothing is behind what it has come out of.
@@ -120,7 +144,7 @@ TEST(RowsBehind, HoldEdgesInSpace) {
       "1)\"], ",
       number(root));
   Pair pair{rigid("bar", "boundary", "", {2.0, 1.0, 1.0}, {1, 1, 1}),
-            rigid("other", "boundary", turned, {1.0, 1.0, 2.0}, {1, 1, 1})};
+            rigid("other", "boundary", turned, {1.0, 1.0, 2.0}, {1, 1, 1}), 0.5};
   const Vector out(0.0, root, root);
   const Vector crossed = Vector(1.1, 1.0, 1.0) - depth * out;
   const std::vector<DistanceRow> rows = pair.begin(crossed);
@@ -130,6 +154,7 @@ TEST(RowsBehind, HoldEdgesInSpace) {
     ++found;
     EXPECT_NEAR(std::abs(row.normal.dot(out)), 1.0, rounding);
     EXPECT_NEAR(row.gap, -depth, rounding);
+    expect_balanced(row, pair.moved(crossed), 3);
   }
   EXPECT_GT(found, 0);
   EXPECT_EQ(pair.offended(crossed, crossed + 0.3 * out), 0);

@@ -54,6 +54,10 @@ std::vector<PassiveText> switched() {
   return all;
 }
 
+bool second_order(const std::string& element) {
+  return element == "tri6" || element == "quad8" || element == "tet10" || element == "hex20";
+}
+
 double kept(const BodyRecord& r) { return r.energy.total() - r.energy.external_work; }
 
 TEST(PassiveSwitch, KeepsMomentumAndPlacesAndGainsNoEnergy) {
@@ -97,6 +101,27 @@ TEST(PassiveSwitch, KeepsMomentumAndPlacesAndGainsNoEnergy) {
       // Schemes of finite strain keep their energy to the square of their step.
       EXPECT_LT(kept(on), kept(own) * (1.0 + 1.0e-3));
     }
+  }
+}
+
+// A surface without mass leaves the centre of mass elsewhere than where nodes of even shares have
+// it: what flies without turning has the angular momentum of its centre, in either form [M.150].
+TEST(PassiveSwitch, KeepsTheAngularMomentumOfWhatFlies) {
+  for (PassiveText text : switched()) {
+    text.more =
+        text.dim == 2 ? "initial: {velocity: [0.3, 1.0]}" : "initial: {velocity: [0.3, 1.0, 0.1]}";
+    SCOPED_TRACE(text.label());
+    const std::unique_ptr<Subdomain> body = text.build();
+    const BodyRecord own = advance(*body, 0.0, 0.05);
+    body->passive()->enter();
+    const BodyRecord passive = PassiveRun(nullptr, *body, 0.05).step(1.0e-12).record;
+    // Of masses that are not lumped the centre is that of the lumped ones, which in cells of second
+    // order is another one: 0.018 was measured, of an angular momentum of about 1.
+    const bool lumped =
+        text.scheme.starts_with("central") || text.scheme.find("lumped") != std::string::npos;
+    const double miss = second_order(text.element) && !lumped ? 0.02 : roundoff(1.0e4, 1.0);
+    for (std::size_t i = 0; i < own.angular_momentum.size(); ++i)
+      EXPECT_NEAR(passive.angular_momentum[i], own.angular_momentum[i], miss) << i;
   }
 }
 
