@@ -54,7 +54,7 @@ void Controller::try_window(const TimeWindow& window) {
 }
 
 /// Whether windows that have an answer may be refused all the same. Contact of ends of bars keeps
-/// an account, which pays later what a window seems to gain: unless that would end the run.
+/// an account, which pays later what a window seems to gain.
 bool Controller::may_refuse() const { return may_go_passively() && !passive_.on_a_line(); }
 
 /// Which body comes upon itself, where passive forms can keep it off itself; empty: none.

@@ -127,13 +127,6 @@ bool EnergyGuard::refuses(std::span<const Response> responses,
   return own + repaid_ - first_ > bound * scale || own - latest_ > at_once * scale;
 }
 
-bool EnergyGuard::ends(std::span<const Response> responses, std::span<const double> struck) const {
-  if (!begun_ || !together_ || unjudged_ > 0) return false;
-  double motion = 0.0;
-  const double own = own_energy(responses, struck, motion);
-  return own - first_ > share_ * std::max(most_, motion);
-}
-
 double EnergyGuard::excess(std::span<const Response> responses, std::span<const double> struck) {
   if (!begun_ || !together_) return 0.0;
   double motion = 0.0;

@@ -40,8 +40,6 @@ class EnergyGuard {
   /// two-hundredth above the start (a tenth of the share, where that is more), or by half the share
   /// at once [M.21]. Changes nothing.
   bool refuses(std::span<const Response> responses, std::span<const double> struck = {}) const;
-  /// Whether all bodies together would end the run, by more than the share. Changes nothing.
-  bool ends(std::span<const Response> responses, std::span<const double> struck = {}) const;
   /// [J] by which the energy is above its start, beyond what may stand there: less than a tenth of
   /// the share of the largest, and of what loads and supports have worked on a body [M.21].
   /// Asked of windows in which surfaces touch and of no others: how windows without contact are
