@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the first build costs: `make demo`, or another target, from nothing, in a clone of what is committed.
+"""What the first build costs: `make demo`, or another target, from nothing, in a clone.
 
 usage: scripts/build_time.py [TARGET]      without a compiler cache; packages are there already
 Prints wall and processor time, and the files that take longest.

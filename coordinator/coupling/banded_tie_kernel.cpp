@@ -42,7 +42,7 @@ struct BandedResponses {
 };
 
 BandedResponses banded_responses(const TieLayout& layout, const TieLayout::Part& part,
-                             const TieBandWidth& width, int steps, Bodies& bodies) {
+                                 const TieBandWidth& width, int steps, Bodies& bodies) {
   BandedResponses own{make_tie_band(layout, part, width, steps, bodies), steps, {}, {}};
   const int dim = dim_of(layout);
   std::size_t total = 0;
@@ -79,8 +79,9 @@ BandedResponses banded_responses(const TieLayout& layout, const TieLayout::Part&
 
 /// What forces of one joint in the first block do to the rows of another so many blocks later,
 /// through one body.
-void add_banded(const TieLayout& layout, const TieLayout::Part& part, const BandedResponses& responses,
-         const TieLayout::End& of, const TieLayout::End& by, int lag, Triplets& block) {
+void add_banded(const TieLayout& layout, const TieLayout::Part& part,
+                const BandedResponses& responses, const TieLayout::End& of,
+                const TieLayout::End& by, int lag, Triplets& block) {
   const TieLayout::Member& row = layout.members[of.member];
   const TieLayout::Member& column = layout.members[by.member];
   const int dim = dim_of(layout), rows = row.width / dim;
@@ -137,7 +138,8 @@ BandedTieKernel::BandedTieKernel(const TieLayout& layout, const TieBandWidth& wi
   std::vector<BandedResponses> responses(layout.parts.size());
   for (std::size_t p = 0; p < responses.size(); ++p) {
     const TieLayout::Part& part = layout.parts[p];
-    if (!part.stands) responses[p] = banded_responses(layout, part, width, part.steps * lags, bodies);
+    if (!part.stands)
+      responses[p] = banded_responses(layout, part, width, part.steps * lags, bodies);
   }
   Eigen::VectorXd scale;
   for (int lag = 0; lag < lags; ++lag) {

@@ -122,7 +122,8 @@ bool is_of_meshes(const TieLayout::Member& member, const Eigen::VectorXd& left, 
   for (int r = 0; r < member.tie->rows().count(); ++r) {
     bool open = false;
     for (Eigen::Index i = 0; i < left.size(); i += member.width)
-      open = open || left.segment(i + Eigen::Index{r} * dim, dim).norm() > least_part * most.distance;
+      open =
+          open || left.segment(i + Eigen::Index{r} * dim, dim).norm() > least_part * most.distance;
     if (open) rows.push_back(r);
   }
   constexpr double share = 0.5;  // a third, and what steps of unlike length add

@@ -49,8 +49,7 @@ class FeModel final : public Model {
   /// all masses are as before then.
   void make_massless(std::vector<int> bare, const std::vector<int>& held);
 
-  /// [kg] (dofs) lumped, as if no coordinate were massless, with the centre that the layer has left
-  /// the body [M.150].
+  /// [kg] (dofs) lumped, as if none were massless, with the centre that the layer leaves [M.150].
   const Vector& whole_mass() const { return whole_.size() > 0 ? whole_ : lumped_; }
   /// [kg] (dofs, dofs) that coordinates without mass, the rows, gave to others.
   SparseMatrix given_mass() const;

@@ -76,8 +76,8 @@ class KrylovSpace {
     const Eigen::MatrixXd residuals = coupling_ * parts.bottomRows(m - coupled_);
     Eigen::Index sound = 0, count = 0;
     const auto settled = [&](Eigen::Index k) {
-      return exhausted() ||
-             residuals.col(k).norm() <= std::max(modes_converged * inverse(k), mode_roundoff * largest_);
+      return exhausted() || residuals.col(k).norm() <=
+                                std::max(modes_converged * inverse(k), mode_roundoff * largest_);
     };
     while (sound < m && settled(sound)) ++sound;
     while (count < sound && count < wanted.count && inverse(count) * wanted.below > 1.0) ++count;

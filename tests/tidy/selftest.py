@@ -251,7 +251,8 @@ class Equations(unittest.TestCase):
 
 class Units(unittest.TestCase):
     def check(self, expected: list[str], **files: str) -> None:
-        found = findings(units.check, CMakeLists_dot_txt="add_library(x STATIC a.cpp b.cpp)\n", **files)
+        target = "add_library(x STATIC a.cpp b.cpp)\n"
+        found = findings(units.check, CMakeLists_dot_txt=target, **files)
         self.assertEqual([f"{finding.path}:{finding.line}" for finding in found], expected)
 
     def test_files_of_one_target_have_functions_of_their_own(self) -> None:
@@ -263,8 +264,8 @@ class Units(unittest.TestCase):
         self.check([], a_dot_cpp=one, c_dot_cpp=overload)
 
     def test_what_is_no_function_of_a_file(self) -> None:
-        for same in ("int K::f() {\n  return 1;\n}", "struct S {\n  int f() {\n    return 1;\n  }\n};",
-                     "TEST(A, B) {\n}"):
+        for same in ("int K::f() {\n  return 1;\n}", "TEST(A, B) {\n}",
+                     "struct S {\n  int f() {\n    return 1;\n  }\n};"):
             text = "namespace abut {\nnamespace {\n" + same + "\n}\n}\n"
             self.check([], a_dot_cpp=text, b_dot_cpp=text)
 

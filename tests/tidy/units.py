@@ -1,6 +1,6 @@
 """Goal: files of a target may be compiled at once (cmake/unity.cmake). Functions in their unnamed
-namespaces become overloads of each other then, and a call could find a neighbour's: each name is one
-file's. (Types, variables and functions that repeat to the letter are errors of the compiler.)
+namespaces become overloads of each other then, and a call could find a neighbour's: each name is
+one file's. (What repeats to the letter is an error of the compiler.)
 """
 
 import re
@@ -14,7 +14,8 @@ from lengths import LITERALS, blank, without_template
 TARGET = re.compile(r"(?:add_library|add_executable|abut_gtest)\(([\w-]+)([^)]*)\)")
 FUNCTION = re.compile(r"([\w:]+)\s*\(")
 UNNAMED = "unnamed"
-NOT_FUNCTIONS = {"TEST", "TEST_P", "TEST_F", "double"}  # macros; what std::function<double(...)> shows
+# Macros, and what std::function<double(...)> shows.
+NOT_FUNCTIONS = {"TEST", "TEST_P", "TEST_F", "INSTANTIATE_TEST_SUITE_P", "double"}
 BY_TYPE = {"encode", "decode"}  # of messages, whose types nothing converts into each other
 
 
@@ -60,8 +61,9 @@ def check(root: Path) -> list[Finding]:
                 if function.rpartition("::")[2] in BY_TYPE:
                     continue
                 for path, line in known[1:]:
-                    what = f"{function}() is in an unnamed namespace of {known[0][0]} too, of {target[1]}"
-                    found.append(Finding(path, line, what, "give it a name of its own, or share one"))
+                    what = f"{function}() is in an unnamed namespace of {known[0][0]} too"
+                    remedy = f"give it a name of its own within {target[1]}, or share one"
+                    found.append(Finding(path, line, what, remedy))
     return found
 
 
