@@ -164,6 +164,30 @@ std::optional<double> ContactEvents::earlier_end(const TimeWindow& window) const
   return half < window.end ? std::optional(half) : std::nullopt;
 }
 
+double ContactEvents::payments(double energy) {
+  double sum = 0.0;
+  for (const Joint& joint : joints_)
+    if (ContactAccount* account = joint.watch->account(); account != nullptr && joint.closed())
+      sum += account->payment(joint, energy, bodies_);
+  return sum;
+}
+
+double ContactEvents::overpaid(double energy) {
+  double sum = 0.0;
+  for (const Joint& joint : joints_)
+    if (ContactAccount* account = joint.watch->account(); account != nullptr && joint.closed())
+      sum += account->overpaid(joint, energy, bodies_);
+  return sum;
+}
+
+void ContactEvents::repaid(double energy, double joules) {
+  const double all = overpaid(energy);
+  if (!(all > 0.0)) return;
+  for (const Joint& joint : joints_)
+    if (ContactAccount* account = joint.watch->account(); account != nullptr && joint.closed())
+      account->repaid(joules * account->overpaid(joint, energy, bodies_) / all);
+}
+
 // ---- in a window that was accepted --------------------------------------------------------------
 
 void ContactEvents::settle(const TimeWindow& window, double energy) {

@@ -52,6 +52,13 @@ class ContactEvents {
   /// An earlier end: fewer substeps at once, fewer kinks in the map that is iterated.
   std::optional<double> earlier_end(const TimeWindow& window) const;
 
+  /// [J] that contact would pay the bodies for a window that was tried. `energy` [J]: as before.
+  double payments(double energy);
+  /// [J] that the bodies would keep of what contact has given them, and by which of these joules
+  /// they give back by themselves the accounts are lowered.
+  double overpaid(double energy);
+  void repaid(double energy, double joules);
+
   /// What contact did in a window that was accepted: its account, the impulse that pays it, and
   /// what observers hear of it.
   void settle(const TimeWindow& window, double energy);

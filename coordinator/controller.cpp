@@ -290,13 +290,17 @@ Controller::Judgement Controller::judge_ways(const TimeWindow& window) {
   if (std::string meets = folded(); !meets.empty())
     return {Judgement::Verdict::fail, window.end, std::move(meets)};
   const bool near = std::ranges::any_of(joints_, [](const Joint& j) { return j.closed(); });
-  if (!near || !may_refuse()) return {};
-  if (guard_.refuses(bodies_.responses(), bodies_.struck()))
-    return {Judgement::Verdict::fail, window.end, "contact would make energy"};
+  if (!near || !may_go_passively()) return {};
+  const Judgement gains = {Judgement::Verdict::fail, window.end, "contact would make energy"};
+  if (passive_.on_a_line()) {
+    if (guard_.ends(bodies_.responses(), events_.payments(guard_.most()))) return gains;
+    repay();
+    return {};
+  }
+  if (guard_.refuses(bodies_.responses(), bodies_.struck())) return gains;
   if (std::string crossed = crossing_.look(); !crossed.empty())
     return {Judgement::Verdict::fail, window.end, std::move(crossed)};
-  if (!repay()) return {Judgement::Verdict::fail, window.end, "contact would make energy"};
-  return {};
+  return repay() ? Judgement() : gains;
 }
 
 Controller::Judgement Controller::judge_trouble(const TimeWindow& window) {

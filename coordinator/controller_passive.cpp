@@ -136,13 +136,22 @@ bool Controller::repay() {
     }
   }
   std::erase_if(touching, [this](int b) { return !std::isfinite(bodies_.describe(b).mass); });
-  const double excess = guard_.excess(bodies_.responses(), bodies_.struck());
+  const bool accounts = passive_.on_a_line();  // bars give back what contact has given them, alone
+  const double excess =
+      accounts ? std::min(events_.overpaid(guard_.most()),
+                          guard_.excess(bodies_.responses(), {}, events_.payments(guard_.most())))
+               : guard_.excess(bodies_.responses(), bodies_.struck());
   if (touching.empty() || !(excess > 0.0)) return true;
   const std::vector<int> bodies(touching.begin(), touching.end());
   const std::vector<double> gave = passive_.repay(bodies, excess);
   double left = excess;
   for (const double given : gave) left -= given;
-  if (left > guard_.forgiven()) return false;
+  if (accounts) {
+    for (const int b : bodies) bodies_.see_recoil(b, bodies_.response(b).records.back().time);
+    events_.repaid(guard_.most(), excess - left);
+  } else if (left > guard_.forgiven()) {
+    return false;
+  }
   for (std::size_t k = 0; k < bodies.size(); ++k) guard_.repaid(bodies[k], gave[k]);
   passive_.count_repaid(excess - left);
   return true;

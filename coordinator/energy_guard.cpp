@@ -127,10 +127,18 @@ bool EnergyGuard::refuses(std::span<const Response> responses,
   return own + repaid_ - first_ > bound * scale || own - latest_ > at_once * scale;
 }
 
-double EnergyGuard::excess(std::span<const Response> responses, std::span<const double> struck) {
+bool EnergyGuard::ends(std::span<const Response> responses, double payments) const {
+  if (!begun_ || !together_ || unjudged_ > 0) return false;
+  double motion = 0.0;
+  const double own = own_energy(responses, {}, motion) + payments;
+  return own - first_ > share_ * std::max(most_, motion);
+}
+
+double EnergyGuard::excess(std::span<const Response> responses, std::span<const double> struck,
+                           double payments) {
   if (!begun_ || !together_) return 0.0;
   double motion = 0.0;
-  const double own = own_energy(responses, struck, motion);
+  const double own = own_energy(responses, struck, motion) + payments;
   const double small = std::max(unresolved(responses), rounding(responses));
   if (unjudged_ > 0 && too_early(responses, motion, small)) return 0.0;
   most_touching_ = std::max(most_touching_, motion);

@@ -40,11 +40,15 @@ class EnergyGuard {
   /// two-hundredth above the start (a tenth of the share, where that is more), or by half the share
   /// at once [M.21]. Changes nothing.
   bool refuses(std::span<const Response> responses, std::span<const double> struck = {}) const;
+  /// Whether all bodies together would end the run, if they were paid so much [J]. Changes nothing.
+  bool ends(std::span<const Response> responses, double payments) const;
   /// [J] by which the energy is above its start, beyond what may stand there: less than a tenth of
   /// the share of the largest, and of what loads and supports have worked on a body [M.21].
   /// Asked of windows in which surfaces touch and of no others: how windows without contact are
   /// joined, which output decides, then changes no result.
-  double excess(std::span<const Response> responses, std::span<const double> struck = {});
+  /// `payments` [J]: what contact of bars would pay them beside.
+  double excess(std::span<const Response> responses, std::span<const double> struck = {},
+                double payments = 0.0);
   /// [J] of that excess which may stay where bodies have nothing to repay it with.
   double forgiven() const;
   /// So much [J] of what was gained a body has given back since: what accounts say takes it in.

@@ -203,6 +203,20 @@ void Bodies::strike_record(const Side& side, double impulse) {
   if (reply.recoil->mobility > 0.0) record.momentum[0] -= impulse * port(side).geometry.normals[0];
 }
 
+void Bodies::see_recoil(int body, double time) {
+  Advance nothing;
+  nothing.window = {0, time, time};
+  nothing.boundary.assign(describe(body).ports.size(), {});
+  Response now;
+  subdomains_[index(body)]->save();
+  ++exchanges_;
+  const Outcome outcome = (*this)[body].advance(nothing, now);
+  (*this)[body].restore();
+  if (!std::holds_alternative<Advanced>(outcome)) return;
+  for (std::size_t p = 0; p < now.ports.size(); ++p)
+    response(body).ports[p].recoil = now.ports[p].recoil;
+}
+
 void Bodies::strike_energy(const Side& side, double earlier, double impulse) {
   Response& response = responses_[side.body];
   const std::optional<Recoil>& recoil = response.ports[side.port].recoil;

@@ -78,6 +78,9 @@ class Bodies {
   /// An impulse [N s] into a port at the end of the last window, with which the next one begins:
   /// its body's last record tells of the state after it.
   void strike_record(const Side& side, double impulse);
+  /// The latest response of a body whose velocities have changed since, at a time [s]: what
+  /// impulses into its ports would meet now.
+  void see_recoil(int body, double time);
   /// The same of the energy alone, of an impulse that comes after another one, which is not told.
   void strike_energy(const Side& side, double earlier, double impulse);
   /// [J] by body, of such impulses: in the last records, and in the ports' work of the next window.

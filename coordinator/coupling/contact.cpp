@@ -208,4 +208,9 @@ double paying_impulse(const Joint& joint, double debt, const Bodies& bodies) {
   return -2.0 * debt / (w + std::copysign(std::sqrt(w * w + owed), w));
 }
 
+double work_of_impulse(const Joint& joint, double impulse, const Bodies& bodies) {
+  const std::optional<Recoil> recoil = joint_recoil(joint, bodies);
+  return recoil ? (0.5 * recoil->mobility * impulse - recoil->velocity) * impulse : 0.0;
+}
+
 }  // namespace abut

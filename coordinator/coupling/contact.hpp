@@ -96,5 +96,7 @@ double release_impulse(const Joint& joint, double debt, const Bodies& bodies);
 /// contact owes the bodies  [M.26]. 0 where a side takes no impulses, or where their velocity of
 /// approach is too small to pay with: the debt waits.
 double paying_impulse(const Joint& joint, double debt, const Bodies& bodies);
+/// [J] that such an impulse [N s] gives both bodies.
+double work_of_impulse(const Joint& joint, double impulse, const Bodies& bodies);
 
 }  // namespace abut

@@ -75,23 +75,35 @@ void ContactAccount::settle(Joint& joint, const TimeWindow& window, double energ
   joint.contact.force_scale = std::max(joint.contact.force_scale, history_.peak());
   run.force_reference = std::max(run.force_reference, history_.peak());
   debt_ -= contact_work(joint, bodies);
-  pay(joint, energy, bodies);
+  rebound_impulse_ = release_impulse(joint, debt_, bodies);
+  joint.contact.impulse = due_impulse(joint, debt_, energy, bodies);
+  for (const Side& side : joint.sides) bodies.strike_record(side, joint.contact.impulse);
   see_pushes(joint, run, changes);
   disengage(joint, window, run, bodies);
 }
 
-void ContactAccount::pay(Joint& joint, double energy, Bodies& bodies) {
-  rebound_impulse_ = release_impulse(joint, debt_, bodies);
+/// [N s] that pays the debt [J] after the window in history_; 0: it waits.
+double ContactAccount::due_impulse(const Joint& joint, double debt, double energy,
+                                   const Bodies& bodies) const {
   const std::size_t last = history_.size() - 1;
   const bool active = history_[last].force > 0.0 || (last > 0 && history_[last - 1].force > 0.0);
-  if (history_.kicks() || !active) return;  // bodies that are apart give each other nothing
+  if (history_.kicks() || !active) return 0.0;  // bodies that are apart give each other nothing
   bool changed = false;
   for (std::size_t k = 1; k <= last && !changed; ++k)
     changed = (history_[k - 1].force > 0.0) != (history_[k].force > 0.0);
   const double least = (changed ? payable_share : notable_share) * energy;
-  if (std::abs(debt_) <= least) return;
-  joint.contact.impulse = paying_impulse(joint, debt_, bodies);
-  for (const Side& side : joint.sides) bodies.strike_record(side, joint.contact.impulse);
+  return std::abs(debt) <= least ? 0.0 : paying_impulse(joint, debt, bodies);
+}
+
+double ContactAccount::payment(const Joint& joint, double energy, Bodies& bodies) {
+  history_.read(joint, opened_at_, bodies);
+  const double debt = debt_ - contact_work(joint, bodies);
+  return work_of_impulse(joint, due_impulse(joint, debt, energy, bodies), bodies);
+}
+
+double ContactAccount::overpaid(const Joint& joint, double energy, Bodies& bodies) {
+  const double paid = payment(joint, energy, bodies);
+  return std::max(0.0, paid - (debt_ - contact_work(joint, bodies)));
 }
 
 void ContactAccount::settle_passively(Joint& joint, const TimeWindow& window, ContactRun& run,

@@ -42,6 +42,12 @@ class ContactAccount {
   /// Kick layers that end their contact at the window's begin part with what they were owed.
   bool release_kick(Joint& joint, const TimeWindow& window, const ContactRun& run, Bodies& bodies,
                     ContactChanges& changes);
+  /// [J] that the bodies would be paid if the window that was tried were accepted.
+  double payment(const Joint& joint, double energy, Bodies& bodies);
+  /// [J] that the bodies would keep then of what contact has given them.
+  double overpaid(const Joint& joint, double energy, Bodies& bodies);
+  /// The bodies have given so much [J] of that back by themselves.
+  void repaid(double joules) { debt_ += joules; }
   /// What contact did in a window that was accepted, and the impulse that pays it.
   void settle(Joint& joint, const TimeWindow& window, double energy, ContactRun& run,
               Bodies& bodies, ContactChanges& changes);
@@ -55,7 +61,7 @@ class ContactAccount {
 
  private:
   double least_force(const Joint& joint, const ContactRun& run) const;
-  void pay(Joint& joint, double energy, Bodies& bodies);
+  double due_impulse(const Joint& joint, double debt, double energy, const Bodies& bodies) const;
   void see_pushes(Joint& joint, ContactRun& run, ContactChanges& changes);
   void disengage(Joint& joint, const TimeWindow& window, const ContactRun& run,
                  const Bodies& bodies) const;
