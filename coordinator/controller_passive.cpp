@@ -82,6 +82,7 @@ std::optional<Failed> Controller::give_impulses(double time) {
   if (std::ranges::none_of(joints_, owes)) return std::nullopt;
   prepare({0, time, time}, 1, Sampling::substeps);
   std::optional<Failed> failed = bodies_.advance_all();
+  if (!failed) guard_.struck(bodies_.responses());
   for (Joint& joint : joints_) joint.contact.impulse = 0.0;
   return failed;
 }

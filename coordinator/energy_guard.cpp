@@ -155,6 +155,11 @@ void EnergyGuard::repaid(int body, double joules) {
   repaid_ += joules;
 }
 
+void EnergyGuard::struck(std::span<const Response> responses) {
+  for (std::size_t b = 0; b < responses.size(); ++b)
+    for (const PortResponse& port : responses[b].ports) bodies_[b].ports += port.work;
+}
+
 /// m (2 dt a)^2/2: of what a body moves at after two steps under its body force.
 double EnergyGuard::unresolved(std::span<const Response> responses) const {
   double energy = 0.0;

@@ -53,6 +53,8 @@ class EnergyGuard {
   double forgiven() const;
   /// So much [J] of what was gained a body has given back since: what accounts say takes it in.
   void repaid(int body, double joules);
+  /// Responses to impulses alone, which the last look has seen already.
+  void struck(std::span<const Response> responses);
   double growth() const { return growth_; }  // as a fraction, at the last look
   double most() const { return most_; }      // [J] largest kinetic and stored energy so far
   void state(Archive& archive);

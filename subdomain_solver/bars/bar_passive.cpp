@@ -2,6 +2,7 @@
 // [M.130].
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -48,9 +49,11 @@ double BarInterior::enter() {
   if (is_passive()) return 0.0;
   if (midpoint_ == nullptr) midpoint_ = std::make_unique<BarMidpoint>(*bar_);
   const double before = energy();
+  std::array<double, 2> own{}, seen{};  // [m] of the ends: in the scheme's energy, by partners
   for (const int end : {0, 1}) {
     const std::size_t node = index(bar_->node_of(end));
-    state_.u[node] = scheme_.integrator->port_displacement(state_, end);
+    own[index(end)] = state_.u[node];
+    seen[index(end)] = scheme_.integrator->port_displacement(state_, end);
     // its mass was the inner node's
     if (bar_->row_mass()[node] == 0.0 && !bar_->data().fixed[end])
       state_.v[node] = state_.v[index(bar_->inner_of(end))];
@@ -58,6 +61,20 @@ double BarInterior::enter() {
   let_go();
   begun_ = true;
   state_.a.clear();
+  const auto put = [&](double share) {
+    for (const int end : {0, 1})
+      state_.u[index(bar_->node_of(end))] = std::lerp(own[index(end)], seen[index(end)], share);
+  };
+  put(1.0);
+  if (energy() > (1.0 + may_gain) * before) {
+    double low = 0.0, high = 1.0;
+    for (int k = 0; k < 30; ++k) {
+      const double middle = 0.5 * (low + high);
+      put(middle);
+      (energy() > before ? high : low) = middle;
+    }
+    put(low);
+  }
   stay_below(before);
   return before - energy();
 }
