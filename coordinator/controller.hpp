@@ -145,6 +145,7 @@ class Controller {
   void accept_passively(const TimeWindow& window);
   void go_accurately();
   GivenUp given_up() const;
+  void tell_losses(const GivenUp& given_up);
   bool leave_apart();
   bool rejoin();
   void fail(double time, const std::string& text);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.hpp"
 #include "base/without_remedy.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/record/validity_notes.hpp"
@@ -32,6 +33,36 @@ void Controller::judge(int body) {
   if (end_.status == "completed" && !why.empty()) fail(clock_.time(), why);
 }
 
+/// What bodies have lost in steps of their own, and contact between them, beside friction and what
+/// the passive way has given up.
+void Controller::tell_losses(const GivenUp& given_up) {
+  const double notable = 0.05 * guard_.most();  // by which motion is a fortieth slower
+  double lost = -guard_.change() - passive_.ledger().given_up();
+  for (const Joint& joint : joints_) lost -= dissipated(joint);
+  int coarsest = 0;
+  for (int b = 0; b < bodies_.count(); ++b) {
+    const Description& body = bodies_.describe(b);
+    const double passive = index(b) < given_up.taken.size() ? given_up.taken[index(b)] : 0.0;
+    const double own = -guard_.unexplained(b) - passive;
+    lost -= own;
+    if (body.step > bodies_.describe(coarsest).step) coarsest = b;
+    if (!(own > notable)) continue;
+    narrator_.warning(
+        clock_.time(), body.name,
+        fmt::format("steps of body '{}' took {:.3g} J, {:.2g} % of the most there was in motion, "
+                    "without contact: its scheme damps, or does so where it strains or turns much "
+                    "in a step; smaller steps take less",
+                    body.name, own, 100.0 * own / guard_.most()));
+  }
+  if (!(lost > notable) || joints_.empty()) return;
+  const std::string& name = bodies_.describe(coarsest).name;
+  narrator_.warning(clock_.time(), name,
+                    fmt::format("contact took {:.3g} J, {:.2g} % of the most there was in motion, "
+                                "beside friction: it is short against the steps, of which those of "
+                                "'{}' are the longest; smaller ones take less",
+                                lost, 100.0 * lost / guard_.most(), name));
+}
+
 RunEnd Controller::finish(double wall_seconds) {
   end_.time = clock_.time();
   end_.windows = clock_.windows();
@@ -57,6 +88,7 @@ RunEnd Controller::finish(double wall_seconds) {
     judge(b);
   }
   end_.given_up = given_up();
+  tell_losses(end_.given_up);
   narrator_.given_up(end_);
   narrator_.end(end_);
   return end_;

@@ -160,6 +160,10 @@ void EnergyGuard::struck(std::span<const Response> responses) {
     for (const PortResponse& port : responses[b].ports) bodies_[b].ports += port.work;
 }
 
+double EnergyGuard::unexplained(int body) const {
+  return begun_ && together_ ? bodies_[static_cast<std::size_t>(body)].change : 0.0;
+}
+
 /// m (2 dt a)^2/2: of what a body moves at after two steps under its body force.
 double EnergyGuard::unresolved(std::span<const Response> responses) const {
   double energy = 0.0;

@@ -55,6 +55,10 @@ class EnergyGuard {
   void repaid(int body, double joules);
   /// Responses to impulses alone, which the last look has seen already.
   void struck(std::span<const Response> responses);
+  /// [J] by which all energies have changed until the last look, and one body's where neither ports
+  /// nor loads explain it; 0 where the sum over all bodies is not watched.
+  double change() const { return begun_ && together_ ? latest_ - first_ : 0.0; }
+  double unexplained(int body) const;
   double growth() const { return growth_; }  // as a fraction, at the last look
   double most() const { return most_; }      // [J] largest kinetic and stored energy so far
   void state(Archive& archive);

@@ -165,6 +165,57 @@ class After(SystemTest):
     def test_ties_have_a_table_of_their_own(self):
         self.assertIn("largest force [N]", self.run_of(TIED, "--local").stdout)
 
+    def test_losses_that_nobody_asked_for_are_told(self):
+        # 3 mm of rubber, in steps in which waves cross it several times: the blow is over in two.
+        scene = self.folder / "scene.yaml"
+        scene.write_text("""
+time: {end: 3.0e-3, window: 3.0e-4}
+bodies:
+  upper:
+    model: {fe: {dimension: 2, mesh: {rectangle: {lengths: [3.0e-3, 3.0e-3],
+                                                  elements: [5, 7], element: tri3}}}}
+    material: {neo_hookean: {youngs_modulus: 7.0e+7, poissons_ratio: 0.2, density: 1800.0}}
+    integrator: {newmark: {step: 1.0e-4}}
+    initial: {position: [0.0, 3.2e-3], velocity: [0.0, -1.0]}
+    ports: {skin: boundary}
+  lower:
+    model: {fe: {dimension: 2, mesh: {rectangle: {lengths: [4.0e-3, 3.0e-3],
+                                                  elements: [2, 4], element: tri3}}}}
+    material: {neo_hookean: {youngs_modulus: 5.0e+7, poissons_ratio: 0.3, density: 1800.0}}
+    integrator: {newmark: {step: 3.0e-5}}
+    initial: {velocity: [0.0, 1.0]}
+    ports: {skin: boundary}
+interfaces:
+  blow: {sides: [upper.skin, lower.skin], contact: {}}
+""", encoding="utf-8")
+        ran = self.succeed(self.abut("run", scene, "--local", "--out", self.out))
+        told = re.search(r"contact took \S+ J, (\S+) % of the most there was in motion, beside "
+                         r"friction: .* those of 'upper' are the longest", ran.stderr)
+        self.assertIsNotNone(told, ran.stderr)
+        # all that is lost, as the table has it, relative to what there was at first: the most
+        error = float(row(ran.stdout, "end")[-2])
+        self.assertAlmostEqual(float(told[1]), -error, delta=0.02 * abs(error) + 0.5)
+
+    def test_damping_by_steps_of_a_body_is_told(self):
+        # a bar that swings free, by a scheme that takes away what it does not resolve
+        scene = self.folder / "scene.yaml"
+        scene.write_text("""
+time: {end: 5.0e-3, window: 1.0e-4}
+bodies:
+  bar:
+    model: {fe: {dimension: 1, mesh: {bar: {length: 0.1, elements: 20, area: 1.0e-4}}}}
+    material: {linear_elastic: {youngs_modulus: 1.0e+9, density: 1000.0}}
+    integrator: {generalized_alpha: {step: 1.0e-4, spectral_radius: 0.0}}
+    initial: {velocity_field: "(x > 0.05) * 2 - 1"}
+    ports: {tip: right}
+""", encoding="utf-8")
+        ran = self.succeed(self.abut("run", scene, "--local", "--out", self.out))
+        told = re.search(r"steps of body 'bar' took (\S+) J, \S+ % of the most", ran.stderr)
+        self.assertIsNotNone(told, ran.stderr)
+        measures = self.summary()["measures"]
+        lost = -measures["energy.total.relative_drift_end"] * measures["energy.total.begin"]
+        self.assertAlmostEqual(float(told[1]), lost, delta=5.1e-3 * lost)  # three digits
+
     def test_quiet_runs_say_nothing(self):
         said = self.run_of(TWO_BARS, "--quiet")
         self.assertEqual((said.stdout, said.stderr), ("", ""))
