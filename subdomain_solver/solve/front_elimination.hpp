@@ -13,9 +13,12 @@ struct DenseView {
   }
 };
 
+/// Of a strip of L D, and of a tile's rows of L, at the widest registers.
+constexpr std::size_t packed_strip = 32'768, packed_rows = 4'096;
+
 /// Numbers that an elimination works with beside a front of so many rows and columns.
 constexpr std::size_t elimination_space(std::size_t rows, std::size_t columns) {
-  return rows * columns + 32'768 + 4'096;
+  return rows * columns + packed_strip + packed_rows;
 }
 
 /// Eliminates the columns of a front by L D L^T without exchanges: `block` (rows, columns) becomes

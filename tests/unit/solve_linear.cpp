@@ -219,6 +219,18 @@ TEST(Fronts, HaveTheSameBitsForEveryWidthOfRegisters) {
       ASSERT_EQ(generic.left[index(i + j * Front::rest)], here.left[index(i + j * Front::rest)]);
 }
 
+TEST(Fronts, StayWithinTheSpaceThatIsTheirs) {
+  constexpr double untouched = 0.123;
+  for (Eliminate* by : {&eliminate_generic, &eliminate_here()}) {
+    TestFront front;
+    const std::size_t own = front.space.size();
+    front.space.resize(own + 65'536, untouched);
+    ASSERT_TRUE(front.eliminate_by(*by));
+    for (std::size_t k = own; k < front.space.size(); ++k)
+      ASSERT_EQ(front.space[k], untouched) << k - own;
+  }
+}
+
 TEST(Fronts, SubstituteToTheSameBitsForEveryWidthOfRegisters) {
   TestFront front;
   ASSERT_TRUE(front.eliminate_by(eliminate_here()));
