@@ -36,6 +36,7 @@ void Controller::judge(int body) {
 /// What bodies have lost in steps of their own, and contact between them, beside friction and what
 /// the passive way has given up.
 void Controller::tell_losses(const GivenUp& given_up) {
+  if (passive_.statics()) return;
   const double notable = 0.05 * guard_.most();  // by which motion is a fortieth slower
   double lost = -guard_.change() - passive_.ledger().given_up();
   for (const Joint& joint : joints_) lost -= dissipated(joint);

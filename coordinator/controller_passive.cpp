@@ -102,7 +102,7 @@ bool Controller::go_passively(double time, const std::string& reason) {
   if (!reason.empty()) {
     if (waiting_.accurate < soon) waiting_.wait = std::min(2 * waiting_.wait, longest_wait);
     waiting_.left = waiting_.wait;
-    narrator_.passive(time, reason);
+    narrator_.passive(time, reason, passive_.statics());
   }
   return true;
 }
@@ -220,11 +220,12 @@ bool Controller::rejoin() {
 }
 
 /// Back to the accurate method where nothing pressed and all surfaces are well apart: a return in
-/// the midst of contact costs a part of the energy.
+/// the midst of contact costs a part of the energy. Bodies without inertia have none to lose.
 void Controller::go_accurately() {
   if (waiting_.left > 0) --waiting_.left;
-  if (!passive_.quiet() || waiting_.left > 0 || !goes_on()) return;
-  const bool apart = std::ranges::all_of(joints_, [&](Joint& joint) {
+  const bool statics = passive_.statics();
+  if ((!passive_.quiet() && !statics) || waiting_.left > 0 || !goes_on()) return;
+  const bool apart = statics || std::ranges::all_of(joints_, [&](Joint& joint) {
     if (joint.exchange == nullptr || joint.tied()) return true;
     const auto [distance, speed] = joint.watch->approach(joint, bodies_);
     return distance > far_ways * speed * scene_.time.window;
@@ -232,14 +233,15 @@ void Controller::go_accurately() {
   if (!apart || !folds_.apart(far_ways) || !passive_.leave(clock_.time()) || !leave_apart()) return;
   if (!rejoin()) return;
   waiting_.accurate = 0;
-  narrator_.accurate(clock_.time());
+  narrator_.accurate(clock_.time(), statics);
   for (Joint& joint : joints_)
     if (!joint.tied() && joint.exchange != nullptr) joint.disengage();
 }
 
 GivenUp Controller::given_up() const {
   const PassiveLedger& passive = passive_.ledger();
-  return {.windows = passive.windows,
+  return {.statics = passive_.statics(),
+          .windows = passive.windows,
           .halved_windows = passive.halved_windows,
           .rigid_windows = passive.rigid_windows,
           .unanswered = passive.unanswered,

@@ -199,21 +199,26 @@ std::string Narrator::words_of(const EnergyGuard& guard, std::span<const Joint> 
                      remedies(joints));
 }
 
-void Narrator::passive(double time, const std::string& reason) {
+void Narrator::passive(double time, const std::string& reason, bool statics) {
   constexpr int most_told = 3;
   if (++told_passive_ > most_told) return;
   tell({RunEvent::Kind::warning,
         time,
         blamed(reason),
-        fmt::format("the accurate method has no answer ({}): bodies go on passively, which loses "
-                    "energy{}",
-                    reason, told_passive_ == most_told ? "; later times are counted only" : ""),
+        fmt::format("the accurate method has no answer ({}): bodies go on passively, which {}{}",
+                    reason, statics ? "is right to some hundredths" : "loses energy",
+                    told_passive_ == most_told ? "; later times are counted only" : ""),
         {}});
 }
 
-void Narrator::accurate(double time) {
+void Narrator::accurate(double time, bool statics) {
   if (told_passive_ == 0 || told_passive_ > 3) return;
-  tell({RunEvent::Kind::warning, time, "", "bodies are apart: the accurate method goes on", {}});
+  tell({RunEvent::Kind::warning,
+        time,
+        "",
+        statics ? "the accurate method is tried again"
+                : "bodies are apart: the accurate method goes on",
+        {}});
 }
 
 void Narrator::given_up(const RunEnd& end) {

@@ -44,9 +44,9 @@ class Narrator {
   void overlap(const Overlap& overlap, std::span<const Joint> joints);
   /// An interface whose sides went past each other.
   void never_met(const std::string& name, double time);
-  /// Bodies go on in their passive forms; the first times are told.
-  void passive(double time, const std::string& reason);
-  void accurate(double time);
+  /// Bodies go on in their passive forms; the first times are told. `statics`: without inertia.
+  void passive(double time, const std::string& reason, bool statics);
+  void accurate(double time, bool statics);
   void given_up(const RunEnd& end);
   void energy(const EnergyGuard& guard, std::span<const Joint> joints, double time);
   void warning(double time, const std::string& subject, const std::string& text);

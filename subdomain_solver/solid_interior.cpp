@@ -89,7 +89,8 @@ void SolidInterior::find_abilities() {
                                                *port_forces_);
     able_.forecast = forecast_.get();
   }
-  if (scheme.statics == nullptr) return find_passive();
+  find_passive();
+  if (scheme.statics == nullptr) return;
   statics_ = std::make_unique<PortStatics>(state_.motion, state_.time, *scheme.statics, *port_map_);
   able_.statics = statics_.get();
 }

@@ -106,6 +106,8 @@ class SolidInterior final : public Interior,
 
   /// In its passive form a body has no accelerations, and motion.force is that of its supports.
   bool is_passive() const { return state_.begun && state_.motion.a.empty(); }
+  double come_to_rest();
+  std::optional<Failed> stand_still(double time);
   void find_passive();
   void start_passive();
   void take_impulses(const PassiveStep& step);

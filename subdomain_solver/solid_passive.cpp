@@ -3,16 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
 #include "base/dense.hpp"
+#include "base/index.hpp"
 #include "subdomain_solver/fe/rigid_motions.hpp"
 #include "subdomain_solver/materials/crush_guard.hpp"
 #include "subdomain_solver/solid_interior.hpp"
 #include "subdomain_solver/solve/matrix_sum.hpp"
 #include "subdomain_solver/time/massless_layer.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
+#include "subdomain_solver/time/quasi_static.hpp"
 
 namespace abut {
 
@@ -68,16 +71,38 @@ double share_of(double joules, const SparseMatrix& mass, const Vector& v, const 
   return std::min(share, 1.0);
 }
 
+/// Of a body's mass, what it has in passive steps of this length [s] of its statics [M.154]: it
+/// resists a step by a tenth of what its lowest modes do, (2 share/pi)^2, so that bodies that contact
+/// alone holds do not give way without bounds. What it bears goes in further steps at one place.
+double nearly_nothing(const FeModel& model, double step) {
+  constexpr double share = 0.5;  // of a step, in which a wave crosses the body
+  const Mesh& mesh = model.mesh();
+  double square = 0.0;  // [m^2] of the diagonal
+  for (int i = 0; i < mesh.dim; ++i) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t k = index(i); k < mesh.points.size(); k += index(mesh.dim)) {
+      low = std::min(low, mesh.points[k]);
+      high = std::max(high, mesh.points[k]);
+    }
+    square += (high - low) * (high - low);
+  }
+  const double wave = model.material().moduli().p_wave() / model.material().density();  // [m^2/s^2]
+  return share * share * step * step * wave / square;
+}
+
 }  // namespace
 
-/// Of solids with inertia. Reactions of modes are told by their schemes alone.
+/// Reactions of modes are told by their schemes alone.
 void SolidInterior::find_passive() {
   const bool modal = parts_.reduced != nullptr && parts_.rigid == nullptr;
+  const bool joined = std::ranges::any_of(joined_, [](char yes) { return yes != 0; });
+  if (description_.quasi_static && (parts_.reduced != nullptr || joined || description_.dim == 1))
+    return;
   if (modal && parts_.reactions) return;
   if (parts_.pressed_over) return;  // its rows know of distances alone, not of what is wanted
   able_.passive = this;
   description_.can.passive = true;
-  description_.can.only_passive = parts_.massive_surface;
+  description_.can.only_passive = parts_.massive_surface && !description_.quasi_static;
 }
 
 /// What only passive bodies need is made when the first of them needs it.
@@ -104,10 +129,15 @@ void SolidInterior::start_passive() {
   const bool reduced = parts_.reduced != nullptr, linear = parts_.problem->model->is_linear();
   whole_mass_ = reduced ? mass_ : diagonal_matrix(nodes.whole_mass());
   if (!reduced && !nodes.massless().empty()) given_mass_ = nodes.given_mass();
+  Vector mass = reduced ? parts_.problem->model->lumped_mass() : nodes.whole_mass();
+  if (description_.quasi_static) {
+    mass *= nearly_nothing(nodes, parts_.scheme.step);
+    whole_mass_ = diagonal_matrix(mass);
+  }
   midpoint_ = std::make_unique<MidpointStep>(MidpointStep::Body{
-      parts_.problem.get(), linear ? nullptr : parts_.model.get(),
-      reduced ? parts_.problem->model->lumped_mass() : nodes.whole_mass(), std::move(loads),
-      energy_rounding * nodes.material().moduli().p_wave() * nodes.volume()});
+      parts_.problem.get(), linear ? nullptr : parts_.model.get(), std::move(mass),
+      std::move(loads), energy_rounding * nodes.material().moduli().p_wave() * nodes.volume(),
+      description_.quasi_static});
 }
 
 /// [J] kinetic, in the passive form.
@@ -155,6 +185,7 @@ double SolidInterior::enter() {
   start_passive();
   Motion& motion = state_.motion;
   parts_.problem->contact = nullptr;
+  if (description_.quasi_static) return come_to_rest();
   if (!state_.begun) {  // velocities of the start are those of all nodes
     motion.history.resize(parts_.problem->model->history_size(), 0.0);
     for (const Prescribed& p : parts_.problem->supports) motion.q[p.dof] = p.value(state_.time);
@@ -181,6 +212,35 @@ double SolidInterior::enter() {
   if (!parts_.reduced && moving_energy() > before)
     stay_below(before, mean_motion(), motion.v, [this] { return moving_energy(); });
   return before - moving_energy() - guard;
+}
+
+/// Into the passive form of statics. Nothing of its energy changes.
+double SolidInterior::come_to_rest() {
+  Motion& motion = state_.motion;
+  motion.history.resize(parts_.problem->model->history_size(), 0.0);
+  motion.v.assign(motion.q.size(), 0.0);
+  motion.force.resize(motion.q.size(), 0.0);
+  motion.a.clear();
+  state_.begun = true;
+  std::ranges::fill(state_.port_force, 0.0);
+  if (surfaces_ != nullptr) surfaces_->let_go();
+  return 0.0;
+}
+
+/// Out of it: where it is, under the forces of its cells, until its next step finds the others.
+std::optional<Failed> SolidInterior::stand_still(double time) {
+  Motion& motion = state_.motion;
+  ModelResponse here;
+  if (!parts_.problem->model->evaluate(motion.q, motion.history, Model::Want::force, here))
+    return failed_newton({NewtonReport::End::inadmissible}, time);
+  motion.a.assign(motion.q.size(), 0.0);
+  store(here.force, motion.force);
+  motion.stored = here.stored;
+  if (port_forces_ != nullptr) port_forces_->impose({}, {});
+  std::ranges::fill(state_.port_force, 0.0);
+  state_.time = time;
+  if (port_map_) port_map_->displacement(motion.q, places_);
+  return std::nullopt;
 }
 
 /// Takes the energy that is stored anew where cells are crushed already; by how much [J] it grows.
@@ -307,6 +367,7 @@ double SolidInterior::damp(double joules) { return take_from_deformation(joules)
 std::optional<Failed> SolidInterior::leave(double time, double& lost) {
   lost = 0.0;
   if (!is_passive()) return std::nullopt;
+  if (description_.quasi_static) return stand_still(time);
   const State before = state_;
   const Vector momentum = parts_.reduced ? Vector() : nodal_momentum();
   double present = moving_energy() + state_.motion.stored;
@@ -393,6 +454,8 @@ std::optional<Failed> SolidInterior::pass_guarded(const PassiveStep& step, Passi
     change_.setZero(parts_.problem->model->dofs());
     port_map_->lift(motion.q, now_, change_);
     if (auto failed = step_guarded(step)) return failed;
+    if (QuasiStatic* statics = parts_.scheme.integrator->able().statics)
+      statics->tell_held(midpoint_->borne(), midpoint_->moved(), midpoint_->acting(), motion);
     port_map_->velocity(motion.q, midpoint_->moved(), before_);  // a linear map
     reply.bulge = 0.0;
   }

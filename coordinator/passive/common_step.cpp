@@ -17,6 +17,8 @@ constexpr int most_rounds = 14;  // of impulses and bodies' answers in a step
 constexpr int most_checks = 6;   // of the ways
 /// Of the thickness: rows that are missed by less fit.
 constexpr double fits = 0.05;
+/// The same of bodies without inertia: what stays open is force there.
+constexpr double fits_at_rest = 1.0e-3;
 /// [1/(thickness/step)] of velocities of rows: less is no change.
 constexpr double negligible = 1.0e-3;
 /// Of the largest energy: the rounding of work.
@@ -55,11 +57,12 @@ std::vector<int> owners_of(const PassiveTies& ties, int bodies) {
 }  // namespace
 
 CommonStep::CommonStep(const TouchingSurfaces& surfaces, NearRows& near,
-                       std::vector<PassiveTie> ties, Bodies& bodies, double nominal)
+                       std::vector<PassiveTie> ties, Bodies& bodies, double nominal, bool statics)
     : surfaces_(surfaces),
       near_(near),
       bodies_(bodies),
       nominal_(nominal),
+      statics_(statics),
       ties_(std::move(ties), bodies),
       points_(surfaces, owners_of(ties_, bodies.count())),
       asked_(index(bodies.count())),
@@ -121,7 +124,7 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   released_ = 0.0;
   culprit_ = -1;
   std::ranges::fill(advanced_, 0);
-  credit_ = 0.5 * ledger.normal;
+  credit_ = statics_ ? most_ + ledger.push_out : 0.5 * ledger.normal;
   const double budget = credit_ - ledger.push_out;
   pushing_ = budget > 0.0;
   allowed_ = paid_share * std::max(0.0, budget);
@@ -140,10 +143,26 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   return accept(lenient, ledger);
 }
 
+double CommonStep::farthest() const {
+  double most = 0.0;
+  for (const PassiveReply& reply : replies_)
+    for (const PassiveReply::Port& port : reply.ports)
+      for (const double moved : port.displacement) most = std::max(most, std::abs(moved));
+  return most;
+}
+
+bool CommonStep::settle(double begin, double end, bool lenient, PassiveLedger& ledger) {
+  std::vector<DistanceRow> rows = rows_;
+  if (!take(begin, end, lenient, ledger)) return true;
+  rows_ = std::move(rows);
+  return false;
+}
+
 /// Impulses, the bodies' answers, and again, until rows fit and the ways are free. What the bodies
 /// do freely is the first answer where they told of all points that are pressed then.
 std::optional<CommonStep::Refusal> CommonStep::iterate() {
   int checks = 0;
+  const double fit = statics_ ? fits_at_rest : fits;
   if (rows_.empty() && ties_fit() && near_.check(from_, to_, rows_).pairs == 0) return std::nullopt;
   for (int round = 0; round < most_rounds; ++round) {
     const bool last = round + 1 == most_rounds;
@@ -160,7 +179,7 @@ std::optional<CommonStep::Refusal> CommonStep::iterate() {
     double unfit = 0.0, work = 0.0;
     rows_ask(unfit, work);
     const std::size_t known = rows_.size();
-    if (round > 0 && ((unfit < fits * near_.thickness() && ties_fit()) || last)) {
+    if (round > 0 && ((unfit < fit * near_.thickness() && ties_fit()) || last)) {
       if (work <= allowed_ + released_ + rounding_of_work * most_ && ties_.passive()) {
         const NearRows::Crossed crossed = near_.check(from_, to_, rows_);
         if (crossed.pairs == 0) return std::nullopt;
@@ -188,7 +207,8 @@ bool CommonStep::prepare_rows() {
   for (; prepared_ < rows_.size(); ++prepared_) {
     DistanceRow& row = rows_[prepared_];
     const double missing = near_.thickness() - row.gap;
-    row.push = pushing_ && missing > 0.0 ? std::min(push_share * missing / h, least) : 0.0;
+    const double share = statics_ ? 1.0 : push_share;  // nothing bounces
+    row.push = pushing_ && missing > 0.0 ? std::min(share * missing / h, least) : 0.0;
     row.closing = missing < 0.0 ? -missing / h : -row.push;
     warm(row);
     if (const auto owed = unclaimed_.extract(row.first_point(0))) row.owed = owed.mapped();
@@ -302,7 +322,7 @@ void CommonStep::rows_ask(double& unfit, double& work) const {
 void CommonStep::solve_rows(std::size_t answered) {
   const int doubled = std::clamp(softer_ - softer_from, 0, softest);
   for (int b = 0; b < bodies_.count(); ++b) take_answer(b, std::ldexp(1.0, doubled));
-  const double still = negligible * near_.thickness() / length();
+  const double still = (statics_ ? fits_at_rest : 1.0) * negligible * near_.thickness() / length();
   const double rounding = 1.0e-3 * rounding_of_work * most_;
   RowImpulses solver(rows_, points_, surfaces_, velocities_);
   solver.press_from(answered);

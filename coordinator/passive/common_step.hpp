@@ -30,21 +30,27 @@ class CommonStep {
     path,    // surfaces would come too near on their way
   };
 
-  /// `nominal` [s]: the longest step. All must outlive it.
+  /// `nominal` [s]: the longest step. `statics`: no body has inertia. All must outlive it.
   CommonStep(const TouchingSurfaces& surfaces, NearRows& near, std::vector<PassiveTie> ties,
-             Bodies& bodies, double nominal);
+             Bodies& bodies, double nominal, bool statics);
 
   /// What the bodies are in when the passive way begins.
   [[nodiscard]] std::optional<Failed> begin(double time);
   /// From where the bodies are and were saved. Afterwards they are at the end or, refused,
   /// anywhere: restore them. `lenient`: bodies may gain, it is taken from them.
   std::optional<Refusal> take(double begin, double end, bool lenient, PassiveLedger& ledger);
+  /// Of bodies without inertia, after a step that was taken: the same once more, from where they are
+  /// and were saved, so that what held them as wholes in it lets go. False: restore them; the step
+  /// is as it was.
+  bool settle(double begin, double end, bool lenient, PassiveLedger& ledger);
   /// Of the last step that was refused, for people.
   const std::string& why() const { return why_; }
   /// The body that could not take it; -1: none alone.
   int culprit() const { return culprit_; }
 
   // Of the last step that was taken:
+
+  double farthest() const;  // [m] by which a point moved at most
 
   const BodyRecord& record(int body) const { return replies_[index(body)].record; }
   /// [m], [m/s] of a port's points, from the reference configuration.
@@ -95,6 +101,7 @@ class CommonStep {
   NearRows& near_;
   Bodies& bodies_;
   double nominal_;
+  bool statics_;
   PassiveTies ties_;
   PressedPoints points_;
   PassiveStep step_;                                             // what all share

@@ -16,6 +16,8 @@ namespace abut {
 
 /// Of the shortest edge: how near surfaces press [M.134].
 constexpr double thickness_share = 1.0e-3;
+/// The same of bodies without inertia, whose forces depend on places to that share.
+constexpr double thickness_at_rest = 1.0e-4;
 
 /// Finds what must be kept apart in a step, and checks the ways that the surfaces take [M.134].
 /// Distances have no inside: a row is the shortest way between two features, so thin, open and

@@ -24,6 +24,10 @@ constexpr int most_holds = 4;
 /// What bodies repay: those that have no more are left out of the next round.
 constexpr int rounds_to_repay = 3;
 constexpr double most_of_share = 0.99;
+/// After a step of bodies without inertia: at most so many more, until they move by less than this
+/// share of it.
+constexpr int most_settling_steps = 60;
+constexpr double settled = 1.0e-5;
 /// Of a step: ends that are nearer are the same.
 constexpr double same_time = 1.0e-9;
 
@@ -53,13 +57,23 @@ bool PassiveWay::on_a_line() const {
   return !pairs_.empty() && bodies_.port(pairs_.front().sides[0]).geometry.dim == 1;
 }
 
+bool PassiveWay::statics() const {
+  for (int b = 0; b < bodies_.count(); ++b) {
+    const Description& body = bodies_.describe(b);
+    if (std::isfinite(body.mass) && !body.quasi_static) return false;
+  }
+  return true;
+}
+
 void PassiveWay::make() {
   if (step_ != nullptr) return;
   nominal_ = bodies_.shortest_step();
   if (!on_a_line()) nominal_ = std::max(nominal_, window_ / parts_of_window);
   surfaces_ = std::make_unique<TouchingSurfaces>(pairs_, bodies_);
-  near_ = std::make_unique<NearRows>(*surfaces_, thickness_share * surfaces_->shortest_edge());
-  step_ = std::make_unique<CommonStep>(*surfaces_, *near_, *ties_, bodies_, nominal_);
+  const double thickness = statics() ? thickness_at_rest : thickness_share;
+  near_ = std::make_unique<NearRows>(*surfaces_, thickness * surfaces_->shortest_edge());
+  step_ = std::make_unique<CommonStep>(*surfaces_, *near_, *ties_, bodies_, nominal_,
+                                       statics());
 }
 
 std::optional<Failed> PassiveWay::enter(double time, bool unanswered) {
@@ -137,12 +151,23 @@ bool PassiveWay::step(double begin, double end, PassiveRecord& record, bool leni
     if (step_->culprit() >= 0) PassiveLedger::add(ledger_.refused_by, step_->culprit(), 1.0);
     return false;
   }
+  if (statics()) settle(begin, end, lenient);
   const double length = end - begin;
   if (ledger_.shortest_step == 0.0 || length < ledger_.shortest_step)
     ledger_.shortest_step = length;
   record.add(*step_, begin, end);
   note_pressed();
   return true;
+}
+
+/// Until what held bodies without inertia in a step no longer does.
+void PassiveWay::settle(double begin, double end, bool lenient) {
+  const double moved = step_->farthest();
+  for (int k = 0; k < most_settling_steps; ++k) {
+    bodies_.save_all();
+    if (!step_->settle(begin, end, lenient, ledger_)) return bodies_.restore_all();
+    if (step_->farthest() <= settled * moved) return;
+  }
 }
 
 /// Which surfaces press on each other.

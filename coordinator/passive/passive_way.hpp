@@ -33,6 +33,9 @@ class PassiveWay {
   bool on_a_line() const;
   /// Whether ties hold bodies together.
   bool joins() const { return ties_ && !ties_->empty(); }
+  /// Whether no body has inertia: then windows owe each other nothing, and steps end at rest
+  /// [M.154].
+  bool statics() const;
   const PassiveLedger& ledger() const { return ledger_; }
 
   /// The bodies stand at a time at which they may be saved. `unanswered`: the accurate method was
@@ -68,6 +71,7 @@ class PassiveWay {
   bool step(double begin, double end, PassiveRecord& record, bool lenient);
   std::optional<Failed> advance_to(double end, double& time, PassiveRecord& record);
   bool hold_rigid();
+  void settle(double begin, double end, bool lenient);
   void note_pressed();
 
   std::vector<TouchingPair> pairs_;

@@ -33,7 +33,9 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
     double done = 0.0;
     for (const double work : port_work_[index(b)]) done += work;
     gained[index(b)] = own_energy(tried_[index(b)].record) - energies_[index(b)] - done;
-    if (!std::isfinite(gained[index(b)]) || (!lenient && gained[index(b)] > most_gain * scale)) {
+    // Forces of statics are those of a step's end, and so is the work that is told of them.
+    const bool gains = !lenient && !statics_ && gained[index(b)] > most_gain * scale;
+    if (!std::isfinite(gained[index(b)]) || gains) {
       why_ =
           fmt::format("body '{}' would gain {:.3g} J", bodies_.describe(b).name, gained[index(b)]);
       culprit_ = b;

@@ -28,6 +28,7 @@ std::string share(std::int64_t part, std::int64_t all) {
 
 std::string windows_words(const GivenUp& up, std::int64_t windows) {
   std::string text = share(up.windows, windows) + " of the windows were solved passively";
+  if (up.statics) text += ", without inertia, by forces on nodes that are right to some hundredths";
   if (up.halved_windows > 0)
     text += fmt::format(", {} in shorter steps", share(up.halved_windows, windows));
   if (up.rigid_windows > 0)
@@ -55,6 +56,7 @@ std::string joules_words(const GivenUp& up) {
 }  // namespace
 
 std::optional<GivenUpRemedy> remedy_of(const GivenUp& up) {
+  if (up.statics) return {};
   const bool lost_much = up.joules() > nothing * up.largest;
   if (!lost_much && up.rigid_windows == 0) return {};
   // Normal contact loses the motion of the nodes that meet, and so do changes of form: their mass
@@ -74,7 +76,8 @@ std::string given_up_words(const GivenUp& up, std::int64_t windows,
   const bool repaid = up.repaid > nothing * up.largest;
   if (up.windows == 0 && !repaid) return {};
   std::string text;
-  if (up.windows > 0) text = windows_words(up, windows) + "; " + joules_words(up);
+  if (up.windows > 0) text = windows_words(up, windows);
+  if (up.windows > 0 && !up.statics) text += "; " + joules_words(up);
   if (repaid)
     text += fmt::format(
         "{}{:.3g} J of {:.3g} J that accurate windows had gained were taken back from the swinging "

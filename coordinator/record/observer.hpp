@@ -85,6 +85,7 @@ struct Overlap {
 
 /// What passive windows cost.
 struct GivenUp {
+  bool statics = false;  // no body has inertia: what contact takes then is no loss of motion
   // of passive windows all, those in which steps were halved, in which bodies were held rigid
   std::int64_t windows = 0, halved_windows = 0, rigid_windows = 0;
   std::int64_t unanswered = 0;  // times that the accurate method had no answer

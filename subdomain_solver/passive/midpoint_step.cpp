@@ -65,21 +65,24 @@ std::optional<Failed> MidpointStep::step(Motion& motion, double start, double en
   if (!given_.allFinite() || !std::ranges::all_of(held_, [](double u) { return std::isfinite(u); }))
     return not_finite(end);
   auto failed = body_.cells == nullptr ? solve_linear(motion) : solve(motion, impulse);
-  if (!failed) failed = finish(motion, impulse);
+  if (!failed) failed = body_.rests ? rest(motion, impulse) : finish(motion, impulse);
   return failed;
 }
 
-/// The first guess is the free motion. Supports' mean velocity is that of their way.
+/// The first guess is the free motion. Supports' mean velocity is that of their way; those of a body
+/// that rests are at its end in the middle.
 void MidpointStep::begin(const Motion& motion, double start, const Vector& impulse) {
   change_.setZero(body_.mass.size());
   held_.clear();
+  const double ways = body_.rests ? 2.0 : 1.0;
   for (const Prescribed& p : body_.problem->supports) {
     held_.push_back(p.value(end_) - motion.q[p.dof]);
-    change_(p.dof) = 2.0 * (held_.back() / length_ - motion.v[p.dof]);
+    change_(p.dof) = 2.0 * (ways * held_.back() / length_ - motion.v[p.dof]);
   }
   follow(motion);
   loads_.setZero(body_.mass.size());
-  for (const Load* load : body_.loads) load->add(start + 0.5 * length_, middle_, loads_);
+  const double at = body_.rests ? end_ : start + 0.5 * length_;
+  for (const Load* load : body_.loads) load->add(at, middle_, loads_);
   given_ = impulse + length_ * loads_;
 }
 
@@ -320,6 +323,29 @@ std::optional<Failed> MidpointStep::finish(Motion& motion, const Vector& impulse
   return std::nullopt;
 }
 
+/// The middle is the end. Supports work by the means of what they bear before and after.
+std::optional<Failed> MidpointStep::rest(Motion& motion, const Vector& impulse) {
+  moved_.resize(motion.q.size());
+  view(moved_) = view(middle_) - view(motion.q);
+  double work = 0.0;
+  for (const int i : free_.list()) work += loads_(i) * moved_[i];
+  std::vector<double> borne(motion.q.size(), 0.0);
+  for (const Prescribed& p : body_.problem->supports) {
+    const std::size_t i = index(p.dof);
+    const double answer = response_.force(p.dof) - impulse(p.dof) / length_;
+    borne[i] = answer - loads_(p.dof);
+    work += (0.5 * (motion.force[i] + borne[i]) + loads_(p.dof)) * moved_[i];
+  }
+  motion.force.swap(borne);
+  motion.q = middle_;
+  std::ranges::fill(motion.v, 0.0);
+  motion.external_work += work;
+  motion.dissipated += response_.dissipation;
+  motion.stored = response_.stored;
+  motion.history.swap(response_.history);  // compliance() needs that of the begin
+  return std::nullopt;
+}
+
 bool MidpointStep::find_columns(const Motion& motion, const PortMap& ports, LinearSolver& solver,
                                 std::span<const std::size_t> values,
                                 std::vector<std::vector<double>>& columns) {
@@ -336,7 +362,8 @@ bool MidpointStep::find_columns(const Motion& motion, const PortMap& ports, Line
   }
   if (!solver.solve_columns(right, answer)) return false;
   for (Eigen::Index k = 0; k < answer.cols(); ++k) {
-    for (int i = 0; i < free_.count(); ++i) whole[free_.list()[i]] = 0.5 * answer(i, k);
+    const double mean = body_.rests ? 0.25 : 0.5;  // of a change of velocity: moved over length
+    for (int i = 0; i < free_.count(); ++i) whole[free_.list()[i]] = mean * answer(i, k);
     ports.velocity(motion.q, whole, columns.emplace_back());
   }
   return true;

@@ -29,6 +29,9 @@ class MidpointStep {
     Vector mass;                     // [kg] (dofs)
     std::vector<const Load*> loads;  // its own, with this mass
     double noise = 0.0;              // [J] of rounding in its stored energy
+    // It ends in the middle, where its forces balance, and rests there: without inertia, but for a
+    // mass that holds what nothing else does [M.154].
+    bool rests = false;
   };
 
   /// What is referred to must outlive it.
@@ -41,6 +44,9 @@ class MidpointStep {
                                            const Vector& impulse);
   /// [m] (dofs) by which the last step moved the coordinates.
   const std::vector<double>& moved() const { return moved_; }
+  /// [N] (dofs) that its mass bore in it, as a mean, and what acted beside.
+  Vector borne() const { return body_.mass.cwiseProduct(change_) / length_; }
+  Vector acting() const { return given_ / length_; }
   /// Compliance [M.129] of some values of the ports after a step, (values, values) row by row.
   /// False: there is none.
   [[nodiscard]] bool compliance(const Motion& motion, const PortMap& ports,
@@ -81,6 +87,7 @@ class MidpointStep {
   [[nodiscard]] bool factor(std::span<const double> history, Factors& factors);
   Factors* factors();
   [[nodiscard]] std::optional<Failed> finish(Motion& motion, const Vector& impulse);
+  std::optional<Failed> rest(Motion& motion, const Vector& impulse);
   [[nodiscard]] bool find_columns(const Motion& motion, const PortMap& ports, LinearSolver& solver,
                                   std::span<const std::size_t> values,
                                   std::vector<std::vector<double>>& columns);

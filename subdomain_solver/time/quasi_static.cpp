@@ -246,6 +246,16 @@ void QuasiStatic::stabilising_force(const Motion& motion, Vector& out) const {
   if (stabilisation_) free_.add(stabilisation_->held(motion), out);
 }
 
+void QuasiStatic::tell_held(const Vector& force, std::span<const double> gone,
+                            const Vector& acting, Motion& motion) {
+  if (!stabilisation_) return;
+  Vector held, way, loads;
+  free_.pick(force, held);
+  free_.pick(Eigen::Map<const Vector>(gone.data(), static_cast<Eigen::Index>(gone.size())), way);
+  free_.pick(acting, loads);
+  stabilisation_->tell(held, way, loads.lpNorm<1>(), motion);
+}
+
 /// Puts down what held the loose motions in a step.
 void QuasiStatic::settle(Motion& motion) {
   Vector& acting = buffers_.pull;

@@ -17,10 +17,20 @@ void Stabilisation::add_force(const Vector& x, Vector& balance) const {
 
 void Stabilisation::settle(const Vector& x, double loads, Motion& motion) const {
   const Vector gone = place_of(x) - anchor_, m = stiffness_ * gone;
+  tell(m, m.dot(gone), loads, motion);
+}
+
+void Stabilisation::tell(const Vector& force, const Vector& gone, double loads,
+                         Motion& motion) const {
+  tell(motions_.transpose() * force, force.dot(gone), loads, motion);
+}
+
+/// m (k): what held the loose motions; the work [J] that it took.
+void Stabilisation::tell(const Vector& m, double done, double loads, Motion& motion) const {
   const double held = spread(m).lpNorm<1>();
   motion.control.resize(first + static_cast<std::size_t>(m.size()), 0.0);
   // In balance one half of all that acts presses against the other.
-  const double all = 0.5 * (loads + held), done = m.dot(gone);
+  const double all = 0.5 * (loads + held);
   motion.control[force] = held;
   motion.control[share] = all > 0.0 ? held / all : 0.0;
   motion.control[share_most] = std::max(motion.control[share_most], motion.control[share]);

@@ -28,6 +28,9 @@ class Stabilisation {
   /// A step ends at x, where forces [N] of these magnitudes act on the body, summed over all
   /// coordinates: puts down what was borne, and the work that it took.
   void settle(const Vector& x, double loads, Motion& motion) const;
+  /// The same of a step in which something else held the body: with these forces [N] (n), along
+  /// which it went so far [m] (n).
+  void tell(const Vector& force, const Vector& gone, double loads, Motion& motion) const;
 
   /// What a motion remembers.
   struct Told {
@@ -41,6 +44,7 @@ class Stabilisation {
   Vector held(const Motion& motion) const;
 
  private:
+  void tell(const Vector& m, double done, double loads, Motion& motion) const;
   Vector place_of(const Vector& x) const {
     return motions_.transpose() * x / static_cast<double>(x.size());
   }
