@@ -23,8 +23,9 @@ const std::array<std::pair<std::string, std::string>, 4> tools{{
     {"study", "run a scene with many settings: cost against accuracy"},
 }};
 
-constexpr std::array<std::string_view, 8> own_verbs{"run",  "resume", "check",     "split",
-                                                    "init", "keygen", "reference", "conformance"};
+constexpr std::array<std::string_view, 10> own_verbs{
+    "run",    "resume",    "check",       "split", "init",
+    "keygen", "reference", "conformance", "slurm", "kubernetes"};
 
 /// An empty path is most often a variable of a script that was never set.
 const CLI::Validator named_folder(
@@ -50,7 +51,33 @@ void add_insecure(CLI::App& verb, bool& insecure) {
                 "wait for bodies of other machines without keys, on a network that you trust");
 }
 
-CLI::App& add_run(CLI::App& app, RunCommand& run) {
+/// Absent, unless the option that makes it is there.
+struct AwaitWords {
+  Awaited words;
+  std::optional<Awaited> given() const {
+    return words.endpoint.empty() ? std::nullopt : std::optional(words);
+  }
+};
+
+void add_await(CLI::App& verb, AwaitWords& await) {
+  CLI::Option& endpoint =
+      *verb.add_option("--await", await.words.endpoint,
+                       "start no process: wait at this address for those of all bodies, which "
+                       "somebody else starts, as abut slurm does")
+           ->type_name("ENDPOINT")
+           ->excludes(verb.get_option("--local"));
+  verb.add_option("--keys", await.words.keys,
+                  "folder with the keys of coordinator and processes (abut keygen)")
+      ->type_name("DIR")
+      ->check(named_folder)
+      ->needs(&endpoint);
+  verb.add_option("--patience", await.words.patience, "time for all of them to come; default 60")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.1, 604'800.0).description(""))
+      ->needs(&endpoint);
+}
+
+CLI::App& add_run(CLI::App& app, RunCommand& run, AwaitWords& await) {
   CLI::App& verb = *app.add_subcommand("run", "run a scene and evaluate its expectations");
   add_scene(verb, run.scene, run.overrides);
   verb.add_option("--out", run.out, "run directory; default runs/<scene name>")
@@ -59,11 +86,12 @@ CLI::App& add_run(CLI::App& app, RunCommand& run) {
   verb.add_flag("--local", run.local, "all bodies in this process");
   verb.add_flag("--quiet", run.quiet, "print errors and failed expectations only");
   verb.add_flag("--force", run.force, "replace the run that DIR holds");
+  add_await(verb, await);
   add_insecure(verb, run.insecure);
   return verb;
 }
 
-CLI::App& add_resume(CLI::App& app, ResumeCommand& resume) {
+CLI::App& add_resume(CLI::App& app, ResumeCommand& resume, AwaitWords& await) {
   CLI::App& verb = *app.add_subcommand("resume", "go on with a run from its latest checkpoint");
   verb.add_option("directory", resume.directory, "run directory")
       ->required()
@@ -75,7 +103,21 @@ CLI::App& add_resume(CLI::App& app, ResumeCommand& resume) {
   add_overrides(verb, resume.overrides);
   verb.add_flag("--local", resume.local, "all bodies in this process");
   verb.add_flag("--quiet", resume.quiet, "print errors and failed expectations only");
+  add_await(verb, await);
   add_insecure(verb, resume.insecure);
+  return verb;
+}
+
+CLI::App& add_check(CLI::App& app, CheckCommand& check) {
+  CLI::App& verb =
+      *app.add_subcommand("check", "say whether a scene is valid, and what its run will be");
+  add_scene(verb, check.scene, check.overrides);
+  verb.add_flag("--verbose", check.verbose, "tell as well what the scene leaves unused");
+  verb.add_option("--probe", check.probe,
+                  "try the run for so long, writing nothing, to predict its time and memory; "
+                  "default 2, 0 for not at all")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, longest_probe).description(""));
   return verb;
 }
 
@@ -117,7 +159,8 @@ CLI::App& add_keygen(CLI::App& app, KeygenCommand& keygen) {
       ->required()
       ->type_name("DIR")
       ->check(named_folder);
-  verb.add_option("body", keygen.bodies, "name of a body that gets a pair of its own")
+  verb.add_option("body", keygen.bodies,
+                  "name of a body, or of a process of several, that gets a pair of its own")
       ->type_name("NAME");
   return verb;
 }
@@ -166,6 +209,40 @@ CLI::App& add_conformance(CLI::App& app, ConformanceCommand& conformance) {
   return verb;
 }
 
+CLI::App& add_slurm(CLI::App& app, SlurmCommand& slurm) {
+  CLI::App& verb = *app.add_subcommand(
+      "slurm", "write a job for sbatch: a coordinator, and a step for each process of bodies");
+  add_scene(verb, slurm.scene, slurm.overrides);
+  verb.add_option("-o,--output", slurm.script, "file of the script; default standard output")
+      ->type_name("FILE");
+  verb.add_option("--out", slurm.directory, "run directory; default runs/<scene name>")
+      ->type_name("DIR")
+      ->check(named_folder);
+  verb.add_option("--sbatch", slurm.options,
+                  "an option of sbatch that the script holds, as --sbatch=--time=2:00:00; "
+                  "repeatable")
+      ->type_name("OPTION")
+      ->allow_extra_args(false);
+  verb.add_flag("--force", slurm.force, "replace the file that is there");
+  return verb;
+}
+
+CLI::App& add_kubernetes(CLI::App& app, KubernetesCommand& kubernetes) {
+  CLI::App& verb = *app.add_subcommand(
+      "kubernetes", "write a Kustomize base: jobs of a coordinator and of each process of bodies");
+  add_scene(verb, kubernetes.scene, kubernetes.overrides);
+  verb.add_option("-o,--out", kubernetes.out, "its folder; default <scene name>_kubernetes")
+      ->type_name("DIR")
+      ->check(named_folder);
+  verb.add_option("--image", kubernetes.image, "image with abut; default abut:latest")
+      ->type_name("IMAGE");
+  verb.add_option("--claim", kubernetes.claim,
+                  "claim of a volume that keeps the run; default none: it goes with the pod")
+      ->type_name("NAME");
+  verb.add_flag("--force", kubernetes.force, "replace the files that DIR holds");
+  return verb;
+}
+
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
@@ -180,22 +257,14 @@ Command parse_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
 
   RunCommand run;
-  const CLI::App& run_verb = add_run(app, run);
+  AwaitWords await_of_run, await_of_resume;
+  const CLI::App& run_verb = add_run(app, run, await_of_run);
 
   ResumeCommand resume;
-  const CLI::App& resume_verb = add_resume(app, resume);
+  const CLI::App& resume_verb = add_resume(app, resume, await_of_resume);
 
   CheckCommand check;
-  CLI::App& check_verb =
-      *app.add_subcommand("check", "say whether a scene is valid, and what its run will be");
-  add_scene(check_verb, check.scene, check.overrides);
-  check_verb.add_flag("--verbose", check.verbose, "tell as well what the scene leaves unused");
-  check_verb
-      .add_option("--probe", check.probe,
-                  "try the run for so long, writing nothing, to predict its time and memory; "
-                  "default 2, 0 for not at all")
-      ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, longest_probe).description(""));
+  const CLI::App& check_verb = add_check(app, check);
 
   SplitCommand split;
   const CLI::App& split_verb = add_split(app, split);
@@ -212,6 +281,11 @@ Command parse_command_line(int argc, const char* const* argv) {
   ConformanceCommand conformance;
   const CLI::App& conformance_verb = add_conformance(app, conformance);
 
+  SlurmCommand slurm;
+  const CLI::App& slurm_verb = add_slurm(app, slurm);
+  KubernetesCommand kubernetes;
+  const CLI::App& kubernetes_verb = add_kubernetes(app, kubernetes);
+
   // For the list alone: their command lines are read by programs of their own.
   for (const auto& [name, purpose] : tools) app.add_subcommand(name, purpose);
   // Last: verbs take over the footer that is there when they are added.
@@ -227,6 +301,8 @@ Command parse_command_line(int argc, const char* const* argv) {
     const int code = app.exit(error, out, err);
     return code == 0 ? PrintCommand{out.str(), 0} : PrintCommand{"error: " + err.str(), 2};
   }
+  run.awaited = await_of_run.given();
+  resume.awaited = await_of_resume.given();
   if (run_verb.parsed()) return run;
   if (resume_verb.parsed()) return resume;
   if (check_verb.parsed()) return check;
@@ -235,6 +311,8 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (keygen_verb.parsed()) return keygen;
   if (reference_verb.parsed()) return reference;
   if (conformance_verb.parsed()) return conformance;
+  if (slurm_verb.parsed()) return slurm;
+  if (kubernetes_verb.parsed()) return kubernetes;
   return PrintCommand{app.help(), 2};
 }
 

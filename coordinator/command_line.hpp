@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "base/awaited.hpp"
 
 namespace abut {
 
@@ -14,6 +17,7 @@ struct RunCommand {
   bool quiet = false;
   bool force = false;
   bool insecure = false;
+  std::optional<Awaited> awaited;  // absent: processes come to life as the scene says
 };
 struct ResumeCommand {
   std::string directory;
@@ -23,6 +27,7 @@ struct ResumeCommand {
   bool local = false;
   bool quiet = false;
   bool insecure = false;
+  std::optional<Awaited> awaited;
 };
 struct KeygenCommand {
   std::string directory;
@@ -58,6 +63,22 @@ struct ConformanceCommand {
   std::vector<std::string> overrides;
   bool names_scene() const { return what.ends_with(".yaml") || what.ends_with(".yml"); }
 };
+struct SlurmCommand {
+  std::string scene;
+  std::string directory;             // of the run; empty: runs/<scene name>
+  std::string script;                // file; empty: standard output
+  std::vector<std::string> options;  // of sbatch
+  std::vector<std::string> overrides;
+  bool force = false;
+};
+struct KubernetesCommand {
+  std::string scene;
+  std::string out;  // folder; empty: <scene name>_kubernetes
+  std::string image = "abut:latest";
+  std::string claim;  // empty: none
+  std::vector<std::string> overrides;
+  bool force = false;
+};
 struct ReferenceCommand {
   std::string key;  // empty: all of them
   bool json_schema = false;
@@ -74,9 +95,9 @@ struct PrintCommand {
   int exit_code = 0;  // other than 0: for standard error
 };
 
-using Command =
-    std::variant<RunCommand, ResumeCommand, CheckCommand, SplitCommand, InitCommand, KeygenCommand,
-                 ReferenceCommand, ConformanceCommand, ExternalCommand, PrintCommand>;
+using Command = std::variant<RunCommand, ResumeCommand, CheckCommand, SplitCommand, InitCommand,
+                             KeygenCommand, ReferenceCommand, ConformanceCommand, SlurmCommand,
+                             KubernetesCommand, ExternalCommand, PrintCommand>;
 
 /// Never throws: a command line that is wrong becomes a PrintCommand with exit code 2.
 Command parse_command_line(int argc, const char* const* argv);

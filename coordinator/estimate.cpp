@@ -10,6 +10,7 @@
 #include "base/count.hpp"
 #include "coordinator/coupling/kernel_bytes.hpp"
 #include "coordinator/flight_work.hpp"
+#include "coordinator/solver_processes.hpp"
 
 namespace abut {
 
@@ -40,7 +41,7 @@ void list_features(const Scene& scene, Estimate& e) {
     tied = tied || interface.tied.has_value();
   }
   for (const auto& [name, body] : scene.bodies) {
-    connected = connected || std::holds_alternative<ConnectLaunch>(body.launch);
+    connected = connected || may_run_elsewhere(body);
   }
   unilateral = unilateral || scene.everything() != nullptr;
   const bool coupled = unilateral || published;

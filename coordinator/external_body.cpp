@@ -29,6 +29,16 @@ void check_external_launch(const BodyEntry& entry, const Document& document) {
                      document.where("bodies." + entry.name + ".launch.group"),
                      "Give launch: {connect: {}} and start that program yourself, or launch: "
                      "{spawn: {program: its path}}.");
+  if (const SshLaunch* ssh = std::get_if<SshLaunch>(&entry.launch)) {
+    const std::string path = "bodies." + entry.name + ".launch.ssh";
+    if (!ssh->group.empty())
+      throw InputError("is of another program, whose process holds no other body",
+                       document.where(path + ".group"), "Leave group out.");
+    if (ssh->program.empty())
+      throw InputError("is of another program, but abut-solver would be started for it",
+                       document.where(path), "Give program: its path on that machine.");
+    return;
+  }
   const SpawnLaunch* spawn = std::get_if<SpawnLaunch>(&entry.launch);
   if (spawn == nullptr || !spawn->program.empty()) return;
   throw InputError("is of another program, but abut-solver would be started for it",

@@ -1,6 +1,7 @@
 #include "coordinator/launch.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sched.h>
 #include <unistd.h>
 
@@ -18,11 +19,11 @@
 #include "base/input_errors.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
+#include "coordinator/launched_process.hpp"
 #include "coordinator/solver_processes.hpp"
 #include "messaging/codec.hpp"
 #include "messaging/descriptors.hpp"
 #include "messaging/key_files.hpp"
-#include "messaging/linked_bodies.hpp"
 #include "messaging/liveness.hpp"
 #include "messaging/remote_subdomain.hpp"
 #include "messaging/zmq_channel.hpp"
@@ -34,10 +35,11 @@ namespace {
 constexpr Milliseconds time_to_finish{2'000};     // from Finish to the end of the process
 constexpr Milliseconds time_to_die{500};          // from SIGTERM to SIGKILL
 constexpr std::size_t longest_socket_path = 100;  // the kernel allows 107 bytes
+constexpr int most_logins = 8;               // at one host at once; sshd allows ten (MaxStartups)
+constexpr const char* socket_name = "/hub";  // in the private folder
 // Measured: the hub opens 9 and a process 2; pipes of a start and files of a run come on top.
 constexpr int descriptors_of_a_run = 32;
 constexpr int descriptors_of_a_process = 4;
-constexpr std::size_t most_names = 20;  // of bodies that share a process, in a message
 
 Milliseconds milliseconds(double seconds) {
   return Milliseconds(static_cast<Milliseconds::rep>(seconds * 1000.0));
@@ -61,13 +63,6 @@ std::chrono::microseconds spin_of(std::size_t processes) {
              : std::chrono::microseconds(0);
 }
 
-/// Bodies with processes that somebody else starts.
-std::size_t connected(const Scene& scene) {
-  return static_cast<std::size_t>(std::count_if(
-      scene.bodies.begin(), scene.bodies.end(),
-      [](const auto& body) { return std::holds_alternative<ConnectLaunch>(body.second.launch); }));
-}
-
 Frame refusal(std::uint64_t session, const std::string& reason) {
   v1::Request request;
   request.set_session(session);
@@ -80,7 +75,9 @@ Frame refusal(std::uint64_t session, const std::string& reason) {
 std::string make_private_directory() {
   std::error_code ignored;
   std::string parent = std::filesystem::temp_directory_path(ignored).string();
-  if (ignored || parent.size() > longest_socket_path - 24) parent = "/tmp";
+  // ssh takes whole paths without colons.
+  const bool fits = parent.starts_with('/') && parent.find(':') == parent.npos;
+  if (ignored || !fits || parent.size() > longest_socket_path - 24) parent = "/tmp";
   std::string name = parent + "/abut-XXXXXX";
   if (mkdtemp(name.data()) == nullptr) {  // readable by this user alone
     throw RunError(fmt::format("cannot make a directory in {}: {}", parent, std::strerror(errno)),
@@ -95,12 +92,16 @@ std::string keys_of(const Scene& scene, const std::string& document) {
   return (std::filesystem::path(document).parent_path() / scene.network.keys).string();
 }
 
-/// What somebody types to start the solver of a body that is waited for.
-std::string command_for(std::string endpoint, const std::string& body, bool external, bool keys) {
+/// What somebody types to start a process that is waited for.
+std::string command_for(std::string endpoint, const LaunchedProcess& process, bool external,
+                        bool keys) {
   const std::size_t wildcard = endpoint.find("//0.0.0.0:");
   if (wildcard != std::string::npos) endpoint.replace(wildcard + 2, 7, "HOST");  // this machine
-  return fmt::format("{} --connect {} --body {}{}", external ? "ITS_PROGRAM" : "abut-solver",
-                     endpoint, body, keys ? " --keys DIR" : "");
+  const std::string of_several =
+      process.routing_id.empty() ? "" : fmt::format(" --process {}", process.routing_id);
+  return fmt::format("{} --connect {}{} --body {}{}", external ? "ITS_PROGRAM" : "abut-solver",
+                     endpoint, of_several, fmt::join(process.bodies, " --body "),
+                     keys ? " --keys DIR" : "");
 }
 
 }  // namespace
@@ -111,34 +112,11 @@ std::string solver_beside_this_program() {
   return error ? std::string("abut-solver") : (self.parent_path() / "abut-solver").string();
 }
 
-/// A process that we start, and the bodies in it.
-struct Launch::Process {
-  std::string program;
-  bool ours = false;       // abut-solver
-  std::string routing_id;  // of several bodies; empty: the name of its one body
-  std::vector<std::string> bodies;
-  std::unique_ptr<ChildProcess> child;
-  std::unique_ptr<LinkedBodies> linked;  // null: its frames pass through sockets
-  bool has_scene = false;                // its text is under way or there
-
-  /// With whom the body shares it, for messages; empty: with nobody.
-  std::string others_than(const std::string& body) const {
-    std::string names;
-    std::size_t count = 0;
-    for (const std::string& other : bodies) {
-      if (other == body || count++ >= most_names) continue;
-      names += (names.empty() ? "" : ", ") + other;
-    }
-    if (count > most_names) names += fmt::format(" and {} more bodies", count - most_names);
-    return names;
-  }
-};
-
-/// One body, its process if we started it, and the way to talk to it.
+/// One body, its process, and the way to talk to it.
 struct Launch::Member {
   std::string name;
-  Process* process = nullptr;  // null: somebody else's
-  bool external = false;       // no abut-solver can be this body
+  LaunchedProcess* process = nullptr;
+  bool external = false;  // no abut-solver can be this body
   BodyContext context;
   Milliseconds patience{0};
   int peer = 0;
@@ -155,7 +133,7 @@ Launch::Launch(const Scene& scene, const Specification& scene_text, const Launch
     : options_(options) {
   options_.deadlines.request = milliseconds(scene.network.request_deadline);
   if (options_.solver.empty()) options_.solver = solver_beside_this_program();
-  const int processes = static_cast<int>(solver_processes(scene).size() + connected(scene));
+  const int processes = static_cast<int>(all_processes(scene).size());
   require_descriptors(descriptors_of_a_run + descriptors_of_a_process * processes);
   hub_ = std::make_unique<ZmqHub>(options_.limits);
   try {
@@ -174,20 +152,29 @@ Launch::Launch(const Scene& scene, const Specification& scene_text, const Launch
 
 Launch::~Launch() { end_processes(); }
 
-void Launch::add_members(const Scene& scene) {
-  std::vector<Process*> process_of(scene.bodies.size(), nullptr);
-  for (const SolverProcess& plan : solver_processes(scene)) {
-    std::unique_ptr<Process> process = std::make_unique<Process>();
-    process->ours = plan.program.empty();
+void Launch::add_processes(const Scene& scene, std::vector<LaunchedProcess*>& process_of) {
+  for (const SolverProcess& plan : all_processes(scene)) {
+    std::unique_ptr<LaunchedProcess> process = std::make_unique<LaunchedProcess>();
+    process->awaited = options_.awaited.has_value() || plan.connects;
+    process->ssh = plan.ssh;
+    process->ours = plan.program.empty() && !plan.ssh && !process->awaited;
     process->program = process->ours ? options_.solver : plan.program;
     // No body can be called so: names have no blanks.
-    if (plan.bodies.size() > 1) process->routing_id = fmt::format("process {}", processes_.size());
+    if (plan.bodies.size() > 1) {
+      process->routing_id = process->awaited ? name_of_process(scene, plan)
+                                             : fmt::format("process {}", processes_.size());
+    }
     for (const std::size_t body : plan.bodies) {
       process->bodies.push_back(scene.bodies[body].first);
       process_of[body] = process.get();
     }
     processes_.push_back(std::move(process));
   }
+}
+
+void Launch::add_members(const Scene& scene) {
+  std::vector<LaunchedProcess*> process_of(scene.bodies.size(), nullptr);
+  add_processes(scene, process_of);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& [name, entry] = scene.bodies[b];
     std::unique_ptr<Member> member = std::make_unique<Member>();
@@ -198,35 +185,41 @@ void Launch::add_members(const Scene& scene) {
     const ConnectLaunch* connect = std::get_if<ConnectLaunch>(&entry.launch);
     member->patience =
         milliseconds(connect != nullptr ? connect->patience : scene.network.startup_deadline);
-    const bool shared = member->process != nullptr && !member->process->routing_id.empty();
-    member->peer =
-        shared ? hub_->add_peer(name, member->process->routing_id) : hub_->add_peer(name);
+    if (options_.awaited) member->patience = milliseconds(options_.awaited->patience);
+    const std::string& shared = member->process->routing_id;
+    member->peer = shared.empty() ? hub_->add_peer(name) : hub_->add_peer(name, shared);
     members_.push_back(std::move(member));
   }
 }
 
 void Launch::listen(const Scene& scene, const std::string& document) {
-  if (!processes_.empty()) {
-    directory_ = make_private_directory();
-    ipc_endpoint_ = hub_->bind("ipc://" + directory_ + "/hub");
-  }
   std::vector<std::string> awaited;
-  for (const std::unique_ptr<Member>& member : members_)
-    if (member->process == nullptr) awaited.push_back(member->name);
+  for (const std::unique_ptr<LaunchedProcess>& process : processes_)
+    if (process->awaited)
+      awaited.push_back(process->routing_id.empty() ? process->bodies.front()
+                                                    : process->routing_id);
+  if (awaited.size() < processes_.size()) {
+    directory_ = make_private_directory();
+    ipc_endpoint_ = hub_->bind("ipc://" + directory_ + socket_name);
+  }
   if (awaited.empty()) return;
-  const std::string keys = keys_of(scene, document);
+  const std::string keys = options_.awaited ? options_.awaited->keys : keys_of(scene, document);
+  const std::string& endpoint =
+      options_.awaited ? options_.awaited->endpoint : scene.network.endpoint;
   keyed_ = !keys.empty();
-  tcp_endpoint_ = keyed_ ? hub_->bind(scene.network.endpoint, read_coordinator_keys(keys, awaited))
-                         : hub_->bind(scene.network.endpoint);
+  tcp_endpoint_ =
+      keyed_ ? hub_->bind(endpoint, read_coordinator_keys(keys, awaited)) : hub_->bind(endpoint);
   for (const std::unique_ptr<Member>& member : members_) {
-    if (member->process != nullptr) continue;
-    log_info(fmt::format("waiting for body '{}': {}", member->name,
-                         command_for(tcp_endpoint_, member->name, member->external, keyed_)));
+    const LaunchedProcess& process = *member->process;
+    if (!process.awaited || process.bodies.front() != member->name) continue;
+    log_info(fmt::format("waiting for {} '{}': {}", process.bodies.size() > 1 ? "bodies" : "body",
+                         fmt::join(process.bodies, "', '"),
+                         command_for(tcp_endpoint_, process, member->external, keyed_)));
   }
 }
 
 /// With our own solvers alone: others need not know what to do with it.
-void Launch::share_memory(Process& process) {
+void Launch::share_memory(LaunchedProcess& process) {
   std::vector<Member*> its;
   std::vector<Channel*> sockets;
   for (const std::unique_ptr<Member>& member : members_) {
@@ -234,7 +227,10 @@ void Launch::share_memory(Process& process) {
     its.push_back(member.get());
     sockets.push_back(member->way);
   }
-  process.linked = LinkedBodies::make(sockets, options_.limits, spin_of(processes_.size()));
+  const auto here = std::ranges::count_if(
+      processes_, [](const auto& each) { return !each->ssh && !each->awaited; });
+  process.linked =
+      LinkedBodies::make(sockets, options_.limits, spin_of(static_cast<std::size_t>(here)));
   if (!process.linked) {
     log_warning("no memory to share with a solver's process: its frames pass through sockets");
     return;
@@ -245,25 +241,22 @@ void Launch::share_memory(Process& process) {
 
 void Launch::spawn_all(Transport transport) {
   for (const std::unique_ptr<Member>& member : members_) member->way = &hub_->channel(member->peer);
-  for (const std::unique_ptr<Process>& process : processes_)
+  for (const std::unique_ptr<LaunchedProcess>& process : processes_)
     if (transport == Transport::automatic && process->ours) share_memory(*process);
-  for (const std::unique_ptr<Process>& process : processes_) {
-    std::vector<std::string> arguments{"--connect", ipc_endpoint_};
-    const int memory = process->linked ? process->linked->descriptor() : -1;
-    if (memory >= 0) arguments.insert(arguments.end(), {"--memory", std::to_string(memory)});
-    if (!process->routing_id.empty())
-      arguments.insert(arguments.end(), {"--process", process->routing_id});
-    for (const std::string& body : process->bodies)
-      arguments.insert(arguments.end(), {"--body", body});
-    process->child = std::make_unique<ChildProcess>(process->program, arguments, memory);
-    if (process->linked) process->linked->handed_over();
-  }
+  for (const std::unique_ptr<LaunchedProcess>& process : processes_)
+    if (!process->ssh || process->awaited) start(*process);
+  start_over_ssh();
+}
+
+/// A process, and the ways to talk to its bodies.
+void Launch::start(LaunchedProcess& process) {
+  if (!process.awaited) process.start(directory_ + socket_name);
+  process.started = std::chrono::steady_clock::now();
   for (const std::unique_ptr<Member>& member : members_) {
-    const Process* process = member->process;
+    if (member->process != &process) continue;
     member->liveness = std::make_unique<BodyLiveness>(
-        *hub_, member->peer, process != nullptr ? process->child.get() : nullptr,
-        process != nullptr ? process->others_than(member->name) : "", options_.limits,
-        options_.deadlines, process != nullptr ? process->linked.get() : nullptr);
+        *hub_, member->peer, process.child.get(), process.others_than(member->name),
+        options_.limits, options_.deadlines, process.linked.get());
     member->caller = std::make_unique<Caller>(
         member->name, CallContext{*member->way, *member->liveness, options_.interrupted,
                                   options_.limits, options_.deadlines});
@@ -271,24 +264,41 @@ void Launch::spawn_all(Transport transport) {
   }
 }
 
+/// Those whose turn has come: sshd turns connections away while many have not logged in yet.
+void Launch::start_over_ssh() {
+  const auto on_its_way = [this](const LaunchedProcess& process) {
+    return process.started && std::ranges::none_of(members_, [&process](const auto& member) {
+             return member->process == &process && member->welcome;
+           });
+  };
+  for (const std::unique_ptr<LaunchedProcess>& process : processes_) {
+    if (!process->ssh || process->started) continue;
+    const auto logging_in = std::ranges::count_if(processes_, [&](const auto& other) {
+      return other->ssh && other->ssh->host == process->ssh->host && on_its_way(*other);
+    });
+    if (logging_in < most_logins) start(*process);
+  }
+}
+
 void Launch::greet_all(const Specification& scene_text) {
-  const TimePoint begin = std::chrono::steady_clock::now();
-  TimePoint looked = begin;
+  TimePoint looked = std::chrono::steady_clock::now();
   const auto is_missing = [this](const std::unique_ptr<Member>& member) {
-    return !member->welcome && (member->process != nullptr || !refused_);
+    return !member->welcome && (!member->process->awaited || !refused_);
   };
   while (std::ranges::any_of(members_, is_missing)) {
     hub_->pump(options_.deadlines.slice);
     refuse_strangers();
+    start_over_ssh();
     const bool look = std::chrono::steady_clock::now() - looked >= options_.deadlines.slice;
     if (look) looked = std::chrono::steady_clock::now();
     for (const std::unique_ptr<Member>& member : members_) {
+      if (!member->process->started) continue;
       if (member->welcome) {
         if (!member->described && member->caller->has_reply()) see(*member);
       } else if (hub_->has_frame(member->peer) && greet(*member)) {
         configure(*member, scene_text);
       } else if (look) {
-        check_startup(*member, begin);
+        check_startup(*member);
       }
     }
   }
@@ -311,8 +321,11 @@ void Launch::see(Member& member) {
 /// It builds itself while the others are still on their way. A process has the scene's text once.
 void Launch::configure(Member& member, const Specification& scene_text) {
   Specification specification;
-  if (member.process == nullptr || !member.process->has_scene) specification = scene_text;
-  if (member.process != nullptr) member.process->has_scene = true;
+  if (!member.process->has_scene) specification = scene_text;
+  member.process->has_scene = true;
+  // Over ssh another folder is the current one.
+  if (member.process->ssh && !specification.document.empty())
+    specification.document = std::filesystem::absolute(specification.document).string();
   specification.path = "bodies." + member.name;
   specification.context = member.context;
   member.body->start_configure(specification);
@@ -392,31 +405,26 @@ void Launch::refuse_strangers() {
   }
 }
 
-void Launch::check_startup(Member& member, TimePoint begin) {
-  const std::string& endpoint = member.process != nullptr ? ipc_endpoint_ : tcp_endpoint_;
+void Launch::check_startup(Member& member) {
+  const LaunchedProcess& process = *member.process;
+  const std::string& endpoint = process.awaited ? tcp_endpoint_ : ipc_endpoint_;
   if (options_.interrupted != nullptr && options_.interrupted->load()) {
     throw RunError(fmt::format("interrupted before body '{}' had connected", member.name), "",
                    "start the run again");
   }
-  if (member.process != nullptr && member.process->child->ended(Milliseconds(0))) {
-    const std::string others = member.process->others_than(member.name);
-    throw RunError(
-        fmt::format("the solver of body '{}'{} {} before it had connected", member.name,
-                    others.empty() ? "" : " and of " + others, member.process->child->ending()),
-        "", "look at the solver's own messages above");
-  }
-  if (std::chrono::steady_clock::now() - begin < member.patience) return;
+  if (process.child && process.child->ended(Milliseconds(0)))
+    throw process.ended_early(member.name);
+  if (std::chrono::steady_clock::now() - *process.started < member.patience) return;
   const double seconds = static_cast<double>(member.patience.count()) / 1000.0;
-  std::string what =
-      fmt::format("body '{}' did not connect to {} within {} s", member.name, endpoint, seconds);
+  std::string what = fmt::format(
+      "body '{}' did not connect to {} within {} s", member.name,
+      process.ssh ? "this machine from " + process.ssh->destination() : endpoint, seconds);
   if (hub_->refused() > 0)
     what += fmt::format(", and {} that did were turned away for their keys", hub_->refused());
-  if (member.process != nullptr) {
+  if (!process.awaited)
     throw RunError(what, "", "raise network.startup_deadline on a slow machine");
-  }
   throw RunError(
-      what, "",
-      fmt::format("start `{}`", command_for(endpoint, member.name, member.external, keyed_)));
+      what, "", fmt::format("start `{}`", command_for(endpoint, process, member.external, keyed_)));
 }
 
 std::vector<std::unique_ptr<Subdomain>> Launch::take_bodies() {
@@ -439,15 +447,16 @@ void Launch::finish() {
     const Milliseconds left = std::max(Milliseconds(1), time_left(until));
     member->caller->await_at_most(left);
   }
-  for (const std::unique_ptr<Process>& process : processes_)
-    process->child->ended(time_left(until));
+  for (const std::unique_ptr<LaunchedProcess>& process : processes_)
+    if (process->child) process->child->ended(time_left(until));
   finished_ = true;
   end_processes();
 }
 
 std::vector<std::int64_t> Launch::process_ids() const {
   std::vector<std::int64_t> ids;
-  for (const std::unique_ptr<Process>& process : processes_) ids.push_back(process->child->pid());
+  for (const std::unique_ptr<LaunchedProcess>& process : processes_)
+    if (process->child) ids.push_back(process->child->pid());
   return ids;
 }
 
@@ -461,15 +470,15 @@ void Launch::remove_directory() {
 void Launch::end_processes() {
   for (const std::unique_ptr<Member>& member : members_) {
     // Somebody else's solver is told; ours is ended.
-    if (!finished_ && member->process == nullptr && member->welcome)
+    if (!finished_ && member->process->awaited && member->welcome)
       refuse(*member, member->caller->session(), "the run has ended early");
   }
-  for (const std::unique_ptr<Process>& process : processes_) {
+  for (const std::unique_ptr<LaunchedProcess>& process : processes_) {
     if (process->child && !process->child->ended(Milliseconds(0)))
       process->child->send_signal(SIGTERM);
   }
   const TimePoint until = std::chrono::steady_clock::now() + time_to_die;
-  for (const std::unique_ptr<Process>& process : processes_) {
+  for (const std::unique_ptr<LaunchedProcess>& process : processes_) {
     if (!process->child) continue;
     process->child->ended(time_left(until));
     process->child.reset();  // kills what is still there

@@ -3,9 +3,11 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/awaited.hpp"
 #include "contract/subdomain.hpp"
 #include "coordinator/scene.hpp"
 #include "messaging/protocol.hpp"
@@ -13,8 +15,8 @@
 namespace abut {
 
 class Caller;
-class ChildProcess;
 class Liveness;
+struct LaunchedProcess;
 class RemoteSubdomain;
 class ZmqHub;
 namespace v1 {
@@ -29,10 +31,11 @@ struct LaunchOptions {
   const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: every wait ends
   Limits limits;
   Deadlines deadlines;  // `request` is taken from the scene
+  std::optional<Awaited> awaited;
 };
 
-/// Body entries to Subdomains in other processes: `spawn` and `group` start them, `connect` waits
-/// for one. However this object ends, the processes that it has started end with it.
+/// Body entries to Subdomains in other processes: `spawn`, `group` and `ssh` start them, `connect`
+/// waits for one. However this object ends, the processes that it has started end with it.
 class Launch {
  public:
   /// Starts and greets all bodies and hands each the scene (`scene_text.path` is filled in per
@@ -51,12 +54,14 @@ class Launch {
   std::vector<std::int64_t> process_ids() const;
 
  private:
-  struct Process;
   struct Member;
+  void add_processes(const Scene& scene, std::vector<LaunchedProcess*>& process_of);
   void add_members(const Scene& scene);
   void listen(const Scene& scene, const std::string& document);
-  void share_memory(Process& process);
+  void share_memory(LaunchedProcess& process);
   void spawn_all(Transport transport);
+  void start(LaunchedProcess& process);
+  void start_over_ssh();
   void greet_all(const Specification& scene_text);
   bool greet(Member& member);
   void configure(Member& member, const Specification& scene_text);
@@ -64,7 +69,7 @@ class Launch {
   bool welcome(Member& member, const v1::Hello& hello);
   void refuse(const Member& member, std::uint64_t session, const std::string& reason);
   void refuse_strangers();
-  void check_startup(Member& member, TimePoint begin);
+  void check_startup(Member& member);
   void remove_directory();
   void end_processes();
 
@@ -72,7 +77,7 @@ class Launch {
   std::string directory_;  // private, of the ipc socket; empty when there is none
   std::string ipc_endpoint_, tcp_endpoint_;
   std::unique_ptr<ZmqHub> hub_;
-  std::vector<std::unique_ptr<Process>> processes_;  // that this object starts
+  std::vector<std::unique_ptr<LaunchedProcess>> processes_;
   std::vector<std::unique_ptr<Member>> members_;
   bool keyed_ = false;    // bodies that connect have keys
   bool refused_ = false;  // a body has told what is wrong with it

@@ -21,11 +21,15 @@
 #include "coordinator/external_verb.hpp"
 #include "coordinator/init/init_files.hpp"
 #include "coordinator/interrupt.hpp"
+#include "coordinator/jobs/kubernetes_files.hpp"
+#include "coordinator/jobs/slurm_script.hpp"
 #include "coordinator/json_schema.hpp"
 #include "coordinator/launch_local.hpp"
 #include "coordinator/record/text_file.hpp"
+#include "coordinator/run_directory.hpp"
 #include "coordinator/scene.hpp"
 #include "coordinator/split/split_scene.hpp"
+#include "coordinator/trust.hpp"
 #include "coordinator/verbs/check.hpp"
 #include "coordinator/verbs/conformance.hpp"
 #include "coordinator/verbs/placed_scene.hpp"
@@ -101,6 +105,56 @@ int keygen_verb(const KeygenCommand& command) {
   return 0;
 }
 
+constexpr int retries = 6;  // of a body's job, as Kubernetes has it itself
+
+bool restarts(const Scene& scene) { return scene.network.on_lost_body == OnLostBody::restart; }
+
+int slurm_verb(const SlurmCommand& command) {
+  const Document document = Document::load(command.scene, command.overrides);
+  const Scene scene = read_all_keys(document);
+  const fs::path directory = command.directory.empty() ? default_run_directory(command.scene)
+                                                       : fs::path(command.directory);
+  const std::vector<ProcessPlan> processes = plan_processes(scene, document);
+  for (const ProcessPlan& process : processes)
+    if (!process.program.empty())
+      check_program(process.program, document.where("bodies." + process.name + ".launch"));
+  const bool again = !scene.stages.empty() || restarts(scene);
+  const std::string text =
+      slurm_script({fs::absolute(command.scene).string(), fs::absolute(directory).string(),
+                    program_folder(), command.overrides, command.options, again},
+                   processes);
+  if (command.script.empty()) {
+    fmt::print("{}", text);
+    return 0;
+  }
+  write_new({{command.script, text}}, command.force, "--output");
+  fmt::print("written: {0}\nnext: sbatch {0}\n", command.script);
+  return 0;
+}
+
+int kubernetes_verb(const KubernetesCommand& command) {
+  const Document document = Document::load(command.scene, command.overrides);
+  const Scene scene = read_all_keys(document);
+  if (!scene.stages.empty())
+    throw InputError("begin with new processes, but jobs of Kubernetes start theirs once",
+                     document.where("stages"), "Use abut slurm, or a scene of one stage.");
+  const fs::path directory =
+      command.out.empty() ? job_name(command.scene) + "_kubernetes" : command.out;
+  const std::vector<ProcessPlan> processes = plan_processes(scene, document);
+  NewFiles files;
+  for (const auto& [name, text] : kubernetes_files(
+           {command.scene, document.text(), command.overrides, mesh_files(scene, document),
+            command.image, restarts(scene) ? retries : 0, command.claim},
+           processes))
+    files.emplace_back(directory / name, text);
+  write_new(files, command.force, "--out");
+  for (const auto& [path, text] : files) fmt::print("written: {}\n", path.string());
+  std::string names;
+  for (const ProcessPlan& process : processes) names += ' ' + process.name;
+  fmt::print("next: abut keygen {0}/keys{1} && kubectl apply -k {0}\n", directory.string(), names);
+  return 0;
+}
+
 int reference_verb(const ReferenceCommand& command) {
   Reference reference;
   reference.add<Scene>("The scene", "");
@@ -137,6 +191,8 @@ struct Verbs {
   int operator()(const KeygenCommand& command) const { return keygen_verb(command); }
   int operator()(const ReferenceCommand& command) const { return reference_verb(command); }
   int operator()(const ConformanceCommand& command) const { return conformance_verb(command); }
+  int operator()(const SlurmCommand& command) const { return slurm_verb(command); }
+  int operator()(const KubernetesCommand& command) const { return kubernetes_verb(command); }
   int operator()(const ExternalCommand& command) const {
     become_external_verb(command.verb, command.arguments);
   }

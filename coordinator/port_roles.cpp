@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/yaml_resolved.hpp"
+#include "coordinator/solver_processes.hpp"
 #include "subdomain_solver/make/read_body.hpp"
 
 namespace abut {
@@ -73,7 +74,8 @@ struct End {
 
 class RoleReader {
  public:
-  RoleReader(Scene& scene, const Document& document) : scene_(scene), document_(document) {
+  RoleReader(Scene& scene, const Document& document, bool elsewhere)
+      : scene_(scene), document_(document), elsewhere_(elsewhere) {
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) number_[scene.bodies[b].first] = b;
   }
   void assign();
@@ -91,6 +93,7 @@ class RoleReader {
 
   Scene& scene_;
   const Document& document_;
+  bool elsewhere_;  // wherever they live, bodies may read meshes on other machines
   std::map<std::string, std::size_t> number_;             // of bodies by name
   std::map<std::size_t, std::optional<BodySpec>> specs_;  // that were asked for
   std::set<std::size_t> row_apart_, net_unlike_;  // bodies of rows of shared nodes; of nets of ties
@@ -162,7 +165,7 @@ void RoleReader::compare_bodies() {
 
 /// Of a body's mesh, for one that may read it on another machine, from a file of the same name.
 std::uint64_t RoleReader::digest_for(const BodyEntry& reader, std::size_t body) {
-  if (!std::holds_alternative<ConnectLaunch>(reader.launch)) return 0;
+  if (!elsewhere_ && !may_run_elsewhere(reader)) return 0;
   const BodySpec* own = spec(body);
   return own != nullptr ? mesh_digest(*own, document_) : 0;
 }
@@ -240,6 +243,8 @@ void RoleReader::assign() {
 
 }  // namespace
 
-void assign_roles(Scene& scene, const Document& document) { RoleReader(scene, document).assign(); }
+void assign_roles(Scene& scene, const Document& document, bool elsewhere) {
+  RoleReader(scene, document, elsewhere).assign();
+}
 
 }  // namespace abut

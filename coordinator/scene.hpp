@@ -19,6 +19,7 @@
 #include "coordinator/force_filter_spec.hpp"
 #include "coordinator/interface_spec.hpp"
 #include "coordinator/scene_meta.hpp"
+#include "coordinator/ssh_launch.hpp"
 #include "coordinator/tie_kernel_spec.hpp"
 
 namespace abut {
@@ -49,7 +50,7 @@ struct GroupLaunch {  // the coordinator starts one process for all bodies of th
 /// What the coordinator reads of a body entry; all other keys are the body's own specification.
 struct BodyEntry {
   std::string name;
-  std::variant<SpawnLaunch, ConnectLaunch, GroupLaunch> launch;
+  std::variant<SpawnLaunch, ConnectLaunch, GroupLaunch, SshLaunch> launch;
   bool external = false;  // of another program, which alone can describe it
   std::string like;       // body that it has the rest from; the document has written it out
   bool adjusts = false;   // its own specification has initial: {adjust: true}

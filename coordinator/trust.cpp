@@ -59,9 +59,15 @@ void require_own_list(const std::string& file) {
                      fmt::format("Close it: chmod go-w {}", file));
 }
 
-/// Absolute paths, one a line; # begins a comment.
-std::set<fs::path> read_list(const std::string& file) {
+/// What scenes may start: whole paths, and HOST:PROGRAM of other machines.
+struct Listed {
   std::set<fs::path> programs;
+  std::set<std::string> elsewhere;
+};
+
+/// One a line; # begins a comment.
+Listed read_list(const std::string& file) {
+  Listed listed;
   require_own_list(file);
   std::ifstream list(file);
   int number = 0;
@@ -70,16 +76,23 @@ std::set<fs::path> read_list(const std::string& file) {
     const std::size_t begin = line.find_first_not_of(" \t\r");
     if (begin == line.npos || line[begin] == '#') continue;
     const std::string path = line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
-    if (!path.starts_with('/'))
+    const std::size_t colon = path.find(':');
+    if (path.starts_with('/')) {
+      listed.programs.insert(plain(path));
+    } else if (colon != path.npos && colon > 0 && path.find('/') > colon) {
+      listed.elsewhere.insert(path);
+    } else {
       throw InputError(fmt::format("is no whole path: {}", path),
-                       fmt::format("{}:{}", file, number), "Write programs from / on, one a line.");
-    programs.insert(plain(path));
+                       fmt::format("{}:{}", file, number),
+                       "Write programs from / on, one a line; of other machines HOST:PROGRAM.");
+    }
   }
-  return programs;
+  return listed;
 }
 
 struct Named {
   std::string program, key;  // key path
+  bool over_ssh = false;     // `program` is HOST:PROGRAM
 };
 
 std::vector<Named> named_programs(const Scene& scene) {
@@ -87,9 +100,12 @@ std::vector<Named> named_programs(const Scene& scene) {
   for (const auto& [name, entry] : scene.bodies) {
     Named named;
     if (const SpawnLaunch* spawn = std::get_if<SpawnLaunch>(&entry.launch))
-      named = {spawn->program, fmt::format("bodies.{}.launch.spawn.program", name)};
+      named = {spawn->program, fmt::format("bodies.{}.launch.spawn.program", name), false};
     if (const GroupLaunch* group = std::get_if<GroupLaunch>(&entry.launch))
-      named = {group->program, fmt::format("bodies.{}.launch.group.program", name)};
+      named = {group->program, fmt::format("bodies.{}.launch.group.program", name), false};
+    if (const SshLaunch* ssh = std::get_if<SshLaunch>(&entry.launch))
+      named = {ssh->destination() + ':' + ssh->remote_program(),
+               fmt::format("bodies.{}.launch.ssh", name), true};
     const bool told = std::any_of(all.begin(), all.end(), [&named](const Named& other) {
       return other.program == named.program;
     });
@@ -98,26 +114,45 @@ std::vector<Named> named_programs(const Scene& scene) {
   return all;
 }
 
+InputError not_listed(const std::string& program, const std::string& where, const fs::path& found,
+                      const std::string& file) {
+  return InputError(fmt::format("would start {}, which is not on your list of programs", program),
+                    where,
+                    fmt::format("If you trust it, add the line {} to {}.", found.string(), file));
+}
+
+void require_closed(const std::string& endpoint, bool keys, bool insecure, const std::string& where,
+                    const std::string& key) {
+  if (keys || is_local_endpoint(endpoint)) return;
+  if (!insecure)
+    throw InputError(
+        fmt::format("is {}, where whoever reaches it could read the scene and be its bodies",
+                    endpoint),
+        where,
+        fmt::format("Give keys: abut keygen keys BODY ..., and {}; or tcp://127.0.0.1:PORT "
+                    "for programs of this machine; or --insecure on a network that you trust.",
+                    key));
+  std::fputs(fmt::format("warning: --insecure: whoever reaches {} can read the scene and be its "
+                         "bodies\n",
+                         endpoint)
+                 .c_str(),
+             stderr);
+}
+
 }  // namespace
+
+void check_awaited(const Awaited& awaited, bool insecure) {
+  require_closed(awaited.endpoint, !awaited.keys.empty(), insecure, "--await", "--keys keys");
+}
 
 void check_endpoint(const Scene& scene, const Document& document, bool insecure) {
   const std::string& endpoint = scene.network.endpoint;
   const bool waits = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const auto& body) {
     return std::holds_alternative<ConnectLaunch>(body.second.launch);
   });
-  if (!waits || !scene.network.keys.empty() || is_local_endpoint(endpoint)) return;
-  if (!insecure)
-    throw InputError(
-        fmt::format("is {}, where whoever reaches it could read the scene and be its bodies",
-                    endpoint),
-        document.where("network.endpoint"),
-        "Give keys: abut keygen keys BODY ..., and network: {keys: keys}; or tcp://127.0.0.1:PORT "
-        "for programs of this machine; or --insecure on a network that you trust.");
-  std::fputs(fmt::format("warning: --insecure: whoever reaches {} can read the scene and be its "
-                         "bodies\n",
-                         endpoint)
-                 .c_str(),
-             stderr);
+  if (!waits) return;
+  require_closed(endpoint, !scene.network.keys.empty(), insecure,
+                 document.where("network.endpoint"), "network: {keys: keys}");
 }
 
 std::string list_of_programs() {
@@ -129,18 +164,31 @@ std::string list_of_programs() {
   return std::string(home != nullptr ? home : "") + "/.config/abut/programs";
 }
 
+void check_program(const std::string& program, const std::string& where) {
+  const std::string file = list_of_programs();
+  const fs::path found = found_on_path(program);
+  if (is_ours(found) || read_list(file).programs.contains(found)) return;
+  throw not_listed(program, where, found, file);
+}
+
 void check_programs(const Scene& scene, const Document& document) {
   const std::vector<Named> named = named_programs(scene);
   if (named.empty()) return;
   const std::string file = list_of_programs();
-  const std::set<fs::path> listed = read_list(file);
+  const Listed listed = read_list(file);
   InputErrors errors;
-  for (const auto& [program, key] : named) {
+  for (const auto& [program, key, over_ssh] : named) {
+    if (over_ssh) {
+      if (!listed.elsewhere.contains(program))
+        errors.add(
+            {fmt::format("would start {} over ssh, which is not on your list of programs", program),
+             document.where(key),
+             fmt::format("If this is what you want, add the line {} to {}.", program, file)});
+      continue;
+    }
     const fs::path found = found_on_path(program);
-    if (listed.contains(found) || is_ours(found)) continue;
-    errors.add({fmt::format("would start {}, which is not on your list of programs", program),
-                document.where(key),
-                fmt::format("If you trust it, add the line {} to {}.", found.string(), file)});
+    if (listed.programs.contains(found) || is_ours(found)) continue;
+    errors.add(not_listed(program, document.where(key), found, file));
   }
   errors.raise();
 }

@@ -116,8 +116,23 @@ void ChildProcess::send_signal(int signal) {
 
 std::string ChildProcess::ending() const {
   if (!ended_) return "is running";
+  if (!ssh_to_.empty()) return ending_elsewhere();
   if (code_ == CLD_EXITED) return fmt::format("exited with code {}", status_);
   return fmt::format("was killed by signal {} ({})", status_, strsignal(status_));
+}
+
+/// ssh ends with 255 where it fails itself, and a shell with 128 + signal.
+std::string ChildProcess::ending_elsewhere() const {
+  constexpr int code_of_ssh = 255, first_signal = 128;
+  if (code_ != CLD_EXITED)
+    return fmt::format("lost its ssh to {}, which was killed by signal {} ({})", ssh_to_, status_,
+                       strsignal(status_));
+  if (status_ == code_of_ssh)
+    return fmt::format("lost its ssh to {} (code {})", ssh_to_, code_of_ssh);
+  if (status_ > first_signal)
+    return fmt::format("was killed by signal {} ({}) at {}", status_ - first_signal,
+                       strsignal(status_ - first_signal), ssh_to_);
+  return fmt::format("exited with code {} at {}", status_, ssh_to_);
 }
 
 bool ChildProcess::exited_with(int code) const {

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "messaging/channel.hpp"
@@ -24,10 +25,13 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   pid_t pid() const { return pid_; }
+  /// It runs ssh, whose exit code is that of a program at this place.
+  void is_ssh_to(std::string destination) { ssh_to_ = std::move(destination); }
   /// Waits at most so long for the process to end; true when it has ended.
   bool ended(Milliseconds wait);
   void send_signal(int signal);
-  /// How it ended: "exited with code 3", "was killed by signal 9 (Killed)".
+  /// How it ended: "exited with code 3", "was killed by signal 9 (Killed)", "lost its
+  /// ssh to node7 (code 255)".
   std::string ending() const;
   /// True when it ended by itself with this code.
   bool exited_with(int code) const;
@@ -35,7 +39,10 @@ class ChildProcess {
  private:
   bool reap();
 
+  std::string ending_elsewhere() const;
+
   pid_t pid_ = -1;
+  std::string ssh_to_;   // empty: it runs no ssh
   int descriptor_ = -1;  // pidfd; -1 where the kernel has none
   bool ended_ = false;
   int code_ = 0;    // as waitid tells: CLD_EXITED, CLD_KILLED, CLD_DUMPED

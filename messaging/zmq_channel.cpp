@@ -40,6 +40,7 @@ void refuse_existing_file(const std::string& endpoint) {
 
 /// With one process; of one body, or of several that are named in every message.
 struct ZmqHub::Connection {
+  std::string name;        // of its body or process, as keys say it
   std::string routing_id;  // of one with a key: as it is now
   std::string earlier_id;  // of one with a key: before it came back
   bool shared = false;
@@ -128,7 +129,6 @@ std::string ZmqHub::bind(const std::string& endpoint, const CoordinatorKeys& key
   ABUT_ASSERT(!gate_);
   for (const auto& [key, body] : keys.bodies) {
     Connection& connection = connections_.at(body);
-    ABUT_ASSERT(!connection.shared);
     connection.keyed = true;
     connection.routing_id.clear();
   }
@@ -151,6 +151,7 @@ int ZmqHub::add_peer(const std::string& name, const std::string& process) {
   const int index = static_cast<int>(peers_.size());
   Connection& connection = connections_[process];
   if (connection.peers.empty()) connection.number = index;
+  connection.name = process;
   connection.routing_id = process;
   connection.shared = true;
   peers_.push_back(std::make_unique<Peer>(*this, connection, index, name));
@@ -200,7 +201,8 @@ ZmqHub::Connection* ZmqHub::find_connection() {
 ZmqHub::Peer* ZmqHub::find_sender() {
   Connection* connection = find_connection();
   if (connection == nullptr) return nullptr;
-  if (!connection->shared) return connection->peers.begin()->second;
+  const bool announced = connection->keyed && incoming_.size() == 0;  // of the whole connection
+  if (!connection->shared || announced) return connection->peers.begin()->second;
   const auto peer = connection->peers.find(text_of(addressee_));
   return peer == connection->peers.end() ? nullptr : peer->second;
 }
@@ -291,8 +293,7 @@ int ZmqHub::disconnects(int peer, TimePoint since) {
 std::optional<TimePoint> ZmqHub::gone_since(int peer) {
   read_monitor();
   Connection& connection = peers_.at(index(peer))->connection;
-  if (connection.keyed && connection.gone &&
-      gate_->admitted(peers_.at(index(peer))->name) > connection.gone)
+  if (connection.keyed && connection.gone && gate_->admitted(connection.name) > connection.gone)
     connection.gone.reset();  // it is back, and busy: it has not said so yet
   return connection.gone;
 }

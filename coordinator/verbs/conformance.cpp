@@ -20,6 +20,7 @@
 #include "coordinator/conformance/clauses.hpp"
 #include "coordinator/conformance/wire_clauses.hpp"
 #include "coordinator/interrupt.hpp"
+#include "coordinator/solver_processes.hpp"
 #include "coordinator/trust.hpp"
 #include "coordinator/verbs/placed_scene.hpp"
 
@@ -77,7 +78,7 @@ Verdict kept(BodyTrial& trial, const Scene& scene, const Document& document, std
 
 /// The program of a body that this one starts; empty: somebody else does.
 std::string program_of(const BodyEntry& entry) {
-  if (std::holds_alternative<ConnectLaunch>(entry.launch)) return "";
+  if (may_run_elsewhere(entry)) return "";
   const SpawnLaunch* spawn = std::get_if<SpawnLaunch>(&entry.launch);
   const GroupLaunch* group = std::get_if<GroupLaunch>(&entry.launch);
   const std::string program = spawn != nullptr ? spawn->program : group->program;
@@ -92,7 +93,7 @@ void hold_wire(BodyTrial& trial, const Scene& scene, const Document& document, s
     return;
   const auto& [name, entry] = scene.bodies[b];
   const std::string program = program_of(entry);
-  if (program.empty()) verdicts.push_back({"wire", "", true, "somebody else starts the process"});
+  if (program.empty()) verdicts.push_back({"wire", "", true, "its process is not started here"});
   if (program.empty() || !held.insert(program).second) return;
   WireTrial::Solver solver{program,
                            name,

@@ -88,7 +88,7 @@ std::vector<FieldSize> field_sizes(const Scene& scene, const Placement& placemen
 }  // namespace
 
 Placement place(const Scene& scene, const Document& document, bool local,
-                const std::atomic<bool>& interrupted) {
+                const std::atomic<bool>& interrupted, const std::optional<Awaited>& awaited) {
   Placement placement;
   if (local) {
     refuse_external_bodies(scene, document);
@@ -97,6 +97,7 @@ Placement place(const Scene& scene, const Document& document, bool local,
   }
   LaunchOptions options;
   options.interrupted = &interrupted;
+  options.awaited = awaited;
   const Specification text{document.name(), document.text(), document.overrides_elsewhere(), ""};
   placement.launch = std::make_unique<Launch>(scene, text, options);
   placement.bodies = placement.launch->take_bodies();

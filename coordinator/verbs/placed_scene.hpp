@@ -40,9 +40,11 @@ struct Placement {
   }
 };
 
-/// Builds the bodies, in this process or in others. Throws InputError, RunError.
+/// Builds the bodies, in this process or in others; `awaited`: in those that somebody else starts.
+/// Throws InputError, RunError.
 Placement place(const Scene& scene, const Document& document, bool local,
-                const std::atomic<bool>& interrupted);
+                const std::atomic<bool>& interrupted,
+                const std::optional<Awaited>& awaited = std::nullopt);
 
 /// What is known of a scene beside its keys.
 struct Validated {

@@ -19,6 +19,7 @@
 #include "coordinator/controller.hpp"
 #include "coordinator/launch_local.hpp"
 #include "coordinator/metered_body.hpp"
+#include "coordinator/port_roles.hpp"
 #include "coordinator/record/closed_form_table.hpp"
 #include "coordinator/record/csv_history.hpp"
 #include "coordinator/record/event_log.hpp"
@@ -57,13 +58,9 @@ std::string against_closed_form(const ClosedForm* form, const Measures& measures
 
 using Processes = std::vector<std::vector<std::size_t>>;  // bodies of each
 
-/// Bodies that others start have one each.
 Processes processes_of(const Scene& scene) {
   Processes processes;
-  for (const SolverProcess& process : solver_processes(scene)) processes.push_back(process.bodies);
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    if (std::holds_alternative<ConnectLaunch>(scene.bodies[b].second.launch))
-      processes.push_back({b});
+  for (const SolverProcess& process : all_processes(scene)) processes.push_back(process.bodies);
   return processes;
 }
 
@@ -214,12 +211,16 @@ std::string resolved_text(const Scene& scene, const Document& document) {
 RunPlan plan_run(Document document, const RunOptions& options, const Interrupts& interrupts) {
   RunPlan plan{std::move(document), {}, {}, {}};
   plan.scene = read_all_keys(plan.document);
-  if (!options.local) {
+  if (options.awaited) {
+    assign_roles(plan.scene, plan.document, true);
+    check_awaited(*options.awaited, options.insecure);
+  } else if (!options.local) {
     check_processes(plan.scene, plan.document);
     check_programs(plan.scene, plan.document);
     check_endpoint(plan.scene, plan.document, options.insecure);
   }
-  plan.placement = place(plan.scene, plan.document, options.local, interrupts.at_once);
+  plan.placement =
+      place(plan.scene, plan.document, options.local, interrupts.at_once, options.awaited);
   plan.valid = validate_all(plan.scene, plan.document, plan.placement, !options.local);
   return plan;
 }

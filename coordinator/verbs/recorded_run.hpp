@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "base/awaited.hpp"
 #include "base/clock.hpp"
 #include "base/yaml_document.hpp"
 #include "coordinator/interrupt.hpp"
@@ -24,8 +25,9 @@ struct RunPlan {
 struct RunOptions {
   bool local = false;
   bool quiet = false;
-  bool insecure = false;  // bodies without keys may come from other machines
-  Clock::Time began;      // of the program
+  bool insecure = false;           // bodies without keys may come from other machines
+  Clock::Time began;               // of the program
+  std::optional<Awaited> awaited;  // absent: processes come to life as the scene says
 };
 
 /// Reads a scene, with all stages that follow, and places its bodies. Throws InputError, RunError.

@@ -87,6 +87,22 @@ class Runs(KeyTest):
         self.succeed(self.end(solver))
         self.assert_same(self.local("--set", "bodies.left.launch=spawn"))
 
+    def test_a_process_of_several_bodies_has_one_key(self):
+        self.make_keys("process-0")
+        scene = ROOT / "configs" / "two_bars.yaml"
+        shared = ["--set", "network.processes=1"]
+        run = self.start(ABUT, "run", scene, "--out", self.out, "--await", self.endpoint(),
+                         "--keys", self.keys, *shared)
+        self.assertIn(f"abut-solver --connect {self.endpoint()} --process process-0 --body left "
+                      "--body right --keys DIR", run.stderr.readline())
+        solver = self.start(SOLVER, "--connect", self.endpoint(), "--process", "process-0",
+                            "--body", "left", "--body", "right", "--keys", self.keys)
+        self.succeed(self.end(run))
+        self.succeed(self.end(solver))
+        folder = self.folder / "here"
+        self.succeed(self.abut("run", scene, "--local", "--out", folder))
+        self.assert_same(self.summary(folder))
+
     def test_a_folder_of_keys_counts_from_the_scene(self):
         self.make_keys("left", "right")
         scene = self.folder / "scenes" / "scene.yaml"
@@ -265,6 +281,21 @@ class Refusals(KeyTest):
         self.assert_ends(self.solver("middle"), 2, "middle.key_secret: cannot be read")
         run.terminate()
         self.end(run)
+
+    def test_processes_that_are_awaited_need_keys_or_the_users_word_as_well(self):
+        scene = ROOT / "configs" / "two_bars.yaml"
+        everywhere = f"tcp://0.0.0.0:{self.port}"
+        run = [ABUT, "run", scene, "--out", self.out, "--await", everywhere, "--patience", "0.5"]
+        self.assert_ends(self.start(*run), 2, f"--await: is {everywhere}, where whoever reaches it",
+                         "--keys keys")
+        self.assert_ends(self.start(*run, "--keys", self.keys), 2, f"abut keygen {self.keys}")
+        self.assertFalse(self.out.exists())
+        self.assert_ends(self.start(*run, "--insecure"), 3, "warning: --insecure: whoever reaches",
+                         "body 'left' did not connect")
+        self.assert_ends(self.start(*run, "--local"), 2, "--local")
+        for option in (["--keys", self.keys], ["--patience", "5"]):
+            self.assert_ends(self.start(ABUT, "run", scene, "--out", self.out, *option), 2,
+                             "--await")
 
     def test_other_machines_need_keys_or_the_users_word(self):
         scene = self.folder / "scene.yaml"

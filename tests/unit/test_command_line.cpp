@@ -38,6 +38,46 @@ TEST(CommandLine, NothingIsOpenToOtherMachinesUnlessSaid) {
   EXPECT_TRUE(std::get<ResumeCommand>(parsed({"resume", "d", "--insecure"})).insecure);
 }
 
+TEST(CommandLine, ProcessesOfOthersAreAwaitedWhereAnAddressIsGiven) {
+  EXPECT_FALSE(std::get<RunCommand>(parsed({"run", "a.yaml"})).awaited.has_value());
+  const Awaited run =
+      std::get<RunCommand>(parsed({"run", "a.yaml", "--await", "tcp://h:1", "--keys", "k"}))
+          .awaited.value();
+  EXPECT_EQ(run.endpoint, "tcp://h:1");
+  EXPECT_EQ(run.keys, "k");
+  EXPECT_EQ(run.patience, 60.0);
+  const Awaited resume =
+      std::get<ResumeCommand>(parsed({"resume", "d", "--await", "ipc:///s", "--patience", "5"}))
+          .awaited.value();
+  EXPECT_EQ(resume.endpoint, "ipc:///s");
+  EXPECT_TRUE(resume.keys.empty());
+  EXPECT_EQ(resume.patience, 5.0);
+  for (const std::vector<const char*>& wrong :
+       {std::vector<const char*>{"run", "a.yaml", "--keys", "k"},
+        {"run", "a.yaml", "--patience", "5"},
+        {"run", "a.yaml", "--await", "tcp://h:1", "--local"},
+        {"run", "a.yaml", "--await", "tcp://h:1", "--patience", "0"}})
+    EXPECT_EQ(std::get<PrintCommand>(parsed(wrong)).exit_code, 2);
+}
+
+TEST(CommandLine, JobsTakeTheirOptions) {
+  const SlurmCommand slurm = std::get<SlurmCommand>(
+      parsed({"slurm", "a.yaml", "-o", "job.sh", "--out", "d", "--sbatch=--time=1",
+              "--sbatch=--account=x", "--set", "a=1", "--force"}));
+  EXPECT_EQ(slurm.scene, "a.yaml");
+  EXPECT_EQ(slurm.script, "job.sh");
+  EXPECT_EQ(slurm.directory, "d");
+  EXPECT_EQ(slurm.options, (std::vector<std::string>{"--time=1", "--account=x"}));
+  EXPECT_EQ(slurm.overrides, std::vector<std::string>{"a=1"});
+  EXPECT_TRUE(slurm.force);
+  const KubernetesCommand kubernetes = std::get<KubernetesCommand>(
+      parsed({"kubernetes", "a.yaml", "-o", "d", "--image", "i", "--claim", "c"}));
+  EXPECT_EQ(kubernetes.out, "d");
+  EXPECT_EQ(kubernetes.image, "i");
+  EXPECT_EQ(kubernetes.claim, "c");
+  EXPECT_EQ(std::get<KubernetesCommand>(parsed({"kubernetes", "a.yaml"})).image, "abut:latest");
+}
+
 TEST(CommandLine, KeygenTakesAFolderAndBodies) {
   const KeygenCommand keygen = std::get<KeygenCommand>(parsed({"keygen", "d", "left", "right"}));
   EXPECT_EQ(keygen.directory, "d");

@@ -62,6 +62,35 @@ TEST(SolverProcesses, WhoHasAProcessOfItsOwnIsNotDealt) {
             "ae b c(p)");
 }
 
+TEST(SolverProcesses, OverSshAGroupIsOfItsHostAndUser) {
+  EXPECT_EQ(processes_of("  a: {launch: {ssh: n}}\n  b: {launch: {ssh: n}}\n"), "a b");
+  EXPECT_EQ(processes_of("  a: {launch: {ssh: {host: n, group: g}}}\n"
+                         "  b: {launch: {ssh: {host: n, group: g}}}\n"
+                         "  c: {launch: {ssh: {host: m, group: g}}}\n"
+                         "  d: {launch: {ssh: {host: n, user: u, group: g}}}\n"
+                         "  e: {launch: {group: g}}\n"),
+            "ab c d e");
+  const Scene scene =
+      read_scene(document("  a: {launch: {ssh: {host: n, program: /p}}}\n"
+                          "  b: {launch: spawn}\n"));
+  const std::vector<SolverProcess> processes = solver_processes(scene);
+  EXPECT_EQ(processes[0].ssh.value().destination(), "n");
+  EXPECT_FALSE(processes[1].ssh.has_value());
+  EXPECT_FALSE(starts_our_solver(scene.bodies[0].second));
+  EXPECT_TRUE(may_run_elsewhere(scene.bodies[0].second));
+}
+
+TEST(SolverProcesses, WhoeverConnectsComesAfterThoseThatAreStarted) {
+  const Scene scene =
+      read_scene(document("  a: {launch: connect}\n  b: {}\n  c: {}\n  d: {}\n", 2));
+  const std::vector<SolverProcess> all = all_processes(scene);
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(name_of_process(scene, all[0]), "process-1");  // of b and d
+  EXPECT_EQ(name_of_process(scene, all[1]), "c");
+  EXPECT_EQ(name_of_process(scene, all[2]), "a");
+  EXPECT_TRUE(all[2].connects && !all[0].connects);
+}
+
 TEST(SolverProcesses, ARunHasAtMost64) {
   for (const int count : {64, 65}) {
     std::string bodies;
