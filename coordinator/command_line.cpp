@@ -16,8 +16,9 @@ constexpr double longest_probe = 60.0;  // [s]
 constexpr int most_parts = 64;          // as many as processes of a run
 
 /// Verbs that are programs of their own beside this one.
-const std::array<std::pair<std::string, std::string>, 4> tools{{
+const std::array<std::pair<std::string, std::string>, 5> tools{{
     {"report", "make a page of a run: tables, figures, moving bodies"},
+    {"monitor", "show a run in a browser while it goes on"},
     {"film", "draw a run's bodies as they move: a GIF or MP4"},
     {"picture", "draw a run's bodies at one time: a PNG"},
     {"study", "run a scene with many settings: cost against accuracy"},
@@ -44,6 +45,11 @@ void add_overrides(CLI::App& verb, std::vector<std::string>& overrides) {
 void add_scene(CLI::App& verb, std::string& scene, std::vector<std::string>& overrides) {
   verb.add_option("scene", scene, "scene file")->required()->type_name("SCENE");
   add_overrides(verb, overrides);
+}
+
+void add_trace(CLI::App& verb, bool& trace) {
+  verb.add_flag("--trace", trace,
+                "write to DIR/trace.json what the time goes into, for Perfetto, chrome://tracing");
 }
 
 void add_insecure(CLI::App& verb, bool& insecure) {
@@ -88,6 +94,7 @@ CLI::App& add_run(CLI::App& app, RunCommand& run, AwaitWords& await) {
   verb.add_flag("--force", run.force, "replace the run that DIR holds");
   add_await(verb, await);
   add_insecure(verb, run.insecure);
+  add_trace(verb, run.trace);
   return verb;
 }
 
@@ -105,6 +112,7 @@ CLI::App& add_resume(CLI::App& app, ResumeCommand& resume, AwaitWords& await) {
   verb.add_flag("--quiet", resume.quiet, "print errors and failed expectations only");
   add_await(verb, await);
   add_insecure(verb, resume.insecure);
+  add_trace(verb, resume.trace);
   return verb;
 }
 

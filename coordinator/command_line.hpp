@@ -17,6 +17,7 @@ struct RunCommand {
   bool quiet = false;
   bool force = false;
   bool insecure = false;
+  bool trace = false;
   std::optional<Awaited> awaited;  // absent: processes come to life as the scene says
 };
 struct ResumeCommand {
@@ -27,6 +28,7 @@ struct ResumeCommand {
   bool local = false;
   bool quiet = false;
   bool insecure = false;
+  bool trace = false;
   std::optional<Awaited> awaited;
 };
 struct KeygenCommand {

@@ -121,6 +121,7 @@ bool Controller::wants_accelerations() const {
 }
 
 void Controller::start() {
+  const SpanScope span(bodies_.spans(), "start");
   if (!staged_) {
     introduce();
     narrator_.start(scene_.time.begin, scene_.time.end, joints_, !broad_phase_.empty());
@@ -197,6 +198,8 @@ bool Controller::fly_free() {
   if (windows < 1) return false;
   const TimeWindow flight = clock_.flight(windows);
   bodies_.save_all();
+  SpanScope span(bodies_.spans(), "flight", clock_.windows());
+  span.covers(flight.begin, flight.end);
   prepare(flight, windows * scene_.output.records_per_window, Sampling::records);
   if (std::optional<Failed> failed = bodies_.advance_all()) {
     if (windows == 1) {
@@ -234,12 +237,17 @@ TimeWindow Controller::next_window() {
 void Controller::step_window() {
   TimeWindow window = next_window();
   if (must_go_passively(window)) return step_passively();
+  SpanScope span(bodies_.spans(), "window", clock_.windows());
+  span.covers(window.begin, window.end);
   events_.begin(window);
   bodies_.save_all();
   while (goes_on()) {
     try_window(window);
     const Judgement judgement = judge(window);
-    if (judgement.verdict == Judgement::Verdict::accept) return accept(window);
+    if (judgement.verdict == Judgement::Verdict::accept) {
+      span.covers(window.begin, window.end);
+      return accept(window);
+    }
     if (judgement.verdict == Judgement::Verdict::fail) {
       bodies_.restore_all();
       if (judgement.final || !go_passively(window.begin, judgement.reason))

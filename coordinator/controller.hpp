@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -64,6 +65,9 @@ class Controller {
   /// The same of the run whose end is the begin of this stage: it begins as a scene does, where
   /// bodies stand, and with those that have met.
   void load_end(std::span<const std::byte> bytes);
+  /// Who is told what the run's time goes into: "window", "flight", "island" and so on.
+  void tell_spans(SpanSink sink) { bodies_.tell_spans(std::move(sink)); }
+  const SpanSink& spans() const { return bodies_.spans(); }
   /// Whether bodies are in their passive forms.
   bool passive() const { return passive_.active(); }
   /// Called by `run` before every window or flight, and after the last one of a run that has not

@@ -65,6 +65,7 @@ void Controller::tell_losses(const GivenUp& given_up) {
 }
 
 RunEnd Controller::finish(double wall_seconds) {
+  const SpanScope span(bodies_.spans(), "end");
   end_.time = clock_.time();
   end_.windows = clock_.windows();
   end_.wall_seconds = wall_seconds;

@@ -110,6 +110,8 @@ bool Controller::go_passively(double time, const std::string& reason) {
 void Controller::step_passively() {
   if (!goes_on()) return;
   const TimeWindow window = clock_.next();
+  SpanScope span(bodies_.spans(), "passive window", clock_.windows());
+  span.covers(window.begin, window.end);
   for (Joint& joint : joints_)  // some came near since
     if (joint.exchange != nullptr && !joint.exchange->met())
       joint.exchange->introduce(joint, bodies_);

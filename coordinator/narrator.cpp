@@ -41,6 +41,7 @@ void Narrator::start(double begin, double end, std::span<const Joint> joints, bo
 void Narrator::state(Archive& archive) { whole(archive, "told_passive", told_passive_); }
 
 void Narrator::window(const WindowReport& report) {
+  const SpanScope span(bodies_.spans(), "records");
   for (Observer* observer : observers_) observer->on_window(report);
 }
 

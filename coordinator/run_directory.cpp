@@ -29,11 +29,12 @@ constexpr const char* scene_file = "scene.resolved.yaml";  // written first, rem
 constexpr const char* summary_file = "summary.json";       // either tells of a run
 constexpr const char* list_of_fields = "fields.pvd";
 constexpr const char* state_of_paraview = "fields.pvsm";
-constexpr std::array<const char*, 5> of_its_end{summary_file, "report.html", "film.mp4", "film.gif",
-                                                "picture.png"};
-constexpr std::array<const char*, 9> of_its_way{
+constexpr const char* trace_file = "trace.json";
+constexpr std::array<const char*, 6> of_its_end{summary_file, "report.html", "film.mp4",
+                                                "film.gif",   "picture.png", "progress.json"};
+constexpr std::array<const char*, 10> of_its_way{
     "history.csv",     "closed_form.csv",  "events.jsonl",        list_of_fields, state_of_paraview,
-    latest_checkpoint, earlier_checkpoint, unfinished_checkpoint, scene_file};
+    latest_checkpoint, earlier_checkpoint, unfinished_checkpoint, trace_file,     scene_file};
 
 std::vector<const char*> run_files() {
   std::vector<const char*> all(of_its_end.begin(), of_its_end.end());
@@ -165,6 +166,14 @@ bool RunDirectory::has_checkpoint() const {
 
 void RunDirectory::go_on() {
   for (const char* name : of_its_end) remove(name);
+}
+
+fs::path RunDirectory::new_trace() {
+  const fs::file_status status = status_of(path_ / trace_file);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    refuse(path_, fmt::format("holds {}, which is no file of a run", trace_file));
+  remove(trace_file);
+  return path_ / trace_file;
 }
 
 void RunDirectory::remove(const char* name) {

@@ -28,8 +28,12 @@ class RunDirectory {
   /// Takes out the files of an earlier run, so that none is taken for the new one's. Throws
   /// InputError.
   void clear();
-  /// Takes out what an earlier end of this run has left: summary, page, films. Throws InputError.
+  /// Takes out what an earlier end of this run has left: summary, page, films, progress. Throws
+  /// InputError.
   void go_on();
+  /// Where the program's wall time is told; what an earlier program of this run told is taken out.
+  /// Throws InputError.
+  std::filesystem::path new_trace();
   /// The run never begins: takes the directory away again if it was made here and is empty.
   void abandon();
 

@@ -5,10 +5,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/archive.hpp"
 #include "base/index.hpp"
+#include "base/span.hpp"
 #include "contract/subdomain.hpp"
 
 namespace abut {
@@ -53,6 +55,10 @@ class Bodies {
   const PortPose& pose(const Side& side) const;
   /// Whether the latest responses are of an attempt that was taken back.
   bool taken_back() const { return taken_back_; }
+
+  /// Who is told what the run's time goes into; empty: nobody.
+  void tell_spans(SpanSink sink) { spans_ = std::move(sink); }
+  const SpanSink& spans() const { return spans_; }
 
   /// Counts meetings of pairs of sides.
   int next_meeting() { return meetings_++; }
@@ -144,6 +150,7 @@ class Bodies {
   std::int64_t exchanges_ = 0;
   std::vector<double> compute_seconds_;
   std::vector<float> overhead_;
+  SpanSink spans_;
 };
 
 }  // namespace abut

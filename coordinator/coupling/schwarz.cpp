@@ -1,7 +1,9 @@
 #include "coordinator/coupling/schwarz.hpp"
 
+#include <string>
 #include <utility>
 
+#include "base/span.hpp"
 #include "coordinator/coupling/state_fields.hpp"
 
 namespace abut {
@@ -20,16 +22,26 @@ void restore(const Island& island, Bodies& bodies) {
     for (const int body : level) bodies[body].restore();
 }
 
+std::string names_of(const Island& island, const Bodies& bodies) {
+  std::string names;
+  for (const std::vector<int>& level : island.levels)
+    for (const int body : level) names += (names.empty() ? "" : ", ") + bodies.describe(body).name;
+  return names;
+}
+
 }  // namespace
 
 std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, const Island& island,
                                                    std::span<const Joint> joints, Bodies& bodies) {
+  SpanScope span(bodies.spans(), "island");
+  if (span.heard()) span.label(names_of(island, bodies));
   const auto& [accelerator, net] = memory_of(island.joints);
   net->begin(window, island, joints, bodies);
   for (Eigen::VectorXd* v : {&it_.x, &it_.g, &it_.s}) v->resize(net->size());
   Steps steps(*net, *accelerator, steps_, bodies);
   if (std::optional<Failed> failed = net->predict(it_.x, bodies)) return *failed;
   for (it_.sweep = 1;; ++it_.sweep) {
+    SpanScope iteration(bodies.spans(), "iteration", it_.sweep);
     if (std::optional<Failed> failed = sweep(*net, bodies)) {
       if (!steps.back(it_)) return *failed;
     } else {

@@ -12,6 +12,7 @@ void BodyMeter::start() {
 
 void BodyMeter::finish(std::size_t body, double computed) {
   computed_[body] = computed;
+  ++calls_[body];
   if (--under_way_ > 0) return;
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - began_;
   double together = 0.0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 
 #include "base/log.hpp"
 #include "coordinator/record/shares.hpp"
@@ -14,7 +15,6 @@ namespace abut {
 
 namespace {
 
-constexpr std::size_t most_samples = 2000;
 constexpr std::size_t named_bodies = 2;  // the line is to fit a terminal
 constexpr std::size_t most_columns = 99;
 
@@ -38,14 +38,12 @@ void ProgressLine::on_start(const RunStart& start) {
 }
 
 void ProgressLine::on_window(const WindowReport& report) {
+  if (std::exchange(first_, false)) remaining_.start(part_of(report.window.begin));
   const Clock::Time now = clock_.now();
   if (now < next_) return;
   const double wall = seconds(now - began_);
   const std::string line = text(report, wall);
-  samples_.push_back({wall, part_of(report.window.end)});
-  if (samples_.size() > most_samples)  // every other one of them is enough
-    for (std::size_t k = 0; k < samples_.size(); ++k)
-      samples_.erase(samples_.begin() + static_cast<std::ptrdiff_t>(k));
+  remaining_.add(wall, part_of(report.window.end));
   if (!terminal_) {
     next_ = now + interval(wall);
     return log_info(line);
@@ -56,21 +54,13 @@ void ProgressLine::on_window(const WindowReport& report) {
   shown_ = true;
 }
 
-/// As fast as in the last half of the time, for which early windows no longer count.
-std::string ProgressLine::left(const Sample& now) const {
-  const auto at = std::ranges::lower_bound(samples_, 0.5 * now.wall, {}, &Sample::wall);
-  const Sample from = at == samples_.end() ? Sample{} : *at;
-  const double rate = (now.part - from.part) / (now.wall - from.wall);
-  if (!(rate > 0.0) || !(now.wall > 1.0)) return "";
-  return fmt::format("  {} left", time_words((1.0 - now.part) / rate));
-}
-
 std::string ProgressLine::text(const WindowReport& report, double wall) const {
   const double part = part_of(report.window.end);
+  const std::optional<double> left = remaining_.left(wall, part);
   const std::string contacts =
       closed_ == 0 ? "free" : fmt::format("{} contact{}", closed_, closed_ == 1 ? "" : "s");
   return fmt::format("{:5.1f} %  time {:.4e} {}{}  {}  {}", 100.0 * part, report.window.end,
-                     second_, left({wall, part}), contacts,
+                     second_, left ? fmt::format("  {} left", time_words(*left)) : "", contacts,
                      shares_words(shares_of(waited_, wall), bodies_, named_bodies));
 }
 

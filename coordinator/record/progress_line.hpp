@@ -8,6 +8,7 @@
 
 #include "base/clock.hpp"
 #include "coordinator/record/observer.hpp"
+#include "coordinator/record/remaining_time.hpp"
 
 namespace abut {
 
@@ -33,11 +34,7 @@ class ProgressLine : public Observer {
   void on_end(const RunEnd& end) override;
 
  private:
-  struct Sample {                   // of the way so far
-    double wall = 0.0, part = 0.0;  // [s] since the start, and of all the scene's time from 0 to 1
-  };
   std::string text(const WindowReport& report, double wall) const;
-  std::string left(const Sample& now) const;
   double part_of(double time) const { return (time - begin_) / (end_ - begin_); }
   void erase();
 
@@ -49,8 +46,9 @@ class ProgressLine : public Observer {
   Clock::Time began_{}, next_{};
   double begin_ = 0.0, end_ = 0.0;   // [s] of the run
   std::vector<std::string> bodies_;  // names
-  std::vector<Sample> samples_;      // ascending
-  std::int64_t closed_ = 0;          // contacts, as events tell them
+  RemainingTime remaining_;
+  bool first_ = true;        // no window has ended yet
+  std::int64_t closed_ = 0;  // contacts, as events tell them
 };
 
 }  // namespace abut

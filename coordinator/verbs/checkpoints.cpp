@@ -82,6 +82,7 @@ void Checkpoints::look(const Pause& pause, Controller& controller) {
 }
 
 void Checkpoints::write(const Pause& pause, Controller& controller) {
+  const SpanScope span(controller.spans(), "checkpoint");
   Checkpoint kept;
   kept.version = build_info.version;
   kept.scene = keeping_.scene;

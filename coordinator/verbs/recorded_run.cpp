@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -25,8 +26,10 @@
 #include "coordinator/record/event_log.hpp"
 #include "coordinator/record/expectations.hpp"
 #include "coordinator/record/measure_recorder.hpp"
+#include "coordinator/record/progress_file.hpp"
 #include "coordinator/record/progress_line.hpp"
 #include "coordinator/record/run_table.hpp"
+#include "coordinator/record/span_file.hpp"
 #include "coordinator/record/summary.hpp"
 #include "coordinator/record/vtk_fields.hpp"
 #include "coordinator/solver_processes.hpp"
@@ -64,6 +67,38 @@ Processes processes_of(const Scene& scene) {
   return processes;
 }
 
+/// Those that this program has started.
+std::vector<ProgressFile::Process> started(const RunPlan& plan) {
+  std::vector<ProgressFile::Process> all;
+  if (!plan.placement.launch) return all;
+  const std::vector<SolverProcess> processes = solver_processes(plan.scene);
+  const std::vector<std::int64_t> ids = plan.placement.launch->process_ids();
+  for (std::size_t p = 0; p < std::min(ids.size(), processes.size()); ++p)
+    all.push_back({ids[p], processes[p].bodies});
+  return all;
+}
+
+ProgressFile::Heading progress_heading(const RunPlan& plan, const RunOptions& options, bool more) {
+  return {plan.scene.meta.title, declared_units(plan.scene.units), options.local, started(plan),
+          more};
+}
+
+/// Tells the file of spans who the bodies are, and the controller who listens.
+void trace(SpanFile* spans, const RunPlan& plan, const RunOptions& options,
+           Controller& controller) {
+  if (spans == nullptr) return;
+  std::vector<std::string> names;
+  for (const Description* body : plan.placement.descriptions()) names.push_back(body->name);
+  std::vector<int> of(names.size(), -1);
+  if (!options.local) {
+    const Processes processes = processes_of(plan.scene);
+    for (std::size_t p = 0; p < processes.size(); ++p)
+      for (const std::size_t b : processes[p]) of[b] = static_cast<int>(p);
+  }
+  spans->begin(names, of);
+  controller.tell_spans([spans](const Span& span) { spans->tell(span); });
+}
+
 /// The result for people; 0, or 1 when an expectation or the run failed.
 int report(const RunPlan& plan, const RunOptions& options, const fs::path& directory,
            const Measures& measures, const RunEnd& end, const RunTable& table,
@@ -87,6 +122,7 @@ int report(const RunPlan& plan, const RunOptions& options, const fs::path& direc
     fmt::print("{}", table.times(waited, options.local ? Processes() : processes_of(scene)));
     if (end.state_hash) fmt::print("state  {:016x}\n", *end.state_hash);
     fmt::print("files  {0}\nplots  abut report {0}\n", directory.string());
+    if (options.trace) fmt::print("trace  {}/trace.json\n", directory.string());
     if (scene.output.field_output) fmt::print("fields {}/fields.pvd\n", directory.string());
     if (kept && status != "completed")
       fmt::print("go on  abut resume {}, from {:.6g} s\n", directory.string(), *kept);
@@ -138,14 +174,16 @@ struct StageEnd {
 
 /// One stage. `more`: another one follows, and tells of the end.
 StageEnd record_stage(RunPlan& plan, const RunOptions& options, const fs::path& directory,
-                      const Interrupts& interrupts, const Checkpoint* from, bool more) {
+                      const Interrupts& interrupts, const Checkpoint* from, bool more,
+                      SpanFile* spans) {
   const Scene& scene = plan.scene;
   Placement& placement = plan.placement;
   const UnitSystem& units = plan.document.units();
   const SystemClock clock;
   const ClosedForm* form = plan.valid.form ? &*plan.valid.form : nullptr;
   BodyMeter meter(placement.bodies.size());
-  const std::vector<std::unique_ptr<Subdomain>> bodies = metered(placement.pointers(), meter);
+  const std::vector<std::unique_ptr<Subdomain>> bodies =
+      metered(placement.pointers(), meter, spans);
   MeasureRecorder recorder(form, scene.output.force_filter, scene.output.steady_after);
   CsvHistory history(directory, form, units, opening_of(from, "history"));
   EventLog events(directory, opening_of(from, "events"));
@@ -155,15 +193,19 @@ StageEnd record_stage(RunPlan& plan, const RunOptions& options, const fs::path& 
                   recorder, form);
   ProgressLine progress(clock, isatty(STDERR_FILENO) == 1 && !options.quiet, meter.waited_seconds(),
                         units.word("s"));
+  ProgressFile to_monitor(directory, progress_heading(plan, options, more), meter, clock);
   RunTable table;
-  std::vector<Observer*> observers{&recorder, &history, &events, &progress, &table, &summary};
+  std::vector<Observer*> observers{&recorder, &history, &events,    &progress,
+                                   &table,    &summary, &to_monitor};
   std::optional<VtkFields> fields;
   if (const std::optional<FieldOutputSpec>& wanted = scene.output.field_output)
     observers.push_back(&fields.emplace(directory, placement.pointers(), wanted->every,
                                         opening_of(from, "fields")));
+  if (spans != nullptr) observers.push_back(spans);
   std::vector<Subdomain*> pointers;
   for (const std::unique_ptr<Subdomain>& body : bodies) pointers.push_back(body.get());
   Controller controller(scene, pointers, observers, &interrupts.asked);
+  trace(spans, plan, options, controller);
   Checkpoints checkpoints(
       {directory, scene.output.checkpoint, more, resolved_text(scene, plan.document)}, pointers,
       observers, clock);
@@ -229,12 +271,15 @@ int record_run(RunPlan plan, const RunOptions& options, RunDirectory& held,
                const Interrupts& interrupts, std::optional<Checkpoint> from) {
   std::vector<std::string> warnings;
   Restarts restarts;
+  std::optional<SpanFile> spans;
+  if (options.trace) spans.emplace(held.new_trace());
   for (;;) {
     std::optional<Document> next = plan.document.next_stage();
     bool lost = false;
     try {
-      const StageEnd end = record_stage(plan, options, held.path(), interrupts,
-                                        from ? &*from : nullptr, next.has_value());
+      const StageEnd end =
+          record_stage(plan, options, held.path(), interrupts, from ? &*from : nullptr,
+                       next.has_value(), spans ? &*spans : nullptr);
       if (!end.completed || !next) return end.code;
     } catch (const LostBody& error) {
       const bool restarts_it = plan.scene.network.on_lost_body == OnLostBody::restart;

@@ -68,6 +68,8 @@ void check_time(const Checkpoint& from, const Scene& scene, const std::string& d
 }  // namespace
 
 int resume_verb(const ResumeCommand& command) {
+  const RunOptions options{command.local, command.quiet, command.insecure, command.trace,
+                           SystemClock().now()};
   const RunOptions options{command.local, command.quiet, command.insecure, SystemClock().now(),
                            command.awaited};
   start_log("abut", command.quiet ? LogLevel::error : LogLevel::info);

@@ -16,6 +16,8 @@ namespace abut {
 namespace fs = std::filesystem;
 
 int run_verb(const RunCommand& command) {
+  const RunOptions options{command.local, command.quiet, command.insecure, command.trace,
+                           SystemClock().now()};
   const RunOptions options{command.local, command.quiet, command.insecure, SystemClock().now(),
                            command.awaited};
   start_log("abut", command.quiet ? LogLevel::error : LogLevel::info);
