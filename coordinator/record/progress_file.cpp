@@ -15,7 +15,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "base/unit_words.hpp"
+#include "coordinator/record/run_facts.hpp"
 #include "coordinator/record/text_file.hpp"
 
 namespace abut {
@@ -71,10 +71,9 @@ double ProgressFile::wall() const {
 void ProgressFile::on_start(const RunStart& start) {
   begin_ = start.begin;
   end_ = start.end;
-  for (const Description* body : start.bodies) {
-    bodies_.push_back(body->name);
-    models_.push_back(quantities_in(heading_.units, body->model));
-  }
+  bodies_.clear();
+  for (const Description* body : start.bodies) bodies_.push_back(body->name);
+  facts_ = facts(start);
   began_ = clock_.now();
   write(start.begin);
 }
@@ -109,29 +108,14 @@ void ProgressFile::write(double reached) {
   }
 }
 
-std::string ProgressFile::text(double reached, double wall) const {
-  const std::optional<double> left = remaining_.left(wall, part_of(reached));
+/// All members of an object, without its brackets.
+std::string ProgressFile::facts(const RunStart& start) const {
   Json json = {{"title", heading_.title}};
   if (!heading_.units.empty()) json["units"] = heading_.units;
   json["opened"] = opened_;
-  json["written"] = since_1970();
-  json["time"] = {{"begin", begin_}, {"end", end_}, {"reached", reached}};
-  json["wall_s"] = wall;
-  json["left_s"] = left && std::isfinite(*left) ? Json(*left) : Json(nullptr);
-  json["windows"] = windows_;
-  json["in_contact"] = closed_;
-  json["iterations"] = iterations_;
-  std::int64_t calls = 0;
-  Json bodies = Json::array();
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    calls += meter_.calls()[b];
-    bodies.push_back({{"name", bodies_[b]},
-                      {"model", models_[b]},
-                      {"exchanges", meter_.calls()[b]},
-                      {"waited_s", meter_.waited_seconds()[b]}});
-  }
-  json["exchanges"] = calls;
-  json["bodies"] = std::move(bodies);
+  json["bodies"] = bodies_json(start, heading_.units);
+  json["ports"] = ports_json(start);
+  json["interfaces"] = interfaces_json(start);
   json["local"] = heading_.local;
   json["machine"] = {{"boot", boot_}, {"process_ids", space_}};
   json["program"] = {{"id", getpid()}, {"began", since_[0]}};
@@ -141,7 +125,30 @@ std::string ProgressFile::text(double reached, double wall) const {
     for (const std::size_t b : heading_.processes[p].bodies) entry["bodies"].push_back(bodies_[b]);
     json["processes"].push_back(std::move(entry));
   }
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text.substr(1, text.size() - 2);
+}
+
+std::string ProgressFile::text(double reached, double wall) const {
+  const std::optional<double> left = remaining_.left(wall, part_of(reached));
+  Json json;
+  json["written"] = since_1970();
+  json["time"] = {{"begin", begin_}, {"end", end_}, {"reached", reached}};
+  json["wall_s"] = wall;
+  json["left_s"] = left && std::isfinite(*left) ? Json(*left) : Json(nullptr);
+  json["windows"] = windows_;
+  json["in_contact"] = closed_;
+  json["iterations"] = iterations_;
+  std::int64_t calls = 0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    calls += meter_.calls()[b];
+    json["of_bodies"][bodies_[b]] = {{"exchanges", meter_.calls()[b]},
+                                     {"waited_s", meter_.waited_seconds()[b]}};
+  }
+  json["exchanges"] = calls;
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.pop_back();
+  return text + ",\n" + facts_ + "}\n";
 }
 
 }  // namespace abut

@@ -40,6 +40,7 @@ class ProgressFile : public Observer {
   void on_end(const RunEnd& end) override;
 
  private:
+  std::string facts(const RunStart& start) const;
   std::string text(double reached, double wall) const;
   double part_of(double time) const { return (time - begin_) / (end_ - begin_); }
   double wall() const;
@@ -53,7 +54,8 @@ class ProgressFile : public Observer {
   std::vector<std::string> since_;  // of this process, then of the others: when it began
   double opened_ = 0.0;             // [s] since 1970
   double begin_ = 0.0, end_ = 0.0;  // [s] of the run
-  std::vector<std::string> bodies_, models_;
+  std::vector<std::string> bodies_;  // names
+  std::string facts_;                // in JSON: what does not change
   std::int64_t windows_ = 0, closed_ = 0;
   int iterations_ = 0;
   Clock::Time began_{}, next_{};

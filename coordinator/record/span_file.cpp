@@ -28,7 +28,7 @@ std::string json_text(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-std::string json_number(double value) {
+std::string finite_text(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "null";
 }
 
@@ -108,7 +108,7 @@ void SpanFile::tell(const Span& span) noexcept {
     if (span.number >= 0) arguments += fmt::format(",\"number\":{}", span.number);
     if (span.to > span.from)
       arguments +=
-          fmt::format(",\"from_s\":{},\"to_s\":{}", json_number(span.from), json_number(span.to));
+          fmt::format(",\"from_s\":{},\"to_s\":{}", finite_text(span.from), finite_text(span.to));
     if (!span.label.empty()) arguments += ",\"of\":" + json_text(span.label);
     if (is_window(span.what) && every_ > 1) arguments += fmt::format(",\"one_of\":{}", every_);
     if (is_outer(span.what) && cut_) arguments += ",\"told_in_part\":true";
@@ -220,7 +220,7 @@ void SpanFile::on_event(const RunEvent& event) {
                  ",\n{{\"name\":{},\"ph\":\"i\",\"s\":\"t\",\"ts\":{:.3f},\"pid\":1,\"tid\":1,"
                  "\"args\":{{\"time_s\":{},\"text\":{}}}}}",
                  json_text(std::string(to_string(event.kind)) + " " + event.subject), now,
-                 json_number(event.time), json_text(event.text));
+                 finite_text(event.time), json_text(event.text));
 }
 
 void SpanFile::on_end(const RunEnd&) {

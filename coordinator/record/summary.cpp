@@ -12,7 +12,7 @@
 #include "base/unit_words.hpp"
 #include "coordinator/record/expectations.hpp"
 #include "coordinator/record/given_up_words.hpp"
-#include "coordinator/record/recorded_bodies.hpp"
+#include "coordinator/record/run_facts.hpp"
 #include "coordinator/record/text_file.hpp"
 #include "coordinator/record/validity_notes.hpp"
 
@@ -21,11 +21,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json measures_object(const Measures& measures, Json& notes) {
   std::vector<std::pair<std::string, Json>> object;  // taken as it is: no search for each name
-  for (const auto& [name, value] : measures.values) object.emplace_back(name, number(value));
+  for (const auto& [name, value] : measures.values) object.emplace_back(name, json_number(value));
   for (const auto& [name, why] : measures.notes) notes.push_back(name + ": " + why);
   return Json::object_t(object.begin(), object.end());
 }
@@ -39,7 +37,7 @@ Json expectations_array(const std::vector<Expectation>& expectations, const Meas
       const ExpectationResult result = evaluate({expectation}, measures).front();
       array.push_back({{"measure", result.measure},
                        {"expected", result.expected},
-                       {"got", number(result.got)},
+                       {"got", json_number(result.got)},
                        {"pass", result.pass},
                        {"because", result.because}});
     } catch (const InputError& error) {
@@ -75,95 +73,47 @@ Json closed_form_object(const ClosedForm& form) {
   for (int b = 0; b < row.bars(); ++b) {
     Json& body = object["bodies"][form.bodies[b]];
     body["wall"] = row.bar(b).wall;
-    body["mean_velocity_end"] = number(row.mean_velocity(b, row.end()));
-    body["total_begin"] = number(row.total(b, row.begin()));
-    body["total_end"] = number(row.total(b, row.end()));
-  }
-  return object;
-}
-
-Json bodies_array(const RunStart& start, const std::map<std::string, std::string>& units) {
-  Json array = Json::array();
-  for (const Description* body : start.bodies) {
-    Json entry = {{"name", body->name},
-                  {"model", quantities_in(units, body->model)},
-                  {"dofs", body->dofs},
-                  {"mass", number(body->mass)},
-                  {"step", number(body->step)}};
-    if (std::isinf(body->mass)) entry["immovable"] = true;
-    for (const double hertz : body->frequencies) entry["frequencies_hz"].push_back(number(hertz));
-    for (const Member& member : body->members)
-      entry["members"].push_back({{"name", member.name}, {"mass", number(member.mass)}});
-    array.push_back(entry);
-  }
-  return array;
-}
-
-/// Where the ports of 1D bodies are: turns displacements and forces of the history into positions
-/// and compression.
-Json ports_object(const RunStart& start) {
-  Json object = Json::object();
-  const std::vector<RecordedBody> recorded = recorded_bodies(start.bodies);
-  for (std::size_t b = 0; b < start.bodies.size(); ++b) {
-    const Description& body = *start.bodies[b];
-    for (std::size_t p = 0; p < body.ports.size(); ++p) {
-      const PortGeometry& geometry = body.ports[p].geometry;
-      if (geometry.dim != 1 || geometry.count() != 1) continue;
-      const int on = recorded_body_of(start.bodies, static_cast<int>(b), static_cast<int>(p));
-      object[body.name + "." + body.ports[p].name] = {{"position", number(geometry.points[0])},
-                                                      {"normal", number(geometry.normals[0])},
-                                                      {"body", recorded[on].name}};
-    }
-  }
-  return object;
-}
-
-Json interfaces_object(const RunStart& start) {
-  Json object = Json::object();
-  for (const InterfaceInfo& info : start.interfaces) {
-    if (info.many) object[info.name]["sides"] = Json::array();
-    object[info.name]["tied"] = info.tied;
-    for (const int side : {0, 1}) {
-      if (info.many) continue;
-      const Description& body = *start.bodies[info.body[side]];
-      object[info.name]["sides"].push_back(body.name + "." + body.ports[info.port[side]].name);
-    }
+    body["mean_velocity_end"] = json_number(row.mean_velocity(b, row.end()));
+    body["total_begin"] = json_number(row.total(b, row.begin()));
+    body["total_end"] = json_number(row.total(b, row.end()));
   }
   return object;
 }
 
 /// [J] that the errors of energies are relative to; for pages of curves.
 Json energy_scales_object(const Measures& measures) {
-  Json object = {{"total", number(measures.total_energy_scale)}, {"bodies", Json::object()}};
-  for (const auto& [body, scale] : measures.energy_scales) object["bodies"][body] = number(scale);
+  Json object = {{"total", json_number(measures.total_energy_scale)}, {"bodies", Json::object()}};
+  for (const auto& [body, scale] : measures.energy_scales)
+    object["bodies"][body] = json_number(scale);
   return object;
 }
 
 Json timing_object(const RunEnd& end, const RunStart& start, const std::vector<double>* waited) {
-  Json timing = {{"wall_s", number(end.wall_seconds)}, {"compute_s", Json::object()}};
+  Json timing = {{"wall_s", json_number(end.wall_seconds)}, {"compute_s", Json::object()}};
   for (std::size_t b = 0; b < std::min(start.bodies.size(), end.compute_seconds.size()); ++b)
-    timing["compute_s"][start.bodies[b]->name] = number(end.compute_seconds[b]);
+    timing["compute_s"][start.bodies[b]->name] = json_number(end.compute_seconds[b]);
   double coupling = end.wall_seconds;
   for (std::size_t b = 0; waited != nullptr && b < start.bodies.size(); ++b) {
-    timing["waited_s"][start.bodies[b]->name] = number((*waited)[b]);
+    timing["waited_s"][start.bodies[b]->name] = json_number((*waited)[b]);
     coupling -= (*waited)[b];
   }
-  if (waited != nullptr) timing["coupling_s"] = number(std::max(0.0, coupling));
-  timing["overhead_per_exchange_us_median"] = number(1e6 * end.overhead_median_seconds);
+  if (waited != nullptr) timing["coupling_s"] = json_number(std::max(0.0, coupling));
+  timing["overhead_per_exchange_us_median"] = json_number(1e6 * end.overhead_median_seconds);
   return timing;
 }
 
 Json estimate_object(const Estimate& estimate) {
   Json bodies = Json::object();
   for (const Estimate::Body& body : estimate.bodies) {
-    bodies[body.name] = {
-        {"dofs", body.dofs}, {"substeps", body.substeps}, {"memory_mib", number(body.memory_mib)}};
+    bodies[body.name] = {{"dofs", body.dofs},
+                         {"substeps", body.substeps},
+                         {"memory_mib", json_number(body.memory_mib)}};
   }
   Json kernels = Json::object();
   for (const Estimate::Kernel& kernel : estimate.kernels) {
     kernels[kernel.interface] = {{"points", kernel.points},
                                  {"points_that_fit", kernel.points_that_fit},
-                                 {"memory_mib", number(kernel.memory_mib)}};
+                                 {"memory_mib", json_number(kernel.memory_mib)}};
   }
   Json ties = Json::array();
   for (const Estimate::Ties& net : estimate.ties) {
@@ -173,7 +123,7 @@ Json estimate_object(const Estimate& estimate) {
     ties.push_back({{"rows", rows},
                     {"calls", {low, high ? Json(*high) : Json(nullptr)}},
                     {"banded", net.banded},
-                    {"memory_mib", number(net.memory_mib)},
+                    {"memory_mib", json_number(net.memory_mib)},
                     {"probes", net.probes}});
   }
   return {{"windows", estimate.windows},
@@ -192,9 +142,9 @@ Json overlaps_array(const RunEnd& end, const RunStart& start) {
     const Description &one = *start.bodies[overlap.body[0]],
                       &other = *start.bodies[overlap.body[1]];
     Json entry = {{"bodies", {one.name, other.name}},
-                  {"depth", number(overlap.depth)},
-                  {"time", number(overlap.time)}};
-    for (int i = 0; i < one.dim; ++i) entry["place"].push_back(number(overlap.place[i]));
+                  {"depth", json_number(overlap.depth)},
+                  {"time", json_number(overlap.time)}};
+    for (int i = 0; i < one.dim; ++i) entry["place"].push_back(json_number(overlap.place[i]));
     array.push_back(entry);
   }
   return array;
@@ -203,7 +153,7 @@ Json overlaps_array(const RunEnd& end, const RunStart& start) {
 Json by_body(const std::vector<double>& values, const RunStart& start) {
   Json object = Json::object();
   for (std::size_t b = 0; b < values.size(); ++b)
-    if (values[b] != 0.0) object[start.bodies[b]->name] = number(values[b]);
+    if (values[b] != 0.0) object[start.bodies[b]->name] = json_number(values[b]);
   return object;
 }
 
@@ -217,16 +167,16 @@ Json given_up_object(const RunEnd& end, const RunStart& start,
                  {"passive_steps", up.steps},
                  {"refused_steps", up.refused},
                  {"held_rigid", up.rigid},
-                 {"shortest_step", number(up.shortest_step)},
-                 {"joules", number(up.joules())},
-                 {"largest_energy", number(up.largest)},
-                 {"normal", number(up.normal)},
-                 {"friction", number(up.friction)},
-                 {"damped", number(up.damped)},
-                 {"changes_of_form", number(up.switched)},
-                 {"push_out", number(up.push_out)},
-                 {"repaid", number(up.repaid)},
-                 {"deepest", number(up.deepest)},
+                 {"shortest_step", json_number(up.shortest_step)},
+                 {"joules", json_number(up.joules())},
+                 {"largest_energy", json_number(up.largest)},
+                 {"normal", json_number(up.normal)},
+                 {"friction", json_number(up.friction)},
+                 {"damped", json_number(up.damped)},
+                 {"changes_of_form", json_number(up.switched)},
+                 {"push_out", json_number(up.push_out)},
+                 {"repaid", json_number(up.repaid)},
+                 {"deepest", json_number(up.deepest)},
                  {"lost_by_body", by_body(up.lost, start)},
                  {"taken_from_body", by_body(up.taken, start)},
                  {"refused_by_body", by_body(up.refused_by, start)},
@@ -260,7 +210,8 @@ std::string Summary::text(const RunEnd& end) const {
   summary["status"] = status_;
   if (!end.reason.empty()) summary["reason"] = end.reason;
   summary["title"] = heading_.title;
-  summary["time"] = {{"begin", start_.begin}, {"end", start_.end}, {"reached", number(end.time)}};
+  summary["time"] = {
+      {"begin", start_.begin}, {"end", start_.end}, {"reached", json_number(end.time)}};
   if (!heading_.units.empty()) summary["units"] = heading_.units;
   summary["measures"] = measures_object(recorder_.measures(), notes);
   summary["expectations"] = expectations_array(heading_.expectations, recorder_.measures(), notes);
@@ -277,11 +228,11 @@ std::string Summary::text(const RunEnd& end) const {
   summary["never_closed"] = end.never_met;
   summary["accuracy"]["given_up"] = given_up_object(end, start_, heading_.units);
   summary["timing"] = timing_object(end, start_, heading_.waited);
-  if (heading_.program_began) summary["timing"]["startup_s"] = number(startup_seconds_);
+  if (heading_.program_began) summary["timing"]["startup_s"] = json_number(startup_seconds_);
   if (heading_.estimate) summary["estimate"] = estimate_object(*heading_.estimate);
-  summary["bodies"] = bodies_array(start_, heading_.units);
-  summary["ports"] = ports_object(start_);
-  summary["interfaces"] = interfaces_object(start_);
+  summary["bodies"] = bodies_json(start_, heading_.units);
+  summary["ports"] = ports_json(start_);
+  summary["interfaces"] = interfaces_json(start_);
   summary["versions"] = heading_.versions;
   for (std::size_t b = 0; b < std::min(start_.bodies.size(), end.body_measures.size()); ++b)
     for (const std::string& note : validity_notes(*start_.bodies[b], end.body_measures[b]))

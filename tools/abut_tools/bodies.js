@@ -132,15 +132,18 @@ class Picture {
 }
 class Stage {
   constructor(data, buffer) {
-    this.data = data;
-    const block = new Block(buffer);
-    this.bodies = data.bodies.map((told) => bodyFrom(data, told, block));
-    this.levels = new Float32Array(Math.max(...data.bodies.map((body) => body.nodes)));
+    this.take(data, buffer);
     this.canvas = document.getElementById("bodies");
     this.state = 0; this.shade = data.shades.length ? data.shades[0].key : ""; this.magnify = 1;
     this.picture = null; this.moving = false; this.waits = false; this.gauge = null;
     this.watchers = []; this.tables = {};
     this.home();
+  }
+  take(data, buffer) {
+    this.data = data;
+    const block = new Block(buffer);
+    this.bodies = data.bodies.map((told) => bodyFrom(data, told, block));
+    this.levels = new Float32Array(Math.max(...data.bodies.map((body) => body.nodes)));
   }
   home() {
     this.turn = this.front();

@@ -124,22 +124,22 @@ def packed(motion: Motion, time_scale: tuple[float, str]) -> dict:
             "bodies": bodies, "block": pack.text()}
 
 
-def fitting_motion(folder: Path, time_scale: tuple[float, str],
-                   units: Units = Units()) -> tuple[Motion, dict] | None:
-    """The run's bodies and their data, thinned until these fit."""
+def fitting_motion(folder: Path, time_scale: tuple[float, str], units: Units = Units(),
+                   limit: int = LIMIT, most_states: int = STATES) -> tuple[Motion, dict] | None:
+    """The run's bodies and their data, thinned until these take at most `limit` bytes."""
     if not listed_states(folder):
         return None
     first = motion_of(folder, 2)
     nodes = sum(len(body.surface.nodes) for body in first.bodies)
-    states = min(STATES, max(LEAST_STATES, READ // max(nodes, 1)))
+    states = min(most_states, max(LEAST_STATES, READ // max(nodes, 1)))
     most = READ // states
     while True:
         motion = motion_of(folder, states, most).in_words_of(units)
         data = packed(motion, time_scale)
-        if len(data["block"]) <= LIMIT or most < 100:
+        if len(data["block"]) <= limit or most < 100:
             return motion, data
         held = sum(len(body.surface.nodes) for body in motion.bodies)
-        share = 0.9 * LIMIT / len(data["block"])
+        share = 0.9 * limit / len(data["block"])
         if states > LEAST_STATES:
             states = max(LEAST_STATES, int(states * share))
         else:
@@ -178,13 +178,22 @@ def alternative(motion: Motion) -> str:
     return f"The bodies {shown} moving; colours: {'; '.join(quantities) or 'bodies'}"
 
 
+def turning_words(dimension: int) -> str:
+    turn = ("Drag to turn, wheel or pinch with Ctrl to zoom, double-click to come back. "
+            if dimension == 3 else "Wheel with Ctrl to zoom, drag to move. ")
+    strips = ("Bars are drawn as strips: they have an area and no shape. "
+              if dimension == 1 else "")
+    return f"{strips}{turn}Click on a body for its values over time."
+
+
 def stage(motion: Motion, beside: str) -> str:
     """The elements that bodies.js fills; `beside` is the figure that stands beside the bodies."""
-    text = html.escape(alternative(motion))
-    turn = ("Drag to turn, wheel or pinch with Ctrl to zoom, double-click to come back. "
-            if motion.dimension == 3 else "Wheel with Ctrl to zoom, drag to move. ")
-    strips = ("Bars are drawn as strips: they have an area and no shape. "
-              if motion.dimension == 1 else "")
+    return stage_elements(alternative(motion), len(motion.times),
+                          words_of(motion) + turning_words(motion.dimension), beside)
+
+
+def stage_elements(alternative_text: str, states: int, words: str, beside: str) -> str:
+    text = html.escape(alternative_text)
     return f'''<div class="stage"><div>
 <div class="tools"><label>colour <select id="shade"></select></label>
 <label id="magnify_label" hidden>deformation <select id="magnify"></select></label>
@@ -193,18 +202,20 @@ def stage(motion: Motion, beside: str) -> str:
 <div class="scale" id="scale" hidden><canvas id="ramp" aria-hidden="true"></canvas>
 <div class="ends"><span></span><b></b><span></span></div></div>
 <div class="player"><button id="play" type="button" aria-label="play">&#9654;</button>
-<input type="range" id="moment" min="0" max="{len(motion.times) - 1}" value="0" step="1"
+<input type="range" id="moment" min="0" max="{states - 1}" value="0" step="1"
  aria-label="time"><output id="now"></output></div>
-<p class="note">{words_of(motion)}{strips}{turn}Click on a body for its values over time.</p>
+<p class="note">{words}</p>
 </div><div>{beside}
 <figure id="gauge_figure" hidden><figcaption id="gauge_title"></figcaption>
 <div class="plot low"><canvas id="gauge" role="img" aria-label="values at a point"></canvas></div>
 </figure></div></div>'''
 
 
+SPACE_TIME = (
+    '<figure class="wide" id="space_time_figure"><figcaption>Space and time</figcaption>'
+    '<div class="plot"><canvas id="space_time" role="img" aria-label="Places of the bars over '
+    'time, coloured by the chosen quantity: waves are slanted bands"></canvas></div></figure>')
+
+
 def space_time(motion: Motion) -> str:
-    if motion.dimension != 1 or len(motion.times) < 3:
-        return ""
-    return ('<figure class="wide"><figcaption>Space and time</figcaption><div class="plot">'
-            '<canvas id="space_time" role="img" aria-label="Places of the bars over time, coloured '
-            'by the chosen quantity: waves are slanted bands"></canvas></div></figure>')
+    return SPACE_TIME if motion.dimension == 1 and len(motion.times) > 2 else ""

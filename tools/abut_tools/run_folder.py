@@ -11,33 +11,14 @@ from abut_tools.units import Units
 AXES = ("x", "y", "z")
 
 
-class Run:
-    """A run that was killed has no summary."""
+class RunView:
+    """What is told of a run, wherever it was read."""
 
-    def __init__(self, folder: Path):
-        paths = {name: folder / name
-                 for name in ("summary.json", "history.csv", "closed_form.csv", "events.jsonl")}
-        there = {name for name, path in paths.items() if is_there(path)}
-        if not there & {"summary.json", "history.csv"}:
-            raise ToolError(
-                f"{folder} holds no run: neither summary.json nor history.csv is there. "
-                f"Make one with: abut run SCENE --out {folder}", 2)
-        name = folder.resolve().name.encode("utf-8", "replace").decode()
-        self.summary = {"status": "unfinished", "title": name,
-                        "notes": ["there is no summary.json: the run was ended from outside"]}
-        if "summary.json" in there:
-            self.summary = read_json(paths["summary.json"], SUMMARY)
-        self.units = Units(self.summary.get("units"))
-        self.history, self.exact, self.events = Table(["time"], []), None, []
-        if "history.csv" in there:
-            self.history = read_table(paths["history.csv"])
-            words = cut_short(self.history, self.summary)
-            if words:
-                self.summary["notes"] = [*self.summary.get("notes", []), words]
-        if "closed_form.csv" in there:
-            self.exact = read_table(paths["closed_form.csv"])
-        if "events.jsonl" in there:
-            self.events = read_events(paths["events.jsonl"])
+    def __init__(self, summary: dict, history: Table, exact: Table | None = None,
+                 events: list[dict] | None = None):
+        self.summary, self.history, self.exact = summary, history, exact
+        self.events = events or []
+        self.units = Units(summary.get("units"))
 
     def title(self) -> str:
         return self.summary.get("title") or "Run"
@@ -101,3 +82,32 @@ class Run:
 
     def is_tie(self, interface: str) -> bool:
         return bool(self.interfaces().get(interface, {}).get("tied"))
+
+
+class Run(RunView):
+    """A run's folder, read whole. A run that was killed has no summary."""
+
+    def __init__(self, folder: Path):
+        paths = {name: folder / name
+                 for name in ("summary.json", "history.csv", "closed_form.csv", "events.jsonl")}
+        there = {name for name, path in paths.items() if is_there(path)}
+        if not there & {"summary.json", "history.csv"}:
+            raise ToolError(
+                f"{folder} holds no run: neither summary.json nor history.csv is there. "
+                f"Make one with: abut run SCENE --out {folder}", 2)
+        name = folder.resolve().name.encode("utf-8", "replace").decode()
+        summary = {"status": "unfinished", "title": name,
+                   "notes": ["there is no summary.json: the run was ended from outside"]}
+        if "summary.json" in there:
+            summary = read_json(paths["summary.json"], SUMMARY)
+        history, exact, events = Table(["time"], []), None, []
+        if "history.csv" in there:
+            history = read_table(paths["history.csv"])
+            words = cut_short(history, summary)
+            if words:
+                summary["notes"] = [*summary.get("notes", []), words]
+        if "closed_form.csv" in there:
+            exact = read_table(paths["closed_form.csv"])
+        if "events.jsonl" in there:
+            events = read_events(paths["events.jsonl"])
+        super().__init__(summary, history, exact, events)

@@ -28,10 +28,16 @@ function drawScale(stage) {
     fewDigits(shade.high * shade.factor);
 }
 function fillChoices(stage) {
-  const choice = element("shade");
-  for (const shade of stage.data.shades) choice.add(new Option(shade.label, shade.key));
-  choice.add(new Option("body", ""));
+  const choice = element("shade"), magnify = element("magnify");
+  choice.replaceChildren(...stage.data.shades.map((shade) => new Option(shade.label, shade.key)),
+    new Option("body", ""));
   choice.value = stage.shade;
+  element("magnify_label").hidden = stage.data.magnify.length < 2;
+  magnify.replaceChildren(...stage.data.magnify.map((factor) => new Option("× " + factor, factor)));
+  magnify.value = stage.magnify;
+}
+function choosing(stage) {
+  const choice = element("shade"), magnify = element("magnify");
   choice.addEventListener("change", () => {
     stage.shade = choice.value;
     drawScale(stage);
@@ -40,9 +46,6 @@ function fillChoices(stage) {
     drawGauge(stage);
     if (stage.spaceTime) stage.spaceTime.update();
   });
-  const magnify = element("magnify");
-  element("magnify_label").hidden = stage.data.magnify.length < 2;
-  for (const factor of stage.data.magnify) magnify.add(new Option("× " + factor, factor));
   magnify.addEventListener("change", () => {
     stage.magnify = Number(magnify.value);
     stage.redraw();
@@ -69,7 +72,8 @@ function showBodies(stage) {
   }
 }
 function playing(stage) {
-  const button = element("play"), slider = element("moment"), count = stage.data.times.length;
+  const button = element("play"), slider = element("moment");
+  const last = () => stage.data.times.length - 1;
   let timer = null;
   const stop = () => {
     clearInterval(timer);
@@ -80,13 +84,13 @@ function playing(stage) {
     stage.show(stage.state);
   };
   const start = () => {
-    if (stage.state === count - 1) stage.show(0);
+    if (stage.state === last()) stage.show(0);
     stage.moving = true;
     button.textContent = "❚❚";
     button.setAttribute("aria-label", "pause");
     timer = setInterval(() => {
-      if (stage.state === count - 1) stop(); else stage.show(stage.state + 1);
-    }, Math.max(40, Math.min(250, 6000 / count)));
+      if (stage.state === last()) stop(); else stage.show(stage.state + 1);
+    }, Math.max(40, Math.min(250, 6000 / stage.data.times.length)));
   };
   stage.toggle = () => (timer === null ? start() : stop());
   button.addEventListener("click", stage.toggle);
@@ -221,7 +225,7 @@ function paintSpaceTime(stage, chart) {
 }
 function drawSpaceTime(stage) {
   const canvas = element("space_time");
-  if (!canvas) return;
+  if (!canvas || stage.data.dimension !== 1) return;
   const {low, high, times, length} = stage.data;
   if (stage.spaceTime) stage.spaceTime.destroy();
   stage.spaceTime = new Chart(canvas, {
@@ -253,6 +257,7 @@ async function openStage(data) {
   const stage = new Stage(data, await unpacked(data.block));
   stage.canvas.parentElement.style.setProperty("--aspect", stage.data.aspect);
   fillChoices(stage);
+  choosing(stage);
   showBodies(stage);
   playing(stage);
   turning(stage);
