@@ -6,14 +6,24 @@
 namespace abut {
 
 template <class Call>
+auto MeteredBody::heard(Call&& call) {
+  try {
+    return call();
+  } catch (...) {
+    if (spans_ != nullptr) spans_->lost();
+    throw;
+  }
+}
+
+template <class Call>
 auto MeteredBody::told(std::string_view what, Call&& call) {
   if (spans_ == nullptr) return call();
   spans_->asked(number_);
   if constexpr (std::is_void_v<decltype(call())>) {
-    call();
+    heard(call);
     spans_->answered(number_, what, 0.0);
   } else {
-    auto answer = call();
+    auto answer = heard(call);
     spans_->answered(number_, what, 0.0);
     return answer;
   }
@@ -27,7 +37,7 @@ void MeteredBody::start(const Advance& request) {
 
 Outcome MeteredBody::finish(Response& response) {
   response.compute_seconds = 0.0;  // of a body that fails it would be an earlier one's
-  Outcome outcome = body_.finish(response);
+  Outcome outcome = heard([&] { return body_.finish(response); });
   meter_.finish(number_, response.compute_seconds);
   if (spans_ != nullptr) spans_->answered(number_, "advance", response.compute_seconds);
   return outcome;
@@ -87,7 +97,7 @@ void MeteredBody::Passive::start(const PassiveStep& step) {
 }
 
 Outcome MeteredBody::Passive::finish(PassiveReply& reply) {
-  Outcome outcome = form().finish(reply);
+  Outcome outcome = body_.heard([&] { return form().finish(reply); });
   body_.spans_->answered(body_.number_, "passive step", 0.0);
   return outcome;
 }

@@ -54,6 +54,9 @@ class MeteredBody final : public Subdomain {
   /// What a call returns, with a span around it.
   template <class Call>
   auto told(std::string_view what, Call&& call);
+  /// What a call returns; where it throws, spans that are open end.
+  template <class Call>
+  auto heard(Call&& call);
 
   Subdomain& body_;
   std::size_t number_;

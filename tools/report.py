@@ -20,6 +20,7 @@ from abut_tools.run_folder import Run
 from abut_tools.run_tables import (closed_form_table, details, expectations_table, given_up_table,
                                    overlaps_table, reason_of, status_of, warnings_list,
                                    what_happened)
+from abut_tools.run_times import times_of
 from abut_tools.tables import Figure
 from abut_tools.verb import ended
 from abut_tools.version import TellVersion
@@ -77,7 +78,8 @@ def page_of(run: Run, moving: tuple | None, library: str, limit: int) -> str:
         figures=figures_section([figure for figure in figures if figure not in beside]),
         accuracy=section("Accuracy given up", given_up_table(run)) +
         section("Expectations", expectations_table(run)) +
-        section("Against the closed form", closed_form_table(run)),
+        section("Against the closed form", closed_form_table(run)) +
+        section("Who took the time", times_of(run)),
         details=details(run), data=script_json(data),
         moving=script_json(moving[1] if moving else None))
 

@@ -310,6 +310,7 @@ std::vector<double> Bodies::impulse_response(const Side& side, const TimeWindow&
     if (struck == 1) alone.boundary[side.port].impulse = {-normal * impulse};
     ++exchanges_;
     const Outcome outcome = (*this)[side.body].advance(alone, responses[struck]);
+    compute_seconds_[side.body] += responses[struck].compute_seconds;
     (*this)[side.body].restore();
     if (!std::holds_alternative<Advanced>(outcome)) return {};
   }

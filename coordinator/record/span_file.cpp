@@ -54,8 +54,9 @@ SpanFile::SpanFile(const std::filesystem::path& path, std::int64_t limit)
 }
 
 SpanFile::~SpanFile() {
-  if (!file_ || kept_.empty()) return;
+  if (!file_) return;
   try {
+    keep_pending();
     write();
   } catch (const std::exception& error) {
     give_up(error.what());
@@ -129,7 +130,8 @@ void SpanFile::see_window(std::int64_t number) {
 
 void SpanFile::end_outer(const Span& span) {
   cut_ = false;
-  if (is_window(span.what) && !keep_)
+  const bool fits = taken_ + static_cast<std::int64_t>(pending_.size()) <= limit_;
+  if (is_window(span.what) && !(keep_ && fits))
     pending_.clear();
   else
     keep_pending();
@@ -149,10 +151,12 @@ void SpanFile::keep_pending() {
   if (taken_ <= room_) return;
   room_ += (limit_ - room_) / 2;
   every_ *= 4;
+  const std::size_t before = kept_.size();
   fmt::format_to(std::back_inserter(kept_),
                  ",\n{{\"name\":\"from here on one window of {}\",\"ph\":\"i\",\"s\":\"g\","
                  "\"ts\":{:.3f},\"pid\":1,\"tid\":1}}",
                  every_, micros(SystemClock().now()));
+  taken_ += static_cast<std::int64_t>(kept_.size() - before);
   log_info(fmt::format("the trace takes {:.3g} MB: of the windows to come one of {} is kept",
                        1e-6 * static_cast<double>(taken_), every_));
 }
@@ -211,6 +215,19 @@ void SpanFile::add_answer(std::size_t body, std::string_view what, double comput
   if (pending_.size() > most_pending) drop_pending();
 }
 
+void SpanFile::lost() noexcept {
+  if (!file_) return;
+  try {
+    const Clock::Time now = SystemClock().now();
+    for (std::size_t b = 0; b < tracks_.size(); ++b)
+      if (tracks_[b].asked)
+        add(track_of(b), "no answer", *std::exchange(tracks_[b].asked, std::nullopt), now);
+    if (std::exchange(under_way_, 0) > 0) add(coordinator_track, "waits", waits_, now);
+  } catch (const std::exception& error) {
+    give_up(error.what());
+  }
+}
+
 // ---- of the run ---------------------------------------------------------------------------------
 
 void SpanFile::on_event(const RunEvent& event) {
@@ -225,12 +242,9 @@ void SpanFile::on_event(const RunEvent& event) {
 
 void SpanFile::on_end(const RunEnd&) {
   if (!file_) return;
+  lost();
+  if (!file_) return;
   try {
-    const Clock::Time now = SystemClock().now();
-    for (std::size_t b = 0; b < tracks_.size(); ++b)
-      if (tracks_[b].asked)
-        add(track_of(b), "no answer", *std::exchange(tracks_[b].asked, std::nullopt), now);
-    if (std::exchange(under_way_, 0) > 0) add(coordinator_track, "waits", waits_, now);
     keep_pending();
     write();
   } catch (const std::exception& error) {

@@ -42,6 +42,8 @@ class SpanFile : public Observer {
   /// process was asked before, and at the end of one that is answered here.
   void asked(std::size_t body) noexcept;
   void answered(std::size_t body, std::string_view what, double computed) noexcept;
+  /// Whoever is asked now will not answer: an error ends the run.
+  void lost() noexcept;
 
   void on_event(const RunEvent& event) override;
   /// What is under way is told as far as it has come.

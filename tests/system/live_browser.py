@@ -91,7 +91,7 @@ class LivePage:
     def wait(self, script: str, seconds: float = 15.0) -> None:
         """Until the script comes to something that is true."""
         until = time.monotonic() + seconds
-        while not self.value(script):
+        while not self.value(f"Boolean({script})"):
             if time.monotonic() > until:
                 raise TimeoutError(f"{script} does not become true; {self.said}")
             time.sleep(0.1)

@@ -5,13 +5,14 @@ import csv
 import math
 import os
 import re
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from abut_tools.run_files import damaged, is_there, number_of
+from abut_tools.run_files import damaged, is_there
 from abut_tools.tables import Table
 
-PIECE = 16_000_000   # bytes that one look reads at most: a page is not kept waiting
+PIECE = 2_000_000    # bytes that are read at once
 STRETCHES = 300      # of which a table keeps rows
 ONE_BY_ONE = 6       # forces that are watched each
 
@@ -45,9 +46,10 @@ class GrowingFile:
         except UnicodeDecodeError as error:
             raise damaged(self.path, f"is no text (byte {self.at - end + error.start})") from error
 
-    def left(self) -> bool:
-        """Whether the next look finds more at once."""
-        return is_there(self.path) and self.path.stat().st_size > self.at + PIECE
+    def part(self) -> float:
+        """Of what is there, how much was read: from 0 to 1."""
+        size = self.path.stat().st_size if is_there(self.path) else 0
+        return min(1.0, self.at / size) if size else 1.0
 
 
 class Row:
@@ -66,15 +68,17 @@ def watched(names: list[str]) -> Callable[[list[float | None]], list[float]]:
     sums = [places(r".+\.kinetic"), places(r".+\.stored")]
     iterations, gaps = places(r".+\.iterations"), places(r".+\.gap")
 
-    def largest(cells: list, where: list[int], sign: float = 1.0) -> float:
-        return max((sign * cells[k] for k in where if cells[k] is not None), default=-math.inf)
-
     def keys(cells: list[float | None]) -> list[float]:
         sizes = [abs(cells[k] or 0.0) for k in forces]
         out = sizes if len(sizes) <= ONE_BY_ONE else [max(sizes)]
-        energies = [sum(cells[k] or 0.0 for k in each) for each in sums]
-        return [*out, *energies, -energies[0], largest(cells, iterations), largest(cells, gaps),
-                largest(cells, gaps, -1.0)]
+        kinetic, stored = (sum([cells[k] or 0.0 for k in each]) for each in sums)
+        out += [kinetic, -kinetic, stored]
+        if iterations:
+            out.append(max([cells[k] or 0.0 for k in iterations]))
+        if gaps:
+            apart = [cells[k] or 0.0 for k in gaps]
+            out += [max(apart), -min(apart)]
+        return out
     return keys
 
 
@@ -84,6 +88,10 @@ def telling(rows: list[Row]) -> list[Row]:
     for k in range(len(rows[0].keys)):
         kept.add(max(range(len(rows)), key=lambda i, k=k: rows[i].keys[k]))
     return [rows[i] for i in sorted(kept)]
+
+
+def cells_of(line: str) -> list[str]:
+    return line.split(",")  # no quotes around numbers
 
 
 class GrowingTable:
@@ -100,11 +108,14 @@ class GrowingTable:
         self.turned = 0                 # how often stretches have become longer
         self.before = -math.inf
 
-    def look(self) -> int:
-        """Reads what is new; the number of new rows."""
-        count = self.rows
-        for cells in csv.reader(self.file.lines()):
-            self.add(cells)
+    def look(self, seconds: float) -> int:
+        """Reads what is new, for about so long; the number of new rows."""
+        count, until = self.rows, time.monotonic() + seconds
+        while lines := self.file.lines():
+            for cells in csv.reader(lines) if not self.names else map(cells_of, lines):
+                self.add(cells)
+            if time.monotonic() > until:
+                break
         return self.rows - count
 
     def add(self, cells: list[str]) -> None:
@@ -118,7 +129,9 @@ class GrowingTable:
             if len(cells) != len(self.names):
                 raise ValueError(f"has a row of {len(cells)} cells, the header has "
                                  f"{len(self.names)}")
-            numbers = [number_of(cell) for cell in cells]
+            numbers = [float(cell) if cell else None for cell in cells]
+            if not math.isfinite(sum(filter(None, numbers))):
+                raise ValueError("has a number that is not finite")
             if numbers[0] is None or numbers[0] < self.before:
                 raise ValueError("has times that do not ascend")
         except ValueError as error:

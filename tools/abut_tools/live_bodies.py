@@ -11,7 +11,7 @@ from abut_tools.vtu import listed_states
 
 LIMIT = 1_000_000    # bytes that a page takes again and again
 STATES = 60
-REST = 10.0          # after making them, for so many times as long nothing is made
+REST = 4.0           # after making them, for so many times as long nothing is made
 LEAST_REST = 2.0     # [s]
 
 

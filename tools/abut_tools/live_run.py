@@ -26,9 +26,10 @@ SCENE, SUMMARY_FILE, PROGRESS_FILE = "scene.resolved.yaml", "summary.json", "pro
 POINTS = 1200        # of a curve that is told whole
 EVENTS = 40          # that a page shows
 RATE_OVER = 5.0      # [s] that exchanges are counted over
+READING = 0.6        # [s] that one look reads records for: a page is not kept waiting
 SILENT = 60.0        # [s] after which a run elsewhere counts as silent
 FACTS = ("title", "units", "bodies", "ports", "interfaces", "status", "reason", "expectations",
-         "notes", "overlaps", "accuracy")
+         "notes", "measures", "never_closed", "overlaps", "accuracy")
 
 
 def whole_json(path: Path, kind: object) -> dict | None:
@@ -112,7 +113,7 @@ class LiveRun:
                 self.read_anew()
             self.began = began
         try:
-            fresh = self.history.look() > 0
+            fresh = self.history.look(READING) > 0
             self.read_events()
             self.trouble = ""
         except Replaced:
@@ -147,7 +148,7 @@ class LiveRun:
     def view(self) -> RunView:
         facts = self.status.facts()
         return RunView({"status": "unfinished", "title": self.title(), **facts},
-                       self.history.table())
+                       self.history.table(), None, self.events)
 
     def title(self) -> str:
         return self.status.facts().get("title") or \

@@ -35,7 +35,9 @@ function showStatus(told) {
   text("title", told.title);
   text("badge", words);
   element("badge").className = "badge " + kind;
-  text("sentence", sentence + (told.trouble ? " " + told.trouble : ""));
+  const behind = told.read < 0.98 ? " Records are being read: figures are of the first " +
+    Math.floor(100 * told.read) + " % of what is written." : "";
+  text("sentence", sentence + behind + (told.trouble ? " " + told.trouble : ""));
   text("percent", percent);
   if (part === null) element("far").removeAttribute("value"); else element("far").value = part;
   const running = percent && !told.ended;

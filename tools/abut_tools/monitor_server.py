@@ -24,6 +24,7 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer",
     "Cross-Origin-Resource-Policy": "same-origin", "Cache-Control": "no-store"}
 LEAST_REST = 0.4     # [s] between two looks at the folder
+NEARLY = 0.98        # of the records are read
 REST = 10.0          # or so many times as long as the last look took
 
 
@@ -41,10 +42,8 @@ class Watcher:
             if began >= self.next:
                 self.live.look()
                 now = time.monotonic()
-                # Much that is there already is read piece by piece, at once.
-                rest = 0.0 if self.live.history.file.left() else max(LEAST_REST,
-                                                                    REST * (now - began))
-                self.next = now + rest
+                behind = self.live.history.file.part() < NEARLY  # what is there is read at once
+                self.next = now + (0.0 if behind else max(LEAST_REST, REST * (now - began)))
             self.bodies.look(self.live.time_scale(), self.live.units())
             return told(self.live, since, until, self.bodies.told()[0])
 

@@ -3,7 +3,7 @@
 import time
 
 from abut_tools.live_run import LiveRun
-from abut_tools.run_tables import reasons_of, status_of
+from abut_tools.run_tables import clean, reasons_of, status_of
 from abut_tools.tables import few, measured
 
 QUIET = 3.0          # [s] after which a window counts as long
@@ -35,7 +35,7 @@ def badge(live: LiveRun) -> tuple[str, str, str]:
     seen = clock(progress["written"]) if progress else ""
     if status.state == "ended":
         words, kind = status_of(live.view())
-        return words, kind, " ".join(reasons_of(live.view())) or \
+        return words, kind, "; ".join(reasons_of(live.view())) or \
             f"The run has ended. Its page: abut report {live.folder}"
     if status.state == "runs":
         if status.summary is not None:
@@ -188,7 +188,7 @@ def bodies(live: LiveRun) -> dict:
             str(of["exchanges"]) if of else "",
             measured(speed, units.word("m/s")),
             *(measured(energy, units.word("J")) for energy in energies)])
-    heads = ["body", "where", "it", "of a core", "memory", "waited for", "exchanges",
+    heads = ["body", "where", "state", "of a core", "memory", "waited for", "exchanges",
              "mean velocity" if any(f"{n}.mean_velocity" in latest for n in names) else "speed",
              "kinetic energy", "stored energy"]
     kept = [k for k in range(len(heads)) if k == 0 or any(row[k] for row in rows)]
@@ -211,7 +211,10 @@ def program_words(live: LiveRun) -> str:
 def events(live: LiveRun) -> list[dict]:
     """The latest first."""
     second = live.units().word("s")
-    return [{"number": event["number"], "time": measured(event.get("time"), second),
+    span = (live.status.progress or live.status.summary or {}).get("time", {})
+    size = max((abs(span[key]) for key in ("begin", "end") if span.get(key)), default=0.0)
+    return [{"number": event["number"],
+             "time": measured(clean(event.get("time"), size), second),
              "kind": event.get("kind", "").replace("_", " "), "subject": event.get("subject", ""),
              "text": event.get("text", "")} for event in reversed(live.events)]
 
@@ -221,7 +224,8 @@ def told(live: LiveRun, since: int, until: float, moving: int) -> dict:
     part = progress_part(live)
     return {
         "version": live.version, "reborn": live.reborn, "latest": live.latest(),
-        "title": live.title(), "badge": [words, kind, sentence], "part": part,
+        "title": live.title(), "read": live.history.file.part(),
+        "badge": [words, kind, sentence], "part": part,
         "ended": live.status.ended, "facts": facts(live), "shares": shares(live),
         "bodies": bodies(live), "coordinator": program_words(live), "events": events(live),
         "event_count": live.event_count, "warnings": live.warnings, "trouble": live.trouble,

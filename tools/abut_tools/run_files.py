@@ -137,7 +137,7 @@ SUMMARY = {
     "ports": {"*": {"position": NUMBER, "normal": NUMBER, "body": TEXT}},
     "interfaces": {"*": {"sides": [TEXT], "tied": FLAG}}, "never_closed": [TEXT],
     "state_hash": Maybe(TEXT), "windows": NUMBER, "contact_windows": NUMBER, "exchanges": NUMBER,
-    "timing": {"wall_s": VALUE, "compute_s": {"*": VALUE},
+    "timing": {"wall_s": VALUE, "compute_s": {"*": VALUE}, "waited_s": {"*": VALUE},
                "overhead_per_exchange_us_median": VALUE},
     "estimate": {"windows": COUNTS, "contact_windows": COUNTS, "exchanges": COUNTS,
                  "in_use": [TEXT], "not_built": [TEXT]},
