@@ -22,6 +22,7 @@ from support import ABUT, PACKAGE, ROOT, SystemTest, main, strict_json
 
 sys.path.insert(0, str(PACKAGE))
 from abut_tools.growing import STRETCHES, GrowingTable, Replaced  # noqa: E402
+from abut_tools.monitor_server import HOST  # noqa: E402
 
 SCENE = ROOT / "configs" / "two_bars.yaml"
 # Every window is iterated: goes on until it is ended.
@@ -331,7 +332,7 @@ class Page(Monitored):
         from live_browser import LivePage  # pylint: disable=import-outside-toplevel
         run = self.long_run("--set", "output.fields.every=1000")
         self.monitor(self.out)
-        address = f"http://127.0.0.1:{self.port}/"
+        address = f"http://{HOST}:{self.port}/"
         with LivePage() as page:
             for width, dark in ((1920, False), (390, True)):
                 page.open(address, width, dark=dark)

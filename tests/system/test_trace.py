@@ -85,7 +85,8 @@ class Trace(SystemTest):
             # Meter and trace read the clock one after the other: some microseconds a call, of a
             # busy machine that takes the core away in between a millisecond.
             calls = sum(span["name"] in ("advance", "probe") for span in tracks[body])
-            self.assertAlmostEqual(MICRO * waited[body], seconds, delta=5e-6 * calls + 4e-3, msg=body)
+            self.assertAlmostEqual(MICRO * waited[body], seconds, delta=5e-6 * calls + 4e-3,
+                                   msg=body)
 
 
 class OfRuns(Trace):
@@ -214,7 +215,8 @@ class Reported(Trace):
         timing = self.summary()["timing"]
         for body, seconds in timing["waited_s"].items():
             # Shown are whole per cent, below ten with one more digit.
-            self.assertAlmostEqual(float(shares[body]), 100.0 * seconds / timing["wall_s"], delta=0.5)
+            self.assertAlmostEqual(float(shares[body]), 100.0 * seconds / timing["wall_s"],
+                                   delta=0.5)
         self.assertAlmostEqual(sum(map(float, shares.values())), 100.0, delta=0.5 * len(shares))
 
 
