@@ -125,8 +125,10 @@ def packed(motion: Motion, time_scale: tuple[float, str]) -> dict:
 
 
 def fitting_motion(folder: Path, time_scale: tuple[float, str], units: Units = Units(),
-                   limit: int = LIMIT, most_states: int = STATES) -> tuple[Motion, dict] | None:
-    """The run's bodies and their data, thinned until these take at most `limit` bytes."""
+                   limit: int = 0, most_states: int = 0) -> tuple[Motion, dict] | None:
+    """The run's bodies and their data, thinned until these take at most `limit` bytes
+    (0: what a page may have)."""
+    limit, most_states = limit or LIMIT, most_states or STATES
     if not listed_states(folder):
         return None
     first = motion_of(folder, 2)
