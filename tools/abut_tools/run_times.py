@@ -46,11 +46,12 @@ def times_of(run: RunView) -> str:
     for k, name in enumerate(shown):
         busy = min(1.0, computed[name] / wall)
         mark = f'<span class="mark" style="--c:{COLOURS[k % len(COLOURS)]}"></span>'
-        rows.append([Html(mark + html.escape(name)), measured(computed[name], "s"), per_cent(busy),
-                     per_cent(1.0 - busy), per_cent(parts[k][1])])
-    rows.append([COUPLING, measured(rest * wall, "s"), "", "", per_cent(rest)])
+        rows.append([Html(mark + html.escape(name)), per_cent(parts[k][1]),
+                     measured(computed[name], "s"), per_cent(busy), per_cent(1.0 - busy)])
+    rows.append([COUPLING, per_cent(rest), measured(rest * wall, "s"), "", ""])
     note = ('<p class="note">While several bodies compute they share the time by what each takes; '
             "all other time is the coupling's: iterations, searches, messages, files, steps of the "
             "passive form. Which window and iteration took it: abut run --trace.</p>")
-    return shares_bar(parts) + table_of(
-        ["", "computed", "of the run", "did not compute", "the run waited for it"], rows) + note
+    table = table_of(["", "the run waited for it", "computed", "of the run", "did not compute"],
+                     rows)
+    return shares_bar(parts) + f'<div class="happened">{table}</div>' + note
