@@ -131,6 +131,7 @@ class WhileItGoesOn(Monitored):
         run.communicate()
         told = self.state_when(lambda told: told["badge"][0] == "killed")
         self.assertFalse(told["ended"])
+        self.assertNotIn("left", dict(told["facts"]))
         self.assertRegex(told["badge"][2], r"Last sign of life at \d\d:\d\d:\d\d\.")
         self.assertEqual(len(told["bodies"]["ill"]), 3)
         again = self.start(ABUT, "run", SCENE, "--out", self.out, "--force", "--quiet")

@@ -99,7 +99,8 @@ def facts(live: LiveRun) -> list[list[str]]:
     rows = [["time of the scene", f"{measured(span.get('reached'), units.word('s'))} of "
              f"{measured(span.get('end'), units.word('s'))}"]]
     wall = told.get("wall_s") if not status.ended else told.get("timing", {}).get("wall_s")
-    if not status.ended:
+    goes_on = status.state in ("runs", "elsewhere")
+    if goes_on:
         left = told.get("left_s")
         if left is not None and status.state == "runs":
             left = max(0.0, left - max(0.0, time.time() - told["written"]))
@@ -109,7 +110,7 @@ def facts(live: LiveRun) -> list[list[str]]:
     rows.append(["windows", str(told.get("windows", ""))])
     exchanges = str(told.get("exchanges", ""))
     speed = rate(live)
-    if not status.ended and speed is not None:
+    if goes_on and speed is not None:
         rows.append(["exchanges per second", few(float(f"{speed:.3g}"))])
     rows.append(["exchanges", exchanges])
     if not status.ended:
