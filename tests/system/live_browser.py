@@ -88,7 +88,7 @@ class LivePage:
             raise ValueError(f"{script}: {told['exceptionDetails'].get('text')}")
         return told["result"].get("value")
 
-    def wait(self, script: str, seconds: float = 15.0) -> None:
+    def wait(self, script: str, seconds: float = 40.0) -> None:
         """Until the script comes to something that is true."""
         until = time.monotonic() + seconds
         while not self.value(f"Boolean({script})"):

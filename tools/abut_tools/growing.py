@@ -13,7 +13,7 @@ from abut_tools.run_files import damaged, is_there
 from abut_tools.tables import Table
 
 PIECE = 2_000_000    # bytes that are read at once
-STRETCHES = 300      # of which a table keeps rows
+STRETCHES = 150      # of which a table keeps rows
 ONE_BY_ONE = 6       # forces that are watched each
 
 

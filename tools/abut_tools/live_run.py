@@ -102,7 +102,7 @@ class LiveRun:
         self.figures, self.shape, self.beside = {}, {}, ""
         self.version += 1
         self.reborn = self.version      # with this look all that a page has is void
-        self.turned, self.trouble = 0, ""
+        self.turned, self.trouble, self.table = 0, "", None
 
     def look(self) -> None:
         """Reads what is new."""
@@ -125,6 +125,7 @@ class LiveRun:
         self.see_progress()
         if fresh or not self.figures:
             self.version += 1
+            self.table = None
             self.make_figures()
 
     def read_events(self) -> None:
@@ -146,9 +147,11 @@ class LiveRun:
     # ---- curves ----------------------------------------------------------
 
     def view(self) -> RunView:
+        if self.table is None:
+            self.table = self.history.table()
         facts = self.status.facts()
-        return RunView({"status": "unfinished", "title": self.title(), **facts},
-                       self.history.table(), None, self.events)
+        return RunView({"status": "unfinished", "title": self.title(), **facts}, self.table, None,
+                       self.events)
 
     def title(self) -> str:
         return self.status.facts().get("title") or \

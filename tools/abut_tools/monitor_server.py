@@ -25,7 +25,7 @@ HEADERS = {
     "Cross-Origin-Resource-Policy": "same-origin", "Cache-Control": "no-store"}
 LEAST_REST = 0.4     # [s] between two looks at the folder
 NEARLY = 0.98        # of the records are read
-REST = 10.0          # or so many times as long as the last look took
+REST = 5.0           # or so many times as long as the last look took
 
 
 class Watcher:
