@@ -20,12 +20,15 @@ class LiveBodies:
         self.folder = folder
         self.lock = threading.Lock()
         self.version, self.data, self.note = 0, None, ""
-        self.states = 0         # that were listed when they were made
+        self.states, self.run = -1, 0   # that were listed when they were made; of which run
         self.busy, self.next = False, 0.0
 
-    def look(self, scale: tuple[float, str], units: Units) -> None:
-        """Has them made where there is something new, at once or later; waits for nothing."""
+    def look(self, scale: tuple[float, str], units: Units, run: int) -> None:
+        """Has them made where there is something new, at once or later; waits for nothing. `run`:
+        changes where another run has taken the folder."""
         with self.lock:
+            if run != self.run:
+                self.run, self.states = run, -1
             if self.busy or time.monotonic() < self.next:
                 return
             self.busy = True

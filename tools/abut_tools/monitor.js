@@ -169,8 +169,8 @@ async function takeBodies(data, windows) {
   element("space_time_figure").hidden = !data || data.dimension !== 1 || data.times.length < 3;
   if (!data) {
     const every = Math.max(1, Math.round(windows / 100));
-    text("how", "This run writes no fields, so its bodies cannot be shown. The next one does with " +
-      "--set output.fields.every=" + every + ", or with that key in its scene.");
+    text("how", "No states of the bodies are on the disk. A run writes them with --set " +
+      "output.fields.every=" + every + ", or with that key in its scene.");
     return;
   }
   text("how", data.words);

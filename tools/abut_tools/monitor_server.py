@@ -44,8 +44,10 @@ class Watcher:
                 now = time.monotonic()
                 behind = self.live.history.file.part() < NEARLY  # what is there is read at once
                 self.next = now + (0.0 if behind else max(LEAST_REST, REST * (now - began)))
-            self.bodies.look(self.live.time_scale(), self.live.units())
-            return told(self.live, since, until, self.bodies.told()[0])
+            self.bodies.look(self.live.time_scale(), self.live.units(), self.live.reborn)
+            data = told(self.live, since, until, self.bodies.told()[0])
+            data["trouble"] = f"{data['trouble']} {self.bodies.note}".strip()
+            return data
 
 
 def handler_of(page: bytes, watcher: Watcher) -> type:

@@ -183,15 +183,15 @@ def bodies(live: LiveRun) -> dict:
             speed = sum(part * part for part in parts) ** 0.5 if parts else None
         cores = told.get("cores")
         rows.append([
-            name, told.get("where", ""), told.get("words", ""),
+            name, told.get("words", ""),
             f"{100.0 * cores:.0f} %" if cores is not None else "", memory_words(told),
             f"{100.0 * of['waited_s'] / wall:.0f} %" if of and wall else "",
             str(of["exchanges"]) if of else "",
             measured(speed, units.word("m/s")),
-            *(measured(energy, units.word("J")) for energy in energies)])
-    heads = ["body", "where", "state", "of a core", "memory", "waited for", "exchanges",
+            *(measured(energy, units.word("J")) for energy in energies), told.get("where", "")])
+    heads = ["body", "state", "of a core", "memory", "waited for", "exchanges",
              "mean velocity" if any(f"{n}.mean_velocity" in latest for n in names) else "speed",
-             "kinetic energy", "stored energy"]
+             "kinetic energy", "stored energy", "where"]
     kept = [k for k in range(len(heads)) if k == 0 or any(row[k] for row in rows)]
     ill = [row[0] for row in rows if not health.get(row[0], {}).get("alive", True)]
     return {"heads": [heads[k] for k in kept], "rows": [[row[k] for k in kept] for row in rows],

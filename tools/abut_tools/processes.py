@@ -59,6 +59,6 @@ class Usage:
             # A look sees an instant; what it did since the last one says more.
             if fields[0] in "RS":
                 share["words"] = "computes" if share["cores"] > 0.5 else \
-                    "waits" if share["cores"] < 0.05 else "computes now and then"
+                    "waits" if share["cores"] < 0.05 else "computes in part"
         self.before[process["id"]] = (now, seconds, share)
         return {**told, **share}
