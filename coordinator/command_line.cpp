@@ -48,8 +48,7 @@ void add_scene(CLI::App& verb, std::string& scene, std::vector<std::string>& ove
 }
 
 void add_trace(CLI::App& verb, bool& trace) {
-  verb.add_flag("--trace", trace,
-                "write to DIR/trace.json what the time goes into, for Perfetto, chrome://tracing");
+  verb.add_flag("--trace", trace, "write to DIR/trace.json what the time goes into, for Perfetto");
 }
 
 void add_insecure(CLI::App& verb, bool& insecure) {

@@ -16,7 +16,7 @@
 namespace abut {
 
 /// trace.json: what a run's wall time went into, as events of Chrome's trace format, which Perfetto
-/// and chrome://tracing open: a track of the coordinator (windows, islands, iterations, waits) and
+/// and others open: a track of the coordinator (windows, islands, iterations, waits) and
 /// one of each body (requests, and what of them was computing). It is whole JSON whenever it is
 /// written, twice a second and at the end.
 ///

@@ -368,6 +368,6 @@ if __name__ == "__main__":
             print("skipped: chromium is not installed")
             sys.exit(browser.SKIPPED)
         sys.argv[3:4] = ["Page"]
-    elif len(sys.argv) == 3:
+    elif len(sys.argv) == 3:  # all but the browser
         sys.argv += ["WhileItGoesOn", "AfterIt", "Refused", "LongTables"]
     main()
