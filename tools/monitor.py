@@ -37,7 +37,7 @@ def port_number(text: str) -> int:
 def check(folder: Path) -> None:
     if not folder.exists() and ":/" in str(folder):
         raise ToolError(
-            f"{folder} is an endpoint, and a monitor reads the run's folder. Of a run on another "
+            f"{str(folder).replace(':/', '://', 1)} is an endpoint, and a monitor reads the run's folder. Of a run on another "
             "machine, start it there and look from here: "
             "ssh -L 8700:127.0.0.1:8700 HOST abut monitor DIR --port 8700", 2)
     if not folder.is_dir():

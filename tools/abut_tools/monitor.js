@@ -206,7 +206,6 @@ function renew(stage, data, buffer) {
 }
 // ---- the watch -------------------------------------------------------------------------
 function show(told) {
-  if (told.fault) throw new Error(told.fault);
   if (told.version < seen.version) {  // another monitor stands there
     Object.assign(seen, {version: 0, latest: "-inf", moving: 0, events: -1});
     return;
@@ -225,9 +224,14 @@ async function look() {
     const answer = await fetch(query);
     if (!answer.ok) throw new Error(await answer.text());
     const told = await answer.json();
-    show(told);
-    await showMoving(told);
-    element("lost").hidden = true;
+    element("lost").hidden = !told.fault;
+    if (told.fault) {
+      text("lost", "The run's folder cannot be read as it is; below is what it told before. " +
+        told.fault);
+    } else {
+      show(told);
+      await showMoving(told);
+    }
   } catch (error) {
     element("lost").hidden = false;
     text("lost", "The monitor does not answer: it has been ended, or the way to it is cut. What " +
