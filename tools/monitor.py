@@ -36,8 +36,9 @@ def port_number(text: str) -> int:
 
 def check(folder: Path) -> None:
     if not folder.exists() and ":/" in str(folder):
+        endpoint = str(folder).replace(":/", "://", 1)  # paths have no two slashes
         raise ToolError(
-            f"{str(folder).replace(':/', '://', 1)} is an endpoint, and a monitor reads the run's folder. Of a run on another "
+            f"{endpoint} is an endpoint, and a monitor reads the run's folder. Of a run on another "
             "machine, start it there and look from here: "
             "ssh -L 8700:127.0.0.1:8700 HOST abut monitor DIR --port 8700", 2)
     if not folder.is_dir():
