@@ -25,10 +25,8 @@ struct RunPlan {
 struct RunOptions {
   bool local = false;
   bool quiet = false;
-  bool insecure = false;  // bodies without keys may come from other machines
-  bool trace = false;     // its wall time is told in trace.json
-  Clock::Time began;      // of the program
   bool insecure = false;           // bodies without keys may come from other machines
+  bool trace = false;              // its wall time is told in trace.json
   Clock::Time began;               // of the program
   std::optional<Awaited> awaited;  // absent: processes come to life as the scene says
 };

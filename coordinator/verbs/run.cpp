@@ -16,10 +16,8 @@ namespace abut {
 namespace fs = std::filesystem;
 
 int run_verb(const RunCommand& command) {
-  const RunOptions options{command.local, command.quiet, command.insecure, command.trace,
-                           SystemClock().now()};
-  const RunOptions options{command.local, command.quiet, command.insecure, SystemClock().now(),
-                           command.awaited};
+  const RunOptions options{command.local, command.quiet,       command.insecure,
+                           command.trace, SystemClock().now(), command.awaited};
   start_log("abut", command.quiet ? LogLevel::error : LogLevel::info);
   const Interrupts interrupts = watch_for_interrupts();
   Document document = Document::load(command.scene, command.overrides);
