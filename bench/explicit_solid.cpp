@@ -1,7 +1,8 @@
 /// Cost of explicit solids: whole steps (force and update) of boxes of hex8, per element and step,
 /// full and one point, neo-Hookean and linear; the share of the force; the force on each
-/// instruction set; the force of J2 plasticity by batches and cell by cell; beside it what the
-/// machine's memory allows for the bytes moved, in the same run.
+/// instruction set; the force of J2 plasticity by batches and cell by cell, and of all laws,
+/// formulations and elements; beside it what the machine's memory allows for the bytes moved, in
+/// the same run.
 ///
 ///   abut_bench_explicit_solid [EDGE OF THE LARGE BOX] [REPEATS]
 
@@ -14,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,9 +23,12 @@
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "subdomain_solver/fe/stable_step.hpp"
+#include "subdomain_solver/materials/hencky.hpp"
 #include "subdomain_solver/materials/j2_plasticity.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
+#include "subdomain_solver/materials/mooney_rivlin.hpp"
 #include "subdomain_solver/materials/neo_hookean.hpp"
+#include "subdomain_solver/materials/saint_venant_kirchhoff.hpp"
 #include "subdomain_solver/time/explicit_dynamics.hpp"
 
 namespace abut {
@@ -168,6 +173,53 @@ void run_plastic(int repeats) {
   }
 }
 
+std::unique_ptr<Material> law_of(const std::string& name) {
+  if (name == "linear") return std::make_unique<LinearElastic>(rubber, 1000.0);
+  if (name == "Saint Venant") return std::make_unique<SaintVenantKirchhoff>(rubber, 1000.0);
+  if (name == "neo-Hookean") return std::make_unique<NeoHookean>(rubber, 1000.0);
+  if (name == "Mooney-Rivlin")
+    return std::make_unique<MooneyRivlin>(MooneyRivlinParameters{1.5e8, 5.0e7, 6.7e8, 1000.0});
+  if (name == "Hencky") return std::make_unique<Hencky>(rubber, 1000.0);
+  return std::make_unique<J2Plasticity>(rubber, Hardening{4.0e8, 1.0e9, {}}, 1000.0);
+}
+
+/// The force of every law and of every element, ns per element, where all strains are different;
+/// whether it is computed eight cells at a time.
+void run_laws(int repeats) {
+  fmt::print("{:>14} {:>8} {:>16} {:>10} {:>10}   force, ns per element\n", "law", "element",
+             "formulation", "batched", "force");
+  const auto one = [repeats](const std::string& law, const std::string& element,
+                             Formulation formulation, const char* words) {
+    BoxMesh box;
+    box.elements = {24, 16, 20};
+    box.lengths = {0.024, 0.016, 0.02};
+    box.element = element;
+    FeOptions options;
+    options.formulation = formulation;
+    std::unique_ptr<Material> material = law_of(law);
+    const Mesh mesh = generate(box, "bench");
+    options.batched = BatchedCells::can(mesh, *material, formulation);
+    FeModel model(mesh, std::move(material), options);
+    std::vector<double> q(index(model.dofs()), 0.0), history(model.history_size(), 0.0);
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] = 1.0e-7 * static_cast<double>(i * i % 97);
+    ModelResponse response;
+    const double best = least(repeats, 1, [&] {
+      if (!model.evaluate(q, history, Model::Want::force, response)) std::abort();
+    });
+    fmt::print("{:>14} {:>8} {:>16} {:>10} {:>10.1f}\n", law, element, words,
+               options.batched ? "yes" : "no", best * 1.0e9 / model.mesh().cell_count());
+  };
+  for (const char* law :
+       {"linear", "Saint Venant", "neo-Hookean", "Mooney-Rivlin", "Hencky", "J2"}) {
+    one(law, "hex8", Formulation::full, "full");
+    one(law, "hex8", Formulation::one_point, "one_point");
+    if (std::string(law) != "linear")
+      one(law, "hex8", Formulation::mean_dilatation, "mean_dilatation");
+    for (const char* element : {"tet4", "tet10", "hex20"})
+      one(law, element, Formulation::full, "full");
+  }
+}
+
 /// The stable step of a box at rest, whose cells are equal, and of one deformed everywhere.
 void run_stable_step(int repeats) {
   BoxMesh box;
@@ -208,6 +260,7 @@ void run(int edge, int repeats) {
              batched_kernels().front()->instructions);
   run_instructions(repeats);
   run_plastic(repeats);
+  run_laws(repeats);
   run_stable_step(repeats);
   fmt::print("{:>9} {:>8} {:>10} {:>7} {:>8} {:>8} {:>9}   ns per element-step\n", "elements",
              "law", "points", "threads", "step", "force", "streaming");

@@ -1,7 +1,7 @@
 /// Cost of a surface without mass in an explicit step, nothing near it: of one side of a block and
 /// of a cube's whole skin, linear, neo-Hookean and of J2 plasticity. Waves of some ten cells run
-/// through the bodies, every step is a window. Processor time of one thread, medians; the whole step
-/// beside that of the same body without the layer, in turns.
+/// through the bodies. Processor time of one thread, medians; the whole step beside that of the
+/// same body without the layer, in turns.
 ///
 ///   abut_bench_massless_layer [REPEATS [LAW]]
 
@@ -72,18 +72,17 @@ struct Body {
     motion.v = motion.q;
     for (std::size_t i = 0; i < motion.v.size(); ++i) {
       const std::size_t node = i - i % 3, other = node + (i + 1) % 3;
-      const double wave = std::sin(600.0 * model->mesh().points[other] + static_cast<double>(i % 3));
+      const double wave =
+          std::sin(600.0 * model->mesh().points[other] + static_cast<double>(i % 3));
       motion.v[i] = 10.0 * (model->mesh().points[i] / box.lengths[i % 3] - 0.5) + 5.0 * wave;
     }
     if (scheme->begin(motion, 0.0)) std::abort();
   }
   void step() {
-    if (scheme->able().layer != nullptr) scheme->able().layer->renew();
     if (scheme->step(motion, time, dt)) std::abort();
     time += dt;
   }
   void settle() {
-    layer->renew();
     q = motion.q;
     for (const int dof : layer->dofs()) q[dof] -= dt * motion.v[dof];
     if (layer->settle(time, q, motion.history, {}, nullptr)) std::abort();
@@ -124,15 +123,16 @@ void run(const char* words, const std::array<int, 3>& elements, const char* law,
 
 int main(int argc, char** argv) {
   const int repeats = argc > 1 ? std::max(1, std::atoi(argv[1])) : 9;
-  fmt::print("{:<24} {:>12} {:>8} {:>8} {:>9} {:>9} {:>9}\n", "", "law", "cells", "surface", "layer",
-             "step", "step with");
+  fmt::print("{:<24} {:>12} {:>8} {:>8} {:>9} {:>9} {:>9}\n", "", "law", "cells", "surface",
+             "layer", "step", "step with");
   fmt::print("{:<24} {:>12} {:>8} {:>8} {:>9} {:>9} {:>9}\n", "", "", "", "nodes", "us/node",
              "us/cell", "over bare");
   for (const char* law : {"linear", "neo-Hookean", "J2"}) {
     if (argc > 2 && std::string(law) != argv[2]) continue;
     for (const int n : {10, 30, 60, 120})
       abut::run("one side, 8 cells deep", {n, n, 8}, law, "front", repeats);
-    for (const int n : {10, 20, 40}) abut::run("a cube's skin", {n, n, n}, law, "boundary", repeats);
+    for (const int n : {10, 20, 40})
+      abut::run("a cube's skin", {n, n, n}, law, "boundary", repeats);
   }
   return 0;
 }

@@ -52,6 +52,14 @@ struct ModelResponse {
 struct LayerResponse {
   Vector force;          // [N]
   SparseMatrix tangent;  // [N/m] dr/dq among them; always of one pattern
+  // What else of a state it depends on, and sizes of its numbers; from the first answer on, of
+  // nonlinear models.
+  std::vector<int> coordinates;      // of the model, ascending
+  std::vector<std::size_t> history;  // which numbers of the model's
+  std::vector<int> heirs;            // (massless) coordinate with mass near each
+  double size = 0.0;                 // [N] of the forces of the layer's cells on all their nodes
+  double force_unit = 0.0;           // [N] of a cell at unit strain, the largest
+  double gradient_unit = 0.0;        // [1/m] of a shape function, the largest
 };
 
 /// A nodal force sums up some 200 products, over cells, quadrature points and components: their

@@ -216,12 +216,12 @@ void SolidInterior::state(Archive& archive) {
   archive.field("turned", state_.turned);
   if (crossings_) archive.field("crossed", state_.crossed);
   if (surfaces_ != nullptr) surfaces_->state(archive);
+  if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->state(archive);
 }
 
 std::optional<Failed> SolidInterior::begin(const Window& window) {
   const double time = window.request.window.begin;
   worked_.assign(ports_.size(), 0.0);
-  if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->renew();
   if (const bool instant = window.grid.count == 0; std::exchange(stands_, instant && stands_)) {
     if (port_map_) port_map_->displacement(state_.motion.q, places_);
     if (instant) return std::nullopt;  // nobody gives the forces yet that hold it
@@ -265,8 +265,6 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i, bool) {
   Integrator& integrator = *parts_.scheme.integrator;
   const double begin = window.grid.time(i - 1), dt = window.grid.length(i);
   substep_ = i;
-  if (window.grid.begins_window(i))  // a row of windows ends as they do one by one
-    if (MasslessLayer* layer = integrator.able().layer) layer->renew();
   if (joins_ && i > 1) {  // forces of joined sides jump
     port_forces_->enter(i);
     if (std::optional<Failed> failed = meet_port_forces(begin)) return failed;

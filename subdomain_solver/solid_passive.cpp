@@ -396,8 +396,8 @@ std::optional<Failed> SolidInterior::restart(double time, double& work) {
   parts_.problem->contact = nullptr;
   if (port_forces_ != nullptr) port_forces_->impose({}, {});
   parts_.problem->set_rates(time, parts_.scheme.step, motion);
-  // What it kept is of before the passive windows, and a run that was resumed in them has nothing.
-  if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->renew();
+  // Where it was before the passive windows says little of where it is.
+  if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->release();
   if (auto failed = parts_.scheme.integrator->begin(motion, time)) return failed;
   std::ranges::fill(state_.port_force, 0.0);
   state_.time = time;

@@ -34,6 +34,8 @@ bool SolidInterior::rest(std::size_t) {
   state_ = State{};
   motion.q.assign(coordinates, 0.0);
   motion.v.assign(rates, 0.0);
+  MasslessLayer* layer = parts_.scheme.integrator->able().layer;
+  if (layer != nullptr) layer->release();
   state_.port_force.assign(port_map_->values(), 0.0);
   if (loaded_) return false;
   Problem& problem = *parts_.problem;  // others refer to it
@@ -44,6 +46,7 @@ bool SolidInterior::rest(std::size_t) {
   if (!problem.model->is_linear() && probed_as_linear()) {
     linearised_ = std::make_unique<LinearisedModel>(*problem.model);
     if (linearised_->ready()) problem.model = linearised_.get();
+    if (layer != nullptr) layer->forget();
   }
   problem.loads.push_back(std::move(loaded_->loads.back()));  // the forces on ports
   loaded_->loads.pop_back();
@@ -56,8 +59,10 @@ void SolidInterior::wake() {
   loaded_->loads.push_back(std::move(problem.loads.back()));
   problem.loads.swap(loaded_->loads);
   problem.supports = std::move(loaded_->supports);
-  problem.model = loaded_->model;
-  if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->renew();
+  if (problem.model != loaded_->model) {
+    problem.model = loaded_->model;
+    if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->forget();
+  }
   linearised_.reset();
   loaded_.reset();
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <Eigen/Core>
+
 #include "base/index.hpp"
 #include "base/one_each.hpp"
 
@@ -49,6 +51,12 @@ bool BatchedLayer::evaluate(std::span<const double> q, std::span<const double> h
   if (!batched_->evaluate(displacement_, {history, {}}, force_, unused)) return false;
   for (std::size_t k = 0; k < places_.size(); ++k) force[k] = force_[places_[k]];
   return true;
+}
+
+double BatchedLayer::size() const {
+  const Eigen::Map<const Eigen::VectorXd> force(force_.data(),
+                                                static_cast<Eigen::Index>(force_.size()));
+  return force.norm();
 }
 
 }  // namespace abut

@@ -25,6 +25,8 @@ class BatchedLayer {
   /// (dofs). False: a point has no answer.
   [[nodiscard]] bool evaluate(std::span<const double> q, std::span<const double> history,
                               std::span<double> force);
+  /// [N] of the forces on all nodes of the cells, the root of the sum of their squares.
+  double size() const;
 
  private:
   std::size_t dim_;

@@ -106,8 +106,7 @@ class FeModel final : public Model {
   };
   struct Assembly {                                   // of whole matrices
     std::vector<CellMeasures> measures;               // (blocks)
-    std::vector<std::vector<std::int32_t>> position;  // (blocks; cells, nodes, nodes) of the first
-                                                      // entry in the tangent
+    std::vector<std::vector<std::int32_t>> position;  // (blocks; cells, pairs) first entry of each
     SparseMatrix pattern;                             // zeros where the tangent has entries
     SparseMatrix stiffness;                           // of linear models, which need no other
     std::vector<double> springs;                      // [N/m] (cells) of linear bars
@@ -140,6 +139,8 @@ class FeModel final : public Model {
   const SparseMatrix& linear_stiffness();
   const Vector& strain_displacement(std::span<const double> q);
   void find_layer_pattern(LayerResponse& out);
+  void find_layer_inputs(LayerResponse& out);
+  void find_near_heirs(std::vector<int>& heirs) const;
   void find_layer_rows(std::span<const double> q, std::span<const double> history);
   template <int dim, int count>
   void add_layer_rows(Eigen::Index row, const double* q, const double* here, Vector& force) const;
@@ -149,7 +150,7 @@ class FeModel final : public Model {
   void spring_force(std::span<const double> q, ModelResponse& out) const;
   BatchedOptions batched_options() const;
   [[nodiscard]] bool batched_layer_force(std::span<const double> q, std::span<const double> history,
-                                         Vector& force);
+                                         LayerResponse& out);
   [[nodiscard]] bool batched_force(std::span<const double> q, std::span<const double> history,
                                    ModelResponse& out);
   std::size_t first_history(int block, int cell) const;  // where a cell's numbers begin
@@ -179,8 +180,7 @@ class FeModel final : public Model {
   std::vector<std::pair<int, int>> layer_cells_;  // (block, cell) that touch them
   // by direction, of cells without a node that takes mass there: nodes near that do
   std::array<std::map<std::pair<int, int>, std::vector<std::int32_t>>, 3> heirs_;
-  // by cell of the layer: places of its coordinates among the massless, -1: none; entries of its
-  // matrix, column by column, among the values of the tangent
+  // by cell of the layer: its coordinates among the massless (-1: none), its entries in the tangent
   std::vector<int> layer_places_, layer_slots_;
   std::vector<CellMeasures> layer_measures_;  // the same, where no assembly has them
   LayerRows layer_rows_;  // [N/m] (massless, dofs) of linear models, when first asked for

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -79,7 +81,8 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
     find_layer();
     if (!is_held(*this, massless_.size()))
       throw InputError(
-          "has a surface that too few nodes inside hold while it is free of mass, as "
+          "has a surface that too few nodes inside hold while it is free of "
+          "mass, as "
           "contact needs it",
           "mesh", "Make the mesh three elements across, or give fewer ports contact.");
   } catch (const InputError&) {
@@ -211,6 +214,57 @@ void FeModel::inherit(SparseMatrix& mass) const {
           [&](int dof, double part) { mass.coeffRef(dof, dof) += part; });
 }
 
+/// What a state's part in the layer's answers is, and how large their numbers are.
+void FeModel::find_layer_inputs(LayerResponse& out) {
+  layer_measures_.assign(blocks_.size(), {});
+  for (const auto& [block, cell] : layer_cells_)
+    measure_cell(mesh_, mesh_.blocks[block], cell, blocks_[block].table, options_,
+                 material_->moduli(), layer_measures_[block]);
+  Assembly units;
+  for (const CellMeasures& measures : layer_measures_) find_units(measures, units);
+  out.force_unit = units.force_unit;
+  out.gradient_unit = units.gradient_unit;
+  out.coordinates.clear();
+  out.history.clear();
+  for (const auto& [block, cell] : layer_cells_) {
+    for (const std::int32_t node : nodes_of(mesh_.blocks[block], cell))
+      for (int i = 0; i < mesh_.dim; ++i) out.coordinates.push_back(node * mesh_.dim + i);
+    for (std::size_t k = 0; k < blocks_[block].cell_history; ++k)
+      out.history.push_back(first_history(block, cell) + k);
+  }
+  keep_one_each(out.coordinates);
+  find_near_heirs(out.heirs);
+}
+
+/// Of the coordinates that take mass in a massless one's cells the nearest, in the reference.
+void FeModel::find_near_heirs(std::vector<int>& heirs) const {
+  const int dim = mesh_.dim;
+  heirs.assign(massless_.size(), -1);
+  std::vector<double> nearest(massless_.size(), std::numeric_limits<double>::infinity());
+  const auto offer = [&](std::int32_t node, int i, std::int32_t taker) {
+    const int place = layer_place(node * dim + i);
+    if (place < 0 || !takes_mass(taker, i)) return;
+    double square = 0.0;
+    for (int k = 0; k < dim; ++k) {
+      const double apart = mesh_.points[taker * dim + k] - mesh_.points[node * dim + k];
+      square += apart * apart;
+    }
+    if (!(square < nearest[index(place)])) return;
+    nearest[index(place)] = square;
+    heirs[index(place)] = taker * dim + i;
+  };
+  for (const auto& cell : layer_cells_) {
+    const std::span<const std::int32_t> nodes = nodes_of(mesh_.blocks[cell.first], cell.second);
+    for (int i = 0; i < dim; ++i) {
+      const auto others = heirs_[index(i)].find(cell);
+      const bool poor = others != heirs_[index(i)].end();
+      const std::span<const std::int32_t> takers = poor ? others->second : nodes;
+      for (const std::int32_t node : nodes)
+        for (const std::int32_t taker : takers) offer(node, i, taker);
+    }
+  }
+}
+
 /// Zeros where the layer's tangent has entries, and where its cells' matrices go.
 void FeModel::find_layer_pattern(LayerResponse& out) {
   const int size = static_cast<int>(massless_.size()), dim = mesh_.dim;
@@ -322,7 +376,7 @@ void FeModel::linear_layer(std::span<const double> q, Want want, LayerResponse& 
 }
 
 bool FeModel::batched_layer_force(std::span<const double> q, std::span<const double> history,
-                                  Vector& force) {
+                                  LayerResponse& out) {
   if (!batched_layer_) {
     BatchedOptions options = batched_options();
     options.threads = 1;
@@ -331,32 +385,32 @@ bool FeModel::batched_layer_force(std::span<const double> q, std::span<const dou
       cells.push_back({block, cell, static_cast<std::int64_t>(first_history(block, cell))});
     batched_layer_ = std::make_unique<BatchedLayer>(mesh_, *material_, options, cells, massless_);
   }
-  force.resize(static_cast<Eigen::Index>(massless_.size()));
-  return batched_layer_->evaluate(q, history, {force.data(), massless_.size()});
+  out.force.resize(static_cast<Eigen::Index>(massless_.size()));
+  if (!batched_layer_->evaluate(q, history, {out.force.data(), massless_.size()})) return false;
+  out.size = batched_layer_->size();
+  return true;
 }
 
 /// Tangents come in batches where they can; then forces do, too.
 bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> history, Want want,
                              LayerResponse& out) {
-  if (out.tangent.size() == 0) find_layer_pattern(out);
+  if (out.tangent.size() == 0) {
+    find_layer_pattern(out);
+    if (!is_linear()) find_layer_inputs(out);
+  }
   if (is_linear()) {
     linear_layer(q, want, out);
     return true;
   }
   const bool tangent = want == Want::tangent;
   bool batched = batched_ && !layer_cells_.empty() && frames_.empty() && !kernel_.guarded();
-  if (batched && !tangent) return batched_layer_force(q, history, out.force);
-  if (layer_measures_.empty()) {
-    layer_measures_.resize(blocks_.size());
-    for (const auto& [block, cell] : layer_cells_)
-      measure_cell(mesh_, mesh_.blocks[block], cell, blocks_[block].table, options_,
-                   material_->moduli(), layer_measures_[block]);
-  }
+  if (batched && !tangent) return batched_layer_force(q, history, out);
   for (const auto& [block, cell] : layer_cells_)
     batched = batched && answers_->batched(layer_measures_[block]);
   out.force.setZero(static_cast<Eigen::Index>(massless_.size()));
-  if (batched && !batched_layer_force(q, history, out.force)) return false;
+  if (batched && !batched_layer_force(q, history, out)) return false;
   if (tangent) std::fill_n(out.tangent.valuePtr(), out.tangent.nonZeros(), 0.0);
+  double squares = 0.0;
   const int *place = layer_places_.data(), *slot = layer_slots_.data();
   const auto add_tangent = [&out, &slot](const Eigen::MatrixXd& of_cell) {
     for (Eigen::Index k = 0; k < of_cell.size(); ++k, ++slot)
@@ -388,10 +442,12 @@ bool FeModel::evaluate_layer(std::span<const double> q, std::span<const double> 
     if (!respond(block, cell, geometry, q, history, tangent ? Need::tangent : Need::stress))
       return false;
     turn(nodes_of(cells, cell), &local_.force, tangent ? &local_.tangent : nullptr);
+    squares += local_.force.squaredNorm();
     for (Eigen::Index a = 0; a < local_.force.size(); ++a, ++place)
       if (*place >= 0) out.force(*place) += local_.force(a);
     if (tangent) add_tangent(local_.tangent);
   }
+  if (!batched) out.size = std::sqrt(squares);
   return true;
 }
 

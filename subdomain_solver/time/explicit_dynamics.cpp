@@ -50,6 +50,7 @@ std::optional<Failed> ExplicitDynamics::begin(Motion& motion, double time) {
   }
   if (!problem_.model->evaluate(motion.q, motion.history, Model::Want::force, response_))
     return failed_newton({NewtonReport::End::inadmissible}, time);
+  layer_.complete(response_.force);
   store(response_.force, motion.force);
   motion.stored = response_.stored;
   find_loads(time, motion.q);
@@ -135,12 +136,14 @@ std::optional<Failed> ExplicitDynamics::step(Motion& motion, double time, double
   }
   if (!layer_.empty()) {
     const double end = time + dt;
+    layer_.lead(motion, dt, next_);
     find_loads(end, next_);
     if (auto failed = layer_.settle(end, next_, motion.history, loads_, problem_.contact))
       return failed;
   }
   if (!problem_.model->evaluate(next_, motion.history, Model::Want::force, response_))
     return failed_newton({NewtonReport::End::inadmissible}, time + dt);
+  layer_.complete(response_.force);
   find_loads(time + dt, next_);
   motion.external_work += correct_supports(motion, dt);
   if (!layer_.empty()) motion.external_work += correct_layer(motion, dt);

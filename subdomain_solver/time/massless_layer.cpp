@@ -1,6 +1,7 @@
 #include "subdomain_solver/time/massless_layer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/assert.hpp"
@@ -16,8 +17,8 @@ constexpr int most_iterations = 50;
 /// Of what was not in balance before: factors that leave more behind are made anew.
 constexpr double slow = 0.25;
 constexpr int most_halvings = 8, most_trials = 20;
-/// Of the largest force in the balance. A layer is small, and energy is kept to what is left.
-constexpr double tolerance = 1.0e-12;
+/// Of the forces in the cells of the layer. Energy is kept to what is left, momentum to round-off.
+constexpr double tolerance = 1.0e-9;
 
 Failed inadmissible(double time) { return failed_newton({NewtonReport::End::inadmissible}, time); }
 
@@ -25,8 +26,10 @@ Failed inadmissible(double time) { return failed_newton({NewtonReport::End::inad
 Failed not_held(double time) {
   Failed failed = failed_newton({NewtonReport::End::singular}, time);
   failed.detail =
-      "the stiffness of the surface without mass is singular: either the body buckles there, or "
-      "too few nodes inside hold it; give ports the sides that can touch alone, or the mesh three "
+      "the stiffness of the surface without mass is singular: "
+      "either the body buckles there, or "
+      "too few nodes inside hold it; give ports the sides that can "
+      "touch alone, or the mesh three "
       "elements across";
   return failed;
 }
@@ -37,7 +40,6 @@ MasslessLayer::MasslessLayer(const Problem& problem)
     : problem_(problem), dofs_(problem.model->massless()) {
   if (dofs_.empty()) return;
   const Eigen::Index all = problem.model->dofs();
-  factors_ = make_own_solver();
   unit_.setZero(static_cast<Eigen::Index>(dofs_.size()));
   loads_.setZero(all);  // of jumps, the first of which may come late
   moved_.resize(index(all));
@@ -45,49 +47,128 @@ MasslessLayer::MasslessLayer(const Problem& problem)
   whole_.history.resize(problem.model->history_size());
 }
 
+void MasslessLayer::state(Archive& archive) {
+  if (dofs_.empty() || linear()) return;
+  archive.field("layer_place", place_);
+  if (!archive.writing()) certain_ = false;
+}
+
+void MasslessLayer::release() {
+  place_.clear();
+  certain_ = false;
+}
+
+void MasslessLayer::forget() {
+  release();
+  for (Factors& kept : kept_) kept.hold = false;
+}
+
 bool MasslessLayer::respond(std::span<const double> q, std::span<const double> history,
                             Model::Want want) {
-  if (factors_last_) want = Model::Want::force;
   return problem_.model->evaluate_layer(q, history, want, response_);
 }
 
-/// Factors of the layer's stiffness; columns of its inverse are to be found anew.
-bool MasslessLayer::factor() {
-  if (factors_last_) return true;
-  factored_ = factors_->factor(response_.tangent);
-  std::ranges::fill(known_, 0);
+void MasslessLayer::use(std::size_t kept) {
+  used_ = kept;
+  certain_ = true;
   ++version_;
-  factors_last_ = factored_ && problem_.model->is_linear();
-  return factored_;
+}
+
+/// Whether factors of the place are among those that are kept.
+bool MasslessLayer::use_kept() {
+  for (const std::size_t k : {used_, 1 - used_}) {
+    if (!kept_[k].hold || kept_[k].place != place_) continue;
+    if (k != used_ || !certain_) use(k);
+    return true;
+  }
+  return false;
+}
+
+/// At the place that is known. Two are kept: a body that goes back to the begin of a window goes
+/// back to the factors that it had there, and then on to those that it made in it.
+std::optional<Failed> MasslessLayer::make_factors(double time, std::span<const double> q,
+                                                  std::span<const double> history) {
+  if (use_kept()) return std::nullopt;
+  if (!respond(q, history, Model::Want::tangent)) return inadmissible(time);
+  const std::size_t next = kept_[used_].hold ? 1 - used_ : used_;
+  Factors& made = kept_[next];
+  if (made.solver == nullptr) made.solver = make_own_solver();
+  made.hold = made.solver->factor(response_.tangent);
+  made.place = place_;
+  std::ranges::fill(made.known, 0);
+  if (!made.hold) return not_held(time);
+  use(next);
+  return std::nullopt;
+}
+
+/// What the layer's answers depend on.
+void MasslessLayer::gather(std::span<const double> q, std::span<const double> history) {
+  place_.clear();
+  for (const int dof : response_.coordinates) place_.push_back(q[index(dof)]);
+  for (const std::size_t k : response_.history) place_.push_back(history[k]);
+}
+
+/// Those of the place that the state names.
+std::optional<Failed> MasslessLayer::find_factors(double time) {
+  if (use_kept()) return std::nullopt;
+  const std::size_t coordinates = response_.coordinates.size();
+  ABUT_ASSERT(place_.size() == coordinates + response_.history.size());
+  q_.assign(index(problem_.model->dofs()), 0.0);
+  history_.assign(problem_.model->history_size(), 0.0);
+  for (std::size_t k = 0; k < coordinates; ++k) q_[index(response_.coordinates[k])] = place_[k];
+  for (std::size_t k = 0; k < response_.history.size(); ++k)
+    history_[response_.history[k]] = place_[coordinates + k];
+  return make_factors(time, q_, history_);
+}
+
+/// [N] of the forces of the layer: each sums up some products, which are independent.
+double MasslessLayer::roundoff(std::span<const double> q) const {
+  double travel = 0.0;
+  for (const int dof : response_.coordinates) travel = std::max(travel, std::abs(q[index(dof)]));
+  return std::numeric_limits<double>::epsilon() * response_.force_unit *
+         std::max(1.0, travel * response_.gradient_unit) *
+         std::sqrt(static_cast<double>(dofs_.size()));
+}
+
+/// Factors cost far more than forces do: they serve as long as they lead on, from step to step and
+/// from window to window. `slow`: they do not any more.
+std::optional<Failed> MasslessLayer::renew_factors(double time, std::span<const double> q,
+                                                   std::span<const double> history) {
+  secants_.clear();
+  if (!linear()) gather(q, history);
+  return make_factors(time, q, history);
 }
 
 const Vector* MasslessLayer::column(int k) {
-  Vector& column = columns_[k];
-  if (known_[k]) return &column;
-  column.setZero(static_cast<Eigen::Index>(place_.size()));
-  known_[k] = 1;
-  const int place = place_[k];
+  Factors& f = factors();
+  Vector& column = f.columns[k];
+  if (f.known[k]) return &column;
+  column.setZero(static_cast<Eigen::Index>(contact_place_.size()));
+  f.known[k] = 1;
+  const int place = contact_place_[k];
   if (place < 0) return &column;
   unit_(place) = 1.0;
-  const bool solved = factors_->solve(unit_, answer_);
+  const bool solved = f.solver->solve(unit_, answer_);
   unit_(place) = 0.0;
   if (!solved) return nullptr;
-  for (std::size_t i = 0; i < place_.size(); ++i)
-    if (place_[i] >= 0) column(static_cast<Eigen::Index>(i)) = answer_(place_[i]);
+  for (std::size_t i = 0; i < contact_place_.size(); ++i)
+    if (contact_place_[i] >= 0) column(static_cast<Eigen::Index>(i)) = answer_(contact_place_[i]);
   return &column;
 }
 
 void MasslessLayer::find_places(const Contact& contact) {
   if (touched_ == contact.coordinates()) return;
   touched_ = contact.coordinates();
-  place_.resize(touched_.size());
+  contact_place_.resize(touched_.size());
   for (std::size_t k = 0; k < touched_.size(); ++k) {
     const auto at = std::ranges::lower_bound(dofs_, touched_[k]);
     const bool mine = at != dofs_.end() && *at == touched_[k];
-    place_[k] = mine ? static_cast<int>(at - dofs_.begin()) : -1;
+    contact_place_[k] = mine ? static_cast<int>(at - dofs_.begin()) : -1;
   }
-  columns_.resize(std::max(columns_.size(), touched_.size()));
-  known_.assign(touched_.size(), 0);
+  for (Factors& kept : kept_) {
+    kept.columns.resize(std::max(kept.columns.size(), touched_.size()));
+    kept.known.assign(touched_.size(), 0);
+  }
   ++version_;
 }
 
@@ -95,8 +176,8 @@ void MasslessLayer::find_places(const Contact& contact) {
 /// no answer.
 bool MasslessLayer::press(double time, std::span<const double> q, Contact& contact) {
   free_.resize(pressed_.size());
-  for (std::size_t i = 0; i < place_.size(); ++i) {
-    const double step = place_[i] >= 0 ? step_(place_[i]) : 0.0;
+  for (std::size_t i = 0; i < contact_place_.size(); ++i) {
+    const double step = contact_place_[i] >= 0 ? step_(contact_place_[i]) : 0.0;
     free_(static_cast<Eigen::Index>(i)) = q[touched_[i]] + step;
   }
   for (int k = 0; k < static_cast<int>(pressed_.size()); ++k) {
@@ -108,13 +189,13 @@ bool MasslessLayer::press(double time, std::span<const double> q, Contact& conta
   const Vector* force = contact.solve(time, free_, *this);
   if (force == nullptr) return false;
   rest_.setZero();
-  for (std::size_t k = 0; k < place_.size(); ++k) {
+  for (std::size_t k = 0; k < contact_place_.size(); ++k) {
     const Eigen::Index at = static_cast<Eigen::Index>(k);
-    if (place_[k] >= 0) rest_(place_[k]) = (*force)(at)-pressed_(at);
+    if (contact_place_[k] >= 0) rest_(contact_place_[k]) = (*force)(at)-pressed_(at);
   }
   pressed_ = *force;
   if (rest_.isZero(0.0)) return true;
-  if (!factors_->solve(rest_, answer_)) return false;
+  if (!factors().solver->solve(rest_, answer_)) return false;
   step_ += answer_;
   return true;
 }
@@ -132,15 +213,15 @@ double MasslessLayer::move(std::vector<double>& q, double part) {
 
 /// What is not in balance, under what presses now; returns the size of the forces.
 double MasslessLayer::find_rest(const Vector& loads, bool pressed) {
-  rest_ = -response_.force;
+  asked_.setZero(static_cast<Eigen::Index>(dofs_.size()));
   if (loads.size() > 0) {
     for (std::size_t i = 0; i < dofs_.size(); ++i)
-      rest_(static_cast<Eigen::Index>(i)) += loads(dofs_[i]);
+      asked_(static_cast<Eigen::Index>(i)) = loads(dofs_[i]);
   }
-  if (!pressed) return response_.force.norm();
-  for (std::size_t k = 0; k < place_.size(); ++k)
-    if (place_[k] >= 0) rest_(place_[k]) += pressed_(static_cast<Eigen::Index>(k));
-  return std::max(response_.force.norm(), pressed_.norm());
+  for (std::size_t k = 0; pressed && k < contact_place_.size(); ++k)
+    if (contact_place_[k] >= 0) asked_(contact_place_[k]) += pressed_(static_cast<Eigen::Index>(k));
+  rest_ = asked_ - response_.force;
+  return pressed ? std::max(response_.size, pressed_.norm()) : response_.size;
 }
 
 /// Goes along the step: all the way, or, where forces then lead back as strongly, to where they do
@@ -170,12 +251,7 @@ bool MasslessLayer::walk(std::vector<double>& q, std::span<const double> history
   return true;
 }
 
-/// Factors that last are those of a linear model, as probes of other bodies are answered by.
-void MasslessLayer::renew() {
-  factors_last_ = factors_last_ && problem_.model->is_linear();
-  factored_ = factors_last_;
-}
-
+/// The balance at an iterate: whether it is enough, or how to go on.
 std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
                                             std::span<const double> history, const Vector& loads,
                                             Contact* contact) {
@@ -183,35 +259,56 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     pressed_.setZero(static_cast<Eigen::Index>(contact->coordinates().size()));
     find_places(*contact);
   }
-  // Factors cost far more than forces do: they serve as long as they lead on, from step to step
-  // too, and where a material yields.
+  if (!respond(q, history, Model::Want::force)) return inadmissible(time);
+  if (!certain_ && !linear() && !place_.empty()) {
+    if (auto failed = find_factors(time)) return failed;
+    if (!respond(q, history, Model::Want::force)) return inadmissible(time);
+  }
+  secants_.clear();
+  // Steps end at rounding by themselves, so that the margin of the roundings is not for here.
+  const double rounding = linear() ? 0.0 : roundoff(q);
   double before = 0.0;
-  if (!respond(q, history, factored_ ? Model::Want::force : Model::Want::tangent))
-    return inadmissible(time);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const double scale = find_rest(loads, contact != nullptr && iteration > 0);
     if (!rest_.allFinite()) return not_finite(time);
-    // What is left is momentum that the partner gave and the body behind did not get. Steps end at
-    // rounding by themselves, so that the margin of the roundings is not for here.
-    const double roundoff = problem_.model->roundoff(q) / summed_roundings;
-    if (iteration > 0 && rest_.norm() <= std::max(tolerance * scale, roundoff)) return std::nullopt;
     const double left = rest_.norm();
-    const bool anew = !factored_ || (iteration > 0 && left > slow * before);
-    if (anew && factored_ && !respond(q, history, Model::Want::tangent)) return inadmissible(time);
-    if (anew && !factor()) return not_held(time);
+    if (iteration > 0 && left <= std::max(tolerance * scale, rounding)) return std::nullopt;
+    if (!factors().hold || !certain_ || (iteration > 0 && left > slow * before)) {
+      if (auto failed = renew_factors(time, q, history)) return failed;
+    }
     before = left;
-    if (!factors_->solve(rest_, step_) || (contact != nullptr && !press(time, q, *contact)))
+    const auto solve = [this](const Vector& b, Vector& x) { return factors().solver->solve(b, x); };
+    if (!secants_.solve(rest_, step_, solve) || (contact != nullptr && !press(time, q, *contact)))
       return failed_newton({NewtonReport::End::singular}, time, contact);
     if (!step_.allFinite()) return failed_newton({NewtonReport::End::singular}, time);
-    if (problem_.model->is_linear()) {
+    if (linear()) {
       move(q, 1.0);
       return std::nullopt;
     }
+    forces_before_ = response_.force;
     if (!walk(q, history, loads, contact != nullptr)) return inadmissible(time);
+    secants_.add(step_, part_, forces_before_, response_.force);
     const double least = 4.0 * std::numeric_limits<double>::epsilon() * largest_;
     if (part_ == 1.0 && step_.lpNorm<Eigen::Infinity>() <= least) return std::nullopt;
   }
   return failed_newton({NewtonReport::End::not_converged, most_iterations}, time);
+}
+
+void MasslessLayer::lead(const Motion& motion, double dt, std::vector<double>& next) {
+  if (linear()) return;
+  const bool knows = !response_.heirs.empty();  // an inadmissible place is told by who balances
+  if (!knows && !respond(motion.q, motion.history, Model::Want::force)) return;
+  for (std::size_t i = 0; i < response_.heirs.size(); ++i)
+    next[index(dofs_[i])] += dt * dt * motion.a[index(response_.heirs[i])];
+}
+
+void MasslessLayer::complete(Vector& force) {
+  if (dofs_.empty() || linear()) return;
+  for (std::size_t i = 0; i < dofs_.size(); ++i) {
+    const double asked = asked_(static_cast<Eigen::Index>(i));
+    force(response_.heirs[i]) -= asked - force(dofs_[i]);
+    force(dofs_[i]) = asked;
+  }
 }
 
 std::optional<Failed> MasslessLayer::jump(double time, Motion& motion, const Vector& change,
@@ -224,6 +321,7 @@ std::optional<Failed> MasslessLayer::jump(double time, Motion& motion, const Vec
   if (auto failed = settle(time, moved_, motion.history, loads_, nullptr)) return failed;
   if (!problem_.model->evaluate(moved_, motion.history, Model::Want::force, whole_))
     return failed_newton({NewtonReport::End::inadmissible}, time);
+  complete(whole_.force);
   answer = whole_.force - view(motion.force);
   for (const int dof : dofs_) {
     const std::size_t i = index(dof);
@@ -238,11 +336,12 @@ std::optional<Failed> MasslessLayer::jump(double time, Motion& motion, const Vec
 double MasslessLayer::compliance(std::span<const double> q, std::span<const double> history,
                                  int dof) {
   const auto at = std::lower_bound(dofs_.begin(), dofs_.end(), dof);
-  if (at == dofs_.end() || *at != dof || !respond(q, history, Model::Want::tangent) || !factor())
-    return 0.0;
+  if (at == dofs_.end() || *at != dof || !respond(q, history, Model::Want::tangent)) return 0.0;
+  if (here_ == nullptr) here_ = make_own_solver();
+  if (!here_->factor(response_.tangent)) return 0.0;
   const Eigen::Index place = at - dofs_.begin();
   unit_(place) = 1.0;
-  const bool solved = factors_->solve(unit_, answer_);
+  const bool solved = here_->solve(unit_, answer_);
   unit_(place) = 0.0;
   return solved ? answer_(place) : 0.0;
 }
