@@ -216,7 +216,11 @@ void SolidInterior::state(Archive& archive) {
   archive.field("turned", state_.turned);
   if (crossings_) archive.field("crossed", state_.crossed);
   if (surfaces_ != nullptr) surfaces_->state(archive);
-  if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->state(archive);
+  if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) return layer->state(archive);
+  const Model& model = *parts_.problem->model;
+  if (model.massless().empty() || model.is_linear()) return;
+  std::vector<double> none;  // statics have no factors of the layer alone; stages after them may
+  archive.field("layer_place", none);
 }
 
 std::optional<Failed> SolidInterior::begin(const Window& window) {

@@ -16,6 +16,8 @@ namespace {
 constexpr int most_iterations = 50;
 /// Of what was not in balance before: factors that leave more behind are made anew.
 constexpr double slow = 0.25;
+/// The same where contact presses, whose rows are solved for in every correction.
+constexpr double slow_contact = 0.05;
 constexpr int most_halvings = 8, most_trials = 20;
 /// Of the forces in the cells of the layer. Energy is kept to what is left, momentum to round-off.
 constexpr double tolerance = 1.0e-9;
@@ -260,6 +262,8 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     find_places(*contact);
   }
   if (!respond(q, history, Model::Want::force)) return inadmissible(time);
+  if (place_.size() != response_.coordinates.size() + response_.history.size())
+    release();  // of another body's state, or none
   if (!certain_ && !linear() && !place_.empty()) {
     if (auto failed = find_factors(time)) return failed;
     if (!respond(q, history, Model::Want::force)) return inadmissible(time);
@@ -273,10 +277,15 @@ std::optional<Failed> MasslessLayer::settle(double time, std::vector<double>& q,
     if (!rest_.allFinite()) return not_finite(time);
     const double left = rest_.norm();
     if (iteration > 0 && left <= std::max(tolerance * scale, rounding)) return std::nullopt;
-    if (!factors().hold || !certain_ || (iteration > 0 && left > slow * before)) {
+    const bool pressed = contact != nullptr && !pressed_.isZero(0.0);
+    const double most = before * (pressed ? slow_contact : slow);
+    if (!factors().hold || !certain_ || (iteration > 0 && left > most)) {
       if (auto failed = renew_factors(time, q, history)) return failed;
     }
     before = left;
+    // Contact knows how the layer gives way by the factor alone: what is pressed against a partner
+    // would be led astray by more.
+    if (pressed) secants_.clear();
     const auto solve = [this](const Vector& b, Vector& x) { return factors().solver->solve(b, x); };
     if (!secants_.solve(rest_, step_, solve) || (contact != nullptr && !press(time, q, *contact)))
       return failed_newton({NewtonReport::End::singular}, time, contact);
