@@ -31,8 +31,6 @@ struct Substeps {
     if (each > 0) return time_in_row(i);
     return i == count ? end : begin + i * step;
   }
-  /// Whether substep i is the first one of a window that follows another one in the row.
-  bool begins_window(int i) const { return each > 0 && i > 1 && (i - 1) % each == 0; }
   bool matches(const std::vector<double>& times) const;  // the same instants, i = 0..count
   bool same_as(const Substeps& other) const { return count == other.count && step == other.step; }
 
