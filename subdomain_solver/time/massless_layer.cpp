@@ -18,6 +18,7 @@ constexpr int most_iterations = 50;
 constexpr double slow = 0.25;
 /// The same where contact presses, whose rows are solved for in every correction.
 constexpr double slow_contact = 0.05;
+constexpr std::size_t few = 1000;  // coordinates whose factors cost some milliseconds
 constexpr int most_halvings = 8, most_trials = 20;
 /// Of the forces in the cells of the layer. Energy is kept to what is left, momentum to round-off.
 constexpr double tolerance = 1.0e-9;
@@ -43,10 +44,26 @@ MasslessLayer::MasslessLayer(const Problem& problem)
   if (dofs_.empty()) return;
   const Eigen::Index all = problem.model->dofs();
   unit_.setZero(static_cast<Eigen::Index>(dofs_.size()));
+  step_ = rest_ = asked_ = answer_ = forces_before_ = unit_;
+  q_.reserve(index(all));
+  history_.reserve(problem.model->history_size());
+  make_room();
   loads_.setZero(all);  // of jumps, the first of which may come late
   moved_.resize(index(all));
   whole_.force.setZero(all);
   whole_.history.resize(problem.model->history_size());
+}
+
+/// Steps ask for no memory: secants are as many as they can be, once.
+void MasslessLayer::make_room() {
+  const Vector ones = Vector::Ones(unit_.size());
+  for (int k = 0; k < 8; ++k) secants_.add(ones, 1.0, unit_, ones);
+  const auto copy = [](const Vector& b, Vector& x) {
+    x = b;
+    return true;
+  };
+  static_cast<void>(secants_.solve(ones, step_, copy));
+  secants_.clear();
 }
 
 void MasslessLayer::state(Archive& archive) {
@@ -100,6 +117,12 @@ std::optional<Failed> MasslessLayer::make_factors(double time, std::span<const d
   std::ranges::fill(made.known, 0);
   if (!made.hold) return not_held(time);
   use(next);
+  // The analysis of small matrices, whose factors are changed often, is there from the begin.
+  Factors& other = kept_[1 - next];
+  if (linear() || other.solver != nullptr || dofs_.size() >= few) return std::nullopt;
+  other.solver = make_own_solver();
+  other.hold = other.solver->factor(response_.tangent);
+  other.place = place_;
   return std::nullopt;
 }
 

@@ -70,6 +70,7 @@ class MasslessLayer final : private Compliance {
   [[nodiscard]] std::optional<Failed> find_factors(double time);
   [[nodiscard]] std::optional<Failed> renew_factors(double time, std::span<const double> q,
                                                     std::span<const double> history);
+  void make_room();
   bool use_kept();
   void gather(std::span<const double> q, std::span<const double> history);
   double roundoff(std::span<const double> q) const;
