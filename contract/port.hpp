@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,20 @@ struct Port {
   bool tied = false;  // for tied interfaces only: contact would make its node unstable
 };
 
+/// Which points of a kernel answer a force on one of them: lists, by the point that is pressed.
+struct KernelBand {
+  int dim = 0;                        // components of a point
+  std::vector<std::int32_t> offsets;  // (points pressed + 1) where each one's list begins
+  std::vector<std::int32_t> reached;  // numbers among the kernel's points, ascending in a list
+
+  bool empty() const { return offsets.empty(); }
+  std::size_t points() const { return offsets.empty() ? 0 : offsets.size() - 1; }
+  std::span<const std::int32_t> of(std::size_t point) const {
+    return std::span(reached).subspan(index(offsets[point]),
+                                      index(offsets[point + 1] - offsets[point]));
+  }
+};
+
 /// Responses of a port to patterns of force on its points, from rest and with all other loads
 /// absent: the building block of the interface Jacobian (docs/METHOD.md, port kernel). The kernel
 /// of a one-point port has one pattern, a unit force along its outward normal.
@@ -54,12 +69,22 @@ struct PortKernel {
   // of the port, ascending, that patterns and responses are of; empty: all. Others do not give way.
   std::vector<std::int32_t> points;
 
+  // Banded: not every point answers a force on another one. The arrays above are then (n, reached,
+  // dim, dim): for each entry of the band how much the point that is reached moves, component by
+  // component, by a unit of each component on the point that is pressed. Empty: all answer.
+  KernelBand band;
+
   // Of bodies with loose motions (Description::loose): (motions, width) displacements by a unit of
   // each, and [N/m] (motions, motions) what it leaves over along all.
   std::vector<double> carried, left;
 
-  std::size_t per_step() const { return index(patterns) * index(width); }
-  int count() const { return static_cast<int>(displacement.size() / per_step()); }
+  std::size_t per_step() const {
+    if (!band.empty()) return band.reached.size() * index(band.dim * band.dim);
+    return index(patterns) * index(width);
+  }
+  int count() const {
+    return displacement.empty() ? 0 : static_cast<int>(displacement.size() / per_step());
+  }
 };
 
 }  // namespace abut

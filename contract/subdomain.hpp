@@ -31,6 +31,7 @@ struct Capabilities {
   bool passive = false;  // has a passive form: Subdomain::passive()
   // Its surface has mass: it takes obstacles in its passive form alone.
   bool only_passive = false;
+  bool bands = false;  // takes kernels that are banded: PortKernel::band
 };
 
 /// A solid inside a body that tables show as if it were a body: monolithic models hold several.

@@ -24,6 +24,7 @@ constexpr std::int64_t flights = 8;        // requests of free flight to and fro
 // Most iterations in a window on average, as measured over the shipped scenes: of linear bodies
 // with port kernels (2.3, and a guess of N), of others (3.5), of the published form (12.5).
 constexpr std::int64_t sweeps_linear = 3, sweeps_nonlinear = 5, sweeps_published = 15;
+constexpr std::int64_t many_rows = 500;  // found row by row beyond
 constexpr std::int64_t per_event = 3;  // attempts and the window cut at an event
 // Into how many windows a scene's one is cut where ends of bars bounce all the time (4.6 measured).
 constexpr std::int64_t cuts_of_bouncing = 5;
@@ -93,16 +94,30 @@ Estimate::Kernel kernel_of(const InterfaceSpec& spec, const UnilateralTransmissi
   if (body == nullptr || finder == nullptr || body->dim == 1 || !body->can.kernel ||
       std::isinf(body->mass) || !finder->can.yielding)
     return kernel;
-  const std::string port(split_port(kernel.side).port);
-  for (const Port& p : body->ports)
-    if (p.name == port) kernel.points = p.geometry.count();
+  const auto points_of = [](const Description& of, const std::string& side) {
+    const std::string port(split_port(side).port);
+    for (const Port& p : of.ports)
+      if (p.name == port) return static_cast<std::int64_t>(p.geometry.count());
+    return std::int64_t{0};
+  };
+  kernel.points = points_of(*body, kernel.side);
+  const std::int64_t rows = points_of(*finder, spec.sides[1 - side]);
+  if (rows > many_rows && finder->can.bands)
+    kernel.rows_mib =
+        near_rows_bytes(static_cast<double>(rows), body->dim, spec.contact->friction.rubs()) / mebi;
   kernel.substeps = body->step > 0.0
                         ? count_within(std::ceil(window / body->step - 1.0e-9), 1, 1'000'000'000)
                         : 1;
   kernel.allowed_mib = how.kernel_memory.value_or(usual_kernel_memory);
   const double steps = static_cast<double>(kernel.substeps);
   kernel.memory_mib = kernel_bytes(static_cast<double>(kernel.points) * body->dim, steps) / mebi;
-  const double fit = std::sqrt(kernel.allowed_mib * mebi / kernel_bytes(1.0, steps)) / body->dim;
+  double fit = std::sqrt(kernel.allowed_mib * mebi / kernel_bytes(1.0, steps)) / body->dim;
+  if (finder->can.bands && !body->quasi_static &&
+      kernel.memory_mib * mebi > always_full_kernel) {
+    const double points = static_cast<double>(kernel.points);
+    kernel.banded_mib = banded_kernel_bytes(points, body->dim, steps) / mebi;
+    fit = std::max(fit, points * kernel.allowed_mib / kernel.banded_mib);
+  }
   kernel.points_that_fit = std::min(kernel.points, static_cast<std::int64_t>(std::min(fit, 1.0e9)));
   return kernel;
 }
@@ -266,6 +281,8 @@ std::string to_text(const Estimate& e, bool verbose) {
     text += fmt::format(
         "  {:<10} port kernel of {}: {:.3g} MiB where all {} points give way over {} substeps",
         k.interface, k.side, k.memory_mib, k.points, k.substeps);
+    if (k.banded_mib > 0.0)
+      text += fmt::format("; {:.3g} MiB and more where near points alone do", k.banded_mib);
     if (k.points_that_fit < k.points) {
       text += fmt::format(
           "; {} points fit kernel_memory, {:g} MiB: where more come near a contact, it takes more "
@@ -273,6 +290,9 @@ std::string to_text(const Estimate& e, bool verbose) {
           k.points_that_fit, k.allowed_mib);
     }
     text += '\n';
+    if (k.rows_mib > 0.0)
+      text += fmt::format("  {:<10} forces of many points, row by row: about {:.3g} MiB\n",
+                          k.interface, k.rows_mib);
   }
   for (const Estimate::Ties& ties : e.ties) text += text_of(ties);
   if (!e.in_use.empty()) text += fmt::format("  in use     {}\n", fmt::join(e.in_use, ", "));

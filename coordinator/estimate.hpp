@@ -27,6 +27,10 @@ struct Estimate {
     std::string interface, side;
     std::int64_t points = 0, points_that_fit = 0, substeps = 0;
     double memory_mib = 0.0, allowed_mib = 0.0;
+    // Where near points alone may answer: of the narrowest band; 0: they may not.
+    double banded_mib = 0.0;
+    // What finds the forces of all points of the other side, where they are many; 0: they are not.
+    double rows_mib = 0.0;
   };
 
   /// Tied surfaces that hang together, and the kernel that answers them.

@@ -54,9 +54,10 @@ void RemoteSubdomain::ping() {
 void RemoteSubdomain::meet(const Meeting& meeting) {
   if (meeting.kernel == nullptr) return meet_part(meeting, {});
   const PortKernel& kernel = *meeting.kernel;
-  const int at_once =
+  int at_once =
       patterns_at_once(index(kernel.patterns), bytes_of_pattern(kernel),
                        sizeof(std::int32_t) * kernel.points.size(), caller_.frame_limit());
+  if (const int dim = kernel.band.dim; dim > 0) at_once = std::max(dim, at_once - at_once % dim);
   if (meeting.surface != nullptr)
     meet_part({meeting.port, meeting.partner, meeting.surface, meeting.law}, {});
   if (at_once >= kernel.patterns)

@@ -146,6 +146,7 @@ void SolidInterior::find_surfaces() {
     description_.measures.push_back(std::move(name));
   for (FieldInfo& field : touch_fields()) description_.fields.push_back(std::move(field));
   description_.can.obstacle = description_.can.yielding = description_.can.friction = true;
+  description_.can.bands = true;
   description_.can.neighbours = joins_;
 }
 

@@ -45,6 +45,7 @@ PortKernel along(const PortKernel& all, const PortGeometry& surface) {
           mean(all.begin),
           {},
           {},
+          {},
           {}};
 }
 

@@ -6,6 +6,7 @@
 
 #include "contract/force_means.hpp"
 #include "contract/kernel.hpp"
+#include "coordinator/coupling/banded_kernel.hpp"
 #include "coordinator/coupling/contact.hpp"
 #include "coordinator/coupling/exchange_parts.hpp"
 #include "coordinator/coupling/kernel_bytes.hpp"
@@ -110,7 +111,9 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
   const double values =
       zone_.points().empty() ? iterate_.width : static_cast<double>(zone_.points().size() * dim_);
   const double size = kernel_bytes(values, iterate_.steps.count);
-  if (!bodies.describe(k.body).can.yielding || size > largest_kernel_) {
+  const bool holds = answer_.count() >= iterate_.steps.count && answer_.points == zone_.points() &&
+                     answer_.step == bodies.step(n.body);
+  if (!bodies.describe(k.body).can.yielding || (!holds && !probe(size, k, n, bodies))) {
     if (!bodies.describe(k.body).can.kernel) return;
     const double own = bodies.kernel(k.body, k.port, kinematic_grid_.count).displacement.front();
     const double others = bodies.kernel(n.body, n.port, iterate_.steps.count).displacement.front();
@@ -118,16 +121,30 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
     return;
   }
   kernel_ = &answer_;
-  const bool holds = answer_.count() >= iterate_.steps.count && answer_.points == zone_.points() &&
-                     answer_.step == bodies.step(n.body);
   if (holds && answer_told_) return;
-  if (!holds) {
-    answer_ = bodies.full_kernel(n.body, n.port, iterate_.steps.count, zone_.points());
-    if (levels_of(kinematic_grid_) == levels_of(iterate_.steps)) answer_.compliance.clear();
-  }
   bodies.meet(k, k.partner, n, answer_);
   answer_told_ = true;
   eased_[1].told = {};
+}
+
+/// The kernel of all points on all others where that is small, `size` [B], else of near ones where
+/// these suffice. False: none fits.
+bool CompliantObstacle::probe(double size, const Side& k, const Side& n, Bodies& bodies) {
+  const int count = iterate_.steps.count;
+  const std::size_t points = zone_.points().size() + 1;  // and one, as none stand for all
+  const bool bands = bodies.describe(k.body).can.bands && !bodies.describe(n.body).quasi_static;
+  answer_ = {};
+  if (size > always_full_kernel && bands && unbanded_ != points) {
+    answer_ = banded_kernel({n.body, n.port, count, zone_.points()}, largest_kernel_, size, bodies);
+    unbanded_ = answer_.count() == 0 ? points : 0;
+  }
+  if (answer_.count() == 0) {
+    if (size > largest_kernel_) return false;
+    answer_ = bodies.full_kernel(n.body, n.port, count, zone_.points());
+  }
+  answer_told_ = false;
+  if (levels_of(kinematic_grid_) == levels_of(iterate_.steps)) answer_.compliance.clear();
+  return true;
 }
 
 /// The flight of the Neumann side: what pressed at the begin goes, as the force of the instant. A
@@ -208,6 +225,7 @@ bool CompliantObstacle::ease(TieNet& net, const Joint& joint, Bodies& bodies) {
   eased_[0].port = eased_[1].port = nullptr;
   if (net.joins(k.body) && bodies.describe(k.body).can.neighbours)
     eased_[0].port = net.touching(k, {}, largest_kernel_, bodies);
+  if (net.joins(n.body) && kernel_ != nullptr && !kernel_->band.empty()) return false;
   if (net.joins(n.body) && kernel_ != nullptr)
     eased_[1].port = net.touching(n, zone_.points(), largest_kernel_, bodies);
   if (net.joins(k.body) && eased_[0].port == nullptr) return false;
@@ -343,15 +361,18 @@ void CompliantObstacle::take_back(const Eigen::MatrixXd& taken,
 
 /// When the window ends the Neumann side stands under the force of the instant, not its mean.
 void CompliantObstacle::take_back_end(Eigen::Ref<Eigen::VectorXd> motion) const {
-  const std::vector<double>& compliance = kernel_->compliance;
-  const int width = compliance.empty() ? 0 : kernel_->width;
+  if (kernel_->compliance.empty()) return;
+  const std::size_t width = index(kernel_->width);
+  level_force_.resize(width);
+  level_moved_.resize(width);
   double* moved = &motion[iterate_.at(iterate_.steps.count)];
-  for (int p = 0; p < width; ++p) {
-    const auto at = static_cast<Eigen::Index>(value(kernel_->points, index(p)));
-    const double more = pressed_(at, pressed_.cols() - 1) - taken_(at, iterate_.steps.count);
-    for (int q = 0; more != 0.0 && q < width; ++q)
-      moved[value(kernel_->points, index(q))] -= more * compliance[p * width + q];
+  for (std::size_t p = 0; p < width; ++p) {
+    const auto at = static_cast<Eigen::Index>(value(kernel_->points, p));
+    level_force_[p] = pressed_(at, pressed_.cols() - 1) - taken_(at, iterate_.steps.count);
+    level_moved_[p] = moved[value(kernel_->points, p)];
   }
+  add_moved(*kernel_, kernel_->compliance, -1.0, level_force_, level_moved_);
+  for (std::size_t q = 0; q < width; ++q) moved[value(kernel_->points, q)] = level_moved_[q];
 }
 
 std::size_t CompliantObstacle::value(const std::vector<std::int32_t>& points, std::size_t k) const {

@@ -77,6 +77,7 @@ class CompliantObstacle final : public Exchange {
  private:
   void find_give(const Joint& joint, Bodies& bodies);
   void find_kernel(double length, const Joint& joint, Bodies& bodies);
+  [[nodiscard]] bool probe(double size, const Side& k, const Side& n, Bodies& bodies);
   void find_zone(double length, const Joint& joint, const Bodies& bodies);
   /// Of the port: that of a list of its points which is number k; empty: all are listed.
   std::size_t value(const std::vector<std::int32_t>& points, std::size_t k) const;
@@ -108,6 +109,7 @@ class CompliantObstacle final : public Exchange {
   std::vector<double> u_k_;             // [m] of the kinematic port, at the window's begin
   const PortKernel* kernel_ = nullptr;  // null: the obstacle does not give way
   PortKernel answer_;                   // of the zone
+  std::size_t unbanded_ = 0;            // points, and one, of a zone that no band was found for
   bool answer_told_ = false;            // the kinematic body knows it
   // What bodies tied to either side answer, as the kinematic body was told; null: none are.
   struct Eased {

@@ -1,7 +1,9 @@
 #include "coordinator/coupling/contact_zone.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "coordinator/coupling/state_fields.hpp"
 #include "surface/closest_point.hpp"
@@ -95,15 +97,33 @@ std::vector<std::int32_t> ContactZone::reached(double reach,
   return points;
 }
 
-/// Points no farther than `reach` [m] from any of these.
+/// Points no farther than `reach` [m] from any of these. They lie in cells of that size, so that a
+/// point looks at those of the cells around its own alone.
 std::vector<std::int32_t> ContactZone::around(const std::vector<std::int32_t>& points,
                                               double reach) const {
+  const double edge = 1.0001 * reach;  // rounding of places in it
+  const auto cell_of = [edge](const Eigen::Vector3d& x) {
+    std::array<std::int64_t, 3> cell{};
+    for (std::size_t d = 0; d < 3; ++d)
+      cell[d] = static_cast<std::int64_t>(std::floor(x(static_cast<Eigen::Index>(d)) / edge));
+    return cell;
+  };
+  std::map<std::array<std::int64_t, 3>, std::vector<std::int32_t>> cells;
+  for (const std::int32_t p : points) cells[cell_of(n_.point(p))].push_back(p);
+  const auto beside = [&](const Eigen::Vector3d& x) {
+    const std::array<std::int64_t, 3> own = cell_of(x);
+    for (int k = 0; k < 27; ++k) {
+      const auto found = cells.find({own[0] + k / 9 - 1, own[1] + k / 3 % 3 - 1, own[2] + k % 3 - 1});
+      if (found != cells.end() &&
+          std::ranges::any_of(found->second,
+                              [&](std::int32_t p) { return (n_.point(p) - x).norm() <= reach; }))
+        return true;
+    }
+    return false;
+  };
   std::vector<std::int32_t> out;
-  for (std::int32_t node = 0; node < n_.node_count(); ++node) {
-    const Eigen::Vector3d x = n_.point(node);
-    const auto beside = [&](std::int32_t p) { return (n_.point(p) - x).norm() <= reach; };
-    if (std::ranges::any_of(points, beside)) out.push_back(node);
-  }
+  for (std::int32_t node = 0; node < n_.node_count(); ++node)
+    if (beside(n_.point(node))) out.push_back(node);
   return out;
 }
 

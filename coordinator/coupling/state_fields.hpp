@@ -58,6 +58,9 @@ inline void field(Archive& archive, std::string_view name, PortKernel& kernel) {
   archive.field("displacement", kernel.displacement);
   archive.field("begin", kernel.begin);
   field(archive, "points", kernel.points);
+  whole(archive, "dim", kernel.band.dim);
+  field(archive, "offsets", kernel.band.offsets);
+  field(archive, "reached", kernel.band.reached);
   archive.field("carried", kernel.carried);
   archive.field("left", kernel.left);
 }

@@ -8,7 +8,7 @@ namespace abut {
 namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
-static_assert(sizeof(Capabilities) == 11 * sizeof(bool));
+static_assert(sizeof(Capabilities) == 12 * sizeof(bool));
 static_assert(sizeof(Port) == sizeof(std::string) + sizeof(PortGeometry) + sizeof(double));
 static_assert(sizeof(Member) ==
               sizeof(std::string) + sizeof(double) + sizeof(std::vector<std::int32_t>));
@@ -25,6 +25,7 @@ void encode(const Capabilities& from, v1::Capabilities& to) {
   to.set_neighbours(from.neighbours);
   to.set_passive(from.passive);
   to.set_only_passive(from.only_passive);
+  to.set_bands(from.bands);
 }
 
 Capabilities decode(const v1::Capabilities& from) {
@@ -38,7 +39,8 @@ Capabilities decode(const v1::Capabilities& from) {
           .friction = from.friction(),
           .neighbours = from.neighbours(),
           .passive = from.passive(),
-          .only_passive = from.only_passive()};
+          .only_passive = from.only_passive(),
+          .bands = from.bands()};
 }
 
 void decode_described_port(const v1::Port& from, const Description& body, const FieldPath& path,

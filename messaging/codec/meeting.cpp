@@ -43,7 +43,7 @@ void decode_kernel(const v1::Meet& from, const SurfaceSize& surface, const Field
   if (from.has_first()) to.first = position(from.first(), index(width), FieldPath{&path, "first"});
   const int most = width - to.first.value_or(0), some = from.kernel().patterns();
   const int patterns = to.first && some > 0 && some < most ? some : most;
-  decode(from.kernel(), patterns, width, kernel, to.kernel);
+  decode(from.kernel(), patterns, width, surface.dim, kernel, to.kernel);
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ void encode(const PortGeometry& from, v1::Surface& to);
 void decode(const v1::Surface& from, const FieldPath& path, PortGeometry& to);
 
 /// The arrays are whole and of one size; patterns and width are those that the caller expects.
-void decode(const v1::PortKernel& from, int patterns, int width, const FieldPath& path,
+void decode(const v1::PortKernel& from, int patterns, int width, int dim, const FieldPath& path,
             PortKernel& to);
 
 void encode(const BoundaryData& from, WireWriter& to);

@@ -441,12 +441,7 @@ void SurfaceContact::spread() {
 /// The surfaces to where the forces lead them from their free places.
 bool SurfaceContact::move(const Vector& free, Compliance& give) {
   moved_ = free;
-  for (int k = 0; k < static_cast<int>(force_.size()); ++k) {
-    if (force_(k) == 0.0) continue;
-    const Vector* column = give.column(k);
-    if (column == nullptr) return false;
-    moved_.noalias() += force_(k) * *column;
-  }
+  if (!add_given_way(give, 1.0, force_, moved_by_, moved_)) return false;
   pose(moved_);
   return true;
 }
@@ -478,8 +473,12 @@ const Vector* SurfaceContact::solve_rows(double time, const Vector& free, Compli
       ++looks_;
     }
     last_ = force_;
+    many_ = false;
     if (!find_gaps(free)) {
       row_force_.setZero(gaps_.size());
+    } else if (many(give)) {
+      many_ = true;
+      if (!find_many(give)) return nullptr;
     } else {
       if (!find_compliance(give)) return nullptr;
       if (!find_forces()) {

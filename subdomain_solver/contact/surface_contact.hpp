@@ -9,11 +9,13 @@
 
 #include "base/archive.hpp"
 #include "subdomain_solver/contact/interference.hpp"
+#include "subdomain_solver/contact/near_compliance.hpp"
 #include "subdomain_solver/contact/port_contact.hpp"
 #include "subdomain_solver/contact/surface_obstacle.hpp"
 #include "subdomain_solver/contact/tied_neighbours.hpp"
 #include "subdomain_solver/fe/cell_kernel.hpp"
 #include "subdomain_solver/solve/friction_forces.hpp"
+#include "subdomain_solver/solve/near_rows.hpp"
 #include "subdomain_solver/solve/unilateral_forces.hpp"
 
 namespace abut {
@@ -115,6 +117,11 @@ class SurfaceContact final : public PortContact {
   void find_terms(const Own& own, const SurfaceRows& rows, int row, const double* direction);
   void find_slips(const Meeting& m);
   [[nodiscard]] bool find_forces();
+  void number_points();
+  [[nodiscard]] bool many(Compliance& give);
+  void find_sides();
+  [[nodiscard]] bool find_opened(Compliance& give);
+  [[nodiscard]] bool find_many(Compliance& give);
   void tell_missing();
   void guess_forces();
   void begin_slid(Meeting& m, const BoundaryData& boundary, const Substeps& grid);
@@ -176,6 +183,12 @@ class SurfaceContact final : public PortContact {
   Vector opened_;  // [m] gaps and slips under the forces
   UnilateralBuffers buffers_;
   FrictionBuffers friction_buffers_;
+  // Of many rows:
+  bool many_ = false;
+  NearCompliance near_give_;
+  std::vector<PressedSide> sides_;
+  NearRows near_rows_;
+  Vector pressing_, moved_by_;   // [N], [m] (coordinates)
   Vector force_, last_, moved_;  // [N], [N], [m] (coordinates)
   Vector eased_;                 // [m] (coordinates) free places, as tied neighbours let them be
   std::vector<double> sum_;      // [N] (values) on a surface

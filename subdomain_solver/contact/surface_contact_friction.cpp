@@ -45,9 +45,11 @@ void SurfaceContact::share_shears(const Meeting& m) {
 /// with them. Which points slid, and where the partner was.
 void SurfaceContact::settle_friction(std::size_t meeting) {
   Meeting& m = meetings_[meeting];
-  opened_ = gaps_;
-  // where nothing presses the compliance is not even known
-  if (!row_force_.isZero(0.0)) opened_.noalias() += compliance_ * row_force_;
+  if (!many_) {
+    opened_ = gaps_;
+    // where nothing presses the compliance is not even known
+    if (!row_force_.isZero(0.0)) opened_.noalias() += compliance_ * row_force_;
+  }
   const std::size_t dim = index(surfaces_[m.own].surface.geometry->dim);
   const std::size_t points = surfaces_[m.own].surface.nodes.size();
   const std::span<double> slid = std::span(slid_).subspan(m.slid, points);

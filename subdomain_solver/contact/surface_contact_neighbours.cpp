@@ -29,6 +29,20 @@ class SurfaceContact::Eased final : public Compliance {
     return &out;
   }
 
+  bool apply(const Vector& force, Vector& moved) override {
+    if (!own_.apply(force, moved)) return false;
+    for (const Own& surface : surfaces_) {
+      if (!surface.neighbours.act()) continue;
+      for (std::size_t at = 0; at < surface.at.size(); ++at) {
+        const double pressed = force(surface.at[at]);
+        if (pressed == 0.0) continue;
+        const std::span<const double> more = surface.neighbours.response(at);
+        for (std::size_t v = 0; v < more.size(); ++v) moved(surface.at[v]) += pressed * more[v];
+      }
+    }
+    return true;
+  }
+
   std::size_t version() const override { return own_.version(); }
 
  private:
@@ -70,7 +84,10 @@ const Vector* SurfaceContact::solve(double time, const Vector& free, Compliance&
     for (std::size_t v = 0; v < moved.size(); ++v) eased_(own.at[v]) += moved[v];
   }
   Eased eased(surfaces_, dofs_.size(), give);
-  return solve_rows(time, eased_, eased);
+  near_give_.forget();
+  const Vector* force = solve_rows(time, eased_, eased);
+  near_give_.forget();
+  return force;
 }
 
 }  // namespace abut

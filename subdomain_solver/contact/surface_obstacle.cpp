@@ -126,7 +126,7 @@ void SurfaceObstacle::aim(int i, std::span<const double> reaction, bool turned) 
   later_.assign(levels, 0.0);
   for (std::size_t l = 0; l < levels; ++l)
     for (std::size_t j = index(i); j < columns; ++j) later_[l] += parts_[l * columns + j];
-  give_.assign(zone_.size() * zone_.size(), 0.0);
+  give_.assign(met_->kernel.per_step(), 0.0);
   const double time = grid_.time(i);
   const auto after = std::ranges::lower_bound(motion_->time, time) - motion_->time.begin();
   const int next =
@@ -150,14 +150,14 @@ void SurfaceObstacle::aim(int i, std::span<const double> reaction, bool turned) 
 void SurfaceObstacle::lean(int level, double share) {
   const std::size_t z = zone_.size(), from = index(level) * z;
   const std::vector<double>& compliance = met_->kernel.compliance;
+  leaning_.assign(z, 0.0);
   for (std::size_t f = 0; f < z; ++f) {
-    double force = motion_->f.empty() ? 0.0 : motion_->f[index(level) * width() + zone_[f]];
-    if (level > 0) force += taken_[from + f];  // else what pressed at the begin
-    for (std::size_t v = 0; v < z; ++v) {
-      memory_[v] -= share * force * compliance[f * z + v];
-      if (level > 0) give_[f * z + v] -= share * later_[level] * compliance[f * z + v];
-    }
+    leaning_[f] = motion_->f.empty() ? 0.0 : motion_->f[index(level) * width() + zone_[f]];
+    if (level > 0) leaning_[f] += taken_[from + f];  // else what pressed at the begin
   }
+  add_moved(met_->kernel, compliance, -share, leaning_, memory_);
+  const double part = level > 0 ? share * later_[level] : 0.0;
+  for (std::size_t k = 0; part != 0.0 && k < give_.size(); ++k) give_[k] -= part * compliance[k];
 }
 
 /// Adds a share of what earlier reactions have moved the surface at a level.
@@ -211,11 +211,14 @@ void SurfaceObstacle::give_way(std::span<const double> reaction) {
   pose_ = free_;
   if (!yields()) return;
   const std::size_t z = zone_.size();
-  for (std::size_t f = 0; f < z; ++f) {
-    const double force = reaction[zone_[f]];
-    if (force == 0.0) continue;
-    for (std::size_t v = 0; v < z; ++v) pose_[zone_near_[v]] += force * give_[f * z + v];
+  leaning_.resize(z);
+  moved_.resize(z);
+  for (std::size_t v = 0; v < z; ++v) {
+    leaning_[v] = reaction[zone_[v]];
+    moved_[v] = pose_[zone_near_[v]];
   }
+  add_moved(met_->kernel, give_, 1.0, leaning_, moved_);
+  for (std::size_t v = 0; v < z; ++v) pose_[zone_near_[v]] = moved_[v];
 }
 
 /// Once in a substep, with trees and pairs of its first look.
@@ -296,25 +299,22 @@ void SurfaceObstacle::find_begin(std::vector<double>& places) const {
 void SurfaceObstacle::add_compliance(Eigen::Index first, std::span<const double> directions,
                                      Eigen::MatrixXd& a) {
   if (!yields() || rows_.count() == 0) return;
-  const std::size_t dim = index(rows_.dim), components = directions.size() / dim;
-  const std::size_t parts = components / index(rows_.count());
-  const auto each = [&](std::size_t component, const auto& visit) {
-    const std::size_t row = component / parts;
-    for (std::int32_t e = rows_.n.offsets[row]; e < rows_.n.offsets[row + 1]; ++e) {
-      const int begin = in_zone_[index(rows_.n.columns[e]) * dim];
-      for (std::size_t d = 0; begin >= 0 && d < dim; ++d)
-        if (const double part = directions[component * dim + d]; part != 0.0)
-          visit(index(begin) + d, rows_.n.values[e] * part);
-    }
-  };
+  const std::size_t components = directions.size() / index(rows_.dim);
+  std::vector<double> force(zone_.size(), 0.0);
   for (std::size_t r = 0; r < components; ++r) {
     answer_.assign(zone_.size(), 0.0);
-    each(r, [this](std::size_t force, double part) {
-      const double* moved = give_.data() + force * zone_.size();
-      for (std::size_t v = 0; v < zone_.size(); ++v) answer_[v] += part * moved[v];
-    });
+    if (met_->kernel.band.empty()) {
+      find_terms(directions, r, [this](std::size_t value, double part) {
+        const double* moved = give_.data() + value * zone_.size();
+        for (std::size_t v = 0; v < zone_.size(); ++v) answer_[v] += part * moved[v];
+      });
+    } else {
+      std::ranges::fill(force, 0.0);
+      find_terms(directions, r, [&](std::size_t value, double part) { force[value] += part; });
+      add_moved(met_->kernel, give_, 1.0, force, answer_);
+    }
     for (std::size_t s = 0; s < components; ++s)
-      each(s, [&](std::size_t value, double part) {
+      find_terms(directions, s, [&](std::size_t value, double part) {
         a(first + static_cast<Eigen::Index>(s), first + static_cast<Eigen::Index>(r)) +=
             part * answer_[value];
       });

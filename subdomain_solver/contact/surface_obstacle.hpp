@@ -61,6 +61,19 @@ class SurfaceObstacle {
   /// `directions` (components, dim), to a square of `a` that begins at `first`.
   void add_compliance(Eigen::Index first, std::span<const double> directions, Eigen::MatrixXd& a);
 
+  /// Calls `see` with the values of the zone that a component moves along, and how much of each.
+  template <class See>  // (std::size_t value, double factor)
+  void find_terms(std::span<const double> directions, std::size_t component, const See& see) const;
+  /// Where it lies under a reaction [N] (values of the partner) of the substep: [m] (near points,
+  /// dim).
+  const std::vector<double>& under(std::span<const double> reaction) {
+    give_way(reaction);
+    return pose_;
+  }
+  /// How it gives way to this substep's reaction: numbers [m/N] that lie as a step's of the kernel.
+  const PortKernel& kernel() const { return met_->kernel; }
+  std::span<const double> give() const { return give_; }
+
   // What rubs is followed by displacements of all its points, as they were predicted: what a window
   // leaves between these and where the partner went would else add up from window to window.
   /// Where slips of the substep that was aimed at begin: at `anchor` [m] (values of the partner)
@@ -106,7 +119,8 @@ class SurfaceObstacle {
   std::vector<double> later_;   // (l) of this substep's reaction, held to the window's end
   std::vector<double> taken_;   // [N] (l, zone) of earlier ones, beyond what d was found under
   std::vector<double> memory_;  // [m] (zone) of earlier reactions, at the substep's end
-  std::vector<double> give_;    // [m/N] (zone, zone) to this substep's reaction
+  std::vector<double> give_;    // [m/N] to this substep's reaction, as a step's of the kernel
+  std::vector<double> leaning_, moved_;  // [N], [m] (zone)
   std::vector<std::int32_t> zone_points_;      // of the partner
   std::vector<std::size_t> zone_, zone_near_;  // values that give way, of the partner, of the near
   std::vector<int> in_zone_;                   // (near values) where in the zone; -1: they do not
@@ -123,5 +137,18 @@ class SurfaceObstacle {
   SurfaceRows rows_;
   std::vector<double> answer_;  // [m/N] (zone) of the surface to a row
 };
+
+template <class See>
+void SurfaceObstacle::find_terms(std::span<const double> directions, std::size_t component,
+                                 const See& see) const {
+  const std::size_t dim = index(rows_.dim), parts = directions.size() / dim / index(rows_.count());
+  const std::size_t row = component / parts;
+  for (std::int32_t e = rows_.n.offsets[row]; e < rows_.n.offsets[row + 1]; ++e) {
+    const int begin = in_zone_[index(rows_.n.columns[e]) * dim];
+    for (std::size_t d = 0; begin >= 0 && d < dim; ++d)
+      if (const double part = directions[component * dim + d]; part != 0.0)
+        see(index(begin) + d, rows_.n.values[e] * part);
+  }
+}
 
 }  // namespace abut

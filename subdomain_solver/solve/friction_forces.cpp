@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "subdomain_solver/solve/friction_row.hpp"
+
 namespace abut {
 
 namespace {
 
 constexpr int first_sweeps = 15, most_sweeps = 4000;
 constexpr int most_newton = 30;
-constexpr int most_turns = 30;  // of the direction in which one row slips
 /// Of the largest force: changes, and residuals, that are rounding; residuals that are an answer.
 constexpr double friction_settled = 1.0e-14, accurate = 1.0e-11;
 /// The same: steps of Newton's method after which the next would be rounding.
@@ -19,8 +20,8 @@ constexpr double friction_softness = 1.0e-11;
 /// Of the cone's radius: forces nearer to it than this are on it.
 constexpr double on_cone = 1.0e-9;
 
-using Tangent = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1>;
-using PlaneSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;
+using Tangent = OneRow::Tangent;
+using PlaneSquare = OneRow::PlaneSquare;
 
 double radius(const FrictionRow& row, double normal) {
   return normal > 0.0 ? row.friction * normal : 0.0;
@@ -37,77 +38,6 @@ void hold_in_cone(const FrictionRow& row, double normal, Eigen::Ref<Vector> tang
   if (size > most) tangent *= size > 0.0 ? most / size : 0.0;
 }
 
-/// One row against all others: its block D and what its rates b would be without it.
-class OneRow {
- public:
-  OneRow(const Eigen::MatrixXd& a, const FrictionRow& row)
-      : row_(row),
-        tangents_(row.parts - 1),
-        normal_(a(row.first, row.first)),
-        couple_(a.col(row.first).segment(row.first + 1, tangents_)),
-        give_(a.block(row.first + 1, row.first + 1, tangents_, tangents_)) {}
-
-  /// Forces (normal, tangents) for b.
-  void solve(double gap, const Eigen::Ref<const Vector>& slip, Eigen::Ref<Vector> z) const {
-    if (gap >= 0.0) {
-      z.setZero();
-      return;
-    }
-    if (tangents_ == 0) {
-      z(0) = -gap / normal_;
-      return;
-    }
-    stick(gap, slip, z);
-    const double most = radius(row_, z(0)), size = z.tail(tangents_).norm();
-    if (z(0) > 0.0 && size <= most) return;
-    slide(gap, slip, z);
-  }
-
- private:
-  void stick(double gap, const Eigen::Ref<const Vector>& slip, Eigen::Ref<Vector> z) const {
-    const Tangent lean = inverse_of(couple_), rest = inverse_of(slip);
-    z(0) = -(gap - couple_.dot(rest)) / (normal_ - couple_.dot(lean));
-    z.tail(tangents_) = -rest - lean * z(0);
-  }
-  Tangent inverse_of(const Eigen::Ref<const Vector>& v) const {
-    if (tangents_ == 1) return Tangent::Constant(1, v(0) / give_(0, 0));
-    const double det = give_(0, 0) * give_(1, 1) - give_(0, 1) * give_(1, 0);
-    Tangent out(2);
-    out << (give_(1, 1) * v(0) - give_(0, 1) * v(1)) / det,
-        (give_(0, 0) * v(1) - give_(1, 0) * v(0)) / det;
-    return out;
-  }
-  double pressing(double gap, const Tangent& way) const {
-    const double give = normal_ + row_.friction * couple_.dot(way);
-    return give > 0.0 ? -gap / give : -gap / normal_;
-  }
-  /// The direction of tau by turns: tau leads where tau - rho w_t does.
-  void slide(double gap, const Eigen::Ref<const Vector>& slip, Eigen::Ref<Vector> z) const {
-    Tangent way = z.tail(tangents_);
-    if (z(0) <= 0.0 || way.norm() == 0.0) way = -slip;
-    if (way.norm() > 0.0) way.normalize();
-    const double rho = 1.0 / give_.trace();
-    for (int turn = 0; turn < most_turns; ++turn) {
-      z(0) = pressing(gap, way);
-      const Tangent tau = row_.friction * z(0) * way;
-      Tangent next = tau - rho * (slip + couple_ * z(0) + give_ * tau);
-      if (next.norm() == 0.0) break;
-      next.normalize();
-      const double change = (next - way).norm();
-      way = next;
-      if (change <= friction_settled) break;
-    }
-    z(0) = pressing(gap, way);
-    z.tail(tangents_) = row_.friction * z(0) * way;
-  }
-
-  const FrictionRow& row_;
-  Eigen::Index tangents_;
-  double normal_;
-  Tangent couple_;
-  PlaneSquare give_;
-};
-
 /// True: settled.
 bool sweep(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionRow> rows, int most,
            Vector& z, FrictionBuffers& buffers) {
@@ -122,7 +52,8 @@ bool sweep(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionRo
       const Vector old = z.segment(row.first, parts);
       const Vector rate =
           w.segment(row.first, parts) - a.block(row.first, row.first, parts, parts) * old;
-      OneRow(a, row).solve(rate(0), rate.tail(parts - 1), z.segment(row.first, parts));
+      OneRow(a.block(row.first, row.first, parts, parts), row)
+          .solve(rate(0), rate.tail(parts - 1), z.segment(row.first, parts));
       const Vector moved = z.segment(row.first, parts) - old;
       if (moved.isZero(0.0)) continue;
       w.noalias() += a.middleCols(row.first, parts) * moved;

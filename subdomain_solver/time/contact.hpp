@@ -14,9 +14,17 @@ class Compliance {
   /// [m/N] (contact's coordinates) displacements by a unit force on the k-th of them; good until
   /// the step's end. Null: there is no answer.
   virtual const Vector* column(int k) = 0;
+  /// [m] (contact's coordinates) displacements by forces [N] on all of them at once: what as many
+  /// columns as are pressed would make, by one solution. False: there is no answer.
+  [[nodiscard]] virtual bool apply(const Vector& force, Vector& moved) = 0;
   /// Another number whenever columns are others, within a step.
   virtual std::size_t version() const = 0;
 };
+
+/// Adds to `places` [m] (contact's coordinates) `sign` times what forces [N] on them move: column by
+/// column, and of very many by one solution. `buffer`: memory. False: there is no answer.
+[[nodiscard]] bool add_given_way(Compliance& give, double sign, const Vector& force, Vector& buffer,
+                                 Vector& places);
 
 /// What may press on some coordinates of a body at the end of a step. Every scheme is affine in
 /// such forces, x = free + compliance * force (the port line, [M.86]); who owns the geometry solves

@@ -59,6 +59,19 @@ const Vector* ContactTurns::column(int k) {
   return &column;
 }
 
+bool ContactTurns::apply(const Vector& force, Vector& moved) {
+  unit_.setZero(free_.count());
+  for (std::size_t k = 0; k < touched_.size(); ++k)
+    if (const int place = free_.place(touched_[k]); place >= 0)
+      unit_(place) = load_ * force(static_cast<Eigen::Index>(k));
+  if (!solver_.solve(unit_, answer_)) return false;
+  moved.setZero(static_cast<Eigen::Index>(touched_.size()));
+  for (std::size_t k = 0; k < touched_.size(); ++k)
+    if (const int place = free_.place(touched_[k]); place >= 0)
+      moved(static_cast<Eigen::Index>(k)) = move_ * answer_(place);
+  return true;
+}
+
 /// Aitken's factor, from the third turn on: where a material begins to yield, factors of either
 /// side would lead to and fro.
 void ContactTurns::relax(int turn) {
@@ -72,12 +85,7 @@ void ContactTurns::relax(int turn) {
 
 bool ContactTurns::press(double time, const Vector& q, int turn, Vector& x, double& change) {
   for (Eigen::Index k = 0; k < force_.size(); ++k) pose_(k) = q(touched_[k]);
-  for (int k = 0; k < static_cast<int>(force_.size()); ++k) {
-    if (force_(k) == 0.0) continue;
-    const Vector* give = column(k);
-    if (give == nullptr) return false;
-    pose_.noalias() -= force_(k) * *give;
-  }
+  if (!add_given_way(*this, -1.0, force_, moved_by_, pose_)) return false;
   const Vector* force = contact_->solve(time, pose_, *this);
   if (force == nullptr) return false;
   last_change_.swap(change_);

@@ -37,6 +37,7 @@ class ContactTurns final : private Compliance {
 
  private:
   const Vector* column(int k) override;
+  bool apply(const Vector& force, Vector& moved) override;
   std::size_t version() const override { return version_; }
   void relax(int turn);
 
@@ -45,6 +46,7 @@ class ContactTurns final : private Compliance {
   Contact* contact_ = nullptr;
   std::vector<int> touched_;     // its coordinates
   Vector force_, pose_;          // [N], [m] without it (contact)
+  Vector moved_by_;              // [m] (contact)
   Vector unit_, answer_;         // (free)
   std::vector<Vector> columns_;  // [m/N] (contact) of the compliance
   std::vector<char> known_;      // (contact) which of them

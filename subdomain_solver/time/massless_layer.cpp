@@ -181,6 +181,18 @@ const Vector* MasslessLayer::column(int k) {
   return &column;
 }
 
+bool MasslessLayer::apply(const Vector& force, Vector& moved) {
+  for (std::size_t k = 0; k < place_.size(); ++k)
+    if (place_[k] >= 0) unit_(place_[k]) = force(static_cast<Eigen::Index>(k));
+  const bool solved = factors_->solve(unit_, answer_);
+  unit_.setZero();
+  if (!solved) return false;
+  moved.setZero(static_cast<Eigen::Index>(place_.size()));
+  for (std::size_t k = 0; k < place_.size(); ++k)
+    if (place_[k] >= 0) moved(static_cast<Eigen::Index>(k)) = answer_(place_[k]);
+  return true;
+}
+
 void MasslessLayer::find_places(const Contact& contact) {
   if (touched_ == contact.coordinates()) return;
   touched_ = contact.coordinates();
@@ -205,12 +217,7 @@ bool MasslessLayer::press(double time, std::span<const double> q, Contact& conta
     const double step = contact_place_[i] >= 0 ? step_(contact_place_[i]) : 0.0;
     free_(static_cast<Eigen::Index>(i)) = q[touched_[i]] + step;
   }
-  for (int k = 0; k < static_cast<int>(pressed_.size()); ++k) {
-    if (pressed_(k) == 0.0) continue;
-    const Vector* give = column(k);
-    if (give == nullptr) return false;
-    free_.noalias() -= pressed_(k) * *give;
-  }
+  if (!add_given_way(*this, -1.0, pressed_, moved_by_, free_)) return false;
   const Vector* force = contact.solve(time, free_, *this);
   if (force == nullptr) return false;
   rest_.setZero();

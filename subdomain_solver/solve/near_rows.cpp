@@ -1,0 +1,211 @@
+#include "subdomain_solver/solve/near_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/index.hpp"
+#include "base/one_each.hpp"
+#include "subdomain_solver/solve/friction_row.hpp"
+
+namespace abut {
+
+namespace {
+
+/// Of a row's own block: smaller ones are left out.
+constexpr double least_block = 1.0e-3;
+/// Of a row's normal compliance, as soften_held has it.
+constexpr double least_tangent = 1.0e-9;
+
+/// A side while rows are gone through: rows by point, and what one component moves.
+class SideAnswer {
+ public:
+  SideAnswer(const PressedSide& side, std::span<const FrictionRow> rows)
+      : side_(side), dim_(index(side.dim)), rows_at_(side.points), mark_(side.points, -1) {
+    moved_.assign(3 * side.points * dim_, 0.0);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      if (!has(rows[r])) continue;
+      for (int p = 0; p < rows[r].parts; ++p)
+        for (const PressedSide::Term& term : terms(rows[r], p)) {
+          std::vector<std::int32_t>& list = rows_at_[index(term.value) / dim_];
+          if (list.empty() || list.back() != static_cast<std::int32_t>(r))
+            list.push_back(static_cast<std::int32_t>(r));
+        }
+    }
+  }
+
+  /// The row presses: which rows feel it, more than once or not.
+  void press(const FrictionRow& row, std::vector<std::int32_t>& felt) {
+    for (const std::int32_t q : reached_) mark_[index(q)] = -1;
+    reached_.clear();
+    if (!has(row)) return;
+    for (int p = 0; p < row.parts; ++p)
+      for (const PressedSide::Term& term : terms(row, p)) move(index(p), term);
+    for (const std::int32_t q : reached_)
+      felt.insert(felt.end(), rows_at_[index(q)].begin(), rows_at_[index(q)].end());
+  }
+
+  /// Adds what opens a row, as (parts of it, parts of the one that presses).
+  void add(const FrictionRow& row, int parts, double* block) const {
+    if (!has(row)) return;
+    for (int i = 0; i < row.parts; ++i)
+      for (const PressedSide::Term& term : terms(row, i)) {
+        if (mark_[index(term.value) / dim_] < 0) continue;
+        for (int j = 0; j < parts; ++j)
+          block[j * row.parts + i] += term.factor * moved_[at(index(j), index(term.value))];
+      }
+  }
+
+ private:
+  bool has(const FrictionRow& row) const {
+    return row.first >= side_.first &&
+           row.first < side_.first + static_cast<Eigen::Index>(side_.components());
+  }
+  std::span<const PressedSide::Term> terms(const FrictionRow& row, int part) const {
+    return side_.of(index(row.first - side_.first + part));
+  }
+  std::size_t at(std::size_t part, std::size_t value) const {
+    return part * side_.points * dim_ + value;
+  }
+  void move(std::size_t part, const PressedSide::Term& term) {
+    const std::size_t point = index(term.value) / dim_, along = index(term.value) % dim_;
+    const KernelBand& band = side_.near->band;
+    const auto add = [&](std::size_t q, const double* moved) {
+      if (mark_[q] < 0) {
+        mark_[q] = 1;
+        reached_.push_back(static_cast<std::int32_t>(q));
+        for (std::size_t p = 0; p < 3; ++p)
+          for (std::size_t i = 0; i < dim_; ++i) moved_[at(p, q * dim_ + i)] = 0.0;
+      }
+      for (std::size_t i = 0; i < dim_; ++i)
+        moved_[at(part, q * dim_ + i)] += term.factor * moved[i];
+    };
+    if (band.empty()) {
+      const double* moved = side_.moved.data() + index(term.value) * side_.points * dim_;
+      for (std::size_t q = 0; q < side_.points; ++q) add(q, moved + q * dim_);
+      return;
+    }
+    const double* moved =
+        side_.moved.data() + (index(band.offsets[point]) * dim_ + along) * dim_;
+    for (const std::int32_t q : band.of(point)) {
+      add(index(q), moved);
+      moved += dim_ * dim_;
+    }
+  }
+
+  const PressedSide& side_;
+  std::size_t dim_;
+  std::vector<std::vector<std::int32_t>> rows_at_;  // by point
+  std::vector<std::int32_t> mark_;                  // (points) >= 0: reached
+  std::vector<std::int32_t> reached_;
+  std::vector<double> moved_;  // (parts, points, dim)
+};
+
+double largest(const double* block, int count) {
+  double most = 0.0;
+  for (int k = 0; k < count; ++k) most = std::max(most, std::abs(block[k]));
+  return most;
+}
+
+/// What soften_held adds to a row's tangents.
+double softness_of(const double* own, int parts) {
+  if (parts == 1) return 0.0;
+  const auto a = [own, parts](int i, int j) { return own[j * parts + i]; };
+  double stiffest = a(1, 1);
+  if (parts == 3)
+    stiffest = 0.5 * (a(1, 1) + a(2, 2)) - std::hypot(0.5 * (a(1, 1) - a(2, 2)), a(1, 2));
+  const double soft = least_tangent * a(0, 0);
+  return stiffest >= soft ? 0.0 : soft;
+}
+
+}  // namespace
+
+void PressedSide::press(const Vector& force, std::span<double> on) const {
+  std::ranges::fill(on, 0.0);
+  for (std::size_t c = 0; c < components(); ++c) {
+    const double pressing = force(first + static_cast<Eigen::Index>(c));
+    if (pressing == 0.0) continue;
+    for (const Term& term : of(c)) on[index(term.value)] += term.factor * pressing;
+  }
+}
+
+void PressedSide::open(std::span<const double> by, Vector& opened) const {
+  for (std::size_t c = 0; c < components(); ++c) {
+    double sum = 0.0;
+    for (const Term& term : of(c)) sum += term.factor * by[index(term.value)];
+    opened(first + static_cast<Eigen::Index>(c)) += sum;
+  }
+}
+
+NearRows near_rows(std::span<const FrictionRow> rows, std::span<const PressedSide> sides) {
+  std::vector<SideAnswer> answers;
+  for (const PressedSide& side : sides) answers.emplace_back(side, rows);
+  NearRows out;
+  out.offsets.assign(1, 0);
+  std::vector<std::int32_t> felt;
+  std::vector<double> block;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const int parts = rows[r].parts;
+    felt.assign(1, static_cast<std::int32_t>(r));
+    for (SideAnswer& answer : answers) answer.press(rows[r], felt);
+    keep_one_each(felt);
+    double least = 0.0;
+    const auto find = [&](std::int32_t s) {
+      block.assign(index(rows[index(s)].parts * parts), 0.0);
+      for (const SideAnswer& answer : answers) answer.add(rows[index(s)], parts, block.data());
+    };
+    find(static_cast<std::int32_t>(r));
+    least = least_block * largest(block.data(), parts * parts);
+    for (const std::int32_t s : felt) {
+      find(s);
+      const bool itself = index(s) == r;
+      if (!itself && largest(block.data(), static_cast<int>(block.size())) < least) continue;
+      if (itself) {
+        out.own.push_back(out.opened.size());
+        out.soft.push_back(softness_of(block.data(), parts));
+        for (int p = 1; p < parts; ++p) block[index(p * parts + p)] += out.soft.back();
+      }
+      out.opened.push_back(s);
+      out.begins.push_back(out.blocks.size());
+      out.blocks.insert(out.blocks.end(), block.begin(), block.end());
+    }
+    out.offsets.push_back(out.opened.size());
+  }
+  return out;
+}
+
+double relax(const NearRows& near, std::span<const FrictionRow> rows, Vector& rates,
+             Vector& force) {
+  double change = 0.0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const FrictionRow& row = rows[r];
+    const Eigen::Index parts = row.parts;
+    const double* own = near.blocks.data() + near.begins[near.own[r]];
+    double moved[3] = {};
+    if (parts == 1) {
+      const double old = force(row.first);
+      const double now = std::max(0.0, old - rates(row.first) / own[0]);
+      moved[0] = now - old;
+      force(row.first) = now;
+    } else {
+      const Eigen::Map<const Eigen::MatrixXd> block(own, parts, parts);
+      const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> old = force.segment(row.first, parts);
+      const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> rate =
+          rates.segment(row.first, parts) - block * old;
+      OneRow(block, row).solve(rate(0), rate.tail(parts - 1), force.segment(row.first, parts));
+      for (Eigen::Index p = 0; p < parts; ++p) moved[p] = force(row.first + p) - old(p);
+    }
+    const double most = largest(moved, row.parts);
+    if (most == 0.0) continue;
+    change = std::max(change, most);
+    for (std::size_t k = near.offsets[r]; k < near.offsets[r + 1]; ++k) {
+      const FrictionRow& to = rows[index(near.opened[k])];
+      const double* block = near.blocks.data() + near.begins[k];
+      for (Eigen::Index j = 0; j < parts; ++j)
+        for (Eigen::Index i = 0; i < to.parts; ++i)
+          rates(to.first + i) += block[j * to.parts + i] * moved[j];
+    }
+  }
+  return change;
+}
+
+}  // namespace abut
