@@ -452,6 +452,7 @@ const Vector* SurfaceContact::solve_rows(double time, const Vector& free, Compli
     time_ = time;
     looks_ = 0;
     row_force_.resize(0);  // guesses are of the state and of nothing before
+    rows_of_near_.clear();
     for (Meeting& m : meetings_)
       if (m.obstacle->acts()) m.obstacle->place(time);
     pose(free);

@@ -120,6 +120,7 @@ class SurfaceContact final : public PortContact {
   void number_points();
   [[nodiscard]] bool many(Compliance& give);
   void find_sides();
+  [[nodiscard]] bool same_rows();
   [[nodiscard]] bool find_opened(Compliance& give);
   [[nodiscard]] bool find_many(Compliance& give);
   void tell_missing();
@@ -188,6 +189,7 @@ class SurfaceContact final : public PortContact {
   NearCompliance near_give_;
   std::vector<PressedSide> sides_;
   NearRows near_rows_;
+  std::vector<std::int32_t> rows_of_near_;  // by their points
   Vector pressing_, moved_by_;   // [N], [m] (coordinates)
   Vector force_, last_, moved_;  // [N], [N], [m] (coordinates)
   Vector eased_;                 // [m] (coordinates) free places, as tied neighbours let them be

@@ -98,10 +98,24 @@ bool SurfaceContact::find_opened(Compliance& give) {
   return true;
 }
 
+/// Whether the rows are those of the look before at the same time, by their points: then they are
+/// near each other in the same way, but for what the rounds see.
+bool SurfaceContact::same_rows() {
+  std::vector<std::int32_t> points;
+  for (const Meeting& m : meetings_) {
+    points.push_back(m.rows);
+    if (m.rows > 0)
+      points.insert(points.end(), m.obstacle->rows().nodes.begin(), m.obstacle->rows().nodes.end());
+  }
+  const bool same = looks_ > 1 && points == rows_of_near_;
+  rows_of_near_ = std::move(points);
+  return same;
+}
+
 /// True: forces were found.
 bool SurfaceContact::find_many(Compliance& give) {
   find_sides();
-  near_rows_ = near_rows(rows_, sides_);
+  if (!same_rows()) near_rows_ = near_rows(rows_, sides_);
   if (row_force_.size() != gaps_.size()) guess_forces();
   for (int round = 0; round < most_rounds; ++round) {
     if (!find_opened(give)) return false;

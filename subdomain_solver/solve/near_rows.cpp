@@ -2,46 +2,104 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/index.hpp"
-#include "base/one_each.hpp"
 #include "subdomain_solver/solve/friction_row.hpp"
 
 namespace abut {
 
 namespace {
 
-/// Of a row's own block: smaller ones are left out.
-constexpr double least_block = 1.0e-3;
+/// Of a row's own block, and of how far a point moves that is pressed itself: smaller ones are left
+/// out. Finer matrices cost more than the rounds that they save.
+constexpr double least_block = 1.0e-2, least_motion = 2.0e-2;
 /// Of a row's normal compliance, as soften_held has it.
 constexpr double least_tangent = 1.0e-9;
 
-/// A side while rows are gone through: rows by point, and what one component moves.
+double largest(const double* block, int count) {
+  double most = 0.0;
+  for (int k = 0; k < count; ++k) most = std::max(most, std::abs(block[k]));
+  return most;
+}
+
+/// The points that a point moves more than a little, and by how much.
+struct Motions {
+  std::vector<std::size_t> offsets;   // (points + 1)
+  std::vector<std::int32_t> reached;  // points
+  std::vector<double> moved;          // [m/N] (reached, dim, dim) as blocks of a kernel
+
+  explicit Motions(const PressedSide& side) {
+    const std::size_t dim = index(side.dim), each = dim * dim;
+    const KernelBand& band = side.near->band;
+    std::vector<double> block(each);
+    offsets.assign(1, 0);
+    for (std::size_t p = 0; p < side.points; ++p) {
+      const std::size_t count = band.empty() ? side.points : band.of(p).size();
+      const auto point = [&](std::size_t e) {
+        return band.empty() ? e : index(band.of(p)[e]);
+      };
+      const auto at = [&](std::size_t e, std::size_t j) {
+        return band.empty() ? side.moved.data() + ((p * dim + j) * side.points + e) * dim
+                            : side.moved.data() + ((index(band.offsets[p]) + e) * dim + j) * dim;
+      };
+      const auto size = [&](std::size_t e) {
+        double most = 0.0;
+        for (std::size_t j = 0; j < dim; ++j)
+          most = std::max(most, largest(at(e, j), static_cast<int>(dim)));
+        return most;
+      };
+      double own = 0.0;
+      for (std::size_t e = 0; e < count; ++e)
+        if (point(e) == p) own = size(e);
+      for (std::size_t e = 0; e < count; ++e) {
+        if (size(e) < least_motion * own || own == 0.0) continue;
+        reached.push_back(static_cast<std::int32_t>(point(e)));
+        for (std::size_t j = 0; j < dim; ++j) moved.insert(moved.end(), at(e, j), at(e, j) + dim);
+      }
+      offsets.push_back(reached.size());
+    }
+  }
+};
+
+/// A side while rows are gone through: rows by point, and what one row moves.
 class SideAnswer {
  public:
   SideAnswer(const PressedSide& side, std::span<const FrictionRow> rows)
-      : side_(side), dim_(index(side.dim)), rows_at_(side.points), mark_(side.points, -1) {
+      : side_(side), dim_(index(side.dim)), motions_(side), mark_(side.points, 0) {
     moved_.assign(3 * side.points * dim_, 0.0);
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      if (!has(rows[r])) continue;
-      for (int p = 0; p < rows[r].parts; ++p)
-        for (const PressedSide::Term& term : terms(rows[r], p)) {
-          std::vector<std::int32_t>& list = rows_at_[index(term.value) / dim_];
-          if (list.empty() || list.back() != static_cast<std::int32_t>(r))
-            list.push_back(static_cast<std::int32_t>(r));
-        }
-    }
+    std::vector<std::int32_t> last(side.points, -1);
+    const auto each = [&](const auto& see) {  // rows with a term at a point, each once
+      std::ranges::fill(last, -1);
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        if (!has(rows[r])) continue;
+        for (int p = 0; p < rows[r].parts; ++p)
+          for (const PressedSide::Term& term : terms(rows[r], p)) {
+            const std::size_t point = index(term.value) / dim_;
+            if (std::exchange(last[point], static_cast<std::int32_t>(r)) !=
+                static_cast<std::int32_t>(r))
+              see(point, static_cast<std::int32_t>(r));
+          }
+      }
+    };
+    first_row_.assign(side.points + 1, 0);
+    each([this](std::size_t point, std::int32_t) { ++first_row_[point + 1]; });
+    for (std::size_t p = 0; p < side.points; ++p) first_row_[p + 1] += first_row_[p];
+    rows_at_.resize(first_row_.back());
+    std::vector<std::size_t> next(first_row_.begin(), first_row_.end() - 1);
+    each([&](std::size_t point, std::int32_t row) { rows_at_[next[point]++] = row; });
   }
 
-  /// The row presses: which rows feel it, more than once or not.
-  void press(const FrictionRow& row, std::vector<std::int32_t>& felt) {
-    for (const std::int32_t q : reached_) mark_[index(q)] = -1;
+  /// The row presses: calls `see` with rows that feel it, more than once or not.
+  template <class See>
+  void press(const FrictionRow& row, const See& see) {
+    for (const std::int32_t q : reached_) mark_[index(q)] = 0;
     reached_.clear();
     if (!has(row)) return;
     for (int p = 0; p < row.parts; ++p)
-      for (const PressedSide::Term& term : terms(row, p)) move(index(p), term);
+      for (const PressedSide::Term& term : terms(row, p)) move(index(p), index(row.parts), term);
     for (const std::int32_t q : reached_)
-      felt.insert(felt.end(), rows_at_[index(q)].begin(), rows_at_[index(q)].end());
+      for (std::size_t k = first_row_[index(q)]; k < first_row_[index(q) + 1]; ++k) see(rows_at_[k]);
   }
 
   /// Adds what opens a row, as (parts of it, parts of the one that presses).
@@ -49,7 +107,7 @@ class SideAnswer {
     if (!has(row)) return;
     for (int i = 0; i < row.parts; ++i)
       for (const PressedSide::Term& term : terms(row, i)) {
-        if (mark_[index(term.value) / dim_] < 0) continue;
+        if (mark_[index(term.value) / dim_] == 0) continue;
         for (int j = 0; j < parts; ++j)
           block[j * row.parts + i] += term.factor * moved_[at(index(j), index(term.value))];
       }
@@ -66,45 +124,31 @@ class SideAnswer {
   std::size_t at(std::size_t part, std::size_t value) const {
     return part * side_.points * dim_ + value;
   }
-  void move(std::size_t part, const PressedSide::Term& term) {
+  void move(std::size_t part, std::size_t parts, const PressedSide::Term& term) {
     const std::size_t point = index(term.value) / dim_, along = index(term.value) % dim_;
-    const KernelBand& band = side_.near->band;
-    const auto add = [&](std::size_t q, const double* moved) {
-      if (mark_[q] < 0) {
+    for (std::size_t e = motions_.offsets[point]; e < motions_.offsets[point + 1]; ++e) {
+      const std::size_t q = index(motions_.reached[e]);
+      if (mark_[q] == 0) {
         mark_[q] = 1;
-        reached_.push_back(static_cast<std::int32_t>(q));
-        for (std::size_t p = 0; p < 3; ++p)
+        reached_.push_back(motions_.reached[e]);
+        for (std::size_t p = 0; p < parts; ++p)
           for (std::size_t i = 0; i < dim_; ++i) moved_[at(p, q * dim_ + i)] = 0.0;
       }
+      const double* moved = motions_.moved.data() + (e * dim_ + along) * dim_;
       for (std::size_t i = 0; i < dim_; ++i)
         moved_[at(part, q * dim_ + i)] += term.factor * moved[i];
-    };
-    if (band.empty()) {
-      const double* moved = side_.moved.data() + index(term.value) * side_.points * dim_;
-      for (std::size_t q = 0; q < side_.points; ++q) add(q, moved + q * dim_);
-      return;
-    }
-    const double* moved =
-        side_.moved.data() + (index(band.offsets[point]) * dim_ + along) * dim_;
-    for (const std::int32_t q : band.of(point)) {
-      add(index(q), moved);
-      moved += dim_ * dim_;
     }
   }
 
   const PressedSide& side_;
   std::size_t dim_;
-  std::vector<std::vector<std::int32_t>> rows_at_;  // by point
-  std::vector<std::int32_t> mark_;                  // (points) >= 0: reached
+  Motions motions_;
+  std::vector<std::size_t> first_row_;  // (points + 1)
+  std::vector<std::int32_t> rows_at_;   // by point
+  std::vector<char> mark_;              // (points) 1: reached
   std::vector<std::int32_t> reached_;
   std::vector<double> moved_;  // (parts, points, dim)
 };
-
-double largest(const double* block, int count) {
-  double most = 0.0;
-  for (int k = 0; k < count; ++k) most = std::max(most, std::abs(block[k]));
-  return most;
-}
 
 /// What soften_held adds to a row's tangents.
 double softness_of(const double* own, int parts) {
@@ -141,13 +185,19 @@ NearRows near_rows(std::span<const FrictionRow> rows, std::span<const PressedSid
   for (const PressedSide& side : sides) answers.emplace_back(side, rows);
   NearRows out;
   out.offsets.assign(1, 0);
-  std::vector<std::int32_t> felt;
+  std::vector<std::int32_t> felt, seen(rows.size(), -1);
   std::vector<double> block;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const int parts = rows[r].parts;
-    felt.assign(1, static_cast<std::int32_t>(r));
-    for (SideAnswer& answer : answers) answer.press(rows[r], felt);
-    keep_one_each(felt);
+    felt.clear();
+    const auto feels = [&](std::int32_t row) {
+      if (std::exchange(seen[index(row)], static_cast<std::int32_t>(r)) !=
+          static_cast<std::int32_t>(r))
+        felt.push_back(row);
+    };
+    feels(static_cast<std::int32_t>(r));
+    for (SideAnswer& answer : answers) answer.press(rows[r], feels);
+    std::ranges::sort(felt);
     double least = 0.0;
     const auto find = [&](std::int32_t s) {
       block.assign(index(rows[index(s)].parts * parts), 0.0);
