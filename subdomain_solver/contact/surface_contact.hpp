@@ -189,7 +189,8 @@ class SurfaceContact final : public PortContact {
   NearCompliance near_give_;
   std::vector<PressedSide> sides_;
   NearRows near_rows_;
-  std::vector<std::int32_t> rows_of_near_;  // by their points
+  std::vector<std::int32_t> rows_of_near_;  // by their points, for which it was made
+  std::vector<double> directions_of_near_;  // and directions
   Vector pressing_, moved_by_;   // [N], [m] (coordinates)
   Vector force_, last_, moved_;  // [N], [N], [m] (coordinates)
   Vector eased_;                 // [m] (coordinates) free places, as tied neighbours let them be

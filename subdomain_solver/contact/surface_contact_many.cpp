@@ -1,7 +1,8 @@
 // Contact of many rows: near rows are solved for one after the other, and what their forces open
 // is found by the whole compliance, in turns  [M.153].
 
-#include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,6 +20,8 @@ constexpr std::size_t most_of_one_matrix = 500;
 constexpr double settled_pass = 1.0e-13;
 /// Of what the first pass of a round changes: the next round is as good.
 constexpr double next_round = 0.03;
+/// Components of unit vectors.
+constexpr double same_direction = 1.0e-3;
 constexpr int most_passes = 20, most_rounds = 100;
 
 }  // namespace
@@ -98,8 +101,8 @@ bool SurfaceContact::find_opened(Compliance& give) {
   return true;
 }
 
-/// Whether the rows are those of the look before at the same time, by their points: then they are
-/// near each other in the same way, but for what the rounds see.
+/// Whether the rows are those of the look before at the same time, by their points and directions:
+/// then they are near each other in the same way, but for what the rounds see.
 bool SurfaceContact::same_rows() {
   std::vector<std::int32_t> points;
   for (const Meeting& m : meetings_) {
@@ -107,9 +110,13 @@ bool SurfaceContact::same_rows() {
     if (m.rows > 0)
       points.insert(points.end(), m.obstacle->rows().nodes.begin(), m.obstacle->rows().nodes.end());
   }
-  const bool same = looks_ > 1 && points == rows_of_near_;
+  bool same = points == rows_of_near_ && directions_.size() == directions_of_near_.size();
+  for (std::size_t k = 0; same && k < directions_.size(); ++k)
+    same = std::abs(directions_[k] - directions_of_near_[k]) <= same_direction;
+  if (same) return true;
   rows_of_near_ = std::move(points);
-  return same;
+  directions_of_near_ = directions_;
+  return false;
 }
 
 /// True: forces were found.

@@ -119,8 +119,9 @@ struct Problem {
   }
 };
 
-// Goal: near blocks are those of the dense matrix, to rounding, and what is left out is below a
-// thousandth of the row's own block.
+// Goal: near blocks are those of the dense matrix but for what is small: motions below 2 % of the
+// pressed point's own, of two sides, and blocks below 1 %, make less than 5 % of a row's own block.
+// Rounds end because of it, and forces do not depend on it.
 TEST(NearRows, BlocksAreThoseOfTheDenseMatrix) {
   std::mt19937 random(11);
   for (const double friction : {0.0, 0.3}) {
@@ -138,12 +139,7 @@ TEST(NearRows, BlocksAreThoseOfTheDenseMatrix) {
       }
       const double own = problem.matrix.block(row.first, row.first, row.parts, row.parts)
                              .lpNorm<Eigen::Infinity>();
-      EXPECT_LE(left.middleCols(row.first, row.parts).cwiseAbs().maxCoeff(), 1.0e-3 * own);
-    }
-    // What is kept is exact but for the order of sums.
-    for (std::size_t r = 0; r < problem.rows.size(); ++r) {
-      const Eigen::Index at = problem.rows[r].first;
-      EXPECT_LE(std::abs(left(at, at)), 1.0e-14 * problem.matrix(at, at));
+      EXPECT_LE(left.middleCols(row.first, row.parts).cwiseAbs().maxCoeff(), 0.05 * own);
     }
   }
 }
