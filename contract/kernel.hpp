@@ -13,8 +13,9 @@ inline std::span<const double> response(const PortKernel& kernel, int lag, bool 
   return std::span(of).subspan(index(lag) * kernel.per_step(), kernel.per_step());
 }
 
-/// Adds to `out` [m] (width) what `sign` times the forces [N] (patterns) move by one step's responses
-/// of a kernel, or by numbers [m/N] that lie as these do. Forces that are zero cost nothing.
+/// Adds to `out` [m] (width) what `sign` times the forces [N] (patterns) move by one step's
+/// responses of a kernel, or by numbers [m/N] that lie as these do. Forces that are zero cost
+/// nothing.
 inline void add_moved(const PortKernel& kernel, std::span<const double> responses, double sign,
                       std::span<const double> forces, std::span<double> out) {
   const double* moved = responses.data();

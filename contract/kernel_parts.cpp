@@ -59,7 +59,8 @@ PortKernel banded_part_of(const PortKernel& whole, int first, int count) {
     const std::vector<double>& values = whole.*array;
     for (std::size_t at = 0; at < values.size(); at += whole.per_step()) {
       const auto row = values.begin() + static_cast<std::ptrdiff_t>(at + begin * each);
-      (part.*array).insert((part.*array).end(), row, row + static_cast<std::ptrdiff_t>(some * each));
+      (part.*array)
+          .insert((part.*array).end(), row, row + static_cast<std::ptrdiff_t>(some * each));
     }
   }
   return part;
@@ -67,7 +68,8 @@ PortKernel banded_part_of(const PortKernel& whole, int first, int count) {
 
 /// Parts follow one another.
 void append(const PortKernel& part, PortKernel& whole) {
-  const std::size_t each = index(part.band.dim * part.band.dim), before = whole.band.reached.size() * each,
+  const std::size_t each = index(part.band.dim * part.band.dim),
+                    before = whole.band.reached.size() * each,
                     more = part.band.reached.size() * each;
   for (const auto array : arrays) {
     const std::vector<double>& from = part.*array;
@@ -153,9 +155,10 @@ bool fits(const PortKernel& part, int first, const PortKernel& whole) {
            (whole.*array).size() * index(part.patterns);
   };
   if (!whole.band.empty()) return follows(part, first, whole);
-  return part.band.empty() && first >= 0 && part.patterns > 0 && first + part.patterns <= whole.patterns &&
-         part.width == whole.width && part.points == whole.points &&
-         part.support == whole.support && std::ranges::all_of(arrays, alike);
+  return part.band.empty() && first >= 0 && part.patterns > 0 &&
+         first + part.patterns <= whole.patterns && part.width == whole.width &&
+         part.points == whole.points && part.support == whole.support &&
+         std::ranges::all_of(arrays, alike);
 }
 
 void put(const PortKernel& part, int first, PortKernel& whole) {

@@ -12,8 +12,8 @@ namespace abut {
 
 /// The surface of a port, in the reference configuration. All arrays are flat and row-major.
 struct PortGeometry {
-  int dim = 1;                        // 1, 2 or 3
-  bool round = false;                 // in 2D: of rings about the axis x = 0, each as a whole
+  int dim = 1;         // 1, 2 or 3
+  bool round = false;  // in 2D: of rings about the axis x = 0, each as a whole
   // so many points, the last ones, are inside the body: where a body that overlaps it has its own
   // surface. Their facets are the last ones too, and look as that surface's do from the other side.
   std::int32_t embedded = 0;

@@ -52,7 +52,7 @@ struct Description {
   // Its energy changes by port and external work alone, as its records tell: no damping, no heat.
   bool conserves = false;
   bool quasi_static = false;  // it has no inertia: its energy follows its loads step by step
-  bool linear = false;  // it answers forces linearly: port kernels tell it exactly
+  bool linear = false;        // it answers forces linearly: port kernels tell it exactly
   // Of a body without inertia whose supports leave it rigid motions: (k, dim + rotations) small
   // ones, translation [m] and rotation [rad] about the origin (one number in 2D, three in 3D) per
   // unit of each. Empty: it is held, or has inertia.

@@ -25,7 +25,7 @@ constexpr std::int64_t flights = 8;        // requests of free flight to and fro
 // with port kernels (2.3, and a guess of N), of others (3.5), of the published form (12.5).
 constexpr std::int64_t sweeps_linear = 3, sweeps_nonlinear = 5, sweeps_published = 15;
 constexpr std::int64_t many_rows = 500;  // found row by row beyond
-constexpr std::int64_t per_event = 3;  // attempts and the window cut at an event
+constexpr std::int64_t per_event = 3;    // attempts and the window cut at an event
 // Into how many windows a scene's one is cut where ends of bars bounce all the time (4.6 measured).
 constexpr std::int64_t cuts_of_bouncing = 5;
 
@@ -112,8 +112,7 @@ Estimate::Kernel kernel_of(const InterfaceSpec& spec, const UnilateralTransmissi
   const double steps = static_cast<double>(kernel.substeps);
   kernel.memory_mib = kernel_bytes(static_cast<double>(kernel.points) * body->dim, steps) / mebi;
   double fit = std::sqrt(kernel.allowed_mib * mebi / kernel_bytes(1.0, steps)) / body->dim;
-  if (finder->can.bands && !body->quasi_static &&
-      kernel.memory_mib * mebi > always_full_kernel) {
+  if (finder->can.bands && !body->quasi_static && kernel.memory_mib * mebi > always_full_kernel) {
     const double points = static_cast<double>(kernel.points);
     kernel.banded_mib = banded_kernel_bytes(points, body->dim, steps) / mebi;
     fit = std::max(fit, points * kernel.allowed_mib / kernel.banded_mib);

@@ -139,11 +139,12 @@ class BandedProbe {
 
 PortKernel banded_kernel(const KernelWish& wish, double largest, double full, Bodies& bodies) {
   BandedProbe probe(wish, bodies);
+  if (probe.bytes(fewest_rings) > largest) return {};
   int rings = probe.reach();
   if (rings > most_rings) return {};
   if (full <= largest && much_smaller * probe.bytes(rings) > full) return {};
   while (rings > fewest_rings && probe.bytes(rings) > largest) --rings;
-  return probe.bytes(rings) > largest ? PortKernel{} : probe.probe(rings);
+  return probe.probe(rings);
 }
 
 }  // namespace abut

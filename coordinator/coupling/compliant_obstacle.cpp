@@ -134,7 +134,7 @@ bool CompliantObstacle::probe(double size, const Side& k, const Side& n, Bodies&
   const std::size_t points = zone_.points().size() + 1;  // and one, as none stand for all
   const bool bands = bodies.describe(k.body).can.bands && !bodies.describe(n.body).quasi_static;
   answer_ = {};
-  if (size > always_full_kernel && bands && unbanded_ != points) {
+  if (size > std::min(always_full_kernel, largest_kernel_) && bands && unbanded_ != points) {
     answer_ = banded_kernel({n.body, n.port, count, zone_.points()}, largest_kernel_, size, bodies);
     unbanded_ = answer_.count() == 0 ? points : 0;
   }

@@ -113,10 +113,11 @@ std::vector<std::int32_t> ContactZone::around(const std::vector<std::int32_t>& p
   const auto beside = [&](const Eigen::Vector3d& x) {
     const std::array<std::int64_t, 3> own = cell_of(x);
     for (int k = 0; k < 27; ++k) {
-      const auto found = cells.find({own[0] + k / 9 - 1, own[1] + k / 3 % 3 - 1, own[2] + k % 3 - 1});
-      if (found != cells.end() &&
-          std::ranges::any_of(found->second,
-                              [&](std::int32_t p) { return (n_.point(p) - x).norm() <= reach; }))
+      const auto found =
+          cells.find({own[0] + k / 9 - 1, own[1] + k / 3 % 3 - 1, own[2] + k % 3 - 1});
+      if (found != cells.end() && std::ranges::any_of(found->second, [&](std::int32_t p) {
+            return (n_.point(p) - x).norm() <= reach;
+          }))
         return true;
     }
     return false;

@@ -112,13 +112,10 @@ void decode(const v1::PortKernel& from, const Description& body, const Probing& 
   if (from.points_size() > 0) FieldPath{&path, "points"}.fail("was not asked for");
   if (from.band_offsets_size() > 0) FieldPath{&path, "band_offsets"}.fail("was not asked for");
   to.points.clear();
-  const auto width_of = [&body](int port) {
-    return size_of(body.ports[port].geometry).width();
-  };
+  const auto width_of = [&body](int port) { return size_of(body.ports[port].geometry).width(); };
   int width = asked.seen.empty() ? width_of(asked.port) : 0;
   for (const int port : asked.seen) width += width_of(port);
-  decode(from, static_cast<int>(asked.patterns.size()) / width_of(asked.port), width, 0, path,
-         to);
+  decode(from, static_cast<int>(asked.patterns.size()) / width_of(asked.port), width, 0, path, to);
   const std::size_t motions = index(loose_motions(body));
   take(from.carried(), motions * index(width), true, FieldPath{&path, "carried"}, to.carried);
   take(from.left(), motions * motions, true, FieldPath{&path, "left"}, to.left);

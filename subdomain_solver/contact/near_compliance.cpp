@@ -47,7 +47,8 @@ bool NearCompliance::find_reach(Compliance& give) {
   }
   if (!(most > 0.0)) return false;
   for (rings_ = 0; rings_ <= farthest_ring; ++rings_) {
-    for (const std::int32_t p : rings.around(middle, rings_)) moved_.segment(p * dim, dim).setZero();
+    for (const std::int32_t p : rings.around(middle, rings_))
+      moved_.segment(p * dim, dim).setZero();
     if (moved_.lpNorm<Eigen::Infinity>() <= near_enough * most) break;
   }
   rings_ = std::max(rings_, 1);
@@ -78,8 +79,8 @@ bool NearCompliance::press(Compliance& give) {
       force_(static_cast<Eigen::Index>(index(p) * dim_ + along)) = 1.0;
     if (!give.apply(force_, moved_)) return false;
     for (const std::int32_t p : pressed[k / dim_]) {
-      double* to = &kernel_.displacement[(index(kernel_.band.offsets[index(p)]) * dim_ + along) *
-                                         dim_];
+      double* to =
+          &kernel_.displacement[(index(kernel_.band.offsets[index(p)]) * dim_ + along) * dim_];
       for (const std::int32_t q : kernel_.band.of(index(p))) {
         for (std::size_t d = 0; d < dim_; ++d)
           to[d] = moved_(static_cast<Eigen::Index>(index(q) * dim_ + d));

@@ -18,8 +18,8 @@ class NearCompliance {
   void set_points(int points, int dim, const std::vector<std::int32_t>& facets,
                   const std::vector<std::int32_t>& offsets);
   bool has_points() const { return !rings_of_.empty(); }
-  /// Finds it, unless it is known of these columns. False: forces are felt too far away, or there is
-  /// no answer.
+  /// Finds it, unless it is known of these columns. False: forces are felt too far away, or there
+  /// is no answer.
   [[nodiscard]] bool find(Compliance& give);
   /// The columns of a Compliance are others without another version.
   void forget() { known_ = nullptr; }

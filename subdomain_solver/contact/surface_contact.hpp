@@ -120,7 +120,7 @@ class SurfaceContact final : public PortContact {
   void number_points();
   [[nodiscard]] bool many(Compliance& give);
   void find_sides();
-  [[nodiscard]] bool same_rows();
+  [[nodiscard]] bool turn_near_rows();
   [[nodiscard]] bool find_opened(Compliance& give);
   [[nodiscard]] bool find_many(Compliance& give);
   void tell_missing();
@@ -188,13 +188,13 @@ class SurfaceContact final : public PortContact {
   bool many_ = false;
   NearCompliance near_give_;
   std::vector<PressedSide> sides_;
-  NearRows near_rows_;
+  NearBlocks near_rows_;
   std::vector<std::int32_t> rows_of_near_;  // by their points, for which it was made
   std::vector<double> directions_of_near_;  // and directions
-  Vector pressing_, moved_by_;   // [N], [m] (coordinates)
-  Vector force_, last_, moved_;  // [N], [N], [m] (coordinates)
-  Vector eased_;                 // [m] (coordinates) free places, as tied neighbours let them be
-  std::vector<double> sum_;      // [N] (values) on a surface
+  Vector pressing_, moved_by_;              // [N], [m] (coordinates)
+  Vector force_, last_, moved_;             // [N], [N], [m] (coordinates)
+  Vector eased_;             // [m] (coordinates) free places, as tied neighbours let them be
+  std::vector<double> sum_;  // [N] (values) on a surface
 };
 
 }  // namespace abut

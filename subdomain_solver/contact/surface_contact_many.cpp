@@ -101,9 +101,9 @@ bool SurfaceContact::find_opened(Compliance& give) {
   return true;
 }
 
-/// Whether the rows are those of the look before at the same time, by their points and directions:
-/// then they are near each other in the same way, but for what the rounds see.
-bool SurfaceContact::same_rows() {
+/// Whether near rows are those of the look before at the same time: of the same points, and where
+/// they do not rub along the same normal. Then what is new is left to the rounds.
+bool SurfaceContact::turn_near_rows() {
   std::vector<std::int32_t> points;
   for (const Meeting& m : meetings_) {
     points.push_back(m.rows);
@@ -111,18 +111,22 @@ bool SurfaceContact::same_rows() {
       points.insert(points.end(), m.obstacle->rows().nodes.begin(), m.obstacle->rows().nodes.end());
   }
   bool same = points == rows_of_near_ && directions_.size() == directions_of_near_.size();
-  for (std::size_t k = 0; same && k < directions_.size(); ++k)
-    same = std::abs(directions_[k] - directions_of_near_[k]) <= same_direction;
-  if (same) return true;
+  const int dim = surfaces_.front().surface.geometry->dim;
+  for (std::size_t r = 0; same && r < rows_.size(); ++r)
+    for (int d = 0; d < dim; ++d) {
+      const std::size_t at = index(rows_[r].first) * index(dim) + index(d);
+      same = same && std::abs(directions_[at] - directions_of_near_[at]) <= same_direction;
+    }
+  if (same && rubs_) turn(near_rows_, rows_, dim, directions_of_near_, directions_);
   rows_of_near_ = std::move(points);
   directions_of_near_ = directions_;
-  return false;
+  return same;
 }
 
 /// True: forces were found.
 bool SurfaceContact::find_many(Compliance& give) {
   find_sides();
-  if (!same_rows()) near_rows_ = near_rows(rows_, sides_);
+  if (!turn_near_rows()) near_rows_ = near_rows(rows_, sides_);
   if (row_force_.size() != gaps_.size()) guess_forces();
   for (int round = 0; round < most_rounds; ++round) {
     if (!find_opened(give)) return false;

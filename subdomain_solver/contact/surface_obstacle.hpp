@@ -120,16 +120,16 @@ class SurfaceObstacle {
   std::vector<double> taken_;   // [N] (l, zone) of earlier ones, beyond what d was found under
   std::vector<double> memory_;  // [m] (zone) of earlier reactions, at the substep's end
   std::vector<double> give_;    // [m/N] to this substep's reaction, as a step's of the kernel
-  std::vector<double> leaning_, moved_;  // [N], [m] (zone)
+  std::vector<double> leaning_, moved_;        // [N], [m] (zone)
   std::vector<std::int32_t> zone_points_;      // of the partner
   std::vector<std::size_t> zone_, zone_near_;  // values that give way, of the partner, of the near
   std::vector<int> in_zone_;                   // (near values) where in the zone; -1: they do not
   std::vector<double> free_, pose_;            // [m] (near points, dim)
   std::vector<double> pose_before_;            // the same, when the substep began
-  std::vector<double> given_, before_;  // [m] (values) displacements
-  std::vector<double> slip_begin_;      // [m] (values of the partner)
-  BoxTree tree_, own_tree_;             // the port's with the reach around its boxes
-  std::vector<double> fitted_;          // [m] (near points, dim) pose of tree_; empty: of none
+  std::vector<double> given_, before_;         // [m] (values) displacements
+  std::vector<double> slip_begin_;             // [m] (values of the partner)
+  BoxTree tree_, own_tree_;                    // the port's with the reach around its boxes
+  std::vector<double> fitted_;  // [m] (near points, dim) pose of tree_; empty: of none
   std::vector<FacetPair> pairs_, averaged_;
   MortarBuffers buffers_;
   std::vector<std::int32_t> own_nodes_;  // where rows are of single points

@@ -39,7 +39,7 @@ class OneRow {
   }
 
  private:
-  static constexpr int most_turns = 30;          // of the direction in which it slips
+  static constexpr int most_turns = 30;  // of the direction in which it slips
   static constexpr double settled_way = 1.0e-14;
 
   void stick(double gap, const Eigen::Ref<const Vector>& slip, Eigen::Ref<Vector> z) const {

@@ -17,7 +17,7 @@ constexpr double least_block = 1.0e-2, least_motion = 2.0e-2;
 /// Of a row's normal compliance, as soften_held has it.
 constexpr double least_tangent = 1.0e-9;
 
-double largest(const double* block, int count) {
+double largest_entry(const double* block, int count) {
   double most = 0.0;
   for (int k = 0; k < count; ++k) most = std::max(most, std::abs(block[k]));
   return most;
@@ -36,9 +36,7 @@ struct Motions {
     offsets.assign(1, 0);
     for (std::size_t p = 0; p < side.points; ++p) {
       const std::size_t count = band.empty() ? side.points : band.of(p).size();
-      const auto point = [&](std::size_t e) {
-        return band.empty() ? e : index(band.of(p)[e]);
-      };
+      const auto point = [&](std::size_t e) { return band.empty() ? e : index(band.of(p)[e]); };
       const auto at = [&](std::size_t e, std::size_t j) {
         return band.empty() ? side.moved.data() + ((p * dim + j) * side.points + e) * dim
                             : side.moved.data() + ((index(band.offsets[p]) + e) * dim + j) * dim;
@@ -46,7 +44,7 @@ struct Motions {
       const auto size = [&](std::size_t e) {
         double most = 0.0;
         for (std::size_t j = 0; j < dim; ++j)
-          most = std::max(most, largest(at(e, j), static_cast<int>(dim)));
+          most = std::max(most, largest_entry(at(e, j), static_cast<int>(dim)));
         return most;
       };
       double own = 0.0;
@@ -99,7 +97,8 @@ class SideAnswer {
     for (int p = 0; p < row.parts; ++p)
       for (const PressedSide::Term& term : terms(row, p)) move(index(p), index(row.parts), term);
     for (const std::int32_t q : reached_)
-      for (std::size_t k = first_row_[index(q)]; k < first_row_[index(q) + 1]; ++k) see(rows_at_[k]);
+      for (std::size_t k = first_row_[index(q)]; k < first_row_[index(q) + 1]; ++k)
+        see(rows_at_[k]);
   }
 
   /// Adds what opens a row, as (parts of it, parts of the one that presses).
@@ -180,10 +179,10 @@ void PressedSide::open(std::span<const double> by, Vector& opened) const {
   }
 }
 
-NearRows near_rows(std::span<const FrictionRow> rows, std::span<const PressedSide> sides) {
+NearBlocks near_rows(std::span<const FrictionRow> rows, std::span<const PressedSide> sides) {
   std::vector<SideAnswer> answers;
   for (const PressedSide& side : sides) answers.emplace_back(side, rows);
-  NearRows out;
+  NearBlocks out;
   out.offsets.assign(1, 0);
   std::vector<std::int32_t> felt, seen(rows.size(), -1);
   std::vector<double> block;
@@ -204,11 +203,11 @@ NearRows near_rows(std::span<const FrictionRow> rows, std::span<const PressedSid
       for (const SideAnswer& answer : answers) answer.add(rows[index(s)], parts, block.data());
     };
     find(static_cast<std::int32_t>(r));
-    least = least_block * largest(block.data(), parts * parts);
+    least = least_block * largest_entry(block.data(), parts * parts);
     for (const std::int32_t s : felt) {
       find(s);
       const bool itself = index(s) == r;
-      if (!itself && largest(block.data(), static_cast<int>(block.size())) < least) continue;
+      if (!itself && largest_entry(block.data(), static_cast<int>(block.size())) < least) continue;
       if (itself) {
         out.own.push_back(out.opened.size());
         out.soft.push_back(softness_of(block.data(), parts));
@@ -223,7 +222,27 @@ NearRows near_rows(std::span<const FrictionRow> rows, std::span<const PressedSid
   return out;
 }
 
-double relax(const NearRows& near, std::span<const FrictionRow> rows, Vector& rates,
+void turn(NearBlocks& near, std::span<const FrictionRow> rows, int dim,
+          std::span<const double> before, std::span<const double> now) {
+  using Axes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+  std::vector<Axes> turns;
+  for (const FrictionRow& row : rows) {
+    const auto at = static_cast<std::ptrdiff_t>(row.first) * dim;
+    const Eigen::Map<const Eigen::MatrixXd> old(before.data() + at, dim, row.parts),
+        next(now.data() + at, dim, row.parts);
+    turns.emplace_back(row.parts == 1 ? Axes(Axes::Identity(1, 1)) : Axes(next.transpose() * old));
+  }
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (std::size_t k = near.offsets[r]; k < near.offsets[r + 1]; ++k) {
+      const std::size_t s = index(near.opened[k]);
+      Eigen::Map<Eigen::MatrixXd> block(near.blocks.data() + near.begins[k], rows[s].parts,
+                                        rows[r].parts);
+      const Axes turned = turns[s] * block * turns[r].transpose();
+      block = turned;
+    }
+}
+
+double relax(const NearBlocks& near, std::span<const FrictionRow> rows, Vector& rates,
              Vector& force) {
   double change = 0.0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -244,7 +263,7 @@ double relax(const NearRows& near, std::span<const FrictionRow> rows, Vector& ra
       OneRow(block, row).solve(rate(0), rate.tail(parts - 1), force.segment(row.first, parts));
       for (Eigen::Index p = 0; p < parts; ++p) moved[p] = force(row.first + p) - old(p);
     }
-    const double most = largest(moved, row.parts);
+    const double most = largest_entry(moved, row.parts);
     if (most == 0.0) continue;
     change = std::max(change, most);
     for (std::size_t k = near.offsets[r]; k < near.offsets[r + 1]; ++k) {

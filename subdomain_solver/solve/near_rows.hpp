@@ -37,7 +37,7 @@ struct PressedSide {
 
 /// Compliance among rows of contact, blocks of near rows alone: by the row that presses, the rows
 /// that it opens.
-struct NearRows {
+struct NearBlocks {
   std::vector<std::size_t> offsets;  // (rows + 1)
   std::vector<std::int32_t> opened;  // rows, ascending in a list
   std::vector<std::size_t> begins;   // where blocks begin
@@ -47,10 +47,17 @@ struct NearRows {
 };
 
 /// Rows in the order of their components.
-NearRows near_rows(std::span<const FrictionRow> rows, std::span<const PressedSide> sides);
+NearBlocks near_rows(std::span<const FrictionRow> rows, std::span<const PressedSide> sides);
 
-/// One row after the other to the force [N] that fits its own rates (Gauss and Seidel). `rates`: [m]
-/// (components) gaps and slips under `force`; both follow. Returns the largest change of a force.
-double relax(const NearRows& near, std::span<const FrictionRow> rows, Vector& rates, Vector& force);
+/// The same rows along other directions (components, dim) that span what those before did: where a
+/// row rubs, any; where it does not, nearly the same normal.
+void turn(NearBlocks& near, std::span<const FrictionRow> rows, int dim,
+          std::span<const double> before, std::span<const double> now);
+
+/// One row after the other to the force [N] that fits its own rates (Gauss and Seidel). `rates`:
+/// [m] (components) gaps and slips under `force`; both follow. Returns the largest change of a
+/// force.
+double relax(const NearBlocks& near, std::span<const FrictionRow> rows, Vector& rates,
+             Vector& force);
 
 }  // namespace abut

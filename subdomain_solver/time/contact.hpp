@@ -21,8 +21,8 @@ class Compliance {
   virtual std::size_t version() const = 0;
 };
 
-/// Adds to `places` [m] (contact's coordinates) `sign` times what forces [N] on them move: column by
-/// column, and of very many by one solution. `buffer`: memory. False: there is no answer.
+/// Adds to `places` [m] (contact's coordinates) `sign` times what forces [N] on them move: column
+/// by column, and of very many by one solution. `buffer`: memory. False: there is no answer.
 [[nodiscard]] bool add_given_way(Compliance& give, double sign, const Vector& force, Vector& buffer,
                                  Vector& places);
 
