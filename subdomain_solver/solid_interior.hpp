@@ -96,9 +96,7 @@ class SolidInterior final : public Interior,
   const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override {
     return surfaces_ != nullptr ? surfaces_->reacting(port, partner) : nullptr;
   }
-
   void take_over(Archive& archive, bool statics) override;
-
   double enter() override;
   std::optional<Failed> leave(double time, double& lost) override;
   double damp(double joules) override;

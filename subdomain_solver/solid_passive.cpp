@@ -72,8 +72,9 @@ double share_of(double joules, const SparseMatrix& mass, const Vector& v, const 
 }
 
 /// Of a body's mass, what it has in passive steps of this length [s] of its statics [M.154]: it
-/// resists a step by a tenth of what its lowest modes do, (2 share/pi)^2, so that bodies that contact
-/// alone holds do not give way without bounds. What it bears goes in further steps at one place.
+/// resists a step by a tenth of what its lowest modes do, (2 share/pi)^2, so that bodies that
+/// contact alone holds do not give way without bounds. What it bears goes in further steps at one
+/// place.
 double nearly_nothing(const FeModel& model, double step) {
   constexpr double share = 0.5;  // of a step, in which a wave crosses the body
   const Mesh& mesh = model.mesh();

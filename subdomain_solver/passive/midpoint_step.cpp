@@ -69,8 +69,8 @@ std::optional<Failed> MidpointStep::step(Motion& motion, double start, double en
   return failed;
 }
 
-/// The first guess is the free motion. Supports' mean velocity is that of their way; those of a body
-/// that rests are at its end in the middle.
+/// The first guess is the free motion. Supports' mean velocity is that of their way; those of a
+/// body that rests are at its end in the middle.
 void MidpointStep::begin(const Motion& motion, double start, const Vector& impulse) {
   change_.setZero(body_.mass.size());
   held_.clear();

@@ -14,7 +14,6 @@ using Index = std::ptrdiff_t;
 // second.
 constexpr Index front_lanes = ABUT_LANES, tall = 2 * front_lanes, wide = 4;
 constexpr Index depth = 256, strip = 128;
-static_assert(elimination_space(0, 0) >= (tall + strip) * depth);
 static_assert(tall * depth <= packed_rows && strip * depth <= packed_strip);
 constexpr Index narrow = 8;  // columns that are eliminated one by one
 
@@ -65,7 +64,6 @@ void take_edge(const double* a, const double* b, Index d, double* c, Index strid
 
 /// c, on and below its diagonal, less l ld^T: l has as many rows as c, ld as c has columns.
 void take(const DenseView& c, const DenseView& l, const DenseView& ld, double* space) {
-  double *packed_l = space, *packed_ld = space + tall * depth;
   double *packed_l = space, *packed_ld = space + packed_rows;
   for (Index k = 0; k < l.columns; k += depth) {
     const Index d = smaller(depth, l.columns - k);

@@ -182,14 +182,14 @@ const Vector* MasslessLayer::column(int k) {
 }
 
 bool MasslessLayer::apply(const Vector& force, Vector& moved) {
-  for (std::size_t k = 0; k < place_.size(); ++k)
-    if (place_[k] >= 0) unit_(place_[k]) = force(static_cast<Eigen::Index>(k));
-  const bool solved = factors_->solve(unit_, answer_);
+  for (std::size_t k = 0; k < contact_place_.size(); ++k)
+    if (contact_place_[k] >= 0) unit_(contact_place_[k]) = force(static_cast<Eigen::Index>(k));
+  const bool solved = factors().solver->solve(unit_, answer_);
   unit_.setZero();
   if (!solved) return false;
-  moved.setZero(static_cast<Eigen::Index>(place_.size()));
-  for (std::size_t k = 0; k < place_.size(); ++k)
-    if (place_[k] >= 0) moved(static_cast<Eigen::Index>(k)) = answer_(place_[k]);
+  moved.setZero(static_cast<Eigen::Index>(contact_place_.size()));
+  for (std::size_t k = 0; k < contact_place_.size(); ++k)
+    if (contact_place_[k] >= 0) moved(static_cast<Eigen::Index>(k)) = answer_(contact_place_[k]);
   return true;
 }
 

@@ -18,7 +18,7 @@ namespace abut {
 /// forces balance [M.85], and what presses on them is solved for there [M.86]. Of a nonlinear model
 /// the factors are those of a tangent that serves as long as it leads on, over windows too; the
 /// place that it belongs to is part of the body's state, so that replies depend on state and
-/// request alone, whatever factors there are (docs/adr/0039).
+/// request alone, whatever factors there are (docs/adr/0041).
 class MasslessLayer final : private Compliance {
  public:
   /// The problem must outlive it.
@@ -86,20 +86,6 @@ class MasslessLayer final : private Compliance {
   const Problem& problem_;
   std::vector<int> dofs_;
   LayerResponse response_;
-  std::unique_ptr<LinearSolver> factors_;
-  bool factored_ = false;              // since renew(), at some place
-  bool factors_last_ = false;          // for good: the model is linear
-  Vector step_, rest_;                 // [m], [N] (layer)
-  double part_ = 0.0, largest_ = 0.0;  // of the step; [m] displacement that results
-  Vector free_, pressed_, moved_by_;   // [m], [N], [m] (contact)
-  std::vector<int> touched_;           // the contact's coordinates
-  std::vector<int> place_;             // of them in the layer; -1: prescribed
-  std::vector<Vector> columns_;        // [m/N] (contact) of the compliance
-  std::vector<char> known_;            // (contact) which of them
-  std::size_t version_ = 0;            // of all of them
-  Vector unit_, answer_;               // (layer)
-  std::vector<double> moved_;          // [m] (dofs) by a jump
-  Vector loads_;                       // [N] (dofs) after it
   std::vector<double> place_;        // of the tangent in use; empty: none yet
   std::array<Factors, 2> kept_;      // bodies go back to where they had others
   std::size_t used_ = 0;             // of these
@@ -111,7 +97,7 @@ class MasslessLayer final : private Compliance {
   Vector asked_;       // [N] (layer) that acts on it
   double part_ = 0.0,
          largest_ = 0.0;                // of the step; [m] displacement that results
-  Vector free_, pressed_;               // [m], [N] (contact)
+  Vector free_, pressed_, moved_by_;    // [m], [N], [m] (contact)
   std::vector<int> touched_;            // the contact's coordinates
   std::vector<int> contact_place_;      // of them in the layer; -1: prescribed
   std::size_t version_ = 0;             // of all columns

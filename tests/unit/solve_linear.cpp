@@ -220,13 +220,6 @@ TEST(Fronts, HaveTheSameBitsForEveryWidthOfRegisters) {
 }
 
 /// Widths differ in how many rows they pack, and all must be content with the same room.
-TEST(Fronts, LeaveAloneWhatIsBehindTheSpaceTheyAskFor) {
-  for (Eliminate* by : {&eliminate_here(), &eliminate_generic}) {
-    TestFront front;
-    const std::size_t asked = front.space.size();
-    front.space.resize(asked + 32'768, 7.0);
-    ASSERT_TRUE(front.eliminate_by(*by));
-    for (std::size_t k = asked; k < front.space.size(); ++k) ASSERT_EQ(front.space[k], 7.0);
 TEST(Fronts, StayWithinTheSpaceThatIsTheirs) {
   constexpr double untouched = 0.123;
   for (Eliminate* by : {&eliminate_generic, &eliminate_here()}) {
