@@ -39,6 +39,7 @@ bool LinearisedModel::evaluate(std::span<const double> q, std::span<const double
 
 bool LinearisedModel::evaluate_layer(std::span<const double> q, std::span<const double>, Want want,
                                      LayerResponse& out) {
+  if (out.tangent.size() == 0) out = layer_;  // what the model itself says at first it says once
   force_.noalias() = tangent_ * view_of(q);
   out.force.resize(layer_.force.size());
   for (std::size_t k = 0; k < massless().size(); ++k)

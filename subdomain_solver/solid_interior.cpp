@@ -12,6 +12,7 @@
 #include "subdomain_solver/contact/surface_contact.hpp"
 #include "subdomain_solver/port_geometry.hpp"
 #include "subdomain_solver/solid_fields.hpp"
+#include "subdomain_solver/materials/crush_guard.hpp"
 #include "subdomain_solver/stabilisation_measures.hpp"
 #include "subdomain_solver/time/inertia.hpp"
 #include "subdomain_solver/time/massless_layer.hpp"
@@ -217,10 +218,10 @@ void SolidInterior::state(Archive& archive) {
   archive.field("turned", state_.turned);
   if (crossings_) archive.field("crossed", state_.crossed);
   if (surfaces_ != nullptr) surfaces_->state(archive);
-  if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) return layer->state(archive);
-  const Model& model = *parts_.problem->model;
-  if (model.massless().empty() || model.is_linear()) return;
-  std::vector<double> none;  // statics have no factors of the layer alone; stages after them may
+  if (parts_.problem->model->is_linear()) return;
+  MasslessLayer* layer = parts_.scheme.integrator->able().layer;
+  if (layer != nullptr && !layer->empty()) return layer->state(archive);
+  std::vector<double> none;  // statics have no layer; stages after them may
   archive.field("layer_place", none);
 }
 
@@ -284,7 +285,13 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i, bool) {
   if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);
   if (port_map_) follow_ports(state_.time);
-  return i == window.grid.count ? meet_end() : std::nullopt;
+  if (i < window.grid.count) return std::nullopt;
+  // Passive forms take no cell that is crushed already. In more dimensions cells are not looked at:
+  // it would cost as much as their forces.
+  if (description_.dim == 1 && parts_.problem->contact != nullptr &&
+      parts_.model->least_volume(state_.motion.q) < crushed)
+    return failed_newton({NewtonReport::End::inadmissible}, state_.time);
+  return meet_end();
 }
 
 /// Where the nodes are and how they move now.

@@ -26,6 +26,8 @@ constexpr double rounding_of_work = 1.0e-9;
 /// What parts surfaces that are too near: this share of what they miss in a step, at most so many
 /// edges in a nominal step, for at most this share of half of what normal contact has lost.
 constexpr double push_share = 0.1, push_edges = 0.05, paid_share = 0.2;
+/// [J] Bodies without inertia are pushed out whatever it takes.
+constexpr double without_account = 1.0e200;
 /// From this solve of the same rows on bodies count as softer, doubly each time: a model that is
 /// too stiff throws impulses too far, one that is too soft comes slowly and surely.
 constexpr int softer_from = 3, softest = 3;
@@ -124,7 +126,7 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   released_ = 0.0;
   culprit_ = -1;
   std::ranges::fill(advanced_, 0);
-  credit_ = statics_ ? most_ + ledger.push_out : 0.5 * ledger.normal;
+  credit_ = statics_ ? without_account : 0.5 * ledger.normal;
   const double budget = credit_ - ledger.push_out;
   pushing_ = budget > 0.0;
   allowed_ = paid_share * std::max(0.0, budget);
