@@ -89,8 +89,13 @@ bool FeModel::guard(bool on) {
 double FeModel::least_volume(std::span<const double> q) const {
   double least = 1.0;
   if (!can_be_crushed()) return least;
-  std::vector<double> u(q.begin(), q.end());
-  to_space(u);
+  std::vector<double> turned;
+  std::span<const double> u = q;
+  if (!frames_.empty()) {
+    turned.assign(q.begin(), q.end());
+    to_space(turned);
+    u = turned;
+  }
   const std::size_t dim = index(mesh_.dim);
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const Tabulation& table = blocks_[k].table;
