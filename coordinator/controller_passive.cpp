@@ -140,11 +140,12 @@ bool Controller::repay() {
   }
   std::erase_if(touching, [this](int b) { return !std::isfinite(bodies_.describe(b).mass); });
   const bool accounts = passive_.on_a_line();  // bars give back what contact has given them, alone
-  const double excess =
-      accounts ? std::min(events_.overpaid(guard_.most()),
-                          guard_.excess(bodies_.responses(), {}, events_.payments(guard_.most())))
+  double excess =
+      accounts ? guard_.excess(bodies_.responses(), {}, events_.payments(guard_.most()))
                : guard_.excess(bodies_.responses(), bodies_.struck());
   if (touching.empty() || !(excess > 0.0)) return true;
+  if (accounts) excess = std::min(excess, events_.overpaid(guard_.most()));
+  if (!(excess > 0.0)) return true;
   const std::vector<int> bodies(touching.begin(), touching.end());
   const std::vector<double> gave = passive_.repay(bodies, excess);
   double left = excess;
