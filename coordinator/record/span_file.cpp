@@ -53,7 +53,9 @@ SpanFile::SpanFile(const std::filesystem::path& path, std::int64_t limit)
   keep_pending();
 }
 
-SpanFile::~SpanFile() {
+SpanFile::~SpanFile() { finish(); }
+
+void SpanFile::finish() {
   if (!file_) return;
   try {
     keep_pending();
@@ -243,13 +245,7 @@ void SpanFile::on_event(const RunEvent& event) {
 void SpanFile::on_end(const RunEnd&) {
   if (!file_) return;
   lost();
-  if (!file_) return;
-  try {
-    keep_pending();
-    write();
-  } catch (const std::exception& error) {
-    give_up(error.what());
-  }
+  finish();
 }
 
 }  // namespace abut

@@ -66,6 +66,7 @@ class SpanFile : public Observer {
   void keep_pending();
   void write();
   void give_up(const std::string& why) noexcept;
+  void finish();  // what is pending is written
   double micros(Clock::Time time) const;
 
   std::optional<TextFile> file_;  // absent: it could not be written on
