@@ -195,13 +195,14 @@ StageEnd record_stage(RunPlan& plan, const RunOptions& options, const fs::path& 
                         units.word("s"));
   ProgressFile to_monitor(directory, progress_heading(plan, options, more), meter, clock);
   RunTable table;
-  std::vector<Observer*> observers{&recorder, &history, &events,    &progress,
-                                   &table,    &summary, &to_monitor};
+  std::vector<Observer*> observers{&recorder, &history, &events, &progress, &table};
   std::optional<VtkFields> fields;
   if (const std::optional<FieldOutputSpec>& wanted = scene.output.field_output)
     observers.push_back(&fields.emplace(directory, placement.pointers(), wanted->every,
                                         opening_of(from, "fields")));
   if (spans != nullptr) observers.push_back(spans);
+  // A summary says "completed" when all other files are.
+  observers.insert(observers.end(), {&summary, &to_monitor});
   std::vector<Subdomain*> pointers;
   for (const std::unique_ptr<Subdomain>& body : bodies) pointers.push_back(body.get());
   Controller controller(scene, pointers, observers, &interrupts.asked);

@@ -58,11 +58,10 @@ void go_back(Checkpoint& from, const Scene& scene, const std::string& directory)
     log_warning("the run ends where it is resumed: measures of its last step are not known");
 }
 
-void check_time(const Checkpoint& from, const Scene& scene, const std::string& directory) {
+void check_end(const Checkpoint& from, const Scene& scene, const std::string& directory) {
   if (!at_end(from, scene) || !has_ended(directory)) return;
-  throw InputError(
-      fmt::format("has come to {:.6g} s, and its end is {:.6g} s", from.time, scene.time.end),
-      directory, "Give a later end: --end TIME.");
+  throw InputError(fmt::format("is complete: it has come to its end, {:.6g} s", scene.time.end),
+                   directory, "Give a later end: --end TIME.");
 }
 
 }  // namespace
@@ -78,7 +77,7 @@ int resume_verb(const ResumeCommand& command) {
   for (const std::string& warning : warnings) log_warning(warning);
   Document document = scene_of(command, from);
   RunPlan plan = plan_run(std::move(document), options, interrupts);
-  check_time(from, plan.scene, command.directory);
+  check_end(from, plan.scene, command.directory);
   go_back(from, plan.scene, command.directory);
   log_info(fmt::format("goes on from {:.6g} s, window {}", from.time, from.windows));
   held.go_on();

@@ -97,6 +97,9 @@ class FailingOnce(SystemTest):
             self.assertIn(self.summary()["status"], ("failed", "completed"), result.stderr)
 
     def go_on(self, *placement: str):
+        told = self.out / "summary.json"
+        if told.exists() and self.summary()["status"] == "completed":
+            return  # what failed came after the last file
         kept = (self.out / "checkpoint.abut").exists()
         again = ("run", SCENE, "--out", self.out, "--force", *KEPT)
         self.succeed(self.abut(*(("resume", self.out) if kept else again), *placement))
