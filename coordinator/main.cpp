@@ -17,6 +17,7 @@
 #include "base/denormals.hpp"
 #include "base/error.hpp"
 #include "base/input_errors.hpp"
+#include "base/memory_end.hpp"
 #include "coordinator/command_line.hpp"
 #include "coordinator/external_verb.hpp"
 #include "coordinator/init/init_files.hpp"
@@ -222,7 +223,8 @@ int delivered(int code) {
 
 int main(int argc, char** argv) {
   const abut::FlushedDenormals flushed;  // also of threads that bodies start
-  std::signal(SIGXFSZ, SIG_IGN);         // a file at the limit of its size is an error of writing
+  abut::end_in_words_without_memory("error");
+  std::signal(SIGXFSZ, SIG_IGN);  // a file at the limit of its size is an error of writing
   try {
     abut::offer_python_package();  // before there is a second thread
     return abut::delivered(std::visit(abut::Verbs{}, abut::parse_command_line(argc, argv)));

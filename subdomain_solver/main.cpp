@@ -15,6 +15,7 @@
 #include "base/denormals.hpp"
 #include "base/endpoint.hpp"
 #include "base/error.hpp"
+#include "base/memory_end.hpp"
 #include "messaging/descriptors.hpp"
 #include "messaging/linked_bodies.hpp"
 #include "messaging/liveness.hpp"
@@ -140,6 +141,7 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
 
 int main(int argc, char** argv) {
   const abut::FlushedDenormals flushed;  // also of threads that bodies start
+  abut::end_in_words_without_memory("abut-solver");
   Command command;
   try {
     if (const std::optional<int> code = read_command_line(argc, argv, command)) return *code;

@@ -8,7 +8,8 @@ EventLog::EventLog(const std::filesystem::path& directory, TextFile::Opening ope
     : file_(directory / "events.jsonl", opening) {}
 
 void EventLog::on_event(const RunEvent& event) {
-  nlohmann::ordered_json line;
+  // Made an object before its members are: the library crashes where memory fails between.
+  nlohmann::ordered_json line = nlohmann::ordered_json::object();
   line["time"] = event.time;  // a number that is not finite becomes null
   line["kind"] = to_string(event.kind);
   line["subject"] = event.subject;

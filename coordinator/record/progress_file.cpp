@@ -122,6 +122,7 @@ std::string ProgressFile::facts(const RunStart& start) const {
   json["processes"] = Json::array();
   for (std::size_t p = 0; p < heading_.processes.size(); ++p) {
     Json entry = {{"id", heading_.processes[p].id}, {"began", since_[p + 1]}};
+    entry["bodies"] = Json::array();
     for (const std::size_t b : heading_.processes[p].bodies) entry["bodies"].push_back(bodies_[b]);
     json["processes"].push_back(std::move(entry));
   }
@@ -131,7 +132,7 @@ std::string ProgressFile::facts(const RunStart& start) const {
 
 std::string ProgressFile::text(double reached, double wall) const {
   const std::optional<double> left = remaining_.left(wall, part_of(reached));
-  Json json;
+  Json json = Json::object();
   json["written"] = since_1970();
   json["time"] = {{"begin", begin_}, {"end", end_}, {"reached", reached}};
   json["wall_s"] = wall;
@@ -139,6 +140,7 @@ std::string ProgressFile::text(double reached, double wall) const {
   json["windows"] = windows_;
   json["in_contact"] = closed_;
   json["iterations"] = iterations_;
+  json["of_bodies"] = Json::object();
   std::int64_t calls = 0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     calls += meter_.calls()[b];

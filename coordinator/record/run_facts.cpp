@@ -26,8 +26,10 @@ Json bodies_json(const RunStart& start, const std::map<std::string, std::string>
                   {"mass", json_number(body->mass)},
                   {"step", json_number(body->step)}};
     if (std::isinf(body->mass)) entry["immovable"] = true;
+    if (!body->frequencies.empty()) entry["frequencies_hz"] = Json::array();
     for (const double hertz : body->frequencies)
       entry["frequencies_hz"].push_back(json_number(hertz));
+    if (!body->members.empty()) entry["members"] = Json::array();
     for (const Member& member : body->members)
       entry["members"].push_back({{"name", member.name}, {"mass", json_number(member.mass)}});
     array.push_back(entry);
@@ -55,13 +57,13 @@ Json ports_json(const RunStart& start) {
 Json interfaces_json(const RunStart& start) {
   Json object = Json::object();
   for (const InterfaceInfo& info : start.interfaces) {
-    if (info.many) object[info.name]["sides"] = Json::array();
-    object[info.name]["tied"] = info.tied;
+    Json sides = Json::array();
     for (const int side : {0, 1}) {
       if (info.many) continue;
       const Description& body = *start.bodies[info.body[side]];
-      object[info.name]["sides"].push_back(body.name + "." + body.ports[info.port[side]].name);
+      sides.push_back(body.name + "." + body.ports[info.port[side]].name);
     }
+    object[info.name] = {{"sides", sides}, {"tied", info.tied}};
   }
   return object;
 }

@@ -19,6 +19,8 @@
 namespace abut {
 namespace {
 
+// An object or array is made before its members are: where memory fails between, the library
+// leaves a value that it cannot destroy.
 using Json = nlohmann::ordered_json;
 
 Json measures_object(const Measures& measures, Json& notes) {
@@ -68,15 +70,16 @@ Json closed_form_object(const ClosedForm& form) {
     object.update(contact_object(row.contacts()[0]));
   }
   object["closing_speed"] = row.velocity_spread();
+  if (!single) object["interfaces"] = Json::object();
   for (std::size_t i = 0; !single && i < form.interfaces.size(); ++i)
     object["interfaces"][form.interfaces[i]] = contact_object(row.contacts()[i]);
-  for (int b = 0; b < row.bars(); ++b) {
-    Json& body = object["bodies"][form.bodies[b]];
-    body["wall"] = row.bar(b).wall;
-    body["mean_velocity_end"] = json_number(row.mean_velocity(b, row.end()));
-    body["total_begin"] = json_number(row.total(b, row.begin()));
-    body["total_end"] = json_number(row.total(b, row.end()));
-  }
+  object["bodies"] = Json::object();
+  for (int b = 0; b < row.bars(); ++b)
+    object["bodies"][form.bodies[b]] = {
+        {"wall", row.bar(b).wall},
+        {"mean_velocity_end", json_number(row.mean_velocity(b, row.end()))},
+        {"total_begin", json_number(row.total(b, row.begin()))},
+        {"total_end", json_number(row.total(b, row.end()))}};
   return object;
 }
 
@@ -93,6 +96,7 @@ Json timing_object(const RunEnd& end, const RunStart& start, const std::vector<d
   for (std::size_t b = 0; b < std::min(start.bodies.size(), end.compute_seconds.size()); ++b)
     timing["compute_s"][start.bodies[b]->name] = json_number(end.compute_seconds[b]);
   double coupling = end.wall_seconds;
+  if (waited != nullptr) timing["waited_s"] = Json::object();
   for (std::size_t b = 0; waited != nullptr && b < start.bodies.size(); ++b) {
     timing["waited_s"][start.bodies[b]->name] = json_number((*waited)[b]);
     coupling -= (*waited)[b];
@@ -143,7 +147,8 @@ Json overlaps_array(const RunEnd& end, const RunStart& start) {
                       &other = *start.bodies[overlap.body[1]];
     Json entry = {{"bodies", {one.name, other.name}},
                   {"depth", json_number(overlap.depth)},
-                  {"time", json_number(overlap.time)}};
+                  {"time", json_number(overlap.time)},
+                  {"place", Json::array()}};
     for (int i = 0; i < one.dim; ++i) entry["place"].push_back(json_number(overlap.place[i]));
     array.push_back(entry);
   }
@@ -206,7 +211,7 @@ void Summary::on_start(const RunStart& start) {
 std::string Summary::text(const RunEnd& end) const {
   Json notes = Json::array();
   if (!recorder_.non_finite().empty()) notes.push_back(recorder_.non_finite());
-  Json summary;
+  Json summary = Json::object();
   summary["status"] = status_;
   if (!end.reason.empty()) summary["reason"] = end.reason;
   summary["title"] = heading_.title;
@@ -219,6 +224,7 @@ std::string Summary::text(const RunEnd& end) const {
   if (form_ != nullptr) summary["closed_form"] = closed_form_object(*form_);
   summary["state_hash"] =
       end.state_hash ? Json(fmt::format("{:016x}", *end.state_hash)) : Json(nullptr);
+  if (!end.body_hashes.empty()) summary["body_hashes"] = Json::object();
   for (std::size_t b = 0; b < end.body_hashes.size(); ++b)
     summary["body_hashes"][start_.bodies[b]->name] = fmt::format("{:016x}", end.body_hashes[b]);
   summary["windows"] = end.windows;
@@ -226,7 +232,7 @@ std::string Summary::text(const RunEnd& end) const {
   summary["exchanges"] = end.exchanges;
   summary["overlaps"] = overlaps_array(end, start_);
   summary["never_closed"] = end.never_met;
-  summary["accuracy"]["given_up"] = given_up_object(end, start_, heading_.units);
+  summary["accuracy"] = {{"given_up", given_up_object(end, start_, heading_.units)}};
   summary["timing"] = timing_object(end, start_, heading_.waited);
   if (heading_.program_began) summary["timing"]["startup_s"] = json_number(startup_seconds_);
   if (heading_.estimate) summary["estimate"] = estimate_object(*heading_.estimate);

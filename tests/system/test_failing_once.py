@@ -36,6 +36,21 @@ class FailingOnce(SystemTest):
             self.environment = whole
         return self.end(run)
 
+    def fail_at(self, number: int, whole: tuple, word: str, *placement: str) -> tuple:
+        """Whether it ended the run, and how many calls there were."""
+        shutil.rmtree(self.out, ignore_errors=True)
+        (self.folder / "count").unlink(missing_ok=True)
+        with self.subTest(word=word, placement=placement, call=number):
+            result = self.run_with(word, number, *placement)
+            calls = self.calls_of_the_run(number)
+            if result.returncode != 0:
+                self.assertGreaterEqual(calls, number, result.stderr)
+                self.assert_told(result)
+                self.assert_left(result)
+                self.go_on(*placement)
+            self.assertEqual(self.told_of_the_motion(), whole)
+        return result.returncode != 0, calls
+
     def walk(self, word: str, *placement: str) -> int:
         """Fails one call after the other; how many runs were ended by it."""
         self.succeed(self.run_with(word, 0, *placement))
@@ -43,18 +58,8 @@ class FailingOnce(SystemTest):
         number, calls, ended = 0, 0, 0
         while calls >= number:  # the latest one was come to
             number = max(number + 1, int(number * GROWTH))
-            shutil.rmtree(self.out, ignore_errors=True)
-            (self.folder / "count").unlink(missing_ok=True)
-            with self.subTest(word=word, placement=placement, call=number):
-                result = self.run_with(word, number, *placement)
-                calls = self.calls_of_the_run(number)
-                if result.returncode != 0:
-                    ended += 1
-                    self.assertGreaterEqual(calls, number, result.stderr)
-                    self.assert_told(result)
-                    self.assert_left(result)
-                    self.go_on(*placement)
-                self.assertEqual(self.told_of_the_motion(), whole)
+            has_ended, calls = self.fail_at(number, whole, word, *placement)
+            ended += has_ended
         return ended
 
     def calls_of_the_run(self, number: int) -> int:
@@ -111,6 +116,14 @@ class Allocations(FailingOnce):
 
     def test_in_one_process(self):
         self.assertGreater(self.walk("run", "--local"), 40)
+
+    def test_where_the_run_ends(self):
+        """What is written there is taken down there as well, by destructors that allocate."""
+        self.succeed(self.run_with("run", 0, "--local"))
+        whole = self.told_of_the_motion()
+        _, calls = self.fail_at(10**9, whole, "run", "--local")
+        for number in range(calls - 900, calls, 29):
+            self.fail_at(number, whole, "run", "--local")
 
     def test_of_the_coordinator(self):
         self.assertGreater(self.walk("run"), 40)
