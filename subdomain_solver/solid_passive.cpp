@@ -60,15 +60,25 @@ Vector beside(std::span<const int> kept, const SparseMatrix& mass, const Eigen::
   return rest - loose * least_squares(heavy.transpose() * loose, momentum);
 }
 
+/// More than this of what deforms is never given to velocities, in units of it: what is left of
+/// hardly any is noise.
+constexpr double most_given = 1.0;
+
 /// The share of the rest that takes so much energy [J] from velocities, or the one that takes most;
-/// at most all of it: of a rest that is rounding alone more would be anything.
+/// at most all of it: of a rest that is rounding alone more would be anything. Negative energy is
+/// given.
 double share_of(double joules, const SparseMatrix& mass, const Vector& v, const Vector& rest) {
   const Vector heavy = mass * rest;
   const double square = rest.dot(heavy), slope = v.dot(heavy);
   if (!(square > 0.0) || !(slope > 0.0)) return 0.0;
   const double root = slope * slope - 2.0 * square * joules;
   const double share = root > 0.0 ? 2.0 * joules / (slope + std::sqrt(root)) : slope / square;
-  return std::min(share, 1.0);
+  return std::clamp(share, -most_given, 1.0);
+}
+
+/// The same where the rest is all the velocities that have `most` [J].
+double part_of(double joules, double most) {
+  return 1.0 - std::min(std::sqrt(std::max(0.0, 1.0 - joules / most)), 1.0 + most_given);
 }
 
 /// Of a body's mass, what it has in passive steps of this length [s] of its statics [M.154]: it
@@ -172,11 +182,13 @@ Vector SolidInterior::nodal_momentum() {
 
 /// Momentum is made what it was, and angular momentum as far as the energy lasts: what deforms pays
 /// for it first.
+/// What another mass on the nodes has lost of the energy is given to what deforms.
 template <class Energy>
 void SolidInterior::keep_momenta(const Vector& momentum, double most, const Energy& energy) {
   if (!parts_.reduced) keep_momentum(free_motions(false), momentum);
   const Vector plain = view(state_.motion.v);
   if (!parts_.reduced) keep_momentum(free_motions(true), momentum);
+  if (energy() < most) take_from_deformation(energy() - most);
   for (int k = 0; k < 3 && energy() > most; ++k) take_from_deformation(energy() - most);
   stay_below(most, plain, state_.motion.v, energy);
 }
@@ -207,7 +219,8 @@ double SolidInterior::enter() {
   motion.force.assign(motion.v.size(), 0.0);
   std::ranges::fill(state_.port_force, 0.0);
   if (surfaces_ != nullptr) surfaces_->let_go();
-  keep_momenta(momentum, before, [this] { return moving_energy(); });
+  // What crushed cells store anew comes from motion.
+  keep_momenta(momentum, before - guard, [this] { return moving_energy(); });
   // Plain ones have too much themselves. Alpha schemes tell momentum ahead of velocities while
   // forces change [M.24]: what it asks beyond the energy before is given.
   if (!parts_.reduced && moving_energy() > before)
@@ -313,11 +326,12 @@ void SolidInterior::keep_momentum(const Eigen::MatrixXd& motions, const Vector& 
   view(state_.motion.v) += motions * solve_symmetric(heavy, missing);
 }
 
-/// What is left of velocities beside the rigid motions that supports leave is scaled down.
+/// What is left of velocities beside the rigid motions that supports leave is scaled: down, or up
+/// where the energy is negative, which is given then.
 double SolidInterior::take_from_deformation(double joules) {
   Motion& motion = state_.motion;
   const double before = energy().kinetic;
-  if (parts_.rigid != nullptr || !(joules > 0.0)) return 0.0;
+  if (parts_.rigid != nullptr || !(std::abs(joules) > 0.0)) return 0.0;
   if (joins_ && !is_passive()) return take_beside_joints(joules);
   Vector rest = view(motion.v);
   Vector mass = Vector::Ones(rest.size());
@@ -338,13 +352,12 @@ double SolidInterior::take_from_deformation(double joules) {
       rest(dof) = 0.0;
     const double most = energy_of(whole, rest);
     if (!(most > 0.0)) return 0.0;
-    const double kept = std::sqrt(std::max(0.0, 1.0 - joules / most));
-    view(motion.v) -= (1.0 - kept) * rest;
+    view(motion.v) -= part_of(joules, most) * rest;
     return before - energy().kinetic;
   }
   const double most = 0.5 * rest.squaredNorm();  // modes have a mass of one
   if (!(most > 0.0)) return 0.0;
-  view(motion.v) -= (1.0 - std::sqrt(std::max(0.0, 1.0 - joules / most))) * rest;
+  view(motion.v) -= part_of(joules, most) * rest;
   return before - energy().kinetic;
 }
 
@@ -363,7 +376,9 @@ double SolidInterior::take_beside_joints(double joules) {
   return before - energy().kinetic;
 }
 
-double SolidInterior::damp(double joules) { return take_from_deformation(joules); }
+double SolidInterior::damp(double joules) {
+  return joules > 0.0 ? take_from_deformation(joules) : 0.0;
+}
 
 std::optional<Failed> SolidInterior::leave(double time, double& lost) {
   lost = 0.0;

@@ -65,7 +65,8 @@ class BarInterior final : public Interior, private Probed, private Obstructed, p
   /// Then it has no accelerations.
   bool is_passive() const { return state_.a.empty(); }
   double energy() const;  // [J] kinetic and stored
-  void stay_below(double most);
+  void keep_energy(double before);
+  double take_from_deformation(double joules);
   void let_go();
   void pass_loads(const PassiveStep& step, std::vector<double>& force);
 

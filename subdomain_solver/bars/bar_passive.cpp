@@ -15,7 +15,9 @@ namespace abut {
 
 namespace {
 constexpr double may_gain = 1.0e-6;  // of its energy, by a change of form
-}
+constexpr double rounding = 1.0e-14;
+constexpr double most_scaled = 2.0;  // of velocities: what is left of hardly any is noise
+}  // namespace
 
 double BarInterior::energy() const {
   const double moving =
@@ -23,12 +25,15 @@ double BarInterior::energy() const {
   return moving + (is_passive() ? bar_->stored(state_.u) : scheme_.integrator->stored(state_));
 }
 
-/// Velocities beside the motion of the centre, which stays, are scaled until the energy [J] is no
-/// more than `most`.
-void BarInterior::stay_below(double most) {
+/// Velocities beside the motion of the centre, which stays, are scaled until the energy [J] is what
+/// it was, and no more.
+void BarInterior::keep_energy(double before) {
+  // Masses of a scheme need not be those of the nodes: in turns.
+  for (int k = 0; k < 30 && energy() < (1.0 - rounding) * before; ++k)
+    take_from_deformation(energy() - before);
   for (int k = 0; k < 3; ++k) {
-    const double excess = energy() - most;
-    if (!(excess > 0.0) || !(damp(excess) > 0.0)) return;
+    const double excess = energy() - before;
+    if (!(excess > 0.0) || !(take_from_deformation(excess) > 0.0)) return;
   }
 }
 
@@ -75,12 +80,16 @@ double BarInterior::enter() {
     }
     put(low);
   }
-  stay_below(before);
+  keep_energy(before);
   return before - energy();
 }
 
 double BarInterior::damp(double joules) {
-  if (!(joules > 0.0)) return 0.0;
+  return joules > 0.0 ? take_from_deformation(joules) : 0.0;
+}
+
+/// Below zero it is given.
+double BarInterior::take_from_deformation(double joules) {
   const std::vector<double>& mass = is_passive() ? midpoint_->mass() : bar_->row_mass();
   const bool held = bar_->data().fixed[0] || bar_->data().fixed[1];
   double whole = 0.0, momentum = 0.0;
@@ -93,7 +102,8 @@ double BarInterior::damp(double joules) {
   for (std::size_t i = 0; i < mass.size(); ++i)
     most += 0.5 * mass[i] * (state_.v[i] - mean) * (state_.v[i] - mean);
   if (!(most > 0.0)) return 0.0;
-  const double before = energy(), kept = std::sqrt(std::max(0.0, 1.0 - joules / most));
+  const double before = energy(),
+               kept = std::min(std::sqrt(std::max(0.0, 1.0 - joules / most)), most_scaled);
   for (std::size_t i = 0; i < mass.size(); ++i)
     if (mass[i] > 0.0) state_.v[i] = mean + kept * (state_.v[i] - mean);
   return before - energy();
@@ -123,7 +133,7 @@ std::optional<Failed> BarInterior::leave(double time, double& lost) {
     load_work_ += work;
     present += work;
   }
-  stay_below(present);
+  keep_energy(present);
   lost = present - energy();
   if (-lost <= may_gain * present) return std::nullopt;
   // Schemes with other stiffnesses store more in the same strains than what deforms can pay.

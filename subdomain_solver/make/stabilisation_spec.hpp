@@ -7,7 +7,7 @@ namespace abut {
 /// Of bodies that contact alone holds.
 struct StabilisationSpec {
   double stiffness = 1.0e-2;
-  double at_most = 1.0e-3;
+  double at_most = 1.0e-2;
   void fields(Fields& f) {
     f.optional("stiffness", stiffness, "",
                "part of the body's stiffness in tension along its largest extent, E V / L^2, that "

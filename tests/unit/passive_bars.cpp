@@ -87,7 +87,7 @@ TEST(PassiveBars, ComplianceIsWhatOneMoreImpulseAdds) {
   }
 }
 
-TEST(PassiveBars, GoThereAndBackWithoutAGain) {
+TEST(PassiveBars, GoThereAndBackWithTheirEnergy) {
   for (PassiveText text : bars()) {
     for (const bool held : {false, true}) {
       text.more = "initial: {velocity_field: ['0.3 + 0.2 * sin(9 * x)']}";
@@ -105,7 +105,8 @@ TEST(PassiveBars, GoThereAndBackWithoutAGain) {
       };
       const BodyRecord own = advance(0.0, 0.05);
       const double lost = body->passive()->enter();
-      EXPECT_GE(lost, -roundoff(1.0e4, own.energy.total()));
+      // What the other mass loses is given to velocities, in turns.
+      EXPECT_NEAR(lost, 0.0, 1.0e-9 * own.energy.total());
       PassiveRun run(nullptr, *body, 0.05);
       const BodyRecord passive = run.step(1.0e-12).record;  // as good as none
       EXPECT_NEAR(kept(passive), kept(own) - lost, roundoff(1.0e4, own.energy.total()));
@@ -114,13 +115,13 @@ TEST(PassiveBars, GoThereAndBackWithoutAGain) {
       const BodyRecord last = run.step(0.01).record;
       double left = 0.0;
       ASSERT_TRUE(std::holds_alternative<Advanced>(body->passive()->leave(run.time, left)));
-      EXPECT_GE(left, -roundoff(1.0e4, last.energy.total()));
+      EXPECT_NEAR(left, 0.0, 1.0e-9 * last.energy.total());
       const BodyRecord back = advance(run.time, run.time);
       EXPECT_NEAR(kept(back), kept(last) - left, roundoff(1.0e4, last.energy.total()));
       if (!held) EXPECT_NEAR(back.momentum[0], last.momentum[0], roundoff(1.0e4, 1.0));
       const BodyRecord on = advance(run.time, run.time + 0.05);
       // Schemes of finite strain keep their energy to the square of their step.
-      EXPECT_LT(kept(on), kept(own) * (1.0 + 1.0e-3));
+      EXPECT_LT(kept(on), kept(back) * (1.0 + 1.0e-3));
     }
   }
 }
