@@ -193,10 +193,10 @@ void CentralDifference::place_massless(BarState& state, int end, const EndAction
 }
 
 void CentralDifference::resolve_massless(BarState& state, const EndActions& actions, double dt) {
-  bool any = false;
+  bool moved = false;
   for (int end : {0, 1}) {
     if (!is(end, ContactLayer::massless)) continue;
-    any = true;
+    moved = true;
     const EndAction& action = actions[end];
     const std::size_t node = index(bar_.node_of(end));
     const std::size_t inner = index(bar_.inner_of(end));
@@ -210,7 +210,7 @@ void CentralDifference::resolve_massless(BarState& state, const EndActions& acti
     if (dt > 0.0) state.v[node] = (state.u[node] - before) / dt;
   }
   if (!simple()) smoothed_ = smooth(state, state.u, present_);
-  if (!any) return;
+  if (!moved) return;
   for (int end : {0, 1}) {
     const EndAction& action = actions[end];
     if (is(end, ContactLayer::massless)) place_massless(state, end, action, dt);

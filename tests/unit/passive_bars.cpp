@@ -105,7 +105,7 @@ TEST(PassiveBars, GoThereAndBackWithTheirEnergy) {
       };
       const BodyRecord own = advance(0.0, 0.05);
       const double lost = body->passive()->enter();
-      // What the other mass loses is given to velocities, in turns.
+      // What the other mass loses is given to velocities, in turns that leave half each.
       EXPECT_NEAR(lost, 0.0, 1.0e-9 * own.energy.total());
       PassiveRun run(nullptr, *body, 0.05);
       const BodyRecord passive = run.step(1.0e-12).record;  // as good as none
@@ -115,7 +115,7 @@ TEST(PassiveBars, GoThereAndBackWithTheirEnergy) {
       const BodyRecord last = run.step(0.01).record;
       double left = 0.0;
       ASSERT_TRUE(std::holds_alternative<Advanced>(body->passive()->leave(run.time, left)));
-      EXPECT_NEAR(left, 0.0, 1.0e-9 * last.energy.total());
+      EXPECT_NEAR(left, 0.0, 1.0e-9 * last.energy.total());  // as above
       const BodyRecord back = advance(run.time, run.time);
       EXPECT_NEAR(kept(back), kept(last) - left, roundoff(1.0e4, last.energy.total()));
       if (!held) EXPECT_NEAR(back.momentum[0], last.momentum[0], roundoff(1.0e4, 1.0));
