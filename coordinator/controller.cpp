@@ -201,7 +201,9 @@ bool Controller::fly_free() {
   SpanScope span(bodies_.spans(), "flight", clock_.windows());
   span.covers(flight.begin, flight.end);
   prepare(flight, windows * scene_.output.records_per_window, Sampling::records);
-  if (std::optional<Failed> failed = bodies_.advance_all()) {
+  std::optional<Failed> failed = bodies_.advance_all();
+  if (!failed) failed = made_by_themselves(flight);
+  if (failed) {
     if (windows == 1) {
       bodies_.restore_all();
       if (!go_passively(flight.begin, failed->detail)) fail(failed->time, failed->detail);
@@ -298,7 +300,12 @@ Controller::Judgement Controller::judge_ways(const TimeWindow& window) {
   if (std::string meets = folded(); !meets.empty())
     return {Judgement::Verdict::fail, window.end, std::move(meets)};
   const bool near = std::ranges::any_of(joints_, [](const Joint& j) { return j.closed(); });
-  if (!near || !may_go_passively()) return {};
+  if (!may_go_passively()) return {};
+  if (!near) {
+    if (std::optional<Failed> made = made_by_themselves(window))
+      return {Judgement::Verdict::fail, window.end, std::move(made->detail)};
+    return {};
+  }
   const Judgement gains = {Judgement::Verdict::fail, window.end, "contact would make energy"};
   if (passive_.on_a_line()) {
     if (guard_.ends(bodies_.responses(), events_.payments(guard_.most()))) return gains;

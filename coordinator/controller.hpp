@@ -122,6 +122,7 @@ class Controller {
   Judgement judge(const TimeWindow& window);
   void try_window(const TimeWindow& window);
   Judgement judge_ways(const TimeWindow& window);
+  std::optional<Failed> made_by_themselves(const TimeWindow& window) const;
   Judgement judge_trouble(const TimeWindow& window);
   void accept(const TimeWindow& window);
   void end_window(const TimeWindow& window, EnergyGuard::Verdict energy);

@@ -42,6 +42,15 @@ bool Controller::may_go_passively() const {
          scene_.schwarz.on_nonconvergence == OnNonconvergence::passive;
 }
 
+/// Schemes of finite strain make energy in steps that are long for a body's waves and turns: what
+/// would end the run is gone the other way.
+std::optional<Failed> Controller::made_by_themselves(const TimeWindow& window) const {
+  if (!may_go_passively() || passive_.on_a_line() || !guard_.refuses(bodies_.responses()))
+    return std::nullopt;
+  return Failed{Failed::Cause::no_convergence, window.end,
+                "steps of a body that nothing touches would make energy"};
+}
+
 /// What keeps the accurate method from the window ends the run, unless bodies can go passively.
 void Controller::try_window(const TimeWindow& window) {
   try {
