@@ -1,0 +1,157 @@
+#!/usr/bin/python3
+"""A solid of FEniCSx as a body of abut, on one rank of MPI or several, of which rank 0 speaks.
+usage: fenicsx_solid.py --connect ENDPOINT --body NAME      (README.md beside this file)"""
+
+import itertools
+
+import dolfinx
+import numpy as np
+from mpi4py import MPI
+
+from abut import Body, Energy, InputError, Surface, serve
+from engine import LAWS, Engine
+from team import Team
+
+ROOM = 1.0e-6  # of a step, for rounding in scenes
+
+
+class Kept:
+    """A state that all ranks have kept under this name, until nobody holds it any more."""
+
+    names, forgotten = itertools.count(), []
+
+    def __init__(self, seen):
+        self.name, self.seen = next(self.names), seen
+
+    def __del__(self):  # at any moment: ranks are told when they keep the next one
+        self.forgotten.append(self.name)
+
+
+class Solid(Body):
+    """What abut asks for, by asking the ranks. team: that of this process."""
+
+    conserves = True
+
+    def __init__(self, keys, team):
+        self.team, spec = team, read(keys)
+        self.dim, self.substep = len(spec["lengths"]), spec["step"]
+        self.linear = spec["law"] == "linear"
+        self.model = (f"{spec['law']} solid of FEniCSx {dolfinx.__version__}, central difference, "
+                      f"{count(team.comm.size, 'rank')}")
+        team.start(spec)
+        self.mass, self.stable_step = team.engine.mass, team.ask("stable_step")
+        if self.substep > self.stable_step * (1.0 + ROOM):
+            raise InputError(f"{self.substep:g} is above the stable step {self.stable_step:g}",
+                             keys.where("step"), "Give a smaller one, or larger cells.")
+        surfaces = team.ask("surfaces")
+        for name, (_, facets) in surfaces.items():
+            if not facets:
+                raise InputError(f"no facet looks along face {name}", keys.where("faces"),
+                                 "Give the outward normal of a side.")
+        self.ports = {name: Surface(*each) for name, each in surfaces.items()}
+        counts = [surface.count for surface in self.ports.values()]
+        self.edges = np.cumsum(counts)[:-1]
+        self.seen = team.ask("look")
+
+    def surface(self):
+        return self.ports
+
+    def step(self, dt, force):
+        self.seen = self.team.ask("step", dt, np.concatenate(list(force.values())))
+
+    def displacement(self):
+        return self.by_port(self.seen[0][0])
+
+    def velocity(self):
+        return self.by_port(self.seen[0][1])
+
+    def by_port(self, values):
+        return dict(zip(self.ports, np.split(values, self.edges)))
+
+    def energy(self):
+        kinetic, stored = self.seen[1][:2]
+        return Energy(kinetic, stored if self.linear else self.team.ask("stored_energy"))
+
+    def momentum(self):
+        return self.seen[1][2:]
+
+    def save(self):
+        kept, forgotten = Kept(self.seen), []
+        while Kept.forgotten:
+            forgotten.append(Kept.forgotten.pop())
+        self.team.later("keep", kept.name, forgotten)
+        return kept
+
+    def restore(self, saved):
+        self.team.later("back", saved.name)
+        self.seen = saved.seen
+
+    def to_bytes(self, saved):
+        return np.stack(self.team.ask("kept_whole", saved.name)).tobytes()
+
+    def from_bytes(self, data):
+        u, v = np.frombuffer(data).reshape(2, -1, self.dim)
+        self.seen = self.team.ask("set_whole", u, v)
+        return self.save()
+
+    def grid(self):
+        points, cells = self.team.ask("grid")
+        simplices = len(cells[0]) == self.dim + 1
+        kind = {(2, True): 5, (2, False): 9, (3, True): 10, (3, False): 12}  # VTK's numbers
+        return points, [(kind[self.dim, simplices], cell) for cell in cells]
+
+    def node_fields(self):
+        pad = [(0, 0), (0, 3 - self.dim)]
+        return {name: np.pad(values, pad) for name, values in
+                zip(("displacement", "velocity"), self.team.ask("fields"))}
+
+
+def read(keys) -> dict:
+    """The keys as plain values, sound ones: ranks that disagree about an error would hang."""
+    lengths = [float(each) for each in keys["lengths"]]
+    dim = len(lengths)
+    spec = {"lengths": lengths, "step": keys.positive("step"),
+            "cells": [int(each) for each in keys["cells"]],
+            "corner": [float(each) for each in keys["corner"]],
+            "velocity": [float(each) for each in keys["velocity"]],
+            "modulus": keys.positive("youngs_modulus"), "ratio": keys.number("poissons_ratio"),
+            "density": keys.positive("density"), "law": keys.get("law", "linear"),
+            "simplices": bool(keys.get("simplices", False)),
+            "faces": {name: None if side == "all" else [float(each) for each in side]
+                      for name, side in keys["faces"].items()}}
+    require(dim in (2, 3) and min(lengths) > 0.0, keys, "lengths", "2 or 3 lengths above 0")
+    require(min(spec["cells"]) > 0, keys, "cells", "counts above 0")
+    for name in ("cells", "corner", "velocity"):
+        require(len(spec[name]) == dim, keys, name, f"{dim} numbers")
+    require(-1.0 < spec["ratio"] < 0.5, keys, "poissons_ratio", "a number above -1 and below 0.5")
+    require(spec["law"] in LAWS, keys, "law", " or ".join(LAWS))
+    for side in spec["faces"].values():
+        require(side is None or (len(side) == dim and any(side)), keys, "faces",
+                f"a normal of {dim} numbers, or all, for each port")
+    require(spec["faces"], keys, "faces", "one port at least")
+    return spec
+
+
+def require(holds, keys, name: str, wanted: str):
+    if not holds:
+        raise InputError(f"must be {wanted}, but is {keys[name]}", keys.where(name),
+                         "Correct it.")
+
+
+def count(many: int, what: str) -> str:
+    return f"{many} {what}" + ("s" if many > 1 else "")
+
+
+def main():
+    team = Team(MPI.COMM_WORLD, Engine)
+    if team.comm.rank > 0:
+        team.follow()
+        return
+    try:
+        serve(lambda keys: Solid(keys, team))
+    finally:
+        team.end()
+
+
+if __name__ == "__main__":
+    main()
