@@ -10,6 +10,7 @@ from petsc4py import PETSc
 
 # Corners of a cell or facet in VTK's order, by how many there are; dolfinx counts along axes.
 ROUND = {2: [0, 1], 3: [0, 1, 2], 4: [0, 1, 3, 2], 8: [0, 1, 3, 2, 4, 5, 7, 6]}
+DEGREE = 2       # of quadrature: two points along an axis; finite strain would get nine, by its form
 POWERS = 200     # iterations for the fastest mode
 ALONG = 1.0e-6   # facets look along a normal to this
 
@@ -28,7 +29,7 @@ class Engine:
         self.make_forces(spec)
         self.u = np.zeros((self.owned, self.dim))
         self.v = np.tile(np.array(spec["velocity"], float), (self.owned, 1))
-        self.pull = self.pulled(self.u)
+        self.push, self.pull = np.zeros_like(self.u), self.pulled(self.u)
         self.kept = {}
         self.make_ports(spec["faces"])
 
@@ -125,11 +126,12 @@ class Engine:
         lame = modulus * ratio / ((1 + ratio) * (1 - 2 * ratio))
         self.now = fem.Function(self.space)
         test, trial = ufl.TestFunction(self.space), ufl.TrialFunction(self.space)
-        stored = LAWS[spec["law"]](self.now, shear, lame) * ufl.dx
+        dx = ufl.dx(metadata={"quadrature_degree": DEGREE})
+        stored = LAWS[spec["law"]](self.now, shear, lame) * dx
         force = ufl.derivative(stored, self.now, test)
         ones = fem.Constant(self.domain, np.ones(self.dim))
         density = fem.Constant(self.domain, spec["density"])
-        mass = petsc.assemble_vector(fem.form(density * ufl.inner(ones, test) * ufl.dx))
+        mass = petsc.assemble_vector(fem.form(density * ufl.inner(ones, test) * dx))
         mass.ghostUpdate(PETSc.InsertMode.ADD, PETSc.ScatterMode.REVERSE)
         self.masses = mass.array.reshape(-1, self.dim).copy()  # [kg] sums of rows
         self.mass = self.sum(self.masses[:, 0])
@@ -175,19 +177,20 @@ class Engine:
 
     def step(self, dt: float, force):
         """force [N] on the points of all ports, constant meanwhile; gives what look() does."""
-        push = np.zeros_like(self.u)
-        np.add.at(push, self.nodes, force[self.mine])
-        self.v += dt / 2 * (push - self.pull) / self.masses
+        self.push = np.zeros_like(self.u)
+        np.add.at(self.push, self.nodes, force[self.mine])
+        self.v += dt / 2 * (self.push - self.pull) / self.masses
         self.u += dt * self.v
         self.pull = self.pulled(self.u)
-        self.v += dt / 2 * (push - self.pull) / self.masses
+        self.v += dt / 2 * (self.push - self.pull) / self.masses
         return self.look()
 
     def look(self):
         """Of all ports' points (2, points, dim) displacements [m] and velocities [m/s]; and sums
         over the solid: kinetic energy, u * force / 2 [J], momentum [kg m/s] (dim). The energy is
-        what central differences conserve: velocities before and after a level, multiplied."""
-        change = self.substep / 2 * self.pull / self.masses
+        what central differences conserve, and what a force constant in a step changes by force
+        times way: velocities before and after a level, as if the force went on, multiplied."""
+        change = self.substep / 2 * (self.push - self.pull) / self.masses
         sums = [0.5 * np.sum(self.masses * (self.v**2 - change**2)),
                 0.5 * np.sum(self.u * self.pull), *np.sum(self.masses * self.v, axis=0)]
         own = np.concatenate([sums, self.u[self.nodes].ravel(), self.v[self.nodes].ravel()])
@@ -212,20 +215,19 @@ class Engine:
         """Copies of the state stay where they are, under a name; others are not wanted any more."""
         for each in forgotten:
             self.kept.pop(each, None)
-        self.kept[name] = self.u.copy(), self.v.copy(), self.pull.copy()
+        self.kept[name] = [each.copy() for each in (self.u, self.v, self.push, self.pull)]
 
     def back(self, name: int):
-        self.u, self.v, self.pull = (each.copy() for each in self.kept[name])
+        self.u, self.v, self.push, self.pull = (each.copy() for each in self.kept[name])
 
     def kept_whole(self, name: int):
-        """(u, v) of a kept state, of all nodes."""
-        u, v, _ = self.kept[name]
-        return self.whole(u), self.whole(v)
+        """Displacement, velocity and force of a kept state, of all nodes."""
+        return [self.whole(each) for each in self.kept[name][:3]]
 
-    def set_whole(self, u, v):
+    def set_whole(self, *values):
         """The state is that of these values of all nodes."""
         own = self.numbers[:self.owned]
-        self.u, self.v = u[own].copy(), v[own].copy()
+        self.u, self.v, self.push = (each[own].copy() for each in values)
         self.pull = self.pulled(self.u)
         return self.look()
 
@@ -264,9 +266,12 @@ def linear_energy(u, shear: float, lame: float):
 
 
 def neo_hookean_energy(u, shear: float, lame: float):
+    """As abut's own (docs/METHOD.md, M.33); in the plane nothing moves across it."""
     f = ufl.Identity(len(u)) + ufl.grad(u)
-    log_j = ufl.ln(ufl.det(f))
-    return shear / 2 * (ufl.inner(f, f) - len(u)) - shear * log_j + lame / 2 * log_j**2
+    j = ufl.det(f)
+    stretched = ufl.inner(f, f) + (3 - len(u))
+    return ((lame + 2 * shear / 3) / 4 * (j**2 - 1 - 2 * ufl.ln(j))
+            + shear / 2 * (j ** (-2 / 3) * stretched - 3))
 
 
 LAWS = {"linear": linear_energy, "neo_hookean": neo_hookean_energy}  # [J/m^3]

@@ -3,6 +3,7 @@
 usage: fenicsx_solid.py --connect ENDPOINT --body NAME      (README.md beside this file)"""
 
 import itertools
+import logging
 
 import dolfinx
 import numpy as np
@@ -90,8 +91,7 @@ class Solid(Body):
         return np.stack(self.team.ask("kept_whole", saved.name)).tobytes()
 
     def from_bytes(self, data):
-        u, v = np.frombuffer(data).reshape(2, -1, self.dim)
-        self.seen = self.team.ask("set_whole", u, v)
+        self.seen = self.team.ask("set_whole", *np.frombuffer(data).reshape(3, -1, self.dim))
         return self.save()
 
     def grid(self):
@@ -154,4 +154,5 @@ def main():
 
 
 if __name__ == "__main__":
+    logging.getLogger().setLevel(logging.WARNING)  # FEniCSx tells of every form that it compiles
     main()

@@ -7,6 +7,7 @@ import traceback
 import numpy as np
 
 SPINNING, NAP = 2.0e-3, 2.0e-4  # [s] a rank that waits longer than the first sleeps by the second
+FIRST, LENGTH = 4096, 8         # bytes of a message's first part, and of its length before it
 END, MAKE = "end", "make"
 
 
@@ -65,15 +66,25 @@ class Team:
         return given_back
 
     def _tell(self, message: bytes):
-        self.comm.Ibcast(np.array([len(message)])).Wait()
-        self.comm.Bcast(np.frombuffer(message, np.uint8))
+        """Short ones with their length in one part, what is longer in a second one."""
+        first = np.zeros(FIRST, np.uint8)
+        first[:LENGTH] = np.frombuffer(len(message).to_bytes(LENGTH, "little"), np.uint8)
+        begin = np.frombuffer(message[:FIRST - LENGTH], np.uint8)
+        first[LENGTH:LENGTH + len(begin)] = begin
+        self.comm.Ibcast(first).Wait()
+        if len(message) > len(begin):
+            self.comm.Bcast(np.frombuffer(message[len(begin):], np.uint8))
 
     def _heard(self) -> bytes:
         """MPI itself waits with a whole core, which others could use."""
-        size = np.zeros(1, int)
-        begun, come = time.monotonic(), self.comm.Ibcast(size)
+        first = np.zeros(FIRST, np.uint8)
+        begun, come = time.monotonic(), self.comm.Ibcast(first)
         while not come.Test():
             time.sleep(0.0 if time.monotonic() - begun < SPINNING else NAP)
-        message = np.empty(size[0], np.uint8)
-        self.comm.Bcast(message)
-        return message.tobytes()
+        size = int.from_bytes(first[:LENGTH].tobytes(), "little")
+        message = first[LENGTH:LENGTH + size].tobytes()
+        if size > len(message):
+            rest = np.empty(size - len(message), np.uint8)
+            self.comm.Bcast(rest)
+            message += rest.tobytes()
+        return message
