@@ -4,6 +4,9 @@ usage: fenicsx_solid.py --connect ENDPOINT --body NAME      (README.md beside th
 
 import itertools
 import logging
+import math
+import signal
+import sys
 
 import dolfinx
 import numpy as np
@@ -108,28 +111,42 @@ class Solid(Body):
 
 def read(keys) -> dict:
     """The keys as plain values, sound ones: ranks that disagree about an error would hang."""
-    lengths = [float(each) for each in keys["lengths"]]
-    dim = len(lengths)
-    spec = {"lengths": lengths, "step": keys.positive("step"),
-            "cells": [int(each) for each in keys["cells"]],
-            "corner": [float(each) for each in keys["corner"]],
-            "velocity": [float(each) for each in keys["velocity"]],
-            "modulus": keys.positive("youngs_modulus"), "ratio": keys.number("poissons_ratio"),
-            "density": keys.positive("density"), "law": keys.get("law", "linear"),
-            "simplices": bool(keys.get("simplices", False)),
-            "faces": {name: None if side == "all" else [float(each) for each in side]
-                      for name, side in keys["faces"].items()}}
-    require(dim in (2, 3) and min(lengths) > 0.0, keys, "lengths", "2 or 3 lengths above 0")
-    require(min(spec["cells"]) > 0, keys, "cells", "counts above 0")
-    for name in ("cells", "corner", "velocity"):
-        require(len(spec[name]) == dim, keys, name, f"{dim} numbers")
-    require(-1.0 < spec["ratio"] < 0.5, keys, "poissons_ratio", "a number above -1 and below 0.5")
-    require(spec["law"] in LAWS, keys, "law", " or ".join(LAWS))
-    for side in spec["faces"].values():
-        require(side is None or (len(side) == dim and any(side)), keys, "faces",
-                f"a normal of {dim} numbers, or all, for each port")
-    require(spec["faces"], keys, "faces", "one port at least")
-    return spec
+    lengths = numbers(keys, "lengths", (2, 3))
+    dim = (len(lengths),)
+    require(min(lengths) > 0.0, keys, "lengths", "above 0")
+    counts = numbers(keys, "cells", dim)
+    require(all(each >= 1.0 and each == int(each) for each in counts), keys, "cells", "counts")
+    ratio, law = keys.number("poissons_ratio"), keys.get("law", "linear")
+    require(-1.0 < ratio < 0.5, keys, "poissons_ratio", "above -1 and below 0.5")
+    require(law in LAWS, keys, "law", " or ".join(LAWS))
+    simplices = keys.get("simplices", False)
+    require(isinstance(simplices, bool), keys, "simplices", "true or false")
+    return {"lengths": lengths, "cells": [int(each) for each in counts], "simplices": simplices,
+            "corner": numbers(keys, "corner", dim), "velocity": numbers(keys, "velocity", dim),
+            "modulus": keys.positive("youngs_modulus"), "ratio": ratio, "law": law,
+            "density": keys.positive("density"), "step": keys.positive("step"),
+            "faces": read_faces(keys, dim)}
+
+
+def read_faces(keys, dim) -> dict:
+    faces = keys["faces"]
+    require(isinstance(faces, dict) and faces, keys, "faces", "ports by their names")
+    for side in faces.values():
+        require(side == "all" or (are_numbers(side, dim) and any(side)), keys, "faces",
+                f"a normal of {dim[0]} numbers, or all, for each port")
+    return {name: None if side == "all" else side for name, side in faces.items()}
+
+
+def are_numbers(given, counts) -> bool:
+    return (isinstance(given, list) and len(given) in counts and
+            all(isinstance(each, (int, float)) and not isinstance(each, bool) and
+                math.isfinite(each) for each in given))
+
+
+def numbers(keys, name: str, counts) -> list:
+    require(are_numbers(keys[name], counts), keys, name,
+            f"{' or '.join(map(str, counts))} numbers")
+    return [float(each) for each in keys[name]]
 
 
 def require(holds, keys, name: str, wanted: str):
@@ -145,8 +162,10 @@ def count(many: int, what: str) -> str:
 def main():
     team = Team(MPI.COMM_WORLD, Engine)
     if team.comm.rank > 0:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # rank 0 ends it
         team.follow()
         return
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # MPI tidies up
     try:
         serve(lambda keys: Solid(keys, team))
     finally:

@@ -4,10 +4,18 @@ scenes are closed forms, which are held here; and their bodies keep the contract
 usage: test_foreign_solids.py ABUT ROOT CLASS      exit code 77 (skipped) without what a class needs
 """
 
+import csv
 import importlib.util
+import os
+import re
+import shutil
+import signal
 import sys
+import tempfile
+import time
 
-from support import PACKAGE, ROOT, SystemTest, main
+import numpy as np
+from support import ABUT, PACKAGE, ROOT, SystemTest, main
 
 EXAMPLES = ROOT / "examples"
 
@@ -18,15 +26,18 @@ class ForeignTest(SystemTest):
         self.environment["PYTHONPATH"] = str(PACKAGE)
         self.environment["PYTHONDONTWRITEBYTECODE"] = "1"
 
-    def collide(self, folder: str, scene: str, program: str):
-        """Programs are named from the folder that a run is started in."""
+    def own_scene(self, folder: str, scene: str, program: str, other: str = ""):
+        """Programs are named from the folder that a run is started in. other: in its place."""
         place = EXAMPLES / folder
         text = (place / scene).read_text("utf-8")
         self.assertIn(f"./{program}", text)
-        own = self.folder / scene
-        own.write_text(text.replace(f"./{program}", str(place / program)), encoding="utf-8")
-        self.allow(place / program)
-        self.succeed(self.abut("run", own, "--out", self.out))
+        own, started = self.folder / scene, place / (other or program)
+        own.write_text(text.replace(f"./{program}", str(started)), encoding="utf-8")
+        self.allow(started)
+        return own
+
+    def collide(self, folder: str, scene: str, program: str):
+        self.succeed(self.abut("run", self.own_scene(folder, scene, program), "--out", self.out))
         self.assert_whole(self.out)
 
     def conform(self, program, keys: str):
@@ -62,8 +73,147 @@ class GetFem(ForeignTest):
                      "youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000, step: 1.0e-5}")
 
 
+class FEniCSx(ForeignTest):
+    """The compiled forms are kept in a folder of these tests: nothing hangs on what is in ~."""
+
+    place, program, ranks = EXAMPLES / "fenicsx_body", "fenicsx_solid.py", "on_two_ranks.sh"
+    keys = ("{lengths: [1, 0.1, 0.1], cells: [10, 1, 1], corner: [0, 0, 0], velocity: [0, 0, 0], "
+            "youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000, step: 1.0e-5, law: linear, "
+            "faces: {tip: [-1, 0, 0]}}")
+
+    @classmethod
+    def setUpClass(cls):
+        compiled = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(compiled.cleanup)
+        cls.compiled = compiled.name
+
+    def setUp(self):
+        super().setUp()
+        self.environment["XDG_CACHE_HOME"] = self.compiled
+        if os.geteuid() == 0:  # mpirun refuses root otherwise
+            self.environment["OMPI_ALLOW_RUN_AS_ROOT"] = "1"
+            self.environment["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
+
+    def conform(self, program, keys: str):
+        super().conform(program, keys)
+        self.leaves_sockets = True  # of MPI in those that a trial kills
+
+    def refused(self, change: dict, words: str, program: str):
+        text = (self.place / "bars.yaml").read_text("utf-8")
+        for old, new in change.items():
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        scene = self.folder / "bars.yaml"
+        scene.write_text(text.replace(f"./{self.program}", str(self.place / program)), "utf-8")
+        self.allow(self.place / program)
+        result = self.abut("run", scene, "--out", self.out)
+        self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+        self.assertRegex(result.stderr, rf"bars.yaml:\d+: bodies.right.model.external.{words}")
+        self.assertNotIn("Traceback", result.stderr)
+        self.assertFalse(self.out.exists())
+
+
+class FEniCSxAlone(FEniCSx):
+    def test_a_bar_meets_one_of_ours(self):
+        self.collide("fenicsx_body", "bars.yaml", self.program)
+
+    def test_half_a_bar_is_tied_to_one_of_ours(self):
+        self.collide("fenicsx_body", "tied_bar.yaml", self.program)
+        self.assertLess(self.summary()["measures"]["schwarz.iterations_max"], 3)
+
+    def test_a_block_hits_one_of_ours_as_ours_would(self):
+        """Of the same mesh, law and steps; only what is known of mass behind a surface differs."""
+        self.collide("fenicsx_body", "blocks.yaml", self.program)
+        own = self.folder / "blocks.yaml"
+        text, count = re.subn(
+            r"  right:\n.*faces: [^\n]*\n",
+            "  right:\n    like: left\n    model: {fe: {mesh: {box: {lengths: [0.15, 0.1, 0.1], "
+            "elements: [6, 4, 4]}}}}\n    initial: {position: [0.0005, 0.06, 0.13], "
+            "velocity: [-5.0, 0.0, 0.0]}\n    ports: {tip: {side: left}}\n",
+            own.read_text("utf-8"), flags=re.DOTALL)
+        self.assertEqual(count, 1)
+        own.write_text(text, encoding="utf-8")
+        self.out = self.folder / "ours"
+        self.succeed(self.abut("run", own, "--out", self.out, "--local"))
+
+    def test_linear_solids_in_space_keep_the_contract(self):
+        self.conform(self.place / self.program, self.keys)
+
+    def test_triangles_of_finite_strain_keep_the_contract(self):
+        self.conform(self.place / self.program,
+                     "{lengths: [1, 0.2], cells: [10, 2], corner: [0, 0], velocity: [0, 0], "
+                     "youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000, step: 1.0e-5, "
+                     "law: neo_hookean, simplices: true, faces: {tip: [-1, 0], rest: [1, 0]}}")
+
+    def test_wrong_keys_are_told_with_file_and_line(self):
+        for change, words in (
+                ({"step: 2.4e-6    ": "step: 2.6e-6    ", "window: 2.4e-6": "window: 2.6e-6",
+                  "{step: 2.4e-6}": "{step: 1.3e-6}"}, "step: 2.6e-06 is above the stable step"),
+                ({"cells: [400, 1, 1]": "cells: [400, 1]"}, "cells: must be 3 numbers"),
+                ({"cells: [400, 1, 1]": "cells: many"}, "cells: must be 3 numbers"),
+                ({"{tip: [-1, 0, 0]}": "{tip: [-1, 1, 0]}"}, "faces: no facet looks along"),
+                ({"{tip: [-1, 0, 0]}": "[tip]"}, "faces: must be ports by their names"),
+                ({"{tip: [-1, 0, 0]}": "{tip: [-1, 0]}"}, "faces: must be a normal of 3 numbers")):
+            with self.subTest(words):
+                self.refused(change, words, self.program)
+
+
+class FEniCSxOnTwoRanks(FEniCSx):
+    def test_they_keep_the_contract(self):
+        self.conform(self.place / self.ranks, self.keys)
+
+    def test_what_comes_out_is_that_of_one_rank(self):
+        """But for the order of sums: 3e-12 of the largest value of its kind is measured, in forces,
+        which are differences over short steps."""
+        for scene, until in (("bars.yaml", 0.0024), ("blocks.yaml", 0.0008),
+                             ("tied_bar.yaml", 0.0012)):  # the wave has passed the tie
+            with self.subTest(scene):
+                told = [self.history(scene, program, until)
+                        for program in (self.program, self.ranks)]
+                for unit, (one, two) in same_units(*told).items():
+                    self.assertLess(np.max(np.abs(one - two)), 1.0e-10 * np.max(np.abs(one)), unit)
+
+    def history(self, scene: str, program: str, until: float):
+        own = self.own_scene("fenicsx_body", scene, self.program, program)
+        out = self.folder / f"{scene} {program}"
+        whole = f"end: {until}" in own.read_text("utf-8")
+        self.succeed(self.abut("run", own, "--out", out, "--set", f"time.end={until}",
+                               *(() if whole else ("--set", "meta.expect=[]"))))
+        with (out / "history.csv").open(encoding="utf-8", newline="") as file:
+            header, *rows = list(csv.reader(file))
+        return header, np.array([[float(cell or 0.0) for cell in row] for row in rows])
+
+    def test_wrong_keys_are_told_and_no_rank_stays(self):
+        self.refused({"{tip: [-1, 0, 0]}": "{tip: [-1, 1, 0]}"}, "faces: no facet", self.ranks)
+
+    def test_no_rank_stays_when_the_coordinator_is_killed(self):
+        own = self.own_scene("fenicsx_body", "bars.yaml", self.program, self.ranks)
+        run = self.start(ABUT, "run", own, "--out", self.out)
+        until = time.monotonic() + 60.0
+        while not (self.out / "history.csv").exists() and time.monotonic() < until:
+            time.sleep(0.05)
+        self.assertTrue((self.out / "history.csv").exists())
+        run.send_signal(signal.SIGKILL)
+        self.end(run)
+        self.assertEqual(self.marked_after(20.0), [])
+        self.leaves_sockets = True
+
+
+def same_units(one, two) -> dict:
+    """All values of both by their unit."""
+    (header, a), (other, b) = one, two
+    assert header == other and a.shape == b.shape
+    units = [re.search(r"\[.*\]|$", name)[0] for name in header]
+    columns = {unit: [k for k, each in enumerate(units) if each == unit] for unit in units}
+    return {unit: (a[:, at], b[:, at]) for unit, at in columns.items() if np.any(a[:, at])}
+
+
 if __name__ == "__main__":
-    if "GetFem" in sys.argv and importlib.util.find_spec("getfem") is None:
-        print("skipped: Python's getfem is not installed (Debian: python3-getfem)")
+    for name, module in (("GetFem", "getfem"), ("FEniCSx", "dolfinx")):
+        if any(word.startswith(name) for word in sys.argv) and not importlib.util.find_spec(module):
+            print(f"skipped: Python's {module} is not installed (Debian: python3-{module})")
+            sys.exit(77)
+    if "FEniCSxOnTwoRanks" in sys.argv and shutil.which("mpirun") is None:
+        print("skipped: mpirun is not installed (Debian: openmpi-bin)")
         sys.exit(77)
     main()
