@@ -10,7 +10,7 @@ from petsc4py import PETSc
 
 # Corners of a cell or facet in VTK's order, by how many there are; dolfinx counts along axes.
 ROUND = {2: [0, 1], 3: [0, 1, 2], 4: [0, 1, 3, 2], 8: [0, 1, 3, 2, 4, 5, 7, 6]}
-DEGREE = 2       # of quadrature: two points along an axis; finite strain would get nine, by its form
+DEGREE = 2       # of quadrature: two points along an axis; dolfinx would take nine for some laws
 POWERS = 200     # iterations for the fastest mode
 ALONG = 1.0e-6   # facets look along a normal to this
 
@@ -240,8 +240,9 @@ class Engine:
 
     def grid(self):
         """Points, and the numbers of each cell's in VTK's order."""
-        links, numbers = self.domain.geometry.dofmap.links, self.domain.geometry.input_global_indices
-        own = [np.array(numbers)[links(cell)] for cell in range(self.count_of(self.dim))]
+        geometry = self.domain.geometry
+        numbers = np.array(geometry.input_global_indices)
+        own = [numbers[geometry.dofmap.links(cell)] for cell in range(self.count_of(self.dim))]
         told = self.comm.gather([tuple(cell[ROUND[len(cell)]] if self.boxes() else cell)
                                  for cell in own])
         places = self.whole(self.places[:self.owned])

@@ -11,6 +11,7 @@ import sys
 import dolfinx
 import numpy as np
 from mpi4py import MPI
+from petsc4py import PETSc
 
 from abut import Body, Energy, InputError, Surface, serve
 from engine import LAWS, Engine
@@ -37,6 +38,9 @@ class Solid(Body):
     conserves = True
 
     def __init__(self, keys, team):
+        if np.issubdtype(PETSc.ScalarType, np.complexfloating):
+            raise InputError("computes with complex numbers here", "FEniCSx",
+                             "Install python3-dolfinx-real, and name no other PETSC_DIR.")
         self.team, spec = team, read(keys)
         self.dim, self.substep = len(spec["lengths"]), spec["step"]
         self.linear = spec["law"] == "linear"

@@ -1,3 +1,4 @@
 #!/bin/sh
-# fenicsx_solid.py on two ranks of MPI, as a program that a scene can start (README.md beside this file).
-exec mpirun -n 2 --oversubscribe --bind-to none /usr/bin/python3 "$(dirname "$0")/fenicsx_solid.py" "$@"
+# fenicsx_solid.py on two ranks of MPI, as a program that scenes can start (README.md beside this).
+exec mpirun -n 2 --oversubscribe --bind-to none \
+  /usr/bin/python3 "$(dirname "$0")/fenicsx_solid.py" "$@"
