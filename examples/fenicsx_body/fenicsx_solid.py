@@ -135,22 +135,26 @@ def read(keys) -> dict:
 def read_faces(keys, dim) -> dict:
     faces = keys["faces"]
     require(isinstance(faces, dict) and faces, keys, "faces", "ports by their names")
-    for side in faces.values():
-        require(side == "all" or (are_numbers(side, dim) and any(side)), keys, "faces",
+    sides = {name: None if side == "all" else as_numbers(side, dim) for name, side in faces.items()}
+    for name, side in faces.items():
+        require(side == "all" or (sides[name] and any(sides[name])), keys, "faces",
                 f"a normal of {dim[0]} numbers, or all, for each port")
-    return {name: None if side == "all" else side for name, side in faces.items()}
+    return sides
 
 
-def are_numbers(given, counts) -> bool:
-    return (isinstance(given, list) and len(given) in counts and
-            all(isinstance(each, (int, float)) and not isinstance(each, bool) and
-                math.isfinite(each) for each in given))
+def as_numbers(given, counts):
+    """None: they are not. YAML takes 1e-3 for a word."""
+    try:
+        found = [math.nan if isinstance(each, bool) else float(each) for each in given]
+    except (TypeError, ValueError):
+        return None
+    return found if len(found) in counts and all(map(math.isfinite, found)) else None
 
 
 def numbers(keys, name: str, counts) -> list:
-    require(are_numbers(keys[name], counts), keys, name,
-            f"{' or '.join(map(str, counts))} numbers")
-    return [float(each) for each in keys[name]]
+    found = as_numbers(keys[name], counts)
+    require(found, keys, name, f"{' or '.join(map(str, counts))} numbers")
+    return found
 
 
 def require(holds, keys, name: str, wanted: str):
