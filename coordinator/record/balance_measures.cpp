@@ -33,6 +33,8 @@ std::array<double, 3> angular_momentum(const BodyRecord& record) {
   return out;
 }
 
+constexpr const char* untold_angular = "a body of another program does not tell it";
+
 double length(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
 
 }  // namespace
@@ -141,7 +143,9 @@ void BalanceMeasures::add_angular(const WindowReport& report, std::size_t record
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (recorded_[b].member > 0) continue;
     Body& body = bodies_[b];
-    body.angular = angular_momentum(report.responses[recorded_[b].body].records[record]);
+    const BodyRecord& told = report.responses[recorded_[b].body].records[record];
+    body.angular = angular_momentum(told);
+    body.untold = told.angular_momentum.empty() && !std::isinf(recorded_[b].mass);
     body.angular_max = std::max(body.angular_max, length(body.angular));
     for (std::size_t k = 0; k < 3; ++k) change[k] += body.angular[k];
   }
@@ -150,14 +154,24 @@ void BalanceMeasures::add_angular(const WindowReport& report, std::size_t record
 
 void BalanceMeasures::write_angular(Measures& out) const {
   double scale = 0.0;
+  bool all_told = true;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    for (int axis = first_rotation_axis(out.scope.dim); axis < 3; ++axis)
-      out.set(fmt::format("angular_momentum.{}.end{}", recorded_[b].name, axis_ending(3, axis)),
-              bodies_[b].angular[axis]);
+    for (int axis = first_rotation_axis(out.scope.dim); axis < 3; ++axis) {
+      const std::string name =
+          fmt::format("angular_momentum.{}.end{}", recorded_[b].name, axis_ending(3, axis));
+      if (bodies_[b].untold) {
+        out.none(name, untold_angular);
+      } else {
+        out.set(name, bodies_[b].angular[axis]);
+      }
+    }
     scale += bodies_[b].angular_max;
+    all_told = all_told && !bodies_[b].untold;
   }
   if (out.scope.dim == 1) return;
-  if (immovable_) {
+  if (!all_told) {
+    out.none("angular_momentum.total", untold_angular);
+  } else if (immovable_) {
     out.none("angular_momentum.total", "an immovable body takes momentum and does not keep it");
   } else {
     out.set("angular_momentum.total", scale > 0.0 ? angular_change_ / scale : 0.0);
@@ -219,6 +233,7 @@ void BalanceMeasures::state(Archive& archive) {
     field(archive, "momentum", body.momentum);
     field(archive, "angular", body.angular);
     archive.field("exchanged", body.exchanged);
+    archive.field("untold", body.untold);
   }
   archive.field("begun", begun_);
   for (double* value :

@@ -36,6 +36,7 @@ class BalanceMeasures {
     double momentum_max = 0.0;
     Vector angular{};  // [kg m^2/s] about the origin
     double angular_max = 0.0;
+    bool untold = false;     // its angular momentum, at the last record
     int bar = -1;            // of the closed form; -1: not described by it, or a wall
     bool exchanged = false;  // energy, through an interface that was closed
   };

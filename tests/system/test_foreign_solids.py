@@ -49,7 +49,12 @@ class ForeignTest(SystemTest):
 
 class Brick(ForeignTest):
     def test_a_brick_meets_a_bar_in_space(self):
+        """Whose angular momentum nobody tells: so neither it nor that of both has a value."""
         self.collide("python_body", "bricks.yaml", "brick.py")
+        measures = self.summary()["measures"]
+        for name in ("total", "right.end_x", "right.end_y", "right.end_z"):
+            self.assertIsNone(measures[f"angular_momentum.{name}"])
+        self.assertIsNotNone(measures["angular_momentum.left.end_x"])
 
     def test_a_brick_keeps_the_contract(self):
         self.conform(EXAMPLES / "python_body" / "brick.py",
