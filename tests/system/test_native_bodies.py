@@ -5,6 +5,7 @@ usage: test_native_bodies.py ABUT ROOT CLASS CMAKE      exit code 77 (skipped) w
 """
 
 import math
+import os
 import re
 import shutil
 import subprocess
@@ -231,14 +232,59 @@ class Bullet(NativeTest):
             self.assertRegex(said, f"\n  {clause} +kept", said)
 
 
+class DealII(NativeTest):
+    example = "dealii_body"
+    LAW = "youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000"
+
+    def test_a_bar_of_ours_meets_one_of_dealii(self):
+        self.collide("bars.yaml", "solid")
+
+    def test_a_ball_of_dealii_hits_a_block_of_ours(self):
+        self.collide("ball.yaml", "solid")
+
+    def test_a_wave_passes_a_tie_into_a_bar_of_dealii(self):
+        self.collide("tied.yaml", "solid")
+
+    def test_solids_of_dealii_keep_the_contract(self):
+        for keys in ("lengths: [1, 0.1], cells: [20, 2], corner: [0, 0], velocity: [0, 0], "
+                     "step: 1.0e-5",
+                     "lengths: [1, 0.2, 0.2], cells: [4, 2, 2], corner: [0, 0, 0], degree: 2, "
+                     "side: right, velocity: [0, 0, 0], step: 1.0e-5",
+                     "radius: 0.1, centre: [0, 0, 0], refinements: 2, velocity: [0, 0, 0], "
+                     "step: 1.0e-6"):
+            with self.subTest(keys):
+                self.conform("solid", f"{{{keys}, {self.LAW}}}")
+
+    def test_wrong_keys_are_told(self):
+        for change, words in (("degree=3", "degree: must be 1 or 2"),
+                              ("side=top", "side: must be left or right"),
+                              ("cells=[400, 0]", "cells: must be whole numbers above 0"),
+                              ("lengths=[1.0, -0.02]", "lengths: must be above 0"),
+                              ("poissons_ratio=0.5", "poissons_ratio: must be above -1"),
+                              ("velocity=null", "velocity: ")):
+            with self.subTest(change):
+                result = self.run_scene(EXAMPLES / self.example / "bars.yaml", "solid",
+                                        "--set", f"bodies.right.model.external.{change}")
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn(f"bodies.right.model.external.{words}", result.stderr)
+
+
 def lacks_bullet() -> bool:
     found = subprocess.run(["pkg-config", "--exists", "bullet"], check=False)
     return found.returncode != 0
 
 
+def lacks_dealii() -> bool:
+    return ("DEAL_II_DIR" not in os.environ
+            and not Path("/usr/include/deal.II/base/config.h").exists())
+
+
 if __name__ == "__main__":
     if "Bullet" in sys.argv and lacks_bullet():
         print("skipped: Bullet is not installed (Debian: libbullet-dev)")
+        sys.exit(77)
+    if "DealII" in sys.argv and lacks_dealii():
+        print("skipped: deal.II is not installed (Debian: libdeal.ii-dev)")
         sys.exit(77)
     if "Fortran" in sys.argv and not shutil.which("gfortran"):
         print("skipped: there is no gfortran (Debian: gfortran)")
