@@ -10,9 +10,11 @@ import os
 import re
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
 import time
+import zipfile
 
 import numpy as np
 from support import ABUT, PACKAGE, ROOT, SystemTest, main
@@ -252,6 +254,86 @@ def same_units(one, two) -> dict:
     return {unit: (a[:, at], b[:, at]) for unit, at in columns.items() if np.any(a[:, at])}
 
 
+class CalculiX(ForeignTest):
+    """Every step is a run of ccx: the whole scene takes minutes, its beginning is held here."""
+
+    PROGRAM = EXAMPLES / "calculix_body" / "calculix_bar.py"
+
+    def test_a_bar_of_calculix_keeps_the_contract(self):
+        self.conform(self.PROGRAM,
+                     "{lengths: [0.4, 0.1, 0.1], cells: [4, 1, 1], corner: [0, 0, 0], velocity: "
+                     "[0, 0, 0], youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000, step: "
+                     "2.0e-5}")
+
+    def test_a_wave_passes_a_tie_into_a_bar_of_calculix(self):
+        self.collide("calculix_body", "tied.yaml", "calculix_bar.py")
+
+    def test_a_bar_of_calculix_is_pushed_as_by_a_wave(self):
+        """Until a wave comes back both bars press by rho c A v, v half of 20 m/s: 4000 N."""
+        text = (self.PROGRAM.parent / "bars.yaml").read_text("utf-8")
+        own = self.folder / "bars.yaml"
+        own.write_text(text.replace("./calculix_bar.py", str(self.PROGRAM)), encoding="utf-8")
+        self.allow(self.PROGRAM)
+        self.succeed(self.abut("run", own, "--out", self.out, "--set", "time.end=4.0e-5", "--set",
+                               "meta.expect=[]"))
+        measures = self.summary()["measures"]
+        touch = 3.99e-5 / 20.0  # [s] gap over speed
+        pushed = measures["momentum.right.end_x"] + 4.0  # [kg m/s]
+        # 19 steps, and a force that alternates from step to step by less than a third of itself
+        self.assertLess(abs(pushed / (4000.0 * (4.0e-5 - touch)) - 1.0), 0.02)
+        self.assertLess(abs(measures["energy.total.relative_drift_end"]), 2.0e-4)
+        self.assertLess(measures["momentum.total"], 1.0e-11)  # round-off
+
+
+class Fmu(ForeignTest):
+    """An FMU of FMI 3.0 that the example compiles and packs."""
+
+    KEYS = ("{fmu: mass_on_spring.fmu, parameters: {mass: 0.2, stiffness: 8.0e+5}, points: {face: "
+            "{position: 0.0, normal: -1.0, force: force, displacement: u, velocity: v}}, energy: "
+            "[kinetic, stored], momentum: [momentum], mass: 0.2, step: 4.0e-6, conserves: true, "
+            "linear: true}")
+
+    def setUp(self):
+        super().setUp()
+        self.place = self.folder / "fmu"
+        shutil.copytree(EXAMPLES / "fmu_body", self.place)
+        subprocess.run([sys.executable, self.place / "make_fmu.py",
+                        self.place / "mass_on_spring.fmu"], check=True, timeout=60)
+        self.program = self.place / "fmu_body.py"
+
+    def test_a_bar_meets_an_fmu(self):
+        self.collide(self.place, "bar_meets_fmu.yaml", "fmu_body.py")
+
+    def test_an_fmu_keeps_the_contract(self):
+        self.conform(self.program, self.KEYS)
+
+    def test_what_is_no_fmu_for_a_body_is_told(self):
+        """Not one, not where this program is, of another standard, without a state; a name."""
+        def other(name: str, old: str, new: str) -> str:
+            with zipfile.ZipFile(self.place / "mass_on_spring.fmu") as good, \
+                    zipfile.ZipFile(self.place / name, "w") as bad:
+                for each in good.namelist():
+                    bad.writestr(each, good.read(each).replace(old.encode(), new.encode()))
+            return name
+        (self.place / "text.fmu").write_text("no archive", encoding="utf-8")
+        for change, words in (
+                ("fmu: ../mass.fmu", "is not in the folder of this program"),
+                ("fmu: text.fmu", "is no FMU"),
+                ("fmu: " + other("two.fmu", 'fmiVersion="3.0"', 'fmiVersion="2.0"'),
+                 "is not of FMI 3.0"),
+                ("fmu: " + other("once.fmu", "canSerializeFMUState", "canNot"),
+                 "does not say canSerializeFMUState"),
+                ("fmu: " + other("token.fmu", 'Token="{abut-', 'Token="{other-'),
+                 "the token is that of another FMU"),
+                ("velocity: w", "has no variable w")):
+            with self.subTest(change):
+                key = change.split(":", maxsplit=1)[0]
+                keys = re.sub(rf"{key}: [^,}}]*", change, self.KEYS, count=1)
+                result = self.abut("conformance", self.program, "--keys", keys)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn(words, result.stdout + result.stderr)
+
+
 if __name__ == "__main__":
     for name, module in (("GetFem", "getfem"), ("FEniCSx", "dolfinx")):
         if any(word.startswith(name) for word in sys.argv) and not importlib.util.find_spec(module):
@@ -259,5 +341,11 @@ if __name__ == "__main__":
             sys.exit(77)
     if "FEniCSxOnTwoRanks" in sys.argv and shutil.which("mpirun") is None:
         print("skipped: mpirun is not installed (Debian: openmpi-bin)")
+        sys.exit(77)
+    if "CalculiX" in sys.argv and not shutil.which("ccx"):
+        print("skipped: there is no ccx (Debian: calculix-ccx)")
+        sys.exit(77)
+    if "Fmu" in sys.argv and not shutil.which("cc"):
+        print("skipped: there is no C compiler to make the FMU (Debian: gcc)")
         sys.exit(77)
     main()
