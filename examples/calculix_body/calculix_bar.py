@@ -17,6 +17,16 @@ POINTS = 27  # of integration, for which CalculiX leaves room in every element
 CORNERS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 
 
+def three(keys, name: str, above=-np.inf):
+    """The values of a key along x, y and z."""
+    values = keys[name]
+    if not (isinstance(values, list) and len(values) == 3
+            and all(isinstance(each, (int, float)) and each > above for each in values)):
+        raise InputError("must be three numbers" + (" above 0" if above == 0.0 else ""),
+                         keys.where(name), "Give one for each axis.")
+    return np.array(values, float)
+
+
 class Bar(Body):
     """C3D8 elements, *DYNAMIC by the trapezoidal rule (ALPHA=0), one increment in each run."""
 
@@ -27,14 +37,20 @@ class Bar(Body):
     def __init__(self, keys):
         if shutil.which("ccx") is None:
             raise InputError("there is no ccx", "CalculiX", "Debian: apt-get install calculix-ccx")
-        self.lengths, self.cells = np.array(keys["lengths"], float), np.array(keys["cells"], int)
+        self.lengths = three(keys, "lengths", 0.0)
+        self.cells = three(keys, "cells", 0.0).astype(int)
+        if np.any(self.cells != keys["cells"]):
+            raise InputError("must be whole numbers", keys.where("cells"), "Give such.")
         self.law = keys.positive("youngs_modulus"), keys.number("poissons_ratio")
+        if not -1.0 < self.law[1] < 0.5:
+            raise InputError("must be above -1 and below 0.5", keys.where("poissons_ratio"),
+                             "Give such a number.")
         self.density, self.substep = keys.positive("density"), keys.positive("step")
         self.mass = self.density * float(np.prod(self.lengths))
-        self.make_mesh(np.array(keys["corner"], float))
+        self.make_mesh(three(keys, "corner"))
         self.restart = np.zeros(0, np.uint8)  # none before the first step
         self.u_all = np.zeros_like(self.places)
-        self.v_all = np.tile(np.array(keys["velocity"], float), (len(self.places), 1))
+        self.v_all = np.tile(three(keys, "velocity"), (len(self.places), 1))
         self.first, self.stored = self.v_all.copy(), 0.0
 
     def make_mesh(self, corner):

@@ -136,16 +136,20 @@ class FmuBody(Body):
         self.conserves, self.linear = bool(keys.get("conserves", False)), bool(keys["linear"])
         self.points = keys["points"]
         want = {"position", "normal", "force", "displacement", "velocity"}
-        for name, each in self.points.items():
-            if set(each) != want:
+        for name, each in self.points.items() if isinstance(self.points, dict) else [("", None)]:
+            if not isinstance(each, dict) or set(each) != want:
                 raise InputError(f"point {name} must have {', '.join(sorted(want))}",
-                                 keys.where("points"), "Give these.")
+                                 keys.where("points"), "Give each point by its name, and these.")
+        parameters = keys.get("parameters", {})
+        if not (isinstance(parameters, dict)
+                and all(isinstance(each, (int, float)) for each in parameters.values())):
+            raise InputError("must be numbers by name", keys.where("parameters"), "Give numbers.")
         self.pushed, self.moved, self.fast = ([self.fmu.number(each[what])
                                                for each in self.points.values()]
                                               for what in ("force", "displacement", "velocity"))
         self.energies = [self.fmu.number(name) for name in keys.get("energy", [])]
         self.momenta = [self.fmu.number(name) for name in keys.get("momentum", [])]
-        self.fmu.begin(keys.get("parameters", {}))
+        self.fmu.begin(parameters)
 
     def surface(self):
         return {name: Point(each["position"], each["normal"])

@@ -265,6 +265,22 @@ class CalculiX(ForeignTest):
                      "[0, 0, 0], youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000, step: "
                      "2.0e-5}")
 
+    def test_wrong_keys_are_told(self):
+        for change, words in (("lengths=[1, 1]", "lengths: must be three numbers above 0"),
+                              ("cells=[4, 0, 1]", "cells: must be three numbers above 0"),
+                              ("cells=[4.5, 1, 1]", "cells: must be whole numbers"),
+                              ("velocity=[1, 0]", "velocity: must be three numbers"),
+                              ("poissons_ratio=0.5", "poissons_ratio: must be above -1")):
+            with self.subTest(change):
+                self.allow(self.PROGRAM)
+                text = (self.PROGRAM.parent / "tied.yaml").read_text("utf-8")
+                own = self.folder / "tied.yaml"
+                own.write_text(text.replace("./calculix_bar.py", str(self.PROGRAM)), "utf-8")
+                result = self.abut("run", own, "--out", self.out, "--force", "--set",
+                                   f"bodies.right.model.external.{change}")
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn(words.split(": ")[1], result.stderr)
+
     def test_a_wave_passes_a_tie_into_a_bar_of_calculix(self):
         self.collide("calculix_body", "tied.yaml", "calculix_bar.py")
 
@@ -325,7 +341,9 @@ class Fmu(ForeignTest):
                  "does not say canSerializeFMUState"),
                 ("fmu: " + other("token.fmu", 'Token="{abut-', 'Token="{other-'),
                  "the token is that of another FMU"),
-                ("velocity: w", "has no variable w")):
+                ("velocity: w", "has no variable w"),
+                ("stiffness: soft", "must be numbers by name"),
+                ("position: 0.0, colour: 1", "must have displacement, force")):
             with self.subTest(change):
                 key = change.split(":", maxsplit=1)[0]
                 keys = re.sub(rf"{key}: [^,}}]*", change, self.KEYS, count=1)
