@@ -31,7 +31,7 @@ class Bar(Body):
     """C3D8 elements, *DYNAMIC by the trapezoidal rule (ALPHA=0), one increment in each run."""
 
     dim, model = 3, "bar of CalculiX, C3D8, trapezoidal rule"
-    state = ("restart", "u_all", "v_all", "stored")  # bytes of the file, and what is read of it
+    state = ("restart", "u_all", "v_all", "stored", "mises")  # bytes of the file; what it says
     conserves = linear = True
 
     def __init__(self, keys):
@@ -52,6 +52,7 @@ class Bar(Body):
         self.u_all = np.zeros_like(self.places)
         self.v_all = np.tile(three(keys, "velocity"), (len(self.places), 1))
         self.first, self.stored = self.v_all.copy(), 0.0
+        self.mises = np.zeros(len(self.elements))
 
     def make_mesh(self, corner):
         n = self.cells + 1
@@ -121,6 +122,9 @@ class Bar(Body):
         stress, strain = (each.reshape(-1, POINTS, 6)[:, :8] for each in points)
         density = 0.5 * np.sum(stress * strain * [1, 1, 1, 2, 2, 2]) / 8.0  # [J/m^3], summed
         self.stored = float(density) * float(np.prod(self.lengths)) / len(self.elements)
+        x, y, z, *sliding = stress.mean(axis=1).T
+        self.mises = np.sqrt(((x - y)**2 + (y - z)**2 + (z - x)**2) / 2
+                             + 3 * np.sum(np.square(sliding), axis=0))
 
     # ---- what others see
 
@@ -142,6 +146,9 @@ class Bar(Body):
 
     def node_fields(self):
         return {"displacement": self.u_all, "velocity": self.v_all}
+
+    def cell_fields(self):
+        return {"von_mises": self.mises}
 
 
 if __name__ == "__main__":

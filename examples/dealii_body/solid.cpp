@@ -104,6 +104,21 @@ class Solid : public abut::Body {
   abut::Fields node_fields() override {
     return {{"displacement", in_space(u_)}, {"velocity", in_space(v_)}};
   }
+  /// [Pa] in the middle of cells.
+  abut::Fields cell_fields() override {
+    const dealii::Vector<double> motion(u_.begin(), u_.end());
+    std::vector<dealii::SymmetricTensor<2, space>> strain(1);
+    dealii::FEValues<space> middle(mapping_, fe_, dealii::QMidpoint<space>(),
+                                   dealii::update_gradients);
+    Values told;
+    for (const auto& cell : dofs_.active_cell_iterators()) {
+      middle.reinit(cell);
+      middle[dealii::FEValuesExtractors::Vector(0)].get_function_symmetric_gradients(motion,
+                                                                                     strain);
+      told.insert(told.end(), cells_.size() / mesh_.n_active_cells(), von_mises(strain[0]));
+    }
+    return {{"von_mises", told}};
+  }
 
  private:
   using Node = std::array<dealii::types::global_dof_index, space>;  // its unknowns
@@ -243,8 +258,8 @@ class Solid : public abut::Body {
                  density = keys.positive("density", "kg/m^3");
     if (ratio <= -1 || ratio >= 0.5)
       keys.refuse("poissons_ratio", "must be above -1 and below 0.5", "Give such a number.");
-    const double lame = modulus * ratio / ((1 + ratio) * (1 - 2 * ratio)),
-                 shear = modulus / (2 * (1 + ratio));
+    lame_ = modulus * ratio / ((1 + ratio) * (1 - 2 * ratio));
+    shear_ = modulus / (2 * (1 + ratio));
     dealii::DynamicSparsityPattern pattern(dofs_.n_dofs());
     dealii::DoFTools::make_sparsity_pattern(dofs_, pattern);
     pattern_.copy_from(pattern);
@@ -261,7 +276,7 @@ class Solid : public abut::Body {
     for (const auto& cell : dofs_.active_cell_iterators()) {
       cell->get_dof_indices(own);
       values.reinit(cell);
-      stiffness_of(values, lame, shear, local);
+      stiffness_of(values, local);
       stiffness_.add(own, local);
       lumps.reinit(cell);
       for (unsigned i = 0; i < own.size(); ++i)
@@ -269,7 +284,7 @@ class Solid : public abut::Body {
           masses_[own[i]] += density * lumps.shape_value(i, q) * lumps.JxW(q);
       transit_ = transit_ > 0 ? std::min(transit_, shortest(cell)) : shortest(cell);
     }
-    transit_ /= degree_ * std::sqrt((lame + 2 * shear) / density);
+    transit_ /= degree_ * std::sqrt((lame_ + 2 * shear_) / density);
     mass = 0;
     for (const auto& node : nodes_) mass += masses_[node[0]];
     surface_mass = mass;
@@ -285,7 +300,7 @@ class Solid : public abut::Body {
     return length;
   }
 
-  void stiffness_of(const dealii::FEValues<space>& values, double lame, double shear,
+  void stiffness_of(const dealii::FEValues<space>& values,
                     dealii::FullMatrix<double>& local) const {
     const dealii::FEValuesExtractors::Vector motion(0);
     local = 0;
@@ -294,10 +309,24 @@ class Solid : public abut::Body {
         const auto strain = values[motion].symmetric_gradient(i, q);
         const double swelling = values[motion].divergence(i, q);
         for (const unsigned j : values.dof_indices())
-          local(i, j) += (2 * shear * (strain * values[motion].symmetric_gradient(j, q)) +
-                          lame * swelling * values[motion].divergence(j, q)) *
+          local(i, j) += (2 * shear_ * (strain * values[motion].symmetric_gradient(j, q)) +
+                          lame_ * swelling * values[motion].divergence(j, q)) *
                          values.JxW(q);
       }
+  }
+
+  double von_mises(const dealii::SymmetricTensor<2, space>& strain) const {
+    std::array<double, 3> normal{};
+    double sliding = 0.0;
+    for (unsigned i = 0; i < 3; ++i) {
+      normal[i] = lame_ * trace(strain) + (i < space ? 2 * shear_ * strain[i][i] : 0.0);
+      for (unsigned j = 0; j < i && i < space; ++j)
+        sliding += std::pow(2 * shear_ * strain[i][j], 2);
+    }
+    return std::sqrt(0.5 *
+                         (std::pow(normal[0] - normal[1], 2) + std::pow(normal[1] - normal[2], 2) +
+                          std::pow(normal[2] - normal[0], 2)) +
+                     3 * sliding);
   }
 
   /// [1/s^2] the largest eigenvalue of M^-1 K, by powers of it.
@@ -356,6 +385,7 @@ class Solid : public abut::Body {
   dealii::SparsityPattern pattern_;
   dealii::SparseMatrix<double> stiffness_;  // [N/m], per metre in the plane
   Values masses_;                           // [kg] of unknowns
+  double lame_ = 0.0, shear_ = 0.0;         // [Pa]
   double transit_ = 0.0;                    // [s]
   Values u_, v_, pull_;                     // [m] [m/s] [N] of unknowns; pull_ is K u
 };
