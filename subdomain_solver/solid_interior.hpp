@@ -148,7 +148,10 @@ class SolidInterior final : public Interior,
   std::size_t nodal_values() const { return index(parts_.model->dofs()); }
   bool probed_as_linear() const;
   void see_nodes();
+  bool lags() const;
   void add_lag();
+  void shift_lag(double share);
+  void leave_out_unknown(std::vector<double>& forces) const;
   const Vector& forces_now();
   void see_places();
   std::optional<Failed> meet_port_forces(double time);

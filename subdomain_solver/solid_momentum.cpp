@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/dense.hpp"
 #include "subdomain_solver/time/momentum_lag.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
@@ -25,12 +26,15 @@ std::array<bool, 3> held_axes(const FeModel& model, const std::vector<HeldCoordi
 
 }  // namespace
 
+bool SolidInterior::lags() const {
+  return state_.begun && !is_passive() && parts_.scheme.integrator->able().lag != nullptr;
+}
+
 /// To the momenta of the nodes, along the axes of space  [M.24].
 void SolidInterior::add_lag() {
-  const MomentumLag* lag = parts_.scheme.integrator->able().lag;
-  if (!state_.begun || is_passive() || lag == nullptr) return;
+  if (!lags()) return;
   const Motion& motion = state_.motion;
-  lag->find(motion, parts_.scheme.step, forces_now(), behind_);
+  parts_.scheme.integrator->able().lag->find(motion, parts_.scheme.step, forces_now(), behind_);
   Vector& nodes = parts_.reduced ? nodes_behind_ : behind_;
   if (parts_.reduced) {
     lag_.resize(nodal_values());
@@ -44,19 +48,43 @@ void SolidInterior::add_lag() {
     if (!held[k % dim]) momentum_(k) += nodes(k);
 }
 
-/// [N] (coordinates) of loads, and of what acts on ports but for forces that accelerations do not
-/// know: those are constant in steps, and pass whole.
+/// The last step of a window may be shorter: it holds back another share of the impulses than what
+/// is told, which is of the scheme's step. Rigid motions that no support holds take this share of
+/// it [M.24]. What deforms stays as it is: stiff modes would gain up to the energy that they have.
+void SolidInterior::shift_lag(double share) {
+  std::vector<double>& v = state_.motion.v;
+  if (parts_.reduced) {
+    see_nodes();
+    for (std::size_t k = 0; k < parts_.frequencies.size(); ++k)  // modes have a mass of one
+      if (parts_.frequencies[k] == 0.0) v[k] += share * behind_(static_cast<Eigen::Index>(k));
+    return;
+  }
+  const Eigen::MatrixXd motions = free_motions(true);
+  if (motions.cols() == 0) return;
+  const Vector lag = nodal_momentum() - mass_ * view(v);
+  const Eigen::MatrixXd heavy = motions.transpose() * (mass_ * motions);
+  const Vector moved = share * (motions.transpose() * lag);
+  view(v) += motions * solve_symmetric(heavy, moved);
+}
+
+/// Forces of ties [N] (port values) that accelerations do not know become none: they are constant
+/// in steps, and pass whole. Tied surfaces have mass, so nothing stands where they hold it.
+void SolidInterior::leave_out_unknown(std::vector<double>& forces) const {
+  if (!parts_.scheme.integrator->able().accelerates_without_ties) return;
+  for (std::size_t p = 0; p < ports_.size(); ++p)
+    if (joined_[p])
+      std::fill_n(forces.begin() + static_cast<std::ptrdiff_t>(port_map_->first(p)),
+                  port_map_->width(p), 0.0);
+}
+
+/// [N] (coordinates) of loads, and of what acts on ports as far as accelerations know of it.
 const Vector& SolidInterior::forces_now() {
   change_.setZero(parts_.problem->model->dofs());
   for (const std::unique_ptr<Load>& load : parts_.problem->loads)
     if (load.get() != port_forces_) load->add(state_.time, state_.motion.q, change_);
   if (port_forces_ == nullptr) return change_;
   before_ = state_.port_force;
-  const bool without_ties = parts_.scheme.integrator->able().accelerates_without_ties;
-  for (std::size_t p = 0; without_ties && p < ports_.size(); ++p) {
-    const auto first = before_.begin() + static_cast<std::ptrdiff_t>(port_map_->first(p));
-    if (joined_[p]) std::fill_n(first, port_map_->width(p), 0.0);
-  }
+  leave_out_unknown(before_);
   port_map_->lift(state_.motion.q, before_, change_);
   return change_;
 }

@@ -53,6 +53,7 @@ std::optional<Failed> SolidInterior::take_port_forces(double time) {
   if (state_.begun && now_ != state_.port_force) {
     before_ = now_;
     for (std::size_t k = 0; k < now_.size(); ++k) before_[k] -= state_.port_force[k];
+    leave_out_unknown(before_);
     change_.setZero(parts_.problem->model->dofs());
     port_map_->lift(state_.motion.q, before_, change_);
     if (contact_) port_map_->displacement(state_.motion.q, before_);

@@ -54,6 +54,7 @@ double BarInterior::enter() {
   if (is_passive()) return 0.0;
   if (midpoint_ == nullptr) midpoint_ = std::make_unique<BarMidpoint>(*bar_);
   const double before = energy();
+  const double behind = begun_ ? scheme_.integrator->momentum_lag(state_) : 0.0;
   std::array<double, 2> own{}, seen{};  // [m] of the ends: in the scheme's energy, by partners
   for (const int end : {0, 1}) {
     const std::size_t node = index(bar_->node_of(end));
@@ -80,6 +81,8 @@ double BarInterior::enter() {
     }
     put(low);
   }
+  if (behind != 0.0)  // what the scheme held back [M.24]; told, and the passive form has no such
+    for (double& v : state_.v) v += behind / bar_->data().mass_total();
   keep_energy(before);
   return before - energy();
 }

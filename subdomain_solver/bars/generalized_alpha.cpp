@@ -5,8 +5,8 @@
 
 namespace abut {
 
-GeneralizedAlpha::GeneralizedAlpha(const Bar& bar, const AlphaWeights& weights)
-    : BarIntegrator(bar), w_(weights) {
+GeneralizedAlpha::GeneralizedAlpha(const Bar& bar, const AlphaWeights& weights, double step)
+    : BarIntegrator(bar), w_(weights), step_(step) {
   // Mass matrix with the rows that have no mass of their own, or are held, taken out.
   std::vector<double> diagonal = bar_.mass();
   std::vector<double> beside = bar_.mass_beside();
@@ -210,15 +210,31 @@ void GeneralizedAlpha::apply_reactions(const EndActions& actions, BarState& stat
 }
 
 double GeneralizedAlpha::momentum_lag(const BarState& state) const {
+  return step_ * lag_per_step(state, loads_.now);
+}
+
+/// [N] The momentum that is behind the impulses of the forces, over the step  [M.24]; under loads
+/// [N] (nodes).
+double GeneralizedAlpha::lag_per_step(const BarState& state,
+                                      const std::vector<double>& loads) const {
   // Nodes that are held take part of the forces; massive contact nodes weigh theirs otherwise.
   for (int end : {0, 1}) {
     const bool fixed = bar_.data().fixed[end];
     if (fixed || is(end, ContactLayer::massive)) return 0.0;
   }
   double unbalanced = bar_.momentum(state.a) - bar_.data().body_force * bar_.data().mass_total();
-  for (const double load : loads_.now) unbalanced -= load;
+  for (const double load : loads) unbalanced -= load;
   for (int end : {0, 1}) unbalanced += Bar::outward(end) * state.end[end].dynamic;
-  return (0.5 - w_.alpha_f) * factored_dt_ * unbalanced;
+  return (0.5 - w_.alpha_f) * unbalanced;
+}
+
+/// Momentum is told with what the scheme's own step holds back; a shorter one holds back less.
+/// `step` [s]: by how much, less than 0: back again. The body moves as one by the difference: what
+/// deforms stays as it is.
+void GeneralizedAlpha::shift_lag(BarState& state, const std::vector<double>& loads,
+                                 double step) const {
+  const double change = step * lag_per_step(state, loads) / bar_.data().mass_total();
+  for (double& v : state.v) v += change;
 }
 
 void GeneralizedAlpha::advance_rates(BarState& state, double dt, const EndActions& actions) {
@@ -249,11 +265,13 @@ void GeneralizedAlpha::advance_rates(BarState& state, double dt, const EndAction
 
 void GeneralizedAlpha::substep(BarState& state, double dt, const EndActions& actions) {
   factor(dt, actions);
+  if (dt != step_) shift_lag(state, loads_.before, step_ - dt);
   right_hand_side(state, dt, actions);
   trial_ = rhs_;
   matrix_.solve(trial_);
   apply_reactions(actions, state);
   advance_rates(state, dt, actions);
+  if (dt != step_) shift_lag(state, loads_.now, dt - step_);
 }
 
 void GeneralizedAlpha::close(BarState& state, double) {

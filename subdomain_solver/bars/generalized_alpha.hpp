@@ -13,7 +13,8 @@ namespace abut {
 /// Conserved by the trapezoidal rule (Newmark 1/4, 1/2): 1/2 v M v + 1/2 u K u.
 class GeneralizedAlpha final : public BarIntegrator {
  public:
-  GeneralizedAlpha(const Bar& bar, const AlphaWeights& weights);
+  /// `step` [s]: of substeps that fill a window; the last one may be shorter.
+  GeneralizedAlpha(const Bar& bar, const AlphaWeights& weights, double step);
 
   void begin(BarState& state, const EndActions& actions) override;
   void open(BarState& state, double dt, const EndActions& opening) override;
@@ -36,8 +37,11 @@ class GeneralizedAlpha final : public BarIntegrator {
   void apply_reactions(const EndActions& actions, BarState& state);
   void advance_rates(BarState& state, double dt, const EndActions& actions);
   bool held(int end, const EndActions& actions) const;
+  double lag_per_step(const BarState& state, const std::vector<double>& loads) const;
+  void shift_lag(BarState& state, const std::vector<double>& loads, double step) const;
 
   AlphaWeights w_;
+  double step_;  // [s]
   double factored_dt_ = 0.0;
   std::array<bool, 2> factored_held_ = {false, false};
   TriDiagonal matrix_, mass_matrix_;

@@ -103,7 +103,7 @@ struct SchemeMaker {
            "Use generalized_alpha: {spectral_radius: 0}, which damps as strongly.");
   }
   BarInterior::Scheme implicit(const AlphaWeights& weights, double step, const char* words) const {
-    return {std::make_unique<GeneralizedAlpha>(bar, weights), step, false,
+    return {std::make_unique<GeneralizedAlpha>(bar, weights, step), step, false,
             fmt::format("{}, step {:g} s", words, step),
             weights.is_newmark() && weights.beta == 0.25 && weights.gamma == 0.5};
   }

@@ -260,7 +260,7 @@ std::optional<Failed> ImplicitDynamics::jump(Motion& motion, double time, const 
     if (auto failed = layer_.jump(time, motion, change, of_mass_.answer)) return failed;
     rest -= of_mass_.answer;
   }
-  if (options_.accelerations != Accelerations::balanced) return std::nullopt;
+  if (sums()) return std::nullopt;
   Vector& a = of_mass_.acceleration;
   a = view(motion.a);
   const bool solved = solve_mass(rest, a);

@@ -31,8 +31,9 @@ class ImplicitDynamics final : public Integrator, private Inertia, private Fores
     // Of the trapezoidal rule alone: the unknown of a step is the sum of the accelerations at both
     // ends, and none is stored, so that tie forces may jump from step to step [M.105].
     summed,
-    // Stored, and not corrected when tie forces jump, which are constant in a step [M.105]. Of
-    // weights with gamma > 1/2 whose tied partners all step alike: unlike pairs would gain energy.
+    // Stored, and not corrected when tie forces jump, which are constant in a step [M.105]: whoever
+    // tells of a jump leaves these out. Of weights with gamma > 1/2 whose tied partners all step
+    // alike: unlike pairs would gain energy.
     steady,
   };
   struct Options {

@@ -44,7 +44,7 @@ struct Vibration {
     return d;
   }
   void explicit_terms(int terms) { scheme = std::make_unique<CentralDifference>(bar, dt, terms); }
-  void weights(const AlphaWeights& w) { scheme = std::make_unique<GeneralizedAlpha>(bar, w); }
+  void weights(const AlphaWeights& w) { scheme = std::make_unique<GeneralizedAlpha>(bar, w, dt); }
 
   /// u = cos(k x), the exact discrete mode with k = mode pi / length, at rest; the acceleration
   /// belongs to it.
